@@ -19,7 +19,7 @@ namespace houghstream {
 /// and the studies call some of them too. Each reads what those before it have left in the workspace.
 
 /// What frames are searched with.
-struct Search {
+struct SearchContext {
   const ForestIndex& index;
   const DetectionSettings& settings;
   /// Into Forest::views: not compared with the frame. A picture composed for training must not be recognised by the
@@ -48,27 +48,27 @@ struct DetectorWorkspace {
 void require_searchable(const FeatureSettings& settings, const std::string& source);
 
 /// The frame at the sizes that are looked at (paper, Section 5.1.1).
-void make_working_images(const Search& search, const RgbdFrame& frame, DetectorWorkspace& workspace);
+void make_working_images(const SearchContext& search, const RgbdFrame& frame, DetectorWorkspace& workspace);
 
 /// Where patches stand (Section 5.1.3), and the features around them (Section 3).
-void compute_features(const Search& search, DetectorWorkspace& workspace);
+void compute_features(const SearchContext& search, DetectorWorkspace& workspace);
 
 /// The leaves that each patch reaches (Section 5.1.2), and for which classes it votes by them.
-void find_posteriors(const Search& search, DetectorWorkspace& workspace);
+void find_posteriors(const SearchContext& search, DetectorWorkspace& workspace);
 
 /// Votes for the objects' centres and their maxima (Section 2), class by class.
-std::vector<Hypothesis> find_hypotheses(const Search& search, DetectorWorkspace& workspace);
+std::vector<Hypothesis> find_hypotheses(const SearchContext& search, DetectorWorkspace& workspace);
 
 /// What speaks for each hypothesis, and its score.
-std::vector<Candidate> weigh_evidence(const Search& search, const RgbdFrame& frame,
+std::vector<Candidate> weigh_evidence(const SearchContext& search, const RgbdFrame& frame,
                                       const std::vector<Hypothesis>& hypotheses, DetectorWorkspace& workspace);
 
 /// What is likely enough, and weaker candidates for a pose to confirm; of overlapping boxes the stronger (Section 2).
 /// It closes the stage "detect.suppression"; the clock's times follow those of the frame.
-Detections report_detections(const Search& search, const RgbdFrame& frame, std::vector<Candidate>& candidates,
+Detections report_detections(const SearchContext& search, const RgbdFrame& frame, std::vector<Candidate>& candidates,
                              StageClock& clock);
 
 /// What votes of the workspace are cast of.
-VotingInput voting_input(const Search& search, const DetectorWorkspace& workspace);
+VotingInput voting_input(const SearchContext& search, const DetectorWorkspace& workspace);
 
 }  // namespace houghstream

@@ -19,7 +19,7 @@ struct Estimation {
   const Detection& detection;
   const ObjectModel& model;
   ObjectPose& pose;  ///< what is published; its status is kInvalid until it is decided
-  std::optional<SeenObject> seen;
+  std::optional<ObjectObservation> seen;
   std::vector<RotationCandidate> rotations;
   std::vector<PoseCandidate> candidates;
   std::vector<RegistrationResult> registered;  ///< the candidates
@@ -67,8 +67,8 @@ std::vector<Estimation> begin_estimations(const Detections& detections,
   return begun;
 }
 
-void look_at_region(const SeenFrame& frame, const PoseSettings& settings, Estimation& it) {
-  it.seen.emplace(see_object(frame, it.detection, it.model, settings.region));
+void look_at_region(const FrameContext& frame, const PoseSettings& settings, Estimation& it) {
+  it.seen.emplace(observe_object(frame, it.detection, it.model, settings.region));
   if (it.seen->region.points < settings.region.min_points) it.pose.status = PoseStatus::kTooFewPoints;
 }
 
@@ -82,7 +82,7 @@ void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, E
 }
 
 void choose_one(const PoseSettings& settings, Estimation& it) {
-  it.chosen = choose_poses(*it.seen, it.registered, it.rotations, choice_settings_of(settings));
+  it.chosen = select_poses(*it.seen, it.registered, it.rotations, choice_settings_of(settings));
   copy_registration_evidence(it.chosen.front(), it.pose);
   if (it.chosen.front().inliers == 0) it.pose.status = PoseStatus::kNotConverged;
 }
@@ -165,7 +165,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
     });
   };
 
-  const SeenFrame seen = see_frame(frame, settings.region, settings.noise);
+  const FrameContext seen = make_frame_context(frame, settings.region, settings.noise);
   for_each_undecided([&](Estimation& it) { look_at_region(seen, settings, it); });
   clock.mark("pose.region");
   for_each_undecided([&](Estimation& it) { find_candidates(earlier, settings, it); });

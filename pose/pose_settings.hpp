@@ -22,7 +22,7 @@ struct PoseSettings {
   SearchSettings search;
   WarmStartSettings warm_start;
   RegistrationSettings registration;
-  TurnSettings turn;
+  RotationSearchSettings turn;
   VerificationSettings verification;
   QualitySettings quality;
   std::map<std::string, QualitySettings> class_quality;  ///< learnt for one class, by name; of the others: `quality`
@@ -48,7 +48,7 @@ inline ChoiceSettings choice_settings_of(const PoseSettings& settings) {
 
 /// Publishes poses from this quality on, whatever their detections and their classes are.
 inline void publish_from(float quality, PoseSettings& settings) {
-  const auto publish = [&](QualitySettings& judged_by) { judged_by.least = judged_by.least_of_candidates = quality; };
+  const auto publish = [&](QualitySettings& judged_by) { judged_by.least = judged_by.min_candidate_quality = quality; };
   publish(settings.quality);
   for (auto& [name, learnt] : settings.class_quality) publish(learnt);
 }

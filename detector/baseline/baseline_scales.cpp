@@ -22,7 +22,7 @@ class SurfaceScales : public training::DepthNormalisedScales {
     return baseline::extra_planes(frame, settings, 1);
   }
 
-  std::vector<Candidate> search(const Search& search, const RgbdFrame& frame,
+  std::vector<Candidate> search(const SearchContext& search, const RgbdFrame& frame,
                                 DetectorWorkspace& workspace) const override {
     make_working_images(search, frame, workspace);
     compute_features_by(Way::kFast, search, workspace);
@@ -85,7 +85,7 @@ class ScaleSpaceScales : public training::Scales {
     return {static_cast<float>(offset.x() / camera.fx), static_cast<float>(offset.y() / camera.fy), 0.0F};
   }
 
-  std::vector<Candidate> search(const Search& search, const RgbdFrame& frame, DetectorWorkspace&) const override {
+  std::vector<Candidate> search(const SearchContext& search, const RgbdFrame& frame, DetectorWorkspace&) const override {
     StageClock clock;
     return search_scale_space(search, Way::kFast, frame, clock);
   }

@@ -37,7 +37,7 @@ Profile gall_profile(std::size_t objects) {
   profile.training.alone_share = 0.0;  // differences only
   profile.training.spare_background = 0;
   profile.training.sharpened_share = 0.0;  // the original sees its views as they were taken
-  profile.training.most_background = std::numeric_limits<float>::infinity();
+  profile.training.max_background_weight = std::numeric_limits<float>::infinity();
   profile.training.scoring = Scoring::kVotes;
   profile.training.max_leaf_votes = 32;
   profile.detection.spacing.stride = 1;
@@ -95,7 +95,7 @@ void set_scale_handling(Profile& profile, const std::string& handling) {
     features.handling = ScaleHandling::kDepthNormalised;
     features.scales = {};
     features.far_distance = features.max_distance;
-    profile.patch.unit = kTaughtDistance / (features.image_scale * kUsualFocal);
+    profile.patch.unit = kTaughtDistance / (features.image_scale * kReferenceFocal_px);
     profile.training.merge_radius = training::TrainingSettings{}.merge_radius;
     profile.detection.voting.vote_sigma = DetectionSettings{}.voting.vote_sigma;
     return;
@@ -106,8 +106,8 @@ void set_scale_handling(Profile& profile, const std::string& handling) {
   features.scales = handling == "five" ? kFiveScales : std::array<float, kMaxScales>{1.0F};
   profile.patch.unit = 1.0F;
   // Offsets are counted as at 1 m: see FeatureSettings::handling.
-  profile.training.merge_radius = 2.0F / kUsualFocal;
-  profile.detection.voting.vote_sigma = 3.0F / kUsualFocal;
+  profile.training.merge_radius = 2.0F / kReferenceFocal_px;
+  profile.detection.voting.vote_sigma = 3.0F / kReferenceFocal_px;
 }
 
 }  // namespace houghstream::baseline

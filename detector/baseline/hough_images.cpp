@@ -8,7 +8,7 @@
 namespace houghstream::baseline {
 namespace {
 
-cv::Mat largest_over_sizes(const Search& search, int class_index, const RgbdFrame& frame) {
+cv::Mat largest_over_sizes(const SearchContext& search, int class_index, const RgbdFrame& frame) {
   cv::Mat largest = cv::Mat::zeros(frame.colour.size(), CV_32FC1);
   for (const cv::Mat& image : scale_space_hough_images(search, class_index, frame)) {
     cv::Mat resized;
@@ -52,7 +52,7 @@ cv::Mat at_frame_size(const cv::Mat& cells, int cell_px, const Camera& working_c
 
 }  // namespace
 
-cv::Mat hough_image(const Search& search, int class_index, const RgbdFrame& frame) {
+cv::Mat hough_image(const SearchContext& search, int class_index, const RgbdFrame& frame) {
   if (search.forest().features.handling == ScaleHandling::kScaleSpace) {
     return largest_over_sizes(search, class_index, frame);
   }
@@ -65,7 +65,7 @@ cv::Mat hough_image(const Search& search, int class_index, const RgbdFrame& fram
   HoughSpace space;
   cast_votes(input, class_index, memory, space);
   const cv::Mat masses = masses_by_cell(space, input);
-  const float expected = search.forest().classes[static_cast<std::size_t>(class_index)].expected_mass;
+  const float expected = search.forest().classes[static_cast<std::size_t>(class_index)].nominal_vote_mass;
   return at_frame_size(masses / expected, space.cell_px, input.camera, frame.colour.size());
 }
 

@@ -10,7 +10,7 @@ namespace houghstream::baseline {
 void reference_leaves(const LeafInput& input, int threads, const LeafVisitor& visit) {
   const Forest& forest = input.index.forest();
   const PatchGrid& patches = input.patches;
-  const EarlyEnd& early_end = input.early_end;
+  const EarlyRejection& early_end = input.early_end;
   const int trees = static_cast<int>(forest.roots.size());
   parallel_for_workers(threads, static_cast<int>(input.runs.size()), [&](int worker, int r) {
     const PatchRun& run = input.runs[static_cast<std::size_t>(r)];
@@ -19,10 +19,10 @@ void reference_leaves(const LeafInput& input, int threads, const LeafVisitor& vi
     for (std::size_t p = run.first; p < run.first + run.count; ++p) {
       const PatchView patch = input.features[patches.level[p]].patch(patches.x[p], patches.y[p], patches.scale[p]);
       float certainty = 0.0F;
-      for (int tree = 0; early_end.is_used(forest) && tree < early_end.trees; ++tree) {
-        certainty += input.index.leaf_heads()[find_leaf(forest, tree, patch)].certainty;
+      for (int tree = 0; early_end.is_enabled(forest) && tree < early_end.trees; ++tree) {
+        certainty += input.index.leaf_summaries()[find_leaf(forest, tree, patch)].certainty;
       }
-      if (early_end.is_used(forest) && !early_end.goes_on(certainty)) continue;
+      if (early_end.is_enabled(forest) && !early_end.goes_on(certainty)) continue;
       left.push_back(static_cast<std::uint32_t>(p));
       for (int tree = 0; tree < trees; ++tree) by_tree[tree].push_back(find_leaf(forest, tree, patch));
     }
@@ -42,7 +42,7 @@ void compute_features_by(Way way, const FeatureInput& input, int threads, Featur
   compute_features({input.frame, input.settings, input.tiles, &extra}, threads, memory, image);
 }
 
-void compute_features_by(Way way, const Search& search, DetectorWorkspace& workspace) {
+void compute_features_by(Way way, const SearchContext& search, DetectorWorkspace& workspace) {
   const std::vector<WorkingFrame>& frames = workspace.images.frames;
   place_patches(workspace.images, {search.forest().patch, search.settings.spacing}, workspace.patches);
   workspace.features.resize(frames.size());
@@ -55,7 +55,7 @@ void compute_features_by(Way way, const Search& search, DetectorWorkspace& works
 void find_posteriors_by(Way way, const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors) {
   if (way == Way::kFast) return find_posteriors(input, memory, posteriors);
   list_runs(input.patches, memory.runs);
-  const EarlyEnd early_end{input.settings.first_trees, input.settings.min_first_share};
+  const EarlyRejection early_end{input.settings.first_trees, input.settings.min_first_posterior};
   posteriors.reset(input.index, memory.runs.size(), input.settings.min_class_share, input.threads);
   reference_leaves({input.index, input.features, input.patches, memory.runs, early_end}, input.threads,
                    [&](const RunLeaves& seen) { posteriors.note(seen); });

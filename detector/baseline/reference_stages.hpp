@@ -14,7 +14,7 @@ enum class Way {
 /// Surface families are computed too: FeatureInput::extra is not asked.
 void compute_features_by(Way way, const FeatureInput& input, int threads, FeatureMemory& memory, FeatureImage& image);
 /// The stage compute_features.
-void compute_features_by(Way way, const Search& search, DetectorWorkspace& workspace);
+void compute_features_by(Way way, const SearchContext& search, DetectorWorkspace& workspace);
 
 void find_posteriors_by(Way way, const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors);
 

@@ -25,7 +25,7 @@ struct SeenLevel {
 };
 
 /// Classifies the patches of a level; closes its stages on the clock.
-SeenLevel see_level(const Search& search, Way way, const RgbdFrame& frame, const FeatureLevel& level,
+SeenLevel see_level(const SearchContext& search, Way way, const RgbdFrame& frame, const FeatureLevel& level,
                     StageClock& clock) {
   const Forest& forest = search.forest();
   const DetectionSettings& settings = search.settings;
@@ -55,7 +55,7 @@ void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, 
   const float share = 1.0F / static_cast<float>(forest.roots.size());
   const auto width = static_cast<float>(seen.camera.width);
   const auto height = static_cast<float>(seen.camera.height);
-  seen.posteriors.for_supporters(class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
+  seen.posteriors.for_each_supporting_patch(class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
     for (std::uint32_t e = 0; e < count; ++e) {  // the cache misses below overlap
       hwy::Prefetch(forest.votes.data() + forest.leaf_classes[entries[e]].first_vote);
     }
@@ -76,7 +76,7 @@ void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, 
 }
 
 /// Vote mass per pixel over the class's expected mass.
-cv::Mat hough_image(const Search& search, int class_index, const SeenLevel& seen) {
+cv::Mat hough_image(const SearchContext& search, int class_index, const SeenLevel& seen) {
   const Forest& forest = search.forest();
   const DetectionSettings& settings = search.settings;
   cv::Mat image = cv::Mat::zeros(seen.camera.height, seen.camera.width, CV_32FC1);
@@ -86,7 +86,7 @@ cv::Mat hough_image(const Search& search, int class_index, const SeenLevel& seen
   cv::GaussianBlur(image, image, cv::Size(0, 0), sigma, sigma, cv::BORDER_CONSTANT);
   const double patch_side = settings.spacing.stride / static_cast<double>(seen.px_per_offset);
   const double kernel_sum = 2.0 * M_PI * sigma * sigma;  // a vote at the centre counts as 1
-  const float expected = forest.classes[static_cast<std::size_t>(class_index)].expected_mass;
+  const float expected = forest.classes[static_cast<std::size_t>(class_index)].nominal_vote_mass;
   return image * (kernel_sum * patch_side * patch_side / expected);
 }
 
@@ -118,7 +118,7 @@ cv::Mat supported_maximum(const std::vector<cv::Point>& maxima, cv::Size size, f
 }
 
 /// The patches, and the views that they remember, whose votes meet at each maximum.
-std::vector<Hypothesis> gather_supporters(const Search& search, int class_index, const SeenLevel& seen,
+std::vector<Hypothesis> gather_supporters(const SearchContext& search, int class_index, const SeenLevel& seen,
                                           const std::vector<cv::Point>& maxima) {
   const Forest& forest = search.forest();
   const float sigma = search.settings.voting.vote_sigma * seen.px_per_offset;
@@ -150,13 +150,13 @@ std::vector<Hypothesis> gather_supporters(const Search& search, int class_index,
   return hypotheses;
 }
 
-Candidate make_candidate(const ObjectClass& object, const Hypothesis& hypothesis, float mass_share, cv::Rect2f box_px) {
+Candidate make_candidate(const ObjectClass& object, const Hypothesis& hypothesis, float relative_vote_mass, cv::Rect2f box_px) {
   Candidate candidate;
-  candidate.evidence.mass_share = mass_share;
+  candidate.evidence.relative_vote_mass = relative_vote_mass;
   Detection& detection = candidate.detection;
   detection.class_id = object.class_id;
   detection.class_name = object.name;
-  detection.score = vote_score(mass_share);
+  detection.score = vote_score(relative_vote_mass);
   detection.box_px = box_px;
   detection.centre_camera.setConstant(std::numeric_limits<float>::quiet_NaN());
   detection.vote_weight = hypothesis.weight;
@@ -165,7 +165,7 @@ Candidate make_candidate(const ObjectClass& object, const Hypothesis& hypothesis
 }
 
 /// All maxima of one class in one size.
-std::vector<ScalePeak> level_peaks(const Search& search, int class_index, const SeenLevel& seen, const Camera& camera) {
+std::vector<ScalePeak> level_peaks(const SearchContext& search, int class_index, const SeenLevel& seen, const Camera& camera) {
   const ObjectClass& object = search.forest().classes[static_cast<std::size_t>(class_index)];
   const VotingSettings& settings = search.settings.voting;
   const cv::Mat image = hough_image(search, class_index, seen);
@@ -181,7 +181,7 @@ std::vector<ScalePeak> level_peaks(const Search& search, int class_index, const 
     const cv::Point at = maxima[m];
     Hypothesis& hypothesis = hypotheses[m];
     hypothesis.centre_camera = seen.camera.backproject(at.x, at.y, seen.size_ratio).cast<float>();
-    const cv::Rect2f box_px = backprojected_box(search.forest(), hypothesis, seen.grid, camera, box_memory);
+    const cv::Rect2f box_px = backproject_box(search.forest(), hypothesis, seen.grid, camera, box_memory);
     if (box_px.empty()) continue;
     peaks.push_back({make_candidate(object, hypothesis, image.at<float>(at), box_px),
                      (cv::Point2f(at) + half) * to_frame - half, static_cast<float>(reach_px) * to_frame, seen.size});
@@ -196,9 +196,9 @@ bool beside(const ScalePeak& a, const ScalePeak& b) {
 }
 
 bool is_slope(const std::vector<ScalePeak>& peaks, std::size_t i) {
-  const float mass = peaks[i].candidate.evidence.mass_share;
+  const float mass = peaks[i].candidate.evidence.relative_vote_mass;
   for (std::size_t j = 0; j < peaks.size(); ++j) {
-    const float other = peaks[j].candidate.evidence.mass_share;
+    const float other = peaks[j].candidate.evidence.relative_vote_mass;
     if ((other > mass || (other == mass && j < i)) && beside(peaks[i], peaks[j])) return true;
   }
   return false;
@@ -229,7 +229,7 @@ std::vector<Candidate> maxima_over_sizes(const std::vector<ScalePeak>& peaks) {
   return candidates;
 }
 
-std::vector<Candidate> search_scale_space(const Search& search, Way way, const RgbdFrame& frame, StageClock& clock) {
+std::vector<Candidate> search_scale_space(const SearchContext& search, Way way, const RgbdFrame& frame, StageClock& clock) {
   std::vector<ScalePeak> all;
   int sizes = 0;
   for (const FeatureLevel& level : scale_space_levels(search.forest().features)) {
@@ -244,7 +244,7 @@ std::vector<Candidate> search_scale_space(const Search& search, Way way, const R
   return maxima_over_sizes(all);
 }
 
-std::vector<cv::Mat> scale_space_hough_images(const Search& search, int class_index, const RgbdFrame& frame) {
+std::vector<cv::Mat> scale_space_hough_images(const SearchContext& search, int class_index, const RgbdFrame& frame) {
   std::vector<cv::Mat> images;
   StageClock clock;
   for (const FeatureLevel& level : scale_space_levels(search.forest().features)) {

@@ -8,7 +8,7 @@ namespace houghstream::baseline {
 namespace {
 
 /// The stages of Detector::detect up to the evidence, two of them in the way that is asked for.
-std::vector<Candidate> search_normalised(const Search& search, Way way, const RgbdFrame& frame,
+std::vector<Candidate> search_normalised(const SearchContext& search, Way way, const RgbdFrame& frame,
                                          DetectorWorkspace& workspace, StageClock& clock) {
   const DetectionSettings& settings = search.settings;
   make_working_images(search, frame, workspace);
@@ -31,7 +31,7 @@ StudyDetector::StudyDetector(Forest forest, const DetectionSettings& settings, W
     : forest_(std::move(forest)), index_(forest_), settings_(settings), way_(way) {}
 
 Detections StudyDetector::detect(const RgbdFrame& frame, DetectorWorkspace& workspace) const {
-  const Search search{index_, settings_};
+  const SearchContext search{index_, settings_};
   check_frame(frame, "detector");
   StageClock clock;
   const bool in_scale_space = forest_.features.handling == ScaleHandling::kScaleSpace;

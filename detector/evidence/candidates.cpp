@@ -18,7 +18,7 @@ constexpr std::size_t kViews = 8;
 /// Compares the first `count` views that most votes remember with the frame; those that are compared already come
 /// first.
 void compare_views(const EvidenceInput& input, const Hypothesis& hypothesis, std::size_t count,
-                   std::vector<PlacedView>& compared) {
+                   std::vector<PlacedTemplate>& compared) {
   const std::vector<std::uint32_t>& excluded = input.excluded_views;
   const Eigen::Vector3f& centre = hypothesis.centre_camera;
   std::size_t place = 0;
@@ -26,7 +26,7 @@ void compare_views(const EvidenceInput& input, const Hypothesis& hypothesis, std
     if (place == count) break;
     if (std::find(excluded.begin(), excluded.end(), view) != excluded.end()) continue;
     if (place == compared.size()) {
-      compared.push_back({view, centre, fit_view(input.index.forest().views[view], centre, input.frame)});
+      compared.push_back({view, centre, match_template(input.index.forest().views[view], centre, input.frame)});
     }
     ++place;
   }
@@ -34,7 +34,7 @@ void compare_views(const EvidenceInput& input, const Hypothesis& hypothesis, std
 
 /// From the view that agrees best to those that look from beside it, as long as one of them agrees better: votes
 /// remember few of the views that would fit. All that were looked at are added to `way`.
-PlacedView climb(const EvidenceInput& input, PlacedView best, std::vector<PlacedView>& way) {
+PlacedTemplate climb(const EvidenceInput& input, PlacedTemplate best, std::vector<PlacedTemplate>& way) {
   constexpr int kSteps = 6;
   const std::vector<std::uint32_t>& excluded = input.excluded_views;
   for (int step = 0; step < kSteps; ++step) {
@@ -42,45 +42,45 @@ PlacedView climb(const EvidenceInput& input, PlacedView best, std::vector<Placed
     const Eigen::Vector3f centre = best.centre_camera;
     for (const std::uint32_t view : input.index.view_neighbours()[from]) {
       if (view == from || std::find(excluded.begin(), excluded.end(), view) != excluded.end()) continue;
-      way.push_back({view, centre, fit_view(input.index.forest().views[view], centre, input.frame)});
+      way.push_back({view, centre, match_template(input.index.forest().views[view], centre, input.frame)});
       if (agreement(way.back().fit) > agreement(best.fit)) best = way.back();
     }
     if (best.view == from) break;
-    best = align_view(input.index.forest().views, best, input.frame);
+    best = align_template(input.index.forest().views, best, input.frame);
   }
-  return align_view(input.index.forest().views, best, input.frame, 0.5F);
+  return align_template(input.index.forest().views, best, input.frame, 0.5F);
 }
 
 /// Where to climb from: the view that agrees best, and those that agree next best of attitudes unlike these, up to
 /// `count`, at most kMostAttitudes.
-class Starts {
+class SeedTemplates {
  public:
-  Starts(const EvidenceInput& input, std::size_t count, std::vector<PlacedView>& compared) {
+  SeedTemplates(const EvidenceInput& input, std::size_t count, std::vector<PlacedTemplate>& compared) {
     constexpr float kUnlike = 0.6F;  // radians
-    const auto rotation = [&](const PlacedView& placed) {
+    const auto rotation = [&](const PlacedTemplate& placed) {
       return Eigen::Quaternionf(input.index.forest().views[placed.view].R_ray_object);
     };
-    starts_[count_++] = align_best_few(input.index.forest().views, input.frame, compared);
-    for (const PlacedView& next : compared) {
+    starts_[count_++] = align_best_templates(input.index.forest().views, input.frame, compared);
+    for (const PlacedTemplate& next : compared) {
       if (count_ == count) break;
-      const auto is_like = [&](const PlacedView& start) {
+      const auto is_like = [&](const PlacedTemplate& start) {
         return rotation(start).angularDistance(rotation(next)) <= kUnlike;
       };
       if (std::none_of(begin(), end(), is_like)) starts_[count_++] = next;
     }
   }
-  const PlacedView* begin() const { return starts_.data(); }
-  const PlacedView* end() const { return starts_.data() + count_; }
+  const PlacedTemplate* begin() const { return starts_.data(); }
+  const PlacedTemplate* end() const { return starts_.data() + count_; }
 
  private:
-  std::array<PlacedView, kMostAttitudes> starts_;
+  std::array<PlacedTemplate, kMostAttitudes> starts_;
   std::size_t count_ = 0;
 };
 
 /// What a view says where it stands, `evidence` otherwise.
-void look_at_view(const EvidenceInput& input, const PlacedView& placed, Evidence& evidence) {
+void look_at_view(const EvidenceInput& input, const PlacedTemplate& placed, Evidence& evidence) {
   evidence.fit = placed.fit;
-  evidence.outline = look_across_outline(input.index.forest().views[placed.view], placed.centre_camera, input.frame);
+  evidence.outline = measure_boundary_continuation(input.index.forest().views[placed.view], placed.centre_camera, input.frame);
 }
 
 /// Completes the evidence by the view that agrees best with the frame, aligned with it; of views of unlike attitudes by
@@ -91,22 +91,22 @@ void add_best_fit(const EvidenceInput& input, const Hypothesis& hypothesis, floa
                   Evidence& evidence) {
   constexpr float kHopeless = 0.02F;  // score: votes bring hidden objects views that hardly fit
   constexpr ScoreModel kCommon;
-  std::vector<PlacedView>& compared = own.compared;
+  std::vector<PlacedTemplate>& compared = own.compared;
   compare_views(input, hypothesis, kViews, compared);
   if (compared.empty()) return;
-  look_at_view(input, best_unaligned(compared), evidence);
+  look_at_view(input, best_match(compared), evidence);
   if (score(input.index.forest().classes[hypothesis.class_index].score_model, evidence) < kHopeless) return;
   compare_views(input, hypothesis, static_cast<std::size_t>(kViews * spread), compared);
   const Evidence unaligned = evidence;
   const auto attitudes = static_cast<std::size_t>(spread);
   own.best_way.clear();
   double most = -std::numeric_limits<double>::infinity();
-  for (const PlacedView& start : Starts(input, attitudes, compared)) {
+  for (const PlacedTemplate& start : SeedTemplates(input, attitudes, compared)) {
     own.way.clear();
-    const PlacedView best = climb(input, start, own.way);
+    const PlacedTemplate best = climb(input, start, own.way);
     Evidence seen = unaligned;
     look_at_view(input, best, seen);
-    seen.other_size = gain_of_other_size(input.index.forest().views[best.view], best, input.frame);
+    seen.other_size = alternative_scale_gain(input.index.forest().views[best.view], best, input.frame);
     const double odds = log_odds(kCommon, score_terms(seen));
     if (odds <= most) continue;
     most = odds;
@@ -124,7 +124,7 @@ const WeighedViews& weighed_views(const Hypothesis& hypothesis, float spread, Ev
   if (spread == 1.0F || own.compared.empty()) return hypothesis.views;
   WeighedViews& weighed = own.weighed;
   weighed.clear();
-  for (const PlacedView& seen : own.compared) {
+  for (const PlacedTemplate& seen : own.compared) {
     weighed.emplace_back(seen.view, std::exp(kSharpness * agreement(seen.fit)));
   }
   std::stable_sort(weighed.begin(), weighed.end(), [](const auto& a, const auto& b) {
@@ -163,14 +163,14 @@ Candidate weigh(const EvidenceInput& input, const Hypothesis& hypothesis, float 
   own.compared.clear();
   Candidate candidate;
   Detection& detection = candidate.detection;
-  candidate.evidence.mass_share = hypothesis.mass / object.expected_mass;
+  candidate.evidence.relative_vote_mass = hypothesis.mass / object.nominal_vote_mass;
   candidate.evidence.certainty =
       hypothesis.weight / static_cast<float>(std::max<std::size_t>(hypothesis.patches.size(), 1));
   candidate.evidence.distance = hypothesis.centre_camera.norm();
   candidate.evidence.radius_px =
-      octaves_scale(camera) * static_cast<float>(camera.fx) * object.radius / candidate.evidence.distance;
-  detection.box_px = backprojected_box(input.index.forest(), hypothesis, input.patches, camera, own.box);
-  detection.score = vote_score(candidate.evidence.mass_share);
+      focal_octave_scale(camera) * static_cast<float>(camera.fx) * object.radius / candidate.evidence.distance;
+  detection.box_px = backproject_box(input.index.forest(), hypothesis, input.patches, camera, own.box);
+  detection.score = vote_score(candidate.evidence.relative_vote_mass);
   if (input.index.forest().scoring == Scoring::kEvidence) {
     add_best_fit(input, hypothesis, spread, own, candidate.evidence);
     detection.score = score(object.score_model, candidate.evidence);
@@ -210,7 +210,7 @@ std::vector<Candidate> weigh_evidence(const EvidenceInput& input, const std::vec
 float attitude_spread(const Forest& forest, std::uint32_t class_index) {
   constexpr float kOneAttitude = 150.0F;  // views of a turntable
   const auto views = std::count_if(forest.views.begin(), forest.views.end(),
-                                   [&](const TrainedView& view) { return view.class_index == class_index; });
+                                   [&](const ViewTemplate& view) { return view.class_index == class_index; });
   return std::clamp(static_cast<float>(views) / kOneAttitude, 1.0F, static_cast<float>(kMostAttitudes));
 }
 

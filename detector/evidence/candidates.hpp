@@ -32,9 +32,9 @@ struct EvidenceInput {
 /// What weigh_evidence needs for itself, to be kept from frame to frame.
 struct EvidenceMemory {
   struct Worker {
-    std::vector<PlacedView> compared;
-    std::vector<PlacedView> way;                           ///< what was looked at from one view to a better one
-    std::vector<PlacedView> best_way;                      ///< the same to the best
+    std::vector<PlacedTemplate> compared;
+    std::vector<PlacedTemplate> way;                           ///< what was looked at from one view to a better one
+    std::vector<PlacedTemplate> best_way;                      ///< the same to the best
     std::vector<std::pair<std::uint32_t, float>> weighed;  ///< views, and how much they speak for their rotation
     BoxMemory box;
   };

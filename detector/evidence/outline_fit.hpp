@@ -8,14 +8,14 @@ namespace houghstream {
 /// where nothing of it is seen. A part of a larger thing, or of a longer one, looks like the object within the outline
 /// only. Depth cannot tell it where the object touches what it stands on; that its colour goes on, or its own slope,
 /// can. (By the contrast of a window with what surrounds it Alexe, Deselaers and Ferrari 2010 tell objects.)
-class OutlineFit {
+class BoundaryContinuation {
  public:
   /// `tolerance`: of depth, metres.
-  void add(const AcrossOutline& seen, float tolerance) {
+  void add(const BoundarySample& seen, float tolerance) {
     const float surface = houghstream::surface_goes_on(seen, tolerance);
     ++count_;
     surface_ += surface;
-    colour_ += steps_back(seen, tolerance) ? 0.0F : plain_colour_goes_on(seen);
+    colour_ += is_background_step(seen, tolerance) ? 0.0F : uniform_colour_continuation(seen);
     both_ += surface * houghstream::colour_goes_on(seen);
   }
 

@@ -19,12 +19,12 @@ Vector to_vector(const ScoreTerms& terms) {
 }  // namespace
 
 ScoreTerms score_terms(const Evidence& evidence) {
-  const ViewFit& fit = evidence.fit;
+  const TemplateMatch& fit = evidence.fit;
   const float foreign = std::min(fit.foreign_colour, 1.0F);
   constexpr float kNearest = 0.1F;  // metres, as far as a logarithm means something
   constexpr float kLeast = 1e-4F;   // the same of shares
   constexpr float kUsualRadius_px = 40.0F;
-  const float log_mass = std::log(std::max(evidence.mass_share, kLeast));
+  const float log_mass = std::log(std::max(evidence.relative_vote_mass, kLeast));
   const float log_shown = std::log(1.02F - fit.hidden);
   const float log_certainty = std::log(std::max(evidence.certainty, kLeast));
   ScoreTerms terms;
@@ -57,7 +57,7 @@ ScoreTerms score_terms(const Evidence& evidence) {
   terms.goes_on = evidence.outline.goes_on();
   terms.surface_goes_on = evidence.outline.surface_goes_on();
   terms.colour_goes_on = evidence.outline.colour_goes_on();
-  terms.goes_on_likeness = terms.goes_on * fit.likeness;
+  terms.boundary_continuation_correlation = terms.goes_on * fit.likeness;
   return terms;
 }
 

@@ -7,13 +7,13 @@ namespace houghstream {
 
 /// What speaks for and against a hypothesis.
 struct Evidence {
-  float mass_share = 0.0F;   ///< vote mass over the class's expected_mass
+  float relative_vote_mass = 0.0F;   ///< vote mass over the class's nominal_vote_mass
   float certainty = 1.0F;    ///< weight of the votes over the number of patches that cast them
   float distance = 1.0F;     ///< of the centre from the camera, metres
-  float radius_px = 40.0F;   ///< of the object at that distance, at about the usual focal length: see octaves_scale
-  ViewFit fit;               ///< of the remembered view that fits best
-  OutlineFit outline;        ///< of the same
-  float other_size = -0.4F;  ///< see gain_of_other_size; about what objects have, where it was not looked for
+  float radius_px = 40.0F;   ///< of the object at that distance, at about the usual focal length: see focal_octave_scale
+  TemplateMatch fit;               ///< of the remembered view that fits best
+  BoundaryContinuation outline;        ///< of the same
+  float other_size = -0.4F;  ///< see alternative_scale_gain; about what objects have, where it was not looked for
 };
 
 /// The evidence as the terms that ScoreModel::weights multiply.
@@ -27,8 +27,8 @@ float score(const ScoreModel& model, const Evidence& evidence);
 
 /// Confidence from votes alone: it rises with their mass and is 0.1 at a twentieth of the expected mass: of
 /// an object visible by a tenth, the least that counts as truth, seen half as well as in training.
-inline float vote_score(float mass_share) {
-  return mass_share / (mass_share + 0.45F);
+inline float vote_score(float relative_vote_mass) {
+  return relative_vote_mass / (relative_vote_mass + 0.45F);
 }
 
 /// A judged hypothesis.

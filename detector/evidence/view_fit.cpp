@@ -13,7 +13,7 @@
 namespace houghstream {
 namespace {
 
-constexpr int kSide = Appearance::kSide;
+constexpr int kSide = TemplateGrid::kSide;
 
 struct Cell {
   std::uint16_t index = 0;  // in the relief
@@ -57,26 +57,26 @@ struct Comparison {
 };
 
 /// Where the relief's cells lie.
-void place(const TrainedView& view, const Eigen::Vector3f& centre, const Camera& camera, float size, Comparison& out) {
+void place(const ViewTemplate& view, const Eigen::Vector3f& centre, const Camera& camera, float size, Comparison& out) {
   const Eigen::Vector2d centre_px = camera.project(centre.cast<double>());
   const auto px_per_metre = size * static_cast<float>(1.0 / camera.metres_per_px(centre.z()));  // of the view
-  out.cell_width = px_per_metre * (view.box[2] - view.box[0]) / Appearance::kBoxSide;
-  out.cell_height = px_per_metre * (view.box[3] - view.box[1]) / Appearance::kBoxSide;
+  out.cell_width = px_per_metre * (view.box[2] - view.box[0]) / TemplateGrid::kBoxSide;
+  out.cell_height = px_per_metre * (view.box[3] - view.box[1]) / TemplateGrid::kBoxSide;
   // pixel centres are whole numbers to the camera, while a box counts from the first pixel's edge
   out.centre_px = {static_cast<float>(centre_px.x()) + 0.5F, static_cast<float>(centre_px.y()) + 0.5F};
-  out.left = out.centre_px.x + px_per_metre * view.box[0] - Appearance::kRim * out.cell_width;
-  out.top = out.centre_px.y + px_per_metre * view.box[1] - Appearance::kRim * out.cell_height;
+  out.left = out.centre_px.x + px_per_metre * view.box[0] - TemplateGrid::kRim * out.cell_width;
+  out.top = out.centre_px.y + px_per_metre * view.box[1] - TemplateGrid::kRim * out.cell_height;
 }
 
 /// Without branches on what the cells are, which nobody could predict.
-Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, float size) {
+Comparison compare(const ViewTemplate& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, float size) {
   Comparison out;
   place(view, centre, frame.camera, size, out);
   out.metres_per_mm = 0.001F * size;
   out.metres_per_px = static_cast<float>(frame.camera.metres_per_px(centre.z()));
   const float metres_per_mm = out.metres_per_mm;
   const float metres_per_px = out.metres_per_px;
-  const ReliefTilt tilt = relief_tilt(centre);
+  const OffAxisSlope tilt = off_axis_slope(centre);
   for (std::size_t i = 0; i < kSide; ++i) {
     const cv::Point2f px = out.cell_centre(i, i);
     out.column_px[i] = static_cast<int>(std::floor(px.x));
@@ -100,11 +100,11 @@ Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const
       out.cells[out.object_cells] = {static_cast<std::uint16_t>(cell), static_cast<std::uint8_t>(row),
                                      static_cast<std::uint8_t>(column)};
       out.excess[out.object_cells] =
-          remembered > Appearance::kNoDepth ? beyond_centre - metres_per_mm * remembered : kNoValue;
-      out.object_cells += remembered != Appearance::kBeside ? 1 : 0;
+          remembered > TemplateGrid::kNoDepth ? beyond_centre - metres_per_mm * remembered : kNoValue;
+      out.object_cells += remembered != TemplateGrid::kBeside ? 1 : 0;
       out.excess_beside[out.beside_cells] =
-          neighbour > Appearance::kNoDepth ? beyond_centre - metres_per_mm * neighbour : kNoValue;
-      out.beside_cells += neighbour != Appearance::kBeside ? 1 : 0;
+          neighbour > TemplateGrid::kNoDepth ? beyond_centre - metres_per_mm * neighbour : kNoValue;
+      out.beside_cells += neighbour != TemplateGrid::kBeside ? 1 : 0;
     }
   }
   return out;
@@ -251,7 +251,7 @@ class CellColours {
 };
 
 /// Of the cells that are visible or unknown: where depth is missing, colours are all there is to see.
-Likeness compare_colours(const Tally& tally, const Appearance& appearance, const CellColours& colours) {
+Likeness compare_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours) {
   Likeness likeness;
   for (std::size_t i = 0; i < tally.shown; ++i) {
     const Cell cell = tally.shown_cells[i];
@@ -267,13 +267,13 @@ float tolerance_at(float z) {
 
 }  // namespace
 
-ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame, float size) {
+TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame, float size) {
   const Comparison comparison = compare(view, centre_camera, frame.frame, size);
   const float shift = common_shift(comparison);
   const float tolerance = tolerance_at(centre_camera.z());
   const Tally tally = tally_cells(comparison, shift, tolerance);
   const Likeness likeness = compare_colours(tally, view.appearance, CellColours(comparison, frame));
-  ViewFit fit;
+  TemplateMatch fit;
   fit.unevenness = tally.unevenness / static_cast<float>(std::max(tally.visible, 1));
   fit.visible = tally.share(tally.visible);
   fit.hidden = tally.share(tally.hidden);
@@ -289,13 +289,13 @@ ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, 
   return fit;
 }
 
-OutlineFit look_across_outline(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame) {
+BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame) {
   const Comparison comparison = compare(view, centre_camera, frame.frame, 1.0F);
   const CellColours colours(comparison, frame);
   const float shift = common_shift(comparison);
   const float tolerance = tolerance_at(centre_camera.z());
-  const Appearance& appearance = view.appearance;
-  OutlineFit fit;
+  const TemplateGrid& appearance = view.appearance;
+  BoundaryContinuation fit;
   for (const OutlineCells& cells : appearance.outline) {
     const OutlineCells::Cell in = cells.inside;
     const OutlineCells::Cell out = cells.beyond;
@@ -304,15 +304,15 @@ OutlineFit look_across_outline(const TrainedView& view, const Eigen::Vector3f& c
     const std::optional<float> beyond = comparison.beyond_centre(frame.frame, out);
     if (!inside || !beyond) continue;
     const std::int16_t mm = appearance.mm[in.row * kSide + in.column];
-    const bool is_hidden = mm > Appearance::kNoDepth && *inside - comparison.metres_per_mm * mm - shift < -tolerance;
+    const bool is_hidden = mm > TemplateGrid::kNoDepth && *inside - comparison.metres_per_mm * mm - shift < -tolerance;
     if (is_hidden) continue;
-    AcrossOutline seen;
+    BoundarySample seen;
     const float cell_px = in.row == out.row ? comparison.cell_width : comparison.cell_height;
     seen.apart = OutlineCells::kApart * comparison.metres_per_px * cell_px;
     seen.gained = *beyond - *inside;
-    seen.expected = cells.gained_mm > Appearance::kNoDepth ? comparison.metres_per_mm * cells.gained_mm : kNoValue;
+    seen.expected = cells.gained_mm > TemplateGrid::kNoDepth ? comparison.metres_per_mm * cells.gained_mm : kNoValue;
     seen.colour_sq = colour_distance_sq(colours.at(in.row, in.column), colours.at(out.row, out.column));
-    if (!comes_forward(seen, tolerance)) fit.add(seen, tolerance);
+    if (!is_foreground_step(seen, tolerance)) fit.add(seen, tolerance);
   }
   return fit;
 }

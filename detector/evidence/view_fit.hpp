@@ -12,13 +12,13 @@ namespace houghstream {
 /// A frame with its colours as views remember them.
 struct LabFrame {
   const RgbdFrame& frame;
-  LabLevels lab;       ///< see averaged_lab
+  LabLevels lab;       ///< see make_smoothed_lab
   float scale = 1.0F;  ///< size of the first level over the frame's
 };
 
 /// How a remembered training view, put at a hypothesis' centre, agrees with the depth image: shares of the view's
 /// surface, the first four of which sum to 1.
-struct ViewFit {
+struct TemplateMatch {
   float visible = 0.0F;         ///< depth as remembered
   float hidden = 0.0F;          ///< something is in front of it
   float seen_through = 0.0F;    ///< what is there lies behind: the object cannot be there
@@ -37,11 +37,11 @@ struct ViewFit {
 /// a few centimetres to where most of it agrees: a vote's depth is less exact than a surface's.
 /// The likeness is blind to brightness, contrast and colour cast, which the light decides. With a `size` other than 1
 /// the view is taken for one of an object so many times as large.
-ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame,
+TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame,
                  float size = 1.0F);
 
 /// Whether what is seen ends where the view's outline is. What lies in front of the object, within or beyond, has no
 /// say.
-OutlineFit look_across_outline(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame);
+BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame);
 
 }  // namespace houghstream

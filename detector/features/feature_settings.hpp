@@ -32,7 +32,7 @@ struct FeatureSettings {
   /// ... or metres on the surface that it borrows from, if those are more pixels, see HoleReach. 0: the nearest pixel
   /// lends, whatever its depth. A scale space takes it for 0.
   float fill_distance = 0.06F;
-  ToneRange tone;  ///< frames that are searched are brought into it; what is learnt from stays as it is
+  BrightnessRange tone;  ///< frames that are searched are brought into it; what is learnt from stays as it is
 };
 
 }  // namespace houghstream

@@ -78,7 +78,7 @@ void compute_features(const FeatureInput& input, int threads, FeatureMemory& mem
     TileFeatures& features = memory.workers[worker].part;
     const cv::Rect& part = memory.parts[static_cast<std::size_t>(i)];
     features.compute(sources, part);
-    turn_planes(features.rows(), part, image);
+    interleave_planes(features.rows(), part, image);
     image.replicate_border(part);
   });
 }

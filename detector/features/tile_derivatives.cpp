@@ -170,7 +170,7 @@ HWY_EXPORT(lightness);
 HWY_EXPORT(depth);
 HWY_EXPORT(steps);
 
-void derive_lightness(const TilePlane<std::uint8_t>& plane, LightnessDerivatives& out) {
+void differentiate_lightness(const TilePlane<std::uint8_t>& plane, LightnessDerivatives& out) {
   HWY_DYNAMIC_DISPATCH(lightness)(plane, out);
 }
 
@@ -186,11 +186,11 @@ SobelKernels sobel_kernels(int size_px) {
   return kernels;
 }
 
-void derive_depth(const TilePlane<float>& plane, const SobelKernels& kernels, float focal_px, DepthDerivatives& out) {
+void differentiate_depth(const TilePlane<float>& plane, const SobelKernels& kernels, float focal_px, DepthDerivatives& out) {
   HWY_DYNAMIC_DISPATCH(depth)(plane, kernels, focal_px, out);
 }
 
-void count_steps(const TilePlane<float>& plane, float step, TilePlane<std::uint16_t>& out) {
+void quantise_depth(const TilePlane<float>& plane, float step, TilePlane<std::uint16_t>& out) {
   HWY_DYNAMIC_DISPATCH(steps)(plane, step, out);
 }
 

@@ -15,7 +15,7 @@ struct LightnessDerivatives {
 };
 
 /// Everything on all pixels of `out`, margins included; they are smaller than that of `lightness` by at least 1.
-void derive_lightness(const TilePlane<std::uint8_t>& lightness, LightnessDerivatives& out);
+void differentiate_lightness(const TilePlane<std::uint8_t>& lightness, LightnessDerivatives& out);
 
 /// Kernels of Sobel derivatives, from order 0, the smoothing across, to order 2; all of one odd size and of unit gain.
 using SobelKernels = std::array<std::vector<float>, 3>;
@@ -36,9 +36,9 @@ struct DepthDerivatives {
 
 /// Everything on all pixels of `out`, margins included; they are smaller than that of `depth` by at least half a
 /// kernel.
-void derive_depth(const TilePlane<float>& depth, const SobelKernels& kernels, float focal_px, DepthDerivatives& out);
+void differentiate_depth(const TilePlane<float>& depth, const SobelKernels& kernels, float focal_px, DepthDerivatives& out);
 
 /// Metres to whole steps: 0 where unknown, at most 65535.
-void count_steps(const TilePlane<float>& depth, float step, TilePlane<std::uint16_t>& steps);
+void quantise_depth(const TilePlane<float>& depth, float step, TilePlane<std::uint16_t>& steps);
 
 }  // namespace houghstream

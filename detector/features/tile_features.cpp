@@ -53,7 +53,7 @@ void TileFeatures::add_intensity(const TileSources& sources, const FeatureBlock&
   for (auto& bytes : lightness_.bytes) bytes.reset(part_.size(), margin);
   lightness_.dx.reset(part_.size(), margin + kWindow);
   lightness_.dy.reset(part_.size(), margin + kWindow);
-  derive_lightness(plane_, lightness_);
+  differentiate_lightness(plane_, lightness_);
   for (int i = 0; i < 4; ++i) {
     auto& bytes = lightness_.bytes[static_cast<std::size_t>(i)];
     bytes.extend(image_);
@@ -65,7 +65,7 @@ void TileFeatures::add_intensity(const TileSources& sources, const FeatureBlock&
 void TileFeatures::add_histograms(const TilePlane<float>& dx, const TilePlane<float>& dy, float gain, int first,
                                   int count) {
   for (auto& bin : bins_) bin.reset(part_.size(), dx.margin());
-  share_gradients(dx, dy, gain, bins_);
+  bin_gradients(dx, dy, gain, bins_);
   plane_.reset(part_.size(), around_.before());
   for (int b = 0; b < HistogramSteps::kBins; ++b) {
     auto& bin = bins_[static_cast<std::size_t>(b)];
@@ -84,7 +84,7 @@ void TileFeatures::derive_depth_of(const TileSources& sources) {
   depth_.dx.reset(part_.size(), margin);
   depth_.dy.reset(part_.size(), margin);
   for (auto& bytes : depth_.bytes) bytes.reset(part_.size(), margin);
-  derive_depth(metres_, sources.kernels, static_cast<float>(sources.frame.camera.fx), depth_);
+  differentiate_depth(metres_, sources.kernels, static_cast<float>(sources.frame.camera.fx), depth_);
 }
 
 void TileFeatures::add_derivatives(const FeatureBlock& block) {
@@ -100,7 +100,7 @@ void TileFeatures::add_depth_value(const TileSources& sources, const FeatureBloc
   metres_.load(sources.frame.filled_depth, part_.tl());
   steps_.reset(part_.size(), around_.before());
   const DepthSteps steps = depth_steps(sources.frame, sources.settings);
-  count_steps(metres_, steps.metres, steps_);
+  quantise_depth(metres_, steps.metres, steps_);
   step_extremes(steps_, around_, steps.bytes, {block.first, block.first + 1}, rows_);
 }
 

@@ -131,7 +131,7 @@ namespace houghstream {
 HWY_EXPORT(share);
 HWY_EXPORT(smooth);
 
-void share_gradients(const TilePlane<float>& dx, const TilePlane<float>& dy, float gain, BinPlanes& bins) {
+void bin_gradients(const TilePlane<float>& dx, const TilePlane<float>& dy, float gain, BinPlanes& bins) {
   HWY_DYNAMIC_DISPATCH(share)(dx, dy, gain, bins);
 }
 

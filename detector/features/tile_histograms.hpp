@@ -22,7 +22,7 @@ struct HistogramSteps {
 using BinPlanes = std::array<TilePlane<std::uint16_t>, HistogramSteps::kBins>;
 
 /// All of the gradients' pixels, margins included; `bins` have their size.
-void share_gradients(const TilePlane<float>& dx, const TilePlane<float>& dy, float gain, BinPlanes& bins);
+void bin_gradients(const TilePlane<float>& dx, const TilePlane<float>& dy, float gain, BinPlanes& bins);
 
 /// Sums one bin over the window around every pixel of `bytes`, whose margin is smaller than that of `bin` by 2.
 void smooth_bin(const TilePlane<std::uint16_t>& bin, TilePlane<std::uint8_t>& bytes);

@@ -18,7 +18,7 @@ constexpr int kTurnSide = 16;  // bytes of a block of a vector
 /// Turns squares of kTurnSide x kTurnSide bytes about their diagonal: byte j of row i becomes byte i of row j, in each
 /// block of the vectors of tag `d`.
 template <class D>
-HWY_INLINE void turn_bytes(D d, hn::Vec<D> (&rows)[kTurnSide]) {
+HWY_INLINE void transpose_bytes(D d, hn::Vec<D> (&rows)[kTurnSide]) {
   for (int round = 0; round < 4; ++round) {  // each one merges row i with row i + 8
     hn::Vec<D> merged[kTurnSide];
     for (int i = 0; i < kTurnSide / 2; ++i) {
@@ -44,12 +44,12 @@ HWY_INLINE hn::Vec<hn::FixedTag<std::uint8_t, kSize>> load_blocks(const std::uin
 /// kSize planes of kTurnSide pixels: kTurnSide planes to a block, all blocks at once. Whole cache lines go past the
 /// cache, into which they would first have to be read.
 template <std::size_t kSize>
-HWY_INLINE void turn_block(const std::uint8_t* planes, int plane_stride, std::uint8_t* pixels, int pixel_stride) {
+HWY_INLINE void transpose_block(const std::uint8_t* planes, int plane_stride, std::uint8_t* pixels, int pixel_stride) {
   constexpr std::size_t kLine = 64;
   const hn::FixedTag<std::uint8_t, kSize> d;
   hn::Vec<decltype(d)> rows[kTurnSide];
   for (int i = 0; i < kTurnSide; ++i) rows[i] = load_blocks<kSize>(planes + i * plane_stride, plane_stride);
-  turn_bytes(d, rows);
+  transpose_bytes(d, rows);
   const bool whole_lines =
       kSize == kLine && pixel_stride % kLine == 0 && reinterpret_cast<std::uintptr_t>(pixels) % kLine == 0;
   for (int i = 0; i < kTurnSide; ++i) {
@@ -75,10 +75,10 @@ int turn_whole_blocks(const std::uint8_t* planes, int plane_stride, int count, s
   for (int x = 0; x < whole; x += kTurnSide) {
     int p = 0;
     for (; p + kTurned <= pixel_stride; p += kTurned) {
-      turn_block<kTurned>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p, pixel_stride);
+      transpose_block<kTurned>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p, pixel_stride);
     }
     for (; p < pixel_stride; p += kTurnSide) {
-      turn_block<kTurnSide>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p, pixel_stride);
+      transpose_block<kTurnSide>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p, pixel_stride);
     }
   }
   return whole;
@@ -103,7 +103,7 @@ namespace houghstream {
 
 HWY_EXPORT(turn_row);
 
-void turn_planes(const TileRows& rows, cv::Rect part, FeatureImage& image) {
+void interleave_planes(const TileRows& rows, cv::Rect part, FeatureImage& image) {
   for (int y = 0; y < part.height; ++y) {
     HWY_DYNAMIC_DISPATCH(turn_row)
     (rows.row(y, 0), rows.stride(), part.width, image.at(part.x, part.y + y), image.pixel_stride());

@@ -6,6 +6,6 @@
 namespace houghstream {
 
 /// Writes a part's planes into an image, pixel by pixel; `rows` have room for image.pixel_stride() planes.
-void turn_planes(const TileRows& rows, cv::Rect part, FeatureImage& image);
+void interleave_planes(const TileRows& rows, cv::Rect part, FeatureImage& image);
 
 }  // namespace houghstream

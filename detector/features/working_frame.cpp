@@ -119,10 +119,10 @@ void resize_into(const RgbdFrame& frame, float scale, const FeatureSettings& set
 }
 
 /// The colours that the frame lends stay its own: what becomes of them is put into `memory`.
-void bring_into(const ToneCurve& tone, const RgbdFrame& frame, cv::Mat& memory, cv::Mat& colour) {
+void bring_into(const AffineBrightness& tone, const RgbdFrame& frame, cv::Mat& memory, cv::Mat& colour) {
   if (!tone.changes()) return;
-  if (colour.data != frame.colour.data) return apply_tone(tone, colour, colour);
-  apply_tone(tone, frame.colour, memory);
+  if (colour.data != frame.colour.data) return apply_affine_brightness(tone, colour, colour);
+  apply_affine_brightness(tone, frame.colour, memory);
   colour = memory;
 }
 
@@ -137,15 +137,15 @@ std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings) {
   return levels;
 }
 
-float octaves_scale(const Camera& camera) {
+float focal_octave_scale(const Camera& camera) {
   constexpr double kMostOctaves = 3.0;
-  const double octaves = std::round(std::log2(static_cast<double>(kUsualFocal) / camera.fx));
+  const double octaves = std::round(std::log2(static_cast<double>(kReferenceFocal_px) / camera.fx));
   return static_cast<float>(std::exp2(std::clamp(octaves, -kMostOctaves, 1.0)));
 }
 
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings, const Camera& camera) {
   std::vector<FeatureLevel> levels = feature_levels(settings);
-  for (FeatureLevel& level : levels) level.scale *= octaves_scale(camera);
+  for (FeatureLevel& level : levels) level.scale *= focal_octave_scale(camera);
   return levels;
 }
 
@@ -162,7 +162,7 @@ WorkingFrame make_working_frame(const RgbdFrame& frame, const FeatureLevel& leve
   return out;
 }
 
-void averaged_lab(const cv::Mat& colour, cv::Mat& blurred, LabLevels& lab) {
+void make_smoothed_lab(const cv::Mat& colour, cv::Mat& blurred, LabLevels& lab) {
   for (cv::Mat& level : lab) forget_shared(level);
   cv::blur(colour, blurred, cv::Size(3, 3));
   cv::cvtColor(blurred, lab[0], cv::COLOR_BGR2Lab);
@@ -177,13 +177,13 @@ void make_working_images(const RgbdFrame& frame, const FeatureSettings& settings
   images.levels = feature_levels(settings, frame.camera);
   images.frames.resize(images.levels.size());
   images.holes.resize(images.levels.size());
-  const ToneCurve tone = tone_curve(frame.colour, settings.tone);
+  const AffineBrightness tone = fit_affine_brightness(frame.colour, settings.tone);
   parallel_for(threads, static_cast<int>(images.levels.size()), [&](int l) {
     const auto level = static_cast<std::size_t>(l);
     resize_into(frame, images.levels[level].scale, settings, images.holes[level], images.frames[level]);
     bring_into(tone, frame, images.toned, images.frames[level].colour);
     if (level != 0) return;
-    averaged_lab(images.frames[0].colour, images.blurred, images.lab);
+    make_smoothed_lab(images.frames[0].colour, images.blurred, images.lab);
   });
 }
 

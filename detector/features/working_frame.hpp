@@ -30,7 +30,7 @@ struct FeatureLevel {
   bool holds(float depth) const { return depth > min_distance && depth <= max_distance; }  // false for NaN
 };
 /// Focal length of the 640x480 cameras that the paper's patches, and all supports in pixels, were counted in.
-constexpr float kUsualFocal = 525.0F;
+constexpr float kReferenceFocal_px = 525.0F;
 
 /// Those of a depth-normalised search, of the cameras whose frames supports in pixels were chosen for.
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings);
@@ -39,8 +39,8 @@ std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings);
 /// alike.
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings, const Camera& camera);
 
-/// The power of two that brings a camera's focal length nearest to kUsualFocal.
-float octaves_scale(const Camera& camera);
+/// The power of two that brings a camera's focal length nearest to kReferenceFocal_px.
+float focal_octave_scale(const Camera& camera);
 
 /// Resizes (paper, Section 5.1.1) and closes small holes, over the pixels or metres of FeatureSettings. Of each 2x2
 /// block the nearest surface counts, so that foreground and background are never averaged into a surface that is not
@@ -55,13 +55,13 @@ using LabLevels = std::array<cv::Mat, 4>;
 
 /// The colours of a BGR image as remembered views are compared with: CV_8UC3, CIE L*a*b*, each pixel the mean of 3x3,
 /// since dim light is noisy. `blurred` is overwritten.
-void averaged_lab(const cv::Mat& colour, cv::Mat& blurred, LabLevels& lab);
+void make_smoothed_lab(const cv::Mat& colour, cv::Mat& blurred, LabLevels& lab);
 
 /// The images that the stages of a search look at, with the memory that is kept for the next frame's.
 struct WorkingImages {
   std::vector<FeatureLevel> levels;  ///< for the frame's camera
   std::vector<WorkingFrame> frames;  ///< one for each level
-  LabLevels lab;                     ///< averaged_lab of the first level
+  LabLevels lab;                     ///< make_smoothed_lab of the first level
   std::vector<HoleMemory> holes;     ///< one for each level
   cv::Mat blurred;
   cv::Mat toned;  ///< colours of the level that has the frame's own size

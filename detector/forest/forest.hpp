@@ -54,18 +54,18 @@ struct ObjectClass {
   int class_id = 0;  ///< from 1
   std::string name;
   float radius = 0.0F;         ///< farthest seen surface point from the centre, metres
-  float expected_mass = 1.0F;  ///< vote mass of a wholly visible object, square metres
+  float nominal_vote_mass = 1.0F;  ///< vote mass of a wholly visible object, square metres
   ScoreModel score_model;
 };
 
 /// A training view as poses and boxes need it.
-struct TrainedView {
+struct ViewTemplate {
   std::uint32_t class_index = 0;
   /// Relative to the ray through the object's centre. Not aligned: its bytes go to the file without gaps.
   Eigen::Quaternion<float, Eigen::DontAlign> R_ray_object = Eigen::Quaternion<float, Eigen::DontAlign>::Identity();
   /// Left, top, right and bottom of the mask as seen from the object's centre, metres at the centre's depth.
   std::array<float, 4> box{};
-  Appearance appearance;
+  TemplateGrid appearance;
 };
 
 /// A trained forest as its file holds it: flat arrays, trees one after another. A ForestIndex is what searches it.
@@ -76,7 +76,7 @@ struct Forest {
   Scoring scoring = Scoring::kEvidence;
   std::uint64_t seed = 0;
   std::vector<ObjectClass> classes;
-  std::vector<TrainedView> views;
+  std::vector<ViewTemplate> views;
   std::vector<std::int32_t> roots;  ///< per tree: a node, or -1 - leaf
   std::vector<TreeNode> nodes;
   std::vector<std::uint32_t> leaves;  ///< number of leaves + 1: classes of leaf i are

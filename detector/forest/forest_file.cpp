@@ -24,7 +24,7 @@ void archive_class(Archive& archive, ClassType& object) {
   archive(object.class_id);
   archive(object.name);
   archive(object.radius);
-  archive(object.expected_mass);
+  archive(object.nominal_vote_mass);
   for (const auto term : kScoreTermList) archive(object.score_model.weights.*term);
 }
 
@@ -49,7 +49,7 @@ void archive_members(Archive& archive, ForestType& forest) {
 
 // Arrays are written as they lie in memory, so no type may have gaps whose bytes nobody set.
 static_assert(sizeof(FeatureSettings) == 68 && sizeof(PatchSettings) == 8 &&
-              sizeof(TrainedView) == 36 + sizeof(Appearance));
+              sizeof(ViewTemplate) == 36 + sizeof(TemplateGrid));
 static_assert(sizeof(TreeNode) == 16 && sizeof(LeafClass) == 16 && sizeof(LeafVote) == 16 && sizeof(LeafView) == 8);
 
 struct Writer : ArchiveWriter {
@@ -140,7 +140,7 @@ void check_numbers(const Forest& forest, const std::string& source) {
     require(is_share(view.weight), "{}: a view of weight {}, expected 0 to 1", source, view.weight);
   for (const float weight : forest.leaf_weights)
     require(is_share(weight), "{}: a leaf of weight {}, expected 0 to 1", source, weight);
-  for (const TrainedView& view : forest.views) {
+  for (const ViewTemplate& view : forest.views) {
     const bool has_box =
         std::all_of(view.box.begin(), view.box.end(), [](float side) { return std::abs(side) < kFar; });
     require(has_box && std::abs(view.R_ray_object.norm() - 1.0F) < 0.01F && view.class_index < forest.classes.size(),
@@ -148,8 +148,8 @@ void check_numbers(const Forest& forest, const std::string& source) {
             view.R_ray_object.norm(), forest.classes.size());
     for (const OutlineCells& across : view.appearance.outline) {
       const int last = std::max({across.inside.row, across.inside.column, across.beyond.row, across.beyond.column});
-      require(last < Appearance::kSide, "{}: a view's outline at cell {}, expected less than {}", source, last,
-              Appearance::kSide);
+      require(last < TemplateGrid::kSide, "{}: a view's outline at cell {}, expected less than {}", source, last,
+              TemplateGrid::kSide);
     }
   }
 }
@@ -187,7 +187,7 @@ void check_settings(const Forest& forest, const std::string& source) {
   require(!forest.classes.empty() && !forest.roots.empty(), "{}: {} classes and {} trees, expected at least one each",
           source, forest.classes.size(), forest.roots.size());
   for (const ObjectClass& c : forest.classes) {
-    require(c.radius > 0.0F && c.radius < 10.0F && c.expected_mass > 0.0F && std::isfinite(c.expected_mass),
+    require(c.radius > 0.0F && c.radius < 10.0F && c.nominal_vote_mass > 0.0F && std::isfinite(c.nominal_vote_mass),
             "{}: class '{}' of radius {} m, expected 0 to 10 m", source, c.name, c.radius);
     for (const auto term : kScoreTermList) {
       const float weight = c.score_model.weights.*term;
@@ -204,7 +204,7 @@ void save_forest(const Forest& forest, const std::filesystem::path& file) {
   Writer header;
   header(static_cast<std::uint64_t>(payload.bytes.size()));
   header(checksum(payload.bytes));
-  WholeFile whole(file);
+  AtomicFile whole(file);
   std::ofstream out(whole.partial(), std::ios::binary);
   out << kName << kForestFileVersion << '\n' << header.bytes << payload.bytes;
   out.close();

@@ -7,10 +7,10 @@
 namespace houghstream {
 namespace {
 
-std::vector<LeafHead> make_leaf_heads(const Forest& forest) {
-  std::vector<LeafHead> heads(forest.leaves.size());
+std::vector<LeafSummary> make_leaf_heads(const Forest& forest) {
+  std::vector<LeafSummary> heads(forest.leaves.size());
   for (std::size_t leaf = 0; leaf + 1 < forest.leaves.size(); ++leaf) {
-    LeafHead& head = heads[leaf];
+    LeafSummary& head = heads[leaf];
     head.first_class = forest.leaves[leaf];
     for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
       head.certainty = std::max(head.certainty, forest.leaf_classes[e].probability);

@@ -10,7 +10,7 @@
 namespace houghstream {
 
 /// What detection asks of every leaf it meets, side by side: one cache miss instead of two.
-struct LeafHead {
+struct LeafSummary {
   float certainty = 0.0F;         ///< the largest p(class | leaf)
   std::uint32_t first_class = 0;  ///< as Forest::leaves
 };
@@ -26,13 +26,13 @@ class ForestIndex {
   explicit ForestIndex(Forest&&) = delete;
 
   const Forest& forest() const { return *forest_; }
-  const std::vector<LeafHead>& leaf_heads() const { return leaf_heads_; }  ///< number of leaves + 1
+  const std::vector<LeafSummary>& leaf_summaries() const { return leaf_heads_; }  ///< number of leaves + 1
   const PackedTrees& packed() const { return packed_; }
   const std::vector<ViewNeighbours>& view_neighbours() const { return view_neighbours_; }  ///< per view
 
  private:
   const Forest* forest_;
-  std::vector<LeafHead> leaf_heads_;
+  std::vector<LeafSummary> leaf_heads_;
   PackedTrees packed_;
   std::vector<ViewNeighbours> view_neighbours_;
 };

@@ -8,13 +8,13 @@
 
 namespace houghstream {
 
-/// A node or leaf as walk_wide reads it.
+/// A node or leaf as traverse_batched reads it.
 struct PackedNode {
   std::uint32_t test = 0;
   std::int32_t way = 0;
 };
 
-/// The trees once more, packed for walk_wide: eight bytes for each node and leaf; the right child follows the left one.
+/// The trees once more, packed for traverse_batched: eight bytes for each node and leaf; the right child follows the left one.
 struct PackedTrees {
   std::vector<PackedNode> nodes;    ///< and leaves; empty = see pack_trees
   std::vector<std::int32_t> roots;  ///< per tree, into nodes

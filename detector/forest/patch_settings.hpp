@@ -21,9 +21,9 @@ struct PatchSpacing {
 /// How patches walk down the forest, and for what they vote.
 struct LeafSettings {
   /// A patch walks down so many trees first, and down the rest only if the mean of what their leaves are most certain
-  /// of reaches min_first_share; 0 = every patch walks down all trees.
+  /// of reaches min_first_posterior; 0 = every patch walks down all trees.
   int first_trees = 3;
-  float min_first_share = 0.1F;
+  float min_first_posterior = 0.1F;
   float min_class_share = 0.1F;  ///< posterior, p(class | patch), from which a patch votes for a class
 };
 

@@ -10,7 +10,7 @@ namespace {
 /// Sums over the trees of what the leaves of a run's patches are most certain of: for no class is a patch's sum larger,
 /// not even by rounding, as long as it is summed in the same order.
 void sum_certainties(const ForestIndex& index, const RunLeaves& seen, std::vector<float>& sums) {
-  const std::vector<LeafHead>& heads = index.leaf_heads();
+  const std::vector<LeafSummary>& heads = index.leaf_summaries();
   sums.assign(seen.count, 0.0F);
   const std::int32_t* leaves = seen.leaves;
   for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree, leaves += seen.count) {
@@ -25,7 +25,7 @@ struct Known {
 };
 
 Known known_to(const ForestIndex& index, std::int32_t leaf) {
-  const LeafHead* head = &index.leaf_heads()[static_cast<std::size_t>(leaf)];
+  const LeafSummary* head = &index.leaf_summaries()[static_cast<std::size_t>(leaf)];
   const LeafClass* classes = index.forest().leaf_classes.data();
   return {classes + head[0].first_class, classes + head[1].first_class};
 }
@@ -65,7 +65,7 @@ void PatchPosteriors::reset(const ForestIndex& index, std::size_t runs, float le
   least_share_ = least_share;
   workers_.make_room(threads);
   supporters_.resize(runs * index.forest().classes.size());
-  for (Supporters& supporters : supporters_) {
+  for (SupportingPatches& supporters : supporters_) {
     supporters.patches.clear();
     supporters.ends.clear();
     supporters.entries.clear();
@@ -85,7 +85,7 @@ void PatchPosteriors::note(const RunLeaves& seen) {
   for (std::size_t i = 0; i < some.size(); ++i) {
     for (std::size_t c = 0; c < classes; ++c) {
       if (sums[i * classes + c] / trees < least_share_) continue;
-      Supporters& supporters = supporters_[seen.run * classes + c];
+      SupportingPatches& supporters = supporters_[seen.run * classes + c];
       supporters.patches.push_back(seen.patches[some[i]]);
       append_entries(*index_, c, some[i], seen, supporters.entries);
       supporters.ends.push_back(static_cast<std::uint32_t>(supporters.entries.size()));
@@ -96,7 +96,7 @@ void PatchPosteriors::note(const RunLeaves& seen) {
 void find_posteriors(const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors) {
   std::vector<PatchRun>& runs = memory.runs;
   list_runs(input.patches, runs);
-  const EarlyEnd early_end{input.settings.first_trees, input.settings.min_first_share};
+  const EarlyRejection early_end{input.settings.first_trees, input.settings.min_first_posterior};
   posteriors.reset(input.index, runs.size(), input.settings.min_class_share, input.threads);
   find_leaves({input.index, input.features, input.patches, runs, early_end}, input.threads, memory,
               [&](const RunLeaves& seen) { posteriors.note(seen); });

@@ -10,7 +10,7 @@
 namespace houghstream {
 
 /// Patches of one run that vote for one class, in the grid's order.
-struct Supporters {
+struct SupportingPatches {
   std::vector<std::uint32_t> patches;  ///< into the PatchGrid
   std::vector<std::uint32_t> ends;     ///< for each, where its entries end; they begin where those before it end
   std::vector<std::uint32_t> entries;  ///< into Forest::leaf_classes: what its leaves know of the class, tree by tree
@@ -31,11 +31,11 @@ class PatchPosteriors {
 
   /// Calls visit(patch, entries, count) for every patch that votes for the class, in the grid's order.
   template <typename Visit>
-  void for_supporters(int class_index, const Visit& visit) const {
+  void for_each_supporting_patch(int class_index, const Visit& visit) const {
     if (index_ == nullptr) return;
     const std::size_t classes = index_->forest().classes.size();
     for (std::size_t s = static_cast<std::size_t>(class_index); s < supporters_.size(); s += classes) {
-      const Supporters& supporters = supporters_[s];
+      const SupportingPatches& supporters = supporters_[s];
       std::uint32_t begin = 0;
       for (std::size_t i = 0; i < supporters.patches.size(); ++i) {
         visit(supporters.patches[i], supporters.entries.data() + begin, supporters.ends[i] - begin);
@@ -52,7 +52,7 @@ class PatchPosteriors {
 
   const ForestIndex* index_ = nullptr;
   float least_share_ = 0.0F;
-  std::vector<Supporters> supporters_;  // [run * classes + class]
+  std::vector<SupportingPatches> supporters_;  // [run * classes + class]
   PerWorker<Worker> workers_;
 };
 

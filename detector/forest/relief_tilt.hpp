@@ -8,13 +8,13 @@ namespace houghstream {
 /// centre, depth is measured along the axis: where the ray leaves the axis, the side that is farther from the axis
 /// comes nearer. To first order in the distance from the centre: a plane across the ray is met exactly enough over an
 /// object.
-struct ReliefTilt {
+struct OffAxisSlope {
   float right = 0.0F;  ///< metres of depth per metre to the right of the centre, at its depth
   float down = 0.0F;   ///< the same downwards
 };
 
 /// Of a relief whose centre is there, camera frame, metres, z > 0.
-inline ReliefTilt relief_tilt(const Eigen::Vector3f& centre_camera) {
+inline OffAxisSlope off_axis_slope(const Eigen::Vector3f& centre_camera) {
   const Eigen::Vector2f slope = centre_camera.head<2>() / centre_camera.z();
   const Eigen::Vector2f tilt = -slope / (1.0F + slope.squaredNorm());
   return {tilt.x(), tilt.y()};

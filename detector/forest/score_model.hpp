@@ -23,7 +23,7 @@ struct ScoreTerms {
   float unknown_likeness = 0.0F;
   float unknown_distance = 0.0F;       ///< with the distance's logarithm
   float likeness_hue_conflict = 0.0F;  ///< print of other colours may be as like as can be
-  float other_size = 0.0F;             ///< gain of another size, see gain_of_other_size
+  float other_size = 0.0F;             ///< gain of another size, see alternative_scale_gain
   float certainty = 0.0F;              ///< logarithm: as many votes of patches that are less sure come from elsewhere
   // Products for which those above are too straight.
   float shown_sq = 0.0F;
@@ -37,11 +37,11 @@ struct ScoreTerms {
   float extent_likeness = 0.0F;  ///< products
   float contrast_likeness = 0.0F;
   float paleness = 0.0F;  ///< see Likeness
-  // Whether it ends where its outline is, see OutlineFit.
+  // Whether it ends where its outline is, see BoundaryContinuation.
   float goes_on = 0.0F;
   float surface_goes_on = 0.0F;
   float colour_goes_on = 0.0F;
-  float goes_on_likeness = 0.0F;  ///< product
+  float boundary_continuation_correlation = 0.0F;  ///< product
 };
 
 constexpr std::size_t kScoreTerms = 30;
@@ -76,7 +76,7 @@ constexpr std::array<float ScoreTerms::*, kScoreTerms> kScoreTermList = {&ScoreT
                                                                          &ScoreTerms::goes_on,
                                                                          &ScoreTerms::surface_goes_on,
                                                                          &ScoreTerms::colour_goes_on,
-                                                                         &ScoreTerms::goes_on_likeness};
+                                                                         &ScoreTerms::boundary_continuation_correlation};
 static_assert(sizeof(ScoreTerms) == kScoreTerms * sizeof(float), "a term is missing in the list");
 
 /// Their names, in the order of the list.
@@ -147,7 +147,7 @@ constexpr ScoreTerms prior_weights() {
   weights.goes_on = -3.37F;
   weights.surface_goes_on = -2.93F;
   weights.colour_goes_on = -4.99F;
-  weights.goes_on_likeness = -3.65F;
+  weights.boundary_continuation_correlation = -3.65F;
   return weights;
 }
 

@@ -8,8 +8,8 @@ namespace houghstream {
 namespace {
 
 /// Leaves of patches of one level in some of the trees.
-void walk_trees(const ForestIndex& index, const WalkingPatches& walking, TreeRange trees, std::int32_t* leaves) {
-  if (walk_wide(index.packed(), trees, walking, leaves)) return;
+void walk_trees(const ForestIndex& index, const PatchBatch& walking, TreeRange trees, std::int32_t* leaves) {
+  if (traverse_batched(index.packed(), trees, walking, leaves)) return;
   for (std::size_t tree = trees.first; tree < trees.last; ++tree, leaves += walking.count) {
     for (int p = 0; p < walking.count; ++p) {
       const PatchView patch = walking.image->patch(walking.x[p], walking.y[p], walking.scale[p]);
@@ -19,11 +19,11 @@ void walk_trees(const ForestIndex& index, const WalkingPatches& walking, TreeRan
 }
 
 /// Gives patches up and closes the gaps that they leave in the leaves of the first trees.
-void give_up(const ForestIndex& index, const EarlyEnd& early_end, const PatchRun& run, LeafMemory::Worker& own) {
+void give_up(const ForestIndex& index, const EarlyRejection& early_end, const PatchRun& run, LeafMemory::Worker& own) {
   own.sums.assign(run.count, 0.0F);
   const std::int32_t* leaves = own.leaves.data();
   for (int tree = 0; tree < early_end.trees; ++tree, leaves += run.count) {
-    for (std::size_t i = 0; i < run.count; ++i) own.sums[i] += index.leaf_heads()[leaves[i]].certainty;
+    for (std::size_t i = 0; i < run.count; ++i) own.sums[i] += index.leaf_summaries()[leaves[i]].certainty;
   }
   own.patches.clear();
   for (std::size_t i = 0; i < run.count; ++i) {
@@ -37,7 +37,7 @@ void give_up(const ForestIndex& index, const EarlyEnd& early_end, const PatchRun
 }
 
 /// The patches that are left, side by side.
-WalkingPatches gather_left(const FeatureImage& image, const PatchGrid& patches, LeafMemory::Worker& own) {
+PatchBatch gather_left(const FeatureImage& image, const PatchGrid& patches, LeafMemory::Worker& own) {
   own.x.clear();
   own.y.clear();
   own.scale.clear();
@@ -55,10 +55,10 @@ void walk_run(const LeafInput& input, const PatchRun& run, LeafMemory::Worker& o
   const PatchGrid& patches = input.patches;
   const FeatureImage& image = input.features[patches.level[run.first]];
   const std::size_t trees = index.forest().roots.size();
-  const bool may_end = input.early_end.is_used(index.forest());
+  const bool may_end = input.early_end.is_enabled(index.forest());
   const std::size_t first = may_end ? static_cast<std::size_t>(input.early_end.trees) : trees;
   own.leaves.resize(run.count * trees);
-  const WalkingPatches all{&image, patches.x.data() + run.first, patches.y.data() + run.first,
+  const PatchBatch all{&image, patches.x.data() + run.first, patches.y.data() + run.first,
                            patches.scale.data() + run.first, static_cast<int>(run.count)};
   walk_trees(index, all, {0, first}, own.leaves.data());
   if (!may_end) {
@@ -67,7 +67,7 @@ void walk_run(const LeafInput& input, const PatchRun& run, LeafMemory::Worker& o
     return;
   }
   give_up(index, input.early_end, run, own);
-  const WalkingPatches left = gather_left(image, patches, own);
+  const PatchBatch left = gather_left(image, patches, own);
   walk_trees(index, left, {first, trees}, own.leaves.data() + first * own.patches.size());
 }
 

@@ -45,7 +45,7 @@ struct Batch {
   std::size_t count = 0;
 };
 
-Batch gather_batch(const WalkingPatches& patches, std::size_t first) {
+Batch gather_batch(const PatchBatch& patches, std::size_t first) {
   Batch batch;
   batch.image = patches.image;
   batch.count = std::min(kMost, static_cast<std::size_t>(patches.count) - first);
@@ -77,7 +77,7 @@ HWY_INLINE void arrive(hn::Mask<Int> arrived, Ints who, Ints way, std::int32_t* 
 }
 
 /// Those who have arrived leave, and the others close up, so that nobody waits for the slowest.
-void close_up(Walkers& w, std::int32_t* leaves) {
+void compact(Walkers& w, std::int32_t* leaves) {
   const Int d;
   const Ints leaf = hn::Set(d, packed::kLeaf);
   std::size_t left = 0;
@@ -163,7 +163,7 @@ void walk_tree(const PackedTrees& trees, std::size_t tree, const Batch& batch, W
   set_out(batch, trees.roots[tree], w);
   for (;;) {
     fetch_nodes(trees.nodes.data(), w.at.data(), w.count, w.nodes.data());
-    close_up(w, leaves);
+    compact(w, leaves);
     if (w.count == 0) return;
     find_pixels(*batch.image, w);
     fetch_pixels(batch.image->at(0, 0),
@@ -172,7 +172,7 @@ void walk_tree(const PackedTrees& trees, std::size_t tree, const Batch& batch, W
   }
 }
 
-void walk(const PackedTrees& trees, TreeRange range, const WalkingPatches& patches, std::int32_t* leaves) {
+void walk(const PackedTrees& trees, TreeRange range, const PatchBatch& patches, std::int32_t* leaves) {
   const auto count = static_cast<std::size_t>(patches.count);
   Walkers w;
   for (std::size_t first = 0; first < count; first += kMost) {
@@ -191,7 +191,7 @@ namespace houghstream {
 
 HWY_EXPORT(walk);
 
-bool walk_wide(const PackedTrees& packed, TreeRange trees, const WalkingPatches& patches, std::int32_t* leaves) {
+bool traverse_batched(const PackedTrees& packed, TreeRange trees, const PatchBatch& patches, std::int32_t* leaves) {
   const auto rows = static_cast<std::int64_t>(patches.image->height()) + 2 * FeatureImage::kPad;
   if (rows * patches.image->row_stride() > INT32_MAX || packed.nodes.empty()) return false;
   HWY_DYNAMIC_DISPATCH(walk)(packed, trees, patches, leaves);

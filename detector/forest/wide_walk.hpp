@@ -9,7 +9,7 @@
 namespace houghstream {
 
 /// Patches of one image that walk down one tree together.
-struct WalkingPatches {
+struct PatchBatch {
   const FeatureImage* image = nullptr;
   const std::int16_t* x = nullptr;  ///< working pixels
   const std::int16_t* y = nullptr;
@@ -24,6 +24,6 @@ struct TreeRange {
 
 /// Leaf of each patch, tree by tree, many patches a step. Returns false, having done nothing, where nothing is packed
 /// or the image is too large for 32-bit offsets. The leaves are those of find_leaf.
-bool walk_wide(const PackedTrees& packed, TreeRange trees, const WalkingPatches& patches, std::int32_t* leaves);
+bool traverse_batched(const PackedTrees& packed, TreeRange trees, const PatchBatch& patches, std::int32_t* leaves);
 
 }  // namespace houghstream

@@ -10,7 +10,7 @@ namespace houghstream::training {
 namespace {
 
 /// Weight that a leaf's votes give to the true centre.
-float support_of_truth(const Forest& forest, std::int32_t leaf, const TrainingSample& sample, std::size_t class_index,
+float support_at_ground_truth(const Forest& forest, std::int32_t leaf, const TrainingSample& sample, std::size_t class_index,
                        float vote_sigma) {
   float support = 0.0F;
   const auto l = static_cast<std::size_t>(leaf);
@@ -39,7 +39,7 @@ std::vector<Tally> out_of_bag_support(const TrainingSet& set, const TrainingSett
     const FeatureImage& picture = set.pictures[static_cast<std::size_t>(sample.picture)];
     const std::int32_t leaf = find_leaf(forest, tree, picture.patch(sample.x, sample.y, sample.scale));
     Tally& tally = tallies[sample.label - 1U];
-    tally.support += support_of_truth(forest, leaf, sample, set.first_class + sample.label - 1U, vote_sigma);
+    tally.support += support_at_ground_truth(forest, leaf, sample, set.first_class + sample.label - 1U, vote_sigma);
     tally.count += 1.0;
   }
   return tallies;
@@ -70,7 +70,7 @@ std::map<int, double> mean_probabilities(const Forest& forest) {
 
 }  // namespace
 
-void calibrate_masses(const TrainingSet& set, const TrainingSettings& settings, float vote_sigma, Forest& forest) {
+void estimate_nominal_vote_mass(const TrainingSet& set, const TrainingSettings& settings, float vote_sigma, Forest& forest) {
   const int trees = static_cast<int>(forest.roots.size());
   std::vector<std::vector<Tally>> by_tree(static_cast<std::size_t>(trees));
   parallel_for(settings.threads, trees, [&](int t) {
@@ -84,18 +84,18 @@ void calibrate_masses(const TrainingSet& set, const TrainingSettings& settings, 
     }
     // Where nothing was left out, or nothing found its centre, the visible area alone is the measure.
     const double mean_support = sum.support > 0.0 ? sum.support / sum.count : 1.0;
-    forest.classes[set.first_class + c].expected_mass = static_cast<float>(set.visible_areas[c] * mean_support);
+    forest.classes[set.first_class + c].nominal_vote_mass = static_cast<float>(set.visible_areas[c] * mean_support);
   }
 }
 
-void carry_masses(const Forest& before, Forest& after) {
+void rescale_nominal_vote_mass(const Forest& before, Forest& after) {
   const std::map<int, double> earlier = mean_probabilities(before);
   const std::map<int, double> now = mean_probabilities(after);
   for (ObjectClass& object : after.classes) {
     const auto was = earlier.find(object.class_id);
     const auto is = now.find(object.class_id);
     if (was == earlier.end() || is == now.end()) continue;
-    object.expected_mass *= static_cast<float>(is->second / was->second);
+    object.nominal_vote_mass *= static_cast<float>(is->second / was->second);
   }
 }
 

@@ -145,7 +145,7 @@ void learn_scores(const Rooms& rooms, const Profile& profile, const Scales& scal
   for (const TrainingView* view : rooms.objects) class_ids.insert(view->class_id);
   const auto first_view = static_cast<std::uint32_t>(forest.views.size() - rooms.objects.size());
   const ValidationSource plain = composed_frames(rooms.objects, rooms.for_score, profile.training);
-  const ValidationSource strangers = stranger_frames(rooms.objects, rooms.for_score, profile.training);
+  const ValidationSource strangers = compose_hard_negative_frames(rooms.objects, rooms.for_score, profile.training);
   Counted counted(plain.count + strangers.count, progress);
   const auto examples = [&](const ValidationSource& source) {
     return find_score_examples(counted.through(source), first_view, profile, forest, scales);
@@ -202,7 +202,7 @@ Forest train_forest(std::vector<TrainingView> views, const Profile& profile, con
   forest.classes = set.classes;
   forest.views = set.views;
   for (const Forest& tree : grow_trees(set, profile, nullptr, progress)) append_tree(tree, forest);
-  calibrate_masses(set, settings, profile.detection.voting.vote_sigma, forest);
+  estimate_nominal_vote_mass(set, settings, profile.detection.voting.vote_sigma, forest);
   if (learns_scores(settings)) learn_scores(rooms, profile, scales, progress, forest);
   return forest;
 }
@@ -224,13 +224,13 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   forest.classes = old.classes;
   forest.classes.insert(forest.classes.end(), set.classes.begin(), set.classes.end());
   forest.views = old.views;
-  for (TrainedView view : set.views) {
+  for (ViewTemplate view : set.views) {
     view.class_index += set.first_class;
     forest.views.push_back(view);
   }
   for (const Forest& tree : grow_trees(set, profile, &old, progress)) append_tree(tree, forest);
-  carry_masses(old, forest);
-  calibrate_masses(set, profile.training, profile.detection.voting.vote_sigma, forest);
+  rescale_nominal_vote_mass(old, forest);
+  estimate_nominal_vote_mass(set, profile.training, profile.detection.voting.vote_sigma, forest);
   if (learns_scores(profile.training)) learn_scores(rooms, profile, scales, progress, forest);
   return forest;
 }

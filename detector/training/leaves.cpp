@@ -96,19 +96,19 @@ std::int32_t add_leaf(const LeafSource& source, const std::vector<std::uint32_t>
   return static_cast<std::int32_t>(forest.leaves.size()) - 2;
 }
 
-Mixture mixture_of(float known_classes, float added_classes, float most_background) {
+LeafMixture compute_mixture(float known_classes, float added_classes, float max_background_weight) {
   // Over one object's weight.
-  const auto background = [&](float classes) { return std::min(classes, most_background); };
+  const auto background = [&](float classes) { return std::min(classes, max_background_weight); };
   const float classes = known_classes + added_classes;
   const float whole = classes + background(classes);
-  Mixture mixture;
+  LeafMixture mixture;
   mixture.added = (added_classes + background(added_classes)) / whole;
   mixture.known = (known_classes + background(known_classes)) / whole;
   mixture.background = mixture.known * background(classes) / background(known_classes);
   return mixture;
 }
 
-void mix_in(const KnownLeaf& known, float part, Forest& forest) {
+void merge_leaf(const ExistingLeaf& known, float part, Forest& forest) {
   const Forest& old = *known.forest;
   const auto leaf = static_cast<std::size_t>(known.leaf);
   const float weight = part * old.leaf_weights[leaf];
@@ -132,10 +132,10 @@ void mix_in(const KnownLeaf& known, float part, Forest& forest) {
   forest.leaf_weights.back() = total;
 }
 
-std::int32_t copy_leaf(const KnownLeaf& known, Forest& forest) {
+std::int32_t copy_leaf(const ExistingLeaf& known, Forest& forest) {
   forest.leaves.push_back(static_cast<std::uint32_t>(forest.leaf_classes.size()));
   forest.leaf_weights.push_back(0.0F);
-  mix_in(known, 1.0F, forest);
+  merge_leaf(known, 1.0F, forest);
   return static_cast<std::int32_t>(forest.leaves.size()) - 2;
 }
 

@@ -22,27 +22,27 @@ struct LeafSource {
 std::int32_t add_leaf(const LeafSource& source, const std::vector<std::uint32_t>& samples, Forest& forest);
 
 /// What becomes of a leaf's weight when objects are added.
-struct Mixture {
+struct LeafMixture {
   float added = 0.0F;       ///< of the new objects' leaf
   float known = 1.0F;       ///< of what the known leaf holds of objects
   float background = 1.0F;  ///< of what it holds of the background
 };
 
-/// Each object weighs the same, and the background as TrainingSettings::most_background says.
-Mixture mixture_of(float known_classes, float added_classes, float most_background);
+/// Each object weighs the same, and the background as TrainingSettings::max_background_weight says.
+LeafMixture compute_mixture(float known_classes, float added_classes, float max_background_weight);
 
 /// A leaf of a forest to which objects are being added.
-struct KnownLeaf {
+struct ExistingLeaf {
   const Forest* forest = nullptr;
   std::int32_t leaf = 0;
-  Mixture mixture;
+  LeafMixture mixture;
 };
 
 /// Adds to the last leaf of `forest`, which was made of new samples only, what `part` of the known leaf's samples say.
 /// The background is the known leaf's.
-void mix_in(const KnownLeaf& known, float part, Forest& forest);
+void merge_leaf(const ExistingLeaf& known, float part, Forest& forest);
 
 /// Appends the known leaf as it is, but for the smaller weight of each object, and returns its number.
-std::int32_t copy_leaf(const KnownLeaf& known, Forest& forest);
+std::int32_t copy_leaf(const ExistingLeaf& known, Forest& forest);
 
 }  // namespace houghstream::training

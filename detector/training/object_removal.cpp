@@ -38,7 +38,7 @@ Shares measure_shares(const Forest& forest) {
 /// Copies views of the objects that remain, and returns each view's new number.
 std::vector<std::uint32_t> keep_views(const Forest& from, std::size_t removed, Forest& to) {
   std::vector<std::uint32_t> numbers;
-  for (TrainedView view : from.views) {
+  for (ViewTemplate view : from.views) {
     numbers.push_back(static_cast<std::uint32_t>(to.views.size()));
     if (view.class_index == removed) continue;
     if (view.class_index > removed) --view.class_index;
@@ -118,7 +118,7 @@ Forest remove_object(const Forest& forest, const std::string& name) {
   Forest out = without_leaves(forest, removal.object);
   removal.view_numbers = keep_views(forest, removal.object, out);
   for (std::size_t leaf = 0; leaf + 1 < forest.leaves.size(); ++leaf) keep_leaf(forest, leaf, removal, out);
-  carry_masses(forest, out);
+  rescale_nominal_vote_mass(forest, out);
   return out;
 }
 

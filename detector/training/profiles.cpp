@@ -9,7 +9,7 @@ void look_as_the_paper(Profile& profile) {
   profile.features.image_scale = 0.7F;
   profile.features.far_distance = profile.features.max_distance;  // one size for all
   profile.patch.radius = 5;
-  profile.patch.unit = 1.0F / (0.7F * kUsualFocal);  // one working pixel at 1 m
+  profile.patch.unit = 1.0F / (0.7F * kReferenceFocal_px);  // one working pixel at 1 m
 }
 
 }  // namespace

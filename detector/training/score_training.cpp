@@ -22,7 +22,7 @@ constexpr double kMinVisible = 0.1;
 
 /// As many objects as make most of a picture without hiding each other, and nearly twice as many that look like them.
 constexpr ComposedThings kThings = {6, 5, 0};
-constexpr ComposedThings kThingsAmongStrangers = {6, 5, 5};
+constexpr ComposedThings kHardNegativeObjects = {6, 5, 5};
 
 /// Strongest first; one that overlaps a stronger one of its class would not be reported, so it is no example.
 ScoreExamples judge(const std::vector<Candidate>& candidates, const ValidationFrame& truth) {
@@ -54,10 +54,10 @@ ValidationFrame compose(const std::vector<const TrainingView*>& objects, const R
   constexpr double kLeast = 0.05;  // of the depth is kept
   constexpr double kMost = 0.6;
   ValidationFrame composed = make_validation_frame(objects, room, things, settings, random);
-  if (random.uniform() >= settings.dazzled_share) return composed;
+  if (random.uniform() >= settings.near_dropout_fraction) return composed;
   const double limit = random.uniform(settings.min_distance, settings.max_distance);
   const double kept = std::exp(random.uniform(std::log(kLeast), std::log(kMost)));
-  lose_near_depth(limit, kept, composed.frame.depth, random);
+  drop_near_depth(limit, kept, composed.frame.depth, random);
   return composed;
 }
 
@@ -118,9 +118,9 @@ ValidationSource composed_frames(const std::vector<const TrainingView*>& objects
   return frames_from(0, kThings, objects, rooms, settings);
 }
 
-ValidationSource stranger_frames(const std::vector<const TrainingView*>& objects,
+ValidationSource compose_hard_negative_frames(const std::vector<const TrainingView*>& objects,
                                  const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings) {
-  ValidationSource source = frames_from(settings.validation_frames, kThingsAmongStrangers, objects, rooms, settings);
+  ValidationSource source = frames_from(settings.validation_frames, kHardNegativeObjects, objects, rooms, settings);
   source.count = (source.count + 1) / 2;  // for two numbers of each object
   return source;
 }
@@ -141,7 +141,7 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
       if (object.view) shown.push_back(*object.view);
     }
     for (std::uint32_t& view : shown) view += first_view;
-    const Search search{index, detection, shown};
+    const SearchContext search{index, detection, shown};
     by_frame[static_cast<std::size_t>(f)] =
         judge(scales.search(search, validation.frame, workspaces[worker]), validation);
   });

@@ -29,7 +29,7 @@ ValidationSource composed_frames(const std::vector<const TrainingView*>& objects
 /// Half as many after those: things stand in them too that have an object's colours and another shape, or its shape in
 /// another's colours, as rooms in which people live are full of. Composed ones else hold hardly anything that ends
 /// where its outline is, but the objects, and scores that are learnt there are too high.
-ValidationSource stranger_frames(const std::vector<const TrainingView*>& objects,
+ValidationSource compose_hard_negative_frames(const std::vector<const TrainingView*>& objects,
                                  const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings);
 
 /// What the forest finds in a frame, compared with what is there: by class id.

@@ -8,12 +8,12 @@
 namespace houghstream::training {
 
 SplitSearch::SplitSearch(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings,
-                         std::vector<float> label_weights, bool trusts_light)
+                         std::vector<float> label_weights, bool allow_single_pixel_intensity)
     : set_(set),
       patch_(patch),
       settings_(settings),
       label_weights_(std::move(label_weights)),
-      trusts_light_(trusts_light) {
+      trusts_light_(allow_single_pixel_intensity) {
   for (int plane = 0; plane < set.layout.planes(); ++plane) {
     const bool is_histogram = set.layout.kind(plane) == PlaneKind::kHistogram;
     (is_histogram ? histograms_ : others_).push_back(static_cast<std::uint8_t>(plane));

@@ -21,7 +21,7 @@ enum class Objective { kClass, kOffset };
 class SplitSearch {
  public:
   SplitSearch(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings,
-              std::vector<float> label_weights, bool trusts_light);
+              std::vector<float> label_weights, bool allow_single_pixel_intensity);
 
   /// The best test for these samples, or nothing where none leaves at least kMinSide samples on both sides.
   std::optional<PixelTest> best_test(const std::vector<std::uint32_t>& samples, Objective objective, Random& random);

@@ -24,7 +24,7 @@ struct TrainingSettings : PictureSettings {
   int node_samples = 1500;  ///< at most so many samples choose a node's test; all are then split by it
   /// The background weighs as much as all objects together, but at most as so many: what a patch is worth to an object
   /// does not depend on how many others were taught.
-  float most_background = 4.0F;
+  float max_background_weight = 4.0F;
   double in_bag = 0.75;         ///< share of the pictures that a tree sees
   int max_leaf_votes = 12;      ///< offsets kept per leaf and class after merging
   int max_leaf_views = 12;      ///< remembered training views per leaf and class

@@ -21,8 +21,8 @@ class TreeGrower {
     bag_ = draw_bag(tree);
     label_weights_ = weigh_labels();
     // Single pixels' colours tell objects apart, until the light is another one: only every other tree relies on them.
-    const bool trusts_light = tree % 2 == 0;
-    search_.emplace(set, patch, settings, label_weights_, trusts_light);
+    const bool allow_single_pixel_intensity = tree % 2 == 0;
+    search_.emplace(set, patch, settings, label_weights_, allow_single_pixel_intensity);
   }
 
   /// The old tree with the new samples in it: they follow its tests and go on growing where they end.
@@ -47,13 +47,13 @@ class TreeGrower {
     return bag;
   }
 
-  /// Every object weighs the same, see TrainingSettings::most_background.
+  /// Every object weighs the same, see TrainingSettings::max_background_weight.
   std::vector<float> weigh_labels() const {
     std::vector<float> counts(set_.classes.size() + 1, 0.0F);
     for (const std::uint32_t s : bag_) counts[set_.samples[s].label] += 1.0F;
     std::vector<float> weights(counts.size(), 0.0F);
     const auto objects = static_cast<float>(set_.classes.size());
-    const float background = std::min(objects, settings_.most_background);  // over one object's weight
+    const float background = std::min(objects, settings_.max_background_weight);  // over one object's weight
     const auto scale = static_cast<float>(bag_.size()) / (objects + background);
     for (std::size_t l = 0; l < counts.size(); ++l) {
       if (counts[l] > 0.0F) weights[l] = scale * (l == 0 ? background : 1.0F) / counts[l];
@@ -93,7 +93,7 @@ class TreeGrower {
   std::int32_t make_leaf(const Samples& samples) {
     const std::int32_t leaf =
         add_leaf({set_, settings_, label_weights_, static_cast<float>(bag_.size())}, samples, forest_);
-    if (known_) mix_in(*known_, static_cast<float>(samples.size()) / static_cast<float>(known_samples_), forest_);
+    if (known_) merge_leaf(*known_, static_cast<float>(samples.size()) / static_cast<float>(known_samples_), forest_);
     return -1 - leaf;
   }
 
@@ -140,9 +140,9 @@ class TreeGrower {
   }
 
   std::int32_t follow_leaf(const Forest& old, std::int32_t leaf, const Samples& samples, int depth) {
-    known_ = KnownLeaf{&old, leaf,
-                       mixture_of(static_cast<float>(old.classes.size()), static_cast<float>(set_.classes.size()),
-                                  settings_.most_background)};
+    known_ = ExistingLeaf{&old, leaf,
+                       compute_mixture(static_cast<float>(old.classes.size()), static_cast<float>(set_.classes.size()),
+                                  settings_.max_background_weight)};
     known_samples_ = std::max<std::size_t>(samples.size(), 1);
     if (samples.empty()) return -1 - copy_leaf(*known_, forest_);
     return grow_node(samples, depth);
@@ -153,7 +153,7 @@ class TreeGrower {
   Random random_;
   Samples bag_;
   std::vector<float> label_weights_;
-  std::optional<KnownLeaf> known_;  // that the samples have reached
+  std::optional<ExistingLeaf> known_;  // that the samples have reached
   std::size_t known_samples_ = 1;
   std::optional<SplitSearch> search_;
   Forest forest_;

@@ -39,7 +39,7 @@ Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches, B
 }
 
 /// Where the remembered training views have their sides: weighted medians.
-Sides remembered_sides(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera, BoxMemory& memory) {
+Sides template_sides(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera, BoxMemory& memory) {
   const Eigen::Vector3d centre = hypothesis.centre_camera.cast<double>();
   const Eigen::Vector2d centre_px = camera.project(centre);
   const auto px_per_metre = static_cast<float>(1.0 / camera.metres_per_px(centre.z()));
@@ -59,12 +59,12 @@ Sides remembered_sides(const Forest& forest, const Hypothesis& hypothesis, const
 
 }  // namespace
 
-cv::Rect2f backprojected_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
+cv::Rect2f backproject_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
                              const Camera& camera, BoxMemory& memory) {
   if (hypothesis.patches.empty() || hypothesis.views.empty()) return {};
   constexpr float kHidden = 0.3F;  // of the object's width or height: from here on a side is taken to be hidden
   const Sides seen = supporting_sides(hypothesis, patches, memory);
-  const Sides whole = remembered_sides(forest, hypothesis, camera, memory);
+  const Sides whole = template_sides(forest, hypothesis, camera, memory);
   Sides sides{};
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const float size = whole[(i % 2) + 2] - whole[i % 2];

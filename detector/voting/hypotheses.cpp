@@ -62,7 +62,7 @@ void sum_by_view(const Forest& forest, const SparseSums::Weights& by_voter, Voti
 }
 
 /// A maximum with its mass, which is what is seen of the object: the weight times the area of the patches.
-Hypothesis weigh_maximum(const VotingInput& input, const Eigen::Vector3f& centre, VotingMemory::Worker& own,
+Hypothesis score_maximum(const VotingInput& input, const Eigen::Vector3f& centre, VotingMemory::Worker& own,
                          SparseSums::Weights& by_voter) {
   Hypothesis hypothesis;
   hypothesis.centre_camera = centre;
@@ -93,7 +93,7 @@ std::vector<std::size_t> by_work(std::size_t classes, const PatchPosteriors& pos
   std::vector<std::size_t> order(classes);
   for (std::size_t c = 0; c < classes; ++c) {
     order[c] = c;
-    posteriors.for_supporters(static_cast<int>(c),
+    posteriors.for_each_supporting_patch(static_cast<int>(c),
                               [&](std::uint32_t, const std::uint32_t*, std::uint32_t count) { work[c] += count; });
   }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return work[a] > work[b]; });
@@ -126,21 +126,21 @@ void SparseSums::take(Weights& out) {
 std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t class_index, VotingMemory::Worker& own) {
   const VotingSettings& settings = input.settings;
   const std::size_t classes = input.forest.classes.size();
-  const float least_mass = settings.min_mass_share * input.forest.classes[class_index].expected_mass;
+  const float least_mass = settings.min_mass_share * input.forest.classes[class_index].nominal_vote_mass;
   const std::vector<Eigen::Vector3f> maxima =
-      find_maxima(own.space, input.camera, settings, each_of(classes, settings.maxima_per_class), own.maxima);
+      find_maxima(own.space, input.camera, settings, per_class_budget(classes, settings.maxima_per_class), own.maxima);
   std::vector<Hypothesis> weighed;
   std::vector<std::size_t> order;
   weighed.reserve(maxima.size());
   order.reserve(maxima.size());
   own.by_voter.resize(std::max(own.by_voter.size(), maxima.size()));
   for (std::size_t i = 0; i < maxima.size(); ++i) {
-    weighed.push_back(weigh_maximum(input, maxima[i], own, own.by_voter[i]));
+    weighed.push_back(score_maximum(input, maxima[i], own, own.by_voter[i]));
     if (weighed.back().mass >= least_mass) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return weighed[a].mass > weighed[b].mass; });
-  const auto most = static_cast<std::size_t>(each_of(classes, settings.candidates_per_class));
+  const auto most = static_cast<std::size_t>(per_class_budget(classes, settings.candidates_per_class));
   if (order.size() > most) order.resize(most);
   std::vector<Hypothesis> hypotheses;
   hypotheses.reserve(order.size());

@@ -53,7 +53,7 @@ float start_depth(const HoughSpace& space, const HoughCell& cell, MaximaMemory& 
 
 }  // namespace
 
-int each_of(std::size_t classes, int per_class) {
+int per_class_budget(std::size_t classes, int per_class) {
   constexpr int kFewClasses = 4;
   constexpr int kLeast = 6;
   const int shared = per_class * kFewClasses / std::max(static_cast<int>(classes), kFewClasses);

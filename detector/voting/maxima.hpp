@@ -10,7 +10,7 @@ namespace houghstream {
 
 /// How many of each of so many classes are looked at: `per_class` of up to four, of more so many fewer that the sum
 /// stays, but at least six, so that time grows less than the number of classes.
-int each_of(std::size_t classes, int per_class);
+int per_class_budget(std::size_t classes, int per_class);
 
 /// A local maximum of the Hough image.
 struct HoughCell {

@@ -30,7 +30,7 @@ struct Motion {
   Row z;
 };
 
-HWY_INLINE Motion motion_to(const Eigen::Vector3f& point) {
+HWY_INLINE Motion vote_transform(const Eigen::Vector3f& point) {
   const Float d;
   const Eigen::Matrix3f r = ray_rotation(point);
   const auto row = [&](int i) HWY_ATTR {
@@ -59,7 +59,7 @@ HWY_INLINE hn::Vec<Int> cells_of(Floats x, Floats y, Floats z, const CellGrid& g
 }
 
 /// What the votes of one voter have in common.
-struct Ballot {
+struct VoteBatch {
   float probability;  // p(class | leaf)
   float share;        // of one tree
   std::uint32_t voter;
@@ -67,7 +67,7 @@ struct Ballot {
 };
 
 /// Writes the votes of one vector's leaf votes to the place `at`.
-HWY_INLINE void cast_some(const float* leaf_votes, const Motion& m, const Ballot& ballot, std::size_t at,
+HWY_INLINE void cast_some(const float* leaf_votes, const Motion& m, const VoteBatch& ballot, std::size_t at,
                           CastVotes& cast) {
   const Float d;
   const Int di;
@@ -101,7 +101,7 @@ std::size_t cast_from(const CastInput& input, std::size_t first, CastVotes& cast
   static_assert(kLanes <= CastVotes::kSlack);
   const float share = 1.0F / static_cast<float>(forest.roots.size());
   std::uint32_t patch = voters[first].patch;
-  Motion motion = motion_to(input.patches.point_camera[patch]);
+  Motion motion = vote_transform(input.patches.point_camera[patch]);
   std::size_t count = cast.count;
   const std::size_t room = cast.votes.size() - CastVotes::kSlack;
   std::size_t i = first;
@@ -109,8 +109,8 @@ std::size_t cast_from(const CastInput& input, std::size_t first, CastVotes& cast
     prefetch_ahead(forest, voters, i);
     const LeafClass& entry = forest.leaf_classes[voters[i].leaf_class];
     if (count + entry.vote_count > room) break;
-    if (voters[i].patch != patch) motion = motion_to(input.patches.point_camera[patch = voters[i].patch]);
-    const Ballot ballot{entry.probability, share, static_cast<std::uint32_t>(i), input.grid};
+    if (voters[i].patch != patch) motion = vote_transform(input.patches.point_camera[patch = voters[i].patch]);
+    const VoteBatch ballot{entry.probability, share, static_cast<std::uint32_t>(i), input.grid};
     for (std::size_t v = 0; v < entry.vote_count; v += kLanes) {
       const LeafVote* votes = forest.votes.data() + entry.first_vote + v;
       std::array<LeafVote, kLanes> last;

@@ -66,8 +66,8 @@ cv::Rect parse_box(const json& info, const Camera& camera, const std::string& wh
 }
 
 /// What scene_gt.json says of an object.
-TrueObject parse_truth(const json& entry, const std::string& where) {
-  TrueObject object;
+GroundTruthObject parse_truth(const json& entry, const std::string& where) {
+  GroundTruthObject object;
   object.object_id = json_integer(entry, "obj_id", where);
   require(object.object_id >= 1, "{}: 'obj_id' is {}, expected at least 1", where, object.object_id);
   object.has_pose = entry.contains("cam_R_m2c") || entry.contains("cam_t_m2c");
@@ -76,7 +76,7 @@ TrueObject parse_truth(const json& entry, const std::string& where) {
 }
 
 /// What scene_gt_info.json says of it.
-void add_info(const json& info, const Camera& camera, const std::string& where, TrueObject& object) {
+void add_info(const json& info, const Camera& camera, const std::string& where, GroundTruthObject& object) {
   object.box_visible_px = parse_box(info, camera, where);
   object.visible_fraction = json_number(info, "visib_fract", where);
   require(object.visible_fraction >= 0.0 && object.visible_fraction <= 1.0, "{}: 'visib_fract' is {}, expected 0 to 1",

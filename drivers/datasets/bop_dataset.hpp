@@ -16,7 +16,7 @@
 namespace houghstream {
 
 /// One true object in one frame of a BOP scene (scene_gt.json and scene_gt_info.json).
-struct TrueObject {
+struct GroundTruthObject {
   int object_id = 0;
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres
   bool has_pose = true;                                               ///< false where the data has boxes only
@@ -29,7 +29,7 @@ struct BopImage {
   int image_id = 0;
   Camera camera;
   double depth_scale = 1.0;  ///< stored depth times this is millimetres
-  std::vector<TrueObject> objects;
+  std::vector<GroundTruthObject> objects;
 };
 
 /// A scene folder in BOP format (scene_camera.json, scene_gt.json, scene_gt_info.json, rgb/, depth/, mask_visib/),
@@ -88,12 +88,12 @@ std::optional<std::filesystem::path> find_bop_models(const std::filesystem::path
 std::map<int, std::string> find_bop_names(const std::filesystem::path& scene_folder);
 
 /// Objects that are less visible (visib_fract) are not taught from: what hides them would be part of their picture.
-constexpr double kTaughtVisibility = 0.75;
+constexpr double kMinTrainingVisibility = 0.75;
 
 /// All training views of a BOP training folder, rendered (also PBR) or recorded: every scene in or under it, one view
 /// for each object of each image, cropped around its mask_visib; its models/ lies beside or above, and its frame is the
 /// model's in all of them (`object_frame` stays empty). Images without objects are background (class_id 0, not
-/// cropped). Objects below kTaughtVisibility are left out, and those without depth, with a warning; throws InputError
+/// cropped). Objects below kMinTrainingVisibility are left out, and those without depth, with a warning; throws InputError
 /// when nothing is left.
 std::vector<TrainingView> read_bop_training_views(const std::filesystem::path& folder, int threads = 1);
 

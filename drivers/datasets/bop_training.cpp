@@ -45,7 +45,7 @@ std::string image_name(const BopScene& scene, std::size_t index) {
 /// One object of an image as a view; `frame` is the whole image.
 TrainingView object_view(const BopScene& scene, std::size_t index, std::size_t object_index, const RgbdFrame& frame,
                          const std::map<int, std::string>& names) {
-  const TrueObject& object = scene.images()[index].objects[object_index];
+  const GroundTruthObject& object = scene.images()[index].objects[object_index];
   TrainingView view;
   view.source = fmt::format("{} object {}", image_name(scene, index), object_index);
   require(object.has_pose, "{}: object without pose, expected cam_R_m2c and cam_t_m2c to train from", view.source);
@@ -61,13 +61,13 @@ TrainingView object_view(const BopScene& scene, std::size_t index, std::size_t o
 /// What came of an image.
 struct ImageViews {
   std::vector<TrainingView> views;
-  int hidden = 0;  ///< objects that are less visible than kTaughtVisibility
+  int hidden = 0;  ///< objects that are less visible than kMinTrainingVisibility
   int empty = 0;   ///< objects without mask or depth
 };
 
 /// An image as one view for each of its objects that shows enough of itself; the image is read once.
 ImageViews read_views(const BopScene& scene, std::size_t index, const std::map<int, std::string>& names) {
-  const std::vector<TrueObject>& objects = scene.images()[index].objects;
+  const std::vector<GroundTruthObject>& objects = scene.images()[index].objects;
   ImageViews out;
   if (objects.empty()) {
     const std::string source = image_name(scene, index);
@@ -76,7 +76,7 @@ ImageViews read_views(const BopScene& scene, std::size_t index, const std::map<i
   }
   std::optional<RgbdFrame> frame;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (objects[i].visible_fraction < kTaughtVisibility) {
+    if (objects[i].visible_fraction < kMinTrainingVisibility) {
       ++out.hidden;
       continue;
     }
@@ -127,10 +127,10 @@ std::vector<TrainingView> read_bop_training_views(const fs::path& folder, int th
   require(!views.empty(),
           "{}: of its objects {} have an empty mask or no depth, {} are visible by less than {:.0f} %, expected at "
           "least one usable view",
-          folder.string(), left_out.empty, left_out.hidden, 100.0 * kTaughtVisibility);
+          folder.string(), left_out.empty, left_out.hidden, 100.0 * kMinTrainingVisibility);
   if (left_out.hidden > 0)
     log_info("{}: {} views, {} objects visible by less than {:.0f} % left out", folder.string(), views.size(),
-             left_out.hidden, 100.0 * kTaughtVisibility);
+             left_out.hidden, 100.0 * kMinTrainingVisibility);
   return views;
 }
 

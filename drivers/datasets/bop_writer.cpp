@@ -25,7 +25,7 @@ OrderedJson camera_entry(const BopImage& image) {
   return entry;
 }
 
-OrderedJson object_entry(const TrueObject& object) {
+OrderedJson object_entry(const GroundTruthObject& object) {
   OrderedJson entry;
   if (object.has_pose) {
     const Eigen::Matrix3d R = object.T_camera_object.linear();
@@ -37,7 +37,7 @@ OrderedJson object_entry(const TrueObject& object) {
   return entry;
 }
 
-OrderedJson info_entry(const TrueObject& object) {
+OrderedJson info_entry(const GroundTruthObject& object) {
   const cv::Rect& box = object.box_visible_px;
   OrderedJson entry;
   if (box.empty()) {
@@ -77,7 +77,7 @@ BopWriter::BopWriter(fs::path folder) : folder_(std::move(folder)) {
   for (const char* part : {"rgb", "depth"}) make_folder(folder_ / part);
 }
 
-void BopWriter::add(const RgbdFrame& frame, const std::vector<TrueObject>& objects,
+void BopWriter::add(const RgbdFrame& frame, const std::vector<GroundTruthObject>& objects,
                     const std::vector<cv::Mat>& visible_masks) {
   check_frame(frame, folder_.string());
   require(visible_masks.empty() || visible_masks.size() == objects.size(), "{}: {} masks for {} objects",
@@ -102,7 +102,7 @@ void BopWriter::finish() {
     cameras[key] = camera_entry(image);
     truth[key] = OrderedJson::array();
     info[key] = OrderedJson::array();
-    for (const TrueObject& object : image.objects) {
+    for (const GroundTruthObject& object : image.objects) {
       truth[key].push_back(object_entry(object));
       info[key].push_back(info_entry(object));
     }
@@ -112,14 +112,14 @@ void BopWriter::finish() {
   write_json(info, folder_ / "scene_gt_info.json");
 }
 
-bool holds_pictures(const fs::path& scene_folder) {
+bool has_images(const fs::path& scene_folder) {
   return std::any_of(kPictureFolders.begin(), kPictureFolders.end(), [&](const char* part) {
     std::error_code error;
     return fs::is_directory(scene_folder / part, error) && !fs::is_empty(scene_folder / part, error);
   });
 }
 
-void remove_pictures(const fs::path& scene_folder) {
+void remove_images(const fs::path& scene_folder) {
   for (const char* part : kPictureFolders) {
     std::error_code error;
     fs::remove_all(scene_folder / part, error);
@@ -148,7 +148,7 @@ void write_bop_models(const std::vector<NamedModel>& models, const fs::path& mod
   write_bop_names(names, models_folder / "names.json");
 }
 
-bool holds_models(const fs::path& models_folder) {
+bool has_models(const fs::path& models_folder) {
   const auto is_of_models = [](const fs::directory_entry& entry) {
     const std::string name = entry.path().filename().string();
     const std::string extension = entry.path().extension().string();

@@ -21,7 +21,7 @@ class BopWriter {
  public:
   explicit BopWriter(std::filesystem::path folder);
   /// `visible_masks` (CV_8UC1 0/255, one per object) may be empty: then no masks are written.
-  void add(const RgbdFrame& frame, const std::vector<TrueObject>& objects, const std::vector<cv::Mat>& visible_masks);
+  void add(const RgbdFrame& frame, const std::vector<GroundTruthObject>& objects, const std::vector<cv::Mat>& visible_masks);
   void finish();
 
  private:
@@ -30,10 +30,10 @@ class BopWriter {
 };
 
 /// Whether a scene folder holds pictures, among which a BopWriter's would come to lie.
-bool holds_pictures(const std::filesystem::path& scene_folder);
+bool has_images(const std::filesystem::path& scene_folder);
 
 /// Removes them. Throws InputError where it cannot.
-void remove_pictures(const std::filesystem::path& scene_folder);
+void remove_images(const std::filesystem::path& scene_folder);
 
 /// Writes models/obj_NNNNNN.ply, models/models_info.json (diameter, min, size and symmetries) and models/names.json.
 struct NamedModel {
@@ -45,7 +45,7 @@ struct NamedModel {
 void write_bop_models(const std::vector<NamedModel>& models, const std::filesystem::path& models_folder);
 
 /// Whether a folder holds models, in BOP's format or as NAME.ply or NAME.obj.
-bool holds_models(const std::filesystem::path& models_folder);
+bool has_models(const std::filesystem::path& models_folder);
 
 /// Writes {"1": "bowl", ...}, for models/names.json or SCENE/names.json.
 void write_bop_names(const std::map<int, std::string>& names, const std::filesystem::path& names_file);

@@ -32,7 +32,7 @@ fs::path colour_partner(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-bool holds_frames(const fs::path& folder) {
+bool has_frame_pairs(const fs::path& folder) {
   const auto is_frame = [](const fs::directory_entry& entry) {
     const std::string file = entry.path().filename().string();
     return is_depth(file) || is_picture(file);
@@ -62,9 +62,9 @@ std::vector<FrameFiles> list_frame_pairs(const fs::path& folder) {
 std::vector<fs::path> list_frame_folders(const fs::path& folder) {
   require(fs::is_directory(folder), "{}: no such folder, expected images", folder.string());
   std::vector<fs::path> folders;
-  if (holds_frames(folder)) folders.push_back(folder);
+  if (has_frame_pairs(folder)) folders.push_back(folder);
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_directory() && holds_frames(entry.path())) folders.push_back(entry.path());
+    if (entry.is_directory() && has_frame_pairs(entry.path())) folders.push_back(entry.path());
   }
   require(!folders.empty(), "{}: no images here or below, expected NAME_color.png or NAME.png with NAME_depth.png",
           folder.string());

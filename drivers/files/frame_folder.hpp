@@ -17,7 +17,7 @@ struct FrameFiles {
 
 /// Whether a folder, which is there, holds image pairs or parts of them: a picture without depth counts too, so that
 /// its folder is refused, not passed over.
-bool holds_frames(const std::filesystem::path& folder);
+bool has_frame_pairs(const std::filesystem::path& folder);
 
 /// All pairs of a folder in natural order. Throws InputError when the folder is missing or without pairs, or a
 /// picture lacks its partner.

@@ -54,7 +54,7 @@ void write_image(const cv::Mat& image, const std::filesystem::path& file, const 
     encoded = false;  // a type of image that the format does not know
   }
   require(encoded, "{}: cannot be written in this format, expected .png or .jpg", file.string());
-  write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace houghstream

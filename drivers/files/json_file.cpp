@@ -59,7 +59,7 @@ std::map<int, nlohmann::json> read_json_by_id(const std::filesystem::path& file)
 
 void write_json(const OrderedJson& json, const std::filesystem::path& file) {
   // A name off the wire may hold any bytes; JSON holds Unicode only (RFC 8259, section 8.1).
-  write_whole_file(file, json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + '\n');
+  write_file_atomically(file, json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + '\n');
 }
 
 std::string json_text(const nlohmann::json& value) {

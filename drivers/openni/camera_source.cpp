@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr std::chrono::seconds kSilence(3);  // a camera that gives no frame for so long is taken for gone
+constexpr std::chrono::seconds kFrameTimeout(3);  // a camera that gives no frame for so long is taken for gone
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -108,12 +108,12 @@ class CameraSource : public FrameSource {
 
   void look_after_device(bool alive) {
     const bool gone = device_->ended() && !alive;
-    const bool silent = seconds_since(last_frame_) > std::chrono::duration<double>(kSilence).count();
+    const bool silent = seconds_since(last_frame_) > std::chrono::duration<double>(kFrameTimeout).count();
     if (!gone && !silent) return;
     if (!gone_since_) gone_since_ = last_frame_;
     tell(gone ? fmt::format("{}: the camera is gone; waiting for it", uri_)
               : fmt::format("{}: no frame for {} s ({} depth images without colour so far); opening it again", uri_,
-                            kSilence.count(), pairing_.unpaired()));
+                            kFrameTimeout.count(), pairing_.unpaired()));
     device_.reset();
   }
 

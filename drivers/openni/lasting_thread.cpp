@@ -8,7 +8,7 @@
 
 namespace houghstream::openni {
 
-class LastingThread::Worker {
+class PersistentThread::Worker {
  public:
   Worker() {
     std::thread([this] { run(); }).detach();
@@ -46,7 +46,7 @@ namespace {
 
 struct Idle {
   std::mutex mutex;
-  std::vector<std::unique_ptr<LastingThread::Worker>> workers;
+  std::vector<std::unique_ptr<PersistentThread::Worker>> workers;
 };
 
 /// Never destroyed, as the threads use it as long as the process lives.
@@ -55,9 +55,9 @@ Idle& idle() {
   return *all;
 }
 
-std::unique_ptr<LastingThread::Worker> take_worker() {
+std::unique_ptr<PersistentThread::Worker> take_worker() {
   const std::lock_guard<std::mutex> lock(idle().mutex);
-  if (idle().workers.empty()) return std::make_unique<LastingThread::Worker>();
+  if (idle().workers.empty()) return std::make_unique<PersistentThread::Worker>();
   auto worker = std::move(idle().workers.back());
   idle().workers.pop_back();
   return worker;
@@ -65,11 +65,11 @@ std::unique_ptr<LastingThread::Worker> take_worker() {
 
 }  // namespace
 
-LastingThread::LastingThread(std::function<void()> work) : worker_(take_worker()) {
+PersistentThread::PersistentThread(std::function<void()> work) : worker_(take_worker()) {
   worker_->begin(std::move(work));
 }
 
-LastingThread::~LastingThread() {
+PersistentThread::~PersistentThread() {
   worker_->await_end();
   const std::lock_guard<std::mutex> lock(idle().mutex);
   idle().workers.push_back(std::move(worker_));

@@ -125,7 +125,7 @@ std::size_t repair_oni(const std::filesystem::path& file) {
 std::size_t copy_repaired_oni(const std::filesystem::path& from, const std::filesystem::path& to) {
   require_regular_file(from, "a recording of OpenNI2's");
   require_other_file(to, from);
-  WholeFile whole(to);
+  AtomicFile whole(to);
   std::error_code error;
   std::filesystem::copy_file(from, whole.partial(), std::filesystem::copy_options::overwrite_existing, error);
   require(!error, "{}: cannot be written: {}", to.string(), error.message());

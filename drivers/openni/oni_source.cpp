@@ -17,7 +17,7 @@ class OniSource : public FrameSource {
 
   std::optional<RgbdFrame> next() override {
     while (!device_->ended() && !(stop_requested_ && stop_requested_())) {
-      std::optional<SensorImage> image = device_->wait(kFilePatience);
+      std::optional<SensorImage> image = device_->wait(kFileTimeout);
       if (!image) continue;
       require(image->device_us <= kLatestUs, "{}: an image at {} us, expected at most {}", file_, image->device_us,
               kLatestUs);

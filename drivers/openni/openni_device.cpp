@@ -39,7 +39,7 @@ FirstImages read_first_images(const std::string& file) {
   constexpr std::size_t kCompared = 24;  // of a stream: enough where only some were seen live
   FirstImages first;
   while (std::min(first.depth.size(), first.colour.size()) < kCompared && !device->ended()) {
-    const std::optional<SensorImage> image = device->wait(kFilePatience);
+    const std::optional<SensorImage> image = device->wait(kFileTimeout);
     if (image && first.of(image->sensor).size() < kCompared) first.of(image->sensor).push_back(remember(*image));
   }
   return first;
@@ -74,7 +74,7 @@ struct OpenniDevice::State {
   std::string uri;
   StopRequested stop_requested;
   OpenniLibrary library;
-  Departure departure;
+  DisconnectListener departure;
   ::openni::Device device;
   ::openni::VideoStream depth;
   ::openni::VideoStream colour;
@@ -82,7 +82,7 @@ struct OpenniDevice::State {
   bool is_file = false;
   int images_left = 0;    // of a file
   int depth_to_skip = 0;  // before a camera's images are as its modes say
-  Inbox inbox;
+  ImageQueue inbox;
   std::optional<StreamReader> reader;  // of a camera
   std::optional<OpenniRecording> recording;
 

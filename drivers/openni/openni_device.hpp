@@ -16,7 +16,7 @@ namespace houghstream::openni {
 inline constexpr std::chrono::milliseconds kGlance(50);
 
 /// How long a file's image is waited for: disks may be asleep.
-inline constexpr std::chrono::seconds kFilePatience(5);
+inline constexpr std::chrono::seconds kFileTimeout(5);
 
 /// The cameras that OpenNI2's drivers have found. `closely` also opens each for its serial number and modes, which
 /// stay empty where it cannot be opened, for instance because another process uses it. Throws InputError where
@@ -28,7 +28,7 @@ std::vector<CameraDescription> list_cameras(bool closely);
 std::shared_ptr<const void> keep_openni_running();
 
 /// A camera or a .oni file through OpenNI2, running from construction to destruction. Everything that knows OpenNI2
-/// is behind it. To be used from a thread that lasts as long as the process, see LastingThread.
+/// is behind it. To be used from a thread that lasts as long as the process, see PersistentThread.
 class OpenniDevice {
  public:
   /// Opens a camera: registered, synchronised where it can, not mirrored. Throws InputError where it lacks the mode

@@ -27,14 +27,14 @@ class OpenniLibrary {
 };
 
 /// Hears that a camera was unplugged or has failed.
-class Departure : public ::openni::OpenNI::DeviceDisconnectedListener,
+class DisconnectListener : public ::openni::OpenNI::DeviceDisconnectedListener,
                   public ::openni::OpenNI::DeviceStateChangedListener {
  public:
-  explicit Departure(std::string uri) : uri_(std::move(uri)) {
+  explicit DisconnectListener(std::string uri) : uri_(std::move(uri)) {
     ::openni::OpenNI::addDeviceDisconnectedListener(this);
     ::openni::OpenNI::addDeviceStateChangedListener(this);
   }
-  ~Departure() override {
+  ~DisconnectListener() override {
     ::openni::OpenNI::removeDeviceDisconnectedListener(this);
     ::openni::OpenNI::removeDeviceStateChangedListener(this);
   }

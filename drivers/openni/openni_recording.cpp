@@ -48,13 +48,13 @@ void OpenniRecording::start() {
 }
 
 void OpenniRecording::note(const SensorImage& image) {
-  std::vector<Remembered>& own = live_.of(image.sensor);
+  std::vector<ImageThumbnail>& own = live_.of(image.sensor);
   const bool may_be_recorded = started() && image.host_us >= started_us_;
   if (may_be_recorded && own.size() < kRemembered) own.push_back(remember(image));
 }
 
 void OpenniRecording::mend_times(const FirstImages& recorded) {
-  const std::optional<RecordedStarts> starts = find_recorded_starts(recorded, live_);
+  const std::optional<RecordedStarts> starts = find_stream_starts(recorded, live_);
   require(starts && starts->depth.difference == 0.0 && (jpeg_ || starts->colour.difference == 0.0),
           "{}: its first images are not among those seen", file_);
   const std::int64_t colour_later_us = starts->colour.device_us - starts->depth.device_us;

@@ -41,7 +41,7 @@ class OpenniRecording {
  private:
   void mend_times(const FirstImages& recorded);
 
-  WholeFile whole_;
+  AtomicFile whole_;
   std::string file_;  // while it is written
   bool jpeg_;
   ::openni::Recorder recorder_;

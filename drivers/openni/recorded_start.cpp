@@ -13,11 +13,11 @@ constexpr std::size_t kFewest = 4;              // images that tell a place from
 constexpr std::int64_t kMostApartUs = 500'000;  // one recorder starts both streams
 
 /// How well what is recorded fits what was seen at the same times, if the recording begins at `start_us`.
-RecordedStart start_at(std::int64_t start_us, const std::vector<Remembered>& recorded,
-                       const std::vector<Remembered>& live) {
-  RecordedStart start{start_us, 0.0, 0};
-  for (const Remembered& image : recorded) {
-    const auto same_time = std::find_if(live.begin(), live.end(), [&](const Remembered& other) {
+StreamStart start_at(std::int64_t start_us, const std::vector<ImageThumbnail>& recorded,
+                       const std::vector<ImageThumbnail>& live) {
+  StreamStart start{start_us, 0.0, 0};
+  for (const ImageThumbnail& image : recorded) {
+    const auto same_time = std::find_if(live.begin(), live.end(), [&](const ImageThumbnail& other) {
       return other.time_us == start_us + image.time_us && other.some_pixels.size() == image.some_pixels.size();
     });
     if (same_time == live.end()) continue;
@@ -30,18 +30,18 @@ RecordedStart start_at(std::int64_t start_us, const std::vector<Remembered>& rec
 }
 
 /// The places where enough was seen, the earliest first.
-std::vector<RecordedStart> possible_starts(const std::vector<Remembered>& recorded,
-                                           const std::vector<Remembered>& live) {
+std::vector<StreamStart> possible_starts(const std::vector<ImageThumbnail>& recorded,
+                                           const std::vector<ImageThumbnail>& live) {
   std::vector<std::int64_t> starts;
-  for (const Remembered& seen : live) {
-    for (const Remembered& image : recorded) starts.push_back(seen.time_us - image.time_us);
+  for (const ImageThumbnail& seen : live) {
+    for (const ImageThumbnail& image : recorded) starts.push_back(seen.time_us - image.time_us);
   }
   std::sort(starts.begin(), starts.end());
   starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
   const std::size_t fewest = std::min(kFewest, (recorded.size() + 1) / 2);
-  std::vector<RecordedStart> possible;
+  std::vector<StreamStart> possible;
   for (const std::int64_t start_us : starts) {
-    const RecordedStart start = start_at(start_us, recorded, live);
+    const StreamStart start = start_at(start_us, recorded, live);
     if (start.images >= fewest) possible.push_back(start);
   }
   return possible;
@@ -61,17 +61,17 @@ bool fits_better(const RecordedStarts& a, const RecordedStarts& b) {
 
 }  // namespace
 
-Remembered remember(const SensorImage& image) {
-  Remembered small{static_cast<std::int64_t>(image.device_us), {}};
+ImageThumbnail remember(const SensorImage& image) {
+  ImageThumbnail small{static_cast<std::int64_t>(image.device_us), {}};
   cv::resize(image.image, small.some_pixels, {}, 1.0 / kStep, 1.0 / kStep, cv::INTER_NEAREST);
   return small;
 }
 
-std::optional<RecordedStarts> find_recorded_starts(const FirstImages& recorded, const FirstImages& live) {
-  const std::vector<RecordedStart> of_colour = possible_starts(recorded.colour, live.colour);
+std::optional<RecordedStarts> find_stream_starts(const FirstImages& recorded, const FirstImages& live) {
+  const std::vector<StreamStart> of_colour = possible_starts(recorded.colour, live.colour);
   std::optional<RecordedStarts> best;
-  for (const RecordedStart& depth : possible_starts(recorded.depth, live.depth)) {
-    for (const RecordedStart& colour : of_colour) {
+  for (const StreamStart& depth : possible_starts(recorded.depth, live.depth)) {
+    for (const StreamStart& colour : of_colour) {
       const RecordedStarts starts{depth, colour};
       if (apart_us(starts) <= kMostApartUs && (!best || fits_better(starts, *best))) best = starts;
     }

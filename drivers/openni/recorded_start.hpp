@@ -9,32 +9,32 @@
 namespace houghstream::openni {
 
 /// An image of a stream, small enough to be remembered.
-struct Remembered {
+struct ImageThumbnail {
   std::int64_t time_us = 0;
   cv::Mat some_pixels;  ///< every eighth of each row and column
 };
 
-Remembered remember(const SensorImage& image);
+ImageThumbnail remember(const SensorImage& image);
 
 /// The first images of a camera's two streams.
 struct FirstImages {
-  std::vector<Remembered> depth;
-  std::vector<Remembered> colour;
-  std::vector<Remembered>& of(SensorImage::Sensor sensor) {
+  std::vector<ImageThumbnail> depth;
+  std::vector<ImageThumbnail> colour;
+  std::vector<ImageThumbnail>& of(SensorImage::Sensor sensor) {
     return sensor == SensorImage::Sensor::kDepth ? depth : colour;
   }
 };
 
 /// Where a recorded stream begins on the device's clock.
-struct RecordedStart {
+struct StreamStart {
   std::int64_t device_us = 0;
   double difference = 0.0;  ///< mean over images and values: 0 where the recording is without loss
   std::size_t images = 0;   ///< recorded ones that were seen live
 };
 
 struct RecordedStarts {
-  RecordedStart depth;
-  RecordedStart colour;
+  StreamStart depth;
+  StreamStart colour;
 };
 
 /// Finds the first images of both recorded streams, with times that count from some zero, among those that were seen
@@ -42,6 +42,6 @@ struct RecordedStarts {
 /// busy to see all. Both streams start within half a second of one another. Where several places fit equally well (a
 /// sensor that sees nothing, a picture that comes again), those with most images, then those closest together, then the
 /// earliest. Nothing where no places have four images of each stream, or half of those of a short recording.
-std::optional<RecordedStarts> find_recorded_starts(const FirstImages& recorded, const FirstImages& live);
+std::optional<RecordedStarts> find_stream_starts(const FirstImages& recorded, const FirstImages& live);
 
 }  // namespace houghstream::openni

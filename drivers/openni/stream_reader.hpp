@@ -19,7 +19,7 @@
 namespace houghstream::openni {
 
 /// Images in the order of their arrival, from one thread to another.
-class Inbox {
+class ImageQueue {
  public:
   void put(SensorImage image) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -53,7 +53,7 @@ class Inbox {
 class StreamReader {
  public:
   /// Begins; the streams must run, and be stopped only after this has ended.
-  StreamReader(::openni::VideoStream& depth, ::openni::VideoStream& colour, Inbox& to)
+  StreamReader(::openni::VideoStream& depth, ::openni::VideoStream& colour, ImageQueue& to)
       : depth_(depth), colour_(colour), inbox_(to), thread_([this] { run(); }) {}
   StreamReader(const StreamReader&) = delete;
   StreamReader& operator=(const StreamReader&) = delete;
@@ -78,9 +78,9 @@ class StreamReader {
 
   ::openni::VideoStream& depth_;
   ::openni::VideoStream& colour_;
-  Inbox& inbox_;
+  ImageQueue& inbox_;
   std::atomic<bool> running_{true};
-  LastingThread thread_;  // last, so that it is waited for first: it uses the others
+  PersistentThread thread_;  // last, so that it is waited for first: it uses the others
 };
 
 }  // namespace houghstream::openni

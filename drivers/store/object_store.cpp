@@ -42,8 +42,8 @@ Eigen::Vector3f vote_centre(const nlohmann::json& entry, const std::string& wher
 }
 
 /// That of a store that does not say it holds every picture.
-ToneRange parse_tone(const nlohmann::json& json, const std::string& file) {
-  ToneRange tone;
+BrightnessRange parse_tone(const nlohmann::json& json, const std::string& file) {
+  BrightnessRange tone;
   const auto found = json.find("tone");
   if (found == json.end()) return tone;
   require(found->is_object(), "{}: 'tone' is {}, expected means and a deviation of grey values", file,
@@ -186,7 +186,7 @@ ObjectStore read_store(const fs::path& folder) {
   return store;
 }
 
-const StoredObject& object_called(const ObjectStore& store, const std::string& name) {
+const StoredObject& find_object(const ObjectStore& store, const std::string& name) {
   std::vector<std::string> names;
   for (const StoredObject& object : store.objects) names.push_back(object.name);
   const auto found = std::find(names.begin(), names.end(), name);
@@ -293,7 +293,7 @@ bool is_store_entry(const fs::path& relative) {
   return is_of_object && (entry.parent_path() == "models" || entry.parent_path() == "views");
 }
 
-bool may_be_replaced(const fs::path& folder) {
+bool is_replaceable(const fs::path& folder) {
   if (!fs::exists(folder)) return true;
   return fs::is_directory(folder) && (fs::is_empty(folder) || is_list_of_store(folder / kJsonFile));
 }

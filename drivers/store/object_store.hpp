@@ -37,7 +37,7 @@ struct StoredObject {
 struct ObjectStore {
   std::filesystem::path folder;
   std::vector<StoredObject> objects;                 ///< by id
-  ToneRange tone;                                    ///< of the pictures in which they were practised
+  BrightnessRange tone;                                    ///< of the pictures in which they were practised
   OrderedJson settings;                              ///< of the last teaching, for people
   std::map<int, Symmetries> symmetries;              ///< by id, of models_info.json; empty for an object without any
   std::filesystem::path json_file() const;           ///< the list
@@ -55,7 +55,7 @@ struct ObjectStore {
 ObjectStore read_store(const std::filesystem::path& folder);
 
 /// The object of this name. Throws InputError that lists the store's where there is none.
-const StoredObject& object_called(const ObjectStore& store, const std::string& name);
+const StoredObject& find_object(const ObjectStore& store, const std::string& name);
 
 /// Meshes by name, metres, read on `threads` threads; without their colours where the store says that these are
 /// unknown. Throws InputError where one cannot be read or has another size than models_info.json says.
@@ -88,6 +88,6 @@ bool is_store_entry(const std::filesystem::path& relative);
 
 /// Whether the folder is empty or holds a store or what is left of one, which may be replaced; nothing else may. A
 /// store.json of anybody else makes no store.
-bool may_be_replaced(const std::filesystem::path& folder);
+bool is_replaceable(const std::filesystem::path& folder);
 
 }  // namespace houghstream::store

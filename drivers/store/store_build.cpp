@@ -37,9 +37,9 @@ int open_folder(const fs::path& folder) {
 
 /// Who looks whether anybody works on a store, and says then that he does, is alone with that: two who begin together
 /// would both find nobody. Waits for those before, who take a moment. Leaves no file beside the store.
-class Turn {
+class StoreLock {
  public:
-  explicit Turn(const fs::path& folder) : file_(open_folder(folder)) {
+  explicit StoreLock(const fs::path& folder) : file_(open_folder(folder)) {
     while (file_ >= 0 && flock(file_, LOCK_EX) != 0) {
       if (errno == EINTR) continue;
       close(file_);
@@ -48,9 +48,9 @@ class Turn {
     require(file_ >= 0, "{}: cannot be locked: {}, expected a folder to make a store in", folder.string(),
             std::strerror(errno));
   }
-  ~Turn() { close(file_); }
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
+  ~StoreLock() { close(file_); }
+  StoreLock(const StoreLock&) = delete;
+  StoreLock& operator=(const StoreLock&) = delete;
 
  private:
   int file_;
@@ -89,17 +89,17 @@ void remove_leftovers(const fs::path& store) {
 }
 
 void require_replaceable(const fs::path& store) {
-  require(may_be_replaced(store),
+  require(is_replaceable(store),
           "{}: holds no store.json of an object store, expected one, or nothing yet: not replaced", store.string());
   require_exchangeable(store, is_store_entry);
 }
 
 }  // namespace
 
-void bring_back_store(const fs::path& store) {
+void recover_store(const fs::path& store) {
   const fs::path place = place_of_store(store);
   if (fs::exists(place) || !has_replaced(place)) return;
-  const Turn turn(place.parent_path());
+  const StoreLock turn(place.parent_path());
   remove_leftovers(place);
   restore_replaced(place, is_store_entry);
 }
@@ -110,12 +110,12 @@ void require_place_for_store(const fs::path& store) {
   require_writable_folder(place.parent_path());
 }
 
-StoreBuild::StoreBuild(const fs::path& store) : store_(place_of_store(store)) {
+StoreTransaction::StoreTransaction(const fs::path& store) : store_(place_of_store(store)) {
   require_replaceable(store_);
   std::error_code error;
   fs::create_directories(store_.parent_path(), error);
   require(!error, "{}: cannot make this folder: {}", store_.parent_path().string(), error.message());
-  const Turn turn(store_.parent_path());
+  const StoreLock turn(store_.parent_path());
   remove_leftovers(store_);
   restore_replaced(store_, is_store_entry);
   partial_ = store_.parent_path() / (partial_prefix(store_) + std::to_string(getpid()));
@@ -125,13 +125,13 @@ StoreBuild::StoreBuild(const fs::path& store) : store_(place_of_store(store)) {
   require(lock_ >= 0, "{}: cannot be locked: {}", partial_.string(), std::strerror(errno));
 }
 
-StoreBuild::~StoreBuild() {
+StoreTransaction::~StoreTransaction() {
   std::error_code error;
   if (!is_published_) fs::remove_all(partial_, error);
   if (lock_ >= 0) close(lock_);
 }
 
-void StoreBuild::publish() {
+void StoreTransaction::publish() {
   exchange_folder(partial_, store_, is_store_entry);
   is_published_ = true;
 }

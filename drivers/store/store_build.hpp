@@ -8,14 +8,14 @@ namespace houghstream::store {
 /// which puts the new one into its place in one step. Where STORE is a symbolic link, all this is where it leads. What
 /// an interrupted teaching left is removed when the next begins. One at a time works on a store, of all processes. What
 /// lies in STORE and is no part of a store (is_store_entry()) is somebody's, and is there afterwards as it was before.
-class StoreBuild {
+class StoreTransaction {
  public:
   /// Throws InputError where STORE is a folder of something else or a link to nothing, another teaching works on it,
   /// the folder beside it cannot be made, or somebody's folder in it could not be carried over.
-  explicit StoreBuild(const std::filesystem::path& store);
-  ~StoreBuild();  ///< removes what was not published
-  StoreBuild(const StoreBuild&) = delete;
-  StoreBuild& operator=(const StoreBuild&) = delete;
+  explicit StoreTransaction(const std::filesystem::path& store);
+  ~StoreTransaction();  ///< removes what was not published
+  StoreTransaction(const StoreTransaction&) = delete;
+  StoreTransaction& operator=(const StoreTransaction&) = delete;
 
   /// Where to write.
   const std::filesystem::path& folder() const { return partial_; }
@@ -38,6 +38,6 @@ void require_place_for_store(const std::filesystem::path& store);
 /// On a file system that cannot exchange folders, a teaching that is interrupted in the wrong moment leaves no STORE,
 /// but the old one beside it: this one is put back into its place. Else nothing is done. For those who read a store
 /// before they change it. Throws InputError where another teaching works on it, or it cannot be moved.
-void bring_back_store(const std::filesystem::path& store);
+void recover_store(const std::filesystem::path& store);
 
 }  // namespace houghstream::store

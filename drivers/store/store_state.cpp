@@ -10,20 +10,20 @@ namespace houghstream::store {
 
 namespace fs = std::filesystem;
 
-std::string state_of_file(const fs::path& file) {
+std::string file_stamp(const fs::path& file) {
   struct stat is {};
   if (stat(file.c_str(), &is) != 0) return file.string() + " missing";
   return fmt::format("{} {} {} {} {}.{} {}.{}", file.string(), is.st_dev, is.st_ino, is.st_size, is.st_mtim.tv_sec,
                      is.st_mtim.tv_nsec, is.st_ctim.tv_sec, is.st_ctim.tv_nsec);
 }
 
-std::string state_of_meshes(const ObjectStore& store) {
+std::string mesh_stamp(const ObjectStore& store) {
   std::vector<std::string> states;
   std::error_code error;  // a folder that goes away meanwhile shows in the next state
   for (fs::directory_iterator entry(store.models_folder(), error), end; !error && entry != end; entry.increment(error))
-    states.push_back(state_of_file(entry->path()));
+    states.push_back(file_stamp(entry->path()));
   std::sort(states.begin(), states.end());
-  return fmt::format("{}\n{}", state_of_file(store.json_file()), fmt::join(states, "\n"));
+  return fmt::format("{}\n{}", file_stamp(store.json_file()), fmt::join(states, "\n"));
 }
 
 }  // namespace houghstream::store

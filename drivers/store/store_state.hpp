@@ -8,9 +8,9 @@
 namespace houghstream::store {
 
 /// Differs whenever the file has been written or exchanged, without reading it.
-std::string state_of_file(const std::filesystem::path& file);
+std::string file_stamp(const std::filesystem::path& file);
 
 /// The same of a store's list and all that lies beside its meshes, a line each.
-std::string state_of_meshes(const ObjectStore& store);
+std::string mesh_stamp(const ObjectStore& store);
 
 }  // namespace houghstream::store

@@ -27,8 +27,8 @@ constexpr int kReportMissing = 50;
 
 /// Differs whenever a file that is loaded has been written or exchanged, without reading any.
 std::string state_of_store(const ObjectStore& store) {
-  return fmt::format("{}\n{}\n{}", state_of_file(store.folder), state_of_file(store.forest_file()),
-                     state_of_meshes(store));
+  return fmt::format("{}\n{}\n{}", file_stamp(store.folder), file_stamp(store.forest_file()),
+                     mesh_stamp(store));
 }
 
 std::string state_of_store(const fs::path& folder) {
@@ -78,7 +78,7 @@ std::string describe_neighbours(const fs::path& folder) {
 
 }  // namespace
 
-StoreFollower::StoreFollower(fs::path folder, Load load) : folder_(std::move(folder)), load_(std::move(load)) {
+StoreWatcherBase::StoreWatcherBase(fs::path folder, Load load) : folder_(std::move(folder)), load_(std::move(load)) {
   known_.store = folder_.string();
   taken_ = state_of_store(folder_);  // what changes while it is read is noticed when it is followed
   if (!fs::exists(folder_)) {
@@ -89,10 +89,10 @@ StoreFollower::StoreFollower(fs::path folder, Load load) : folder_(std::move(fol
     return;
   }
   const ObjectStore store = read_store(folder_);
-  take_over(store, load_(store));
+  adopt(store, load_(store));
 }
 
-StoreFollower::~StoreFollower() {
+StoreWatcherBase::~StoreWatcherBase() {
   {
     const std::lock_guard lock(mutex_);
     ending_ = true;
@@ -101,28 +101,28 @@ StoreFollower::~StoreFollower() {
   if (thread_.joinable()) thread_.join();
 }
 
-void StoreFollower::follow(std::chrono::milliseconds period) {
+void StoreWatcherBase::follow(std::chrono::milliseconds period) {
   const BlockStopSignals block;
   thread_ = std::thread([this, period] { live(period); });
 }
 
-void StoreFollower::hold() const {
+void StoreWatcherBase::hold() const {
   require(current() != nullptr, "{}: no such folder, expected an object store of hs-teach", folder_.string());
 }
 
-std::shared_ptr<const void> StoreFollower::current() const {
+std::shared_ptr<const void> StoreWatcherBase::current() const {
   const std::lock_guard lock(mutex_);
   return current_;
 }
 
-KnownObjects StoreFollower::known() const {
+KnownObjects StoreWatcherBase::known() const {
   const std::lock_guard lock(mutex_);
   return known_;
 }
 
-void StoreFollower::live(std::chrono::milliseconds period) {
+void StoreWatcherBase::live(std::chrono::milliseconds period) {
   lower_priority();
-  const WorkAlone alone([this] {
+  const SerialScope alone([this] {
     const std::lock_guard ending(mutex_);
     return ending_;
   });
@@ -138,7 +138,7 @@ void StoreFollower::live(std::chrono::milliseconds period) {
   }
 }
 
-void StoreFollower::look() {
+void StoreWatcherBase::look() {
   retired_.erase(
       std::remove_if(retired_.begin(), retired_.end(), [](const auto& loaded) { return loaded.use_count() == 1; }),
       retired_.end());
@@ -152,7 +152,7 @@ void StoreFollower::look() {
 }
 
 /// Once, where nothing has ever been there: the name may be a wrong one.
-void StoreFollower::report_missing_store() {
+void StoreWatcherBase::report_missing_store() {
   std::error_code error;
   if (current() != nullptr || looks_without_folder_ > kReportMissing || fs::exists(folder_, error)) return;
   if (++looks_without_folder_ <= kReportMissing) return;
@@ -160,14 +160,14 @@ void StoreFollower::report_missing_store() {
                           describe_neighbours(folder_)));
 }
 
-void StoreFollower::load(const std::string& state) {
+void StoreWatcherBase::load(const std::string& state) {
   try {
     const ObjectStore store = read_store(folder_);
     std::shared_ptr<const void> loaded = load_(store);
     if (state_of_store(folder_) != state) return;  // of two stores
-    take_over(store, std::move(loaded));
+    adopt(store, std::move(loaded));
     taken_ = state;
-  } catch (const WorkGivenUp&) {
+  } catch (const WorkCancelled&) {
     return;
   } catch (const std::bad_alloc&) {
     refuse(state, fmt::format("{}: not enough memory to load it, expected more soon", folder_.string()));
@@ -180,14 +180,14 @@ void StoreFollower::load(const std::string& state) {
 }
 
 /// A state that stays the same is loaded again only after a while.
-void StoreFollower::refuse(const std::string& state, const std::string& problem) {
+void StoreWatcherBase::refuse(const std::string& state, const std::string& problem) {
   looks_until_retry_ = state == refused_ ? std::min(2 * looks_until_retry_, kLastRetry) : kFirstRetry;
   looks_since_refusal_ = 0;
   refused_ = state;
   set_problem(problem);
 }
 
-void StoreFollower::take_over(const ObjectStore& store, std::shared_ptr<const void> loaded) {
+void StoreWatcherBase::adopt(const ObjectStore& store, std::shared_ptr<const void> loaded) {
   const std::int64_t now = utime_now();
   const std::lock_guard lock(mutex_);
   std::vector<KnownObject> objects;
@@ -206,7 +206,7 @@ void StoreFollower::take_over(const ObjectStore& store, std::shared_ptr<const vo
   known_.since_utime = now;
 }
 
-void StoreFollower::set_problem(const std::string& problem) {
+void StoreWatcherBase::set_problem(const std::string& problem) {
   const std::lock_guard lock(mutex_);
   if (problem == known_.problem) return;
   known_.problem = problem;

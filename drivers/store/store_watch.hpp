@@ -19,7 +19,7 @@ namespace houghstream::store {
 /// priority, and is there as a whole once it is. A store that is torn or bad leaves what was there before; one line of
 /// the log says why, and known(). It is tried again after five periods, then after twice as many each time, up to 300:
 /// what was missing may have been memory or file descriptors. Every function may be called from any thread.
-class StoreFollower {
+class StoreWatcherBase {
  public:
   using Load = std::function<std::shared_ptr<const void>(const ObjectStore&)>;
 
@@ -27,10 +27,10 @@ class StoreFollower {
   /// Where there is no folder of this name yet, but one that it could be made in, nothing is known so far, and the log
   /// says so, and 50 periods later once more, with the stores that lie beside it. Throws InputError as read_store() and
   /// `load` do.
-  StoreFollower(std::filesystem::path folder, Load load);
-  ~StoreFollower();  ///< waits for a load that is under way
-  StoreFollower(const StoreFollower&) = delete;
-  StoreFollower& operator=(const StoreFollower&) = delete;
+  StoreWatcherBase(std::filesystem::path folder, Load load);
+  ~StoreWatcherBase();  ///< waits for a load that is under way
+  StoreWatcherBase(const StoreWatcherBase&) = delete;
+  StoreWatcherBase& operator=(const StoreWatcherBase&) = delete;
 
   /// From here on looks at it every `period`, and loads it when it has changed and stayed the same for a period: who
   /// copies into it is at work for a while.
@@ -50,7 +50,7 @@ class StoreFollower {
   void load(const std::string& state);
   void refuse(const std::string& state, const std::string& problem);
   void report_missing_store();
-  void take_over(const ObjectStore& store, std::shared_ptr<const void> loaded);
+  void adopt(const ObjectStore& store, std::shared_ptr<const void> loaded);
   void set_problem(const std::string& problem);
 
   std::filesystem::path folder_;
@@ -72,11 +72,11 @@ class StoreFollower {
 
 /// The same with the type of what is loaded.
 template <typename T>
-class StoreWatch {
+class StoreWatcher {
  public:
   using Load = std::function<std::shared_ptr<const T>(const ObjectStore&)>;
 
-  StoreWatch(const std::filesystem::path& folder, Load load) : follower_(folder, std::move(load)) {}
+  StoreWatcher(const std::filesystem::path& folder, Load load) : follower_(folder, std::move(load)) {}
 
   void follow(std::chrono::milliseconds period = std::chrono::milliseconds(200)) { follower_.follow(period); }
   void hold() const { follower_.hold(); }
@@ -84,7 +84,7 @@ class StoreWatch {
   KnownObjects known() const { return follower_.known(); }
 
  private:
-  StoreFollower follower_;
+  StoreWatcherBase follower_;
 };
 
 }  // namespace houghstream::store

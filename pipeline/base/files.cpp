@@ -144,7 +144,7 @@ void sync_to_disk(const fs::path& path) {
   require(is_synced, "{}: may not be on the disk: {}", path.string(), std::strerror(error));
 }
 
-WholeFile::WholeFile(const fs::path& file, const std::string& ending, Existing existing)
+AtomicFile::AtomicFile(const fs::path& file, const std::string& ending, Existing existing)
     : wanted_(followed(file)), file_(wanted_), partial_(file_), existing_(existing) {
   std::error_code error;
   require(!fs::is_directory(file_, error), "{}: is a folder, expected a file to write", file_.string());
@@ -156,7 +156,7 @@ WholeFile::WholeFile(const fs::path& file, const std::string& ending, Existing e
   lock_ = open_locked(partial_, file_);
 }
 
-WholeFile::WholeFile(WholeFile&& other) noexcept
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : wanted_(std::move(other.wanted_)),
       file_(std::move(other.file_)),
       partial_(std::move(other.partial_)),
@@ -164,17 +164,17 @@ WholeFile::WholeFile(WholeFile&& other) noexcept
       interrupted_(std::move(other.interrupted_)),
       lock_(std::exchange(other.lock_, -1)) {}
 
-WholeFile::~WholeFile() {
+AtomicFile::~AtomicFile() {
   if (lock_ < 0) return;
   if (is_same(lock_, partial_)) unlink(partial_.c_str());
   release();
 }
 
-void WholeFile::release() {
+void AtomicFile::release() {
   close(std::exchange(lock_, -1));
 }
 
-bool WholeFile::rename_into_place() {
+bool AtomicFile::rename_into_place() {
   if (existing_ != Existing::kRecordingKept) return std::rename(partial_.c_str(), file_.c_str()) == 0;
   while (!rename_to_free_name(partial_, file_)) {
     if (errno != EEXIST) return false;
@@ -183,7 +183,7 @@ bool WholeFile::rename_into_place() {
   return true;
 }
 
-void WholeFile::publish() {
+void AtomicFile::publish() {
   if (lock_ < 0) return;
   const bool has_replaced = put_into_place();
   if (!has_replaced) sync_to_disk(file_);
@@ -191,7 +191,7 @@ void WholeFile::publish() {
 }
 
 /// Returns whether FILE was there before; then the new one is on the disk, but for its name.
-bool WholeFile::put_into_place() {
+bool AtomicFile::put_into_place() {
   struct stat before {};
   // A library may have put another file into the place; what counts is what lies there.
   const int written = open(partial_.c_str(), O_RDONLY | O_CLOEXEC);
@@ -207,12 +207,12 @@ bool WholeFile::put_into_place() {
   return replaces;
 }
 
-void WholeFile::keep() {
+void AtomicFile::keep() {
   if (lock_ >= 0) release();
 }
 
-void write_whole_file(const fs::path& file, std::string_view bytes) {
-  WholeFile whole(file);
+void write_file_atomically(const fs::path& file, std::string_view bytes) {
+  AtomicFile whole(file);
   const int out = open(whole.partial().c_str(), O_WRONLY | O_CLOEXEC);
   bool good = out >= 0;
   while (good && !bytes.empty()) {

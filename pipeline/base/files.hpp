@@ -56,17 +56,17 @@ constexpr Existing existing_of_recording(bool replace) {
 /// in one step. Until then, and for good where it fails, FILE is what it was. A FILE.partial that a killed program left
 /// is removed by the next one that writes FILE, or, of a recording, renamed (recording_names.hpp). Where FILE is a
 /// device or a pipe, it is written as it is. Not thread-safe.
-class WholeFile {
+class AtomicFile {
  public:
   /// `ending` of the file that is written, for libraries that go by it. Throws InputError where it cannot be made, or
   /// another program is writing FILE.
-  explicit WholeFile(const std::filesystem::path& file, const std::string& ending = kPartialEnding,
+  explicit AtomicFile(const std::filesystem::path& file, const std::string& ending = kPartialEnding,
                      Existing existing = Existing::kReplaced);
-  WholeFile(WholeFile&& other) noexcept;
-  WholeFile(const WholeFile&) = delete;
-  WholeFile& operator=(const WholeFile&) = delete;
-  WholeFile& operator=(WholeFile&&) = delete;
-  ~WholeFile();  ///< removes what was neither published nor kept
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+  ~AtomicFile();  ///< removes what was neither published nor kept
 
   /// FILE, with symbolic links followed.
   const std::filesystem::path& wanted() const { return wanted_; }
@@ -86,7 +86,7 @@ class WholeFile {
   void keep();
 
  private:
-  friend void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
+  friend void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);
 
   bool put_into_place();
   void release();
@@ -103,6 +103,6 @@ class WholeFile {
 /// Writes a whole file in this way. One that replaces nothing is not waited for: pictures are written by the thousand,
 /// and who puts them into a folder that replaces another one waits for all at once (folder_exchange.hpp). Throws
 /// InputError.
-void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
+void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace houghstream

@@ -6,7 +6,7 @@
 
 namespace houghstream {
 
-std::optional<std::string> LimitedLines::admit(const std::string& kind, const std::string& line,
+std::optional<std::string> LogThrottle::admit(const std::string& kind, const std::string& line,
                                                Clock::time_point now) {
   constexpr std::size_t kMostKinds = 64;
   constexpr std::chrono::seconds kPeriod(1);
@@ -22,7 +22,7 @@ std::optional<std::string> LimitedLines::admit(const std::string& kind, const st
   return held_back == 0 ? line : fmt::format("{} (and {} more not shown)", line, held_back);
 }
 
-std::int64_t LimitedLines::held_back() const {
+std::int64_t LogThrottle::held_back() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::int64_t sum = 0;
   for (const auto& [kind, state] : kinds_) sum += state.held_back;

@@ -11,7 +11,7 @@ namespace houghstream {
 
 /// Keeps a flood out of the log: of each kind of line one a second is admitted, and says how many were held back since
 /// the one before. May be used from any thread.
-class LimitedLines {
+class LogThrottle {
  public:
   using Clock = std::chrono::steady_clock;
 

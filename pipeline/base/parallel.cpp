@@ -126,8 +126,8 @@ class IdleHelpers {
 };
 
 /// Of the calling thread; null where it may have helpers.
-const WorkAlone*& working_alone() {
-  thread_local const WorkAlone* alone = nullptr;
+const SerialScope*& working_alone() {
+  thread_local const SerialScope* alone = nullptr;
   return alone;
 }
 
@@ -159,16 +159,16 @@ void work_with_helpers(Items& items, int helpers) {
 
 }  // namespace
 
-WorkAlone::WorkAlone(std::function<bool()> is_over) : is_over_(std::move(is_over)), outer_(working_alone()) {
+SerialScope::SerialScope(std::function<bool()> is_cancelled) : is_over_(std::move(is_cancelled)), outer_(working_alone()) {
   working_alone() = this;
 }
 
-WorkAlone::~WorkAlone() {
+SerialScope::~SerialScope() {
   working_alone() = outer_;
 }
 
-void WorkAlone::ask() const {
-  if (is_over_ && is_over_()) throw WorkGivenUp("work that nobody waits for any more");
+void SerialScope::ask() const {
+  if (is_over_ && is_over_()) throw WorkCancelled("work that nobody waits for any more");
 }
 
 void parallel_for(int threads, int count, const ItemWork& work) {
@@ -176,7 +176,7 @@ void parallel_for(int threads, int count, const ItemWork& work) {
 }
 
 void parallel_for_workers(int threads, int count, const WorkerItemWork& work) {
-  const WorkAlone* alone = working_alone();
+  const SerialScope* alone = working_alone();
   if (threads <= 1 || count <= 1 || alone != nullptr) {
     for (int i = 0; i < count; ++i) {
       if (alone != nullptr) alone->ask();

@@ -10,10 +10,10 @@ namespace houghstream {
 
 /// A callable `void(Arguments...)` that outlives the call it is passed to. Unlike std::function it never allocates.
 template <typename... Arguments>
-class WorkRef {
+class FunctionRef {
  public:
   template <typename Callable>
-  WorkRef(const Callable& callable)  // NOLINT(google-explicit-constructor): a lambda is passed as it is
+  FunctionRef(const Callable& callable)  // NOLINT(google-explicit-constructor): a lambda is passed as it is
       : callable_(&callable),
         call_([](const void* it, Arguments... arguments) { (*static_cast<const Callable*>(it))(arguments...); }) {}
   void operator()(Arguments... arguments) const { call_(callable_, arguments...); }
@@ -23,8 +23,8 @@ class WorkRef {
   void (*call_)(const void*, Arguments...);
 };
 
-using ItemWork = WorkRef<int>;             ///< of an item
-using WorkerItemWork = WorkRef<int, int>;  ///< of a worker and an item
+using ItemWork = FunctionRef<int>;             ///< of an item
+using WorkerItemWork = FunctionRef<int, int>;  ///< of a worker and an item
 
 /// Calls work(i) for every i in [0, count), on `threads` threads, the caller's among them; one thread means no others.
 /// Items are handed out in order, so work must write only to item i's own place: then the result does not depend on
@@ -36,26 +36,26 @@ void parallel_for(int threads, int count, const ItemWork& work);
 /// share memory. Workers are numbered from 0; there are at most max(threads, 1). Which items a worker gets is chance.
 void parallel_for_workers(int threads, int count, const WorkerItemWork& work);
 
-/// Work that nobody waits for any more: what WorkAlone's calls end with.
-struct WorkGivenUp : std::runtime_error {
+/// Work that nobody waits for any more: what SerialScope's calls end with.
+struct WorkCancelled : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /// As long as one lives, the calls above work alone on the thread that made it, whatever `threads` says: for a thread
 /// of low priority, whose new threads would be of its priority and be kept for others' calls. Before each item they ask
-/// `is_over`, if there is one, and throw WorkGivenUp where it says so.
-class WorkAlone {
+/// `is_cancelled`, if there is one, and throw WorkCancelled where it says so.
+class SerialScope {
  public:
-  explicit WorkAlone(std::function<bool()> is_over = {});
-  ~WorkAlone();
-  WorkAlone(const WorkAlone&) = delete;
-  WorkAlone& operator=(const WorkAlone&) = delete;
+  explicit SerialScope(std::function<bool()> is_cancelled = {});
+  ~SerialScope();
+  SerialScope(const SerialScope&) = delete;
+  SerialScope& operator=(const SerialScope&) = delete;
 
   void ask() const;
 
  private:
   std::function<bool()> is_over_;
-  const WorkAlone* outer_;
+  const SerialScope* outer_;
 };
 
 /// Memory for each worker of parallel_for_workers, kept from call to call by whoever holds this. Each worker's lies in

@@ -4,7 +4,7 @@
 
 namespace houghstream {
 
-void log_recording_names(const WholeFile& recording) {
+void log_recording_names(const AtomicFile& recording) {
   if (recording.interrupted())
     log_warning("{}: was recorded until a program was killed, and stays", recording.interrupted()->string());
   if (recording.file() != recording.wanted())

@@ -49,7 +49,7 @@ struct LogEvent {
 
 /// Writes a log in LCM's event log format, which stock lcm-logplayer replays: for each event a header of 28 bytes
 /// big-endian (0xEDA1DA01, number i64, timestamp i64, channel length u32, data length u32), channel, data. The log is
-/// there as a whole once it is closed (WholeFile), and not at all where it is not.
+/// there as a whole once it is closed (AtomicFile), and not at all where it is not.
 class LogWriter {
  public:
   /// Throws InputError when the file cannot be made.
@@ -68,7 +68,7 @@ class LogWriter {
   struct Closer {
     void operator()(lcm_eventlog_t* log) const;
   };
-  WholeFile whole_;
+  AtomicFile whole_;
   std::string file_;
   std::unique_ptr<lcm_eventlog_t, Closer> log_;
 };

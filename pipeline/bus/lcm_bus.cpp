@@ -66,7 +66,7 @@ bool is_log_url(const std::string& url) {
 struct Subscription {
   ChannelPattern channels;
   LcmBus::Handler handler;
-  LimitedLines& complaints;
+  LogThrottle& complaints;
   lcm_subscription_t* made = nullptr;  // LCM's, while there is one
   int capacity = 0;                    // of its queue
   std::size_t message_bytes = 1;       // of the largest message lately
@@ -86,7 +86,7 @@ struct Subscription {
 };
 
 // Nothing thrown may cross LCM's callback, which is C.
-void call_handler(const Subscription& subscription, const Arrival& arrival) noexcept {
+void call_handler(const Subscription& subscription, const ReceivedMessage& arrival) noexcept {
   try {
     if (subscription.channels.matches(arrival.channel)) subscription.handler(arrival);
   } catch (const std::exception& error) {
@@ -155,7 +155,7 @@ struct LcmBus::State {
   std::mutex look_mutex;            // of the next two, and of `lcm` where it is exchanged
   std::chrono::steady_clock::time_point next_look;
   std::string send_fault;                 // why the last short message could not be sent
-  LimitedLines complaints;                // of handlers
+  LogThrottle complaints;                // of handlers
   std::list<Subscription> subscriptions;  // LCM keeps pointers to them
   std::optional<FrameSilence> frame_silence;
   std::optional<Subscription> everything;  // of who looks for frames
@@ -190,7 +190,7 @@ LcmBus::LcmBus(const std::string& url, const std::string& output_log, Existing e
 void LcmBus::open_network() {
   const std::string unknown = unknown_options_advice(state_->url);
   if (!unknown.empty()) log_warning("{}", unknown);
-  if (multicast_group(state_->url)) wait_until_reachable();
+  if (parse_multicast_group(state_->url)) wait_until_reachable();
   const BlockStopSignals block;  // LCM's threads, started here, leave signals to ours
   state_->lcm.reset(lcm_create(state_->url.c_str()));
   // The route may have gone in between.
@@ -199,7 +199,7 @@ void LcmBus::open_network() {
     state_->lcm.reset(lcm_create(state_->url.c_str()));
   }
   require(state_->lcm != nullptr, "LCM cannot be opened at {}", state_->url);
-  if (!multicast_group(state_->url)) return;
+  if (!parse_multicast_group(state_->url)) return;
   const std::string advice = receive_buffer_advice(granted_receive_buffer(kAskedReceiveBuffer));
   if (!advice.empty()) log_warning("{}", advice);
 }
@@ -225,19 +225,19 @@ void LcmBus::subscribe(const std::string& channels, Handler handler) {
   state_->subscriptions.push_back({ChannelPattern(channels), std::move(handler), state_->complaints});
   if (is_log()) return;
   subscribe_to_network();
-  if (is_of_own_host(state_->url)) refuse_others();
+  if (is_host_local(state_->url)) refuse_others();
 }
 
 void LcmBus::subscribe_to_frames(const std::string& channels, Handler handler) {
   if (is_log()) return subscribe(channels, std::move(handler));
   state_->frame_silence.emplace(channels, std::chrono::steady_clock::now());
   state_->everything.emplace(Subscription{ChannelPattern(".*"),
-                                          [this](const Arrival& arrival) {
+                                          [this](const ReceivedMessage& arrival) {
                                             if (is_frame_message(arrival.bytes))
                                               state_->frame_silence->note_elsewhere(arrival.channel);
                                           },
                                           state_->complaints});
-  subscribe(channels, [this, handler = std::move(handler)](const Arrival& arrival) {
+  subscribe(channels, [this, handler = std::move(handler)](const ReceivedMessage& arrival) {
     if (is_frame_message(arrival.bytes)) state_->frame_silence->note_wanted(arrival.time);
     handler(arrival);
   });
@@ -270,24 +270,24 @@ void LcmBus::subscribe_to_network() {
     notify_service(kStartTakesTime);
     if (!unreachable_reason(state_->url).empty()) wait_until_reachable();
   }
-  if (!is_reachable() && multicast_group(state_->url)) state_->link.update("", std::chrono::steady_clock::now());
+  if (!is_reachable() && parse_multicast_group(state_->url)) state_->link.update("", std::chrono::steady_clock::now());
 }
 
 // LCM opens the socket with the first subscription.
 void LcmBus::refuse_others() {
   bool good = true;
-  for (const int socket : receiving_sockets(state_->url)) good = refuse_other_hosts(socket) && good;
+  for (const int socket : find_receive_sockets(state_->url)) good = attach_local_filter(socket) && good;
   if (!good) log_warning("{}: messages of other hosts cannot be kept out: {}", state_->url, std::strerror(errno));
 }
 
 void LcmBus::look_at_network() {
   const std::lock_guard<std::mutex> lock(state_->look_mutex);
   if (std::chrono::steady_clock::now() < state_->next_look) return;
-  const std::optional<BusPlace> group = multicast_group(state_->url);
-  const bool is_connected = tcp_server(state_->url) && lcm_get_fileno(state_->lcm.get()) >= 0;
+  const std::optional<Endpoint> group = parse_multicast_group(state_->url);
+  const bool is_connected = parse_tcp_server(state_->url) && lcm_get_fileno(state_->lcm.get()) >= 0;
   std::string fault = is_connected ? "" : unreachable_reason(state_->url);
   if (group && fault.empty()) {
-    for (const int socket : receiving_sockets(state_->url)) {
+    for (const int socket : find_receive_sockets(state_->url)) {
       if (!join_group(socket, group->address))
         fault = fmt::format("cannot join group {}: {}", group->address, std::strerror(errno));
     }
@@ -359,7 +359,7 @@ bool LcmBus::send(const std::string& channel, ByteView bytes) {
   const std::string fault = is_sent ? "" : fmt::format("messages cannot be sent ({})", std::strerror(errno));
   require(is_sent || channel.size() <= kMaxNetworkChannel, "{}: channel {} of {} bytes, expected at most {}",
           state_->url, channel, channel.size(), kMaxNetworkChannel);
-  if (multicast_group(state_->url) && (!is_sent || bytes.size < kShortMessage)) {
+  if (parse_multicast_group(state_->url) && (!is_sent || bytes.size < kShortMessage)) {
     const std::lock_guard<std::mutex> look_lock(state_->look_mutex);
     state_->send_fault = fault;
   }

@@ -13,7 +13,7 @@
 namespace houghstream {
 
 /// A message as it arrived; valid during the handler's call only.
-struct Arrival {
+struct ReceivedMessage {
   const std::string& channel;
   ByteView bytes;
   std::chrono::steady_clock::time_point time;
@@ -31,7 +31,7 @@ enum class AtStart { kWait, kFail };
 /// (unsent()) and lost. Within half a second of the network's return the messages of all subscriptions come again.
 class LcmBus {
  public:
-  using Handler = std::function<void(const Arrival&)>;
+  using Handler = std::function<void(const ReceivedMessage&)>;
 
   /// With ttl=0, messages that other hosts send are dropped by the kernel; with a ttl of 1 or more anybody on the
   /// network may send, and nobody is asked who he is. `url` as LCM takes it; "" is $LCM_DEFAULT_URL, else udpm with

@@ -32,13 +32,13 @@ std::string place_in(const std::string& url, const std::string& scheme) {
   return url.substr(scheme.size(), url.find('?') - scheme.size());
 }
 
-std::optional<BusPlace> place_of(const std::string& url, const std::string& scheme, const BusPlace& usual) {
+std::optional<Endpoint> place_of(const std::string& url, const std::string& scheme, const Endpoint& usual) {
   if (!begins_with(url, scheme)) return std::nullopt;
   const std::string place = place_in(url, scheme);
   const std::size_t colon = place.find(':');
   const std::string address = place.substr(0, colon);
   const std::string port = colon == std::string::npos ? "" : place.substr(colon + 1);
-  return BusPlace{address.empty() ? usual.address : address, port.empty() ? usual.port : port};
+  return Endpoint{address.empty() ? usual.address : address, port.empty() ? usual.port : port};
 }
 
 /// 0 to `most`, as people write it: LCM takes 010 for 8 and 0x10 for 16.
@@ -81,7 +81,7 @@ std::string route_remedy(const std::string& url) {
   return multicast_route_remedy();
 }
 
-std::string no_route_reason(const std::string& url, const BusPlace& group) {
+std::string no_route_reason(const std::string& url, const Endpoint& group) {
   sockaddr_in to{};
   to.sin_family = AF_INET;
   to.sin_port = htons(static_cast<std::uint16_t>(std::atoi(group.port.c_str())));
@@ -108,7 +108,7 @@ std::string connection_fault(const addrinfo& address) {
   return fault == 0 ? "" : std::strerror(fault);
 }
 
-std::string no_server_reason(const BusPlace& server) {
+std::string no_server_reason(const Endpoint& server) {
   addrinfo wanted{};
   wanted.ai_family = AF_INET;  // as LCM connects
   wanted.ai_socktype = SOCK_STREAM;
@@ -122,11 +122,11 @@ std::string no_server_reason(const BusPlace& server) {
 
 }  // namespace
 
-std::optional<BusPlace> multicast_group(const std::string& url) {
+std::optional<Endpoint> parse_multicast_group(const std::string& url) {
   return place_of(url, kMulticast, {"239.255.76.67", "7667"});
 }
 
-std::optional<BusPlace> tcp_server(const std::string& url) {
+std::optional<Endpoint> parse_tcp_server(const std::string& url) {
   return place_of(url, kTcp, {"127.0.0.1", "7700"});
 }
 
@@ -172,8 +172,8 @@ std::string unknown_options_advice(const std::string& url) {
 }
 
 std::string unreachable_reason(const std::string& url) {
-  if (const std::optional<BusPlace> group = multicast_group(url)) return no_route_reason(url, *group);
-  if (const std::optional<BusPlace> server = tcp_server(url)) return no_server_reason(*server);
+  if (const std::optional<Endpoint> group = parse_multicast_group(url)) return no_route_reason(url, *group);
+  if (const std::optional<Endpoint> server = parse_tcp_server(url)) return no_server_reason(*server);
   return "";
 }
 

@@ -8,16 +8,16 @@
 namespace houghstream {
 
 /// Where an LCM URL leads, with LCM's own where it states none.
-struct BusPlace {
+struct Endpoint {
   std::string address;
   std::string port;
 };
 
 /// The group of udpm://ADDRESS:PORT?...; nothing for other URLs.
-std::optional<BusPlace> multicast_group(const std::string& url);
+std::optional<Endpoint> parse_multicast_group(const std::string& url);
 
 /// The server of tcpq://ADDRESS:PORT?...; nothing for other URLs.
-std::optional<BusPlace> tcp_server(const std::string& url);
+std::optional<Endpoint> parse_tcp_server(const std::string& url);
 
 /// Name and value of each option behind the '?' of a URL.
 std::vector<std::pair<std::string, std::string>> url_options(const std::string& url);

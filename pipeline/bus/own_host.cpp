@@ -15,17 +15,17 @@
 
 namespace houghstream {
 
-bool is_of_own_host(const std::string& url) {
-  if (!multicast_group(url)) return false;
+bool is_host_local(const std::string& url) {
+  if (!parse_multicast_group(url)) return false;
   for (const auto& [name, value] : url_options(url)) {
     if (name == "ttl" && std::atoi(value.c_str()) > 0) return false;
   }
   return true;
 }
 
-std::vector<int> receiving_sockets(const std::string& url) {
+std::vector<int> find_receive_sockets(const std::string& url) {
   std::vector<int> found;
-  const std::optional<BusPlace> group = multicast_group(url);
+  const std::optional<Endpoint> group = parse_multicast_group(url);
   if (!group) return found;
   const int port = std::atoi(group->port.c_str());
   std::error_code error;
@@ -44,7 +44,7 @@ std::vector<int> receiving_sockets(const std::string& url) {
   return found;
 }
 
-bool refuse_other_hosts(int socket) {
+bool attach_local_filter(int socket) {
   // What this machine sends to a group comes back as PACKET_LOOPBACK, what it sends to itself through the interface lo.
   const auto ancillary = [](int what) { return static_cast<std::uint32_t>(SKF_AD_OFF + what); };
   std::array<sock_filter, 6> program = {{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, ancillary(SKF_AD_PKTTYPE)),

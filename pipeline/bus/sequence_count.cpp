@@ -8,7 +8,7 @@
 namespace houghstream {
 namespace {
 
-constexpr std::int64_t kBelieved = 16;         // frames that a single number may tell to be lost
+constexpr std::int64_t kProbation = 16;         // frames that a single number may tell to be lost
 constexpr std::int64_t kMostLost = 100'000;    // and two beside each other: an hour
 constexpr std::int64_t kRepeatUs = 1'000'000;  // a duplicate comes within this time
 constexpr std::size_t kRuns = 4;               // senders on one channel whose numbers are kept apart
@@ -19,26 +19,26 @@ constexpr std::size_t kHeard = 256;
 
 }  // namespace
 
-FrameOrder SequenceCount::note(const FrameNumber& frame, std::int64_t now_us) {
+FrameOrder SequenceTracker::note(const FrameNumber& frame, std::int64_t now_us) {
   if (!frame.sequence || *frame.sequence < 0) return FrameOrder::kNext;
   has_number_ = true;
   const Seen arrived{*frame.sequence, frame.utime, now_us};
   bool is_new = false;
   Run& run = run_of(frame.run, arrived, is_new);
   if (is_new) return FrameOrder::kNext;
-  const auto has = [&](const Course& course) { return is_repeated(course.seen[slot(arrived.number)], arrived); };
+  const auto has = [&](const SequenceRange& course) { return is_repeated(course.seen[slot(arrived.number)], arrived); };
   if (has(run.course) || std::any_of(run.before.begin(), run.before.end(), has)) return FrameOrder::kDuplicate;
   return has_place(run.course, arrived.number) ? place(run.course, arrived) : note_far(run, arrived);
 }
 
-std::optional<std::int64_t> SequenceCount::lost() const {
+std::optional<std::int64_t> SequenceTracker::lost() const {
   if (!has_number_) return std::nullopt;
   std::int64_t lost = lost_;
   for (const Run& run : runs_) lost += run.course.lost;
   return lost;
 }
 
-SequenceCount::Run& SequenceCount::run_of(std::int64_t id, const Seen& frame, bool& is_new) {
+SequenceTracker::Run& SequenceTracker::run_of(std::int64_t id, const Seen& frame, bool& is_new) {
   const auto known = std::find_if(runs_.begin(), runs_.end(), [&](const Run& run) { return run.id == id; });
   is_new = known == runs_.end();
   if (!is_new) {
@@ -56,22 +56,22 @@ SequenceCount::Run& SequenceCount::run_of(std::int64_t id, const Seen& frame, bo
   return run;
 }
 
-std::size_t SequenceCount::slot(std::int64_t number) {
+std::size_t SequenceTracker::slot(std::int64_t number) {
   return static_cast<std::size_t>(number % kWindow);
 }
 
-bool SequenceCount::is_repeated(const Seen& seen, const Seen& frame) {
+bool SequenceTracker::is_repeated(const Seen& seen, const Seen& frame) {
   return seen.number == frame.number && seen.utime == frame.utime &&
          microseconds_between(seen.arrival_us, frame.arrival_us) <= kRepeatUs;
 }
 
 /// Whether the number lies close to the newest one, and no other frame has had it.
-bool SequenceCount::has_place(const Course& course, std::int64_t number) {
-  if (number > course.newest) return number - course.newest <= kBelieved;
+bool SequenceTracker::has_place(const SequenceRange& course, std::int64_t number) {
+  if (number > course.newest) return number - course.newest <= kProbation;
   return number >= course.first && course.newest - number < kWindow && course.seen[slot(number)].number != number;
 }
 
-FrameOrder SequenceCount::place(Course& course, const Seen& frame) {
+FrameOrder SequenceTracker::place(SequenceRange& course, const Seen& frame) {
   course.seen[slot(frame.number)] = frame;
   if (frame.number < course.newest) {
     --course.lost;
@@ -82,7 +82,7 @@ FrameOrder SequenceCount::place(Course& course, const Seen& frame) {
   return FrameOrder::kNext;
 }
 
-FrameOrder SequenceCount::note_far(Run& run, const Seen& frame) {
+FrameOrder SequenceTracker::note_far(Run& run, const Seen& frame) {
   const auto is_it = [&](const Seen& other) { return is_repeated(other, frame); };
   if (std::any_of(run.far.begin(), run.far.end(), is_it)) return FrameOrder::kDuplicate;
   const auto beside = std::find_if(run.far.rbegin(), run.far.rend(), [&](const Seen& other) {
@@ -96,8 +96,8 @@ FrameOrder SequenceCount::note_far(Run& run, const Seen& frame) {
 }
 
 /// Two numbers beside each other are believed: those before a jump go on, or others begin.
-void SequenceCount::jump(Run& run, std::int64_t low, std::int64_t high) {
-  const auto earlier = std::find_if(run.before.begin(), run.before.end(), [&](const Course& course) {
+void SequenceTracker::jump(Run& run, std::int64_t low, std::int64_t high) {
+  const auto earlier = std::find_if(run.before.begin(), run.before.end(), [&](const SequenceRange& course) {
     return high > course.newest && has_place(course, low);
   });
   const bool goes_on = earlier != run.before.end();
@@ -126,7 +126,7 @@ void SequenceCount::jump(Run& run, std::int64_t low, std::int64_t high) {
   run.far = std::move(still_far);
 }
 
-bool RepeatedMessages::is_repeated(const FrameId& frame, const std::uint8_t* bytes, std::size_t size,
+bool DuplicateFilter::is_repeated(const FrameId& frame, const std::uint8_t* bytes, std::size_t size,
                                    Clock::time_point arrival) {
   constexpr std::chrono::microseconds kRepeat(kRepeatUs);
   while (!heard_.empty() && (arrival - heard_.front().arrival > kRepeat || heard_.size() >= kHeard)) heard_.pop_front();

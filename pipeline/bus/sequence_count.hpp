@@ -34,7 +34,7 @@ enum class FrameOrder {
 /// numbers go on as before it all the same, it is as if it had never been believed. Numbers a hundred thousand apart
 /// are no loss, but another beginning. A frame whose number, time and run have come within the last second is a
 /// duplicate. Not thread-safe.
-class SequenceCount {
+class SequenceTracker {
  public:
   /// `now_us`: when it arrived, on a clock that does not jump, microseconds.
   FrameOrder note(const FrameNumber& frame, std::int64_t now_us);
@@ -51,7 +51,7 @@ class SequenceCount {
     std::int64_t arrival_us = 0;
   };
   /// Numbers that follow one another.
-  struct Course {
+  struct SequenceRange {
     std::int64_t first = 0;
     std::int64_t newest = 0;
     std::int64_t lost = 0;           // with what was lost before it
@@ -59,16 +59,16 @@ class SequenceCount {
   };
   struct Run {
     std::int64_t id = 0;
-    Course course;
-    std::list<Course> before;  // what it was before the last jumps that were believed
+    SequenceRange course;
+    std::list<SequenceRange> before;  // what it was before the last jumps that were believed
     std::deque<Seen> far;      // the last frames that lie far from it
   };
 
   Run& run_of(std::int64_t id, const Seen& frame, bool& is_new);
   static std::size_t slot(std::int64_t number);
   static bool is_repeated(const Seen& seen, const Seen& frame);
-  static bool has_place(const Course& course, std::int64_t number);
-  static FrameOrder place(Course& course, const Seen& frame);
+  static bool has_place(const SequenceRange& course, std::int64_t number);
+  static FrameOrder place(SequenceRange& course, const Seen& frame);
   static FrameOrder note_far(Run& run, const Seen& frame);
   static void jump(Run& run, std::int64_t low, std::int64_t high);
 
@@ -79,7 +79,7 @@ class SequenceCount {
 
 /// Tells messages that a network has delivered twice: the same frame's, byte for byte, within a second. Not
 /// thread-safe.
-class RepeatedMessages {
+class DuplicateFilter {
  public:
   using Clock = std::chrono::steady_clock;
 

@@ -76,7 +76,7 @@ void StatusReporter::complain(const std::string& kind, const std::string& reason
   if (const auto line = complaints_.admit(kind, last_error_, Clock::now())) log_line(LogLevel::kWarning, *line);
 }
 
-void StatusReporter::remember_error(const std::string& reason) {
+void StatusReporter::set_last_error(const std::string& reason) {
   const std::lock_guard<std::mutex> lock(mutex_);
   last_error_ = shortened(reason);
 }
@@ -124,7 +124,7 @@ void StatusReporter::publish(LcmBus& bus) {
     return;
   }
   const KnownObjects known = objects_();
-  if (!known.problem.empty()) remember_error(known.problem);
+  if (!known.problem.empty()) set_last_error(known.problem);
   const status_t status = message();
   known_objects_t objects = to_message(known);
   objects.utime = status.utime;

@@ -28,7 +28,7 @@ class StatusReporter {
   explicit StatusReporter(std::string process);
 
   void count_received();
-  /// What its source says of a frame that has arrived; missing numbers count as lost frames (SequenceCount). Each
+  /// What its source says of a frame that has arrived; missing numbers count as lost frames (SequenceTracker). Each
   /// source (a camera's channel) counts its own. A duplicate is to be dropped, and counts as a duplicate only.
   FrameOrder note_number(const FrameNumber& number, const std::string& source = "");
   /// Another message than a frame that has come before.
@@ -41,9 +41,9 @@ class StatusReporter {
   /// Another message than a frame that could not be understood: it is counted apart.
   void note_bad_message(const std::string& reason);
   /// Remembers the last error, which somebody else has logged.
-  void remember_error(const std::string& reason);
+  void set_last_error(const std::string& reason);
   /// Asked for each status from here on: it goes out beside it, and what is wrong with the store is the last error.
-  void tell_objects(std::function<KnownObjects()> objects) { objects_ = std::move(objects); }
+  void set_known_objects(std::function<KnownObjects()> objects) { objects_ = std::move(objects); }
 
   status_t message() const;
 
@@ -75,13 +75,13 @@ class StatusReporter {
   std::int64_t refused_ = 0;
   std::int64_t bad_messages_ = 0;
   std::int64_t duplicates_ = 0;
-  std::map<std::string, SequenceCount> sequences_;  // by source
+  std::map<std::string, SequenceTracker> sequences_;  // by source
   std::string last_error_;
   std::string outage_;  // the last one of the bus that was remembered as an error
   std::function<KnownObjects()> objects_;
   std::deque<Finished> recent_;  // of the last few seconds
   Clock::time_point last_published_ = Clock::now();
-  LimitedLines complaints_;
+  LogThrottle complaints_;
 };
 
 }  // namespace houghstream

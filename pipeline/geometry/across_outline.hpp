@@ -7,7 +7,7 @@
 namespace houghstream {
 
 /// What is seen from within a thing's supposed outline to beyond it.
-struct AcrossOutline {
+struct BoundarySample {
   float apart = 0.0F;      ///< metres from one to the other, across the ray
   float gained = 0.0F;     ///< depth, metres; NaN where it is not measured
   float expected = 0.0F;   ///< the same if the thing's surface goes on straight, metres; NaN where that is not known
@@ -27,17 +27,17 @@ inline float falling(float square) {
 }
 
 /// Something stands in front there: the outline is another one's. `tolerance`: of depth, metres, here and below.
-inline bool comes_forward(const AcrossOutline& seen, float tolerance) {
+inline bool is_foreground_step(const BoundarySample& seen, float tolerance) {
   constexpr float kSteepest = 2.5F;  // what a table gains towards the camera, over the distance across the ray
   return seen.gained < -kSteepest * seen.apart - 2.0F * tolerance;
 }
 
-inline bool steps_back(const AcrossOutline& seen, float tolerance) {
+inline bool is_background_step(const BoundarySample& seen, float tolerance) {
   return seen.gained > 2.0F * tolerance + seen.apart;
 }
 
 /// 1 where the surface goes straight on, 0 where it does not; between where that is not known.
-inline float surface_goes_on(const AcrossOutline& seen, float tolerance) {
+inline float surface_goes_on(const BoundarySample& seen, float tolerance) {
   constexpr float kUnknown = 0.5F;
   const float slack = 0.4F * seen.apart + 0.25F * tolerance;  // surfaces bend
   const float off = seen.gained - seen.expected;
@@ -46,12 +46,12 @@ inline float surface_goes_on(const AcrossOutline& seen, float tolerance) {
 }
 
 /// The same of the colour of a plain thing.
-inline float plain_colour_goes_on(const AcrossOutline& seen) {
+inline float uniform_colour_continuation(const BoundarySample& seen) {
   return falling(seen.colour_sq / 16.0F);
 }
 
 /// The same of the colour of one that may be printed.
-inline float colour_goes_on(const AcrossOutline& seen) {
+inline float colour_goes_on(const BoundarySample& seen) {
   return falling(seen.colour_sq / 36.0F);
 }
 

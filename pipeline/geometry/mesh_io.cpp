@@ -229,9 +229,9 @@ void save_ply(const Mesh& mesh, const std::filesystem::path& file) {
   if (parts.texture) {  // before the mesh that names it
     std::vector<unsigned char> png;
     require(cv::imencode(".png", mesh.texture, png), "{}: cannot be written as PNG", texture_file.string());
-    write_whole_file(texture_file, {reinterpret_cast<const char*>(png.data()), png.size()});
+    write_file_atomically(texture_file, {reinterpret_cast<const char*>(png.data()), png.size()});
   }
-  write_whole_file(file, text);
+  write_file_atomically(file, text);
 }
 
 }  // namespace houghstream

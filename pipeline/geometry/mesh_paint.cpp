@@ -51,7 +51,7 @@ void move_into(const cv::Rect& tile, const cv::Size& whole, const MeshPart& part
   }
 }
 
-void paint_side_by_side(const std::vector<MeshPart>& parts, const fs::path& file, Mesh& mesh) {
+void pack_texture_atlas(const std::vector<MeshPart>& parts, const fs::path& file, Mesh& mesh) {
   const std::vector<cv::Mat> tiles = read_tiles(parts, file);
   cv::Size size(0, 0);
   for (const cv::Mat& tile : tiles) size = {size.width + tile.cols, std::max(size.height, tile.rows)};
@@ -83,7 +83,7 @@ void paint(const std::vector<MeshPart>& parts, const fs::path& file, Mesh& mesh)
   if (one_texture) {
     mesh.texture = read_texture(parts.front(), file);
   } else if (any_textured) {
-    paint_side_by_side(parts, file, mesh);
+    pack_texture_atlas(parts, file, mesh);
   } else {
     mesh.uvs.clear();
     if (mesh.colours.empty()) paint_vertices(parts, mesh);

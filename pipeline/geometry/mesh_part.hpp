@@ -12,7 +12,7 @@ namespace houghstream {
 /// The triangles for which `is_kept` holds, and the vertices that they use, in the order in which they use them, with
 /// their normals, colours and texture coordinates.
 template <typename IsKept>
-Mesh mesh_part(const Mesh& mesh, const IsKept& is_kept) {
+Mesh extract_submesh(const Mesh& mesh, const IsKept& is_kept) {
   constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
   Mesh part;
   part.texture = mesh.texture;

@@ -346,7 +346,7 @@ cv::Mat render_depth(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object,
   return render_depth({{&mesh, T_camera_object, 1}}, camera, region_px);
 }
 
-RenderedPart render_depth_part(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera) {
+RenderedRegion render_depth_region(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera) {
   const RenderItem item{&mesh, T_camera_object, 1};
   std::vector<ClipVertex> vertices;
   place_vertices(item, camera, {}, vertices);

@@ -39,13 +39,13 @@ cv::Mat render_depth(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object,
                      const cv::Rect& region_px);
 
 /// The part of the image that a mesh may cover, and its depth there.
-struct RenderedPart {
+struct RenderedRegion {
   cv::Rect region_px;  ///< empty where no pixel can show the mesh; the whole image where it reaches the near plane
   cv::Mat depth;       ///< as render_depth() gives it
 };
 
 /// Finds the part itself, from the vertices that are placed to be drawn: of a dense mesh most of the work is with these
 /// (pose verification's fast path).
-RenderedPart render_depth_part(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera);
+RenderedRegion render_depth_region(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera);
 
 }  // namespace houghstream

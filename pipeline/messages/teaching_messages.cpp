@@ -24,7 +24,7 @@ std::optional<Eigen::Isometry3d> pose_from(const teaching_t& message) {
   return pose_from_wire(message.trans, message.quat, "pose", ", or NaN");
 }
 
-SeenDirection direction_from(const std::vector<float>& xyz, std::int8_t seen) {
+ViewDirection direction_from(const std::vector<float>& xyz, std::int8_t seen) {
   const Eigen::Vector3f direction(xyz.at(0), xyz.at(1), xyz.at(2));
   require(std::abs(direction.norm() - 1.0F) < kUnitTolerance, "a direction of length {}, expected 1", direction.norm());
   return {direction, seen != 0};
@@ -67,7 +67,7 @@ teaching_t to_message(const Teaching& teaching) {
     std::copy_n(transform.trans, 3, message.trans);
     std::copy_n(transform.quat, 4, message.quat);
   }
-  for (const SeenDirection& direction : teaching.directions) {
+  for (const ViewDirection& direction : teaching.directions) {
     message.directions.push_back({direction.direction.x(), direction.direction.y(), direction.direction.z()});
     message.seen.push_back(direction.seen ? 1 : 0);
   }

@@ -9,7 +9,7 @@ namespace houghstream {
 /// it: however an item goes, taken, dropped or replaced, its bytes are given back with that. It only counts; which item
 /// goes where they are too many is for the queue to say. Not thread-safe: what is held is moved and destroyed under the
 /// queue's lock as well. Must outlive what is held of it, and so is declared before the items.
-class ByteCount {
+class ByteBudget {
  public:
   /// The bytes of one item, which count for as long as this lives.
   class Held {
@@ -32,16 +32,16 @@ class ByteCount {
     std::size_t bytes() const { return count_ == nullptr ? 0 : bytes_; }
 
    private:
-    friend class ByteCount;
-    Held(ByteCount& count, std::size_t bytes) : count_(&count), bytes_(bytes) { count.total_ += bytes; }
+    friend class ByteBudget;
+    Held(ByteBudget& count, std::size_t bytes) : count_(&count), bytes_(bytes) { count.total_ += bytes; }
 
-    ByteCount* count_ = nullptr;
+    ByteBudget* count_ = nullptr;
     std::size_t bytes_ = 0;
   };
 
-  ByteCount() = default;
-  ByteCount(const ByteCount&) = delete;
-  ByteCount& operator=(const ByteCount&) = delete;
+  ByteBudget() = default;
+  ByteBudget(const ByteBudget&) = delete;
+  ByteBudget& operator=(const ByteBudget&) = delete;
 
   [[nodiscard]] Held hold(std::size_t bytes) { return {*this, bytes}; }
   std::size_t total() const { return total_; }

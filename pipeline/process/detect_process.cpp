@@ -21,10 +21,10 @@ struct WaitingFrame {
 /// What the receiving thread does.
 class Reception {
  public:
-  Reception(const LcmBus& bus, StatusReporter& status, NewestOfEach<WaitingFrame>& newest, double looks_per_second)
-      : is_log_(bus.is_log()), status_(status), newest_(newest), budget_(looks_per_second) {}
+  Reception(const LcmBus& bus, StatusReporter& status, LatestPerChannel<WaitingFrame>& newest, double max_rate_hz)
+      : is_log_(bus.is_log()), status_(status), newest_(newest), budget_(max_rate_hz) {}
 
-  void receive_frame(const Arrival& arrival) {
+  void receive_frame(const ReceivedMessage& arrival) {
     try {
       const FrameHeader header = read_frame_header(arrival.bytes);
       const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
@@ -40,8 +40,8 @@ class Reception {
   }
 
   /// Of what is followed: where something is lost, the camera is looked at soon.
-  void receive_poses(const Arrival& arrival) {
-    PairInbox::require_size(arrival.bytes.size);
+  void receive_poses(const ReceivedMessage& arrival) {
+    FrameSynchroniser::require_size(arrival.bytes.size);
     const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(arrival.bytes));
     for (const ObjectPose& pose : poses.poses) {
       const bool is_lost = pose.status != PoseStatus::kValid && pose.status != PoseStatus::kOccluded;
@@ -51,17 +51,17 @@ class Reception {
 
  private:
   /// Whether another frame is passed over for it, or it for another.
-  bool put(const Arrival& arrival, FrameOrder order) {
+  bool put(const ReceivedMessage& arrival, FrameOrder order) {
     const ByteView& bytes = arrival.bytes;
     WaitingFrame frame{arrival.channel, {bytes.data, bytes.data + bytes.size}, arrival.time};
-    return order == FrameOrder::kLate ? newest_.put_late(arrival.channel, std::move(frame), bytes.size)
+    return order == FrameOrder::kLate ? newest_.push_late(arrival.channel, std::move(frame), bytes.size)
                                       : newest_.put(arrival.channel, std::move(frame), bytes.size);
   }
 
   bool is_log_;
   StatusReporter& status_;
-  NewestOfEach<WaitingFrame>& newest_;
-  LookBudget budget_;
+  LatestPerChannel<WaitingFrame>& newest_;
+  DetectionThrottle budget_;
 };
 
 RgbdFrame decode(const WaitingFrame& encoded, const std::optional<Camera>& camera) {
@@ -80,17 +80,17 @@ void run_detect_process(LcmBus& bus, const DetectProcessOptions& options,
   require(!options.keep_frames || bus.is_log(), "frames are kept of a log (-l file://LOG), not of {}", bus.url());
   const ChannelPattern channels(options.frame_channels);
   StatusReporter status(options.process);
-  status.tell_objects(options.objects);
-  NewestOfEach<WaitingFrame> newest;
-  Reception reception(bus, status, newest, options.looks_per_second);
+  status.set_known_objects(options.objects);
+  LatestPerChannel<WaitingFrame> newest;
+  Reception reception(bus, status, newest, options.max_rate_hz);
   catch_stop_signals();
-  bus.subscribe_to_frames(options.frame_channels, [&](const Arrival& arrival) {
+  bus.subscribe_to_frames(options.frame_channels, [&](const ReceivedMessage& arrival) {
     if (!channels.is_name() && !is_frame_message(arrival.bytes)) return;
     if (options.keep_frames) bus.publish(arrival.channel, arrival.bytes, arrival.event_us);
     reception.receive_frame(arrival);
   });
-  if (options.looks_per_second > 0.0 && !bus.is_log()) {
-    bus.subscribe(channel::kPoses, [&](const Arrival& arrival) { reception.receive_poses(arrival); });
+  if (options.max_rate_hz > 0.0 && !bus.is_log()) {
+    bus.subscribe(channel::kPoses, [&](const ReceivedMessage& arrival) { reception.receive_poses(arrival); });
   }
   log_info("ready: frames from {} at {}", options.frame_channels, bus.url());
   run_process_loop(bus, status, [&](std::chrono::milliseconds timeout) {

@@ -16,14 +16,14 @@ struct DetectProcessOptions {
   std::string process = "hs-detect";             ///< its name in status_t
   std::string frame_channels = channel::kFrame;  ///< a ChannelPattern: one camera's channel, or several cameras'
   std::optional<Camera> camera;                  ///< for frames that do not bring their own
-  double looks_per_second = 0.0;                 ///< at each camera's frames; 0 = at each one, as far as there is time
+  double max_rate_hz = 0.0;                 ///< at each camera's frames; 0 = at each one, as far as there is time
   bool keep_frames = false;                      ///< of a log: copies the frames' events to the output log too
   std::function<KnownObjects()> objects;         ///< what its store holds, for the status; empty = no store
 };
 
 /// Receives frames and publishes `detect`'s result for each one that is worked on: on a network always the newest of
 /// each camera, the cameras in turn; from a log every one. Results bear the frame's name, whatever `detect` calls them.
-/// With `looks_per_second` the frames between two looks are skipped, by their own times, so that a log gives the same
+/// With `max_rate_hz` the frames between two looks are skipped, by their own times, so that a log gives the same
 /// looks; where hs-pose tells that it has lost what it followed, the next look at that camera comes sooner.
 /// A frame that cannot be understood is counted, reported and dropped; where the channels are a pattern, what is no
 /// images_t is none. Throws InputError where frames are to be kept without a log; returns as run_process_loop does.

@@ -43,10 +43,10 @@ class FollowProcess {
         transforms_(bus, options.frame_channels) {}
 
   void run() {
-    status_.tell_objects(options_.objects);
+    status_.set_known_objects(options_.objects);
     catch_stop_signals();
-    bus_.subscribe_to_frames(options_.frame_channels, [this](const Arrival& arrival) { receive_frame(arrival); });
-    bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) { receive_detections(arrival); });
+    bus_.subscribe_to_frames(options_.frame_channels, [this](const ReceivedMessage& arrival) { receive_frame(arrival); });
+    bus_.subscribe(channel::kDetections, [this](const ReceivedMessage& arrival) { receive_detections(arrival); });
     log_info("ready: follows in frames from {}, detections from {} at {}", options_.frame_channels,
              channel::kDetections, bus_.url());
     if (bus_.is_log()) {
@@ -72,7 +72,7 @@ class FollowProcess {
       answering = std::thread([&] {
         constexpr int kPolite = 2;
         if (nice(kPolite) == -1) log_debug("the priority of answers cannot be lowered");
-        const WorkAlone alone;  // its helpers would be of its priority, and kept for who follows
+        const SerialScope alone;  // its helpers would be of its priority, and kept for who follows
         while (running) answer_next(milliseconds(100));
       });
     }
@@ -89,7 +89,7 @@ class FollowProcess {
     finish();
   }
 
-  void receive_frame(const Arrival& arrival) {
+  void receive_frame(const ReceivedMessage& arrival) {
     if (!channels_.is_name() && !is_frame_message(arrival.bytes)) return;
     if (options_.keep_frames) bus_.publish(arrival.channel, arrival.bytes, arrival.event_us);
     try {
@@ -100,7 +100,7 @@ class FollowProcess {
       detections_.put_frame(frame.id, frame.bytes);  // refuses one camera too many
       status_.count_received();
       const std::size_t bytes = arrival.bytes.size;
-      const bool passed_over = order == FrameOrder::kLate ? frames_.put_late(arrival.channel, std::move(frame), bytes)
+      const bool passed_over = order == FrameOrder::kLate ? frames_.push_late(arrival.channel, std::move(frame), bytes)
                                                           : frames_.put(arrival.channel, std::move(frame), bytes);
       if (passed_over) status_.count_skipped(1);
     } catch (const InputError& error) {
@@ -109,16 +109,16 @@ class FollowProcess {
     }
   }
 
-  void receive_detections(const Arrival& arrival) {
+  void receive_detections(const ReceivedMessage& arrival) {
     try {
-      PairInbox::require_size(arrival.bytes.size);
+      FrameSynchroniser::require_size(arrival.bytes.size);
       check_wire(arrival.bytes, detections_t::getHash(), detections_t::getTypeName());
       const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
       if (!bus_.is_log() && repeats_.is_repeated(frame, arrival.bytes.data, arrival.bytes.size, arrival.time))
         return status_.note_duplicate();
       if (channels_.matches(frame.channel)) {
         if (options_.keep_frames) bus_.publish(arrival.channel, arrival.bytes, arrival.event_us);
-        detections_.put_detections(frame, {arrival.bytes.data, arrival.bytes.data + arrival.bytes.size});
+        detections_.add_detections(frame, {arrival.bytes.data, arrival.bytes.data + arrival.bytes.size});
         ++looks_;
       } else {
         transforms_.note_other_camera(frame.channel);
@@ -152,8 +152,8 @@ class FollowProcess {
   }
 
   bool answer_next(milliseconds timeout) {
-    const std::optional<PairedMessages> pair = detections_.take(timeout);
-    const PairInbox::Dropped dropped = detections_.take_dropped();
+    const std::optional<SynchronisedMessages> pair = detections_.take(timeout);
+    const FrameSynchroniser::Dropped dropped = detections_.take_dropped();
     overtaken_ += dropped.skipped;
     for (const FrameId& frame : dropped.without_frame) {
       status_.note_bad_message(fmt::format("detections of frame {}: the frame itself has not come", to_string(frame)));
@@ -168,10 +168,10 @@ class FollowProcess {
     return true;
   }
 
-  ObjectPoses answer(const PairedMessages& pair) {
+  ObjectPoses answer(const SynchronisedMessages& pair) {
     Detections detections =
         detections_from_message(decode_message<detections_t>({pair.detections.data(), pair.detections.size()}));
-    if (!bus_.is_log()) require_few(detections);
+    if (!bus_.is_log()) require_max_detections(detections);
     RecentFrames::Decoded decoded = recent_.find(pair.id);
     if (!decoded) {
       decoded = std::make_shared<const DecodedFrame>(decode_for_poses(*pair.frame, pair.id.channel, options_.camera));
@@ -199,12 +199,12 @@ class FollowProcess {
   const FollowPoses& poses_;
   ChannelPattern channels_;
   StatusReporter status_;
-  NewestOfEach<EncodedFrame> frames_;
-  PairInbox detections_;
+  LatestPerChannel<EncodedFrame> frames_;
+  FrameSynchroniser detections_;
   RecentFrames recent_;
   ModelCheck models_;  // of who answers
-  TransformOutput transforms_;
-  RepeatedMessages repeats_;
+  TransformPublisher transforms_;
+  DuplicateFilter repeats_;
   std::atomic<std::int64_t> looks_{0};  // results of the detector that came
   std::int64_t answered_ = 0;           // with poses, of who answers
   std::int64_t overtaken_ = 0;          // passed over for newer ones, before they were answered

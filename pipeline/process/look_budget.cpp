@@ -2,7 +2,7 @@
 
 namespace houghstream {
 
-bool LookBudget::is_due(const FrameId& frame) {
+bool DetectionThrottle::is_due(const FrameId& frame) {
   constexpr double kHurry = 0.25;
   constexpr double kSlack = 0.002;    // seconds, for times that tremble
   constexpr double kOvertaken = 1.0;  // seconds by which a frame may come late
@@ -16,7 +16,7 @@ bool LookBudget::is_due(const FrameId& frame) {
   return true;
 }
 
-void LookBudget::hurry(const std::string& channel) {
+void DetectionThrottle::hurry(const std::string& channel) {
   if (const auto camera = cameras_.find(channel); camera != cameras_.end()) camera->second.hurried = true;
 }
 

@@ -11,14 +11,14 @@ namespace houghstream {
 
 /// Which frames of each camera a detector looks at that is to look so many times a second. Goes by the frames' own
 /// times. Not thread-safe.
-class LookBudget {
+class DetectionThrottle {
  public:
   /// Cameras whose looks are remembered; every frame of a further one is looked at. A sender of rubbish may make up
   /// channels without end.
   static constexpr std::size_t kCameras = 64;
 
   /// 0: at every frame.
-  explicit LookBudget(double looks_per_second) : looks_per_second_(looks_per_second) {}
+  explicit DetectionThrottle(double max_rate_hz) : looks_per_second_(max_rate_hz) {}
 
   /// Whether this frame is looked at: where enough time has passed since the camera's last look. Times that go back by
   /// more than a second begin anew; a frame that is older by less has been overtaken on its way.

@@ -17,7 +17,7 @@ namespace houghstream {
 /// Holds the newest item of each channel between two threads. LCM's own queue would keep the oldest instead, and a slow
 /// receiver would lag behind further and further. Channels are served in turn: a fast one does not starve the others.
 template <typename T>
-class NewestOfEach {
+class LatestPerChannel {
  public:
   /// Channels whose items wait at once; the item of one more is passed over. A sender of rubbish may make up channels.
   static constexpr std::size_t kChannels = 64;
@@ -38,7 +38,7 @@ class NewestOfEach {
   }
 
   /// An item that newer ones have overtaken: it is taken where none waits. Returns whether it was passed over.
-  bool put_late(const std::string& channel, T item, std::size_t bytes = 0) {
+  bool push_late(const std::string& channel, T item, std::size_t bytes = 0) {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       if (is_full_for(channel, bytes)) return true;
@@ -67,7 +67,7 @@ class NewestOfEach {
  private:
   struct Waiting {
     T item;
-    ByteCount::Held held;
+    ByteBudget::Held held;
   };
 
   bool is_full_for(const std::string& channel, std::size_t bytes) const {
@@ -80,7 +80,7 @@ class NewestOfEach {
 
   mutable std::mutex mutex_;
   std::condition_variable filled_;
-  ByteCount bytes_;
+  ByteBudget bytes_;
   std::map<std::string, Waiting> items_;
   std::deque<std::string> turns_;  // channels with an item, the longest waiting first
 };

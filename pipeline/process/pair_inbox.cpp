@@ -11,51 +11,51 @@ SharedBytes shared_copy(ByteView bytes) {
   return std::make_shared<const std::vector<std::uint8_t>>(bytes.data, bytes.data + bytes.size);
 }
 
-void PairInbox::require_size(std::size_t bytes) {
+void FrameSynchroniser::require_size(std::size_t bytes) {
   require(bytes <= kWaitingBytes, "results of {} bytes, expected at most {}", bytes, kWaitingBytes);
 }
 
-void PairInbox::put_frame(const FrameId& id, SharedBytes bytes) {
+void FrameSynchroniser::put_frame(const FrameId& id, SharedBytes bytes) {
   bool is_awaited = false;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     Camera& camera = camera_of(id.channel);
     detectors_.note_frame(id);
-    ByteCount::Held held = frame_bytes_.hold(bytes->size());
+    ByteBudget::Held held = frame_bytes_.hold(bytes->size());
     ++camera.frames_seen;
     camera.frames.push_back({{id, std::move(bytes)}, ++frames_, std::move(held)});
     if (camera.frames.size() > kHistory) camera.frames.pop_front();
     keep_within_bytes();
     camera.fresh = newest_first_ && ahead_;
-    drop_hopeless(camera);
+    drop_unmatchable(camera);
     is_awaited = camera.fresh || !camera.waiting.empty();
   }
   if (is_awaited) changed_.notify_one();
 }
 
-void PairInbox::put_detections(const FrameId& id, std::vector<std::uint8_t> bytes) {
+void FrameSynchroniser::add_detections(const FrameId& id, std::vector<std::uint8_t> bytes) {
   require_size(bytes.size());
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     Camera& camera = camera_of(id.channel);
     detectors_.note_result(id);
-    ByteCount::Held held = waiting_bytes_.hold(bytes.size());
+    ByteBudget::Held held = waiting_bytes_.hold(bytes.size());
     camera.waiting.push_back(
         {id, std::move(bytes), std::chrono::steady_clock::now(), ++arrivals_, camera.frames_seen, std::move(held)});
-    drop_hopeless(camera);
+    drop_unmatchable(camera);
     keep_waiting_within_bytes();
   }
   changed_.notify_one();
 }
 
-PairInbox::Camera& PairInbox::camera_of(const std::string& channel) {
+FrameSynchroniser::Camera& FrameSynchroniser::camera_of(const std::string& channel) {
   require(cameras_.size() < kCameras || cameras_.count(channel) > 0,
           "a camera more than the {} that are listened to; expected a pattern that fewer channels match", kCameras);
   return cameras_[channel];
 }
 
 // There are frames.
-PairInbox::Camera& PairInbox::camera_to_shorten() {
+FrameSynchroniser::Camera& FrameSynchroniser::camera_to_shorten() {
   Camera* chosen = nullptr;
   for (auto& [channel, camera] : cameras_) {
     if (camera.frames.empty()) continue;
@@ -67,7 +67,7 @@ PairInbox::Camera& PairInbox::camera_to_shorten() {
   return *chosen;
 }
 
-void PairInbox::keep_within_bytes() {
+void FrameSynchroniser::keep_within_bytes() {
   while (frame_bytes_.total() > kHistoryBytes) {
     Camera& camera = camera_to_shorten();
     if (camera.frames.front().number == frames_) return;  // the last one that has come is the only one left
@@ -76,7 +76,7 @@ void PairInbox::keep_within_bytes() {
   }
 }
 
-void PairInbox::keep_waiting_within_bytes() {
+void FrameSynchroniser::keep_waiting_within_bytes() {
   while (waiting_bytes_.total() > kAllWaitingBytes) {
     const auto most = std::max_element(cameras_.begin(), cameras_.end(), [](const auto& a, const auto& b) {
       return a.second.waiting.size() < b.second.waiting.size();
@@ -85,7 +85,7 @@ void PairInbox::keep_waiting_within_bytes() {
   }
 }
 
-std::optional<PairedMessages> PairInbox::take(std::chrono::milliseconds timeout) {
+std::optional<SynchronisedMessages> FrameSynchroniser::take(std::chrono::milliseconds timeout) {
   std::unique_lock<std::mutex> lock(mutex_);
   Camera* next = nullptr;
   changed_.wait_for(lock, timeout, [&] {
@@ -97,7 +97,7 @@ std::optional<PairedMessages> PairInbox::take(std::chrono::milliseconds timeout)
   return take_pair(*next);
 }
 
-void PairInbox::wake() {
+void FrameSynchroniser::wake() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     woken_ = true;
@@ -105,7 +105,7 @@ void PairInbox::wake() {
   changed_.notify_one();
 }
 
-std::optional<ArrivedFrame> PairInbox::take_fresh() {
+std::optional<ArrivedFrame> FrameSynchroniser::pop_unmatched_frame() {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (auto& [channel, camera] : cameras_) {
     if (std::exchange(camera.fresh, false)) return camera.frames.back().frame;
@@ -113,19 +113,19 @@ std::optional<ArrivedFrame> PairInbox::take_fresh() {
   return std::nullopt;
 }
 
-PairInbox::Dropped PairInbox::take_dropped() {
+FrameSynchroniser::Dropped FrameSynchroniser::take_dropped() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return std::exchange(dropped_, {});
 }
 
-void PairInbox::give_up_waiting() {
+void FrameSynchroniser::flush() {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (auto& [channel, camera] : cameras_) {
     while (!camera.waiting.empty()) give_up_first(camera);
   }
 }
 
-void PairInbox::give_up_first(Camera& camera) {
+void FrameSynchroniser::give_up_first(Camera& camera) {
   const FrameId& id = camera.waiting.front().id;
   if (camera.find_frame(id) == nullptr) {
     dropped_.without_frame.push_back(id);
@@ -135,13 +135,13 @@ void PairInbox::give_up_first(Camera& camera) {
   camera.waiting.pop_front();
 }
 
-const PairInbox::Kept* PairInbox::Camera::find_frame(const FrameId& id) const {
+const FrameSynchroniser::Kept* FrameSynchroniser::Camera::find_frame(const FrameId& id) const {
   const auto found =
       std::find_if(frames.rbegin(), frames.rend(), [&](const Kept& kept) { return kept.frame.id == id; });
   return found == frames.rend() ? nullptr : &*found;
 }
 
-std::optional<std::size_t> PairInbox::Camera::first_complete() const {
+std::optional<std::size_t> FrameSynchroniser::Camera::first_complete() const {
   const auto found =
       std::find_if(waiting.begin(), waiting.end(), [&](const Waiting& w) { return find_frame(w.id) != nullptr; });
   if (found == waiting.end()) return std::nullopt;
@@ -150,11 +150,11 @@ std::optional<std::size_t> PairInbox::Camera::first_complete() const {
 
 // The camera with a pair that has its turn: the one served longest ago, or, in a log, the one whose detections came
 // first.
-PairInbox::Camera* PairInbox::next_camera() {
+FrameSynchroniser::Camera* FrameSynchroniser::next_camera() {
   Camera* next = nullptr;
   std::int64_t next_rank = 0;
   for (auto& [channel, camera] : cameras_) {
-    if (newest_first_) pass_over_older(channel, camera);
+    if (newest_first_) drop_stale(channel, camera);
     const std::optional<std::size_t> first = camera.first_complete();
     if (!first) continue;
     const std::int64_t rank = newest_first_ ? camera.turn : camera.waiting[*first].number;
@@ -167,7 +167,7 @@ PairInbox::Camera* PairInbox::next_camera() {
 
 // Of each detector of the camera the newest complete result stays; what came before these is given up, since results
 // do not say which detector they are of.
-void PairInbox::pass_over_older(const std::string& channel, Camera& camera) {
+void FrameSynchroniser::drop_stale(const std::string& channel, Camera& camera) {
   int left = detectors_.of(channel);
   auto oldest = camera.waiting.end();
   while (left > 0 && oldest != camera.waiting.begin()) {
@@ -179,7 +179,7 @@ void PairInbox::pass_over_older(const std::string& channel, Camera& camera) {
   camera.waiting.erase(camera.waiting.begin(), oldest);
 }
 
-void PairInbox::drop_hopeless(Camera& camera) {
+void FrameSynchroniser::drop_unmatchable(Camera& camera) {
   // The second condition bounds memory where detections come and frames do not.
   while (!camera.waiting.empty() && camera.find_frame(camera.waiting.front().id) == nullptr &&
          (camera.frames_seen - camera.waiting.front().frames_before > kWait || camera.waiting.size() > kHistory)) {
@@ -188,17 +188,17 @@ void PairInbox::drop_hopeless(Camera& camera) {
   while (camera.waiting.size() > kWaiting) give_up_first(camera);
 }
 
-PairedMessages PairInbox::take_pair(Camera& camera) {
+SynchronisedMessages FrameSynchroniser::take_pair(Camera& camera) {
   const auto chosen = camera.waiting.begin() + static_cast<std::ptrdiff_t>(*camera.first_complete());
   if (chosen->id == camera.frames.back().frame.id) camera.fresh = false;
   const Kept& kept = *camera.find_frame(chosen->id);
-  PairedMessages pair{chosen->id, kept.frame.bytes, kept.number, std::move(chosen->bytes), chosen->arrival};
+  SynchronisedMessages pair{chosen->id, kept.frame.bytes, kept.number, std::move(chosen->bytes), chosen->arrival};
   camera.turn = ++turns_;
   camera.waiting.erase(chosen);
   return pair;
 }
 
-bool PairInbox::any_fresh() const {
+bool FrameSynchroniser::any_fresh() const {
   return std::any_of(cameras_.begin(), cameras_.end(), [](const auto& entry) { return entry.second.fresh; });
 }
 

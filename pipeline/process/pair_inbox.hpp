@@ -29,7 +29,7 @@ struct ArrivedFrame {
 };
 
 /// Encoded detections with the encoded frame that they were found in.
-struct PairedMessages {
+struct SynchronisedMessages {
   FrameId id;
   SharedBytes frame;
   std::int64_t frame_number = 0;  ///< of all frames in their order of arrival: a name may come again
@@ -40,7 +40,7 @@ struct PairedMessages {
 /// Brings detections together with their own frame, whichever comes first, for any number of cameras and of detectors
 /// on each. Nothing is decoded. Ages are counted in frames of the camera, not in seconds, so that a log gives the same
 /// pairs at any speed. May be used from any thread.
-class PairInbox {
+class FrameSynchroniser {
  public:
   /// Frames of each camera that are kept for detections still to come: 64, and fewer where those of all cameras have
   /// more bytes than this. First the camera with the most frames gives up its oldest; where each has one left, the one
@@ -59,9 +59,9 @@ class PairInbox {
   static constexpr std::int64_t kWait = 30;
 
   /// `newest_first`: take() serves the cameras in turn, and passes over older detections of a camera: of each of its
-  /// detectors one result stays. Otherwise everything is worked on in the order of arrival. `ahead`: take_fresh() is
+  /// detectors one result stays. Otherwise everything is worked on in the order of arrival. `ahead`: pop_unmatched_frame() is
   /// used.
-  explicit PairInbox(bool newest_first, bool ahead = true) : newest_first_(newest_first), ahead_(ahead) {}
+  explicit FrameSynchroniser(bool newest_first, bool ahead = true) : newest_first_(newest_first), ahead_(ahead) {}
 
   /// Throws InputError where detections or poses of so many bytes are refused.
   static void require_size(std::size_t bytes);
@@ -69,17 +69,17 @@ class PairInbox {
   /// Throws InputError for one camera too many.
   void put_frame(const FrameId& id, SharedBytes bytes);
   /// `id` is the frame that they were found in. Throws InputError for one camera too many, and for too many bytes.
-  void put_detections(const FrameId& id, std::vector<std::uint8_t> bytes);
+  void add_detections(const FrameId& id, std::vector<std::uint8_t> bytes);
 
   /// The next pair, waiting for one up to `timeout`, or, with `newest_first`, until a frame comes.
-  std::optional<PairedMessages> take(std::chrono::milliseconds timeout);
+  std::optional<SynchronisedMessages> take(std::chrono::milliseconds timeout);
 
   /// Ends the waiting of take(), now or of the next call: something else has come that its caller waits for.
   void wake();
 
   /// The newest frame of a camera, where `newest_first`, and where neither it nor its pair has been taken: there is
   /// time to decode it while its detections are on the way. It stays here for them.
-  std::optional<ArrivedFrame> take_fresh();
+  std::optional<ArrivedFrame> pop_unmatched_frame();
 
   /// What was dropped since the last call.
   struct Dropped {
@@ -89,13 +89,13 @@ class PairInbox {
   Dropped take_dropped();
 
   /// Gives up all detections that still wait for their frame.
-  void give_up_waiting();
+  void flush();
 
  private:
   struct Kept {
     ArrivedFrame frame;
-    std::int64_t number = 0;  // PairedMessages::frame_number
-    ByteCount::Held held;
+    std::int64_t number = 0;  // SynchronisedMessages::frame_number
+    ByteBudget::Held held;
   };
   struct Waiting {
     FrameId id;
@@ -103,7 +103,7 @@ class PairInbox {
     std::chrono::steady_clock::time_point arrival;
     std::int64_t number = 0;         // in the order of arrival, of all cameras
     std::int64_t frames_before = 0;  // frames of the camera that had arrived when it did
-    ByteCount::Held held;
+    ByteBudget::Held held;
   };
   struct Camera {
     std::deque<Kept> frames;      // the last ones
@@ -121,18 +121,18 @@ class PairInbox {
   void keep_within_bytes();
   void keep_waiting_within_bytes();
   Camera* next_camera();
-  void pass_over_older(const std::string& channel, Camera& camera);
+  void drop_stale(const std::string& channel, Camera& camera);
   void give_up_first(Camera& camera);
-  void drop_hopeless(Camera& camera);
-  PairedMessages take_pair(Camera& camera);
+  void drop_unmatchable(Camera& camera);
+  SynchronisedMessages take_pair(Camera& camera);
   bool any_fresh() const;
 
   bool newest_first_;
   bool ahead_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  ByteCount frame_bytes_;                  // of all cameras
-  ByteCount waiting_bytes_;                // of their detections
+  ByteBudget frame_bytes_;                  // of all cameras
+  ByteBudget waiting_bytes_;                // of their detections
   std::map<std::string, Camera> cameras_;  // by channel
   DetectorCount detectors_;
   std::int64_t arrivals_ = 0;  // of detections

@@ -14,7 +14,7 @@ bool share_a_class(const ObjectPoses& poses, const Detections& detections) {
 
 }  // namespace
 
-ObjectPoses PoseMemory::before(const Detections& detections) const {
+ObjectPoses PoseHistory::before(const Detections& detections) const {
   const auto camera = cameras_.find(detections.frame.channel);
   if (camera == cameras_.end()) return {};
   const std::deque<ObjectPoses>& kept = camera->second;
@@ -25,7 +25,7 @@ ObjectPoses PoseMemory::before(const Detections& detections) const {
   return found == kept.rend() ? ObjectPoses{} : *found;
 }
 
-void PoseMemory::keep(const ObjectPoses& poses) {
+void PoseHistory::keep(const ObjectPoses& poses) {
   constexpr std::size_t kResults = 16;
   std::deque<ObjectPoses>& kept = cameras_[poses.frame.channel];
   kept.push_back(poses);

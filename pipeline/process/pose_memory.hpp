@@ -12,7 +12,7 @@ namespace houghstream {
 
 /// The last poses of each camera, from which those of its next frame start (warm start). Where several detectors work
 /// on one camera's frames, each one's result goes on from its own last one. Not thread-safe.
-class PoseMemory {
+class PoseHistory {
  public:
   /// The poses that were kept last for this camera; with several detectors, the last ones of an earlier frame that
   /// share a class with these detections. Empty where there are none.

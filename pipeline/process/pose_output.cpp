@@ -16,22 +16,22 @@ DecodedFrame decode_for_poses(const std::vector<std::uint8_t>& bytes, const std:
   return {std::move(frame), clock.times().front()};
 }
 
-void require_few(const Detections& detections) {
+void require_max_detections(const Detections& detections) {
   constexpr std::size_t kMost = 512;
   require(detections.detections.size() <= kMost, "frame {}: {} detections, expected at most {}",
           to_string(detections.frame), detections.detections.size(), kMost);
 }
 
-TransformOutput::TransformOutput(LcmBus& bus, const std::string& frame_channels)
+TransformPublisher::TransformPublisher(LcmBus& bus, const std::string& frame_channels)
     : bus_(bus), frame_channels_(frame_channels), several_cameras_(!ChannelPattern(frame_channels).is_name()) {}
 
-void TransformOutput::note_other_camera(const std::string& channel) {
+void TransformPublisher::note_other_camera(const std::string& channel) {
   if (several_cameras_.exchange(true)) return;
   log_info("detections of frames on {} are heard too: transforms go to <OBJECT>_TO_{}", channel,
            channel::camera_name(frame_channels_));
 }
 
-void TransformOutput::publish(const ObjectPoses& poses) {
+void TransformPublisher::publish(const ObjectPoses& poses) {
   const std::string camera = several_cameras_ ? poses.frame.channel : "";
   for (const ObjectPose& pose : poses.poses) {
     if (!pose.T_camera_object) continue;

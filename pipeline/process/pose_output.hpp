@@ -24,14 +24,14 @@ DecodedFrame decode_for_poses(const std::vector<std::uint8_t>& bytes, const std:
                               const std::optional<Camera>& camera);
 
 /// Throws InputError for more detections at once than could be worked on within Heartbeat::kPatience.
-void require_few(const Detections& detections);
+void require_max_detections(const Detections& detections);
 
 /// Where the transforms of poses go: to <OBJECT>_TO_CAMERA where there is one camera, to <OBJECT>_TO_<CAMERA'S CHANNEL>
 /// where the channels are a pattern, and from the moment on when detections of another camera's frames are heard.
 /// Every function may be called from any thread.
-class TransformOutput {
+class TransformPublisher {
  public:
-  TransformOutput(LcmBus& bus, const std::string& frame_channels);
+  TransformPublisher(LcmBus& bus, const std::string& frame_channels);
 
   /// Detections of a frame on this other channel have come.
   void note_other_camera(const std::string& channel);

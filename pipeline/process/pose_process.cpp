@@ -34,7 +34,7 @@ ByteView view(const std::vector<std::uint8_t>& bytes) {
 /// What was found in a frame so far, by all its detectors.
 struct HeardClasses {
   FrameId frame;
-  std::int64_t number = 0;  // PairedMessages::frame_number
+  std::int64_t number = 0;  // SynchronisedMessages::frame_number
   std::set<std::string> names;
 };
 
@@ -51,14 +51,14 @@ class PoseProcess {
         transforms_(bus, options.frame_channels) {}
 
   void run() {
-    status_.tell_objects(options_.objects);
+    status_.set_known_objects(options_.objects);
     catch_stop_signals();
-    bus_.subscribe_to_frames(options_.frame_channels, [this](const Arrival& arrival) { receive_frame(arrival); });
-    bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) { receive_detections(arrival); });
+    bus_.subscribe_to_frames(options_.frame_channels, [this](const ReceivedMessage& arrival) { receive_frame(arrival); });
+    bus_.subscribe(channel::kDetections, [this](const ReceivedMessage& arrival) { receive_detections(arrival); });
     log_info("ready: frames from {}, detections from {} at {}", options_.frame_channels, channel::kDetections,
              bus_.url());
     run_process_loop(bus_, status_, [this](std::chrono::milliseconds timeout) { return step(timeout); });
-    inbox_.give_up_waiting();
+    inbox_.flush();
     count_dropped();
     warn(models_.at_end());
     tell_missing_frames();
@@ -66,7 +66,7 @@ class PoseProcess {
   }
 
  private:
-  void receive_frame(const Arrival& arrival) {
+  void receive_frame(const ReceivedMessage& arrival) {
     if (!channels_.is_name() && !is_frame_message(arrival.bytes)) return;
     if (options_.keep_frames) bus_.publish(arrival.channel, arrival.bytes, arrival.event_us);
     try {
@@ -79,14 +79,14 @@ class PoseProcess {
     }
   }
 
-  void receive_detections(const Arrival& arrival) {
+  void receive_detections(const ReceivedMessage& arrival) {
     try {
-      PairInbox::require_size(arrival.bytes.size);
+      FrameSynchroniser::require_size(arrival.bytes.size);
       check_wire(arrival.bytes, detections_t::getHash(), detections_t::getTypeName());
       const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
       if (!bus_.is_log() && repeats_.is_repeated(frame, arrival.bytes.data, arrival.bytes.size, arrival.time))
         return status_.note_duplicate();
-      if (sources_.size() < PairInbox::kCameras) sources_.insert(frame.channel);
+      if (sources_.size() < FrameSynchroniser::kCameras) sources_.insert(frame.channel);
       ++detections_;
       if (!channels_.matches(frame.channel)) {
         ++others_;
@@ -94,7 +94,7 @@ class PoseProcess {
         return;
       }
       if (options_.keep_frames) bus_.publish(arrival.channel, arrival.bytes, arrival.event_us);
-      inbox_.put_detections(frame, copy(arrival.bytes));
+      inbox_.add_detections(frame, copy(arrival.bytes));
       status_.count_received();
     } catch (const InputError& error) {
       status_.count_received();
@@ -103,7 +103,7 @@ class PoseProcess {
   }
 
   bool step(std::chrono::milliseconds timeout) {
-    const std::optional<PairedMessages> pair = inbox_.take(timeout);
+    const std::optional<SynchronisedMessages> pair = inbox_.take(timeout);
     count_dropped();
     if (!pair) {
       decode_ahead();
@@ -121,7 +121,7 @@ class PoseProcess {
   // A camera's newest frame is decoded while its detections are on the way. What cannot be understood is told when they
   // come.
   void decode_ahead() {
-    const std::optional<ArrivedFrame> fresh = inbox_.take_fresh();
+    const std::optional<ArrivedFrame> fresh = inbox_.pop_unmatched_frame();
     if (!fresh) return;
     try {
       ahead_.keep(decoded(fresh->id, *fresh->bytes));
@@ -133,9 +133,9 @@ class PoseProcess {
     return std::make_shared<const DecodedFrame>(decode_for_poses(bytes, id.channel, options_.camera));
   }
 
-  ObjectPoses poses_of(const PairedMessages& pair) {
+  ObjectPoses poses_of(const SynchronisedMessages& pair) {
     Detections detections = detections_from_message(decode_message<detections_t>(view(pair.detections)));
-    if (!bus_.is_log()) require_few(detections);
+    if (!bus_.is_log()) require_max_detections(detections);
     if (detections.detections.empty()) return {detections.frame, {}, detections.stages};
     const RecentFrames::Decoded ahead = ahead_.find(pair.id);
     const RecentFrames::Decoded frame = ahead ? ahead : decoded(pair.id, *pair.frame);
@@ -190,7 +190,7 @@ class PoseProcess {
   }
 
   void count_dropped() {
-    const PairInbox::Dropped dropped = inbox_.take_dropped();
+    const FrameSynchroniser::Dropped dropped = inbox_.take_dropped();
     status_.count_skipped(dropped.skipped);
     without_frame_ += static_cast<std::int64_t>(dropped.without_frame.size());
     for (const FrameId& frame : dropped.without_frame) {
@@ -216,15 +216,15 @@ class PoseProcess {
   const EstimatePoses& estimate_;
   ChannelPattern channels_;
   StatusReporter status_;
-  PairInbox inbox_;
+  FrameSynchroniser inbox_;
   RecentFrames ahead_;  // decoded before their detections have come
-  PoseMemory memory_;
+  PoseHistory memory_;
   std::deque<HeardClasses> heard_;
   ModelCheck models_;
-  TransformOutput transforms_;
+  TransformPublisher transforms_;
   // What the receiving thread has seen.
   std::set<std::string> sources_;
-  RepeatedMessages repeats_;
+  DuplicateFilter repeats_;
   std::atomic<std::int64_t> detections_{0};
   std::atomic<std::int64_t> others_{0};  // of them, of other cameras' frames
   std::int64_t without_frame_ = 0;       // of the rest

@@ -10,7 +10,7 @@
 
 namespace houghstream {
 
-RgbdFrame frame_to_warm_up() {
+RgbdFrame make_warm_up_frame() {
   RgbdFrame frame;
   frame.camera = {640, 480, 525.0, 525.0, 319.5, 239.5};
   frame.colour.create(frame.camera.height, frame.camera.width, CV_8UC3);
@@ -26,16 +26,16 @@ RgbdFrame frame_to_warm_up() {
   return frame_from_message(to_message(frame, WireFormat{}, 0), "", std::nullopt);
 }
 
-std::shared_future<RgbdFrame> begin_to_warm_up() {
+std::shared_future<RgbdFrame> start_warm_up() {
   const BlockStopSignals block;
   return std::async(std::launch::async, [] {
     cv::Mat pixel(1, 1, CV_8UC3, cv::Scalar(0, 0, 0));
     cv::cvtColor(pixel, pixel, cv::COLOR_BGR2Lab);
-    return frame_to_warm_up();
+    return make_warm_up_frame();
   });
 }
 
-int threads_to_start(int threads_of_work) {
+int warm_up_threads(int threads_of_work) {
   constexpr int kMost = 8;
   return std::max(threads_of_work, std::min(static_cast<int>(std::thread::hardware_concurrency()), kMost));
 }

@@ -9,13 +9,13 @@ namespace houghstream {
 /// A made-up frame of VGA size, a wavy, patterned surface about a metre away, that has been encoded and decoded as
 /// frames are that come off the bus. What a process works on before it subscribes, so that its memory, its threads and
 /// the codecs' are there when the first real frame comes.
-RgbdFrame frame_to_warm_up();
+RgbdFrame make_warm_up_frame();
 
 /// Makes it in a thread of its own while the caller reads forest or models, and has OpenCV's tables for L*a*b*, which
 /// take a tenth of a second, made there too: before several threads ask for them at once.
-std::shared_future<RgbdFrame> begin_to_warm_up();
+std::shared_future<RgbdFrame> start_warm_up();
 
 /// Threads for what is done once, before the first frame: all cores, however many the work on frames is given.
-int threads_to_start(int threads_of_work);
+int warm_up_threads(int threads_of_work);
 
 }  // namespace houghstream

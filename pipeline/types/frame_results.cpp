@@ -78,7 +78,7 @@ bool answers(const ObjectPoses& poses, const Detections& detections) {
   });
 }
 
-bool are_followed(const ObjectPoses& poses) {
+bool has_followed_poses(const ObjectPoses& poses) {
   const auto is_following = [](const StageTime& stage) { return stage.stage == kFollowingStage; };
   if (poses.poses.empty()) return std::any_of(poses.stages.begin(), poses.stages.end(), is_following);
   return poses.poses.front().detection_index < 0;
@@ -100,7 +100,7 @@ void FrameResults::add(Detections detections) {
 }
 
 void FrameResults::add(ObjectPoses poses) {
-  if (are_followed(poses)) {
+  if (has_followed_poses(poses)) {
     followed_ = std::move(poses);
     return;
   }
@@ -125,7 +125,7 @@ bool FrameResults::place(ObjectPoses& poses) {
   return true;
 }
 
-bool FrameResults::all_posed() const {
+bool FrameResults::has_all_poses() const {
   return std::all_of(results_.begin(), results_.end(),
                      [](const FrameResult& result) { return result.poses.has_value(); });
 }

@@ -23,7 +23,7 @@ struct FrameResult {
 bool answers(const ObjectPoses& poses, const Detections& detections);
 
 /// Whether these are poses of objects that hs-pose follows from frame to frame, which answer no detections.
-bool are_followed(const ObjectPoses& poses);
+bool has_followed_poses(const ObjectPoses& poses);
 
 /// All that was published of one frame. Several detectors may work on a camera's frames, each with a forest of its own
 /// objects: each result stands by itself, with its own poses. Results and poses may come in any order.
@@ -40,7 +40,7 @@ class FrameResults {
 
   const std::vector<FrameResult>& results() const { return results_; }
   /// Whether each result has its poses.
-  bool all_posed() const;
+  bool has_all_poses() const;
   /// The poses of the objects that are followed, where hs-pose follows any.
   const std::optional<ObjectPoses>& followed() const { return followed_; }
   /// Other poses, of no result that has come so far.

@@ -20,7 +20,7 @@ const char* to_string(TeachingState state) {
 
 int count_seen(const Teaching& teaching) {
   return static_cast<int>(std::count_if(teaching.directions.begin(), teaching.directions.end(),
-                                        [](const SeenDirection& direction) { return direction.seen; }));
+                                        [](const ViewDirection& direction) { return direction.seen; }));
 }
 
 }  // namespace houghstream

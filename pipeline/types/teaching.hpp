@@ -27,7 +27,7 @@ enum class TeachingState : std::int8_t {
 const char* to_string(TeachingState state);
 
 /// A direction from which an object can be seen.
-struct SeenDirection {
+struct ViewDirection {
   Eigen::Vector3f direction = Eigen::Vector3f::UnitZ();  ///< unit vector in the object's frame, away from the object
   bool seen = false;
 };
@@ -43,7 +43,7 @@ struct Teaching {
   int keyframes = 0;              ///< whose views will be taught
   std::optional<cv::Rect2f> box_px;
   std::optional<Eigen::Isometry3d> T_camera_object;
-  std::vector<SeenDirection> directions;  ///< evenly over the sphere
+  std::vector<ViewDirection> directions;  ///< evenly over the sphere
 };
 
 /// How many of the directions were seen.

@@ -34,7 +34,7 @@ GreyStatistics grey_statistics(const cv::Mat& colour) {
 
 }  // namespace
 
-ToneCurve tone_curve(const cv::Mat& colour, const ToneRange& range) {
+AffineBrightness fit_affine_brightness(const cv::Mat& colour, const BrightnessRange& range) {
   constexpr double kLeastGain = 0.6;
   if (range.least_mean <= 0.0F && range.most_mean >= 255.0F && range.most_deviation >= 127.5F) return {};
   const GreyStatistics grey = grey_statistics(colour);
@@ -44,7 +44,7 @@ ToneCurve tone_curve(const cv::Mat& colour, const ToneRange& range) {
   return {static_cast<float>(gain), static_cast<float>(mean - gain * grey.mean)};
 }
 
-void apply_tone(const ToneCurve& curve, const cv::Mat& colour, cv::Mat& out) {
+void apply_affine_brightness(const AffineBrightness& curve, const cv::Mat& colour, cv::Mat& out) {
   std::array<std::uint8_t, 256> table{};
   for (std::size_t v = 0; v < table.size(); ++v)
     table[v] = cv::saturate_cast<std::uint8_t>(curve.gain * static_cast<float>(v) + curve.offset);

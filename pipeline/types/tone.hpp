@@ -6,7 +6,7 @@ namespace houghstream {
 
 /// Brightness and contrast of pictures: mean and standard deviation of their grey values (ITU-R BT.601), 0 to 255. As
 /// it stands, every picture is in the range.
-struct ToneRange {
+struct BrightnessRange {
   float least_mean = 0.0F;
   float most_mean = 255.0F;
   float most_deviation = 255.0F;
@@ -18,7 +18,7 @@ struct ToneRange {
 };
 
 /// What brings a picture into a range: the same for all coded values of all its channels, value * gain + offset.
-struct ToneCurve {
+struct AffineBrightness {
   float gain = 1.0F;
   float offset = 0.0F;
   bool changes() const { return gain != 1.0F || offset != 0.0F; }
@@ -27,9 +27,9 @@ struct ToneCurve {
 /// Cameras make brightness and contrast as they like, and many too much of both: what is common to all of a picture
 /// says nothing about an object in it. The curve moves the mean no farther than into the range, and flattens contrast
 /// that is greater than the range's, to no less than 0.6 of it. From a sixteenth of the pixels. CV_8UC3 BGR, not empty.
-ToneCurve tone_curve(const cv::Mat& colour, const ToneRange& range);
+AffineBrightness fit_affine_brightness(const cv::Mat& colour, const BrightnessRange& range);
 
 /// CV_8UC3; `out` may be `colour`.
-void apply_tone(const ToneCurve& curve, const cv::Mat& colour, cv::Mat& out);
+void apply_affine_brightness(const AffineBrightness& curve, const cv::Mat& colour, cv::Mat& out);
 
 }  // namespace houghstream

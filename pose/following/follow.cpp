@@ -25,7 +25,7 @@ Eigen::Vector3d middle_of(const ObjectModel& model, const Eigen::Isometry3d& T_c
 /// The box about the points that should be seen; empty where none is.
 cv::Rect2f expected_box(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object) {
   constexpr int kPoints = 150;
-  const ViewLook look = look_at_view(frame, model, T_camera_object, kPoints);
+  const ProjectedView look = look_at_view(frame, model, T_camera_object, kPoints);
   cv::Rect2f box;
   for (std::size_t i = 0; i < look.looks.size(); ++i) {
     const Eigen::Vector3f point = look.T * look.view.points[i];
@@ -37,15 +37,15 @@ cv::Rect2f expected_box(const RgbdFrame& frame, const ObjectModel& model, const 
   return box;
 }
 
-SeenObject see_expected(const SeenFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+ObjectObservation see_expected(const FrameContext& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                         const PoseSettings& settings) {
   Detection expected;
   expected.box_px = expected_box(frame.frame, model, T_camera_object);
   expected.centre_camera = T_camera_object.cast<float>() * model.vote_centre;
-  return see_object(frame, expected, model, settings.region);
+  return observe_object(frame, expected, model, settings.region);
 }
 
-RegistrationResult register_near(const SeenObject& seen, const Eigen::Isometry3d& start, const ExpectedObject& expected,
+RegistrationResult register_near(const ObjectObservation& seen, const Eigen::Isometry3d& start, const ExpectedObject& expected,
                                  const FollowerInput& input) {
   const PoseSettings& settings = input.pose;
   const FollowSettings& follow = input.follow;
@@ -56,10 +56,10 @@ RegistrationResult register_near(const SeenObject& seen, const Eigen::Isometry3d
   const RegistrationStage coarse{iterations, follow.coarse_points, start_m, end_m};
   RegistrationResult result = settings.registration.engine(seen, start, coarse, settings.registration);
   if (expected.settle && result.inliers > 0) {
-    const Climb climb{follow.settle_step_deg * kRadPerDeg, follow.settle_step_m, follow.settle_rounds,
+    const HillClimb climb{follow.settle_step_deg * kRadPerDeg, follow.settle_step_m, follow.settle_rounds,
                       follow.settle_points};
     const DepthTolerance tolerance{settings.verification.tolerance_m, seen.noise};
-    result.T_camera_object = climb_pose(seen, result.T_camera_object, climb, tolerance).T_camera_object;
+    result.T_camera_object = hill_climb_pose(seen, result.T_camera_object, climb, tolerance).T_camera_object;
   }
   const RegistrationStage fine{follow.fine_iterations, follow.fine_points, end_m, end_m, 1};
   RegistrationResult last = settings.registration.engine(seen, result.T_camera_object, fine, settings.registration);
@@ -69,18 +69,18 @@ RegistrationResult register_near(const SeenObject& seen, const Eigen::Isometry3d
 
 /// Judges the pose, of an object that was reported before, by points of the view and the outline of an earlier frame,
 /// where there is one and that suffices; else the model is rendered.
-void judge_followed(const SeenObject& seen, const ExpectedObject& expected, const FollowerInput& input,
+void judge_followed(const ObjectObservation& seen, const ExpectedObject& expected, const FollowerInput& input,
                     FollowedPose& followed) {
   const PoseSettings& settings = input.pose;
   const DepthTolerance tolerance{settings.verification.tolerance_m, seen.noise};
   const QualitySettings& quality = class_quality_of(settings, followed.pose.class_name);
   const Eigen::Isometry3d& T = followed.T_camera_object;
-  const ViewLook look = look_at_view(seen.frame, seen.model, T, settings.verification.points);
-  PoseEvidence evidence{expected.score, {}, compare_print(seen, look, tolerance)};
+  const ProjectedView look = look_at_view(seen.frame, seen.model, T, settings.verification.points);
+  PoseEvidence evidence{expected.score, {}, compare_texture(seen, look, tolerance)};
   if (expected.verified) {
-    evidence.depth = verify_look(look, tolerance);
+    evidence.depth = verify_projected_view(look, tolerance);
     evidence.depth.outline = expected.verified->outline;
-    evidence.depth.outline_goes_on = expected.verified->outline_goes_on;
+    evidence.depth.boundary_continuations = expected.verified->boundary_continuations;
     followed.verified = expected.verified;
     decide_status(evidence, T, true, quality, followed.pose);
     if (followed.pose.status == PoseStatus::kValid) return;
@@ -101,13 +101,13 @@ FollowedPose unposed(const ExpectedObject& expected) {
   return followed;
 }
 
-FollowedPose follow_from(const SeenFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
+FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, const ExpectedObject& expected,
                          const Eigen::Isometry3d& start, const FollowerInput& input) {
   const PoseSettings& settings = input.pose;
   FollowedPose followed = unposed(expected);
   ObjectPose& pose = followed.pose;
   followed.T_camera_object = start;
-  const SeenObject seen = see_expected(frame, model, start, settings);
+  const ObjectObservation seen = see_expected(frame, model, start, settings);
   if (seen.region.points < settings.region.min_points) {
     pose.status = PoseStatus::kTooFewPoints;
     return followed;
@@ -126,17 +126,17 @@ FollowedPose follow_from(const SeenFrame& frame, const ObjectModel& model, const
 }
 
 /// Whether something stands before the object, and what can be seen of it is not seen through.
-bool is_hidden(const SeenFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+bool is_hidden(const FrameContext& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                const FollowerInput& input) {
   const DepthTolerance tolerance{input.pose.verification.tolerance_m, frame.noise};
   const Verification seen = verify_pose(frame.frame, model.mesh, T_camera_object, tolerance);
   const auto rendered = static_cast<float>(seen.rendered);
   const auto hidden = static_cast<float>(seen.occluded);
   return hidden > input.follow.hidden_share * rendered &&
-         static_cast<float>(seen.violating) <= input.follow.through_share * (rendered - hidden);
+         static_cast<float>(seen.violating) <= input.follow.max_free_space_violation * (rendered - hidden);
 }
 
-FollowedPose follow_object(const SeenFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
+FollowedPose follow_object(const FrameContext& frame, const ObjectModel& model, const ExpectedObject& expected,
                            const FollowerInput& input) {
   FollowedPose best;
   for (std::size_t i = 0; i < expected.starts.size(); ++i) {
@@ -144,7 +144,7 @@ FollowedPose follow_object(const SeenFrame& frame, const ObjectModel& model, con
     if (i == 0 || here.pose.quality > best.pose.quality) best = std::move(here);
     if (best.pose.status == PoseStatus::kValid) return best;
   }
-  if (expected.tell_hidden && is_hidden(frame, model, expected.starts.front(), input))
+  if (expected.check_occlusion && is_hidden(frame, model, expected.starts.front(), input))
     best.pose.status = PoseStatus::kOccluded;
   return best;
 }
@@ -155,7 +155,7 @@ std::vector<FollowedPose> follow_objects(const PoseEstimator& estimator, const F
                                          const RgbdFrame& frame, const std::vector<ExpectedObject>& expected) {
   check_frame(frame, "pose estimation");
   const FollowerInput input{estimator.settings(), settings};
-  const SeenFrame seen = see_frame(frame, input.pose.region, input.pose.noise);
+  const FrameContext seen = make_frame_context(frame, input.pose.region, input.pose.noise);
   std::vector<FollowedPose> followed(expected.size());
   parallel_for(input.pose.threads, static_cast<int>(expected.size()), [&](int i) {
     const ExpectedObject& object = expected[i];

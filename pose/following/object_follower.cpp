@@ -38,7 +38,7 @@ std::int64_t clock_of(std::int64_t utime, const FollowedCamera& camera) {
 /// before to the last one.
 void follow_clock(std::int64_t utime, FollowedCamera& camera) {
   if (camera.shown.empty()) return;
-  const ShownFrame& last = camera.shown.back();
+  const FollowedFrame& last = camera.shown.back();
   const std::int64_t passed_us = microseconds_between(last.utime, utime);
   if (passed_us >= 0 && passed_us <= kJumpUs) {
     camera.interval_us = std::min(passed_us, kLongestIntervalUs);
@@ -48,14 +48,14 @@ void follow_clock(std::int64_t utime, FollowedCamera& camera) {
 }
 
 /// A frame's detections beside what was followed in it.
-struct DetectionLook {
-  ShownFrame shown;
+struct DetectionAssociation {
+  FollowedFrame shown;
   std::vector<int> matches;  ///< each detection's followed object: its place in
                              ///< `shown`, or -1
   int doubted = -1;          ///< the place in `shown` of what is looked for as if it
                              ///< were not followed
 
-  bool is_looked_for(std::size_t detection) const { return matches[detection] < 0 || matches[detection] == doubted; }
+  bool needs_estimate(std::size_t detection) const { return matches[detection] < 0 || matches[detection] == doubted; }
 };
 
 /// The object of a number; null where it is not followed any more.
@@ -67,7 +67,7 @@ FollowedObject* find_followed(std::int64_t number, FollowedCamera& camera) {
 
 /// Each detection's place in `shown`, or -1. The nearest ones first, each pose
 /// of one detection; withheld ones are nobody's.
-std::vector<int> match_detections(const PoseEstimator& estimator, const Detections& detections, const ShownFrame& shown,
+std::vector<int> match_detections(const PoseEstimator& estimator, const Detections& detections, const FollowedFrame& shown,
                                   double reach_m) {
   struct Pair {
     double distance = 0.0;
@@ -98,15 +98,15 @@ std::vector<int> match_detections(const PoseEstimator& estimator, const Detectio
 
 /// What the look says of those that were there: found, with this score, or not
 /// found though in full view.
-void note_look(const Detections& detections, const DetectionLook& look, const FollowerSettings& settings,
+void update_from_detections(const Detections& detections, const DetectionAssociation& look, const FollowerSettings& settings,
                FollowedCamera& camera) {
   constexpr float kFullView = 0.7F;  // visible fraction
-  const ShownFrame& shown = look.shown;
+  const FollowedFrame& shown = look.shown;
   for (std::size_t p = 0; p < shown.poses.size(); ++p) {
     FollowedObject* object = find_followed(shown.numbers[p], camera);
     if (object == nullptr) continue;
     const auto found = std::find(look.matches.begin(), look.matches.end(), static_cast<int>(p));
-    double score = settings.missed_score;
+    double score = settings.miss_score;
     if (found != look.matches.end()) {
       score = detections.detections[static_cast<std::size_t>(found - look.matches.begin())].score;
       object->found_us = shown.clock_us;
@@ -114,20 +114,20 @@ void note_look(const Detections& detections, const DetectionLook& look, const Fo
                seconds_between(object->found_us, shown.clock_us) < settings.missed_after_s) {
       continue;
     }
-    object->remembered_score += settings.score_gain * (log_odds(score) - object->remembered_score);
+    object->remembered_score += settings.logit_gain * (log_odds(score) - object->remembered_score);
   }
 }
 
 /// The place in `shown` of the detected object whose last doubt lies farthest
 /// back, if it is time; else -1.
-int choose_doubted(const DetectionLook& look, const FollowerSettings& settings, FollowedCamera& camera) {
-  const ShownFrame& shown = look.shown;
+int choose_recheck(const DetectionAssociation& look, const FollowerSettings& settings, FollowedCamera& camera) {
+  const FollowedFrame& shown = look.shown;
   FollowedObject* chosen = nullptr;
   int place = -1;
   for (const int match : look.matches) {
     FollowedObject* object =
         match >= 0 ? find_followed(shown.numbers[static_cast<std::size_t>(match)], camera) : nullptr;
-    if (object == nullptr || seconds_between(object->doubted_us, shown.clock_us) < settings.doubted_after_s) continue;
+    if (object == nullptr || seconds_between(object->doubted_us, shown.clock_us) < settings.recheck_interval_s) continue;
     if (chosen != nullptr && chosen->doubted_us <= object->doubted_us) continue;
     chosen = object;
     place = match;
@@ -139,23 +139,23 @@ int choose_doubted(const DetectionLook& look, const FollowerSettings& settings, 
 /// What was followed in the frame of the detections, and which of them are of
 /// that. Notes in the camera's objects what the look says of them: found, with
 /// this score, or not found though in full view; and which one is doubted.
-DetectionLook look_at_detections(const PoseEstimator& estimator, const Detections& detections,
+DetectionAssociation associate_detections(const PoseEstimator& estimator, const Detections& detections,
                                  const FollowerSettings& settings, FollowedCamera& camera) {
-  DetectionLook look{{}, std::vector<int>(detections.detections.size(), -1), -1};
+  DetectionAssociation look{{}, std::vector<int>(detections.detections.size(), -1), -1};
   const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
-                                 [&](const ShownFrame& one) { return one.utime == detections.frame.utime; });
+                                 [&](const FollowedFrame& one) { return one.utime == detections.frame.utime; });
   if (then == camera.shown.rend()) return look;
   look.shown = *then;
   look.matches = match_detections(estimator, detections, look.shown, settings.reach_m);
-  note_look(detections, look, settings, camera);
-  look.doubted = choose_doubted(look, settings, camera);
+  update_from_detections(detections, look, settings, camera);
+  look.doubted = choose_recheck(look, settings, camera);
   return look;
 }
 
 /// Where the pose of a detection is better than the followed one of that frame,
 /// the object goes on from it: what is between the two stays the same in the
 /// object's own frame.
-void settle_doubt(const ObjectPose& pose, const FollowedPose& followed, const FollowerSettings& settings,
+void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, const FollowerSettings& settings,
                   FollowedObject& object) {
   constexpr double kMargin = 1e-6;  // of two poses of one object small differences count
   const double better = log_odds(pose.quality, kMargin) - log_odds(followed.pose.quality, kMargin);
@@ -173,7 +173,7 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
   if (is_overtaken(frame.id.utime, camera)) return std::nullopt;
   follow_clock(frame.id.utime, camera);
   const std::int64_t clock_us = clock_of(frame.id.utime, camera);
-  ShownFrame shown{frame.id.utime, clock_us, {}, follow_all(estimator, frame, camera)};
+  FollowedFrame shown{frame.id.utime, clock_us, {}, follow_all(estimator, frame, camera)};
   for (std::size_t i = 0; i < camera.objects.size(); ++i) {
     note_result(shown.poses[i], clock_us, camera.objects[i]);
     shown.numbers.push_back(camera.objects[i].number);
@@ -211,13 +211,13 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
                         settle ? std::nullopt : object.verified});
   }
   std::vector<FollowedPose> poses = follow_objects(estimator, settings_.follow, frame, expected);
-  follow_again(estimator, frame, camera, poses);
+  retry_lost(estimator, frame, camera, poses);
   return poses;
 }
 
 /// Those without a valid pose from where they were last, and from where the
 /// camera's motion has brought them.
-void ObjectFollower::follow_again(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
+void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
                                   std::vector<FollowedPose>& poses) const {
   std::vector<Eigen::Isometry3d> motions;
   std::vector<std::size_t> failed;
@@ -234,11 +234,11 @@ void ObjectFollower::follow_again(const PoseEstimator& estimator, const RgbdFram
     const FollowedObject& object = camera.objects[i];
     const float score = probability(object.remembered_score);
     ExpectedObject again{object.class_id, object.class_name, score, {object.T_camera_object}, true, true, true, {}};
-    const std::optional<Eigen::Isometry3d> carried = carried_along(object.T_camera_object, motions);
+    const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(object.T_camera_object, motions);
     if (carried) again.starts.insert(again.starts.begin(), *carried);
     // What stands was expected there the first time too, and it has been told
     // whether it is hidden there.
-    again.tell_hidden = carried || !object.velocity.is_zero();
+    again.check_occlusion = carried || !object.velocity.is_zero();
     expected.push_back(std::move(again));
   }
   std::vector<FollowedPose> found = follow_objects(estimator, settings_.follow, frame, expected);
@@ -279,7 +279,7 @@ bool ObjectFollower::is_lost(const FollowedObject& object, const FollowedPose& r
 }
 
 /// What is lost, and the weaker of two that have become one.
-void ObjectFollower::give_up(const PoseEstimator& estimator, FollowedCamera& camera, ShownFrame& shown) const {
+void ObjectFollower::give_up(const PoseEstimator& estimator, FollowedCamera& camera, FollowedFrame& shown) const {
   std::vector<bool> lost(camera.objects.size());
   for (std::size_t i = 0; i < lost.size(); ++i) lost[i] = is_lost(camera.objects[i], shown.poses[i], shown.clock_us);
   for (std::size_t i = 0; i < lost.size(); ++i) {
@@ -302,14 +302,14 @@ void ObjectFollower::give_up(const PoseEstimator& estimator, FollowedCamera& cam
 
 ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFrame& frame,
                                    const Detections& detections) {
-  DetectionLook look;
+  DetectionAssociation look;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    look = look_at_detections(estimator, detections, settings_, cameras_[detections.frame.channel]);
+    look = associate_detections(estimator, detections, settings_, cameras_[detections.frame.channel]);
   }
   Detections looked_for{detections.frame, {}, detections.stages};
   for (std::size_t i = 0; i < detections.detections.size(); ++i) {
-    if (look.is_looked_for(i)) looked_for.detections.push_back(detections.detections[i]);
+    if (look.needs_estimate(i)) looked_for.detections.push_back(detections.detections[i]);
   }
   ObjectPoses found = estimator.estimate(frame, looked_for);
   ObjectPoses result{detections.frame, {}, found.stages};
@@ -317,14 +317,14 @@ ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFra
   FollowedCamera& camera = cameras_[detections.frame.channel];
   std::size_t next = 0;
   for (std::size_t i = 0; i < detections.detections.size(); ++i) {
-    ObjectPose pose = look.is_looked_for(i) ? std::move(found.poses[next++]) : ObjectPose();
+    ObjectPose pose = look.needs_estimate(i) ? std::move(found.poses[next++]) : ObjectPose();
     if (look.matches[i] >= 0) {
       const auto place = static_cast<std::size_t>(look.matches[i]);
       FollowedObject* object = find_followed(look.shown.numbers[place], camera);
-      if (pose.T_camera_object && object != nullptr) settle_doubt(pose, look.shown.poses[place], settings_, *object);
+      if (pose.T_camera_object && object != nullptr) adopt_better_pose(pose, look.shown.poses[place], settings_, *object);
       pose = look.shown.poses[place].pose;
     } else if (pose.T_camera_object) {
-      take_up(estimator, detections.frame, pose, camera);
+      add_object(estimator, detections.frame, pose, camera);
     }
     pose.detection_index = static_cast<int>(i);
     pose.detection_score = detections.detections[i].score;
@@ -335,7 +335,7 @@ ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFra
 
 /// Takes the place of one of its class that is withheld, or of one of another
 /// class that is less sure; is known where one of its class is followed there.
-void ObjectFollower::take_up(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose,
+void ObjectFollower::add_object(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose,
                              FollowedCamera& camera) {
   FollowedObject found;
   found.number = found_++;
@@ -344,10 +344,10 @@ void ObjectFollower::take_up(const PoseEstimator& estimator, const FrameId& fram
   found.remembered_score = log_odds(pose.detection_score);
   found.T_camera_object = *pose.T_camera_object;
   const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
-                                 [&](const ShownFrame& shown) { return shown.utime == frame.utime; });
+                                 [&](const FollowedFrame& shown) { return shown.utime == frame.utime; });
   found.clock_us = then == camera.shown.rend() ? clock_of(frame.utime, camera) : then->clock_us;
   found.valid_us = found.found_us = found.doubted_us = found.clock_us;
-  bring_up_to_date(frame.utime, camera, found);
+  propagate_to_latest(frame.utime, camera, found);
   const PlacedObject here{found.class_name, found.T_camera_object};
   std::vector<FollowedObject> others;
   for (const FollowedObject& object : camera.objects) {
@@ -362,11 +362,11 @@ void ObjectFollower::take_up(const PoseEstimator& estimator, const FrameId& fram
 
 /// Moves what was found in an earlier frame as the camera has moved since, as
 /// far as that can be told.
-void ObjectFollower::bring_up_to_date(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found) {
+void ObjectFollower::propagate_to_latest(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found) {
   const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
-                                 [&](const ShownFrame& one) { return one.utime == utime; });
+                                 [&](const FollowedFrame& one) { return one.utime == utime; });
   if (then == camera.shown.rend() || then == camera.shown.rbegin()) return;
-  const ShownFrame& now = camera.shown.back();
+  const FollowedFrame& now = camera.shown.back();
   std::vector<Eigen::Isometry3d> motions;
   for (std::size_t i = 0; i < now.poses.size(); ++i) {
     const auto place = std::find(then->numbers.begin(), then->numbers.end(), now.numbers[i]);
@@ -375,7 +375,7 @@ void ObjectFollower::bring_up_to_date(std::int64_t utime, const FollowedCamera& 
     if (!before.pose.T_camera_object || !now.poses[i].pose.T_camera_object) continue;
     motions.push_back(now.poses[i].T_camera_object * before.T_camera_object.inverse());
   }
-  const std::optional<Eigen::Isometry3d> carried = carried_along(found.T_camera_object, motions);
+  const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(found.T_camera_object, motions);
   if (!carried) return;
   found.T_camera_object = *carried;
   found.clock_us = found.valid_us = now.clock_us;

@@ -25,11 +25,11 @@ struct FollowerSettings {
   double reach_m = 0.07;            ///< between a detection's centre and a followed pose
                                     ///< of its class: it is of that one
   double apart = 0.5;               ///< of the smaller radius: closer together two objects are one
-  double score_gain = 0.3;          ///< how much one look moves the score's log odds
-  float missed_score = 0.3F;        ///< what a look is worth that does not find an
+  double logit_gain = 0.3;          ///< how much one look moves the score's log odds
+  float miss_score = 0.3F;        ///< what a look is worth that does not find an
                                     ///< object in full view...
   double missed_after_s = 1.0;      ///< ...once none has found it for so long
-  double doubted_after_s = 0.15;    ///< a detection's pose is looked for anew,
+  double recheck_interval_s = 0.15;    ///< a detection's pose is looked for anew,
                                     ///< beside the followed one...
   double better_log_odds = 0.3;     ///< ...and takes its place where its quality is so much better
   double speed_gain = 0.5;          ///< how much the last step moves the speed
@@ -53,7 +53,7 @@ struct FollowedObject {
 };
 
 /// A frame's poses, and whose they are.
-struct ShownFrame {
+struct FollowedFrame {
   std::int64_t utime = 0;     ///< names it
   std::int64_t clock_us = 0;  ///< when it was taken, on the camera's clock
   std::vector<std::int64_t> numbers;
@@ -63,7 +63,7 @@ struct ShownFrame {
 /// What is remembered of a camera.
 struct FollowedCamera {
   std::vector<FollowedObject> objects;
-  std::deque<ShownFrame> shown;  ///< the last ones
+  std::deque<FollowedFrame> shown;  ///< the last ones
   std::int64_t frames = 0;
   /// The camera's clock minus its frames' utimes, which jump where the host's
   /// clock is set or a stamp is wrong. The camera's clock does not.
@@ -102,13 +102,13 @@ class ObjectFollower {
  private:
   std::vector<FollowedPose> follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                        FollowedCamera& camera) const;
-  void follow_again(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
+  void retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
                     std::vector<FollowedPose>& poses) const;
   void note_result(const FollowedPose& result, std::int64_t clock_us, FollowedObject& object) const;
   bool is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const;
-  void give_up(const PoseEstimator& estimator, FollowedCamera& camera, ShownFrame& shown) const;
-  void take_up(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose, FollowedCamera& camera);
-  static void bring_up_to_date(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found);
+  void give_up(const PoseEstimator& estimator, FollowedCamera& camera, FollowedFrame& shown) const;
+  void add_object(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose, FollowedCamera& camera);
+  static void propagate_to_latest(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found);
 
   FollowerSettings settings_;
   std::mutex mutex_;

@@ -141,7 +141,7 @@ Equations total(const std::vector<Equations>& parts) {
 
 }  // namespace
 
-Agreement measure_agreement(const std::vector<DepthView>& views, const AlignmentSettings& settings) {
+AlignmentError measure_alignment_error(const std::vector<DepthView>& views, const AlignmentSettings& settings) {
   Equations sum = total(compare_all(views, make_comparison(views, settings), settings));
   if (sum.distances.empty()) return {};
   const auto middle = sum.distances.begin() + static_cast<std::ptrdiff_t>(sum.distances.size() / 2);

@@ -17,13 +17,13 @@ struct AlignmentSettings {
 };
 
 /// How well views agree: point to plane, over all compared points.
-struct Agreement {
+struct AlignmentError {
   int pairs = 0;
   double median_m = 0.0;  ///< of the absolute distances; 0 without pairs
 };
 
 /// Distances between each view's points and its neighbours' surfaces.
-Agreement measure_agreement(const std::vector<DepthView>& views, const AlignmentSettings& settings);
+AlignmentError measure_alignment_error(const std::vector<DepthView>& views, const AlignmentSettings& settings);
 
 /// Corrects T_camera_object of the views in place by one motion of the object frame in the camera's, common to all
 /// views: for a turntable in front of a fixed camera, whose steps are exact, this corrects the axis and nothing else.

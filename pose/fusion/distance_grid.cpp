@@ -62,8 +62,8 @@ Extent find_extent(const std::vector<DepthView>& views) {
   return extent;
 }
 
-DistanceGrid make_grid(const Extent& extent, const GridSettings& settings) {
-  DistanceGrid grid;
+TsdfVolume make_grid(const Extent& extent, const TsdfSettings& settings) {
+  TsdfVolume grid;
   grid.voxel = settings.voxel;
   const double margin = (settings.truncation_voxels + 2.0) * settings.voxel;
   grid.origin = extent.low - Eigen::Vector3d::Constant(margin);
@@ -88,7 +88,7 @@ struct Observation {
 };
 
 Observation observe(const DepthView& view, const Eigen::Vector3d& p_camera, double truncation,
-                    const GridSettings& settings) {
+                    const TsdfSettings& settings) {
   const auto px = view.pixel_of(p_camera);
   if (!px && !view.in_picture(p_camera)) return {};
   if (!px || view.outside.at<std::uint8_t>(*px) != 0) return {1.0F, static_cast<float>(settings.outline_weight)};
@@ -102,7 +102,7 @@ Observation observe(const DepthView& view, const Eigen::Vector3d& p_camera, doub
   return {static_cast<float>(std::min(distance, 1.0)), static_cast<float>(facing * std::min(1.0, 1.0 + distance))};
 }
 
-void fill_slice(const std::vector<DepthView>& views, const GridSettings& settings, int k, DistanceGrid& grid) {
+void fill_slice(const std::vector<DepthView>& views, const TsdfSettings& settings, int k, TsdfVolume& grid) {
   const double truncation = settings.truncation_voxels * settings.voxel;
   for (const DepthView& view : views) {
     for (int j = 0; j < grid.ny; ++j) {
@@ -118,7 +118,7 @@ void fill_slice(const std::vector<DepthView>& views, const GridSettings& setting
 
 /// Sums become means. The unseen becomes inside, but not below the lowest and above the highest that was seen: an
 /// object stands on its base, and views from low down leave the space above it unseen.
-void finish_slice(const Extent& extent, const GridSettings& settings, double fewest, int k, DistanceGrid& grid) {
+void finish_slice(const Extent& extent, const TsdfSettings& settings, double fewest, int k, TsdfVolume& grid) {
   const double truncation = settings.truncation_voxels * settings.voxel;
   for (int j = 0; j < grid.ny; ++j) {
     for (int i = 0; i < grid.nx; ++i) {
@@ -135,9 +135,9 @@ void finish_slice(const Extent& extent, const GridSettings& settings, double few
   }
 }
 
-DistanceGrid fuse_extent(const std::vector<DepthView>& views, const Extent& extent, const GridSettings& settings) {
+TsdfVolume fuse_extent(const std::vector<DepthView>& views, const Extent& extent, const TsdfSettings& settings) {
   require(settings.voxel > 0.0, "voxels of {} m, expected more than 0", settings.voxel);
-  DistanceGrid grid = make_grid(extent, settings);
+  TsdfVolume grid = make_grid(extent, settings);
   const double fewest = std::max(1.0, settings.fewest_share * static_cast<double>(views.size()));
   parallel_for(settings.threads, grid.nz, [&](int k) {
     fill_slice(views, settings, k, grid);
@@ -148,12 +148,12 @@ DistanceGrid fuse_extent(const std::vector<DepthView>& views, const Extent& exte
 
 }  // namespace
 
-DistanceGrid fuse_distances(const std::vector<DepthView>& views, const GridSettings& settings) {
+TsdfVolume integrate_views(const std::vector<DepthView>& views, const TsdfSettings& settings) {
   return fuse_extent(views, find_extent(views), settings);
 }
 
-DistanceGrid fuse_box(const std::vector<DepthView>& views, const Eigen::AlignedBox3d& box,
-                      const GridSettings& settings) {
+TsdfVolume integrate_box(const std::vector<DepthView>& views, const Eigen::AlignedBox3d& box,
+                      const TsdfSettings& settings) {
   Extent extent;
   extent.low = box.min();
   extent.high = box.max();

@@ -9,7 +9,7 @@
 namespace houghstream::fusion {
 
 /// A box of voxels in the object frame. Voxel (i,j,k) has its centre at origin + voxel * (i,j,k).
-struct DistanceGrid {
+struct TsdfVolume {
   int nx = 0, ny = 0, nz = 0;
   double voxel = 0.0;                                ///< edge length, metres
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< centre of voxel (0,0,0), metres
@@ -23,7 +23,7 @@ struct DistanceGrid {
 };
 
 /// How a grid is laid out and filled.
-struct GridSettings {
+struct TsdfSettings {
   double voxel = 0.0015;           ///< metres
   double truncation_voxels = 4.0;  ///< distances beyond are only "in front"
   double fewest_share = 0.05;      ///< of the views: a voxel of less weight counts as never seen
@@ -38,11 +38,11 @@ struct GridSettings {
 /// lies behind surfaces and counts as inside, so that the solid is closed. Where all views look from one side, it ends
 /// at the lowest that was seen, on which the object stands, and what is unseen at the highest. Throws InputError
 /// without views or points, or where they need more than `most_voxels`.
-DistanceGrid fuse_distances(const std::vector<DepthView>& views, const GridSettings& settings);
+TsdfVolume integrate_views(const std::vector<DepthView>& views, const TsdfSettings& settings);
 
 /// The same in a box of the object frame, metres, whatever else the views show there: what no view has seen is inside,
 /// with weight 0. Throws InputError where the box needs more than `most_voxels`.
-DistanceGrid fuse_box(const std::vector<DepthView>& views, const Eigen::AlignedBox3d& box,
-                      const GridSettings& settings);
+TsdfVolume integrate_box(const std::vector<DepthView>& views, const Eigen::AlignedBox3d& box,
+                      const TsdfSettings& settings);
 
 }  // namespace houghstream::fusion

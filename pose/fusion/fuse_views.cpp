@@ -15,13 +15,13 @@ FusedModel fuse_views(const std::string& name, const std::vector<TrainingView>& 
   AlignmentSettings alignment = settings.alignment;
   alignment.threads = settings.threads;
   FusedModel model;
-  model.before = measure_agreement(depth_views, alignment);
+  model.before = measure_alignment_error(depth_views, alignment);
   if (settings.align) align_views(depth_views, alignment);
-  model.after = settings.align ? measure_agreement(depth_views, alignment) : model.before;
-  GridSettings grid = settings.grid;
+  model.after = settings.align ? measure_alignment_error(depth_views, alignment) : model.before;
+  TsdfSettings grid = settings.grid;
   grid.threads = settings.threads;
   try {
-    model.mesh = largest_part(extract_surface(fuse_distances(depth_views, grid)));
+    model.mesh = largest_part(extract_surface(integrate_views(depth_views, grid)));
   } catch (const InputError& error) {
     fail("{}: {}", name, error.what());
   }

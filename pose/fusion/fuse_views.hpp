@@ -12,7 +12,7 @@ namespace houghstream::fusion {
 
 /// How a model is made of an object's training views.
 struct FusionSettings {
-  GridSettings grid;
+  TsdfSettings grid;
   AlignmentSettings alignment;
   bool align = true;  ///< false where T_camera_object is exact, as in rendered views
   int threads = 1;    ///< any number gives the same result
@@ -22,7 +22,7 @@ struct FusionSettings {
 struct FusedModel {
   Mesh mesh;                ///< object frame of the views, metres; closed, with normals and colours
   std::vector<bool> seen;   ///< per vertex: some view shows it; the others close the surface
-  Agreement before, after;  ///< of the views, before and after their alignment
+  AlignmentError before, after;  ///< of the views, before and after their alignment
 };
 
 /// Makes a model of one object of which there is no CAD model, from views with depth, mask and pose: the views are

@@ -16,7 +16,7 @@ using Cell = std::array<int, 3>;  // its lowest corner is the voxel of the same 
 /// Cells and vertices by slices of cells, so that every vertex is found again by its cell.
 class SurfaceNet {
  public:
-  explicit SurfaceNet(const DistanceGrid& grid) : grid_(grid) {}
+  explicit SurfaceNet(const TsdfVolume& grid) : grid_(grid) {}
 
   Mesh extract() {
     for (int k = 0; k < grid_.nz; ++k) {
@@ -86,7 +86,7 @@ class SurfaceNet {
     return (grid_.origin + grid_.voxel * sum / count).cast<float>();
   }
 
-  const DistanceGrid& grid_;
+  const TsdfVolume& grid_;
   Mesh mesh_;
   std::unordered_map<std::size_t, std::uint32_t> vertices_;  // by cell
 };
@@ -107,7 +107,7 @@ class Parts {
 
 }  // namespace
 
-Mesh extract_surface(const DistanceGrid& grid) {
+Mesh extract_surface(const TsdfVolume& grid) {
   Mesh mesh = SurfaceNet(grid).extract();
   compute_normals(mesh);
   return mesh;
@@ -136,7 +136,7 @@ Mesh largest_part(const Mesh& mesh) {
   return out;
 }
 
-Mesh without_unseen(const Mesh& mesh, const std::vector<bool>& seen, double foot_z_m) {
+Mesh remove_unobserved(const Mesh& mesh, const std::vector<bool>& seen, double foot_z_m) {
   constexpr double kLeast_m2 = 1e-4;
   Parts parts(mesh.vertices.size());
   std::vector<double> area(mesh.vertices.size(), 0.0);
@@ -155,7 +155,7 @@ Mesh without_unseen(const Mesh& mesh, const std::vector<bool>& seen, double foot
     const Eigen::Vector3f& a = mesh.vertices[t[0]];
     area[parts.find(t[0])] += 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
   }
-  return mesh_part(
+  return extract_submesh(
       mesh, [&](const std::array<std::uint32_t, 3>& t) { return !is_guess(t) || area[parts.find(t[0])] <= kLeast_m2; });
 }
 

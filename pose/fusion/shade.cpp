@@ -52,7 +52,7 @@ std::vector<Point> points_of(const std::vector<Eigen::Vector3d>& colours, const 
 }
 
 /// Sums of a paint's points.
-struct Paint {
+struct Albedo {
   double weight = 0.0;
   double level = 0.0;
   Harmonics y = Harmonics::Zero();
@@ -62,10 +62,10 @@ struct Paint {
 /// 0.
 Harmonics solve(const std::vector<Point>& points, const std::vector<double>& weights) {
   constexpr double kRidge = 0.003;
-  std::vector<Paint> paints(static_cast<std::size_t>(kChromas) * kChromas);
+  std::vector<Albedo> paints(static_cast<std::size_t>(kChromas) * kChromas);
   double all = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    Paint& paint = paints[static_cast<std::size_t>(points[i].paint)];
+    Albedo& paint = paints[static_cast<std::size_t>(points[i].paint)];
     paint.weight += weights[i];
     paint.level += weights[i] * points[i].level;
     paint.y += weights[i] * points[i].y;
@@ -74,7 +74,7 @@ Harmonics solve(const std::vector<Point>& points, const std::vector<double>& wei
   Eigen::Matrix<double, 8, 8> normal = Eigen::Matrix<double, 8, 8>::Identity() * (kRidge * all + 1e-9);
   Harmonics right = Harmonics::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Paint& paint = paints[static_cast<std::size_t>(points[i].paint)];
+    const Albedo& paint = paints[static_cast<std::size_t>(points[i].paint)];
     const Harmonics y = points[i].y - paint.y / paint.weight;
     normal += weights[i] * y * y.transpose();
     right += weights[i] * y * (points[i].level - paint.level / paint.weight);
@@ -107,12 +107,12 @@ std::array<double, 256> make_linear_table() {
 
 }  // namespace
 
-Eigen::Vector3d linear_colour(const cv::Vec3b& colour) {
+Eigen::Vector3d srgb_to_linear(const cv::Vec3b& colour) {
   static const std::array<double, 256> kLinear = make_linear_table();
   return {kLinear[colour[0]], kLinear[colour[1]], kLinear[colour[2]]};
 }
 
-cv::Vec3b coded_colour(const Eigen::Vector3d& linear) {
+cv::Vec3b linear_to_srgb(const Eigen::Vector3d& linear) {
   cv::Vec3b coded;
   for (int c = 0; c < 3; ++c) {
     const double l = std::clamp(linear[c], 0.0, 1.0);
@@ -147,14 +147,14 @@ std::vector<double> exposures(const std::vector<ColourSample>& samples, int vert
   return exposure;
 }
 
-double Shade::operator()(const Eigen::Vector3d& normal) const {
+double ShadingModel::operator()(const Eigen::Vector3d& normal) const {
   return weights_.dot(harmonics(normal));
 }
 
-Shade fit_shade(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals) {
+ShadingModel fit_shading(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals) {
   constexpr int kRounds = 20;
   constexpr double kExact = 0.05;  // departures below that are noise
-  Shade shade;
+  ShadingModel shade;
   const std::vector<Point> points = points_of(colours, normals);
   if (points.empty()) return shade;
   std::vector<double> weights(points.size());

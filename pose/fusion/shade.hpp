@@ -7,9 +7,9 @@
 namespace houghstream::fusion {
 
 /// A pixel's colour in linear light: what its bytes mean as sRGB (IEC 61966-2-1), BGR in [0,1].
-Eigen::Vector3d linear_colour(const cv::Vec3b& colour);
+Eigen::Vector3d srgb_to_linear(const cv::Vec3b& colour);
 /// The inverse, clipped.
-cv::Vec3b coded_colour(const Eigen::Vector3d& linear);
+cv::Vec3b linear_to_srgb(const Eigen::Vector3d& linear);
 
 /// A vertex as a view shows it.
 struct ColourSample {
@@ -26,19 +26,19 @@ std::vector<double> exposures(const std::vector<ColourSample>& samples, int vert
 
 /// How brightly light that stands still about the object falls on surface that faces one way: log, spherical harmonics
 /// to the second order (Ramamoorthi and Hanrahan 2001 show that these hold diffuse light).
-class Shade {
+class ShadingModel {
  public:
   /// Log of the light on a surface of this normal, but for a constant.
   double operator()(const Eigen::Vector3d& normal) const;
 
  private:
-  friend Shade fit_shade(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals);
+  friend ShadingModel fit_shading(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals);
   Eigen::Matrix<double, 8, 1> weights_ = Eigen::Matrix<double, 8, 1>::Zero();
 };
 
 /// Parts light from paint. Neither is seen alone: what has the same hue and saturation on sides that face differently
 /// is taken to be painted alike in most places (absolute deviations are least), and what remains unsure is paint.
 /// `colours`: linear BGR of points of the surface, without exposure; `normals`: unit length. Both of one size.
-Shade fit_shade(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals);
+ShadingModel fit_shading(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals);
 
 }  // namespace houghstream::fusion

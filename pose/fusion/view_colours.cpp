@@ -46,14 +46,14 @@ class Lighting {
 
  private:
   void add_samples(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh);
-  void take_out_shade(const Mesh& mesh, int light);
+  void remove_shading(const Mesh& mesh, int light);
 
   std::vector<int> light_;     ///< of each view
   std::vector<int> vertices_;  ///< those that are looked at
   std::vector<ColourSample> samples_;
   std::vector<Eigen::Vector3d> colours_;  ///< of the samples
   std::vector<double> exposures_;
-  std::vector<Shade> shades_;
+  std::vector<ShadingModel> shades_;
 };
 
 Lighting::Lighting(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh) {
@@ -65,7 +65,7 @@ Lighting::Lighting(const std::vector<DepthView>& views, double tolerance_m, cons
   add_samples(views, tolerance_m, mesh);
   exposures_.assign(views.size(), 0.0);
   shades_.resize(static_cast<std::size_t>(lights));
-  for (int light = 0; light < lights; ++light) take_out_shade(mesh, light);
+  for (int light = 0; light < lights; ++light) remove_shading(mesh, light);
   // Views of several lights agree on the paint only now.
   for (ColourSample& sample : samples_) {
     if (light_[static_cast<std::size_t>(sample.view)] < 0) continue;
@@ -86,7 +86,7 @@ void Lighting::add_samples(const std::vector<DepthView>& views, double tolerance
     for (std::size_t k = 0; k < views.size(); ++k) {
       const Sight seen = sight(views[k], mesh.vertices[v].cast<double>(), mesh.normals[v].cast<double>(), tolerance_m);
       if (seen.facing < kLeastFacing || is_clipped(seen.colour)) continue;
-      const Eigen::Vector3d colour = linear_colour(seen.colour);
+      const Eigen::Vector3d colour = srgb_to_linear(seen.colour);
       samples_.push_back(
           {static_cast<int>(i), static_cast<int>(k), std::log(colour.mean()), seen.facing * seen.facing});
       colours_.push_back(colour);
@@ -94,7 +94,7 @@ void Lighting::add_samples(const std::vector<DepthView>& views, double tolerance
   }
 }
 
-void Lighting::take_out_shade(const Mesh& mesh, int light) {
+void Lighting::remove_shading(const Mesh& mesh, int light) {
   std::vector<ColourSample> lit;
   for (const ColourSample& sample : samples_) {
     if (light_[static_cast<std::size_t>(sample.view)] == light) lit.push_back(sample);
@@ -116,7 +116,7 @@ void Lighting::take_out_shade(const Mesh& mesh, int light) {
     colours.emplace_back(sums[i].colour / sums[i].weight);
     normals.push_back(mesh.normals[static_cast<std::size_t>(vertices_[i])].cast<double>());
   }
-  shades_[static_cast<std::size_t>(light)] = fit_shade(colours, normals);
+  shades_[static_cast<std::size_t>(light)] = fit_shading(colours, normals);
 }
 
 /// Brightness that one vertex in twenty exceeds.
@@ -167,9 +167,9 @@ std::vector<bool> colour_mesh(const std::vector<DepthView>& views, double tolera
       if (seen.facing <= 0.0) continue;
       // The few most frontal views decide: with all of them, errors of a pixel would blur the print.
       const double weight = std::pow(seen.facing, 8);
-      sums[i].colour += weight * std::exp(-lighting(static_cast<int>(k), normal)) * linear_colour(seen.colour);
+      sums[i].colour += weight * std::exp(-lighting(static_cast<int>(k), normal)) * srgb_to_linear(seen.colour);
       sums[i].weight += weight;
-      as_seen[i].colour += weight * linear_colour(seen.colour);
+      as_seen[i].colour += weight * srgb_to_linear(seen.colour);
       as_seen[i].weight += weight;
     }
   });
@@ -184,7 +184,7 @@ std::vector<bool> colour_mesh(const std::vector<DepthView>& views, double tolera
   mesh.colours.clear();
   for (const Sum& sum : sums) {
     mesh.colours.push_back(
-        coded_colour(sum.weight > 0.0 ? Eigen::Vector3d(sum.colour / sum.weight) : Eigen::Vector3d::Zero()));
+        linear_to_srgb(sum.weight > 0.0 ? Eigen::Vector3d(sum.colour / sum.weight) : Eigen::Vector3d::Zero()));
   }
   return seen;
 }

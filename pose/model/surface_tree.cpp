@@ -53,13 +53,13 @@ std::array<float, 3> nearest_weights(const Eigen::Vector3f& p, const Corners& c)
 
 }  // namespace
 
-SurfaceTree::SurfaceTree(const Mesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
+MeshBvh::MeshBvh(const Mesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
   require(!mesh.triangles.empty(), "mesh of {} vertices without triangles, expected a surface", mesh.vertices.size());
   std::iota(order_.begin(), order_.end(), 0U);
   build(0, static_cast<std::uint32_t>(order_.size()));
 }
 
-std::uint32_t SurfaceTree::build(std::uint32_t first, std::uint32_t count) {
+std::uint32_t MeshBvh::build(std::uint32_t first, std::uint32_t count) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
   nodes_.push_back({});
   Eigen::AlignedBox3f box;
@@ -87,7 +87,7 @@ std::uint32_t SurfaceTree::build(std::uint32_t first, std::uint32_t count) {
   return index;
 }
 
-void SurfaceTree::search(std::uint32_t index, const Eigen::Vector3f& point, SurfaceHit& best) const {
+void MeshBvh::search(std::uint32_t index, const Eigen::Vector3f& point, ClosestPoint& best) const {
   const Node& node = nodes_[index];
   if (node.box.exteriorDistance(point) >= best.distance) return;
   for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
@@ -103,8 +103,8 @@ void SurfaceTree::search(std::uint32_t index, const Eigen::Vector3f& point, Surf
   search(right_first ? index + 1 : node.right, point, best);
 }
 
-SurfaceHit SurfaceTree::nearest(const Eigen::Vector3f& point) const {
-  SurfaceHit best;
+ClosestPoint MeshBvh::nearest(const Eigen::Vector3f& point) const {
+  ClosestPoint best;
   best.distance = std::numeric_limits<float>::infinity();
   search(0, point, best);
   return best;

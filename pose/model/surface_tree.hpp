@@ -10,19 +10,19 @@
 namespace houghstream {
 
 /// The point of a surface that is nearest to another point.
-struct SurfaceHit {
+struct ClosestPoint {
   float distance = 0.0F;  ///< metres
   std::uint32_t triangle = 0;
   std::array<float, 3> weights = {1.0F, 0.0F, 0.0F};  ///< barycentric, of the triangle's vertices
 };
 
 /// Exact distances to a mesh: its triangles in a tree of boxes, each halved at the median of its longest side.
-class SurfaceTree {
+class MeshBvh {
  public:
   /// Keeps a reference to `mesh`. Throws InputError for a mesh without triangles.
-  explicit SurfaceTree(const Mesh& mesh);
+  explicit MeshBvh(const Mesh& mesh);
 
-  SurfaceHit nearest(const Eigen::Vector3f& point) const;
+  ClosestPoint nearest(const Eigen::Vector3f& point) const;
 
  private:
   struct Node {
@@ -32,7 +32,7 @@ class SurfaceTree {
     std::uint32_t right = 0;
   };
   std::uint32_t build(std::uint32_t first, std::uint32_t count);
-  void search(std::uint32_t node, const Eigen::Vector3f& point, SurfaceHit& best) const;
+  void search(std::uint32_t node, const Eigen::Vector3f& point, ClosestPoint& best) const;
 
   const Mesh& mesh_;
   std::vector<std::uint32_t> order_;

@@ -19,7 +19,7 @@ bool has_colours(const Mesh& mesh) {
 }
 
 /// BGR at a point of the surface, from the texture where there is one.
-Eigen::Vector3f colour_at(const Mesh& mesh, const SurfaceHit& hit) {
+Eigen::Vector3f colour_at(const Mesh& mesh, const ClosestPoint& hit) {
   const auto& triangle = mesh.triangles[hit.triangle];
   if (mesh.texture.empty() || mesh.uvs.empty()) {
     Eigen::Vector3f colour = Eigen::Vector3f::Zero();
@@ -71,13 +71,13 @@ std::vector<Eigen::Vector3d> candidate_axes(const Moments& moments) {
 }
 
 /// No n-fold axis has more than a few of these angles among its own.
-bool fits_any_angle(const TurnCheck& check, const Eigen::Vector3d& axis) {
+bool fits_any_angle(const RotationSymmetryTest& check, const Eigen::Vector3d& axis) {
   constexpr std::array<double, 8> kAngles_deg = {23, 37, 53, 71, 97, 113, 139, 163};
   return std::all_of(kAngles_deg.begin(), kAngles_deg.end(),
                      [&](double angle) { return check.fits(axis, angle * kRadPerDeg); });
 }
 
-std::vector<ContinuousSymmetry> continuous_axes(const TurnCheck& check, const Moments& moments) {
+std::vector<ContinuousSymmetry> continuous_axes(const RotationSymmetryTest& check, const Moments& moments) {
   std::vector<ContinuousSymmetry> found;
   for (const Eigen::Vector3d& axis : candidate_axes(moments)) {
     const bool known = std::any_of(found.begin(), found.end(), [&](const ContinuousSymmetry& other) {
@@ -90,7 +90,7 @@ std::vector<ContinuousSymmetry> continuous_axes(const TurnCheck& check, const Mo
 }
 
 /// One turn per axis: the smallest that fits, of which the others are multiples.
-std::vector<Eigen::Isometry3d> smallest_turns(const TurnCheck& check, const Moments& moments) {
+std::vector<Eigen::Isometry3d> smallest_turns(const RotationSymmetryTest& check, const Moments& moments) {
   constexpr int kMostFold = 6;
   std::vector<Eigen::Isometry3d> turns;
   std::vector<Eigen::Vector3d> known;
@@ -126,7 +126,7 @@ std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& tu
 
 }  // namespace
 
-TurnCheck::TurnCheck(const Mesh& mesh, const Eigen::Vector3d& centre, const SymmetrySearch& settings)
+RotationSymmetryTest::RotationSymmetryTest(const Mesh& mesh, const Eigen::Vector3d& centre, const SymmetrySearch& settings)
     : mesh_(mesh),
       settings_(settings),
       tree_(mesh),
@@ -142,18 +142,18 @@ TurnCheck::TurnCheck(const Mesh& mesh, const Eigen::Vector3d& centre, const Symm
   for (const Eigen::Vector3f& point : samples_) colours_.push_back(colour_at(mesh, tree_.nearest(point)));
 }
 
-Eigen::Isometry3d TurnCheck::turn(const Eigen::Vector3d& axis, double angle_rad) const {
+Eigen::Isometry3d RotationSymmetryTest::turn(const Eigen::Vector3d& axis, double angle_rad) const {
   return Eigen::Translation3d(centre_) * Eigen::AngleAxisd(angle_rad, axis) * Eigen::Translation3d(-centre_);
 }
 
-bool TurnCheck::fits(const Eigen::Vector3d& axis, double angle_rad) const {
+bool RotationSymmetryTest::fits(const Eigen::Vector3d& axis, double angle_rad) const {
   const Eigen::Isometry3f T = turn(axis, angle_rad).cast<float>();
   const auto near = [&](const Eigen::Vector3f& point) { return tree_.nearest(T * point).distance <= tolerance_m_; };
   return std::all_of(corners_.begin(), corners_.end(), near) && std::all_of(samples_.begin(), samples_.end(), near) &&
-         differing_share(T) <= settings_.largest_differing;
+         differing_fraction(T) <= settings_.largest_differing;
 }
 
-double TurnCheck::differing_share(const Eigen::Isometry3f& T) const {
+double RotationSymmetryTest::differing_fraction(const Eigen::Isometry3f& T) const {
   int differing = 0;
   for (std::size_t i = 0; i < colours_.size(); ++i) {
     const Eigen::Vector3f there = colour_at(mesh_, tree_.nearest(T * samples_[i]));
@@ -165,7 +165,7 @@ double TurnCheck::differing_share(const Eigen::Isometry3f& T) const {
 
 Symmetries find_symmetries(const Mesh& mesh, const SymmetrySearch& settings) {
   const Moments moments = surface_moments(mesh);
-  const TurnCheck check(mesh, moments.centroid, settings);
+  const RotationSymmetryTest check(mesh, moments.centroid, settings);
   Symmetries found;
   found.continuous = continuous_axes(check, moments);
   if (found.continuous.empty()) {

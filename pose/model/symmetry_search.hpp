@@ -31,10 +31,10 @@ Symmetries find_symmetries(const Mesh& mesh, const SymmetrySearch& settings = {}
 
 /// Says of a turn about an axis through a point of the object frame whether the object looks the same after it. Looks
 /// at 1000 evenly spread points of the surface, and at up to 2000 of its vertices: corners deviate most.
-class TurnCheck {
+class RotationSymmetryTest {
  public:
   /// Keeps a reference to `mesh`. Throws InputError for a mesh without surface.
-  TurnCheck(const Mesh& mesh, const Eigen::Vector3d& centre, const SymmetrySearch& settings);
+  RotationSymmetryTest(const Mesh& mesh, const Eigen::Vector3d& centre, const SymmetrySearch& settings);
 
   /// The motion of the object frame, metres.
   Eigen::Isometry3d turn(const Eigen::Vector3d& axis, double angle_rad) const;
@@ -42,11 +42,11 @@ class TurnCheck {
 
  private:
   /// Share of the samples whose colour is another where the turn takes them.
-  double differing_share(const Eigen::Isometry3f& T) const;
+  double differing_fraction(const Eigen::Isometry3f& T) const;
 
   const Mesh& mesh_;
   SymmetrySearch settings_;
-  SurfaceTree tree_;
+  MeshBvh tree_;
   Eigen::Vector3d centre_;
   float tolerance_m_;
   std::vector<Eigen::Vector3f> samples_;

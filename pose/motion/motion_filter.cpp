@@ -21,12 +21,12 @@ Vector6 both(double translation, double rotation) {
 MotionFilter::MotionFilter(const PoseMeasurement& first, const MotionSettings& settings)
     : settings_(settings), utime_(first.utime), measured_utime_(first.utime), T_(first.T_world_object) {
   P_.topLeftCorner<6, 6>() = first.covariance;
-  common_.topRows<6>() = common_error(first);
+  common_.topRows<6>() = consider_covariance(first);
 }
 
 /// A root of the common part of its covariance: the symmetric one, so that it turns with the line of sight.
-Covariance6 MotionFilter::common_error(const PoseMeasurement& measured) const {
-  const Eigen::SelfAdjointEigenSolver<Covariance6> solver(settings_.common_share * measured.covariance);
+Covariance6 MotionFilter::consider_covariance(const PoseMeasurement& measured) const {
+  const Eigen::SelfAdjointEigenSolver<Covariance6> solver(settings_.common_variance_fraction * measured.covariance);
   const Vector6 deviations = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
   return solver.eigenvectors() * deviations.asDiagonal() * solver.eigenvectors().transpose();
 }
@@ -59,7 +59,7 @@ void MotionFilter::update(const PoseMeasurement& measured) {
   const Matrix12x6 gain = P_.leftCols<6>() * S.inverse();
   const Eigen::Matrix<double, 12, 1> step = gain * local_coordinates_about_world(measured.T_world_object, T_);
   T_ = retract_about_world(T_, step.head<6>());
-  const Covariance6 unlike = common_error(measured) - common_.topRows<6>();
+  const Covariance6 unlike = consider_covariance(measured) - common_.topRows<6>();
   common_ += gain * unlike;
   P_ -= gain * P_.topRows<6>();
   P_ = 0.5 * (P_ + P_.transpose()).eval();
@@ -77,7 +77,7 @@ void MotionFilter::start_moving(const PoseMeasurement& measured, const Vector6& 
   P_.setZero();
   P_.topLeftCorner<6, 6>() = measured.covariance;
   common_.setZero();
-  common_.topRows<6>() = common_error(measured);
+  common_.topRows<6>() = consider_covariance(measured);
   P_.diagonal().tail<6>() = both(kVelocity * kVelocity, kAngularVelocity * kAngularVelocity);
 }
 

@@ -23,7 +23,7 @@ struct MotionSettings {
   /// Of a measurement's variance: the error that the frames of a view have in common. Half of the errors of rendered
   /// frames are within 0.5 mm at 1 m; were these Gaussian, and all in common, it would be 0.03. It is three times that,
   /// since objects differ; chosen so, not learnt.
-  double common_share = 0.1;
+  double common_variance_fraction = 0.1;
 };
 
 /// The pose of one object over time: a Kalman filter on the group of motions (error state: twists
@@ -66,7 +66,7 @@ class MotionFilter {
   using Matrix12 = Eigen::Matrix<double, 12, 12>;
   using Matrix12x6 = Eigen::Matrix<double, 12, 6>;
 
-  Covariance6 common_error(const PoseMeasurement& measured) const;
+  Covariance6 consider_covariance(const PoseMeasurement& measured) const;
 
   MotionSettings settings_;
   bool moving_ = false;

@@ -21,9 +21,9 @@ Eigen::Isometry3d SmoothedVelocity::predict(const Eigen::Isometry3d& T_camera_ob
 void SmoothedVelocity::update(const Eigen::Isometry3d& T_before, const Eigen::Isometry3d& T_after, double seconds,
                               double gain) {
   const Eigen::Vector3d speed = (T_after.translation() - T_before.translation()) / seconds;
-  const Eigen::Vector3d turn_rate = rotation_vector(T_after.linear() * T_before.linear().transpose()) / seconds;
+  const Eigen::Vector3d angular_velocity = rotation_vector(T_after.linear() * T_before.linear().transpose()) / seconds;
   speed_ += gain * (speed - speed_);
-  turn_rate_ += gain * (turn_rate - turn_rate_);
+  turn_rate_ += gain * (angular_velocity - turn_rate_);
 }
 
 void SmoothedVelocity::reset() {
@@ -34,7 +34,7 @@ bool SmoothedVelocity::is_zero() const {
   return speed_.isZero(0.0) && turn_rate_.isZero(0.0);
 }
 
-std::optional<Eigen::Isometry3d> carried_along(const Eigen::Isometry3d& T_camera_object,
+std::optional<Eigen::Isometry3d> predict_by_camera_motion(const Eigen::Isometry3d& T_camera_object,
                                                const std::vector<Eigen::Isometry3d>& motions) {
   for (std::size_t i = 0; i < motions.size(); ++i) {
     for (std::size_t j = i + 1; j < motions.size(); ++j) {

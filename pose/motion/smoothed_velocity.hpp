@@ -29,7 +29,7 @@ class SmoothedVelocity {
 /// Where the motion that two of these agree on (8 mm, 0.04 radians, at this pose) would bring it: the camera's own, as
 /// far as it can be told. Motions are of the camera's frame: T_after * T_before^-1 of other objects. Nothing where no
 /// two agree.
-std::optional<Eigen::Isometry3d> carried_along(const Eigen::Isometry3d& T_camera_object,
+std::optional<Eigen::Isometry3d> predict_by_camera_motion(const Eigen::Isometry3d& T_camera_object,
                                                const std::vector<Eigen::Isometry3d>& motions);
 
 }  // namespace houghstream

@@ -56,8 +56,8 @@ std::size_t densest(const std::vector<RotationVote>& votes, float least_likeness
   return best;
 }
 
-void add_turned(std::vector<RotationCandidate>& candidates, int turned_clusters) {
-  const std::size_t heaviest = std::min<std::size_t>(candidates.size(), std::max(0, turned_clusters));
+void add_turned(std::vector<RotationCandidate>& candidates, int rotated_clusters) {
+  const std::size_t heaviest = std::min<std::size_t>(candidates.size(), std::max(0, rotated_clusters));
   for (std::size_t i = 0; i < heaviest; ++i) {
     const Eigen::Quaternionf R_camera_object = candidates[i].R_camera_object;
     for (const double degrees : {90.0, 180.0, 270.0}) {
@@ -67,7 +67,7 @@ void add_turned(std::vector<RotationCandidate>& candidates, int turned_clusters)
   }
 }
 
-PoseCandidate best_place(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
+PoseCandidate best_place(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
                          const SearchSettings& settings) {
   const ShiftSearch along{settings.points, settings.reach_m, {settings.tolerance_m, seen.noise}};
   PoseCandidate best;
@@ -100,7 +100,7 @@ std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>
     candidates.push_back(mean_rotation({near_begin, left.end()}));
     left.erase(near_begin, left.end());
   }
-  add_turned(candidates, settings.turned_clusters);
+  add_turned(candidates, settings.rotated_clusters);
   return candidates;
 }
 
@@ -118,7 +118,7 @@ float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Iso
   return most > 0.0F ? std::min(1.0F, sum / most) : 0.0F;
 }
 
-std::vector<PoseCandidate> place_candidates(const SeenObject& seen, const std::vector<RotationCandidate>& rotations,
+std::vector<PoseCandidate> place_candidates(const ObjectObservation& seen, const std::vector<RotationCandidate>& rotations,
                                             const SearchSettings& settings) {
   std::vector<PoseCandidate> candidates;
   for (const RotationCandidate& rotation : rotations) {
@@ -134,7 +134,7 @@ std::vector<PoseCandidate> place_candidates(const SeenObject& seen, const std::v
   return candidates;
 }
 
-std::vector<PoseCandidate> earlier_candidates(const SeenObject& seen, const std::string& class_name,
+std::vector<PoseCandidate> earlier_candidates(const ObjectObservation& seen, const std::string& class_name,
                                               const ObjectPoses& earlier, const WarmStartSettings& settings) {
   std::vector<PoseCandidate> candidates;
   const double age_s = seconds_between(earlier.frame.utime, seen.frame.id.utime);

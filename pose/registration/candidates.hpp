@@ -14,7 +14,7 @@ namespace houghstream {
 struct InitialSettings {
   double cluster_radius_deg = 25.0;
   int clusters = 6;         ///< at most
-  int turned_clusters = 1;  ///< of the heaviest also turned by quarters about the object's z axis
+  int rotated_clusters = 1;  ///< of the heaviest also turned by quarters about the object's z axis
   float vote_gain = 0.1F;   ///< how much a rotation that the votes agree on is preferred after registration
 };
 
@@ -60,12 +60,12 @@ struct PoseCandidate {
 
 /// Tries each rotation at places about the detected centre, moved along the line of sight onto the measured surface;
 /// gives the best place of each rotation, best first, at most SearchSettings::keep.
-std::vector<PoseCandidate> place_candidates(const SeenObject& seen, const std::vector<RotationCandidate>& rotations,
+std::vector<PoseCandidate> place_candidates(const ObjectObservation& seen, const std::vector<RotationCandidate>& rotations,
                                             const SearchSettings& settings);
 
 /// What an earlier frame's poses add: those of the class that lie near the detected centre, as they were then. None of
 /// a frame that is later than this one or too long before it.
-std::vector<PoseCandidate> earlier_candidates(const SeenObject& seen, const std::string& class_name,
+std::vector<PoseCandidate> earlier_candidates(const ObjectObservation& seen, const std::string& class_name,
                                               const ObjectPoses& earlier, const WarmStartSettings& settings);
 
 }  // namespace houghstream

@@ -17,7 +17,7 @@ struct Scored {
 /// The steps of the choice for one object, with what they share.
 class Choice {
  public:
-  Choice(const SeenObject& seen, const std::vector<RotationCandidate>& votes, const ChoiceSettings& settings)
+  Choice(const ObjectObservation& seen, const std::vector<RotationCandidate>& votes, const ChoiceSettings& settings)
       : seen_(seen),
         votes_(votes),
         settings_(settings),
@@ -36,8 +36,8 @@ class Choice {
                                std::size_t most) const {
     RegistrationResult best = result;
     float best_score = score_of(result);
-    const TurnRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, most, settings_.turn.points};
-    for (const ScoredPose& turn : best_turns(seen_, result.T_camera_object, range, tolerance_)) {
+    const RotationRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, most, settings_.turn.points};
+    for (const ScoredPose& turn : best_rotations_about_z(seen_, result.T_camera_object, range, tolerance_)) {
       RegistrationResult again = uphill(register_coarsely(
           seen_, turn.T_camera_object, 0.5 * (distances_.start + distances_.end), settings_.registration));
       again.iterations += result.iterations;
@@ -58,7 +58,7 @@ class Choice {
       RegistrationResult again =
           uphill(register_coarsely(seen_, flipped, 0.5 * (distances_.start + distances_.end), settings_.registration));
       again.iterations += result.iterations;
-      if (ends_near(seen_, again, settings_.registration)) flips.push_back({again, score_of(again)});
+      if (is_near_detection(seen_, again, settings_.registration)) flips.push_back({again, score_of(again)});
     }
     std::stable_sort(flips.begin(), flips.end(), [](const Scored& a, const Scored& b) { return a.score > b.score; });
     return flips;
@@ -66,7 +66,7 @@ class Choice {
 
  private:
   void take_better(const RegistrationResult& result, RegistrationResult& best, float& best_score) const {
-    if (!ends_near(seen_, result, settings_.registration)) return;
+    if (!is_near_detection(seen_, result, settings_.registration)) return;
     const float score = score_of(result);
     if (!(score > best_score)) return;
     best = result;
@@ -74,20 +74,20 @@ class Choice {
   }
 
   RegistrationResult uphill(RegistrationResult result) const {
-    const TurnSettings& turn = settings_.turn;
-    const Climb climb{turn.fine_step_deg * kRadPerDeg, turn.climb_step_m, turn.climb_rounds, turn.points};
-    result.T_camera_object = climb_pose(seen_, result.T_camera_object, climb, tolerance_).T_camera_object;
+    const RotationSearchSettings& turn = settings_.turn;
+    const HillClimb climb{turn.fine_step_deg * kRadPerDeg, turn.climb_step_m, turn.hill_climb_rounds, turn.points};
+    result.T_camera_object = hill_climb_pose(seen_, result.T_camera_object, climb, tolerance_).T_camera_object;
     return result;
   }
 
   /// How depth, colour and votes speak for the result.
   float score_of(const RegistrationResult& result) const {
-    const ScoredPose judged = judge_pose(seen_, result.T_camera_object, settings_.registration.fine_points, tolerance_);
+    const ScoredPose judged = score_pose_jointly(seen_, result.T_camera_object, settings_.registration.fine_points, tolerance_);
     const float support = vote_support(votes_, result.T_camera_object, settings_.initial);
     return judged.score * (1.0F + settings_.initial.vote_gain * support);
   }
 
-  const SeenObject& seen_;
+  const ObjectObservation& seen_;
   const std::vector<RotationCandidate>& votes_;
   const ChoiceSettings& settings_;
   DepthTolerance tolerance_;
@@ -96,11 +96,11 @@ class Choice {
 
 }  // namespace
 
-std::vector<RegistrationResult> choose_poses(const SeenObject& seen, const std::vector<RegistrationResult>& registered,
+std::vector<RegistrationResult> select_poses(const ObjectObservation& seen, const std::vector<RegistrationResult>& registered,
                                              const std::vector<RotationCandidate>& votes,
                                              const ChoiceSettings& settings) {
   const Choice choice(seen, votes, settings);
-  const TurnSettings& turn = settings.turn;
+  const RotationSearchSettings& turn = settings.turn;
   const RegistrationSettings& registration = settings.registration;
   RegistrationResult best = choice.best_of(registered);
   if (best.inliers == 0) return {best};
@@ -109,7 +109,7 @@ std::vector<RegistrationResult> choose_poses(const SeenObject& seen, const std::
   const RegistrationResult turned = choice.best_turn(flips.front().result, turn.step_deg, 180.0, turn.registered);
   std::vector<RegistrationResult> fine = {register_finely(seen, turned, registration)};
   for (std::size_t i = 1; i < flips.size() && fine.size() <= turn.rivals; ++i) {
-    if (flips[i].score < turn.rival_share * flips.front().score) break;
+    if (flips[i].score < turn.min_alternative_ratio * flips.front().score) break;
     fine.push_back(register_finely(seen, flips[i].result, registration));
   }
   for (RegistrationResult& result : fine)

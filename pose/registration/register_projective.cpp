@@ -97,7 +97,7 @@ LinearSystem build_linear_system(const CorrespondenceSums& totals, double point_
 }
 
 /// Finds the correspondences of the first `count` points of the view nearest to the pose, and sums them up.
-CorrespondenceSums find_and_accumulate_correspondences(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
+CorrespondenceSums find_and_accumulate_correspondences(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
                                                        std::size_t count, const CorrespondenceSearch& search) {
   const ObjectModel& model = seen.model;
   const ModelView& view = nearest_view(model, T_camera_object);
@@ -137,7 +137,7 @@ double apply_gauss_newton_step(LinearSystem equations, const ObjectModel& model,
 
 }  // namespace
 
-RegistrationResult register_projective(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
+RegistrationResult register_projective(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
                                        const RegistrationStage& stage, const RegistrationSettings& settings) {
   const ObjectModel& model = seen.model;
   RegistrationResult result;

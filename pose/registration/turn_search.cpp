@@ -29,16 +29,16 @@ Eigen::Isometry3d turned(const Eigen::Isometry3d& T_camera_object, const ObjectM
 
 }  // namespace
 
-ScoredPose judge_pose(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, int points,
+ScoredPose score_pose_jointly(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, int points,
                       const DepthTolerance& tolerance) {
-  const ViewLook look = look_at_view(seen.frame, seen.model, T_camera_object, points);
-  const float depth = score_look(look, tolerance).value;
+  const ProjectedView look = look_at_view(seen.frame, seen.model, T_camera_object, points);
+  const float depth = score_projected_view(look, tolerance).value;
   return {T_camera_object, joint_score(depth, compare_colours(seen.colours, look, tolerance))};
 }
 
-ScoredPose climb_pose(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, const Climb& climb,
+ScoredPose hill_climb_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, const HillClimb& climb,
                       const DepthTolerance& tolerance) {
-  ScoredPose best = judge_pose(seen, T_camera_object, climb.points, tolerance);
+  ScoredPose best = score_pose_jointly(seen, T_camera_object, climb.points, tolerance);
   constexpr int kMotions = 8;
   double size = 1.0;
   int failed = 0;  // one after the other, of this size
@@ -52,7 +52,7 @@ ScoredPose climb_pose(const SeenObject& seen, const Eigen::Isometry3d& T_camera_
       } else {
         moved.translate(way * climb.step_m * Eigen::Vector3d::Unit(motion / 2 - 1));
       }
-      const ScoredPose next = judge_pose(seen, moved, climb.points, tolerance);
+      const ScoredPose next = score_pose_jointly(seen, moved, climb.points, tolerance);
       ++failed;
       if (!(next.score > best.score)) continue;
       best = next;
@@ -66,14 +66,14 @@ ScoredPose climb_pose(const SeenObject& seen, const Eigen::Isometry3d& T_camera_
   return best;
 }
 
-std::vector<ScoredPose> best_turns(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
-                                   const TurnRange& range, const DepthTolerance& tolerance) {
+std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                                   const RotationRange& range, const DepthTolerance& tolerance) {
   const int steps = static_cast<int>(std::floor(range.reach_rad / range.step_rad + 1e-9));
   const bool all_round = 2.0 * range.reach_rad >= 2.0 * M_PI - 1e-9;  // then both ends are one pose
   std::vector<ScoredPose> turns;
   for (int i = -steps; i <= steps - (all_round ? 1 : 0); ++i) {
     const Eigen::Isometry3d turn = turned(T_camera_object, seen.model, i * range.step_rad);
-    turns.push_back(judge_pose(seen, turn, range.points, tolerance));
+    turns.push_back(score_pose_jointly(seen, turn, range.points, tolerance));
   }
   std::vector<ScoredPose> best = summits(turns, all_round);
   std::stable_sort(best.begin(), best.end(),

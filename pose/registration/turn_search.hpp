@@ -15,11 +15,11 @@ struct ScoredPose {
 };
 
 /// At the first `points` points of the view nearest to the pose.
-ScoredPose judge_pose(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, int points,
+ScoredPose score_pose_jointly(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, int points,
                       const DepthTolerance& tolerance);
 
 /// Which turns are tried, and how many of them are wanted.
-struct TurnRange {
+struct RotationRange {
   double step_rad = 0.0;
   double reach_rad = 0.0;  ///< to each side
   std::size_t most = 1;
@@ -29,11 +29,11 @@ struct TurnRange {
 /// The pose turned about the object's z axis, through the middle of its surface; those turns that are better than their
 /// neighbours, best first. Views of a standing object are most easily confused that way, and of a round one only its
 /// print tells them apart.
-std::vector<ScoredPose> best_turns(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
-                                   const TurnRange& range, const DepthTolerance& tolerance);
+std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                                   const RotationRange& range, const DepthTolerance& tolerance);
 
 /// Small steps: turns about the object's z axis and shifts along its axes.
-struct Climb {
+struct HillClimb {
   double step_rad = 0.0;
   double step_m = 0.0;
   int rounds = 0;  ///< of one step each way; halved after a round without a better pose
@@ -42,7 +42,7 @@ struct Climb {
 
 /// From the pose uphill by such steps: what neither depth alone nor a coarse turn settles, such as how far a printed
 /// round thing stands along its axis.
-ScoredPose climb_pose(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, const Climb& climb,
+ScoredPose hill_climb_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, const HillClimb& climb,
                       const DepthTolerance& tolerance);
 
 }  // namespace houghstream

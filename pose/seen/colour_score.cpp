@@ -90,18 +90,18 @@ ColourComparison compare(const SummedColours& sums) {
                                chroma_left_over(products, kB, kSeenB));
   ColourComparison comparison;
   comparison.points = sums.compared.count();
-  comparison.agreement = static_cast<float>(1.0 - left / (kPlainColourVariance + seen));
+  comparison.agreement = static_cast<float>(1.0 - left / (kUntexturedVariance + seen));
   comparison.left_over = static_cast<float>(std::sqrt(left));
   comparison.chroma_conflict = chroma_conflict(sums.all_means(products));
   comparison.clipped = sums.clipped.count();
-  comparison.seen_contrast = static_cast<float>(std::sqrt(std::max(0.0, seen)));
-  comparison.own_contrast = static_cast<float>(std::sqrt(std::max(0.0, own)));
+  comparison.observed_contrast = static_cast<float>(std::sqrt(std::max(0.0, seen)));
+  comparison.model_contrast = static_cast<float>(std::sqrt(std::max(0.0, own)));
   return comparison;
 }
 
 }  // namespace
 
-std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ViewLook& seen,
+std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ProjectedView& seen,
                                                 const DepthTolerance& tolerance) {
   constexpr int kFewest = 30;
   constexpr float kNormalUnits = 100.0F;  // brings normals to the size of the other terms
@@ -132,7 +132,7 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
   return compare(sums);
 }
 
-std::optional<ColourComparison> compare_print(const SeenObject& seen, const ViewLook& look,
+std::optional<ColourComparison> compare_texture(const ObjectObservation& seen, const ProjectedView& look,
                                               const DepthTolerance& tolerance) {
   constexpr double kDetails = 2.5;  // averaged over so many of the model's details, so that a little beside is near,
   constexpr double kMost = 5.0;     // or so many pixels,

@@ -11,7 +11,7 @@
 namespace houghstream {
 
 /// Variance of the seen 8-bit CIE L*a*b* colours, all channels, on a plain surface in even light: it tells of no print.
-constexpr double kPlainColourVariance = 15.0;
+constexpr double kUntexturedVariance = 15.0;
 
 /// How the colours that the model has at a pose and those that are seen compare, where measured and model depth agree
 /// and, unless said otherwise, the camera was not at its limit.
@@ -27,18 +27,18 @@ struct ColourComparison {
   /// left without is edges and shade, of another hue.
   float chroma_conflict = 0.0F;
   int clipped = 0;             ///< not compared: the camera was at its limit
-  float seen_contrast = 0.0F;  ///< standard deviation of the seen colours, the channels weighted as in `left_over`
-  float own_contrast = 0.0F;   ///< the same of the model's
+  float observed_contrast = 0.0F;  ///< standard deviation of the seen colours, the channels weighted as in `left_over`
+  float model_contrast = 0.0F;   ///< the same of the model's
 };
 
 /// Compares the points that were looked at. Nothing where the model has no colours or too few points agree.
-std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ViewLook& seen,
+std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ProjectedView& seen,
                                                 const DepthTolerance& tolerance);
 
 /// The same with the seen colours averaged over little more than the model's are, and moved by up to two pixels to
 /// where they agree best (less where the object is small): cameras' colours are registered to their depth, and poses
 /// found, no better than that. For judging a pose, not for choosing between poses, which differ by less.
-std::optional<ColourComparison> compare_print(const SeenObject& seen, const ViewLook& look,
+std::optional<ColourComparison> compare_texture(const ObjectObservation& seen, const ProjectedView& look,
                                               const DepthTolerance& tolerance);
 
 /// Depth and colour together: the square root of `depth_value` (DepthScore::value), whose noise would else drown what

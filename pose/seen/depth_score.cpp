@@ -9,7 +9,7 @@ namespace houghstream {
 namespace {
 
 /// `width` is the tolerance at the object's depth.
-DepthScore score_of(const ViewLook& seen, float shift, float width) {
+DepthScore score_of(const ProjectedView& seen, float shift, float width) {
   DepthScore score;
   for (const Look& look : seen.looks) {
     const float ratio = (look.beyond - shift) / width;
@@ -42,10 +42,10 @@ float densest_mean(const std::vector<float>& sorted, float width) {
 
 }  // namespace
 
-ViewLook look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+ProjectedView look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                       int points) {
   const double depth = (T_camera_object * model.centre.cast<double>()).z();
-  ViewLook result{nearest_view(model, T_camera_object), T_camera_object.cast<float>(), depth, {}};
+  ProjectedView result{nearest_view(model, T_camera_object), T_camera_object.cast<float>(), depth, {}};
   const auto columns = static_cast<float>(frame.depth.cols);
   const auto rows = static_cast<float>(frame.depth.rows);
   result.looks.resize(std::min<std::size_t>(static_cast<std::size_t>(std::max(0, points)), result.view.points.size()));
@@ -62,18 +62,18 @@ ViewLook look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Ei
   return result;
 }
 
-DepthScore score_look(const ViewLook& seen, const DepthTolerance& tolerance) {
+DepthScore score_projected_view(const ProjectedView& seen, const DepthTolerance& tolerance) {
   return score_of(seen, 0.0F, static_cast<float>(tolerance.at(seen.depth)));
 }
 
 DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                       int points, const DepthTolerance& tolerance) {
-  return score_look(look_at_view(frame, model, T_camera_object, points), tolerance);
+  return score_projected_view(look_at_view(frame, model, T_camera_object, points), tolerance);
 }
 
 DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                             const ShiftSearch& search) {
-  const ViewLook seen = look_at_view(frame, model, T_camera_object, search.points);
+  const ProjectedView seen = look_at_view(frame, model, T_camera_object, search.points);
   const auto width = static_cast<float>(search.tolerance.at(seen.depth));
   std::vector<float> within;
   within.reserve(seen.looks.size());

@@ -19,13 +19,13 @@ struct Look {
 };
 
 /// A model's view at a pose, against a frame.
-struct ViewLook {
+struct ProjectedView {
   const ModelView& view;    ///< nearest to the pose
   Eigen::Isometry3f T;      ///< camera from object
   double depth = 0.0;       ///< of the model's middle, metres: tolerances are those of there
   std::vector<Look> looks;  ///< of the first points of the view
 };
-ViewLook look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+ProjectedView look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                       int points);
 
 /// How the measured depth speaks for a pose, judged at the visible points of the model.
@@ -37,7 +37,7 @@ struct DepthScore {
 
 /// Judges the points that were looked at. Points behind what was measured (occluded),
 /// without depth, or outside the image speak neither way.
-DepthScore score_look(const ViewLook& seen, const DepthTolerance& tolerance);
+DepthScore score_projected_view(const ProjectedView& seen, const DepthTolerance& tolerance);
 
 /// The same for the first `points` points of the view nearest to the pose.
 DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,

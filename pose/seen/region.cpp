@@ -64,27 +64,27 @@ std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRe
   return points;
 }
 
-LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const ToneCurve& tone) {
+LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const AffineBrightness& tone) {
   LabRegion region{{}, part_px.tl(), clipped_pixels(frame.colour(part_px))};
   cv::blur(frame.colour(part_px), region.lab, cv::Size(3, 3));
-  if (tone.changes()) apply_tone(tone, region.lab, region.lab);
+  if (tone.changes()) apply_affine_brightness(tone, region.lab, region.lab);
   cv::cvtColor(region.lab, region.lab, cv::COLOR_BGR2Lab);
   return region;
 }
 
-SeenFrame see_frame(const RgbdFrame& frame, const RegionSettings& settings, const DepthNoise& noise) {
-  return {frame, noise, tone_curve(frame.colour, settings.tone)};
+FrameContext make_frame_context(const RgbdFrame& frame, const RegionSettings& settings, const DepthNoise& noise) {
+  return {frame, noise, fit_affine_brightness(frame.colour, settings.tone)};
 }
 
-SeenObject see_object(const SeenFrame& seen, const Detection& detection, const ObjectModel& model,
+ObjectObservation observe_object(const FrameContext& seen, const Detection& detection, const ObjectModel& model,
                       const RegionSettings& settings) {
   const DepthRegion region = find_region(seen.frame, detection, model, settings);
-  SeenObject object{seen.frame, model, detection.centre_camera, seen.noise, region, {}};
+  ObjectObservation object{seen.frame, model, detection.centre_camera, seen.noise, region, {}};
   if (region.points >= settings.min_points) object.colours = lab_region(seen.frame, region.box_px, seen.tone);
   return object;
 }
 
-double distance_from_detected(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object) {
+double distance_from_detected(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object) {
   return (T_camera_object * seen.model.vote_centre.cast<double>() - seen.centre_camera.cast<double>()).norm();
 }
 

@@ -31,7 +31,7 @@ struct RegionSettings {
   double enlarge = 0.15;        ///< of the box's size, on each side
   double gate_margin_m = 0.06;  ///< depth farther from the centre than the model's radius plus this is not the object
   int min_points = 60;          ///< pixels with depth inside the gate; with fewer there is no pose
-  ToneRange tone;               ///< the frame's colours are brought into it
+  BrightnessRange tone;               ///< the frame's colours are brought into it
 };
 
 /// Where in the depth image a detected object can be: its box, a little enlarged, and a range of depth.
@@ -55,19 +55,19 @@ struct LabRegion {
   cv::Mat clipped;
 };
 /// `tone` is that of the whole frame. `part_px` must lie inside the image and not be empty.
-LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const ToneCurve& tone);
+LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const AffineBrightness& tone);
 
 /// A frame in which objects are looked at. The frame must outlive it.
-struct SeenFrame {
+struct FrameContext {
   const RgbdFrame& frame;
   DepthNoise noise;  ///< of its depth
-  ToneCurve tone;    ///< brings its colours into RegionSettings::tone
+  AffineBrightness tone;    ///< brings its colours into RegionSettings::tone
 };
-SeenFrame see_frame(const RgbdFrame& frame, const RegionSettings& settings, const DepthNoise& noise);
+FrameContext make_frame_context(const RgbdFrame& frame, const RegionSettings& settings, const DepthNoise& noise);
 
 /// What is seen of a detected object, and the model that it is compared with: what every later stage looks at. Frame
 /// and model must outlive it.
-struct SeenObject {
+struct ObjectObservation {
   const RgbdFrame& frame;
   const ObjectModel& model;
   Eigen::Vector3f centre_camera;  ///< where ObjectModel::vote_centre was detected, metres, z > 0
@@ -75,10 +75,10 @@ struct SeenObject {
   DepthRegion region;
   LabRegion colours;  ///< of the region's box; empty where the region has too few points
 };
-SeenObject see_object(const SeenFrame& seen, const Detection& detection, const ObjectModel& model,
+ObjectObservation observe_object(const FrameContext& seen, const Detection& detection, const ObjectModel& model,
                       const RegionSettings& settings);
 
 /// Metres from where the object was detected to where it is at this pose.
-double distance_from_detected(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object);
+double distance_from_detected(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object);
 
 }  // namespace houghstream

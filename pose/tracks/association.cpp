@@ -7,20 +7,20 @@
 
 namespace houghstream::tracks {
 
-OfOneClass of_one_class(const std::string& class_name, const std::vector<SeenPose>& poses, const TrackModels& models,
+ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseObservation>& poses, const TrackModels& models,
                         std::vector<Track>& tracks) {
-  OfOneClass one{
+  ClassGroup one{
       {}, {}, symmetries_of(models, class_name), centre_of(models, class_name), radius_of(models, class_name)};
   for (Track& track : tracks) {
     if (track.there() && track.class_name == class_name) one.objects.push_back(&track);
   }
-  for (const SeenPose& pose : poses) {
+  for (const PoseObservation& pose : poses) {
     if (pose.class_name == class_name) one.measured.push_back(&pose);
   }
   return one;
 }
 
-std::vector<int> assign_poses(const OfOneClass& one, const AssociationSettings& how) {
+std::vector<int> assign_poses(const ClassGroup& one, const AssociationSettings& how) {
   constexpr double kUnconfirmed = 0.3;  // rather one that is known
   Eigen::MatrixXd costs(one.objects.size(), one.measured.size());
   for (std::size_t i = 0; i < one.objects.size(); ++i) {
@@ -38,7 +38,7 @@ std::vector<int> assign_poses(const OfOneClass& one, const AssociationSettings& 
   return solve_assignment(costs, kLimit);
 }
 
-bool is_crowded(const PoseMeasurement& measured, const OfOneClass& one, const AssociationSettings& how) {
+bool is_space_occupied(const PoseMeasurement& measured, const ClassGroup& one, const AssociationSettings& how) {
   return std::any_of(one.objects.begin(), one.objects.end(), [&](const Track* track) {
     return track->pose.distance(measured, one.symmetries, one.centre) < how.crowded * one.radius_m;
   });

@@ -17,23 +17,23 @@ struct AssociationSettings {
 };
 
 /// The objects of a class that are there, and the poses that a frame has of it.
-struct OfOneClass {
+struct ClassGroup {
   std::vector<Track*> objects;
-  std::vector<const SeenPose*> measured;
+  std::vector<const PoseObservation*> measured;
   const Symmetries& symmetries;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< object frame, metres
   double radius_m = 0.0;
 };
 
 /// In their orders. Points into the tracks, the poses and the models.
-OfOneClass of_one_class(const std::string& class_name, const std::vector<SeenPose>& poses, const TrackModels& models,
+ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseObservation>& poses, const TrackModels& models,
                         std::vector<Track>& tracks);
 
 /// For each object which measured pose is its, -1 for none: they are near each other and turned alike, and what is
 /// confirmed comes before a candidate.
-std::vector<int> assign_poses(const OfOneClass& one, const AssociationSettings& how);
+std::vector<int> assign_poses(const ClassGroup& one, const AssociationSettings& how);
 
 /// Whether an object stands so near to a measured pose that it leaves no room for a second one.
-bool is_crowded(const PoseMeasurement& measured, const OfOneClass& one, const AssociationSettings& how);
+bool is_space_occupied(const PoseMeasurement& measured, const ClassGroup& one, const AssociationSettings& how);
 
 }  // namespace houghstream::tracks

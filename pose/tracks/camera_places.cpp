@@ -124,11 +124,11 @@ Eigen::Isometry3d chained(const Links& links, const std::string& camera, const s
 
 }  // namespace
 
-void CameraPlaces::fix(const std::string& camera, const Eigen::Isometry3d& T_world_camera) {
+void CameraExtrinsics::fix(const std::string& camera, const Eigen::Isometry3d& T_world_camera) {
   fixed_[camera] = T_world_camera;
 }
 
-void CameraPlaces::add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera) {
+void CameraExtrinsics::add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera) {
   require(moving_.size() < kMostMoving || moving_.count(camera) > 0,
           "transforms of more than {} cameras, expected at most that many", kMostMoving);
   std::deque<Sample>& samples = moving_[camera];
@@ -143,7 +143,7 @@ void CameraPlaces::add(const std::string& camera, std::int64_t utime, const Eige
   if (samples.size() > kSamples) samples.pop_front();
 }
 
-CameraPlace CameraPlaces::at(const std::string& camera, std::int64_t utime) const {
+CameraPose CameraExtrinsics::at(const std::string& camera, std::int64_t utime) const {
   const auto seconds = [&](std::int64_t other) { return seconds_between(utime, other); };
   if (const auto fixed = fixed_.find(camera); fixed != fixed_.end()) return {fixed->second, false, ""};
   const auto moving = moving_.find(camera);
@@ -172,7 +172,7 @@ CameraPlace CameraPlaces::at(const std::string& camera, std::int64_t utime) cons
   return {interpolate_pose(before.T_world_camera, after->T_world_camera, -seconds(before.utime) / gap), false, ""};
 }
 
-std::map<std::string, Eigen::Isometry3d> read_camera_places(const std::filesystem::path& file) {
+std::map<std::string, Eigen::Isometry3d> read_camera_extrinsics(const std::filesystem::path& file) {
   constexpr std::size_t kMostFrames = 1024;  // each may hang on all others
   const Links links =
       links_of(parse_yaml(read_file(file, "a YAML file of camera poses"), file.string()), file.string());

@@ -12,7 +12,7 @@
 namespace houghstream::tracks {
 
 /// Where a camera was at a time, or why that is not known.
-struct CameraPlace {
+struct CameraPose {
   std::optional<Eigen::Isometry3d> T_world_camera;
   bool may_come = false;  ///< not known yet: a later transform may tell
   std::string reason;     ///< one line, where it is not known
@@ -21,7 +21,7 @@ struct CameraPlace {
 /// Where the cameras are: fixed ones as they were set, moving ones between the transforms before and after a time.
 /// Names of cameras are the channels of their frames, or what stands before _TO_WORLD (channel::camera_name). Not
 /// thread-safe.
-class CameraPlaces {
+class CameraExtrinsics {
  public:
   /// Transforms farther apart say nothing of the time between them, unless they are equal.
   static constexpr double kMostGapS = 0.5;
@@ -38,7 +38,7 @@ class CameraPlaces {
   bool any() const { return !fixed_.empty() || !moving_.empty(); }
 
   /// Interpolated at the very time; a camera that stood still for its last two transforms still stands there.
-  CameraPlace at(const std::string& camera, std::int64_t utime) const;
+  CameraPose at(const std::string& camera, std::int64_t utime) const;
 
  private:
   struct Sample {
@@ -58,7 +58,7 @@ class CameraPlaces {
 /// prints them: entries of `transforms` with header.frame_id, child_frame_id and transform, chained to the root frame,
 /// which is the world. Metres. Throws InputError naming file and camera for what is missing, not rigid, goes round in
 /// a loop, has a name that is none of these, or stands twice.
-std::map<std::string, Eigen::Isometry3d> read_camera_places(const std::filesystem::path& file);
+std::map<std::string, Eigen::Isometry3d> read_camera_extrinsics(const std::filesystem::path& file);
 
 /// The value of an option --camera-pose: CHANNEL=x,y,z,qw,qx,qy,qz, T_world_camera. Throws InputError.
 std::pair<std::string, Eigen::Isometry3d> parse_camera_place(const std::string& text);

@@ -63,7 +63,7 @@ void ClassNames::update(const ModelChange& change, const TrackModels& models) {
   }
 }
 
-ObjectPoses ClassNames::resolve(const FrameSeen& seen, const TrackModels& models, const std::vector<Track>& tracks,
+ObjectPoses ClassNames::resolve(const FrameObservation& seen, const TrackModels& models, const std::vector<Track>& tracks,
                                 double same_rotation_rad) const {
   ObjectPoses poses = seen.poses;
   poses.poses.erase(std::remove_if(poses.poses.begin(), poses.poses.end(),

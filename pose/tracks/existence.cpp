@@ -11,9 +11,9 @@ namespace houghstream::tracks {
 namespace {
 
 /// Whether an object of another class is recognised in its place.
-bool is_crowded_out(const Unseen& frame, const Track& track) {
+bool is_crowded_out(const UnobservedContext& frame, const Track& track) {
   const Eigen::Vector3d place = track.pose.filter().T_world_object() * centre_of(frame.models, track.class_name);
-  return std::any_of(frame.poses.begin(), frame.poses.end(), [&](const SeenPose& pose) {
+  return std::any_of(frame.poses.begin(), frame.poses.end(), [&](const PoseObservation& pose) {
     return pose.class_name != track.class_name &&
            (pose.measured.T_world_object * centre_of(frame.models, pose.class_name) - place).norm() <
                0.5 * std::min(radius_of(frame.models, pose.class_name), radius_of(frame.models, track.class_name));
@@ -21,7 +21,7 @@ bool is_crowded_out(const Unseen& frame, const Track& track) {
 }
 
 /// Whether the class is detected at a place, which is where such a detection has its centre; camera frame, metres.
-bool is_detected(const Unseen& frame, const std::string& class_name, const Eigen::Vector3d& here) {
+bool is_detected(const UnobservedContext& frame, const std::string& class_name, const Eigen::Vector3d& here) {
   const Detections* detections = frame.seen.detections;
   return detections != nullptr &&
          std::any_of(detections->detections.begin(), detections->detections.end(), [&](const Detection& detection) {
@@ -32,8 +32,8 @@ bool is_detected(const Unseen& frame, const std::string& class_name, const Eigen
 
 }  // namespace
 
-void judge_unseen(const Unseen& frame, const Missed& missed, const ExistenceSettings& how, Track& track) {
-  const FrameSeen& seen = frame.seen;
+void update_unobserved(const UnobservedContext& frame, const MissedDetection& missed, const ExistenceSettings& how, Track& track) {
+  const FrameObservation& seen = frame.seen;
   const auto known = frame.models.find(track.class_name);
   const TrackModel* model = known == frame.models.end() ? nullptr : &known->second;
   const RgbdFrame* image = model != nullptr && seen.image ? seen.image() : nullptr;
@@ -63,7 +63,7 @@ void judge_unseen(const Unseen& frame, const Missed& missed, const ExistenceSett
       why = fmt::format("not recognised by {}, whose depth agrees", seen.poses.frame.channel);
   }
   if (crowded && look.state != TrackState::kOutOfView) {
-    if (missed.by_depth) rate += how.crowded_out;
+    if (missed.by_depth) rate += how.displaced_rate;
     why += ", where something else is";
   }
   if (track.pose.filter().moving() && unseen_s > frame.coast_s) {
@@ -73,14 +73,14 @@ void judge_unseen(const Unseen& frame, const Missed& missed, const ExistenceSett
   if (track.id == 0 && missed.by_recognition) rate += how.unconfirmed;
   track.log_odds -= missed.seconds * rate;
   // Of several cameras the one that saw it last has the word, as long as that is not long ago.
-  constexpr double kHasTheWordS = 0.1;
+  constexpr double kLastObserverHold_s = 0.1;
   const bool says_anything = missed.by_recognition || look.state != TrackState::kUnrecognised;
-  if (says_anything && (track.last_seen.channel == seen.poses.frame.channel || unseen_s > kHasTheWordS)) {
+  if (says_anything && (track.last_seen.channel == seen.poses.frame.channel || unseen_s > kLastObserverHold_s)) {
     track.state = look.state == TrackState::kGone ? TrackState::kUnrecognised : look.state;
     track.reason = why;
   }
   if (track.log_odds < how.gone) {
-    track.gone_utime = seen.poses.frame.utime;
+    track.deleted_utime = seen.poses.frame.utime;
     track.state = TrackState::kGone;
     track.reason = why;
     if (track.id != 0)

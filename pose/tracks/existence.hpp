@@ -17,7 +17,7 @@ struct ExistenceSettings {
   double confirmed_s = 0.08;   ///< so long apart
   double gone = -1.0;          ///< below it is gone
   double seen_through = 30.0;  ///< a second, where the camera sees through it
-  double crowded_out = 12.0;   ///< a second, where another class is recognised in its place
+  double displaced_rate = 12.0;   ///< a second, where another class is recognised in its place
   double goes_on = 3.0;        ///< a second, where depth agrees but the surface is larger
   double unrecognised = 0.6;   ///< a second, where depth agrees but nothing is recognised
   double lost = 14.0;          ///< a second, where it moved when it was seen last; hidden, a quarter of it
@@ -25,16 +25,16 @@ struct ExistenceSettings {
 };
 
 /// A result, beside which objects are laid of which it has no pose.
-struct Unseen {
-  const FrameSeen& seen;
-  const std::vector<SeenPose>& poses;  ///< that are new in it
+struct UnobservedContext {
+  const FrameObservation& seen;
+  const std::vector<PoseObservation>& poses;  ///< that are new in it
   const TrackModels& models;
   double reach_m = 0.0;  ///< so near to where its class's detections have their centre, one is of the object
   double coast_s = 0.0;  ///< MotionSettings::coast_s
 };
 
 /// What a result counts for an object of which it has no pose.
-struct Missed {
+struct MissedDetection {
   double seconds = 0.0;         ///< since the camera's frame before
   bool by_depth = false;        ///< it is the first one of its frame
   bool by_recognition = false;  ///< it is the first one of its frame that speaks of the class
@@ -42,6 +42,6 @@ struct Missed {
 
 /// What the frame says of an object that it shows no pose of: its log odds fall, it may be gone, and where the camera
 /// has the word, its state and the reason are told.
-void judge_unseen(const Unseen& frame, const Missed& missed, const ExistenceSettings& how, Track& track);
+void update_unobserved(const UnobservedContext& frame, const MissedDetection& missed, const ExistenceSettings& how, Track& track);
 
 }  // namespace houghstream::tracks

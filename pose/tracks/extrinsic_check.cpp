@@ -61,8 +61,8 @@ void ExtrinsicCheck::add(const ObjectPoses& poses, const Eigen::Isometry3d& T_wo
   last.objects.insert(last.objects.end(), view.objects.begin(), view.objects.begin() + taken);
 }
 
-std::vector<Contradiction> ExtrinsicCheck::pairs() const {
-  std::vector<Contradiction> out;
+std::vector<ExtrinsicInconsistency> ExtrinsicCheck::pairs() const {
+  std::vector<ExtrinsicInconsistency> out;
   for (const auto& [cameras, offsets] : offsets_) {
     if (offsets.size() < kEnough) continue;
     out.push_back({cameras.first, cameras.second, median_of(offsets), static_cast<int>(offsets.size())});
@@ -70,9 +70,9 @@ std::vector<Contradiction> ExtrinsicCheck::pairs() const {
   return out;
 }
 
-std::vector<Contradiction> ExtrinsicCheck::contradictions() const {
-  std::vector<Contradiction> out = pairs();
-  out.erase(std::remove_if(out.begin(), out.end(), [](const Contradiction& c) { return c.offset_m.norm() < kToldM; }),
+std::vector<ExtrinsicInconsistency> ExtrinsicCheck::contradictions() const {
+  std::vector<ExtrinsicInconsistency> out = pairs();
+  out.erase(std::remove_if(out.begin(), out.end(), [](const ExtrinsicInconsistency& c) { return c.offset_m.norm() < kReport_m; }),
             out.end());
   return out;
 }

@@ -12,7 +12,7 @@
 namespace houghstream::tracks {
 
 /// Two cameras that see the same objects in different places.
-struct Contradiction {
+struct ExtrinsicInconsistency {
   std::string first;                                   ///< channel of a camera
   std::string second;                                  ///< of another one
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  ///< from where the first sees objects to where the second does
@@ -24,16 +24,16 @@ struct Contradiction {
 class ExtrinsicCheck {
  public:
   /// Offsets from here on are told: twice what good poses of a can or a mug from two sides differ by.
-  static constexpr double kToldM = 0.012;
+  static constexpr double kReport_m = 0.012;
 
   /// The poses of a frame, in the world. Objects with a model are compared by its centre, the others by their origin.
   void add(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera, const TrackModels& models);
 
   /// Pairs of cameras whose median offset over the last samples is too large, by their names.
-  std::vector<Contradiction> contradictions() const;
+  std::vector<ExtrinsicInconsistency> contradictions() const;
 
   /// All pairs that have enough samples, for a report.
-  std::vector<Contradiction> pairs() const;
+  std::vector<ExtrinsicInconsistency> pairs() const;
 
  private:
   struct Seen {

@@ -8,7 +8,7 @@
 namespace houghstream::tracks {
 namespace {
 
-std::set<std::string> told_classes(const ObjectPoses& poses) {
+std::set<std::string> reported_classes(const ObjectPoses& poses) {
   std::set<std::string> names;
   for (const ObjectPose& pose : poses.poses) {
     if (pose.status != PoseStatus::kNoModel) names.insert(pose.class_name);
@@ -22,31 +22,31 @@ bool have_common(const std::set<std::string>& a, const std::set<std::string>& b)
 
 }  // namespace
 
-void LookedFor::note(const ObjectPoses& poses) {
+void SearchedClasses::note(const ObjectPoses& poses) {
   constexpr std::size_t kMost = 500;  // classes of one detector
-  const std::set<std::string> names = told_classes(poses);
+  const std::set<std::string> names = reported_classes(poses);
   Camera& camera = cameras_[poses.frame.channel];
   if (camera.utime != poses.frame.utime) camera.classes.clear();
   camera.utime = poses.frame.utime;
   if (!names.empty() && !camera.classes.empty() && !have_common(names, camera.classes)) camera.has_several = true;
   camera.classes.insert(names.begin(), names.end());
   for (const std::string& name : names) {
-    Company& company = companies_[name];
+    Coverage& company = companies_[name];
     if (company.classes.size() < kMost) company.classes.insert(names.begin(), names.end());
     company.utime = std::max(company.utime, poses.frame.utime);
   }
 }
 
-bool LookedFor::speaks_of(const ObjectPoses& poses, const std::string& class_name) const {
+bool SearchedClasses::has_searched(const ObjectPoses& poses, const std::string& class_name) const {
   const auto camera = cameras_.find(poses.frame.channel);
   if (camera == cameras_.end() || !camera->second.has_several) return true;
   const auto company = companies_.find(class_name);
   if (company == companies_.end()) return true;
-  return have_common(told_classes(poses), company->second.classes) || !tells_now(class_name, poses.frame.utime);
+  return have_common(reported_classes(poses), company->second.classes) || !is_reporting(class_name, poses.frame.utime);
 }
 
 /// Whether its detector has told of anything within the last second.
-bool LookedFor::tells_now(const std::string& class_name, std::int64_t utime) const {
+bool SearchedClasses::is_reporting(const std::string& class_name, std::int64_t utime) const {
   constexpr double kSilentS = 1.0;
   const std::set<std::string>& together = companies_.at(class_name).classes;
   return std::any_of(together.begin(), together.end(), [&](const std::string& name) {
@@ -55,7 +55,7 @@ bool LookedFor::tells_now(const std::string& class_name, std::int64_t utime) con
   });
 }
 
-void LookedFor::keep_only(const std::set<std::string>& classes) {
+void SearchedClasses::keep_only(const std::set<std::string>& classes) {
   for (auto it = companies_.begin(); it != companies_.end();)
     it = classes.count(it->first) > 0 ? std::next(it) : companies_.erase(it);
 }

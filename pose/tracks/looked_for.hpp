@@ -13,18 +13,18 @@ namespace houghstream::tracks {
 /// is everything. Where several work on a camera's frames (two results of one frame have had no class in common), a
 /// result speaks of its own classes and of those that have been told of together with them, and of one whose own
 /// detector has told nothing for a second. Poses without a model are somebody else's. Not thread-safe.
-class LookedFor {
+class SearchedClasses {
  public:
   /// To be told of each result, before it is asked about it.
   void note(const ObjectPoses& poses);
 
-  bool speaks_of(const ObjectPoses& poses, const std::string& class_name) const;
+  bool has_searched(const ObjectPoses& poses, const std::string& class_name) const;
 
   /// Forgets all other classes: a sender of rubbish may make up names without end.
   void keep_only(const std::set<std::string>& classes);
 
  private:
-  struct Company {
+  struct Coverage {
     std::set<std::string> classes;  // that were told of in one result with it
     std::int64_t utime = 0;         // when it was told of last
   };
@@ -34,9 +34,9 @@ class LookedFor {
     bool has_several = false;       // detectors
   };
 
-  bool tells_now(const std::string& class_name, std::int64_t utime) const;
+  bool is_reporting(const std::string& class_name, std::int64_t utime) const;
 
-  std::map<std::string, Company> companies_;  // by class
+  std::map<std::string, Coverage> companies_;  // by class
   std::map<std::string, Camera> cameras_;     // by channel
 };
 

@@ -77,9 +77,9 @@ const Symmetries& symmetries_of(const TrackModels& models, const std::string& na
   return model == models.end() ? none : model->second.symmetries;
 }
 
-std::vector<SeenPose> seen_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
+std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
                                  const TrackModels& models) {
-  std::vector<SeenPose> out;
+  std::vector<PoseObservation> out;
   for (const ObjectPose& pose : poses.poses) {
     if (!pose.T_camera_object) continue;
     out.push_back({poses.frame,
@@ -110,14 +110,14 @@ Look look_at(const RgbdFrame& frame, const TrackModel& model, const Eigen::Isome
   if (seen.rendered < kLeastPx || judged < kMeasured * seen.rendered) return {};
   Look look;
   look.seen_through = static_cast<double>(seen.violating) / std::max(1, seen.agreeing + seen.violating);
-  look.goes_on = seen.outline_goes_on > 0.5F * static_cast<float>(seen.outline);
+  look.goes_on = seen.boundary_continuations > 0.5F * static_cast<float>(seen.outline);
   look.state = TrackState::kUnrecognised;
   if (look.seen_through > kThrough) look.state = TrackState::kGone;
   if (seen.occluded > kHidden * judged) look.state = TrackState::kHidden;
   return look;
 }
 
-PoseTrack::PoseTrack(const SeenPose& first, const PoseTrackSettings& settings)
+PoseTrack::PoseTrack(const PoseObservation& first, const PoseTrackSettings& settings)
     : settings_(settings),
       hypotheses_{{MotionFilter(first.measured, settings.motion), log_odds_of(first.quality)}},
       weighed_utime_(first.frame.utime) {
@@ -177,7 +177,7 @@ std::size_t PoseTrack::hypothesis_for(const PoseMeasurement& measured, const Sym
   return weakest;
 }
 
-void PoseTrack::take(const SeenPose& pose, const Symmetries& symmetries, bool doubted) {
+void PoseTrack::take(const PoseObservation& pose, const Symmetries& symmetries, bool doubted) {
   constexpr double kLead = 1.0;  // by which another hypothesis has to be ahead
   const double passed = std::max(0.0, seconds_between(weighed_utime_, pose.frame.utime));
   weighed_utime_ = std::max(weighed_utime_, pose.frame.utime);
@@ -185,7 +185,7 @@ void PoseTrack::take(const SeenPose& pose, const Symmetries& symmetries, bool do
   const std::size_t index = hypothesis_for(pose.measured, symmetries);
   Hypothesis& hypothesis = hypotheses_[index];
   hypothesis.weight = std::min(kMostWeight, hypothesis.weight + std::max(0.1, log_odds_of(pose.quality)));
-  SeenPose turned = pose;
+  PoseObservation turned = pose;
   turned.measured.T_world_object =
       nearest_equivalent(pose.measured.T_world_object, hypothesis.filter.T_world_object(), symmetries);
   hypothesis.filter.predict(pose.frame.utime);
@@ -203,7 +203,7 @@ void PoseTrack::take(const SeenPose& pose, const Symmetries& symmetries, bool do
 
 // A camera whose place is a little wrong sees the object beside where the others do, always. So only one that has seen
 // it where it is, or that is the only one to see it, can tell that it has moved.
-bool PoseTrack::may_tell_of_motion(const std::string& channel, std::int64_t utime) const {
+bool PoseTrack::can_trigger_motion(const std::string& channel, std::int64_t utime) const {
   constexpr double kOfLateS = 0.5;
   if (witnesses_.at(channel).agreed_utime != 0) return true;
   return std::none_of(witnesses_.begin(), witnesses_.end(), [&](const auto& entry) {
@@ -211,16 +211,16 @@ bool PoseTrack::may_tell_of_motion(const std::string& channel, std::int64_t utim
   });
 }
 
-void PoseTrack::update_standing(const SeenPose& pose, bool doubted, Hypothesis& hypothesis) {
+void PoseTrack::update_standing(const PoseObservation& pose, bool doubted, Hypothesis& hypothesis) {
   constexpr double kWithinS = 0.4;
   constexpr std::size_t kPlaces = 3;  // measured apart from where it stands
   constexpr std::size_t kTurns = 8;   // measured turned only
   const Vector6 apart = local_coordinates_about_world(pose.measured.T_world_object, hypothesis.filter.T_world_object());
   const Covariance6& noise = pose.measured.covariance;
-  const double place_gate = std::max(settings_.stands_m, 4.0 * std::sqrt(noise.topLeftCorner<3, 3>().trace() / 3.0));
+  const double place_gate = std::max(settings_.static_gate_m, 4.0 * std::sqrt(noise.topLeftCorner<3, 3>().trace() / 3.0));
   const double turn_gate = std::max(settings_.stands_rad, 4.0 * std::sqrt(noise(5, 5)));
   const bool in_place = apart.head<3>().norm() < place_gate;
-  Witness& witness = witnesses_[pose.frame.channel];
+  ObserverHistory& witness = witnesses_[pose.frame.channel];
   if (in_place && apart.tail<3>().norm() < turn_gate) {
     hypothesis.filter.update(pose.measured);
     witness.apart.clear();
@@ -230,7 +230,7 @@ void PoseTrack::update_standing(const SeenPose& pose, bool doubted, Hypothesis& 
   witness.apart.push_back(pose.measured);
   while (seconds_between(witness.apart.front().utime, pose.frame.utime) > kWithinS) witness.apart.pop_front();
   const std::size_t needed = in_place ? kTurns : doubted ? 1 : kPlaces;
-  if (witness.apart.size() < needed || !may_tell_of_motion(pose.frame.channel, pose.frame.utime)) return;
+  if (witness.apart.size() < needed || !can_trigger_motion(pose.frame.channel, pose.frame.utime)) return;
   const PoseMeasurement& first = witness.apart.front();
   const double seconds = std::max(0.02, seconds_between(first.utime, pose.frame.utime));
   Vector6 way = local_coordinates_about_world(pose.measured.T_world_object, first.T_world_object);
@@ -262,7 +262,7 @@ void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypot
   for (std::size_t i = 0; i < 2 * half; ++i)
     means[i / half] += local_coordinates_about_world(recent_[i].T_world_object, T_middle) / static_cast<double>(half);
   const Vector6 between = means[1] - means[0];
-  if (between.head<3>().norm() < settings_.settles_m && between.tail<3>().norm() < settings_.settles_rad) {
+  if (between.head<3>().norm() < settings_.rest_threshold_m && between.tail<3>().norm() < settings_.settles_rad) {
     hypothesis.filter.stop();
     recent_.clear();
   }

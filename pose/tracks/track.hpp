@@ -46,7 +46,7 @@ const Symmetries& symmetries_of(const TrackModels& models, const std::string& na
 TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map<std::string, Symmetries>& symmetries);
 
 /// What is known of a frame of a camera.
-struct FrameSeen {
+struct FrameObservation {
   const ObjectPoses& poses;                ///< names the frame
   const Detections* detections = nullptr;  ///< of the frame, where they are known
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
@@ -57,7 +57,7 @@ struct FrameSeen {
 };
 
 /// A pose that was measured in a frame, in the world.
-struct SeenPose {
+struct PoseObservation {
   FrameId frame;
   int class_id = 0;
   std::string class_name;
@@ -67,7 +67,7 @@ struct SeenPose {
 
 /// The valid poses of a frame in the world. Their covariance grows with the distance, more along the line of sight than
 /// across it, and where little of an object is seen.
-std::vector<SeenPose> seen_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
+std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
                                  const TrackModels& models);
 
 /// Log odds of a pose's quality, which is cut to 0.02 and 0.98.
@@ -85,9 +85,9 @@ Look look_at(const RgbdFrame& frame, const TrackModel& model, const Eigen::Isome
 struct PoseTrackSettings {
   MotionSettings motion;
   double same_rotation_rad = 0.44;  ///< poses turned farther apart are two hypotheses
-  double stands_m = 0.008;          ///< what stands is not measured farther away than this, nor than 4 sigma
+  double static_gate_m = 0.008;          ///< what stands is not measured farther away than this, nor than 4 sigma
   double stands_rad = 0.21;
-  double settles_m = 0.004;  ///< what moved stands when two fifths of a second differ by less
+  double rest_threshold_m = 0.004;  ///< what moved stands when two fifths of a second differ by less
   double settles_rad = 0.09;
 };
 
@@ -95,11 +95,11 @@ struct PoseTrackSettings {
 /// of two is ever published (a can's two turns), and what is needed to tell moving from standing.
 class PoseTrack {
  public:
-  PoseTrack(const SeenPose& first, const PoseTrackSettings& settings);
+  PoseTrack(const PoseObservation& first, const PoseTrackSettings& settings);
 
   void predict(std::int64_t utime);
   /// `doubted`: depth has spoken against where it was since it was measured last; then one measurement elsewhere tells.
-  void take(const SeenPose& pose, const Symmetries& symmetries, bool doubted);
+  void take(const PoseObservation& pose, const Symmetries& symmetries, bool doubted);
 
   const MotionFilter& filter() const { return hypotheses_[best_].filter; }
   /// Metres from the nearest hypothesis to where the measured pose has the object's `centre` (object frame, metres),
@@ -112,21 +112,21 @@ class PoseTrack {
     MotionFilter filter;
     double weight = 0.0;  ///< log odds of what spoke for it of late
   };
-  struct Witness {
+  struct ObserverHistory {
     std::deque<PoseMeasurement> apart;  ///< of late, where the object is not thought to be
     std::int64_t agreed_utime = 0;      ///< when it last saw it where it is
   };
 
   std::size_t hypothesis_for(const PoseMeasurement& measured, const Symmetries& symmetries);
-  void update_standing(const SeenPose& pose, bool doubted, Hypothesis& hypothesis);
+  void update_standing(const PoseObservation& pose, bool doubted, Hypothesis& hypothesis);
   void update_moving(const PoseMeasurement& measured, Hypothesis& hypothesis);
-  bool may_tell_of_motion(const std::string& channel, std::int64_t utime) const;
+  bool can_trigger_motion(const std::string& channel, std::int64_t utime) const;
 
   PoseTrackSettings settings_;
   std::vector<Hypothesis> hypotheses_;
   std::size_t best_ = 0;
   std::int64_t weighed_utime_ = 0;
-  std::map<std::string, Witness> witnesses_;  // by camera
+  std::map<std::string, ObserverHistory> witnesses_;  // by camera
   std::deque<PoseMeasurement> recent_;        // while it moves
 };
 
@@ -142,11 +142,11 @@ struct Track {
   FrameId last_seen;
   TrackState state = TrackState::kVisible;
   std::string reason;
-  std::int64_t gone_utime = 0;  ///< 0: it is there
+  std::int64_t deleted_utime = 0;  ///< 0: it is there
   bool seen_now = false;
   double seen_through_s = 0.0;  ///< for how long it was seen through, since it was seen last
 
-  bool there() const { return gone_utime == 0; }
+  bool there() const { return deleted_utime == 0; }
 };
 
 }  // namespace houghstream::tracks

@@ -16,12 +16,12 @@ namespace houghstream::tracks {
 
 struct Tracker::State {
   TrackModels models;
-  TrackerSettings settings;
+  ObjectTrackerSettings settings;
   std::vector<Track> tracks;  // by when they were begun; numbers follow in the order of confirmation
   WorldClock clock;
-  LookedFor looked_for;
+  SearchedClasses looked_for;
   ClassNames names;
-  std::map<std::string, int> most_together;  // by class: instances that were seen in one frame
+  std::map<std::string, int> max_instances;  // by class: instances that were seen in one frame
   std::int64_t next_id = 1;
   int world_number = 1;
   std::size_t refused = 0;  // poses of the last frame, for which there was no room
@@ -30,21 +30,21 @@ struct Tracker::State {
   void rename_tracks(const std::map<std::string, std::string>& renamed);
   void drop_doubles(std::size_t renamed_index);
   void retire_tracks(const std::set<std::string>& removed);
-  WorldObjects update(const FrameSeen& seen, CameraClock& camera);
-  CameraClock* begin_frame(const FrameSeen& seen);
-  std::vector<SeenPose> new_poses(const FrameSeen& seen, CameraClock& camera) const;
-  std::vector<SeenPose> associate(const std::vector<SeenPose>& poses, const std::string& class_name, double seconds);
-  void take(Track& track, const SeenPose& pose, double seconds);
+  WorldObjects update(const FrameObservation& seen, CameraClock& camera);
+  CameraClock* begin_frame(const FrameObservation& seen);
+  std::vector<PoseObservation> new_poses(const FrameObservation& seen, CameraClock& camera) const;
+  std::vector<PoseObservation> associate(const std::vector<PoseObservation>& poses, const std::string& class_name, double seconds);
+  void take(Track& track, const PoseObservation& pose, double seconds);
   bool has_room();
-  void begin(const SeenPose& pose);
-  void miss_unseen(const FrameSeen& seen, const std::vector<SeenPose>& poses, CameraClock& camera);
+  void begin(const PoseObservation& pose);
+  void update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses, CameraClock& camera);
   void confirm(std::int64_t utime);
-  Track* earlier_self(const Track& candidate, std::int64_t utime);
+  Track* find_reidentified(const Track& candidate, std::int64_t utime);
   void forget(std::int64_t utime);
-  WorldObjects report(const FrameSeen& seen) const;
+  WorldObjects report(const FrameObservation& seen) const;
 };
 
-Tracker::Tracker(TrackModels models, TrackerSettings settings) : state_(std::make_unique<State>()) {
+Tracker::Tracker(TrackModels models, ObjectTrackerSettings settings) : state_(std::make_unique<State>()) {
   state_->models = std::move(models);
   state_->settings = settings;
 }
@@ -66,7 +66,7 @@ void Tracker::State::retire_tracks(const std::set<std::string>& removed) {
                tracks.end());
   for (Track& track : tracks) {
     if (!track.there() || !is_removed(track)) continue;
-    track.gone_utime = track.pose.filter().utime();
+    track.deleted_utime = track.pose.filter().utime();
     track.log_odds = std::min(track.log_odds, settings.existence.gone);
     track.state = TrackState::kGone;
     track.reason = "its class has left the object store";
@@ -88,12 +88,12 @@ void Tracker::State::rename_tracks(const std::map<std::string, std::string>& ren
   tracks.erase(std::remove_if(tracks.begin(), tracks.end(), [](const Track& track) { return track.id < 0; }),
                tracks.end());
   std::map<std::string, int> counts;
-  for (const auto& [name, count] : most_together) {
+  for (const auto& [name, count] : max_instances) {
     const auto found = renamed.find(name);
     int& most = counts[found == renamed.end() ? name : found->second];
     most = std::max(most, count);
   }
-  most_together = std::move(counts);
+  max_instances = std::move(counts);
 }
 
 /// Marks what was begun in the place of a renamed object while only its new name came, for being forgotten.
@@ -118,7 +118,7 @@ std::size_t Tracker::refused() const {
   return state_->refused;
 }
 
-std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
+std::optional<WorldObjects> Tracker::update(const FrameObservation& seen) {
   State& state = *state_;
   state.refused = 0;
   CameraClock* camera = state.begin_frame(seen);
@@ -141,19 +141,19 @@ std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
 }
 
 /// The world after a frame whose time is on the world's clock, and whose classes are called as they are today.
-WorldObjects Tracker::State::update(const FrameSeen& seen, CameraClock& camera) {
+WorldObjects Tracker::State::update(const FrameObservation& seen, CameraClock& camera) {
   const FrameId& frame = seen.poses.frame;
-  const std::vector<SeenPose> poses = new_poses(seen, camera);
+  const std::vector<PoseObservation> poses = new_poses(seen, camera);
   for (Track& track : tracks) track.seen_now = track.last_seen == frame;  // by another result of the same frame
   std::set<std::string> classes;
-  for (const SeenPose& pose : poses) classes.insert(pose.class_name);
-  std::vector<SeenPose> unknown;
+  for (const PoseObservation& pose : poses) classes.insert(pose.class_name);
+  std::vector<PoseObservation> unknown;
   for (const std::string& class_name : classes) {
-    const std::vector<SeenPose> left = associate(poses, class_name, camera.seconds);
+    const std::vector<PoseObservation> left = associate(poses, class_name, camera.seconds);
     unknown.insert(unknown.end(), left.begin(), left.end());
   }
-  miss_unseen(seen, poses, camera);
-  for (const SeenPose& pose : unknown) begin(pose);
+  update_unobserved_tracks(seen, poses, camera);
+  for (const PoseObservation& pose : unknown) begin(pose);
   confirm(frame.utime);
   forget(frame.utime);
   return report(seen);
@@ -163,13 +163,13 @@ void Tracker::State::begin_world() {
   tracks.clear();
   clock.begin_world();
   looked_for = {};
-  most_together.clear();
+  max_instances.clear();
   next_id = 1;
   ++world_number;
 }
 
 /// The camera's clock, which the frame has set; null where the frame is passed over.
-CameraClock* Tracker::State::begin_frame(const FrameSeen& seen) {
+CameraClock* Tracker::State::begin_frame(const FrameObservation& seen) {
   const FrameId& id = seen.poses.frame;
   const StampedFrame frame{id, seen.number, seen.newest_utime.value_or(id.utime)};
   const TimeOrder order = clock.order_of(frame);
@@ -179,20 +179,20 @@ CameraClock* Tracker::State::begin_frame(const FrameSeen& seen) {
 }
 
 /// The poses of classes that this frame was not told of yet: another detector's, or all.
-std::vector<SeenPose> Tracker::State::new_poses(const FrameSeen& seen, CameraClock& camera) const {
-  std::vector<SeenPose> poses = seen_poses(seen.poses, seen.T_world_camera, models);
+std::vector<PoseObservation> Tracker::State::new_poses(const FrameObservation& seen, CameraClock& camera) const {
+  std::vector<PoseObservation> poses = observe_poses(seen.poses, seen.T_world_camera, models);
   std::set<std::string>& told = camera.classes;
   poses.erase(
-      std::remove_if(poses.begin(), poses.end(), [&](const SeenPose& pose) { return told.count(pose.class_name) > 0; }),
+      std::remove_if(poses.begin(), poses.end(), [&](const PoseObservation& pose) { return told.count(pose.class_name) > 0; }),
       poses.end());
-  for (const SeenPose& pose : poses) told.insert(pose.class_name);
+  for (const PoseObservation& pose : poses) told.insert(pose.class_name);
   return poses;
 }
 
 /// Gives the poses of a class to its objects; those that no object is near are left.
-std::vector<SeenPose> Tracker::State::associate(const std::vector<SeenPose>& poses, const std::string& class_name,
+std::vector<PoseObservation> Tracker::State::associate(const std::vector<PoseObservation>& poses, const std::string& class_name,
                                                 double seconds) {
-  const OfOneClass one = of_one_class(class_name, poses, models, tracks);
+  const ClassGroup one = group_by_class(class_name, poses, models, tracks);
   const std::vector<int> given = assign_poses(one, settings.association);
   std::vector<bool> taken(one.measured.size(), false);
   for (std::size_t i = 0; i < one.objects.size(); ++i) {
@@ -202,16 +202,16 @@ std::vector<SeenPose> Tracker::State::associate(const std::vector<SeenPose>& pos
   }
   const int together = static_cast<int>(std::count_if(
       one.objects.begin(), one.objects.end(), [](const Track* track) { return track->id != 0 && track->seen_now; }));
-  most_together[class_name] = std::max(most_together[class_name], together);
-  std::vector<SeenPose> left;
+  max_instances[class_name] = std::max(max_instances[class_name], together);
+  std::vector<PoseObservation> left;
   for (std::size_t j = 0; j < one.measured.size(); ++j) {
-    const SeenPose& pose = *one.measured[j];
-    if (!taken[j] && !is_crowded(pose.measured, one, settings.association)) left.push_back(pose);
+    const PoseObservation& pose = *one.measured[j];
+    if (!taken[j] && !is_space_occupied(pose.measured, one, settings.association)) left.push_back(pose);
   }
   return left;
 }
 
-void Tracker::State::take(Track& track, const SeenPose& pose, double seconds) {
+void Tracker::State::take(Track& track, const PoseObservation& pose, double seconds) {
   constexpr double kRateHz = 30.0;
   constexpr double kMost = 4.0;
   const double share = std::clamp(seconds * kRateHz, 0.5, 1.5);
@@ -232,14 +232,14 @@ bool Tracker::State::has_room() {
   if (tracks.size() < settings.most_objects) return true;
   auto oldest = tracks.end();
   for (auto it = tracks.begin(); it != tracks.end(); ++it) {
-    if (!it->there() && (oldest == tracks.end() || it->gone_utime < oldest->gone_utime)) oldest = it;
+    if (!it->there() && (oldest == tracks.end() || it->deleted_utime < oldest->deleted_utime)) oldest = it;
   }
   if (oldest == tracks.end()) return false;
   tracks.erase(oldest);
   return true;
 }
 
-void Tracker::State::begin(const SeenPose& pose) {
+void Tracker::State::begin(const PoseObservation& pose) {
   if (!has_room()) {
     ++refused;
     return;
@@ -260,24 +260,24 @@ void Tracker::State::begin(const SeenPose& pose) {
 }
 
 /// What is not seen is missed once a frame, however many results that has.
-void Tracker::State::miss_unseen(const FrameSeen& seen, const std::vector<SeenPose>& poses, CameraClock& camera) {
+void Tracker::State::update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses, CameraClock& camera) {
   looked_for.note(seen.poses);
-  const Unseen unseen{seen, poses, models, settings.association.reach_m, settings.pose.motion.coast_s};
+  const UnobservedContext unseen{seen, poses, models, settings.association.reach_m, settings.pose.motion.coast_s};
   std::set<std::string> missed_now;
   for (Track& track : tracks) {
     if (!track.there() || track.seen_now) continue;
-    const Missed missed{
+    const MissedDetection missed{
         camera.seconds, camera.results == 1,
-        camera.missed.count(track.class_name) == 0 && looked_for.speaks_of(seen.poses, track.class_name)};
+        camera.missed.count(track.class_name) == 0 && looked_for.has_searched(seen.poses, track.class_name)};
     if (missed.by_recognition) missed_now.insert(track.class_name);
-    if (missed.by_depth || missed.by_recognition) judge_unseen(unseen, missed, settings.existence, track);
+    if (missed.by_depth || missed.by_recognition) update_unobserved(unseen, missed, settings.existence, track);
   }
   camera.missed.insert(missed_now.begin(), missed_now.end());
 }
 
 /// The object that a candidate was before it was carried or taken away: one of its class that is gone, that is not
 /// where it was, or that a hand hides while no more of its class have ever been seen together.
-Track* Tracker::State::earlier_self(const Track& candidate, std::int64_t utime) {
+Track* Tracker::State::find_reidentified(const Track& candidate, std::int64_t utime) {
   int visible = 1;
   for (const Track& track : tracks) {
     if (track.id != 0 && track.class_name == candidate.class_name && track.seen_now) ++visible;
@@ -288,9 +288,9 @@ Track* Tracker::State::earlier_self(const Track& candidate, std::int64_t utime) 
     // One that this frame has given its number to another candidate is nobody's any more.
     if (track.id <= 0 || track.class_name != candidate.class_name || track.seen_now) continue;
     const double unseen_s = seconds_between(track.last_seen.utime, utime);
-    const bool handled = track.state == TrackState::kHidden && unseen_s < settings.handled_s;
+    const bool handled = track.state == TrackState::kHidden && unseen_s < settings.hand_occlusion_s;
     const bool lost = track.pose.filter().moving() || track.seen_through_s > 0.0;
-    const bool free = !track.there() || lost || (handled && visible <= most_together[candidate.class_name]);
+    const bool free = !track.there() || lost || (handled && visible <= max_instances[candidate.class_name]);
     if (!free || track.last_seen.utime > candidate.last_seen.utime) continue;
     const double rank =
         unseen_s + (track.there() ? 0.0 : 5.0) +
@@ -311,7 +311,7 @@ void Tracker::State::confirm(std::int64_t utime) {
     if (candidate.id != 0 || !candidate.there() || candidate.log_odds < how.confirmed ||
         candidate.seen < how.confirmed_frames || spread_s < how.confirmed_s)
       continue;
-    if (Track* earlier = earlier_self(candidate, utime)) {
+    if (Track* earlier = find_reidentified(candidate, utime)) {
       const std::int64_t id = earlier->id;
       candidate.id = id;
       candidate.first_utime = earlier->first_utime;
@@ -329,18 +329,18 @@ void Tracker::State::forget(std::int64_t utime) {
   const auto over = [&](const Track& track) {
     if (track.id < 0) return true;
     if (track.there()) return false;
-    return track.id == 0 || seconds_between(track.gone_utime, utime) > settings.remembered_s;
+    return track.id == 0 || seconds_between(track.deleted_utime, utime) > settings.reidentification_s;
   };
   tracks.erase(std::remove_if(tracks.begin(), tracks.end(), over), tracks.end());
   // Other classes' names a sender of rubbish may make up without end.
   std::set<std::string> known;
   for (const Track& track : tracks) known.insert(track.class_name);
-  for (auto it = most_together.begin(); it != most_together.end();)
-    it = known.count(it->first) > 0 ? std::next(it) : most_together.erase(it);
+  for (auto it = max_instances.begin(); it != max_instances.end();)
+    it = known.count(it->first) > 0 ? std::next(it) : max_instances.erase(it);
   looked_for.keep_only(known);
 }
 
-WorldObjects Tracker::State::report(const FrameSeen& seen) const {
+WorldObjects Tracker::State::report(const FrameObservation& seen) const {
   WorldObjects out;
   out.frame = seen.poses.frame;
   out.world_number = world_number;
@@ -348,7 +348,7 @@ WorldObjects Tracker::State::report(const FrameSeen& seen) const {
   out.stages = seen.poses.stages;
   for (const Track& track : tracks) {
     if (track.id == 0) continue;
-    if (!track.there() && seconds_between(track.gone_utime, out.frame.utime) > settings.told_gone_s) continue;
+    if (!track.there() && seconds_between(track.deleted_utime, out.frame.utime) > settings.gone_report_s) continue;
     const MotionFilter& filter = track.pose.filter();
     TrackedObject object;
     object.track_id = track.id;

@@ -10,13 +10,13 @@
 
 namespace houghstream::tracks {
 
-struct TrackerSettings {
+struct ObjectTrackerSettings {
   PoseTrackSettings pose;
   AssociationSettings association;
   ExistenceSettings existence;
-  double told_gone_s = 2.0;        ///< what is gone is published for so long
-  double remembered_s = 600.0;     ///< what comes back within this time keeps its number
-  double handled_s = 3.0;          ///< what a hand hides for so long may be in the hand
+  double gone_report_s = 2.0;        ///< what is gone is published for so long
+  double reidentification_s = 600.0;     ///< what comes back within this time keeps its number
+  double hand_occlusion_s = 3.0;          ///< what a hand hides for so long may be in the hand
   std::size_t most_objects = 500;  ///< and candidates; further ones are refused
 };
 
@@ -27,7 +27,7 @@ struct TrackerSettings {
 /// A frame's result follows from the frames before, in their order, and nothing else. Not thread-safe.
 class Tracker {
  public:
-  Tracker(TrackModels models, TrackerSettings settings);
+  Tracker(TrackModels models, ObjectTrackerSettings settings);
   ~Tracker();
   Tracker(Tracker&&) noexcept;
 
@@ -36,9 +36,9 @@ class Tracker {
   /// it; where a source, or its log, begins again in the past, a new world begins (WorldClock). A class that the same
   /// frame was told of before is not told again. Throws InputError for a frame that is more than a second older than
   /// another camera's, as long as that goes on.
-  std::optional<WorldObjects> update(const FrameSeen& seen);
+  std::optional<WorldObjects> update(const FrameObservation& seen);
 
-  /// Poses of the last frame of objects for which there was no room (TrackerSettings::most_objects).
+  /// Poses of the last frame of objects for which there was no room (ObjectTrackerSettings::most_objects).
   std::size_t refused() const;
 
   /// Forgets all objects: they were in another coordinate frame.

@@ -140,7 +140,7 @@ void WorldClock::tell_new_world(const FrameId& frame, std::int64_t last_utime) {
 }
 
 void WorldClock::warn(const std::string& line) {
-  const auto admitted = lines_.admit("world", line, LimitedLines::Clock::now());
+  const auto admitted = lines_.admit("world", line, LogThrottle::Clock::now());
   if (admitted) log_warning("{}", *admitted);
 }
 

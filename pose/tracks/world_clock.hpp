@@ -77,7 +77,7 @@ class WorldClock {
   std::optional<FrameId> newest_;                // of all cameras, on the world's clock
   std::int64_t ahead_us_ = 0;
   int behind_ = 0;  // frames one after the other that were refused as too old
-  LimitedLines lines_;
+  LogThrottle lines_;
 };
 
 }  // namespace houghstream::tracks

@@ -14,7 +14,7 @@ void decide_status(const PoseEvidence& evidence, const Eigen::Isometry3d& T_came
   pose.free_space_violation = evidence.depth.free_space_violation();
   pose.quality = pose_quality(terms, quality);
   const float presence = presence_probability(evidence.detection_score, pose.quality, quality.presence);
-  if (pose.quality >= (reported ? quality.least : quality.least_of_candidates)) {
+  if (pose.quality >= (reported ? quality.least : quality.min_candidate_quality)) {
     pose.status = PoseStatus::kValid;
     pose.T_camera_object = T_camera_object;
   } else if (reported && presence < kRefutedBelow) {

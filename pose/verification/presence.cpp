@@ -13,7 +13,7 @@ PresenceWeights terms_of(float score, float quality) {
 }
 
 PresenceWeights weights_of(const PresenceSettings& settings) {
-  return {settings.bias, settings.of_score, settings.of_quality};
+  return {settings.bias, settings.score_weight, settings.quality_weight};
 }
 
 }  // namespace

@@ -10,8 +10,8 @@ namespace houghstream {
 /// says differs most between what is easily posed and what is not.
 struct PresenceSettings {
   double bias = 0.27;
-  double of_score = 0.26;
-  double of_quality = 0.68;
+  double score_weight = 0.26;
+  double quality_weight = 0.68;
 };
 
 /// In (0, 1); `score` and `quality` are in [0, 1], and the ends of it are no certainty.

@@ -8,12 +8,12 @@
 namespace houghstream {
 namespace {
 
-double print_agreement(const ColourComparison& colour) {
+double texture_agreement(const ColourComparison& colour) {
   constexpr double kShading = 250.0;  // variance that highlights, shade and noise make on a plain surface
   constexpr double kPlain = 0.7;      // agreement of most plain surfaces
   constexpr double kLeast = -0.5;
   const auto left_over = static_cast<double>(colour.left_over);
-  const auto seen = static_cast<double>(colour.seen_contrast);
+  const auto seen = static_cast<double>(colour.observed_contrast);
   const double agreement = 1.0 - left_over * left_over / (kShading + seen * seen);
   const double compared = static_cast<double>(colour.points) / static_cast<double>(colour.points + colour.clipped);
   return compared * std::max(kLeast, agreement) + (1.0 - compared) * kPlain;
@@ -21,12 +21,12 @@ double print_agreement(const ColourComparison& colour) {
 
 }  // namespace
 
-PoseEvidence gather_evidence(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, float detection_score,
+PoseEvidence gather_evidence(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, float detection_score,
                              const VerificationSettings& settings) {
   const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
-  const ViewLook look = look_at_view(seen.frame, seen.model, T_camera_object, settings.points);
+  const ProjectedView look = look_at_view(seen.frame, seen.model, T_camera_object, settings.points);
   return {detection_score, verify_pose(seen.frame, seen.model.mesh, T_camera_object, tolerance, &seen.colours),
-          compare_print(seen, look, tolerance)};
+          compare_texture(seen, look, tolerance)};
 }
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings) {
@@ -42,15 +42,15 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   terms.detection_log_odds = log_odds(static_cast<double>(evidence.detection_score));
   terms.seen_through = -std::log(depth.violating / judged + kShare);
   terms.visible = std::log(static_cast<double>(depth.visible_fraction()) + kFraction);
-  const double goes_on = depth.outline > 0 ? static_cast<double>(depth.outline_goes_on) / depth.outline : kEven;
+  const double goes_on = depth.outline > 0 ? static_cast<double>(depth.boundary_continuations) / depth.outline : kEven;
   terms.outline = std::log((1.0 - goes_on + kFraction) / (goes_on + kFraction));
   if (evidence.colour) {
     terms.chroma_conflict = -static_cast<double>(evidence.colour->chroma_conflict);
-    terms.print = print_agreement(*evidence.colour);
+    terms.print = texture_agreement(*evidence.colour);
     const auto left_over = static_cast<double>(evidence.colour->left_over);
-    terms.left_over = -std::log(left_over * left_over + kPlainColourVariance);
-    const auto contrast = static_cast<double>(evidence.colour->own_contrast);
-    terms.contrast = -std::log(kCameraContrastSq * contrast * contrast + kPlainColourVariance);
+    terms.left_over = -std::log(left_over * left_over + kUntexturedVariance);
+    const auto contrast = static_cast<double>(evidence.colour->model_contrast);
+    terms.contrast = -std::log(kCameraContrastSq * contrast * contrast + kUntexturedVariance);
   } else {
     terms.print *= kUnknownColour;
   }

@@ -19,7 +19,7 @@ struct PoseEvidence {
 };
 
 /// Renders the model at the pose and compares its depth and its colours with what is seen.
-PoseEvidence gather_evidence(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, float detection_score,
+PoseEvidence gather_evidence(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, float detection_score,
                              const VerificationSettings& settings);
 
 /// A number for each term of the regression: a pose's evidence, the larger the better, or a weight of it.
@@ -56,7 +56,7 @@ struct QualitySettings {
   /// without colours.
   QualityTerms typical = {1.95, 3.06, -0.17, 2.89, -0.23, 0.80, -5.29, -5.29};
   float least = 0.75F;                ///< poses of lower quality are not published...
-  float least_of_candidates = 0.75F;  ///< ...nor are these of candidates (Detection::reported), most of which are false
+  float min_candidate_quality = 0.75F;  ///< ...nor are these of candidates (Detection::reported), most of which are false
   PresenceSettings presence;          ///< what the quality says of whether the object is there at all
 };
 

@@ -48,19 +48,19 @@ double correlation(const std::vector<LabColour>& a, const std::vector<LabColour>
 
 }  // namespace
 
-std::optional<PoseEvidence> evidence_with_swapped_texture(const SeenObject& seen,
+std::optional<PoseEvidence> evidence_with_swapped_texture(const ObjectObservation& seen,
                                                           const Eigen::Isometry3d& T_camera_object,
                                                           const PoseEvidence& own,
                                                           const VerificationSettings& settings) {
   constexpr double kMaxTextureCorrelation = 0.5;
-  const ViewLook look = look_at_view(seen.frame, seen.model, T_camera_object, settings.points);
+  const ProjectedView look = look_at_view(seen.frame, seen.model, T_camera_object, settings.points);
   if (look.view.colours.empty()) return std::nullopt;
   const ModelView view = with_opposite_colours(look.view);
   if (correlation(look.view.colours, view.colours) > kMaxTextureCorrelation) return std::nullopt;
   const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
-  const ViewLook other{view, look.T, look.depth, look.looks};
+  const ProjectedView other{view, look.T, look.depth, look.looks};
   PoseEvidence evidence = own;
-  evidence.colour = compare_print(seen, other, tolerance);
+  evidence.colour = compare_texture(seen, other, tolerance);
   if (!evidence.colour) return std::nullopt;
   return evidence;
 }

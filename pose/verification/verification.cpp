@@ -12,7 +12,7 @@ namespace houghstream {
 namespace {
 
 /// What is looked at across the outline of a rendered model.
-struct OutlineView {
+struct BoundaryView {
   const RgbdFrame& frame;
   const cv::Mat& rendered;  ///< depth, metres; NaN beside the model
   cv::Point origin_px;      ///< its first pixel in the frame
@@ -29,7 +29,7 @@ struct OutlineView {
 };
 
 /// 0 where colours are not known; nothing where they are known of other places only.
-std::optional<float> colours_apart_sq(const OutlineView& view, const cv::Point& inside, const cv::Point& beyond) {
+std::optional<float> colours_apart_sq(const BoundaryView& view, const cv::Point& inside, const cv::Point& beyond) {
   if (view.colours == nullptr || view.colours->lab.empty()) return 0.0F;
   const cv::Mat& lab = view.colours->lab;
   const cv::Point origin = view.colours->origin_px - view.origin_px;
@@ -40,7 +40,7 @@ std::optional<float> colours_apart_sq(const OutlineView& view, const cv::Point& 
 
 /// From the outline's pixel `at` towards `side`. Nothing where that says nothing: across a notch, beside the frame,
 /// or behind another thing.
-std::optional<AcrossOutline> look_across(const OutlineView& view, const cv::Point& at, const cv::Point& side,
+std::optional<BoundarySample> sample_boundary(const BoundaryView& view, const cv::Point& at, const cv::Point& side,
                                          const DepthTolerance& tolerance) {
   constexpr double kInside = 0.004;  // metres: not on the edge, whose depth and colour are mixed
   constexpr double kBeyond = 0.008;
@@ -55,7 +55,7 @@ std::optional<AcrossOutline> look_across(const OutlineView& view, const cv::Poin
   if (here < view.model(inside) - static_cast<float>(tolerance.at(view.model(inside)))) return std::nullopt;
   const std::optional<float> colour_sq = colours_apart_sq(view, inside, beyond);
   if (!colour_sq) return std::nullopt;
-  AcrossOutline seen;
+  BoundarySample seen;
   const auto steps = static_cast<float>(in_px + out_px);
   seen.apart = steps * static_cast<float>(metres_per_px);
   seen.gained = view.measured(beyond) - here;
@@ -66,7 +66,7 @@ std::optional<AcrossOutline> look_across(const OutlineView& view, const cv::Poin
 }
 
 /// To the left and right of each row's outline, and above and below each column's.
-void compare_outline(const OutlineView& view, const DepthTolerance& tolerance, Verification& result) {
+void compare_boundary(const BoundaryView& view, const DepthTolerance& tolerance, Verification& result) {
   const std::array<cv::Point, 4> sides{cv::Point(1, 0), {-1, 0}, {0, 1}, {0, -1}};
   for (int y = 0; y < view.rendered.rows; ++y) {
     for (int x = 0; x < view.rendered.cols; ++x) {
@@ -75,10 +75,10 @@ void compare_outline(const OutlineView& view, const DepthTolerance& tolerance, V
       const auto limit = static_cast<float>(tolerance.at(view.model(at)));
       for (const cv::Point& side : sides) {
         if (view.is_model(at + side)) continue;
-        const std::optional<AcrossOutline> seen = look_across(view, at, side, tolerance);
-        if (!seen || comes_forward(*seen, limit)) continue;
+        const std::optional<BoundarySample> seen = sample_boundary(view, at, side, tolerance);
+        if (!seen || is_foreground_step(*seen, limit)) continue;
         ++result.outline;
-        result.outline_goes_on += surface_goes_on(*seen, limit) * colour_goes_on(*seen);
+        result.boundary_continuations += surface_goes_on(*seen, limit) * colour_goes_on(*seen);
       }
     }
   }
@@ -94,7 +94,7 @@ float Verification::free_space_violation() const {
   return rendered == 0 ? 0.0F : static_cast<float>(violating) / static_cast<float>(rendered);
 }
 
-Verification verify_look(const ViewLook& look, const DepthTolerance& tolerance) {
+Verification verify_projected_view(const ProjectedView& look, const DepthTolerance& tolerance) {
   constexpr float kEdge = 0.3F;  // cosine between normal and line of sight
   Verification result;
   for (std::size_t i = 0; i < look.looks.size(); ++i) {
@@ -114,7 +114,7 @@ Verification verify_look(const ViewLook& look, const DepthTolerance& tolerance) 
 Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object,
                          const DepthTolerance& tolerance, const LabRegion* colours) {
   Verification result;
-  const RenderedPart part = render_depth_part(mesh, T_camera_object, frame.camera);
+  const RenderedRegion part = render_depth_region(mesh, T_camera_object, frame.camera);
   const cv::Rect& region = part.region_px;
   if (region.area() == 0) return result;
   const cv::Mat& rendered = part.depth;
@@ -131,7 +131,7 @@ Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::
       result.occluded += beyond < -limit ? 1 : 0;
     }
   }
-  compare_outline({frame, rendered, region.tl(), colours}, tolerance, result);
+  compare_boundary({frame, rendered, region.tl(), colours}, tolerance, result);
   return result;
 }
 

@@ -22,7 +22,7 @@ struct Verification {
   int violating = 0;               ///< measured behind the model: the camera saw through it
   int occluded = 0;                ///< measured in front of the model; says nothing about the pose
   int outline = 0;                 ///< places where the model's outline was looked across
-  float outline_goes_on = 0.0F;    ///< those where what is seen goes on as if there were no outline, see AcrossOutline
+  float boundary_continuations = 0.0F;    ///< those where what is seen goes on as if there were no outline, see BoundarySample
   float visible_fraction() const;  ///< agreeing of rendered, 0 if nothing is rendered
   float free_space_violation() const;  ///< violating of rendered, 0 if nothing is rendered
 };
@@ -30,7 +30,7 @@ struct Verification {
 /// The same counts, without the outline's, at the points that were looked at instead of the rendered pixels: they are
 /// spread over the view as pixels are. Those that are seen from their edge are left out, since the view's direction is
 /// only near the pose's.
-Verification verify_look(const ViewLook& look, const DepthTolerance& tolerance);
+Verification verify_projected_view(const ProjectedView& look, const DepthTolerance& tolerance);
 
 /// `colours`: of the frame, about the object; nullptr: any colour counts as going on.
 Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object,

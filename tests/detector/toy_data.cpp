@@ -51,7 +51,7 @@ struct TilePlace {
   double u_px;
   double v_px;
   double distance;
-  ReliefTilt tilt;
+  OffAxisSlope tilt;
 };
 
 cv::Mat draw_tile(int kind, const TilePlace& place, RgbdFrame& frame) {
@@ -73,7 +73,7 @@ cv::Mat draw_tile(int kind, const TilePlace& place, RgbdFrame& frame) {
 }  // namespace
 
 cv::Mat put_tile(int kind, double u_px, double v_px, double distance, RgbdFrame& frame) {
-  const ReliefTilt tilt = relief_tilt(kCamera.backproject(u_px, v_px, distance).cast<float>());
+  const OffAxisSlope tilt = off_axis_slope(kCamera.backproject(u_px, v_px, distance).cast<float>());
   return draw_tile(kind, {u_px, v_px, distance, tilt}, frame);
 }
 

@@ -35,7 +35,7 @@ DetectionSettings curious() {
 
 /// The stages up to the leaves.
 void see(const RgbdFrame& frame, const DetectionSettings& settings, DetectorWorkspace& workspace) {
-  const Search search{toy::forest_index(), settings};
+  const SearchContext search{toy::forest_index(), settings};
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);
   find_posteriors(search, workspace);

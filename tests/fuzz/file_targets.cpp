@@ -47,7 +47,7 @@ void repair_forest(Bytes& input) {
 Taken read_forest(ByteView input) {
   const Forest forest = load_forest(as_file(input, "forest"));
   const ForestIndex index(forest);
-  return {forest.classes.size() + forest.nodes.size() + index.leaf_heads().size()};
+  return {forest.classes.size() + forest.nodes.size() + index.leaf_summaries().size()};
 }
 
 std::vector<Bytes> forests() {

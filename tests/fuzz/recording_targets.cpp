@@ -10,8 +10,8 @@ namespace houghstream::fuzz {
 namespace {
 
 Taken read_log(ByteView input) {
-  log_tools::LossAccount losses;
-  log_tools::GoodEvents events(as_file(input, "log"), losses);
+  log_tools::LossReport losses;
+  log_tools::IntactEvents events(as_file(input, "log"), losses);
   Taken taken;
   while (events.next()) ++taken.items;
   taken.tells_loss = !losses.line().empty();

@@ -24,7 +24,7 @@ class ProcessOnMemq {
   explicit ProcessOnMemq(const std::vector<std::string>& watched) {
     catch_stop_signals();
     for (const std::string& name : watched) {
-      bus.subscribe(name, [this, name](const Arrival& arrival) {
+      bus.subscribe(name, [this, name](const ReceivedMessage& arrival) {
         const std::lock_guard<std::mutex> lock(mutex_);
         seen_[name].push_back({arrival.bytes.data, arrival.bytes.data + arrival.bytes.size});
       });

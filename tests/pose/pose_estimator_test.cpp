@@ -201,7 +201,7 @@ TEST(PublishFrom, IsTheLimitOfEachClassAndOfCandidates) {
   publish_from(0.3F, settings);
   for (const QualitySettings& judged_by : {settings.quality, settings.class_quality["mug"]}) {
     EXPECT_EQ(judged_by.least, 0.3F);
-    EXPECT_EQ(judged_by.least_of_candidates, 0.3F);
+    EXPECT_EQ(judged_by.min_candidate_quality, 0.3F);
   }
   EXPECT_EQ(settings.class_quality["mug"].bias, -1.0);
 }
@@ -210,7 +210,7 @@ TEST(PoseEstimator, ACandidateHasALimitOfItsOwn) {
   const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
   Detection detection = detection_of("mug", scene.object, scene.truth, 5);
   PoseSettings settings;
-  settings.quality.least_of_candidates = 1.0F;
+  settings.quality.min_candidate_quality = 1.0F;
   const PoseEstimator estimator = estimator_for("mug", mug(), settings);
   EXPECT_EQ(estimator.estimate(scene.frame, only(detection)).poses.at(0).status, PoseStatus::kValid);
   detection.reported = false;

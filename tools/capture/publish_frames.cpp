@@ -133,7 +133,7 @@ openni::CameraListener listener_of(StatusReporter& status, Heartbeat& heart) {
     heart.beat();
     return stop_requested();
   };
-  return {beat_and_ask, [&](const std::string& reason) { status.remember_error(reason); },
+  return {beat_and_ask, [&](const std::string& reason) { status.set_last_error(reason); },
           [&](std::int64_t number) {
             status.note_number({number, number, 0});
           }};

@@ -57,7 +57,7 @@ std::string unknown_option(const CLI::App& command, const std::string& word) {
   const std::string option = word.substr(0, word.find('='));
   const std::size_t begin = option.find_first_not_of('-');
   const std::string meant =
-      begin == std::string::npos ? "" : meant_word(option.substr(begin), long_names(command.get_options()));
+      begin == std::string::npos ? "" : suggest_word(option.substr(begin), long_names(command.get_options()));
   return fmt::format("unknown option {}{} (--help lists all)", option,
                      meant.empty() ? "" : fmt::format(", did you mean --{}?", meant));
 }

@@ -26,7 +26,7 @@ std::string unit_name(double unit_m) {
 
 }  // namespace
 
-std::string fault_of_size(double size_m, double unit_m, const std::string& unit) {
+std::string mesh_size_error(double size_m, double unit_m, const std::string& unit) {
   if (size_m >= kSmallest_m && size_m <= kLargest_m) return "";
   std::vector<std::string> fitting;
   for (const Unit& other : kUnits) {
@@ -43,7 +43,7 @@ std::string fault_of_sizes(const std::map<std::string, Mesh>& models, double uni
   int count = 0;
   for (const auto& [name, mesh] : models) {
     const double size_m = mesh_bounds(mesh).diagonal().norm();
-    const std::string fault = fault_of_size(size_m, unit_m, unit);
+    const std::string fault = mesh_size_error(size_m, unit_m, unit);
     if (fault.empty()) continue;
     if (line.empty()) line = fmt::format("model '{}': {}", name, fault);
     ++count;

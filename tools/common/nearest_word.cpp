@@ -30,7 +30,7 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   return nearest == words.end() ? "" : *nearest;
 }
 
-std::string meant_word(const std::string& word, const std::vector<std::string>& words) {
+std::string suggest_word(const std::string& word, const std::vector<std::string>& words) {
   const std::string nearest = nearest_word(word, words);
   return 2 * edits_between(nearest, word) < word.size() ? nearest : "";
 }

@@ -9,6 +9,6 @@ namespace houghstream {
 std::string nearest_word(const std::string& word, const std::vector<std::string>& words);
 
 /// The one of `words` that `word` is likely a slip of: less than half of its letters are others. Empty without one.
-std::string meant_word(const std::string& word, const std::vector<std::string>& words);
+std::string suggest_word(const std::string& word, const std::vector<std::string>& words);
 
 }  // namespace houghstream

@@ -9,7 +9,7 @@
 namespace houghstream {
 
 /// What is looked for, as a command line names it.
-struct SearchedObjects {
+struct ObjectArguments {
   std::string store;  ///< of hs-teach, instead of the other two
   std::string forest;
   std::string models;
@@ -17,7 +17,7 @@ struct SearchedObjects {
 
 /// The store, where one is named: forest and models become its own. Throws InputError where it cannot be read, or
 /// forest or models are named beside it.
-inline std::optional<store::ObjectStore> take_store(SearchedObjects& objects) {
+inline std::optional<store::ObjectStore> resolve_store(ObjectArguments& objects) {
   if (objects.store.empty()) return std::nullopt;
   require(objects.forest.empty() && objects.models.empty(),
           "expected either --objects STORE or --forest FILE and --models FOLDER");

@@ -46,7 +46,7 @@ nlohmann::json quality_to_json(const QualitySettings& settings) {
       {"bias", settings.bias},
       {"weights", to_json(settings.weights)},
       {"typical", to_json(settings.typical)},
-      {"presence", {{"bias", presence.bias}, {"of_score", presence.of_score}, {"of_quality", presence.of_quality}}}};
+      {"presence", {{"bias", presence.bias}, {"of_score", presence.score_weight}, {"of_quality", presence.quality_weight}}}};
 }
 
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects,
@@ -64,9 +64,9 @@ std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& 
   return learnt;
 }
 
-void take_from_store(const store::ObjectStore& objects, std::optional<float> min_quality, PoseSettings& settings) {
+void apply_store_settings(const store::ObjectStore& objects, std::optional<float> min_quality, PoseSettings& settings) {
   settings.quality.least = min_quality.value_or(kStoreQuality);
-  settings.quality.least_of_candidates = min_quality.value_or(kStoreCandidateQuality);
+  settings.quality.min_candidate_quality = min_quality.value_or(kStoreCandidateQuality);
   settings.class_quality = stored_quality(objects, settings.quality);
   settings.model.vote_centres = objects.vote_centres();
   settings.region.tone = objects.tone;

@@ -16,8 +16,8 @@ namespace houghstream {
 constexpr float kStoreQuality = 0.6F;
 constexpr float kStoreCandidateQuality = 0.75F;
 
-/// As the object store holds it: {"bias", "weights": {TERM: }, "typical": {TERM: }, "presence": {"bias", "of_score",
-/// "of_quality"}}.
+/// As the object store holds it: {"bias", "weights": {TERM: }, "typical": {TERM: }, "presence": {"bias", "score_weight",
+/// "quality_weight"}}.
 nlohmann::json quality_to_json(const QualitySettings& settings);
 
 /// What the store has learnt of its objects' qualities, by name; the limits of each are those of `others`. Throws
@@ -27,6 +27,6 @@ std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& 
 
 /// What hs-pose needs to know of a store beside its meshes: qualities, and where detections' centres are. Poses are
 /// published from `min_quality` on, where it is given.
-void take_from_store(const store::ObjectStore& objects, std::optional<float> min_quality, PoseSettings& settings);
+void apply_store_settings(const store::ObjectStore& objects, std::optional<float> min_quality, PoseSettings& settings);
 
 }  // namespace houghstream

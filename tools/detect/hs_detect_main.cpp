@@ -60,7 +60,7 @@ void give_way() {
 
 /// A forest stays what it is.
 void run_with_forest(const DetectOptions& options) {
-  const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
+  const std::shared_future<RgbdFrame> made_up = start_warm_up();
   const ReadyDetector ready(make_detector(load_forest(options.forest_file), options.search), made_up.get());
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   run_detect_process(bus, options.process,
@@ -69,8 +69,8 @@ void run_with_forest(const DetectOptions& options) {
 
 /// A store may change while frames go by: each frame is searched by what is there when its turn comes.
 void run_with_store(DetectOptions options) {
-  const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
-  store::StoreWatch<ReadyDetector> watch(options.objects, [&](const store::ObjectStore& store) {
+  const std::shared_future<RgbdFrame> made_up = start_warm_up();
+  store::StoreWatcher<ReadyDetector> watch(options.objects, [&](const store::ObjectStore& store) {
     return load_detector(store, options.search, made_up.get());
   });
   options.process.objects = [&] { return watch.known(); };
@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
                  "1: none")
       .range(0.0, 1.0)
       .capture_default_str();
-  app.add_option("--looks-per-second", options.process.looks_per_second,
+  app.add_option("--looks-per-second", options.process.max_rate_hz,
                  "look at so many of each camera's frames a second, for hs-pose --follow; default: at each one")
       .range(0.1, 1000.0);
   add_frame_channels_option(app, options.process.frame_channels);
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
 
   return run_tool(app, argc, argv, [&] {
     if (!camera.empty()) options.process.camera = camera_of_option(camera);
-    if (options.process.looks_per_second > 0.0) give_way();
+    if (options.process.max_rate_hz > 0.0) give_way();
     require(options.forest_file.empty() != options.objects.empty(), "expected either --objects STORE or --forest FILE");
     require_output_log(options.url, options.output_log);
     for (const std::string& input : {options.forest_file, options.objects})

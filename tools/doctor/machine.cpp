@@ -40,7 +40,7 @@ std::size_t heard_bytes(const std::string& url, const std::string& channel) {
   std::size_t largest = 0;
   try {
     LcmBus bus(url, "", Existing::kReplaced, AtStart::kFail);
-    bus.subscribe(channel, [&](const Arrival& arrival) { largest = std::max(largest, arrival.bytes.size); });
+    bus.subscribe(channel, [&](const ReceivedMessage& arrival) { largest = std::max(largest, arrival.bytes.size); });
     handle_until(bus, milliseconds(1000), [] { return false; });
   } catch (const std::exception&) {
     return 0;  // the self test says what is wrong with the bus
@@ -53,7 +53,7 @@ std::set<std::string> heard_frame_channels(const std::string& url) {
   std::set<std::string> channels;
   try {
     LcmBus bus(url, "", Existing::kReplaced, AtStart::kFail);
-    bus.subscribe(".*", [&](const Arrival& arrival) {
+    bus.subscribe(".*", [&](const ReceivedMessage& arrival) {
       if (is_frame_message(arrival.bytes) && channels.size() < kMaxChannels) channels.insert(arrival.channel);
     });
     handle_until(bus, milliseconds(1500), [] { return false; });
@@ -68,7 +68,7 @@ std::map<std::string, std::string> heard_errors(const std::string& url) {
   std::map<std::string, std::string> errors;
   try {
     LcmBus bus(url, "", Existing::kReplaced, AtStart::kFail);
-    bus.subscribe(channel::kStatus, [&](const Arrival& arrival) {
+    bus.subscribe(channel::kStatus, [&](const ReceivedMessage& arrival) {
       const auto status = decode_message<status_t>(arrival.bytes);
       const bool is_known = errors.count(status.process) > 0 || errors.size() < kMostProcesses;
       if (!status.last_error.empty() && is_known) errors[status.process] = status.last_error;
@@ -89,7 +89,7 @@ SelfTest self_test(const std::string& url, std::size_t bytes) {
     bool came = false;
     // Another doctor may be at work on the same bus.
     const std::string channel = "HOUGHSTREAM_SELF_TEST_" + std::to_string(getpid());
-    bus.subscribe(channel, [&](const Arrival& arrival) {
+    bus.subscribe(channel, [&](const ReceivedMessage& arrival) {
       came = came ||
              std::equal(message.begin(), message.end(), arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
     });

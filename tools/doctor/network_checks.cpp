@@ -32,7 +32,7 @@ std::string off_the_wire(const std::string& text) {
   return printable(text.substr(0, kLongest));
 }
 
-std::string server_remedy(const BusPlace& server) {
+std::string server_remedy(const Endpoint& server) {
   const bool is_here = server.address == "127.0.0.1" || server.address == "localhost";
   return fmt::format("{}java -cp /usr/share/java/lcm.jar lcm.lcm.TCPService {}",
                      is_here ? "" : fmt::format("on {}: ", server.address), server.port);
@@ -80,7 +80,7 @@ Finding check_url(const std::string& url) {
 }
 
 Finding check_route(const Machine& machine, const std::string& url) {
-  const std::optional<BusPlace> group = multicast_group(url);
+  const std::optional<Endpoint> group = parse_multicast_group(url);
   if (!group) return ok(kRoute, fmt::format("not needed with {}", url));
   const std::optional<std::string> name = interface_to(machine, group->address);
   if (!name)
@@ -114,8 +114,8 @@ Finding check_java_buffer(const Machine& machine, std::size_t frame_bytes) {
 
 Finding check_self_test(const Machine& machine, const std::string& url, std::size_t bytes) {
   const SelfTest test = machine.self_test(url, bytes);
-  const std::optional<BusPlace> group = multicast_group(url);
-  const std::optional<BusPlace> server = tcp_server(url);
+  const std::optional<Endpoint> group = parse_multicast_group(url);
+  const std::optional<Endpoint> server = parse_tcp_server(url);
   const std::string firewall =
       group    ? fmt::format("sudo iptables -I INPUT -p udp -d {} --dport {} -j ACCEPT", group->address, group->port)
       : server ? fmt::format("sudo iptables -I INPUT -p tcp --dport {} -j ACCEPT", server->port)
@@ -162,8 +162,8 @@ bool has_neighbours(const Machine& machine) {
 
 /// Who may send on the bus. LCM asks nobody who he is.
 Finding check_senders(const Machine& machine, const std::string& url) {
-  const std::optional<BusPlace> server = tcp_server(url);
-  const std::optional<BusPlace> place = server ? server : multicast_group(url);
+  const std::optional<Endpoint> server = parse_tcp_server(url);
+  const std::optional<Endpoint> place = server ? server : parse_multicast_group(url);
   if (!place) return ok(kSenders, fmt::format("this machine only, with {}", url));
   if (!has_neighbours(machine)) return ok(kSenders, "this machine only: no other is connected");
   const std::string drop = fmt::format(
@@ -172,7 +172,7 @@ Finding check_senders(const Machine& machine, const std::string& url) {
       server ? "tcp" : "udp", place->port);
   if (machine.refuses_others(place->port)) return ok(kSenders, "this machine only: nftables drops what others send");
   if (server) return note(kSenders, "every host that reaches the server's port may send, and read what is sent", drop);
-  if (is_of_own_host(url))
+  if (is_host_local(url))
     return note(kSenders,
                 "ttl=0: our programs take what this machine sends only; lcm-spy, lcm-logger and other programs take "
                 "what any host sends to this port, unless a firewall drops it",
@@ -193,7 +193,7 @@ Findings check_network(const Machine& machine, const BusSettings& settings) {
   const bool route = findings.back().level == Finding::Level::kOk;
   const std::size_t heard = route ? machine.heard_bytes(settings.url, settings.frame_channel) : 0;
   const std::size_t frame_bytes = heard > 0 ? heard : settings.frame_bytes;
-  if (multicast_group(settings.url)) {
+  if (parse_multicast_group(settings.url)) {
     findings.push_back(check_buffer(machine, frame_bytes, heard > 0));
     findings.push_back(check_java_buffer(machine, frame_bytes));
   }

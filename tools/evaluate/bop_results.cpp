@@ -121,7 +121,7 @@ void write_bop_results(const std::vector<BopEstimate>& estimates, const fs::path
                        estimate.score, fmt::join(R.data(), R.data() + R.size(), " "),
                        fmt::join(t_mm.data(), t_mm.data() + t_mm.size(), " "), estimate.time_s);
   }
-  write_whole_file(file, out);
+  write_file_atomically(file, out);
 }
 
 std::vector<BopEstimate> read_bop_results(const fs::path& file) {

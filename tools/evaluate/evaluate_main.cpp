@@ -27,7 +27,7 @@ struct EvaluateOptions {
   std::string targets;
   std::string log;
   std::string channel = ".*";
-  SearchedObjects known;
+  ObjectArguments known;
   std::optional<float> operating_score;
   PoseSettings pose;  // by which poses are published
   std::string latency;
@@ -221,8 +221,8 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
 static EvaluateOptions with_store(EvaluateOptions options) {
   options.rules.operating_score = options.operating_score.value_or(EvidenceSettings{}.threshold);
   if (options.min_quality) publish_from(*options.min_quality, options.pose);
-  if (const std::optional<store::ObjectStore> objects = take_store(options.known))
-    take_from_store(*objects, options.min_quality, options.pose);
+  if (const std::optional<store::ObjectStore> objects = resolve_store(options.known))
+    apply_store_settings(*objects, options.min_quality, options.pose);
   return options;
 }
 

@@ -59,7 +59,7 @@ std::vector<EvaluatedFrame> read_truth(const BopScene& scene, const std::map<int
     frame.image_id = scene.images()[i].image_id;
     frame.utime = dataset_utime(i);
     frame.image = i;
-    for (const TrueObject& object : scene.images()[i].objects) {
+    for (const GroundTruthObject& object : scene.images()[i].objects) {
       const auto name = names.find(object.object_id);
       const std::string text = name != names.end() ? name->second : fmt::format("object_{}", object.object_id);
       frame.objects.push_back({text, object, {}});
@@ -96,9 +96,9 @@ std::vector<EvaluatedFrame> every_nth(std::vector<EvaluatedFrame> frames, int ev
   return chosen;
 }
 
-std::vector<EvaluatedFrame> with_nothing_withheld(std::vector<EvaluatedFrame> frames) {
+std::vector<EvaluatedFrame> with_unfiltered_poses(std::vector<EvaluatedFrame> frames) {
   for (EvaluatedFrame& frame : frames) {
-    if (frame.poses_nothing_withheld) frame.poses = frame.poses_nothing_withheld;
+    if (frame.unfiltered_poses) frame.poses = frame.unfiltered_poses;
   }
   return frames;
 }

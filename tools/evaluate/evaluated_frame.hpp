@@ -16,7 +16,7 @@ namespace houghstream {
 /// A true object with the name by which results are compared: ids differ between a scene and a forest.
 struct NamedObject {
   std::string class_name;
-  TrueObject truth;
+  GroundTruthObject truth;
   /// Whether it is to be found, where a list of targets says (bop_targets.hpp); else that is a matter of how much of it
   /// is visible.
   std::optional<bool> is_target = std::nullopt;
@@ -33,7 +33,7 @@ struct EvaluatedFrame {
   std::optional<ObjectPoses> poses;      ///< likewise
   /// With those that were not published since they are of low quality or of detections of low score; nothing unless
   /// they were estimated in this process.
-  std::optional<ObjectPoses> poses_nothing_withheld;
+  std::optional<ObjectPoses> unfiltered_poses;
 };
 
 /// The name of the scene's folder, by which scenes are told apart.
@@ -54,7 +54,7 @@ void add_results(std::vector<EvaluatedFrame>& frames, const PublishedResults& pu
 std::vector<EvaluatedFrame> every_nth(std::vector<EvaluatedFrame> frames, int every);
 
 /// The frames as if nothing had been withheld, where that is known.
-std::vector<EvaluatedFrame> with_nothing_withheld(std::vector<EvaluatedFrame> frames);
+std::vector<EvaluatedFrame> with_unfiltered_poses(std::vector<EvaluatedFrame> frames);
 
 /// Only the frames that have detections.
 std::vector<EvaluatedFrame> processed_frames(const std::vector<EvaluatedFrame>& frames);

@@ -10,9 +10,9 @@
 namespace houghstream {
 namespace {
 
-int count_true(const std::vector<Statement>& statements) {
+int count_true(const std::vector<Prediction>& statements) {
   return static_cast<int>(
-      std::count_if(statements.begin(), statements.end(), [](const Statement& it) { return it.is_true; }));
+      std::count_if(statements.begin(), statements.end(), [](const Prediction& it) { return it.is_true; }));
 }
 
 std::set<std::string> detected_classes(const std::vector<EvaluatedFrame>& frames) {
@@ -53,16 +53,16 @@ std::vector<JudgedPose> counted_poses(std::vector<JudgedPose> judged, const std:
 /// How far quality holds, and how many of the published poses are right.
 void judge_qualities(const std::vector<EvaluatedFrame>& frames, const std::map<std::string, PoseModel>& models,
                      Evaluation& out) {
-  const std::vector<EvaluatedFrame> all = with_nothing_withheld(frames);
-  std::vector<Statement> statements;
+  const std::vector<EvaluatedFrame> all = with_unfiltered_poses(frames);
+  std::vector<Prediction> statements;
   for (const ClassResult& result : out.classes) {
     const auto model = models.find(result.class_name);
     if (model == models.end()) continue;
-    const std::vector<Statement> published = pose_statements(frames, result, model->second);
+    const std::vector<Prediction> published = pose_predictions(frames, result, model->second);
     if (!out.published) out.published.emplace();
     out.published->count += static_cast<int>(published.size());
     out.published->right += count_true(published);
-    const std::vector<Statement> known = pose_statements(all, result, model->second);
+    const std::vector<Prediction> known = pose_predictions(all, result, model->second);
     statements.insert(statements.end(), known.begin(), known.end());
   }
   out.pose_calibration = calibrate(statements, count_true(statements));
@@ -104,7 +104,7 @@ Evaluation evaluate(const std::vector<EvaluatedFrame>& all_frames, const std::ve
                            count_reported(out.classes.back(), Verdict::kFalse, rules.operating_score)};
     required += out.classes.back().required;
   }
-  out.detection_calibration = calibrate(score_statements(out.classes), required);
+  out.detection_calibration = calibrate(score_predictions(out.classes), required);
   for (const std::string& name : detected_classes(frames)) {
     const ClassResult result = evaluate_class(frames, name, rules.detection);
     out.false_detections += count_reported(result, Verdict::kFalse, rules.operating_score).all();

@@ -46,7 +46,7 @@ struct Evaluation {
   /// Of the scores of all detections of listed classes that there are, however low, but ignored ones; its recall is
   /// over all required objects. Below the threshold with which they were found nothing is known.
   Calibration detection_calibration;
-  /// Of the quality of the poses of these detections (pose_statements()), those that were withheld among them where
+  /// Of the quality of the poses of these detections (pose_predictions()), those that were withheld among them where
   /// they are known; its recall is over all that are right.
   Calibration pose_calibration;
   std::optional<PublishedPoses> published;  ///< nothing unless a listed class has a model to judge poses with

@@ -135,7 +135,7 @@ void InProcess::run(const BopScene& scene, std::vector<EvaluatedFrame>& frames) 
     if (state_->has_models) {
       ObjectPoses published = state_->estimator.estimate(frame, sent_of(all, rules, state_->max_candidates));
       add_unpublished(all, published);
-      out.poses_nothing_withheld = state_->estimate_all(frame, all, published);
+      out.unfiltered_poses = state_->estimate_all(frame, all, published);
       out.poses = std::move(published);
     }
     for (Detection& detection : all.detections) detection.rotations = {};

@@ -122,7 +122,7 @@ OrderedJson localisation_json(const LocalisationScores& scores) {
 }
 
 void write_text(const fs::path& file, const std::string& text) {
-  write_whole_file(file, text);
+  write_file_atomically(file, text);
 }
 
 std::string curves_csv(const Evaluation& evaluation) {

@@ -18,7 +18,7 @@ void join(const ClassErrors& errors, ClassErrors& all) {
 }
 
 bool anything_withheld_is_known(const std::vector<EvaluatedFrame>& frames) {
-  return std::any_of(frames.begin(), frames.end(), [](const auto& frame) { return frame.poses_nothing_withheld; });
+  return std::any_of(frames.begin(), frames.end(), [](const auto& frame) { return frame.unfiltered_poses; });
 }
 
 SceneErrors measure_scene(const OpenScene& it, const ScoredModels& models, const EvaluationRules& rules, int threads) {
@@ -26,7 +26,7 @@ SceneErrors measure_scene(const OpenScene& it, const ScoredModels& models, const
   SceneErrors errors;
   errors.published = measure_poses(counted, it.scene, models.bop, threads);
   if (anything_withheld_is_known(counted))
-    errors.nothing_withheld = measure_poses(with_nothing_withheld(counted), it.scene, models.bop, threads);
+    errors.nothing_withheld = measure_poses(with_unfiltered_poses(counted), it.scene, models.bop, threads);
   return errors;
 }
 

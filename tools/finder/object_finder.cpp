@@ -24,7 +24,7 @@ Detector make_detector(const store::ObjectStore& store, const FinderOptions& opt
 PoseEstimator make_estimator(const store::ObjectStore& store, const FinderOptions& options) {
   PoseSettings settings;
   settings.threads = options.threads;
-  take_from_store(store, options.min_quality, settings);
+  apply_store_settings(store, options.min_quality, settings);
   return PoseEstimator(store::load_store_meshes(store), settings);
 }
 

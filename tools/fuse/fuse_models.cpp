@@ -57,7 +57,7 @@ void check_outputs(const FuseOutputs& outputs, const std::vector<std::string>& v
     require_outside_source(outputs.models, view);
     require_outside_source(outputs.pictures, view);
   }
-  require(outputs.replace || !holds_models(outputs.models),
+  require(outputs.replace || !has_models(outputs.models),
           "{}: holds models already; --replace puts others in their place", outputs.models.string());
   require_writable_folder(outputs.models);
   if (!outputs.pictures.empty()) require_writable_folder(outputs.pictures);

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 /// Calls `write` for each frame; what it refuses is counted. Returns the number of frames written.
 template <typename Write>
-std::int64_t for_each_frame(const RecordingSettings& settings, LossAccount& losses, const Write& write) {
+std::int64_t for_each_frame(const RecordingSettings& settings, LossReport& losses, const Write& write) {
   const NextFrame next = open_recording(settings, losses);
   std::int64_t frames = 0;
   while (const std::optional<RecordedFrame> frame = next()) {
@@ -32,9 +32,9 @@ void refuse_mixture(bool holds_others, const fs::path& folder) {
 
 }  // namespace
 
-std::int64_t export_bop(const RecordingSettings& settings, const fs::path& folder, LossAccount& losses) {
+std::int64_t export_bop(const RecordingSettings& settings, const fs::path& folder, LossReport& losses) {
   require_outside_source(folder, settings.source);
-  refuse_mixture(holds_pictures(folder), folder);
+  refuse_mixture(has_images(folder), folder);
   BopWriter writer(folder);
   const auto write = [&](const RecordedFrame& recorded) {
     RgbdFrame frame;
@@ -52,10 +52,10 @@ std::int64_t export_bop(const RecordingSettings& settings, const fs::path& folde
   return frames;
 }
 
-std::int64_t export_pngs(const RecordingSettings& settings, const fs::path& folder, LossAccount& losses) {
+std::int64_t export_pngs(const RecordingSettings& settings, const fs::path& folder, LossReport& losses) {
   require_outside_source(folder, settings.source);
   std::error_code error;
-  refuse_mixture(fs::is_directory(folder, error) && holds_frames(folder), folder);
+  refuse_mixture(fs::is_directory(folder, error) && has_frame_pairs(folder), folder);
   fs::create_directories(folder, error);
   require(!error, "{}: cannot be written: {}", folder.string(), error.message());
   std::string list = "frame,utime,timestamp\n";
@@ -69,7 +69,7 @@ std::int64_t export_pngs(const RecordingSettings& settings, const fs::path& fold
     return true;
   };
   const std::int64_t frames = for_each_frame(settings, losses, write);
-  write_whole_file(folder / "frames.csv", list);
+  write_file_atomically(folder / "frames.csv", list);
   return frames;
 }
 

@@ -10,10 +10,10 @@ namespace houghstream::log_tools {
 /// as PNG. Every frame needs a camera: its own or the settings'; one without is left out and counted. Returns the
 /// number of frames. Throws InputError where nothing can be exported or written, or pictures of a scene are there
 /// already.
-std::int64_t export_bop(const RecordingSettings& settings, const std::filesystem::path& folder, LossAccount& losses);
+std::int64_t export_bop(const RecordingSettings& settings, const std::filesystem::path& folder, LossReport& losses);
 
 /// Writes NNNNNN_color.png, NNNNNN_depth.png (uint16 millimetres, 0 = none) and frames.csv (frame, utime, timestamp),
 /// which the source uw:FOLDER reads again. Cameras are not needed. Returns and throws as export_bop().
-std::int64_t export_pngs(const RecordingSettings& settings, const std::filesystem::path& folder, LossAccount& losses);
+std::int64_t export_pngs(const RecordingSettings& settings, const std::filesystem::path& folder, LossReport& losses);
 
 }  // namespace houghstream::log_tools

@@ -20,9 +20,9 @@
 namespace houghstream::log_tools {
 namespace {
 
-std::vector<WorldObjects> read_worlds(const std::filesystem::path& log_file, LossAccount& losses) {
+std::vector<WorldObjects> read_worlds(const std::filesystem::path& log_file, LossReport& losses) {
   std::vector<WorldObjects> worlds;
-  GoodEvents events(log_file, losses);
+  IntactEvents events(log_file, losses);
   while (const std::optional<LogEvent> event = events.next()) {
     if (event->channel != channel::kObjects) continue;
     try {
@@ -103,7 +103,7 @@ OrderedJson stories_of(const std::vector<WorldObjects>& worlds) {
 }  // namespace
 
 std::int64_t export_objects_csv(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
-                                LossAccount& losses) {
+                                LossReport& losses) {
   require_other_file(out_file, log_file);
   const std::vector<WorldObjects> worlds = read_worlds(log_file, losses);
   std::string text =
@@ -112,12 +112,12 @@ std::int64_t export_objects_csv(const std::filesystem::path& log_file, const std
   for (const WorldObjects& world : worlds) {
     for (const TrackedObject& object : world.objects) text += object_row(world, object) + '\n';
   }
-  write_whole_file(out_file, text);
+  write_file_atomically(out_file, text);
   return static_cast<std::int64_t>(worlds.size());
 }
 
 std::int64_t export_objects_json(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
-                                 LossAccount& losses) {
+                                 LossReport& losses) {
   require_other_file(out_file, log_file);
   const std::vector<WorldObjects> worlds = read_worlds(log_file, losses);
   OrderedJson json{{"stories", stories_of(worlds)}, {"frames", OrderedJson::array()}};

@@ -10,8 +10,8 @@ namespace houghstream::log_tools {
 /// frames, and for each object the story of its states, which says when and why it vanished. Metres, radians. Returns
 /// the number of frames. Throws InputError where the log holds no objects, or the file cannot be written.
 std::int64_t export_objects_csv(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
-                                LossAccount& losses);
+                                LossReport& losses);
 std::int64_t export_objects_json(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
-                                 LossAccount& losses);
+                                 LossReport& losses);
 
 }  // namespace houghstream::log_tools

@@ -75,9 +75,9 @@ std::optional<ExportedFrame> exported(const FrameResults& all) {
 }
 
 /// All frames of the log, of all cameras, in the order of time.
-std::vector<ExportedFrame> read_results(const std::filesystem::path& log_file, LossAccount& losses) {
+std::vector<ExportedFrame> read_results(const std::filesystem::path& log_file, LossReport& losses) {
   std::map<FrameId, FrameResults> found;
-  GoodEvents events(log_file, losses);
+  IntactEvents events(log_file, losses);
   while (const std::optional<LogEvent> event = events.next()) {
     const ByteView bytes{event->data.data(), event->data.size()};
     try {
@@ -198,7 +198,7 @@ OrderedJson frame_json(const ExportedFrame& frame) {
 }  // namespace
 
 std::int64_t export_results_csv(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
-                                LossAccount& losses) {
+                                LossReport& losses) {
   require_other_file(out_file, log_file);
   const std::vector<ExportedFrame> results = read_results(log_file, losses);
   std::string text =
@@ -210,12 +210,12 @@ std::int64_t export_results_csv(const std::filesystem::path& log_file, const std
     }
     for (const ObjectPose& pose : frame.followed) text += followed_row(frame.look.detections.frame, pose) + '\n';
   }
-  write_whole_file(out_file, text);
+  write_file_atomically(out_file, text);
   return static_cast<std::int64_t>(results.size());
 }
 
 std::int64_t export_results_json(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
-                                 LossAccount& losses) {
+                                 LossReport& losses) {
   require_other_file(out_file, log_file);
   const std::vector<ExportedFrame> results = read_results(log_file, losses);
   OrderedJson json;

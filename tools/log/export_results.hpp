@@ -15,8 +15,8 @@ namespace houghstream::log_tools {
 /// not known is empty in CSV and null in JSON. Returns the number of frames. Throws InputError where the log holds
 /// neither detections nor poses of followed objects, or the file cannot be written.
 std::int64_t export_results_csv(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
-                                LossAccount& losses);
+                                LossReport& losses);
 std::int64_t export_results_json(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
-                                 LossAccount& losses);
+                                 LossReport& losses);
 
 }  // namespace houghstream::log_tools

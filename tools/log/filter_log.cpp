@@ -16,8 +16,8 @@ constexpr std::int64_t kHourUs = 3'600'000'000;
 /// Where a log's seconds are counted from: its first event that is dated as most of its first ones are.
 std::int64_t origin_of(const std::filesystem::path& log_file) {
   constexpr std::size_t kAsked = 9;
-  LossAccount unheard;
-  GoodEvents events(log_file, unheard);
+  LossReport unheard;
+  IntactEvents events(log_file, unheard);
   std::vector<std::int64_t> times;
   while (times.size() < kAsked) {
     const std::optional<LogEvent> event = events.next();
@@ -51,13 +51,13 @@ class Dates {
     return static_cast<double>(since) * 1e-6;
   }
 
-  void tell(LossAccount& losses, bool by_time) const {
+  void tell(LossReport& losses, bool by_time) const {
     if (before_ > 0) {
-      losses.note_oddity(fmt::format("{} events are dated before the log's first one, by up to {:.3f} s{}", before_,
+      losses.add_warning(fmt::format("{} events are dated before the log's first one, by up to {:.3f} s{}", before_,
                                      -1e-6 * static_cast<double>(earliest_),
                                      by_time ? ", and count as earlier than second 0" : ""));
     }
-    if (jumps_ > 0) losses.note_oddity(fmt::format("the date jumps by more than an hour at {} places", jumps_));
+    if (jumps_ > 0) losses.add_warning(fmt::format("the date jumps by more than an hour at {} places", jumps_));
   }
 
  private:
@@ -71,11 +71,11 @@ class Dates {
 }  // namespace
 
 std::int64_t filter_log(const std::filesystem::path& log_file, const LogFilter& filter,
-                        const std::filesystem::path& out_file, LossAccount& losses) {
+                        const std::filesystem::path& out_file, LossReport& losses) {
   const ChannelPattern channels(filter.channels);
   require_other_file(out_file, log_file);
   Dates dates(origin_of(log_file));
-  GoodEvents events(log_file, losses);
+  IntactEvents events(log_file, losses);
   std::optional<LogWriter> out;  // not before there is something to write
   std::int64_t kept = 0;
   while (const std::optional<LogEvent> event = events.next()) {

@@ -21,6 +21,6 @@ struct LogFilter {
 /// it is not where seconds are counted from. Throws InputError where the expression is none, nothing passes, or a file
 /// cannot be used.
 std::int64_t filter_log(const std::filesystem::path& log_file, const LogFilter& filter,
-                        const std::filesystem::path& out_file, LossAccount& losses);
+                        const std::filesystem::path& out_file, LossReport& losses);
 
 }  // namespace houghstream::log_tools

@@ -6,18 +6,18 @@
 
 namespace houghstream::log_tools {
 
-void LossAccount::note_damage(std::uint64_t bytes, const std::string& reason) {
+void LossReport::note_damage(std::uint64_t bytes, const std::string& reason) {
   if (damaged_places_ == 0) first_damage_ = reason;
   ++damaged_places_;
   damaged_bytes_ += bytes;
 }
 
-void LossAccount::note_refused(const std::string& reason) {
+void LossReport::note_refused(const std::string& reason) {
   if (refused_ == 0) first_refusal_ = reason;
   ++refused_;
 }
 
-std::string LossAccount::line() const {
+std::string LossReport::line() const {
   std::string line;
   if (damaged_places_ > 0) {
     line = fmt::format("{} bytes lost at {} damaged {}, first: {}", damaged_bytes_, damaged_places_,
@@ -30,10 +30,10 @@ std::string LossAccount::line() const {
   return line;
 }
 
-GoodEvents::GoodEvents(const std::filesystem::path& file, LossAccount& losses)
+IntactEvents::IntactEvents(const std::filesystem::path& file, LossReport& losses)
     : log_(file), losses_(losses), progress_(file.filename().string(), static_cast<double>(log_.size())) {}
 
-std::optional<LogEvent> GoodEvents::read() {
+std::optional<LogEvent> IntactEvents::read() {
   while (!ended_) {
     std::optional<LogEvent> ready = std::exchange(held_, std::nullopt);
     try {
@@ -50,7 +50,7 @@ std::optional<LogEvent> GoodEvents::read() {
   return std::nullopt;
 }
 
-std::optional<LogEvent> GoodEvents::next() {
+std::optional<LogEvent> IntactEvents::next() {
   std::optional<LogEvent> event = read();
   require(event.has_value() || count_ > 0, "no event of an LCM log in it: {}", losses_.line());
   if (event) ++count_;

@@ -11,7 +11,7 @@
 namespace houghstream::log_tools {
 
 /// What of a recording could not be kept.
-class LossAccount {
+class LossReport {
  public:
   void note_damage(std::uint64_t bytes, const std::string& reason);
   /// A message or frame that arrived whole and cannot be understood.
@@ -20,7 +20,7 @@ class LossAccount {
   std::int64_t damaged_places() const { return damaged_places_; }
   std::int64_t refused() const { return refused_; }
   /// Something that looks wrong, though nothing is lost by it.
-  void note_oddity(const std::string& words) { oddities_ += (oddities_.empty() ? "" : "; ") + words; }
+  void add_warning(const std::string& words) { oddities_ += (oddities_.empty() ? "" : "; ") + words; }
 
   /// One line that says what was lost and why, and what looks wrong, or "" where nothing was and does.
   std::string line() const;
@@ -35,10 +35,10 @@ class LossAccount {
 };
 
 /// Reads the events of a log that are whole, and goes on behind damage. Says on stderr how far it is.
-class GoodEvents {
+class IntactEvents {
  public:
   /// `losses` must outlive it. Throws InputError when the file cannot be read or is empty.
-  GoodEvents(const std::filesystem::path& file, LossAccount& losses);
+  IntactEvents(const std::filesystem::path& file, LossReport& losses);
 
   /// The next whole event, or nothing at the end. Throws InputError when the file holds none at all.
   std::optional<LogEvent> next();
@@ -47,7 +47,7 @@ class GoodEvents {
   std::optional<LogEvent> read();
 
   LogReader log_;
-  LossAccount& losses_;
+  LossReport& losses_;
   ProgressLine progress_;
   std::optional<LogEvent> held_;  // handed out once the next event has begun where this one ends
   bool ended_ = false;

@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
              options);
 
   return run_tool(app, argc, argv, [&] {
-    LossAccount losses;
+    LossReport losses;
     options.recording.source = options.in;
     if (!options.camera.empty()) options.recording.camera = camera_of_option(options.camera);
     if (info.given()) {

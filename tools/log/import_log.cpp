@@ -8,7 +8,7 @@
 namespace houghstream::log_tools {
 
 std::int64_t import_log(const RecordingSettings& settings, const std::string& channel,
-                        const std::filesystem::path& log_file, LossAccount& losses) {
+                        const std::filesystem::path& log_file, LossReport& losses) {
   channel::require_name(channel);
   require_outside_source(log_file, settings.source);
   const NextFrame next = open_recording(settings, losses);

@@ -44,7 +44,7 @@ std::string describe_frame(ByteView bytes) {
 /// Adds events to the information, and keeps what is needed from one to the next.
 class Counter {
  public:
-  Counter(LogInfo& info, LossAccount& losses) : info_(info), losses_(losses) {}
+  Counter(LogInfo& info, LossReport& losses) : info_(info), losses_(losses) {}
 
   void add(const LogEvent& event) {
     if (info_.events++ == 0) info_.first = info_.last = event.timestamp;
@@ -68,7 +68,7 @@ class Counter {
     try {
       const FrameHeader header = read_frame_header(bytes);
       if (channel.frames.empty()) channel.frames = describe_frame(bytes);
-      SequenceCount& numbers = numbers_[name];
+      SequenceTracker& numbers = numbers_[name];
       numbers.note({header.sequence, header.utime, header.run}, timestamp);
       channel.frames_lost = numbers.lost().value_or(0);
     } catch (const InputError& error) {
@@ -77,8 +77,8 @@ class Counter {
   }
 
   LogInfo& info_;
-  LossAccount& losses_;
-  std::map<std::string, SequenceCount> numbers_;  // by channel
+  LossReport& losses_;
+  std::map<std::string, SequenceTracker> numbers_;  // by channel
 };
 
 double seconds(std::int64_t microseconds) {
@@ -102,10 +102,10 @@ double ChannelInfo::rate_hz() const {
   return last > first ? static_cast<double>(messages - 1) / seconds(microseconds_between(first, last)) : 0.0;
 }
 
-LogInfo read_log_info(const std::filesystem::path& log_file, LossAccount& losses) {
+LogInfo read_log_info(const std::filesystem::path& log_file, LossReport& losses) {
   LogInfo info;
   info.file = log_file.string();
-  GoodEvents events(log_file, losses);
+  IntactEvents events(log_file, losses);
   info.file_bytes = std::filesystem::file_size(log_file);
   Counter counter(info, losses);
   while (const std::optional<LogEvent> event = events.next()) counter.add(*event);

@@ -36,7 +36,7 @@ struct LogInfo {
 };
 
 /// Reads a log through; damage goes to `losses`. Throws InputError when the file cannot be read or holds no event.
-LogInfo read_log_info(const std::filesystem::path& log_file, LossAccount& losses);
+LogInfo read_log_info(const std::filesystem::path& log_file, LossReport& losses);
 
 /// A table for people, its times counted from the log's first event.
 std::string to_text(const LogInfo& info);

@@ -84,7 +84,7 @@ void complete(images_t& message, const RecordingSettings& settings, std::int64_t
 
 class LogRecording {
  public:
-  LogRecording(const RecordingSettings& settings, LossAccount& losses)
+  LogRecording(const RecordingSettings& settings, LossReport& losses)
       : settings_(settings), is_first_(settings.channel.empty()), losses_(losses), events_(settings.source, losses) {}
 
   std::optional<RecordedFrame> next() {
@@ -120,14 +120,14 @@ class LogRecording {
   RecordingSettings settings_;
   bool is_first_;  // nobody chose the channel
   std::set<std::string> others_;
-  LossAccount& losses_;
-  GoodEvents events_;
+  LossReport& losses_;
+  IntactEvents events_;
   std::int64_t sequence_ = 0;
 };
 
 class KlgRecording {
  public:
-  KlgRecording(const std::string& file, const RecordingSettings& settings, LossAccount& losses)
+  KlgRecording(const std::string& file, const RecordingSettings& settings, LossReport& losses)
       : settings_(settings),
         losses_(losses),
         klg_(file, settings.camera ? settings.camera->width : 640, settings.camera ? settings.camera->height : 480),
@@ -160,7 +160,7 @@ class KlgRecording {
   }
 
   RecordingSettings settings_;
-  LossAccount& losses_;
+  LossReport& losses_;
   KlgFile klg_;
   double whole_;  // bytes
   ProgressLine progress_;
@@ -194,7 +194,7 @@ NextFrame reading(std::shared_ptr<Recording> recording) {
 
 }  // namespace
 
-NextFrame open_recording(const RecordingSettings& settings, LossAccount& losses) {
+NextFrame open_recording(const RecordingSettings& settings, LossReport& losses) {
   if (settings.camera) check_camera(*settings.camera, "--camera");
   if (const auto file = file_of(settings.source, "klg")) {
     return reading(std::make_shared<KlgRecording>(*file, settings, losses));

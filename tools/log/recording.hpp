@@ -32,6 +32,6 @@ struct RecordingSettings {
 /// that cannot be understood is left out and counted in `losses`, which must outlive the result. Throws InputError
 /// where the recording cannot be opened; its function throws where a log holds no event at all, or a file of a folder
 /// cannot be read.
-NextFrame open_recording(const RecordingSettings& settings, LossAccount& losses);
+NextFrame open_recording(const RecordingSettings& settings, LossReport& losses);
 
 }  // namespace houghstream::log_tools

@@ -27,7 +27,7 @@ struct ObserveOptions {
 
 void write_file(const std::string& file, const std::string& text) {
   if (file.empty()) return;
-  write_whole_file(file, text);
+  write_file_atomically(file, text);
 }
 
 /// Handles messages until `done`. Returns what stopped the bus before, for what has come until then is written first.
@@ -51,13 +51,13 @@ void observe(const ObserveOptions& options) {
   Clock::time_point last = Clock::now();
   // Only the frame's name is read: the observer must cost the observed next to nothing.
   const ChannelPattern channels(options.frame_channels);
-  bus.subscribe_to_frames(options.frame_channels, [&](const Arrival& arrival) {
+  bus.subscribe_to_frames(options.frame_channels, [&](const ReceivedMessage& arrival) {
     if (!channels.is_name() && !is_frame_message(arrival.bytes)) return;
     times.note_frame({arrival.channel, read_utime(arrival.bytes, arrival.channel)}, arrival.time);
     last = arrival.time;
   });
   const auto stamp = [&](const std::string& name, void (FrameTimes::*note)(const FrameId&, FrameTimes::Time)) {
-    bus.subscribe(name, [&, note](const Arrival& arrival) {
+    bus.subscribe(name, [&, note](const ReceivedMessage& arrival) {
       const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
       if (!channels.matches(frame.channel)) return;
       (times.*note)(frame, arrival.time);
@@ -67,7 +67,7 @@ void observe(const ObserveOptions& options) {
   stamp(channel::kDetections, &FrameTimes::note_detections);
   stamp(channel::kPoses, &FrameTimes::note_poses);
   stamp(channel::kObjects, &FrameTimes::note_objects);
-  bus.subscribe(channel::kStatus, [&](const Arrival& a) { times.note_status(decode_message<status_t>(a.bytes)); });
+  bus.subscribe(channel::kStatus, [&](const ReceivedMessage& a) { times.note_status(decode_message<status_t>(a.bytes)); });
   log_info("ready: at {}", bus.url());
 
   const Clock::time_point start = Clock::now();

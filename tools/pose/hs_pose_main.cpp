@@ -81,8 +81,8 @@ void run(LcmBus& bus, const PoseOptions& options, const CurrentEstimator& curren
 
 /// Models stay what they are.
 void run_with_models(PoseOptions options) {
-  const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
-  const int threads = threads_to_start(options.settings.threads);
+  const std::shared_future<RgbdFrame> made_up = start_warm_up();
+  const int threads = warm_up_threads(options.settings.threads);
   std::map<std::string, Mesh> meshes = load_models(options, threads);
   const std::string fault = fault_of_sizes(meshes, options.model_unit_m, "--model-unit");
   if (!fault.empty()) log_warning("{}", fault);  // no frame will show such
@@ -94,7 +94,7 @@ void run_with_models(PoseOptions options) {
 }
 
 /// Of models that were kept at an earlier start, else of the store's meshes.
-PoseEstimator estimator_of(const store::ObjectStore& store, const PoseSettings& settings, const KeptModels& kept,
+PoseEstimator estimator_of(const store::ObjectStore& store, const PoseSettings& settings, const ModelCache& kept,
                            int threads) {
   const std::string state = kept.state_of(store, settings.model);
   if (auto models = kept.find(store, state)) return PoseEstimator::of_models(std::move(*models), settings);
@@ -116,15 +116,15 @@ std::filesystem::path folder_to_keep_in(const PoseOptions& options) {
 
 /// A store may change while frames go by: each frame's poses are those of what is there when its turn comes.
 void run_with_store(PoseOptions options) {
-  const KeptModels kept(folder_to_keep_in(options));
-  const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
-  const int threads = threads_to_start(options.settings.threads);  // of the first store: later ones are loaded alone
+  const ModelCache kept(folder_to_keep_in(options));
+  const std::shared_future<RgbdFrame> made_up = start_warm_up();
+  const int threads = warm_up_threads(options.settings.threads);  // of the first store: later ones are loaded alone
   const auto load = [&](const store::ObjectStore& store) {
     PoseSettings settings = options.settings;
-    take_from_store(store, options.min_quality, settings);
+    apply_store_settings(store, options.min_quality, settings);
     return warmed_up(estimator_of(store, settings, kept, threads), made_up.get());
   };
-  store::StoreWatch<PoseEstimator> watch(options.objects, load);
+  store::StoreWatcher<PoseEstimator> watch(options.objects, load);
   const auto without_models = std::make_shared<const PoseEstimator>(std::map<std::string, Mesh>(), options.settings);
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));

@@ -104,9 +104,9 @@ int add_library(dl_phdr_info* info, std::size_t /*size*/, void* names) {
 std::string state_of_program() {
   std::vector<std::string> libraries;
   dl_iterate_phdr(add_library, &libraries);
-  std::string state = store::state_of_file("/proc/self/exe") + '\n';
+  std::string state = store::file_stamp("/proc/self/exe") + '\n';
   for (const std::string& library : libraries) {
-    if (!library.empty() && library.front() == '/') state += store::state_of_file(library) + '\n';
+    if (!library.empty() && library.front() == '/') state += store::file_stamp(library) + '\n';
   }
   return state;
 }
@@ -136,10 +136,10 @@ void forget_oldest(const fs::path& folder) {
 
 }  // namespace
 
-KeptModels::KeptModels(fs::path folder) : folder_(std::move(folder)), program_(state_of_program()) {}
+ModelCache::ModelCache(fs::path folder) : folder_(std::move(folder)), program_(state_of_program()) {}
 
-std::string KeptModels::state_of(const store::ObjectStore& store, const ModelSettings& settings) const {
-  std::string state = fmt::format("{}{}\n", program_, state_of_meshes(store));
+std::string ModelCache::state_of(const store::ObjectStore& store, const ModelSettings& settings) const {
+  std::string state = fmt::format("{}{}\n", program_, mesh_stamp(store));
   state += fmt::format("{} {} {} {} {}\n", settings.views_per_edge, settings.points_per_view, settings.view_distance_m,
                        settings.pixels_per_diameter, settings.least_facing);
   for (const auto& [name, centre] : settings.vote_centres)
@@ -147,12 +147,12 @@ std::string KeptModels::state_of(const store::ObjectStore& store, const ModelSet
   return state;
 }
 
-fs::path KeptModels::file_of(const store::ObjectStore& store) const {
+fs::path ModelCache::file_of(const store::ObjectStore& store) const {
   const std::string place = fs::weakly_canonical(fs::absolute(store.folder)).string();
   return folder_ / fmt::format("{:016x}{}", fnv1a(place.data(), place.size()), kEnding);
 }
 
-std::optional<std::map<std::string, ObjectModel>> KeptModels::find(const store::ObjectStore& store,
+std::optional<std::map<std::string, ObjectModel>> ModelCache::find(const store::ObjectStore& store,
                                                                    const std::string& state) const {
   if (folder_.empty()) return std::nullopt;
   try {
@@ -184,7 +184,7 @@ std::optional<std::map<std::string, ObjectModel>> KeptModels::find(const store::
   }
 }
 
-void KeptModels::keep(const store::ObjectStore& store, const std::string& state,
+void ModelCache::keep(const store::ObjectStore& store, const std::string& state,
                       const std::map<std::string, ObjectModel>& models) const {
   if (folder_.empty() || models.empty()) return;
   try {
@@ -198,7 +198,7 @@ void KeptModels::keep(const store::ObjectStore& store, const std::string& state,
     const std::uint32_t crc = checksum(writer.bytes);
     fs::create_directories(folder_);
     const fs::path file = file_of(store);
-    write_whole_file(file,
+    write_file_atomically(file,
                      std::string(kStart) + std::string(reinterpret_cast<const char*>(&crc), sizeof crc) + writer.bytes);
     fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
     forget_oldest(folder_);

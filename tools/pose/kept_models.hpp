@@ -13,11 +13,11 @@ namespace houghstream {
 /// What has been made of a store's meshes, kept as it lies in memory for the next start: who was killed is back in a
 /// third of the time. It is used by the very program that made it only, of the very files: whatever has been written,
 /// exchanged or installed since is another state, and the models are made anew.
-class KeptModels {
+class ModelCache {
  public:
   /// `folder`: where they are kept, a file for each of a few stores. Empty = nowhere. To be made before anything else:
   /// the libraries that the program was linked with count as its own, not those that they load as they go.
-  explicit KeptModels(std::filesystem::path folder);
+  explicit ModelCache(std::filesystem::path folder);
 
   /// All that models are made of: the state of a store's list and meshes, of this program and its libraries, and the
   /// settings. Nothing is read.

@@ -40,13 +40,13 @@ class Gate {
 }  // namespace
 
 void render_in_order(const std::string& title, int threads, int count,
-                     const std::function<world::SceneFrame(int)>& render,
-                     const std::function<void(const world::SceneFrame&)>& write) {
+                     const std::function<world::RenderedFrame(int)>& render,
+                     const std::function<void(const world::RenderedFrame&)>& write) {
   Gate gate;
   ProgressLine progress(title, count);
   parallel_for(threads, count, [&](int index) {
     try {
-      const world::SceneFrame frame = render(index);
+      const world::RenderedFrame frame = render(index);
       gate.pass(index, [&] {
         write(frame);
         progress.at(index + 1);

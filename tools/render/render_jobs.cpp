@@ -52,7 +52,7 @@ Symmetries symmetries_of(const TaughtObject& object) {
 
 void write_models(const RenderOptions& options, const std::vector<TaughtObject>& objects) {
   const std::filesystem::path folder = options.out / "models";
-  require(options.replace || !holds_models(folder), "{}: holds models already; --replace puts others in their place",
+  require(options.replace || !has_models(folder), "{}: holds models already; --replace puts others in their place",
           folder.string());
   std::vector<NamedModel> models;
   models.reserve(objects.size());
@@ -62,9 +62,9 @@ void write_models(const RenderOptions& options, const std::vector<TaughtObject>&
 }
 
 std::filesystem::path fresh_scene(const RenderOptions& options, const std::filesystem::path& folder) {
-  require(options.replace || !holds_pictures(folder),
+  require(options.replace || !has_images(folder),
           "{}: holds pictures already; --replace puts others in their place", folder.string());
-  remove_pictures(folder);
+  remove_images(folder);
   return folder;
 }
 
@@ -84,7 +84,7 @@ void render_training(const RenderOptions& options, const std::vector<std::string
     render_in_order(
         object.name, options.threads, table.view_count(attitudes),
         [&](int index) { return table.render(object, attitudes, index); },
-        [&](const SceneFrame& view) { writer.add(view.frame, view.objects, view.visible_masks); });
+        [&](const RenderedFrame& view) { writer.add(view.frame, view.objects, view.visible_masks); });
     writer.finish();
   }
 }
@@ -100,7 +100,7 @@ void render_background(const RenderOptions& options, int count) {
     render_in_order(
         fmt::format("background room {}/{}", room + 1, rooms), options.threads, here,
         [&](int index) { return render_scene_frame(scene, lit_world, index, kFramesPerRoom); },
-        [&](const SceneFrame& view) { writer.add(view.frame, {}, {}); });
+        [&](const RenderedFrame& view) { writer.add(view.frame, {}, {}); });
   }
   writer.finish();
 }
@@ -116,7 +116,7 @@ void render_scene(const RenderOptions& options, const SceneJob& job) {
   render_in_order(
       job.name, options.threads, (job.frames + job.every - 1) / job.every,
       [&](int index) { return render_scene_frame(scene, lit_world, index * job.every, job.frames, job.sensor); },
-      [&](const SceneFrame& view) { writer.add(view.frame, view.objects, view.visible_masks); });
+      [&](const RenderedFrame& view) { writer.add(view.frame, view.objects, view.visible_masks); });
   writer.finish();
 }
 

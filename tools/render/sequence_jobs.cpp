@@ -38,12 +38,12 @@ OrderedJson pose_entry(const Eigen::Isometry3d& T) {
 }
 
 /// The share that is seen of each instance; a frame's objects are those of which enough is seen, in no other order.
-OrderedJson visible_entry(const SequenceTruth& truth, int camera, const std::vector<TrueObject>& seen) {
+OrderedJson visible_entry(const SequenceTruth& truth, int camera, const std::vector<GroundTruthObject>& seen) {
   constexpr double kSamePlaceM = 1e-6;
   OrderedJson out = OrderedJson::array();
   for (const auto& T_world_object : truth.T_world_object) {
     double visible = 0.0;
-    for (const TrueObject& object : seen) {
+    for (const GroundTruthObject& object : seen) {
       if (!T_world_object) break;
       const Eigen::Isometry3d T = truth.T_camera_world[static_cast<std::size_t>(camera)] * *T_world_object;
       if ((T.translation() - object.T_camera_object.translation()).norm() < kSamePlaceM)
@@ -68,7 +68,7 @@ OrderedJson empty_frames(const Sequence& sequence, int frames, double fps) {
 }
 
 void render_sequence(const RenderOptions& options, const SequencesJob& job, const SequencePlan& plan) {
-  const Sequence sequence(plan, job.development ? WorldUse::kTraining : WorldUse::kTest);
+  const Sequence sequence(plan, job.development ? DatasetSplit::kTraining : DatasetSplit::kTest);
   const int frames = static_cast<int>(std::lround(plan.seconds * job.fps));
   OrderedJson out{{"name", plan.name}, {"fps", job.fps}};
   for (std::size_t i = 0; i < plan.actors.size(); ++i)
@@ -83,7 +83,7 @@ void render_sequence(const RenderOptions& options, const SequencesJob& job, cons
     int index = 0;
     render_in_order(
         plan.name, options.threads, frames, [&](int i) { return sequence.render(camera, i / job.fps, i); },
-        [&](const SceneFrame& view) {
+        [&](const RenderedFrame& view) {
           const SequenceTruth truth = sequence.truth(index / job.fps);
           const Eigen::Isometry3d T_world_camera = truth.T_camera_world[static_cast<std::size_t>(camera)].inverse();
           truth_of_frames[static_cast<std::size_t>(index++)]["cameras"].push_back(

@@ -16,7 +16,7 @@ using namespace world;
 namespace {
 
 std::vector<NumberedTake> chosen_takes(const TakesJob& job) {
-  const WorldUse use = job.development ? WorldUse::kTraining : WorldUse::kTest;
+  const DatasetSplit use = job.development ? DatasetSplit::kTraining : DatasetSplit::kTest;
   const std::vector<NumberedTake> all = twelve_objects_takes(use, job.world, (job.frames - 1) / job.fps);
   const bool every_object = job.objects == std::vector<std::string>{"all"};
   std::vector<std::string> names;
@@ -58,7 +58,7 @@ void render_take(const RenderOptions& options, const NumberedTake& numbered, int
   render_in_order(
       fmt::format("{} {}", numbered.object, numbered.take), options.threads, frames,
       [&](int index) { return take.render(index); },
-      [&](const SceneFrame& view) { writer.add(view.frame, view.objects, view.visible_masks); });
+      [&](const RenderedFrame& view) { writer.add(view.frame, view.objects, view.visible_masks); });
   writer.finish();
 }
 

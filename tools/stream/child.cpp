@@ -17,7 +17,7 @@
 namespace houghstream::stream {
 namespace {
 
-Ending describe(int status) {
+ExitStatus describe(int status) {
   if (WIFSIGNALED(status)) {
     const int number = WTERMSIG(status);
     return {false, true, fmt::format("was killed by signal {} ({})", number, strsignal(number))};
@@ -101,7 +101,7 @@ void Child::pass_on_words() {
   std::fflush(stderr);
 }
 
-std::optional<Ending> Child::ending() {
+std::optional<ExitStatus> Child::ending() {
   int status = 0;
   pass_on_words();
   if (!ending_ && waitpid(pid_, &status, WNOHANG) == pid_) {

@@ -12,7 +12,7 @@
 namespace houghstream::stream {
 
 /// How a process ended, in words; whether it did what it was to do.
-struct Ending {
+struct ExitStatus {
   bool success = false;    ///< exit status 0
   bool by_signal = false;  ///< killed, or crashed
   std::string words;       ///< "ended with status 1", "was killed by signal 9 (Killed)"
@@ -32,9 +32,9 @@ class Child {
   Child& operator=(const Child&) = delete;
 
   /// How it ended; nothing while it runs. Passes on what it has written; call it often.
-  std::optional<Ending> ending();
+  std::optional<ExitStatus> ending();
   /// The last line of its stderr, for people; "" where it has written none, or is not heard.
-  const std::string& last_words() const { return last_words_; }
+  const std::string& last_stderr_line() const { return last_words_; }
   /// Whether it has said of late that it is ending and needs more time ($NOTIFY_SOCKET, EXTEND_TIMEOUT_USEC).
   bool needs_time();
   /// Sends a signal to it and to what it has started.
@@ -50,7 +50,7 @@ class Child {
   int words_ = -1;  // where its stderr is read
   std::string line_;
   std::string last_words_;
-  std::optional<Ending> ending_;
+  std::optional<ExitStatus> ending_;
 };
 
 }  // namespace houghstream::stream

@@ -96,11 +96,11 @@ class StatusEar {
 };
 
 /// Until what the source has sent last has gone through all others, and no longer than they are worth waiting for.
-void await_last_frames(StatusEar& ear, const LastFrames& last_frames) {
-  const auto end = LastFrames::Clock::now() + LastFrames::kPatience;
-  while (!stop_requested() && !last_frames.are_through() && LastFrames::Clock::now() < end)
+void await_last_frames(StatusEar& ear, const DrainMonitor& last_frames) {
+  const auto end = DrainMonitor::Clock::now() + DrainMonitor::kPatience;
+  while (!stop_requested() && !last_frames.is_drained() && DrainMonitor::Clock::now() < end)
     ear.listen(std::chrono::milliseconds(20));
-  if (!last_frames.are_through() && !stop_requested())
+  if (!last_frames.is_drained() && !stop_requested())
     log_warning("the stream ends, though not all processes have said that the last frames went through them");
 }
 
@@ -118,26 +118,26 @@ void run_stream(StreamOptions options, const Pace& pace) {
   SupervisorSettings settings;
   settings.patience = from_seconds<std::chrono::milliseconds>(pace.patience);
   settings.silence = from_seconds<std::chrono::milliseconds>(pace.hang_patience);
-  settings.start_silence = from_seconds<std::chrono::milliseconds>(pace.start_patience);
+  settings.startup_timeout = from_seconds<std::chrono::milliseconds>(pace.start_patience);
   Supervisor supervisor(plan_stream(options), settings, [](const std::string& words) { log_info("{}", words); });
-  StateBoard board;
-  std::optional<LastFrames> last_frames;
-  ear.hear([&](const Arrival& arrival) {
+  StatusBoard board;
+  std::optional<DrainMonitor> last_frames;
+  ear.hear([&](const ReceivedMessage& arrival) {
     const auto status = decode_message<status_t>(arrival.bytes);
-    if (!supervisor.note_running(status.pid)) return;
+    if (!supervisor.on_heartbeat(status.pid)) return;
     board.note(status, arrival.time);
     if (last_frames) last_frames->note(status, arrival.time);
   });
-  const auto period = from_seconds<StateBoard::Clock::duration>(pace.every);
-  auto due = StateBoard::Clock::now() + period;
+  const auto period = from_seconds<StatusBoard::Clock::duration>(pace.every);
+  auto due = StatusBoard::Clock::now() + period;
   while (!stop_requested() && supervisor.step()) {
-    if (!ear.listen(std::chrono::milliseconds(20))) supervisor.note_deaf();
-    if (StateBoard::Clock::now() < due) continue;
+    if (!ear.listen(std::chrono::milliseconds(20))) supervisor.pause_watchdog();
+    if (StatusBoard::Clock::now() < due) continue;
     due += period;
     board.keep(supervisor.states());
-    log_info("{}", board.line(supervisor.states(), StateBoard::Clock::now()));
+    log_info("{}", board.line(supervisor.states(), StatusBoard::Clock::now()));
   }
-  await_last_frames(ear, last_frames.emplace(supervisor.who_follows_source(), LastFrames::Clock::now()));
+  await_last_frames(ear, last_frames.emplace(supervisor.downstream_pids(), DrainMonitor::Clock::now()));
   for (const std::string& name : supervisor.stop()) log_warning("{} did not end when asked and was killed", name);
   log_info("all ended");
 }

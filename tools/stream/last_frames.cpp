@@ -4,11 +4,11 @@
 
 namespace houghstream::stream {
 
-LastFrames::LastFrames(std::vector<pid_t> pids, Clock::time_point ended) : pids_(std::move(pids)), since_(ended) {}
+DrainMonitor::DrainMonitor(std::vector<pid_t> pids, Clock::time_point ended) : pids_(std::move(pids)), since_(ended) {}
 
-void LastFrames::note(const status_t& status, Clock::time_point heard) {
+void DrainMonitor::note(const status_t& status, Clock::time_point heard) {
   constexpr std::chrono::milliseconds kOnTheWay(100);  // what was sent before has come by then
-  if (are_through() || status.pid != pids_[through_] || heard - since_ < kOnTheWay) return;
+  if (is_drained() || status.pid != pids_[through_] || heard - since_ < kOnTheWay) return;
   const bool is_idle =
       status.frames_received == status.frames_processed + status.frames_skipped + status.frames_refused;
   if (!is_idle) return;

@@ -12,7 +12,7 @@ namespace houghstream::stream {
 /// Whether what a source has sent before it ended has gone through all the others, as their statuses tell: one after
 /// another, in the order in which frames pass them, each says that it has nothing left to do, a moment after the one
 /// before it has. Each sends a status once a second. Not thread-safe.
-class LastFrames {
+class DrainMonitor {
  public:
   using Clock = std::chrono::steady_clock;
 
@@ -20,11 +20,11 @@ class LastFrames {
   static constexpr std::chrono::seconds kPatience{7};
 
   /// `pids`: of the others, in that order.
-  LastFrames(std::vector<pid_t> pids, Clock::time_point ended);
+  DrainMonitor(std::vector<pid_t> pids, Clock::time_point ended);
 
   void note(const status_t& status, Clock::time_point heard);
 
-  bool are_through() const { return through_ == pids_.size(); }
+  bool is_drained() const { return through_ == pids_.size(); }
 
  private:
   std::vector<pid_t> pids_;

@@ -23,11 +23,11 @@ std::string describe(const status_t& status) {
 
 }  // namespace
 
-void StateBoard::note(const status_t& status, Clock::time_point time) {
+void StatusBoard::note(const status_t& status, Clock::time_point time) {
   entries_[status.pid] = {status, time};
 }
 
-void StateBoard::keep(const std::vector<Supervisor::State>& states) {
+void StatusBoard::keep(const std::vector<Supervisor::State>& states) {
   for (auto entry = entries_.begin(); entry != entries_.end();) {
     const bool is_known = std::any_of(states.begin(), states.end(),
                                       [&](const Supervisor::State& state) { return state.pid == entry->first; });
@@ -35,7 +35,7 @@ void StateBoard::keep(const std::vector<Supervisor::State>& states) {
   }
 }
 
-std::string StateBoard::line(const std::vector<Supervisor::State>& states, Clock::time_point now) const {
+std::string StatusBoard::line(const std::vector<Supervisor::State>& states, Clock::time_point now) const {
   constexpr std::chrono::seconds kStale(3);
   std::string line;
   for (const Supervisor::State& state : states) {

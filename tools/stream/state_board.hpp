@@ -11,7 +11,7 @@
 namespace houghstream::stream {
 
 /// What the processes say of themselves, and since when.
-class StateBoard {
+class StatusBoard {
  public:
   using Clock = std::chrono::steady_clock;
 

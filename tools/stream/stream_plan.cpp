@@ -73,7 +73,7 @@ std::vector<ChildPlan> plan_captures(const StreamOptions& options, const std::ve
     plans.push_back(plan(own, "capture", {"--source", each.source}, options.capture_options));
     if (sources.size() > 1) plans.back().name += " " + each.channel;
     plans.back().ends_stream = true;
-    plans.back().awaits_others = true;
+    plans.back().is_started_last = true;
   }
   return plans;
 }

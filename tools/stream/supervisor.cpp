@@ -22,7 +22,7 @@ double seconds(milliseconds time) {
 }
 
 std::string last_words_of(const Child& child) {
-  return child.last_words().empty() ? "it has said nothing" : "its last words: " + printable(child.last_words());
+  return child.last_stderr_line().empty() ? "it has said nothing" : "its last words: " + printable(child.last_stderr_line());
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ Supervisor::Supervisor(std::vector<ChildPlan> plans, const SupervisorSettings& s
     members_.back().plan = std::move(plan);
   }
   for (Member& member : members_) {
-    member.waits = member.plan.awaits_others;
+    member.waits = member.plan.is_started_last;
     if (!member.waits) start(member);
   }
 }
@@ -48,16 +48,16 @@ void Supervisor::start(Member& member) {
   if (member.restarts > 0) command.erase(std::remove(command.begin(), command.end(), "--replace"), command.end());
   member.child = std::make_unique<Child>(command, true);
   member.since = Clock::now();
-  member.has_spoken = false;
+  member.has_heartbeat = false;
   member.silent = Clock::duration(0);
   member.asked_end.reset();
   say_(fmt::format("{} started, process {}", member.plan.name, member.child->pid()));
 }
 
-void Supervisor::start_who_waits() {
+void Supervisor::start_waiting() {
   std::string silent;  // names of the others
   for (const Member& member : members_) {
-    if (!member.waits && !member.has_spoken) silent += (silent.empty() ? "" : ", ") + member.plan.name;
+    if (!member.waits && !member.has_heartbeat) silent += (silent.empty() ? "" : ", ") + member.plan.name;
   }
   if (!silent.empty() && Clock::now() - begun_ < settings_.others_patience) return;
   for (Member& member : members_) {
@@ -74,7 +74,7 @@ void Supervisor::plan_restart(Member& member, const std::string& words) {
   member.failures = settled ? 1 : member.failures + 1;
   require(member.failures < settings_.most_failures, "{} {}, {} times in a row: it is given up; {}", member.plan.name,
           words, member.failures, last_words_of(*member.child));
-  member.wait = std::clamp(2 * member.wait, settings_.first_wait, settings_.longest_wait);
+  member.wait = std::clamp(2 * member.wait, settings_.initial_backoff, settings_.max_backoff);
   if (member.failures == 1) member.wait = milliseconds(0);
   member.since = Clock::now() + member.wait;
   member.child.reset();
@@ -89,10 +89,10 @@ void Supervisor::restart_if_due(Member& member) {
   start(member);
 }
 
-void Supervisor::look_for_hang(Member& member, Clock::duration listened) {
+void Supervisor::check_heartbeat(Member& member, Clock::duration listened) {
   const bool needs_time = member.child->needs_time();
   member.silent = needs_time ? Clock::duration(0) : member.silent + listened;
-  const milliseconds limit = member.has_spoken ? settings_.silence : settings_.start_silence;
+  const milliseconds limit = member.has_heartbeat ? settings_.silence : settings_.startup_timeout;
   if (!member.asked_end && member.silent >= limit) {
     say_(fmt::format("{} has said nothing for {:.1f} s: it hangs and is ended", member.plan.name, seconds(limit)));
     member.child->signal(SIGTERM);
@@ -110,9 +110,9 @@ bool Supervisor::look_after(Member& member, Clock::duration listened) {
     return true;
   }
   if (Clock::now() - member.since > settings_.start_time) member.has_run = true;
-  const std::optional<Ending> ending = member.child->ending();
+  const std::optional<ExitStatus> ending = member.child->ending();
   if (!ending) {
-    look_for_hang(member, listened);
+    check_heartbeat(member, listened);
     return true;
   }
   if (member.asked_end) {
@@ -121,7 +121,7 @@ bool Supervisor::look_after(Member& member, Clock::duration listened) {
   }
   if (ending->success && member.plan.ends_stream) {
     say_(fmt::format("{} has ended: the stream ends", member.plan.name));
-    source_has_ended_ = member.plan.awaits_others;
+    source_has_ended_ = member.plan.is_started_last;
     return false;
   }
   // A signal is somebody's doing; a status says that the process itself sees no way.
@@ -136,29 +136,29 @@ bool Supervisor::step() {
   const Clock::time_point now = Clock::now();
   const Clock::duration listened = std::min<Clock::duration>(now - last_step_, kLongestStep);
   last_step_ = now;
-  start_who_waits();
+  start_waiting();
   return std::all_of(members_.begin(), members_.end(), [&](Member& member) { return look_after(member, listened); });
 }
 
-bool Supervisor::note_running(pid_t pid) {
+bool Supervisor::on_heartbeat(pid_t pid) {
   for (Member& member : members_) {
     if (!member.child || member.child->pid() != pid) continue;
-    member.has_run = member.has_spoken = true;
+    member.has_run = member.has_heartbeat = true;
     member.silent = Clock::duration(0);
     return true;
   }
   return false;
 }
 
-std::vector<pid_t> Supervisor::who_follows_source() const {
+std::vector<pid_t> Supervisor::downstream_pids() const {
   std::vector<pid_t> pids;
   for (const Member& member : members_) {
-    if (source_has_ended_ && member.child && !member.plan.awaits_others) pids.push_back(member.child->pid());
+    if (source_has_ended_ && member.child && !member.plan.is_started_last) pids.push_back(member.child->pid());
   }
   return pids;
 }
 
-void Supervisor::note_deaf() {
+void Supervisor::pause_watchdog() {
   last_step_ = Clock::now();
 }
 

@@ -16,19 +16,19 @@ struct ChildPlan {
   std::string name;                  ///< for people, for instance "detect"
   std::vector<std::string> command;  ///< program with its path, arguments
   bool ends_stream = false;          ///< when it ends with status 0, all do: the source's end, the closed window
-  bool awaits_others = false;        ///< started when all others have spoken: the source, whose frames they are to hear
+  bool is_started_last = false;        ///< started when all others have spoken: the source, whose frames they are to hear
 };
 
 struct SupervisorSettings {
-  std::chrono::milliseconds first_wait{250};  ///< before a second restart; doubled by each failure that follows
-  std::chrono::milliseconds longest_wait{10'000};
+  std::chrono::milliseconds initial_backoff{250};  ///< before a second restart; doubled by each failure that follows
+  std::chrono::milliseconds max_backoff{10'000};
   std::chrono::milliseconds settled{10'000};          ///< after so long a run the next failure counts as the first
   int most_failures = 8;                              ///< in a row: then it is given up, and the stream ends
   std::chrono::milliseconds start_time{3000};         ///< who runs that long has started
   std::chrono::milliseconds patience{1500};           ///< for a process to end by itself when it is asked to
   std::chrono::milliseconds finishing{600'000};       ///< instead, for one that says that it is still writing
   std::chrono::milliseconds silence{10'000};          ///< who has spoken and then says nothing for so long hangs
-  std::chrono::milliseconds start_silence{60'000};    ///< the same for one that has not spoken yet: it may still read
+  std::chrono::milliseconds startup_timeout{60'000};    ///< the same for one that has not spoken yet: it may still read
   std::chrono::milliseconds others_patience{10'000};  ///< who awaits the others starts after so long without them
 };
 
@@ -55,14 +55,14 @@ class Supervisor {
   bool step();
 
   /// The process has shown that it runs; expected of each one every second. False where it is none of these.
-  bool note_running(pid_t pid);
+  bool on_heartbeat(pid_t pid);
 
   /// Once step() has said that the stream is to end because its source has: the processes that the source's last frames
   /// go through, in their order. None where something else has ended it.
-  std::vector<pid_t> who_follows_source() const;
+  std::vector<pid_t> downstream_pids() const;
 
   /// Since the last step nothing could have been heard of any.
-  void note_deaf();
+  void pause_watchdog();
 
   /// Asks all to end, waits, insists after `patience`, or, with who says that it needs more time, `finishing`. Returns
   /// the names of those that had to be killed.
@@ -83,7 +83,7 @@ class Supervisor {
     std::unique_ptr<Child> child;
     bool waits = false;    // for the others, before its first start
     bool has_run = false;  // once, since the stream began
-    bool has_spoken = false;
+    bool has_heartbeat = false;
     Clock::duration silent{0};                   // so long, as far as was listened
     std::optional<Clock::time_point> asked_end;  // when it was asked to end because it hangs
     int restarts = 0;
@@ -92,9 +92,9 @@ class Supervisor {
     Clock::time_point since;  // of the start, or when the restart is due
   };
   void start(Member& member);
-  void start_who_waits();
+  void start_waiting();
   bool look_after(Member& member, Clock::duration listened);
-  void look_for_hang(Member& member, Clock::duration listened);
+  void check_heartbeat(Member& member, Clock::duration listened);
   void plan_restart(Member& member, const std::string& words);
   void restart_if_due(Member& member);
   std::string names_of_writing();

@@ -34,8 +34,8 @@ void add_practice_options(CommandLine& command, TeachOptions& options) {
       .add_option("--practice-rooms", options.practice.rooms,
                   fmt::format("rendered rooms in which scores and qualities are learnt, two pictures of each; 4.3 MB "
                               "of memory a room; default {}, with each further new object more, {} of seven",
-                              rooms_for(1), rooms_for(7)))
-      .range(3, PracticeSettings::kMostRooms);
+                              scene_count_for(1), scene_count_for(7)))
+      .range(3, CalibrationSettings::kMostRooms);
   command.add_option("--seed", options.seed, "same seed, same meshes: same store").capture_default_str();
   command.add_option("--threads", options.threads, "any number gives the same store")
       .range(1, 256)
@@ -113,7 +113,7 @@ CommandLine add_show(CommandLine& app, ShowOptions& options, ShowWords& words) {
                   "X,Y,W,H about the object in the first frame; default: what stands nearest the middle");
   show.add_option("--at", words.at, "X,Y on the object in the first frame, instead of the middle");
   show.add_option("--keep", options.keep, "folder for model, views, pictures and report");
-  show.add_flag("--go-on", options.go_on, "teaches a poor model too");
+  show.add_flag("--go-on", options.accept_poor_model, "teaches a poor model too");
   show.add_clearing_flag("--no-teach", options.teach, "makes the model only");
   show.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy of frames that come without");
   show.add_option("--channel", options.channel,

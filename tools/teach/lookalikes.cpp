@@ -41,13 +41,13 @@ struct Shape {
     diameter = static_cast<float>(mesh_diameter(mesh));
   }
 
-  SurfaceHit nearest(const Eigen::Vector3f& about_centre) const { return tree.nearest(about_centre + centre); }
+  ClosestPoint nearest(const Eigen::Vector3f& about_centre) const { return tree.nearest(about_centre + centre); }
   LabColour colour_at(const Eigen::Vector3f& about_centre) const {
-    const SurfaceHit hit = nearest(about_centre);
+    const ClosestPoint hit = nearest(about_centre);
     return colour.at(hit.triangle, {hit.weights[1], hit.weights[2]});
   }
 
-  SurfaceTree tree;
+  MeshBvh tree;
   SurfaceColour colour;
   std::vector<Eigen::Vector3f> points;  ///< about the centre
   Eigen::Vector3f centre = Eigen::Vector3f::Zero();

@@ -17,7 +17,7 @@ namespace houghstream::teach {
 namespace {
 
 void require_size(const std::string& where, double unit_m, const Mesh& mesh) {
-  const std::string fault = fault_of_size(mesh_diameter(mesh), unit_m, "--unit");
+  const std::string fault = mesh_size_error(mesh_diameter(mesh), unit_m, "--unit");
   require(fault.empty(), "{}: {}", where, fault);
 }
 
@@ -105,7 +105,7 @@ double agreement(const Mesh& mesh) {
 }
 
 /// Largest distance from the surface that the motion gives one of its points.
-double largest_distance(const std::vector<Eigen::Vector3f>& points, const SurfaceTree& tree,
+double largest_distance(const std::vector<Eigen::Vector3f>& points, const MeshBvh& tree,
                         const Eigen::Isometry3d& motion) {
   float largest = 0.0F;
   for (const Eigen::Vector3f& point : points)
@@ -146,7 +146,7 @@ void check_symmetries(const std::string& where, const Mesh& mesh, const Symmetri
   constexpr int kPoints = 500;
   constexpr double kSteps = 12.0;  // of a full turn
   const double allowed = std::max(0.015, 0.1 * mesh_diameter(mesh));
-  const SurfaceTree tree(mesh);
+  const MeshBvh tree(mesh);
   const std::vector<Eigen::Vector3f> points = sample_surface(mesh, kPoints, 1).points;
   const auto check = [&](const std::string& which, const Eigen::Isometry3d& motion) {
     const double off = largest_distance(points, tree, motion);

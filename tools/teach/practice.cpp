@@ -22,18 +22,18 @@ namespace {
 constexpr std::uint64_t kCameras = 0x63616D657261ULL;
 
 /// Rendered once, looked at twice. The objects are not quite those that were taught: light, wear and printer differ.
-std::vector<world::SceneFrame> render_frames(const std::vector<PractisedObject>& objects,
-                                             const PracticeSettings& settings, int rooms) {
-  std::vector<world::PracticeObject> in_room;
+std::vector<world::RenderedFrame> render_frames(const std::vector<CalibrationObject>& objects,
+                                             const CalibrationSettings& settings, int rooms) {
+  std::vector<world::CalibrationSceneObject> in_room;
   in_room.reserve(objects.size());
-  for (const PractisedObject& object : objects) in_room.push_back(object.in_room);
-  const world::PracticeScenes scenes(std::move(in_room), settings.seed);
-  constexpr int kEach = world::PracticeScenes::kFramesPerRoom;
-  std::vector<world::SceneFrame> frames(static_cast<std::size_t>(rooms * kEach));
+  for (const CalibrationObject& object : objects) in_room.push_back(object.in_room);
+  const world::CalibrationScenes scenes(std::move(in_room), settings.seed);
+  constexpr int kEach = world::CalibrationScenes::kFramesPerRoom;
+  std::vector<world::RenderedFrame> frames(static_cast<std::size_t>(rooms * kEach));
   ProgressLine progress("practice rooms", rooms);
   parallel_for(settings.threads, rooms, [&](int room) {
     int index = room * kEach;
-    for (world::SceneFrame& frame : scenes.render(room)) {
+    for (world::RenderedFrame& frame : scenes.render(room)) {
       Random random = Random::for_item(settings.seed ^ kCameras, static_cast<std::uint64_t>(index));
       for (const cv::Mat& mask : frame.visible_masks) {
         const cv::Rect part = cv::boundingRect(mask);
@@ -41,7 +41,7 @@ std::vector<world::SceneFrame> render_frames(const std::vector<PractisedObject>&
         training::resurface(mask(part), settings.surface_variation, random, colour);
       }
       frame.visible_masks.clear();
-      training::look_through_another(settings.camera_share, settings.camera_variation, frame.frame, random);
+      training::randomise_camera(settings.camera_share, settings.camera_variation, frame.frame, random);
       frames[static_cast<std::size_t>(index)] = std::move(frame);
       ++index;
     }
@@ -58,12 +58,12 @@ void warn_of(const std::vector<std::string>& names, int rooms) {
         name, rooms);
 }
 
-training::ValidationSource validation_source(const std::vector<world::SceneFrame>& frames) {
+training::ValidationSource validation_source(const std::vector<world::RenderedFrame>& frames) {
   return {static_cast<int>(frames.size()), [&frames](int index) {
-            const world::SceneFrame& from = frames[static_cast<std::size_t>(index)];
+            const world::RenderedFrame& from = frames[static_cast<std::size_t>(index)];
             training::ValidationFrame frame;
             frame.frame = from.frame;
-            for (const TrueObject& object : from.objects)
+            for (const GroundTruthObject& object : from.objects)
               frame.objects.push_back({object.object_id, {}, object.box_visible_px, object.visible_fraction});
             return frame;
           }};
@@ -73,12 +73,12 @@ training::ValidationSource validation_source(const std::vector<world::SceneFrame
 constexpr int kHalves = 2;
 
 int half_of(std::size_t frame) {
-  return static_cast<int>(frame) / world::PracticeScenes::kFramesPerRoom % kHalves;
+  return static_cast<int>(frame) / world::CalibrationScenes::kFramesPerRoom % kHalves;
 }
 
 /// What practice has seen, and of which classes it is to learn.
 struct Practised {
-  const std::vector<world::SceneFrame>& frames;
+  const std::vector<world::RenderedFrame>& frames;
   const std::vector<training::ScoreExamples>& examples;  ///< of each frame
   const std::set<int>& new_ids;
   int threads;
@@ -109,7 +109,7 @@ quality::FoundPoses find_poses(const Practised& practised, const quality::PosedM
   detection.evidence.threshold = PoseSettings{}.min_score;
   std::map<int, std::string> names;
   for (const ObjectClass& known : forest.classes) names[known.class_id] = known.name;
-  const quality::PoseFinder finder(models, 1);
+  const quality::UnfilteredPoseFinder finder(models, 1);
   quality::FoundPoses found;
   found.frames.resize(practised.frames.size());
   found.terms.resize(practised.frames.size());
@@ -122,9 +122,9 @@ quality::FoundPoses find_poses(const Practised& practised, const quality::PosedM
     const std::vector<std::size_t> searched = frames_of(half, practised);
     parallel_for_workers(practised.threads, static_cast<int>(searched.size()), [&](int worker, int i) {
       const std::size_t index = searched[static_cast<std::size_t>(i)];
-      const world::SceneFrame& seen = practised.frames[index];
+      const world::RenderedFrame& seen = practised.frames[index];
       EvaluatedFrame& frame = found.frames[index];
-      for (const TrueObject& object : seen.objects)
+      for (const GroundTruthObject& object : seen.objects)
         frame.objects.push_back({names.at(object.object_id), object, std::nullopt});
       frame.detections = detector.detect(seen.frame, workspaces[worker]);
       found.terms[index] = finder.find_in(seen.frame, frame);
@@ -140,7 +140,7 @@ std::map<std::string, std::vector<QualityExample>> quality_examples(const qualit
   std::map<std::string, std::vector<QualityExample>> by_name;
   for (const auto& [name, model] : models) {
     std::vector<QualityExample>& own = by_name[name];
-    for (const quality::Example& example : quality::judge_examples(found, {{name, model}})) {
+    for (const quality::Example& example : quality::label_examples(found, {{name, model}})) {
       own.push_back(example);
       own.back().half = half_of(example.frame);
     }
@@ -150,35 +150,35 @@ std::map<std::string, std::vector<QualityExample>> quality_examples(const qualit
 
 }  // namespace
 
-int rooms_for(std::size_t new_objects, const PracticeSettings& settings) {
+int scene_count_for(std::size_t new_objects, const CalibrationSettings& settings) {
   constexpr int kOfOne = 80;
   constexpr int kOfEachMore = 25;
   constexpr int kMost = 240;
   return settings.rooms.value_or(std::min(kOfOne + kOfEachMore * (static_cast<int>(new_objects) - 1), kMost));
 }
 
-std::vector<std::string> never_seen(const std::vector<world::SceneFrame>& frames,
-                                    const std::vector<PractisedObject>& objects, const std::set<int>& new_ids) {
+std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFrame>& frames,
+                                    const std::vector<CalibrationObject>& objects, const std::set<int>& new_ids) {
   std::set<int> seen;
-  for (const world::SceneFrame& frame : frames) {
-    for (const TrueObject& object : frame.objects) seen.insert(object.object_id);
+  for (const world::RenderedFrame& frame : frames) {
+    for (const GroundTruthObject& object : frame.objects) seen.insert(object.object_id);
   }
   std::vector<std::string> names;
-  for (const PractisedObject& object : objects) {
+  for (const CalibrationObject& object : objects) {
     const int id = object.in_room.id;
     if (new_ids.count(id) > 0 && seen.count(id) == 0) names.push_back(object.name);
   }
   return names;
 }
 
-std::map<std::string, QualitySettings> practise(const std::vector<PractisedObject>& objects,
-                                                const std::set<int>& new_ids, const PracticeSettings& settings,
+std::map<std::string, QualitySettings> practise(const std::vector<CalibrationObject>& objects,
+                                                const std::set<int>& new_ids, const CalibrationSettings& settings,
                                                 Forest& forest) {
-  const int rooms = rooms_for(new_ids.size(), settings);
-  require(rooms <= PracticeSettings::kMostRooms, "{} practice rooms, expected at most {}: all are in memory", rooms,
-          PracticeSettings::kMostRooms);
-  const std::vector<world::SceneFrame> frames = render_frames(objects, settings, rooms);
-  warn_of(never_seen(frames, objects, new_ids), rooms);
+  const int rooms = scene_count_for(new_ids.size(), settings);
+  require(rooms <= CalibrationSettings::kMostRooms, "{} practice rooms, expected at most {}: all are in memory", rooms,
+          CalibrationSettings::kMostRooms);
+  const std::vector<world::RenderedFrame> frames = render_frames(objects, settings, rooms);
+  warn_of(unobserved_objects(frames, objects, new_ids), rooms);
   Profile profile = training::profile_of(forest);
   profile.training.threads = settings.threads;
   const std::vector<training::ScoreExamples> examples =
@@ -187,7 +187,7 @@ std::map<std::string, QualitySettings> practise(const std::vector<PractisedObjec
   quality::PosedModels models;
   models.tone = forest.features.tone;
   std::map<std::string, PoseModel> judged_by;
-  for (const PractisedObject& object : objects) {
+  for (const CalibrationObject& object : objects) {
     models.meshes[object.name] = object.mesh;
     models.vote_centres[object.name] = object.vote_centre;
     judged_by[object.name] = make_pose_model(object.mesh, false);
@@ -196,7 +196,7 @@ std::map<std::string, QualitySettings> practise(const std::vector<PractisedObjec
   training::fit_scores(examples, new_ids, forest);
   std::map<std::string, QualitySettings> all = learn_qualities(quality_examples(found, judged_by));
   std::map<std::string, QualitySettings> learnt;
-  for (const PractisedObject& object : objects) {
+  for (const CalibrationObject& object : objects) {
     if (new_ids.count(object.in_room.id) > 0) learnt[object.name] = all.at(object.name);
   }
   return learnt;

@@ -21,11 +21,11 @@ PoseSettings withholding_none(const PosedModels& models, int threads) {
 
 }  // namespace
 
-std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std::string, PoseModel>& models) {
+std::vector<Example> label_examples(const FoundPoses& found, const std::map<std::string, PoseModel>& models) {
   std::vector<Example> examples;
   for (const auto& [name, model] : models) {
-    for (const JudgedDetection& judged : judge_detections(found.frames, name, DetectionRules{})) {
-      const std::optional<FoundTerms>& terms = found.terms[judged.frame][judged.index];
+    for (const MatchedDetection& judged : match_detections(found.frames, name, DetectionRules{})) {
+      const std::optional<PoseTerms>& terms = found.terms[judged.frame][judged.index];
       if (!terms || judged.verdict == Verdict::kIgnored) continue;
       Example example;
       example.scene = found.scene;
@@ -34,7 +34,7 @@ std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std:
       example.score = judged.score;
       if (judged.verdict == Verdict::kTrue) {
         const EvaluatedFrame& frame = found.frames[judged.frame];
-        const TrueObject& truth = frame.objects[judged.object].truth;
+        const GroundTruthObject& truth = frame.objects[judged.object].truth;
         if (!truth.has_pose) continue;
         example.is_there = true;
         const Eigen::Isometry3d& T_camera_object = *frame.poses->poses[judged.index].T_camera_object;
@@ -48,12 +48,12 @@ std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std:
   return examples;
 }
 
-PoseFinder::PoseFinder(const PosedModels& models, int threads)
+UnfilteredPoseFinder::UnfilteredPoseFinder(const PosedModels& models, int threads)
     : settings_(withholding_none(models, threads)), estimator_(models.meshes, settings_) {
   for (const auto& [name, mesh] : models.meshes) models_.emplace(name, make_object_model(name, mesh, settings_.model));
 }
 
-FoundPoses PoseFinder::find(const std::string& name, const BopScene& scene, const Detector& detector, int every) const {
+FoundPoses UnfilteredPoseFinder::find(const std::string& name, const BopScene& scene, const Detector& detector, int every) const {
   FoundPoses found{name, every_nth(read_truth(scene, find_bop_names(scene.folder())), every), {}};
   for (EvaluatedFrame& truth : found.frames) {
     const RgbdFrame frame = scene.read_frame(truth.image);
@@ -63,24 +63,24 @@ FoundPoses PoseFinder::find(const std::string& name, const BopScene& scene, cons
   return found;
 }
 
-std::vector<std::optional<FoundTerms>> PoseFinder::find_in(const RgbdFrame& frame, EvaluatedFrame& found) const {
+std::vector<std::optional<PoseTerms>> UnfilteredPoseFinder::find_in(const RgbdFrame& frame, EvaluatedFrame& found) const {
   found.poses = estimator_.estimate(frame, *found.detections);
   return terms_of(frame, *found.detections, *found.poses);
 }
 
-std::vector<std::optional<FoundTerms>> PoseFinder::terms_of(const RgbdFrame& frame, const Detections& detections,
+std::vector<std::optional<PoseTerms>> UnfilteredPoseFinder::terms_of(const RgbdFrame& frame, const Detections& detections,
                                                             const ObjectPoses& poses) const {
-  std::vector<std::optional<FoundTerms>> all;
-  const SeenFrame seen_frame = see_frame(frame, settings_.region, settings_.noise);
+  std::vector<std::optional<PoseTerms>> all;
+  const FrameContext seen_frame = make_frame_context(frame, settings_.region, settings_.noise);
   for (const ObjectPose& pose : poses.poses) {
-    std::optional<FoundTerms>& terms = all.emplace_back();
+    std::optional<PoseTerms>& terms = all.emplace_back();
     if (!pose.T_camera_object) continue;
     const Detection& detection = detections.detections[pose.detection_index];
-    const SeenObject seen = see_object(seen_frame, detection, models_.at(pose.class_name), settings_.region);
+    const ObjectObservation seen = observe_object(seen_frame, detection, models_.at(pose.class_name), settings_.region);
     const PoseEvidence own = gather_evidence(seen, *pose.T_camera_object, detection.score, settings_.verification);
     const std::optional<PoseEvidence> other =
         evidence_with_swapped_texture(seen, *pose.T_camera_object, own, settings_.verification);
-    terms = FoundTerms{quality_terms(own, settings_.quality), std::nullopt};
+    terms = PoseTerms{quality_terms(own, settings_.quality), std::nullopt};
     if (other) terms->with_swapped_texture = quality_terms(*other, settings_.quality);
     if (pose_quality(terms->own, settings_.quality) != pose.quality) {
       throw std::logic_error(

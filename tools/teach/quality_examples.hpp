@@ -20,7 +20,7 @@ struct Example : QualityExample {
 };
 
 /// What a pose that was found is judged by.
-struct FoundTerms {
+struct PoseTerms {
   QualityTerms own;
   std::optional<QualityTerms> with_swapped_texture;  ///< see evidence_with_swapped_texture()
 };
@@ -30,34 +30,34 @@ struct FoundTerms {
 struct FoundPoses {
   std::string scene;
   std::vector<EvaluatedFrame> frames;
-  std::vector<std::vector<std::optional<FoundTerms>>> terms;
+  std::vector<std::vector<std::optional<PoseTerms>>> terms;
 };
 
 /// The poses of the classes with a model beside the truth. Those of detections that are neither true nor false, and of
 /// objects whose truth has no pose, are left out.
-std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std::string, PoseModel>& models);
+std::vector<Example> label_examples(const FoundPoses& found, const std::map<std::string, PoseModel>& models);
 
 /// Models by class name, metres, and for which point of each its detections' votes are (ObjectModel::vote_centre).
 struct PosedModels {
   std::map<std::string, Mesh> meshes;
   std::map<std::string, Eigen::Vector3f> vote_centres;
-  ToneRange tone = {};  ///< see RegionSettings
+  BrightnessRange tone = {};  ///< see RegionSettings
 };
 
 /// Finds poses and withholds none, and says what each would be judged by.
-class PoseFinder {
+class UnfilteredPoseFinder {
  public:
   /// `threads` as PoseSettings::threads.
-  PoseFinder(const PosedModels& models, int threads);
+  UnfilteredPoseFinder(const PosedModels& models, int threads);
 
   /// Detects in frames 0, N, 2N, ... of a scene and finds the detections' poses.
   FoundPoses find(const std::string& name, const BopScene& scene, const Detector& detector, int every) const;
 
   /// The poses of `found.detections`, into `found.poses`; returns what each is judged by. Thread-safe.
-  std::vector<std::optional<FoundTerms>> find_in(const RgbdFrame& frame, EvaluatedFrame& found) const;
+  std::vector<std::optional<PoseTerms>> find_in(const RgbdFrame& frame, EvaluatedFrame& found) const;
 
  private:
-  std::vector<std::optional<FoundTerms>> terms_of(const RgbdFrame& frame, const Detections& detections,
+  std::vector<std::optional<PoseTerms>> terms_of(const RgbdFrame& frame, const Detections& detections,
                                                   const ObjectPoses& poses) const;
 
   PoseSettings settings_;

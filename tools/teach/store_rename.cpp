@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using store::ObjectStore;
 using store::StoredObject;
 
-/// The meshes, what is known of them, and the pictures of views. What else lies there is somebody's, which StoreBuild
+/// The meshes, what is known of them, and the pictures of views. What else lies there is somebody's, which StoreTransaction
 /// carries over.
 void copy_files(const ObjectStore& from, const fs::path& to) {
   for (const char* folder : {"models", "views"}) {
@@ -54,11 +54,11 @@ void write_pictures(const ObjectStore& store, const StoredObject& renamed) {
 }  // namespace
 
 void rename_in_store(const fs::path& folder, const std::string& old_name, const std::string& new_name) {
-  store::bring_back_store(folder);
+  store::recover_store(folder);
   ObjectStore store = store::read_store(folder);  // nothing is made beside what is no store
-  store::StoreBuild build(folder);
+  store::StoreTransaction build(folder);
   store = store::read_store(folder);  // nobody else changes it from here on
-  const int id = store::object_called(store, old_name).id;
+  const int id = store::find_object(store, old_name).id;
   store::require_new_name(new_name, store.json_file().string());
   const bool is_taken = std::any_of(store.objects.begin(), store.objects.end(),
                                     [&](const StoredObject& other) { return other.name == new_name; });
@@ -75,7 +75,7 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
   }
   save_forest(forest, store.forest_file());
   write_names(store);
-  write_pictures(store, store::object_called(store, new_name));
+  write_pictures(store, store::find_object(store, new_name));
   store::write_store_json(store);
   load_store_forest(store::read_store(build.folder()));  // what nothing can read takes no store's place
   build.publish();

@@ -19,7 +19,7 @@ int most_views(const std::vector<TrainingView>& views) {
 
 }  // namespace
 
-Forest train_taught(std::vector<TrainingView> views, const std::optional<Forest>& old, const TeachOptions& options,
+Forest train_store_forest(std::vector<TrainingView> views, const std::optional<Forest>& old, const TeachOptions& options,
                     const std::function<void(const std::string&)>& report) {
   constexpr double kToneShare = 0.7;  // see TrainingSettings
   constexpr int kPatches = 26000;     // of an object: what trees are grown of, and how long that takes
@@ -41,8 +41,8 @@ Forest train_taught(std::vector<TrainingView> views, const std::optional<Forest>
   }
   profile.training.validation_frames = 0;    // practice tells more
   profile.training.composites_per_view = 1;  // another view tells more than another room
-  profile.training.tone_share = kToneShare;
-  if (!old) profile.features.tone = kPractisedTone;
+  profile.training.tone_jitter_fraction = kToneShare;
+  if (!old) profile.features.tone = kCalibrationBrightness;
   profile.training.views_per_picture = kViewsPerPicture;
   const int pictures = std::max(most_views(views) / kViewsPerPicture, 1);
   profile.training.patches_per_view = std::clamp(kPatches / pictures, kFewestPatches, kMostPatches);

@@ -69,7 +69,7 @@ std::vector<TrainingView> render_views(const TaughtMesh& taught, const TeachOpti
 void dump_views(const std::vector<TrainingView>& views, const fs::path& folder) {
   BopWriter writer(folder);
   for (const TrainingView& view : views) {
-    TrueObject object;
+    GroundTruthObject object;
     object.object_id = view.class_id;
     object.T_camera_object = view.T_camera_object;
     object.box_visible_px = cv::boundingRect(view.mask);

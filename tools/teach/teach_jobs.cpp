@@ -83,14 +83,14 @@ void require_new(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) 
 }
 
 /// The objects of the finished store, looked for in rooms; what is learnt of the new ones goes into forest and store.
-void practise_all(const std::vector<NamedModel>& models, const std::set<int>& new_ids, const PracticeSettings& settings,
+void practise_all(const std::vector<NamedModel>& models, const std::set<int>& new_ids, const CalibrationSettings& settings,
                   Forest& forest, ObjectStore& made) {
-  std::vector<PractisedObject> objects(models.size());
+  std::vector<CalibrationObject> objects(models.size());
   parallel_for(settings.threads, static_cast<int>(models.size()), [&](int i) {
     const NamedModel& model = models[static_cast<std::size_t>(i)];
     const auto of_model = [&](const StoredObject& object) { return object.id == model.object_id; };
     const StoredObject& stored = *std::find_if(made.objects.begin(), made.objects.end(), of_model);
-    PractisedObject& object = objects[static_cast<std::size_t>(i)];
+    CalibrationObject& object = objects[static_cast<std::size_t>(i)];
     object.name = model.name;
     object.mesh = model.mesh;
     object.vote_centre = stored.vote_centre;
@@ -105,9 +105,9 @@ void practise_all(const std::vector<NamedModel>& models, const std::set<int>& ne
   }
 }
 
-std::string practice_step(const PracticeSettings& settings, std::size_t new_objects) {
+std::string practice_step(const CalibrationSettings& settings, std::size_t new_objects) {
   return fmt::format("looked for in {} rendered rooms, of which scores and qualities are learnt",
-                     rooms_for(new_objects, settings));
+                     scene_count_for(new_objects, settings));
 }
 
 /// The forest's classes get the ids of the store.
@@ -149,7 +149,7 @@ void keep(const Contents& old, const std::string& except, ObjectStore& made, std
 /// Of all where no names are given.
 std::set<int> ids_of(const ObjectStore& list, const std::vector<std::string>& names) {
   std::set<int> ids;
-  for (const std::string& name : names) ids.insert(store::object_called(list, name).id);
+  for (const std::string& name : names) ids.insert(store::find_object(list, name).id);
   if (!names.empty()) return ids;
   for (const StoredObject& object : list.objects) ids.insert(object.id);
   return ids;
@@ -166,7 +166,7 @@ ObjectStore start_store(const fs::path& folder) {
 
 /// Nothing is made beside what is no store.
 void require_store(const fs::path& folder) {
-  store::bring_back_store(folder);
+  store::recover_store(folder);
   store::read_store(folder);
 }
 
@@ -205,7 +205,7 @@ void teach_meshes(const TeachOptions& options) {
   world::parse_mesh_attitudes(options.attitudes);
   if (options.rooms.camera) parse_camera(*options.rooms.camera);
   require_free(options.dump_views);
-  store::StoreBuild build(options.out);  // before the store is read: nobody else changes it from here on
+  store::StoreTransaction build(options.out);  // before the store is read: nobody else changes it from here on
   if (!options.add && !options.replace) require_no_store(options.out);
   Contents old;
   if (options.add) {
@@ -224,18 +224,18 @@ void teach_meshes(const TeachOptions& options) {
   ObjectStore made = start_store(build.folder());
   std::vector<NamedModel> models;
   keep(old, "", made, models);
-  std::vector<TrainingView> views = read_rooms(options.rooms);
+  std::vector<TrainingView> views = read_backgrounds(options.rooms);
   progress(fmt::format("{} pictures of rooms read", views.size()));
   std::vector<TrainingView> of_objects = make_views(meshes, options, made, progress);
   std::move(of_objects.begin(), of_objects.end(), std::back_inserter(views));
-  Forest forest = train_taught(std::move(views), old.forest, options, progress);
+  Forest forest = train_store_forest(std::move(views), old.forest, options, progress);
   take_ids(made, forest);
   std::set<int> new_ids;
   for (NamedModel& model : models_of(meshes)) {
     new_ids.insert(model.object_id);
     models.push_back(std::move(model));
   }
-  PracticeSettings practice = options.practice;
+  CalibrationSettings practice = options.practice;
   practice.seed = options.seed;
   practice.threads = options.threads;
   progress(practice_step(practice, new_ids.size()));
@@ -256,9 +256,9 @@ void list_store(const fs::path& folder) {
 
 void remove_from_store(const fs::path& folder, const std::string& name) {
   require_store(folder);
-  store::StoreBuild build(folder);
+  store::StoreTransaction build(folder);
   const Contents old = read_contents(folder);
-  const Forest forest = training::remove_object(*old.forest, store::object_called(old.list, name).name);
+  const Forest forest = training::remove_object(*old.forest, store::find_object(old.list, name).name);
   ObjectStore made = start_store(build.folder());
   made.settings = old.list.settings;
   std::vector<NamedModel> models;
@@ -267,10 +267,10 @@ void remove_from_store(const fs::path& folder, const std::string& name) {
   build.publish();
 }
 
-void practise_store(const fs::path& folder, const PracticeSettings& settings, const std::vector<std::string>& names) {
+void practise_store(const fs::path& folder, const CalibrationSettings& settings, const std::vector<std::string>& names) {
   const Progress progress;
   require_store(folder);
-  store::StoreBuild build(folder);
+  store::StoreTransaction build(folder);
   const Contents old = read_contents(folder);
   const std::set<int> ids = ids_of(old.list, names);
   ObjectStore made = start_store(build.folder());

@@ -9,7 +9,7 @@
 namespace houghstream::teach {
 
 /// Throws InputError where a store is there, also one that cannot be read: a teaching that neither adds to it nor was
-/// asked to replace it would lose what it knows. Of other folders StoreBuild takes empty ones only.
+/// asked to replace it would lose what it knows. Of other folders StoreTransaction takes empty ones only.
 void require_no_store(const std::filesystem::path& folder);
 
 /// Teaches objects from their meshes. Says on standard error what is done, and at the end which objects can hardly be
@@ -22,7 +22,7 @@ void list_store(const std::filesystem::path& folder);
 
 /// Learns scores and qualities of a store's objects anew: of all, or of those of the `names`. Throws InputError for a
 /// name that is not there.
-void practise_store(const std::filesystem::path& folder, const PracticeSettings& settings,
+void practise_store(const std::filesystem::path& folder, const CalibrationSettings& settings,
                     const std::vector<std::string>& names = {});
 
 /// Takes an object out of the store. Throws InputError where it is not there, or the only one.

@@ -15,14 +15,14 @@ namespace houghstream::teach {
 
 /// In which tone objects are looked for that hs-teach has taught. Real cameras' tones are more various than rendered
 /// rooms': some two fifths of these are as bright as this, nine in ten no more contrasty.
-constexpr ToneRange kPractisedTone{100.0F, 130.0F, 50.0F};
+constexpr BrightnessRange kCalibrationBrightness{100.0F, 130.0F, 50.0F};
 
 /// What hs-teach mesh is asked for.
 struct TeachOptions {
   MeshSources meshes;
   std::vector<TaughtMesh> shown;        ///< beside those: checked as they are (mesh_checks.hpp)
   std::vector<TrainingView> own_views;  ///< of a camera, by class_name, beside the rendered ones; in the mesh's frame
-  RoomSettings rooms;
+  BackgroundSettings rooms;
   std::filesystem::path out;                   ///< the store
   std::string attitudes = "resting";           ///< see world::parse_mesh_attitudes
   bool add = false;                            ///< to the store that is there
@@ -30,7 +30,7 @@ struct TeachOptions {
   std::filesystem::path dump_views;            ///< BOP training folder to write the views to as well; empty = none
   world::MeshViewSettings views;               ///< attitudes and colour are those of the object
   Profile profile = make_profile("realtime");  ///< with `add` its training only, the rest is the forest's
-  PracticeSettings practice;                   ///< seed and threads are those below
+  CalibrationSettings practice;                   ///< seed and threads are those below
   std::uint64_t seed = 1;
   int threads = 2;
 };

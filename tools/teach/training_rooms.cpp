@@ -34,7 +34,7 @@ void remove_leftovers(const fs::path& cache, const std::string& prefix) {
 }
 
 /// The folder of the rendered rooms; renders them beside it first where it is missing, so that it is always whole.
-fs::path rendered_rooms(const RoomSettings& settings) {
+fs::path render_backgrounds(const BackgroundSettings& settings) {
   const fs::path cache = settings.cache.empty() ? cache_folder("--cache FOLDER") : settings.cache;
   fs::path rooms = cache / fmt::format("rooms-{}-{}", kRoomsVersion, settings.count);
   if (fs::exists(rooms / "scene_gt_info.json")) return rooms;
@@ -62,9 +62,9 @@ fs::path rendered_rooms(const RoomSettings& settings) {
 
 }  // namespace
 
-std::vector<TrainingView> read_rooms(const RoomSettings& settings) {
+std::vector<TrainingView> read_backgrounds(const BackgroundSettings& settings) {
   TrainingSources sources;
-  sources.backgrounds = {"bop:" + rendered_rooms(settings).string()};
+  sources.backgrounds = {"bop:" + render_backgrounds(settings).string()};
   sources.backgrounds.insert(sources.backgrounds.end(), settings.further.begin(), settings.further.end());
   sources.camera = settings.camera;
   return read_training_sources(sources, settings.threads);

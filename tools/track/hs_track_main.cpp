@@ -30,18 +30,18 @@ struct TrackOptions {
 
 /// Says what the cameras say of one another. Throws InputError where they contradict each other.
 void report(const tracks::ExtrinsicCheck& check) {
-  const std::vector<tracks::Contradiction> pairs = check.pairs();
+  const std::vector<tracks::ExtrinsicInconsistency> pairs = check.pairs();
   require(!pairs.empty(), "no two cameras have seen the same objects at the same time often enough to compare them");
-  for (const tracks::Contradiction& pair : pairs) {
+  for (const tracks::ExtrinsicInconsistency& pair : pairs) {
     const Eigen::Vector3d mm = 1000.0 * pair.offset_m;
     fmt::print("{} and {}: objects {:.1f} mm apart ({:+.1f}, {:+.1f}, {:+.1f} along the world's axes), {} compared\n",
                pair.first, pair.second, mm.norm(), mm.x(), mm.y(), mm.z(), pair.samples);
   }
-  const std::vector<tracks::Contradiction> wrong = check.contradictions();
+  const std::vector<tracks::ExtrinsicInconsistency> wrong = check.contradictions();
   if (wrong.empty()) return;
   fail("{} and {} see the same objects {:.1f} cm apart, expected at most {:.1f} cm: one of their places is wrong",
        wrong.front().first, wrong.front().second, 100.0 * wrong.front().offset_m.norm(),
-       100.0 * tracks::ExtrinsicCheck::kToldM);
+       100.0 * tracks::ExtrinsicCheck::kReport_m);
 }
 
 void run(LcmBus& bus, const TrackOptions& options, const track::CurrentModels& models) {
@@ -59,7 +59,7 @@ void run_with_models(const TrackOptions& options) {
 
 /// A store may change while frames go by.
 void run_with_store(TrackOptions options) {
-  store::StoreWatch<tracks::TrackModels> watch(options.objects, [](const store::ObjectStore& store) {
+  store::StoreWatcher<tracks::TrackModels> watch(options.objects, [](const store::ObjectStore& store) {
     return std::make_shared<const tracks::TrackModels>(track::stored_track_models(store));
   });
   const auto none = std::make_shared<const tracks::TrackModels>();
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
       require_other_file(options.output_log, input);
     if (options.drake_viewer)
       options.process.output.drake_meshes = cache_folder("one of them for the meshes of --drake-viewer") / "meshes";
-    if (!options.cameras_file.empty()) options.process.places = tracks::read_camera_places(options.cameras_file);
+    if (!options.cameras_file.empty()) options.process.places = tracks::read_camera_extrinsics(options.cameras_file);
     for (const std::string& text : options.camera_poses) tracks::add_camera_place(text, options.process.places);
     options.objects.empty() ? run_with_models(options) : run_with_store(options);
   });

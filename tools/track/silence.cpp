@@ -12,7 +12,7 @@
 
 namespace houghstream::track {
 
-void Silence::hear(const Arrival& arrival) {
+void HeartbeatMonitor::hear(const ReceivedMessage& arrival) {
   try {
     const auto status = decode_message<status_t>(arrival.bytes);
     if (status.process != "hs-detect" && status.process != "hs-pose") return;
@@ -23,7 +23,7 @@ void Silence::hear(const Arrival& arrival) {
   }
 }
 
-std::vector<std::string> Silence::fallen_silent(std::int64_t now_us) {
+std::vector<std::string> HeartbeatMonitor::pop_timed_out(std::int64_t now_us) {
   constexpr std::int64_t kSilentUs = 3000000;
   const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<std::string> out;
@@ -35,8 +35,8 @@ std::vector<std::string> Silence::fallen_silent(std::int64_t now_us) {
   return out;
 }
 
-void Silence::tell(std::int64_t now_us) {
-  for (const std::string& name : fallen_silent(now_us)) {
+void HeartbeatMonitor::tell(std::int64_t now_us) {
+  for (const std::string& name : pop_timed_out(now_us)) {
     const std::string line = name + " has fallen silent: what it alone finds is not seen any more";
     const auto admitted = lines_.admit(name, line, std::chrono::steady_clock::now());
     if (admitted) log_warning("{}", *admitted);

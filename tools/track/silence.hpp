@@ -19,14 +19,14 @@ inline std::int64_t steady_us(std::chrono::steady_clock::time_point moment) {
 }
 
 /// Processes that find objects, and those of them that have fallen silent. May be used from any thread.
-class Silence {
+class HeartbeatMonitor {
  public:
   /// Takes note of a process' status. What is no status is somebody else's.
-  void hear(const Arrival& arrival);
+  void hear(const ReceivedMessage& arrival);
 
   /// Names of those that have been silent for too long since they were asked for last; each is told once. `now_us` as
   /// steady_us() has it.
-  std::vector<std::string> fallen_silent(std::int64_t now_us);
+  std::vector<std::string> pop_timed_out(std::int64_t now_us);
 
   /// Logs those.
   void tell(std::int64_t now_us);
@@ -36,7 +36,7 @@ class Silence {
 
   std::mutex mutex_;
   std::map<std::string, std::int64_t> last_;
-  LimitedLines lines_;
+  LogThrottle lines_;
 };
 
 }  // namespace houghstream::track

@@ -34,9 +34,9 @@ ByteView view(const std::vector<std::uint8_t>& bytes) {
 
 /// Poses with their frame, which wait until it is known where the camera was.
 struct Waiting {
-  PairedMessages messages;
+  SynchronisedMessages messages;
   std::int64_t since_us = 0;  ///< on the clock of now_us()
-  ByteCount::Held held;       ///< of the frame
+  ByteBudget::Held held;       ///< of the frame
 };
 
 class TrackProcess {
@@ -56,16 +56,16 @@ class TrackProcess {
   }
 
   tracks::ExtrinsicCheck run() {
-    status_.tell_objects(options_.objects);
-    bus_.subscribe_to_frames(options_.frame_channels, [this](const Arrival& arrival) { receive_frame(arrival); });
-    bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) { receive_detections(arrival); });
-    bus_.subscribe(channel::kPoses, [this](const Arrival& arrival) { receive_poses(arrival); });
-    bus_.subscribe(".*_TO_WORLD", [this](const Arrival& arrival) { receive_transform(arrival); });
+    status_.set_known_objects(options_.objects);
+    bus_.subscribe_to_frames(options_.frame_channels, [this](const ReceivedMessage& arrival) { receive_frame(arrival); });
+    bus_.subscribe(channel::kDetections, [this](const ReceivedMessage& arrival) { receive_detections(arrival); });
+    bus_.subscribe(channel::kPoses, [this](const ReceivedMessage& arrival) { receive_poses(arrival); });
+    bus_.subscribe(".*_TO_WORLD", [this](const ReceivedMessage& arrival) { receive_transform(arrival); });
     // Its own last status may come when it has ended itself.
-    bus_.subscribe(channel::kStatus, [silence = silence_](const Arrival& arrival) { silence->hear(arrival); });
+    bus_.subscribe(channel::kStatus, [silence = silence_](const ReceivedMessage& arrival) { silence->hear(arrival); });
     log_info("ready: frames from {}, poses from {} at {}", options_.frame_channels, channel::kPoses, bus_.url());
     run_process_loop(bus_, status_, [this](milliseconds timeout) { return step(timeout); });
-    inbox_.give_up_waiting();
+    inbox_.flush();
     count_dropped();
     for (const Waiting& waiting : waiting_) refuse(waiting.messages.id, "the stream has ended");
     require(!bus_.is_log() || poses_ > 0,
@@ -84,14 +84,14 @@ class TrackProcess {
   /// A clock that nobody sets: of a log, the sum of the steps from event to event that lead forward.
   std::int64_t now_us() const { return bus_.is_log() ? log_us_ : steady_us(std::chrono::steady_clock::now()); }
 
-  void note_event(const Arrival& arrival) {
+  void note_event(const ReceivedMessage& arrival) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (event_us_ && arrival.event_us > *event_us_)
       log_us_ = shifted(log_us_, microseconds_between(*event_us_, arrival.event_us));
     event_us_ = arrival.event_us;
   }
 
-  void receive_frame(const Arrival& arrival) {
+  void receive_frame(const ReceivedMessage& arrival) {
     if (!channels_.is_name() && !is_frame_message(arrival.bytes)) return;
     note_event(arrival);
     try {
@@ -107,10 +107,10 @@ class TrackProcess {
     }
   }
 
-  void receive_detections(const Arrival& arrival) {
+  void receive_detections(const ReceivedMessage& arrival) {
     note_event(arrival);
     try {
-      PairInbox::require_size(arrival.bytes.size);
+      FrameSynchroniser::require_size(arrival.bytes.size);
       Detections detections = detections_from_message(decode_message<detections_t>(arrival.bytes));
       if (!channels_.matches(detections.frame.channel)) return;
       detections_.add(std::move(detections));
@@ -119,14 +119,14 @@ class TrackProcess {
     }
   }
 
-  void receive_poses(const Arrival& arrival) {
+  void receive_poses(const ReceivedMessage& arrival) {
     note_event(arrival);
     try {
-      PairInbox::require_size(arrival.bytes.size);
+      FrameSynchroniser::require_size(arrival.bytes.size);
       check_wire(arrival.bytes, object_poses_t::getHash(), object_poses_t::getTypeName());
       const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
       if (!channels_.matches(frame.channel)) return;
-      inbox_.put_detections(frame, copy(arrival.bytes));
+      inbox_.add_detections(frame, copy(arrival.bytes));
       status_.count_received();
       ++poses_;
     } catch (const InputError& error) {
@@ -135,7 +135,7 @@ class TrackProcess {
     }
   }
 
-  void receive_transform(const Arrival& arrival) {
+  void receive_transform(const ReceivedMessage& arrival) {
     constexpr std::size_t kSuffix = 9;  // of "_TO_WORLD"
     note_event(arrival);
     try {
@@ -150,13 +150,13 @@ class TrackProcess {
 
   bool step(milliseconds timeout) {
     constexpr milliseconds kPatience(3);  // how long the end of a frame's waiting may go unnoticed
-    std::optional<PairedMessages> pair = inbox_.take(waiting_.empty() ? timeout : std::min(timeout, kPatience));
+    std::optional<SynchronisedMessages> pair = inbox_.take(waiting_.empty() ? timeout : std::min(timeout, kPatience));
     if (pair) keep_waiting(*std::move(pair));
     count_dropped();
     if (!bus_.is_log()) silence_->tell(now_us());
     bool worked = false;
     for (auto it = waiting_.begin(); it != waiting_.end();) {
-      const tracks::CameraPlace place = world_.place_of(it->messages.id, is_patient(*it));
+      const tracks::CameraPose place = world_.place_of(it->messages.id, is_patient(*it));
       if (!place.T_world_camera && place.may_come) {
         ++it;
         continue;
@@ -167,7 +167,7 @@ class TrackProcess {
       if (!place.T_world_camera) {
         refuse(now.messages.id, place.reason);
       } else {
-        if (world_.take_begun()) tracker_.begin_world();
+        if (world_.consume_reset()) tracker_.begin_world();
         work_on(now, *place.T_world_camera);
       }
     }
@@ -176,11 +176,11 @@ class TrackProcess {
   }
 
   /// A copy of its frame goes with each pose, and poses may be sent without end.
-  void keep_waiting(PairedMessages messages) {
+  void keep_waiting(SynchronisedMessages messages) {
     constexpr std::size_t kMost = 1024;
-    ByteCount::Held held = waiting_bytes_.hold(messages.frame->size());
+    ByteBudget::Held held = waiting_bytes_.hold(messages.frame->size());
     waiting_.push_back({std::move(messages), now_us(), std::move(held)});
-    while (waiting_.size() > 1 && (waiting_.size() > kMost || waiting_bytes_.total() > PairInbox::kHistoryBytes)) {
+    while (waiting_.size() > 1 && (waiting_.size() > kMost || waiting_bytes_.total() > FrameSynchroniser::kHistoryBytes)) {
       refuse(waiting_.front().messages.id, "too many wait for the transforms of their cameras");
       waiting_.pop_front();
     }
@@ -233,7 +233,7 @@ class TrackProcess {
     if (tracker_.refused() > 0)
       status_.note_bad_message(fmt::format("frame {}: no room for {} objects more, expected at most {} in all",
                                            to_string(poses.frame), tracker_.refused(),
-                                           tracks::TrackerSettings().most_objects));
+                                           tracks::ObjectTrackerSettings().most_objects));
     objects->world = world_.name();
     objects->stages.insert(objects->stages.end(), clock.times().begin(), clock.times().end());
     output_.publish(*objects);
@@ -251,21 +251,21 @@ class TrackProcess {
   }
 
   void count_dropped() {
-    const PairInbox::Dropped dropped = inbox_.take_dropped();
+    const FrameSynchroniser::Dropped dropped = inbox_.take_dropped();
     status_.count_skipped(dropped.skipped);
     without_frame_ += static_cast<std::int64_t>(dropped.without_frame.size());
     for (const FrameId& frame : dropped.without_frame) refuse(frame, "the frame itself has not come");
   }
 
   void tell_contradictions() {
-    for (const tracks::Contradiction& pair : check_.contradictions()) {
+    for (const tracks::ExtrinsicInconsistency& pair : check_.contradictions()) {
       const std::string line =
           fmt::format("{} sees objects {:.1f} cm from where {} sees them: one of their places is wrong", pair.second,
                       100.0 * pair.offset_m.norm(), pair.first);
       const auto admitted = lines_.admit(pair.first + pair.second, line, std::chrono::steady_clock::now());
       if (!admitted || bus_.is_log()) continue;
       log_warning("{}", *admitted);
-      status_.remember_error(line);
+      status_.set_last_error(line);
     }
   }
 
@@ -274,15 +274,15 @@ class TrackProcess {
   const CurrentModels& models_;
   ChannelPattern channels_;
   StatusReporter status_;
-  PairInbox inbox_;  // of poses and their frames
+  FrameSynchroniser inbox_;  // of poses and their frames
   std::shared_ptr<const tracks::TrackModels> used_models_;
   tracks::Tracker tracker_;
   WorldOutput output_;
-  WorldFrame world_;
+  WorldReference world_;
   tracks::ExtrinsicCheck check_;
-  LimitedLines lines_;  // of contradictions
-  std::shared_ptr<Silence> silence_ = std::make_shared<Silence>();
-  ByteCount waiting_bytes_;  // of the frames of those that wait
+  LogThrottle lines_;  // of contradictions
+  std::shared_ptr<HeartbeatMonitor> silence_ = std::make_shared<HeartbeatMonitor>();
+  ByteBudget waiting_bytes_;  // of the frames of those that wait
   std::deque<Waiting> waiting_;
   std::int64_t without_frame_ = 0;  // poses
   RecentDetections detections_;

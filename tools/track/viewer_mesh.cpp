@@ -83,7 +83,7 @@ std::string file_name(const std::string& name, std::uint64_t number) {
 
 void write_new_file(const fs::path& file, const std::string& text) {
   std::error_code error;
-  if (!fs::exists(file, error)) write_whole_file(file, text);
+  if (!fs::exists(file, error)) write_file_atomically(file, text);
 }
 
 }  // namespace

@@ -7,18 +7,18 @@
 
 namespace houghstream::track {
 
-WorldFrame::WorldFrame(const std::map<std::string, Eigen::Isometry3d>& fixed) {
+WorldReference::WorldReference(const std::map<std::string, Eigen::Isometry3d>& fixed) {
   for (const auto& [camera, T_world_camera] : fixed) places_.fix(channel::camera_name(camera), T_world_camera);
 }
 
-void WorldFrame::add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera) {
+void WorldReference::add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera) {
   const std::lock_guard<std::mutex> lock(mutex_);
   places_.add(camera, utime, T_world_camera);
 }
 
-tracks::CameraPlace WorldFrame::place_of(const FrameId& frame, bool patient) {
+tracks::CameraPose WorldReference::place_of(const FrameId& frame, bool patient) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  tracks::CameraPlace place = places_.at(channel::camera_name(frame.channel), frame.utime);
+  tracks::CameraPose place = places_.at(channel::camera_name(frame.channel), frame.utime);
   place.may_come = place.may_come && patient && (alone_.empty() || places_.any());
   if (place.T_world_camera || place.may_come) return begin("WORLD", place);
   if (places_.any()) return place;
@@ -32,7 +32,7 @@ tracks::CameraPlace WorldFrame::place_of(const FrameId& frame, bool patient) {
   return begin(frame.channel, {Eigen::Isometry3d::Identity(), false, ""});
 }
 
-tracks::CameraPlace WorldFrame::begin(const std::string& world, const tracks::CameraPlace& place) {
+tracks::CameraPose WorldReference::begin(const std::string& world, const tracks::CameraPose& place) {
   if (!place.T_world_camera || name_ == world) return place;
   if (!name_.empty()) {
     log_warning("the world is {} from here on, no longer {}: a new one begins", world, name_);

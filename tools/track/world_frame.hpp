@@ -15,32 +15,32 @@ namespace houghstream::track {
 /// The frame that objects are given in, and where cameras are in it: the world, or, as long as the place of no camera
 /// is known, the frame of the one camera. Transforms may be added from any thread; all else is for the thread that
 /// works on the frames.
-class WorldFrame {
+class WorldReference {
  public:
   /// `fixed`: cameras that stand still, T_world_camera by the channels of their frames.
-  explicit WorldFrame(const std::map<std::string, Eigen::Isometry3d>& fixed);
+  explicit WorldReference(const std::map<std::string, Eigen::Isometry3d>& fixed);
 
-  /// A transform of a camera that moves, as CameraPlaces::add() takes it. Throws InputError for one camera too many.
+  /// A transform of a camera that moves, as CameraExtrinsics::add() takes it. Throws InputError for one camera too many.
   void add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera);
 
   /// Where the frame's camera was; `may_come` only while it is worth waiting, for the `patient`. Where the place is
   /// one in another world than the last, that begins.
-  tracks::CameraPlace place_of(const FrameId& frame, bool patient);
+  tracks::CameraPose place_of(const FrameId& frame, bool patient);
 
   /// "WORLD", or the channel of the camera whose frame it is; empty until a place was known.
   const std::string& name() const { return name_; }
 
   /// Whether a world has begun after another one since the last call: nothing seen before has a place in it.
-  bool take_begun() { return std::exchange(begun_, false); }
+  bool consume_reset() { return std::exchange(begun_, false); }
 
  private:
-  tracks::CameraPlace begin(const std::string& world, const tracks::CameraPlace& place);
+  tracks::CameraPose begin(const std::string& world, const tracks::CameraPose& place);
 
   std::string name_;
   std::string alone_;  // the camera whose frame is the world, where no place is known
   bool begun_ = false;
   std::mutex mutex_;  // of what follows
-  tracks::CameraPlaces places_;
+  tracks::CameraExtrinsics places_;
 };
 
 }  // namespace houghstream::track

@@ -82,7 +82,7 @@ Profile overridden(const TrainProgram& program, const Overrides& overrides) {
   take(overrides.alone_share, training.alone_share);
   take(overrides.shape_alone_share, training.shape_alone_share);
   take(overrides.patches, training.patches_per_view);
-  take(overrides.patches, training.patches_per_room);
+  take(overrides.patches, training.patches_per_background);
   take(overrides.composites, training.composites_per_view);
   take(overrides.min_distance, training.min_distance);
   take(overrides.max_distance, training.max_distance);

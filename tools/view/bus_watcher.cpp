@@ -47,7 +47,7 @@ void BusWatcher::stop() {
 
 void BusWatcher::subscribe_to_frames(const std::string& frame_channels) {
   const bool is_pattern = !ChannelPattern(frame_channels).is_name();
-  bus_.subscribe_to_frames(frame_channels, [this, is_pattern](const Arrival& arrival) {
+  bus_.subscribe_to_frames(frame_channels, [this, is_pattern](const ReceivedMessage& arrival) {
     if (is_pattern && !is_frame_message(arrival.bytes)) return;
     try {
       take_frame(arrival);
@@ -58,7 +58,7 @@ void BusWatcher::subscribe_to_frames(const std::string& frame_channels) {
   });
 }
 
-void BusWatcher::take_frame(const Arrival& arrival) {
+void BusWatcher::take_frame(const ReceivedMessage& arrival) {
   const FrameHeader header = read_frame_header(arrival.bytes);
   const FrameNumber number{header.sequence, header.utime, header.run};
   if (status_.note_number(number, arrival.channel) == FrameOrder::kDuplicate) return;
@@ -74,7 +74,7 @@ void BusWatcher::take_frame(const Arrival& arrival) {
 }
 
 LcmBus::Handler BusWatcher::counting_bad(LcmBus::Handler handler) {
-  return [this, handler = std::move(handler)](const Arrival& arrival) {
+  return [this, handler = std::move(handler)](const ReceivedMessage& arrival) {
     try {
       handler(arrival);
     } catch (const InputError& error) {
@@ -84,15 +84,15 @@ LcmBus::Handler BusWatcher::counting_bad(LcmBus::Handler handler) {
 }
 
 void BusWatcher::subscribe_to_results() {
-  bus_.subscribe(channel::kDetections, counting_bad([this](const Arrival& arrival) {
-                   PairInbox::require_size(arrival.bytes.size);
+  bus_.subscribe(channel::kDetections, counting_bad([this](const ReceivedMessage& arrival) {
+                   FrameSynchroniser::require_size(arrival.bytes.size);
                    Detections detections =
                        detections_from_message(decode_message<houghstream::detections_t>(arrival.bytes));
                    if (!cameras_.is_shown(detections.frame.channel)) return;
                    matcher_.add_detections(std::move(detections), microseconds(arrival.time), arrival.bytes.size);
                  }));
-  bus_.subscribe(channel::kPoses, counting_bad([this](const Arrival& arrival) {
-                   PairInbox::require_size(arrival.bytes.size);
+  bus_.subscribe(channel::kPoses, counting_bad([this](const ReceivedMessage& arrival) {
+                   FrameSynchroniser::require_size(arrival.bytes.size);
                    ObjectPoses poses = poses_from_message(decode_message<houghstream::object_poses_t>(arrival.bytes));
                    if (!cameras_.is_shown(poses.frame.channel)) return;
                    matcher_.add_poses(std::move(poses), microseconds(arrival.time), arrival.bytes.size);
@@ -100,7 +100,7 @@ void BusWatcher::subscribe_to_results() {
 }
 
 void BusWatcher::subscribe_to_status() {
-  bus_.subscribe(channel::kStatus, counting_bad([this](const Arrival& arrival) {
+  bus_.subscribe(channel::kStatus, counting_bad([this](const ReceivedMessage& arrival) {
                    const auto message = decode_message<houghstream::status_t>(arrival.bytes);
                    stream_.note_process({message.process, message.pid, message.rate_hz, message.frames_skipped,
                                          message.frames_lost, message.frames_refused, microseconds(arrival.time)});
@@ -108,14 +108,14 @@ void BusWatcher::subscribe_to_status() {
 }
 
 void BusWatcher::subscribe_to_teaching() {
-  bus_.subscribe(channel::kTeaching, counting_bad([this](const Arrival& arrival) {
+  bus_.subscribe(channel::kTeaching, counting_bad([this](const ReceivedMessage& arrival) {
                    Teaching teaching = teaching_from_message(decode_message<houghstream::teaching_t>(arrival.bytes));
                    stream_.note_teaching(std::move(teaching), microseconds(arrival.time));
                  }));
 }
 
 void BusWatcher::subscribe_to_world() {
-  bus_.subscribe(channel::kObjects, counting_bad([this](const Arrival& arrival) {
+  bus_.subscribe(channel::kObjects, counting_bad([this](const ReceivedMessage& arrival) {
                    stream_.note_world(world_from_message(decode_message<houghstream::objects_t>(arrival.bytes)),
                                       microseconds(arrival.time));
                  }));
@@ -152,7 +152,7 @@ void BusWatcher::hand_over() {
 
 void BusWatcher::listen() {
   constexpr std::chrono::milliseconds kPatience(50);
-  LimitedLines complaints;
+  LogThrottle complaints;
   while (!stopping_) {
     try {
       bus_.handle(kPatience);

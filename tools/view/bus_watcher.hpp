@@ -37,7 +37,7 @@ class BusWatcher {
   void note_trouble(const std::string& reason) { status_.note_bad_message(reason); }
 
   /// Which camera is shown; frames of the others are skipped.
-  ShownCamera& cameras() { return cameras_; }
+  SelectedCamera& cameras() { return cameras_; }
 
   /// Rates of the camera that is shown, and what the processes say.
   StreamState stream_state();
@@ -59,17 +59,17 @@ class BusWatcher {
   void subscribe_to_teaching();
   void subscribe_to_world();
   LcmBus::Handler counting_bad(LcmBus::Handler handler);
-  void take_frame(const Arrival& arrival);
+  void take_frame(const ReceivedMessage& arrival);
   void listen();
   void hand_over();
 
   LcmBus& bus_;
   StatusReporter status_{"hs-view"};
-  ShownCamera cameras_;
+  SelectedCamera cameras_;
   FrameMatcher matcher_;
   std::int64_t passed_over_told_ = 0;  // of the matcher's frames, in the status
   StreamWatch stream_;
-  MatchQueue queue_;
+  MatchedFrameQueue queue_;
   std::atomic<bool> stopping_{false};
   std::thread thread_;
 };

@@ -75,7 +75,7 @@ bool FrameMatcher::ready(const MatchedFrame& frame, std::int64_t now_us) const {
   if (frame.results.followed()) return true;
   const std::vector<FrameResult>& results = frame.results.results();
   const bool all_heard = frame.detections_heard >= detectors_.of(frame.id.channel);
-  if (all_heard && frame.results.all_posed()) return true;
+  if (all_heard && frame.results.has_all_poses()) return true;
   if (now_us - frame.arrival_us < settings_.wait_us) return false;
   const bool posed =
       std::any_of(results.begin(), results.end(), [](const FrameResult& r) { return r.poses.has_value(); });

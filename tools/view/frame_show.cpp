@@ -33,7 +33,7 @@ ViewedFrame decode(const MatchedFrame& matched, const std::optional<Camera>& cam
   return viewed;
 }
 
-std::shared_ptr<const ClassModels> load_models(const ShowSettings& settings) {
+std::shared_ptr<const ClassModels> load_models(const FrameRendererSettings& settings) {
   require(settings.models.empty() || settings.objects.empty(), "expected either --objects STORE or --models FOLDER");
   ClassModels models;
   if (!settings.models.empty()) models = load_class_models(settings.models, settings.model_unit_m);
@@ -42,7 +42,7 @@ std::shared_ptr<const ClassModels> load_models(const ShowSettings& settings) {
 
 }  // namespace
 
-FrameShow::FrameShow(const ShowSettings& settings, const std::string& lcm_url)
+FrameRenderer::FrameRenderer(const FrameRendererSettings& settings, const std::string& lcm_url)
     : window_(settings.headless() ? nullptr : std::make_unique<ViewWindow>()),
       models_(load_models(settings)),
       page_(settings.http.empty() ? nullptr : std::make_unique<LivePage>(settings.http, settings.http_hosts)),
@@ -53,7 +53,7 @@ FrameShow::FrameShow(const ShowSettings& settings, const std::string& lcm_url)
       preview_(settings.preview) {
   picture_settings_.show_keys = window_ != nullptr;
   if (settings.objects.empty()) return;
-  store_ = std::make_unique<store::StoreWatch<ClassModels>>(settings.objects, [](const store::ObjectStore& store) {
+  store_ = std::make_unique<store::StoreWatcher<ClassModels>>(settings.objects, [](const store::ObjectStore& store) {
     return std::make_shared<const ClassModels>(store::load_store_meshes(store));
   });
   store_->follow();
@@ -63,7 +63,7 @@ FrameShow::FrameShow(const ShowSettings& settings, const std::string& lcm_url)
   order_.lcm_url = lcm_url;
 }
 
-void FrameShow::show(const MatchedFrame& matched, BusWatcher& watcher) {
+void FrameRenderer::show(const MatchedFrame& matched, BusWatcher& watcher) {
   const bool unseen = page_alone_ && !page_->is_looked_at();
   if (unseen || picture_settings_.paused || !watcher.cameras().is_shown(matched.id.channel)) {
     watcher.note_skipped();
@@ -81,7 +81,7 @@ void FrameShow::show(const MatchedFrame& matched, BusWatcher& watcher) {
   }
 }
 
-bool FrameShow::handle_keys(BusWatcher& watcher) {
+bool FrameRenderer::handle_keys(BusWatcher& watcher) {
   if (page_) serve_page(watcher);
   if (!window_) return true;
   const KeyAction action = window_->handle_keys(picture_settings_);
@@ -92,14 +92,14 @@ bool FrameShow::handle_keys(BusWatcher& watcher) {
   return action != KeyAction::kEnd;
 }
 
-void FrameShow::look_at_stream(BusWatcher& watcher) {
+void FrameRenderer::look_at_stream(BusWatcher& watcher) {
   stream_.state = watcher.stream_state();
   stream_.frames_lost = watcher.frames_lost();
   stream_.cameras = watcher.cameras().heard();
 }
 
-void FrameShow::serve_page(BusWatcher& watcher) {
-  const PageOrders orders = page_->take_orders();
+void FrameRenderer::serve_page(BusWatcher& watcher) {
+  const PageCommands orders = page_->take_orders();
   if (orders.next_camera) watcher.cameras().next();
   picture_settings_.paused = orders.paused.value_or(picture_settings_.paused);
   picture_settings_.min_score = orders.min_score.value_or(picture_settings_.min_score);
@@ -113,12 +113,12 @@ void FrameShow::serve_page(BusWatcher& watcher) {
   }
 }
 
-std::shared_ptr<const ClassModels> FrameShow::models() const {
+std::shared_ptr<const ClassModels> FrameRenderer::models() const {
   const std::shared_ptr<const ClassModels> of_store = store_ ? store_->current() : nullptr;
   return of_store ? of_store : models_;
 }
 
-void FrameShow::teach() {
+void FrameRenderer::teach() {
   if (!store_) log_warning("key t teaches into an object store, expected --objects STORE");
   if (!store_ || !viewed_) return;
   std::vector<std::string> known;
@@ -136,7 +136,7 @@ void FrameShow::teach() {
   starter_.press(order_);
 }
 
-std::optional<cv::Mat> FrameShow::drawn(const MatchedFrame& matched, BusWatcher& watcher) {
+std::optional<cv::Mat> FrameRenderer::drawn(const MatchedFrame& matched, BusWatcher& watcher) {
   try {
     ViewedFrame viewed = decode(matched, camera_, *models());
     remember(viewed);
@@ -152,11 +152,11 @@ std::optional<cv::Mat> FrameShow::drawn(const MatchedFrame& matched, BusWatcher&
   }
 }
 
-cv::Mat FrameShow::draw(const ViewedFrame& viewed) const {
+cv::Mat FrameRenderer::draw(const ViewedFrame& viewed) const {
   return draw_frame_view(viewed, *models(), picture_settings_, stream_);
 }
 
-void FrameShow::remember(const ViewedFrame& viewed) {
+void FrameRenderer::remember(const ViewedFrame& viewed) {
   constexpr std::size_t kFrames = 200;
   if (viewed.poses) {
     stream_.history.push_back({viewed.poses->stages, viewed.pose_latency_ms});

@@ -15,7 +15,7 @@
 namespace houghstream::view {
 
 /// What is drawn of each frame, and where to.
-struct ShowSettings {
+struct FrameRendererSettings {
   std::optional<Camera> camera;  ///< of frames that carry none of their own
   std::string models;            ///< folder of models for outlines; "" = none
   double model_unit_m = 1e-3;    ///< unit of the models' coordinates
@@ -35,12 +35,12 @@ struct ShowSettings {
 };
 
 /// Draws frames to a window or to files, keeps the one that is shown, and how the stream went until it.
-class FrameShow {
+class FrameRenderer {
  public:
   /// A key of the window teaches objects of the stream at `lcm_url` ("" = LCM's default) to the store, if there is one.
   /// Throws InputError where there are no models, a store and a folder of models, no display, no folder to write
   /// to, or no address to serve at.
-  explicit FrameShow(const ShowSettings& settings, const std::string& lcm_url = "");
+  explicit FrameRenderer(const FrameRendererSettings& settings, const std::string& lcm_url = "");
 
   /// Shows a frame, unless paused, another camera is shown by now, or there is a page that nobody looks at. One that
   /// cannot be understood is reported to `watcher` and passed over. Throws InputError where a file cannot be written.
@@ -65,7 +65,7 @@ class FrameShow {
 
   std::unique_ptr<ViewWindow> window_;  // first: it forks, which a process does before it has threads
   std::shared_ptr<const ClassModels> models_;
-  std::unique_ptr<store::StoreWatch<ClassModels>> store_;
+  std::unique_ptr<store::StoreWatcher<ClassModels>> store_;
   std::unique_ptr<LivePage> page_;
   bool page_alone_;  // nobody but the page wants pictures
   ViewOutputs outputs_;

@@ -13,10 +13,10 @@
 namespace houghstream::view {
 
 /// Hands matched frames from the thread that receives to the one that draws. When it is full the oldest are dropped.
-class MatchQueue {
+class MatchedFrameQueue {
  public:
   /// `capacity` frames, and fewer where they and their results have more than so many bytes.
-  MatchQueue(std::size_t capacity, std::size_t most_bytes) : capacity_(capacity), most_bytes_(most_bytes) {}
+  MatchedFrameQueue(std::size_t capacity, std::size_t most_bytes) : capacity_(capacity), most_bytes_(most_bytes) {}
 
   /// How many older ones had to be dropped.
   std::int64_t push(MatchedFrame frame) {

@@ -56,7 +56,7 @@ void TeachingStarter::press(const TeachingOrder& order) {
 
 bool TeachingStarter::runs() {
   if (!child_) return false;
-  const std::optional<stream::Ending> ending = child_->ending();
+  const std::optional<stream::ExitStatus> ending = child_->ending();
   if (!ending) return true;
   if (!ending->success) log_warning("hs-teach {}", ending->words);
   child_.reset();

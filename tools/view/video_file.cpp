@@ -104,7 +104,7 @@ void VideoFile::add(const cv::Mat& picture, std::int64_t slot) {
 
 // The frames are in a format that needs no end; the one that was asked for is made of it, and takes its place.
 void VideoFile::complete() {
-  std::optional<WholeFile> remuxed;
+  std::optional<AtomicFile> remuxed;
   if (needs_end(file_)) {
     remuxed.emplace(whole_->partial(), lower_extension(file_));
     remux_video(whole_->partial(), remuxed->partial(), rate_hz_);

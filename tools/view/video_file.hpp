@@ -24,7 +24,7 @@ class VideoFile {
   /// (the camera's mode has changed) is fitted into it. Throws InputError when the file cannot be written.
   void add(const cv::Mat& picture, std::int64_t slot);
 
-  /// Ends the video, which is in its place from here on, and not before (WholeFile), and logs how long that took.
+  /// Ends the video, which is in its place from here on, and not before (AtomicFile), and logs how long that took.
   /// Throws InputError where it does not hold all that was added, as on a full disk; what was in its place stays, and
   /// so does what could be written of it, under the name that the error says.
   void finish();
@@ -38,7 +38,7 @@ class VideoFile {
 
   std::filesystem::path file_;
   Existing existing_;
-  std::optional<WholeFile> whole_;
+  std::optional<AtomicFile> whole_;
   double rate_hz_;
   cv::VideoWriter writer_;
   cv::Size size_;

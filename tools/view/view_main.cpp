@@ -8,7 +8,7 @@
 namespace {
 
 void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSettings& settings, std::string& camera) {
-  houghstream::view::ShowSettings& show = settings.show;
+  houghstream::view::FrameRendererSettings& show = settings.show;
   houghstream::view::OutputSettings& outputs = show.outputs;
   houghstream::add_frame_channels_option(app, settings.frame_channels);
   app.add_option("--camera", camera, houghstream::kCameraOptionHelp);

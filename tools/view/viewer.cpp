@@ -26,7 +26,7 @@ void step_back() {
 }
 
 // For files there is time after the stream: frames may wait. In a window and on a page only the newest matters.
-std::size_t waiting_frames(const ShowSettings& settings) {
+std::size_t waiting_frames(const FrameRendererSettings& settings) {
   constexpr std::size_t kForFiles = 50;
   return settings.writes() ? kForFiles : 1;
 }
@@ -34,7 +34,7 @@ std::size_t waiting_frames(const ShowSettings& settings) {
 }  // namespace
 
 void run_viewer(const ViewerSettings& settings) {
-  FrameShow frame_show(settings.show, settings.lcm_url);
+  FrameRenderer frame_show(settings.show, settings.lcm_url);
   catch_stop_signals();
   MatchSettings match;
   match.rate_hz = settings.show.outputs.rate_hz;

@@ -12,7 +12,7 @@ struct ViewerSettings {
   std::string lcm_url;                           ///< "" = LCM's default
   std::string frame_channels = channel::kFrame;  ///< a ChannelPattern; of several cameras one is shown at a time
   double duration = 0.0;                         ///< seconds; 0 = until asked to end
-  ShowSettings show;
+  FrameRendererSettings show;
 };
 
 /// Shows the stream until a stop signal, the end of the duration, the closing of the window, or until the snapshot is

@@ -222,7 +222,7 @@ bool counts_light(const ColourVariation& camera) {
 
 }  // namespace
 
-void apply_colour(const CameraVariation& camera, cv::Mat& colour, Random& random) {
+void apply_colour(const CameraRandomisation& camera, cv::Mat& colour, Random& random) {
   const ColourVariation& made = camera.colour;
   blur(made, colour);
   if (counts_light(made)) {

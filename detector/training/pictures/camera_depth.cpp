@@ -286,7 +286,7 @@ bool needs_edges(const DepthVariation& camera) {
 
 }  // namespace
 
-void apply_depth(const CameraVariation& camera, const Camera& view, cv::Mat& depth, Random& random,
+void apply_depth(const CameraRandomisation& camera, const Camera& view, cv::Mat& depth, Random& random,
                  const cv::Mat& colour) {
   const DepthVariation& made = camera.depth;
   const Surfaces surfaces = find_surfaces(depth, colour, view.fx);

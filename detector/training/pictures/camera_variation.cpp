@@ -86,27 +86,27 @@ DepthVariation draw_depth(Draw draw) {
 
 }  // namespace
 
-CameraVariation draw_camera(double strength, Random& random) {
+CameraRandomisation draw_camera(double strength, Random& random) {
   if (strength <= 0.0) return {};
   const Draw draw(strength, random);
-  CameraVariation camera;
+  CameraRandomisation camera;
   camera.colour = draw_colour(draw);
   camera.depth = draw_depth(draw);
   return camera;
 }
 
-void look_through_another(double share, double strength, RgbdFrame& frame, Random& random) {
+void randomise_camera(double share, double strength, RgbdFrame& frame, Random& random) {
   if (share <= 0.0 || strength <= 0.0 || random.uniform() >= share) return;
   const double own = random.uniform();  // most cameras differ little
-  const CameraVariation camera = draw_camera(strength * own, random);
+  const CameraRandomisation camera = draw_camera(strength * own, random);
   apply_depth(camera, frame.camera, frame.depth, random, frame.colour);
   apply_colour(camera, frame.colour, random);
 }
 
-void vary_tone(double share, double strength, cv::Mat& colour, Random& random) {
+void jitter_tone(double share, double strength, cv::Mat& colour, Random& random) {
   if (share <= 0.0 || strength <= 0.0 || random.uniform() >= share) return;
   Draw draw(strength * random.uniform(), random);
-  CameraVariation camera;
+  CameraRandomisation camera;
   camera.colour.gamma = draw.factor(-0.4, 0.4);
   camera.colour.contrast = draw.part(-0.35, 0.7);
   camera.colour.black = draw.part(-0.06, 0.14);

@@ -82,28 +82,28 @@ struct DepthVariation {
   double least_signal = 0.0;                         ///< reflectance * cosine / z^2, m^-2: less gets no depth
 };
 
-struct CameraVariation {
+struct CameraRandomisation {
   ColourVariation colour;
   DepthVariation depth;
 };
 
 /// A camera. `strength` 0 = one that changes nothing, 1 = as widely as real ones differ; more is allowed.
-CameraVariation draw_camera(double strength, Random& random);
+CameraRandomisation draw_camera(double strength, Random& random);
 
 /// Another camera looks, in a share of all pictures: one that differs by anything up to `strength`.
-void look_through_another(double share, double strength, RgbdFrame& frame, Random& random);
+void randomise_camera(double share, double strength, RgbdFrame& frame, Random& random);
 
 /// What the camera makes of a picture, in place: CV_8UC3 BGR. Random gives the noise.
-void apply_colour(const CameraVariation& camera, cv::Mat& colour, Random& random);
+void apply_colour(const CameraRandomisation& camera, cv::Mat& colour, Random& random);
 
 /// The same for depth: CV_32FC1, metres, NaN = none; `view` is the picture's camera. `colour` (CV_8UC3 BGR, as it was
 /// before apply_colour()) says what is dark; without one, all is of middle grey. Holes stay holes.
-void apply_depth(const CameraVariation& camera, const Camera& view, cv::Mat& depth, Random& random,
+void apply_depth(const CameraRandomisation& camera, const Camera& view, cv::Mat& depth, Random& random,
                  const cv::Mat& colour = cv::Mat());
 
 /// Of the colours of a camera alone what it does to coded values: gamma, contrast, levels, saturation, hue. More widely
 /// than draw_camera(): what trees have learnt from may be stranger than what scores are learnt from, which would only
 /// trust colours less.
-void vary_tone(double share, double strength, cv::Mat& colour, Random& random);
+void jitter_tone(double share, double strength, cv::Mat& colour, Random& random);
 
 }  // namespace houghstream::training

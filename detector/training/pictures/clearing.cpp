@@ -20,7 +20,7 @@ double quantile(const std::array<int, 256>& counts, int rank) {
 
 }  // namespace
 
-void clear_haze(const cv::Mat& mask, cv::Mat& colour, Random& random) {
+void remove_haze(const cv::Mat& mask, cv::Mat& colour, Random& random) {
   constexpr double kMostHaze = 60.0;  // grey levels; more is the object's own brightness
   constexpr int kBrightest = 245;
   std::array<int, 256> darkest{};

@@ -8,7 +8,7 @@ namespace houghstream::training {
 
 /// An object taught in haze or in weak light as it may look without: the darkest of it becomes darker, all of it
 /// brighter and its colours stronger, by random shares of what its own range allows.
-void clear_haze(const cv::Mat& mask, cv::Mat& colour, Random& random);
+void remove_haze(const cv::Mat& mask, cv::Mat& colour, Random& random);
 
 /// An object taught out of focus, or through a lens that blurs, as a sharper camera may see it: what a Gaussian of 1.5
 /// pixels takes from the picture (CV_8UC3) is added `sharpness` times. 0: the picture itself, its pixels shared.

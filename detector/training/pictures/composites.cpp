@@ -118,8 +118,8 @@ DepthChange depth_change(const TrainingView& view, double distance, const Compos
   change.shift = static_cast<float>(distance - centre.z());
   change.centre_px = out.origin_px + out.scale * cv::Point2d(view_px.x(), view_px.y());
   const cv::Point2d& px = change.centre_px;
-  const ReliefTilt there = relief_tilt(out.frame.camera.backproject(px.x, px.y, distance).cast<float>());
-  const ReliefTilt own = relief_tilt(centre.cast<float>());
+  const OffAxisSlope there = off_axis_slope(out.frame.camera.backproject(px.x, px.y, distance).cast<float>());
+  const OffAxisSlope own = off_axis_slope(centre.cast<float>());
   change.tilt = out.frame.camera.metres_per_px(distance) * cv::Point2d(there.right - own.right, there.down - own.down);
   const double extra_sq = std::pow(axial_noise(distance), 2) - std::pow(axial_noise(centre.z()), 2);
   change.extra_sigma = std::sqrt(std::max(0.0, extra_sq));
@@ -168,7 +168,7 @@ double axial_noise(double z) {
   return 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
 }
 
-void vary_light(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random) {
+void jitter_lighting(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random) {
   if (strength == 0.0) return;
   const double gain = std::exp2(strength * random.uniform(darkest_stops, brightest_stops));
   const double gamma = std::exp2(strength * random.uniform(-0.25, 0.25));
@@ -193,8 +193,8 @@ void vary_light(cv::Mat& colour, double strength, double darkest_stops, double b
   }
 }
 
-void vary_exposure(cv::Mat& colour, double strength, Random& random) {
-  vary_light(colour, strength, -1.4, 0.7, random);
+void jitter_exposure(cv::Mat& colour, double strength, Random& random) {
+  jitter_lighting(colour, strength, -1.4, 0.7, random);
 }
 
 std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
@@ -219,13 +219,13 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
       cv::Point2d(kMargin - part.box_px.x * out.scale + half_px, kMargin - part.box_px.y * out.scale + half_px);
 
   Patchwork lit = part;
-  if (random.uniform() < settings.cleared_share) clear_haze(lit.mask, lit.colour, random);
-  vary_light(lit.colour, settings.light_variation, -0.4, 0.4, random);
+  if (random.uniform() < settings.dehazed_fraction) remove_haze(lit.mask, lit.colour, random);
+  jitter_lighting(lit.colour, settings.light_variation, -0.4, 0.4, random);
   out.depth_change = depth_change(view, distance, out);
   paste(lit, cv::Point(kMargin, kMargin), out, random);
   out.whole_px = cv::countNonZero(out.mask);
   if (random.uniform() < settings.occluded_share) add_occluder(background, distance, out, random);
-  vary_exposure(out.frame.colour, settings.light_variation, random);
+  jitter_exposure(out.frame.colour, settings.light_variation, random);
   return out;
 }
 

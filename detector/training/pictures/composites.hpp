@@ -8,7 +8,7 @@
 
 namespace houghstream::training {
 
-/// What a view's depth becomes at another place: at another distance, and beside the axis (ReliefTilt).
+/// What a view's depth becomes at another place: at another distance, and beside the axis (OffAxisSlope).
 struct DepthChange {
   float shift = 0.0F;      ///< metres, at the object's centre
   cv::Point2d tilt;        ///< metres per pixel of the composite right and down from there
@@ -42,10 +42,10 @@ double axial_noise(double z);
 
 /// Changes a picture's light in place: gain between two limits in stops (powers of two), contrast, colour cast, haze,
 /// noise.
-void vary_light(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random);
+void jitter_lighting(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random);
 
 /// The same with the limits of a camera's exposure: dim rooms are commoner than overexposed ones.
-void vary_exposure(cv::Mat& colour, double strength, Random& random);
+void jitter_exposure(cv::Mat& colour, double strength, Random& random);
 
 /// Puts something in front of the composite's object: a patch of the room, nearer than the object, of random shape
 /// and place, that hides between a tenth and four fifths of it, with the infrared shadow that a structured-light

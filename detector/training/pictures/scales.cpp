@@ -54,7 +54,7 @@ Eigen::Vector3f DepthNormalisedScales::centre_offset(const TrainingView& view, c
   return ray_rotation(surface.cast<float>()).transpose() * offset.cast<float>();
 }
 
-std::vector<Candidate> DepthNormalisedScales::search(const Search& search, const RgbdFrame& frame,
+std::vector<Candidate> DepthNormalisedScales::search(const SearchContext& search, const RgbdFrame& frame,
                                                      DetectorWorkspace& workspace) const {
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);

@@ -62,7 +62,7 @@ class Scales {
   virtual Eigen::Vector3f centre_offset(const TrainingView& view, const ShownPoint& point) const = 0;
 
   /// What the forest offers in a frame, by the stages of a search up to the evidence.
-  virtual std::vector<Candidate> search(const Search& search, const RgbdFrame& frame,
+  virtual std::vector<Candidate> search(const SearchContext& search, const RgbdFrame& frame,
                                         DetectorWorkspace& workspace) const = 0;
 };
 
@@ -86,7 +86,7 @@ class DepthNormalisedScales : public Scales {
   std::int32_t scale_of_patch(const PatchSettings& patch, const Camera& camera, float depth) const override;
   /// In the ray frame of the pixel that shows the point.
   Eigen::Vector3f centre_offset(const TrainingView& view, const ShownPoint& point) const override;
-  std::vector<Candidate> search(const Search& search, const RgbdFrame& frame,
+  std::vector<Candidate> search(const SearchContext& search, const RgbdFrame& frame,
                                 DetectorWorkspace& workspace) const override;
 };
 

@@ -133,7 +133,7 @@ TrainingView resurfaced(const TrainingView& view, double strength, Random& rando
   return out;
 }
 
-void lose_near_depth(double limit, double kept, cv::Mat& depth, Random& random) {
+void drop_near_depth(double limit, double kept, cv::Mat& depth, Random& random) {
   const cv::Mat noise = smooth_noise(depth.size(), random);
   const cv::Mat near = depth < limit;  // false for NaN
   std::vector<float> values;

@@ -31,7 +31,7 @@ void resurface(const cv::Mat& mask, double strength, Random& random, cv::Mat& co
 /// What a structured-light camera makes of what stands too near: its own pattern dazzles it. Surfaces nearer than
 /// `limit` metres keep their depth in patches only, of random size and together a share of `kept`, 0 to 1. `depth` is
 /// CV_32FC1, metres, NaN = none.
-void lose_near_depth(double limit, double kept, cv::Mat& depth, Random& random);
+void drop_near_depth(double limit, double kept, cv::Mat& depth, Random& random);
 
 /// A scale space shows an object `ratio` times as far away as taught in an enlarged image: its size is the same then,
 /// but not the sensor's noise, which is that of the larger distance and as much coarser. Adds what is missing of it to

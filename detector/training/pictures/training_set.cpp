@@ -124,7 +124,7 @@ cv::Rect background_window(const RgbdFrame& background, const FeatureLevel& leve
 
 }  // namespace
 
-TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& background, const PictureInput& input,
+TrainingPicture object_picture(const LabelledView& taught, const RgbdFrame& background, const PictureInput& input,
                                Random& random, PictureWorkspace& own) {
   const TrainingView& view = taught.view;
   const PictureSettings& settings = input.settings;
@@ -137,7 +137,7 @@ TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& backgr
   }
   if (!composite) return picture;
 
-  vary_tone(settings.tone_share, settings.camera_variation, composite->frame.colour, random);
+  jitter_tone(settings.tone_jitter_fraction, settings.camera_variation, composite->frame.colour, random);
   input.scales.vary_depth(distance, input.features, composite->frame.depth, random);
   const FeatureLevel level = input.scales.level_for(distance, composite->frame.camera, input.features, random);
   const Canvas canvas = make_canvas(*composite, level, input);
@@ -176,13 +176,13 @@ TrainingPicture background_picture(const RgbdFrame& background, const FeatureLev
   part.colour = background.colour(place).clone();
   part.depth = background.depth(place);
   part.camera = background.camera.cropped(place.x, place.y, place.width, place.height);
-  vary_exposure(part.colour, settings.light_variation, random);
-  vary_tone(settings.tone_share, settings.camera_variation, part.colour, random);
+  jitter_exposure(part.colour, settings.light_variation, random);
+  jitter_tone(settings.tone_jitter_fraction, settings.camera_variation, part.colour, random);
 
   const WorkingFrame frame = input.scales.working_frame(part, level, input.features);
   TrainingPicture picture;
   const auto known = [&](int x, int y) { return input.scales.teaches(level, frame.filled_depth.at<float>(y, x)); };
-  const auto count = static_cast<std::size_t>(settings.patches_per_room / kBackgroundPictures);
+  const auto count = static_cast<std::size_t>(settings.patches_per_background / kBackgroundPictures);
   const int drawn = static_cast<int>(count) * (1 + settings.spare_background);
   for (const cv::Point at : draw_pixels(frame.colour.size(), drawn, random, known)) {
     auto& list = picture.samples.size() < count ? picture.samples : picture.spare_background;
@@ -195,19 +195,19 @@ TrainingPicture background_picture(const RgbdFrame& background, const FeatureLev
 namespace {
 
 /// What the pose process and the boxes need to remember of a view.
-TrainedView trained_view(const TrainingView& view, std::uint32_t class_index, const Scales& scales) {
+ViewTemplate trained_view(const TrainingView& view, std::uint32_t class_index, const Scales& scales) {
   const Eigen::Vector3d centre = view.T_camera_object.translation();
   const Eigen::Matrix3f R_camera_object = view.T_camera_object.rotation().cast<float>();
   const Eigen::Vector2d centre_px = view.frame.camera.project(centre);
   const cv::Rect box = cv::boundingRect(view.mask);
   const auto metres = static_cast<float>(view.frame.camera.metres_per_px(scales.counted_distance(centre.z())));
-  TrainedView out;
+  ViewTemplate out;
   out.class_index = class_index;
   out.R_ray_object = Eigen::Quaternionf(ray_rotation(centre.cast<float>()).transpose() * R_camera_object).normalized();
   const auto side = [&](int px, double origin_px) { return static_cast<float>(px - 0.5 - origin_px) * metres; };
   out.box = {side(box.x, centre_px.x()), side(box.y, centre_px.y()), side(box.br().x, centre_px.x()),
              side(box.br().y, centre_px.y())};
-  out.appearance = remember_appearance(view.frame, view.mask, box, centre.cast<float>());
+  out.appearance = make_template_grid(view.frame, view.mask, box, centre.cast<float>());
   return out;
 }
 

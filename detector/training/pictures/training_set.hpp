@@ -36,7 +36,7 @@ struct TrainingSet {
   std::vector<TrainingSample> samples;           ///< grouped by picture
   std::vector<TrainingSample> spare_background;  ///< more background patches, from which the hard ones are chosen
   std::vector<ObjectClass> classes;              ///< by class id
-  std::vector<TrainedView> views;
+  std::vector<ViewTemplate> views;
   std::uint16_t first_class = 0;  ///< classes and views that the forest has already
   std::uint32_t first_view = 0;
   std::vector<float> visible_areas;  ///< per class: mean over its pictures, square metres
@@ -66,7 +66,7 @@ struct TrainingPicture {
 };
 
 /// A view that objects are taught by.
-struct TaughtView {
+struct LabelledView {
   const TrainingView& view;
   int label = 0;            ///< class index + 1
   std::uint32_t index = 0;  ///< into TrainingSet::views
@@ -81,7 +81,7 @@ struct PictureWorkspace {
 };
 
 /// An object put into a background: patches on it and some beside it. Empty where the background is too small.
-TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& background, const PictureInput& input,
+TrainingPicture object_picture(const LabelledView& taught, const RgbdFrame& background, const PictureInput& input,
                                Random& random, PictureWorkspace& own);
 
 constexpr int kBackgroundPictures = 4;  ///< per background frame, spread over the levels

@@ -190,8 +190,8 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   const auto unseen = [](const ValidationFrame::Object& object) { return object.box_visible_px.empty(); };
   out.objects.erase(std::remove_if(out.objects.begin(), out.objects.end(), unseen), out.objects.end());
   misregister(settings.depth_error, out.frame.depth, random);
-  vary_exposure(out.frame.colour, kOtherLight * settings.light_variation, random);
-  look_through_another(settings.camera_share, settings.camera_variation, out.frame, random);
+  jitter_exposure(out.frame.colour, kOtherLight * settings.light_variation, random);
+  randomise_camera(settings.camera_share, settings.camera_variation, out.frame, random);
   return out;
 }
 

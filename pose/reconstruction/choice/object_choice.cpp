@@ -171,7 +171,7 @@ cv::Mat skin_pixels(const cv::Mat& colour) {
   return skin;
 }
 
-Choice choose_object(const RgbdFrame& frame, const ChoiceSettings& settings) {
+Choice select_object(const RgbdFrame& frame, const ChoiceSettings& settings) {
   const cv::Rect whole({0, 0}, frame.depth.size());
   if (settings.box_px && (*settings.box_px & whole) != *settings.box_px)
     return {{}, fmt::format("the box lies not within the picture, which has {}x{} pixels", whole.width, whole.height)};

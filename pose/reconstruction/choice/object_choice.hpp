@@ -48,7 +48,7 @@ std::optional<cv::Rect> seen_box(const Eigen::AlignedBox3d& box, const Camera& c
 
 /// What stands on the dominant plane nearest to the image's middle or to a place there, or in the box: points above the
 /// plane that hang together. Planes are tried in their order until one carries something.
-Choice choose_object(const RgbdFrame& frame, const ChoiceSettings& settings);
+Choice select_object(const RgbdFrame& frame, const ChoiceSettings& settings);
 
 /// In words, so that a person sees what is meant: where it is in the picture, and how large.
 std::string describe_choice(const ChosenObject& object);

@@ -71,7 +71,7 @@ Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAx
   Clusters clusters;
   clusters.list.resize(static_cast<std::size_t>(cv::connectedComponents(joined, labels, 8, CV_32S)));
   clusters.of_pixel = cv::Mat::zeros(frame.depth.size(), CV_32SC1);
-  const cv::Point2d& meant = searched.meant_px;
+  const cv::Point2d& meant = searched.target_px;
   for (int y = 0; y < cells.rows; ++y) {
     for (int x = 0; x < cells.cols; ++x) {
       const auto& cell = cells.at<cv::Vec2i>(y, x);

@@ -42,7 +42,7 @@ struct Clusters {
 /// What of a picture is looked at.
 struct SearchedPart {
   cv::Rect region_px;       ///< within the picture
-  cv::Point2d meant_px;     ///< the place that is meant
+  cv::Point2d target_px;     ///< the place that is meant
   double farthest_m = 0.0;  ///< from the camera
 };
 

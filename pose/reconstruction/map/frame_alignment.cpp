@@ -100,7 +100,7 @@ class Look {
       row << -point.normal.cast<double>(), -point.point.cross(point.normal).cast<double>();
       sums.add(row, residual, weight * std::min(1.0F, 2.0F * facing) / (sigma * sigma));
     }
-    if (limits_.use_light) add_light(point, p, px, sums);
+    if (limits_.use_photometric) add_light(point, p, px, sums);
   }
 
  private:
@@ -109,7 +109,7 @@ class Look {
     if (stays || !std::isfinite(point.light)) return;
     const Light seen = light_between(frame_.light, px.x(), px.y());
     const double residual = seen.value - point.light;
-    const double weight = tukey(residual / (2.0 * limits_.light_sigma));
+    const double weight = tukey(residual / (2.0 * limits_.photometric_sigma));
     ++sums.lights;
     sums.light_sq += std::min(residual * residual, 1.0);
     if (weight <= 0.0) return;
@@ -123,7 +123,7 @@ class Look {
     // Faint slopes are shade and shine, which do not move with the surface.
     const double slope_sq = seen.slope_u * seen.slope_u + seen.slope_v * seen.slope_v;
     const double edge = slope_sq / (slope_sq + kShade * kShade);
-    sums.add(row, residual, edge * weight / (limits_.light_sigma * limits_.light_sigma * (1.0 + far * far)));
+    sums.add(row, residual, edge * weight / (limits_.photometric_sigma * limits_.photometric_sigma * (1.0 + far * far)));
   }
 
   const FrameLevel& frame_;
@@ -133,7 +133,7 @@ class Look {
   const AlignmentLimits& limits_;
 };
 
-void add_plane(const PlaneKnown& plane, const Eigen::Isometry3d& T, Sums& sums) {
+void add_plane(const PlanePrior& plane, const Eigen::Isometry3d& T, Sums& sums) {
   const Eigen::Vector3d up = T.linear().transpose() * plane.normal;  // should be z
   const double turn = 1.0 / (plane.sigma_rad * plane.sigma_rad);
   Vector6 row = Vector6::Zero();
@@ -148,12 +148,12 @@ void add_plane(const PlaneKnown& plane, const Eigen::Isometry3d& T, Sums& sums) 
 }
 
 /// bearing_error() of a corner whose point lies at p, which is before the camera.
-double bearing_error_at(const Eigen::Vector3d& p, const SeenCorner& corner) {
+double bearing_error_at(const Eigen::Vector3d& p, const LandmarkObservation& corner) {
   return (p.head<2>() / p.z() - corner.in_camera.head<2>() / corner.in_camera.z()).norm();
 }
 
 /// A corner's bearing hardly depends on its depth, so what is far away says which way the camera looks.
-void add_corner(const SeenCorner& corner, const Eigen::Isometry3d& T, Sums& sums) {
+void add_corner(const LandmarkObservation& corner, const Eigen::Isometry3d& T, Sums& sums) {
   constexpr double kSigma = 0.003;  // of a bearing: one to two pixels
   const Eigen::Vector3d p = T * corner.in_world;
   if (!(p.z() > 0.1)) return;
@@ -179,13 +179,13 @@ Sums look(const std::vector<SurfacePoint>& points, const FrameLevel& frame, cons
 
 }  // namespace
 
-double bearing_error(const SeenCorner& corner, const Eigen::Isometry3d& T_camera_world) {
+double bearing_error(const LandmarkObservation& corner, const Eigen::Isometry3d& T_camera_world) {
   const Eigen::Vector3d p = T_camera_world * corner.in_world;
   return p.z() > 0.0 ? bearing_error_at(p, corner) : std::numeric_limits<double>::infinity();
 }
 
 Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
-                      const Holds& holds, const AlignmentLimits& limits) {
+                      const PoseConstraints& holds, const AlignmentLimits& limits) {
   constexpr int kFewest = 40;
   Alignment out;
   out.T_camera_world = T_camera_world;
@@ -196,7 +196,7 @@ Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const
       sums = look(points[l], frame.levels[l], out.T_camera_world, level, limits);
       if (sums.pairs < kFewest) break;
       if (holds.plane) add_plane(*holds.plane, out.T_camera_world, sums);
-      for (const SeenCorner& corner : holds.corners) add_corner(corner, out.T_camera_world, sums);
+      for (const LandmarkObservation& corner : holds.corners) add_corner(corner, out.T_camera_world, sums);
       if (i == limits.iterations) break;
       Matrix6 damped = sums.squares;
       damped.diagonal() += Vector6::Constant(1.0) + 1e-6 * sums.squares.diagonal();
@@ -210,9 +210,9 @@ Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const
   out.information = sums.squares;
   out.pairs = sums.pairs;
   out.inlier_share = sums.seen > 0 ? static_cast<double>(sums.pairs) / sums.seen : 0.0;
-  out.seen_share = all > 0.0 ? sums.seen / all : 0.0;
-  out.depth_rms_m = sums.pairs > 0 ? std::sqrt(sums.depth_sq / sums.pairs) : 0.0;
-  out.light_rms = sums.lights > 0 ? std::sqrt(sums.light_sq / sums.lights) : 0.0;
+  out.visible_point_fraction = all > 0.0 ? sums.seen / all : 0.0;
+  out.geometric_rms_m = sums.pairs > 0 ? std::sqrt(sums.depth_sq / sums.pairs) : 0.0;
+  out.photometric_rms = sums.lights > 0 ? std::sqrt(sums.light_sq / sums.lights) : 0.0;
   return out;
 }
 

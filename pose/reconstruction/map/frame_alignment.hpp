@@ -11,7 +11,7 @@ namespace houghstream::reconstruction {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// The table, where it is known to the camera: its height and slope hold three of six degrees of freedom.
-struct PlaneKnown {
+struct PlanePrior {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< camera frame, unit length, upwards
   double offset = 0.0;                                ///< normal.X + offset = 0 on the table
   double sigma_m = 0.0005;                            ///< of the height of the world's origin above it
@@ -19,25 +19,25 @@ struct PlaneKnown {
 };
 
 /// A corner that has been recognised.
-struct SeenCorner {
+struct LandmarkObservation {
   Eigen::Vector3d in_world = Eigen::Vector3d::Zero();   ///< metres
   Eigen::Vector3d in_camera = Eigen::Vector3d::Zero();  ///< where the frame shows it, metres; its bearing counts
 };
 
 /// What holds a frame besides surface and light.
-struct Holds {
-  std::optional<PlaneKnown> plane;
-  std::vector<SeenCorner> corners;
+struct PoseConstraints {
+  std::optional<PlanePrior> plane;
+  std::vector<LandmarkObservation> corners;
 };
 
 struct AlignmentLimits {
   int iterations = 7;         ///< on each level, at most
   int coarsest = 2;           ///< level to begin on
   int finest = 0;             ///< level to end on
-  double light_sigma = 0.35;  ///< of FrameLevel::light
+  double photometric_sigma = 0.35;  ///< of FrameLevel::light
   double gate_m = 0.014;      ///< on the finest level; what is farther apart is no pair. Twice that on the next
   double enough_m = 1e-4;     ///< a step that moves nothing farther ends a level
-  bool use_light = true;
+  bool use_photometric = true;
 };
 
 /// A frame laid on surface points, and what speaks for it.
@@ -46,9 +46,9 @@ struct Alignment {
   Matrix6 information = Matrix6::Zero();  ///< of a twist for retract_about_body(), at the end
   int pairs = 0;                          ///< points with a measured partner
   double inlier_share = 0.0;              ///< of the points in the image that nothing hides: those with a partner
-  double seen_share = 0.0;                ///< of all points: those in the image, not hidden, with depth
-  double depth_rms_m = 0.0;               ///< of the pairs, along normals
-  double light_rms = 0.0;                 ///< of the pairs, robust
+  double visible_point_fraction = 0.0;                ///< of all points: those in the image, not hidden, with depth
+  double geometric_rms_m = 0.0;               ///< of the pairs, along normals
+  double photometric_rms = 0.0;                 ///< of the pairs, robust
 };
 
 /// Lays a frame on points of surface: distances along the points' normals (Chen & Medioni 1992), partners found by
@@ -56,7 +56,7 @@ struct Alignment {
 /// odometry from dense RGB-D images", ICCVW 2011), and bearings of corners are lowered together by Gauss-Newton under
 /// Tukey's weights, from coarse to fine. `points` lie in the world frame, as many levels as the frame's. Thread-safe.
 Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
-                      const Holds& holds, const AlignmentLimits& limits);
+                      const PoseConstraints& holds, const AlignmentLimits& limits);
 
 /// The statistics of a frame at a pose that is left as it is, on one level.
 Alignment compare_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
@@ -64,6 +64,6 @@ Alignment compare_frame(const LevelPoints& points, const FrameLevels& frame, con
 
 /// Radians by which a frame shows a corner elsewhere than its pose says, in the pinhole's plane (tangents); infinite
 /// where the corner is not before the camera.
-double bearing_error(const SeenCorner& corner, const Eigen::Isometry3d& T_camera_world);
+double bearing_error(const LandmarkObservation& corner, const Eigen::Isometry3d& T_camera_world);
 
 }  // namespace houghstream::reconstruction

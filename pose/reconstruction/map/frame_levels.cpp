@@ -48,7 +48,7 @@ Camera half_camera(const Camera& camera) {
 }
 
 /// Less the mean, over the deviation around; noise on plain surfaces is not blown up.
-cv::Mat normalised_light(const cv::Mat& grey) {
+cv::Mat normalise_intensity(const cv::Mat& grey) {
   constexpr int kAround_px = 21;
   constexpr double kNoise = 6.0;  // grey levels
   cv::Mat values, mean, mean_sq;
@@ -177,7 +177,7 @@ FrameLevels make_levels(const RgbdFrame& frame, const LevelSettings& settings) {
       depth = half_depth(depth);
       camera = half_camera(camera);
     }
-    out.levels.push_back({camera, normalised_light(grey), depth, {}});
+    out.levels.push_back({camera, normalise_intensity(grey), depth, {}});
   }
   return out;
 }

@@ -32,7 +32,7 @@ double KeyframeMap::difference(const Eigen::Isometry3d& a, const Eigen::Isometry
 
 bool KeyframeMap::is_good(const Alignment& alignment) const {
   return alignment.pairs >= 100 && alignment.inlier_share >= settings_.least_inlier_share &&
-         alignment.seen_share >= settings_.least_seen_share && alignment.light_rms <= settings_.most_light_rms;
+         alignment.visible_point_fraction >= settings_.least_seen_share && alignment.photometric_rms <= settings_.most_light_rms;
 }
 
 int KeyframeMap::nearest(const Eigen::Isometry3d& T_camera_world) const {
@@ -107,7 +107,7 @@ std::optional<LoopGap> KeyframeMap::add(Keyframe keyframe, const Alignment& alig
   for (const int reference : local_.keyframes)
     edges_.push_back(
         edge_between(reference, last, alignment.information / static_cast<double>(local_.keyframes.size())));
-  steps_ = steps_from(last, last + 1, edges_);
+  steps_ = graph_distances(last, last + 1, edges_);
   const std::optional<LoopGap> gap = close_loop(last);
   if (gap) correct_poses();
   local_.keyframes.clear();
@@ -126,10 +126,10 @@ std::vector<SeenAgain> KeyframeMap::find_again(const std::vector<int>& keyframes
 
 /// Corners that contradict the likely pose are mistaken, wallpaper for instance, unless it may be far off and many
 /// agree.
-Alignment KeyframeMap::lay_on(const MapPart& part, const FrameLevels& levels, const std::vector<SeenAgain>& again,
-                              const Eigen::Isometry3d& T_likely, const LayLimits& limits) const {
+Alignment KeyframeMap::register_to_part(const MapPart& part, const FrameLevels& levels, const std::vector<SeenAgain>& again,
+                              const Eigen::Isometry3d& T_likely, const RegistrationLimits& limits) const {
   constexpr double kContradicts = 0.015;  // radians
-  Holds holds{settings_.plane, {}};
+  PoseConstraints holds{settings_.plane, {}};
   std::size_t most = 0;
   Eigen::Isometry3d T_by_corners = T_likely;
   for (const auto& [k, match] : again) {
@@ -140,13 +140,13 @@ Alignment KeyframeMap::lay_on(const MapPart& part, const FrameLevels& levels, co
     most = match.inliers.size();
     T_by_corners = match.T_b_a * keyframe.T_camera_world;
   }
-  const auto contradict = std::count_if(holds.corners.begin(), holds.corners.end(), [&](const SeenCorner& corner) {
+  const auto contradict = std::count_if(holds.corners.begin(), holds.corners.end(), [&](const LandmarkObservation& corner) {
     return bearing_error(corner, T_likely) > kContradicts;
   });
   AlignmentLimits alignment;
   alignment.coarsest = limits.coarsest;
-  if (!settings_.corners_hold) {
-    const Holds plane{settings_.plane, {}};
+  if (!settings_.use_landmarks) {
+    const PoseConstraints plane{settings_.plane, {}};
     Alignment found = align_frame(part.points, levels, T_likely, plane, alignment);
     if (is_good(found) || !limits.may_be_lost || most == 0) return found;
     return align_frame(part.points, levels, T_by_corners, plane, alignment);
@@ -157,10 +157,10 @@ Alignment KeyframeMap::lay_on(const MapPart& part, const FrameLevels& levels, co
   return align_frame(part.points, levels, jumps ? T_by_corners : T_likely, holds, alignment);
 }
 
-Alignment KeyframeMap::held_by_corners(const FrameLevels& levels, const Landmarks& seen, const Alignment& laid) const {
+Alignment KeyframeMap::constrain_by_landmarks(const FrameLevels& levels, const Landmarks& seen, const Alignment& laid) const {
   std::vector<SeenAgain> again;
-  if (settings_.corners_hold) again = find_again(local_.keyframes, seen);
-  const Alignment held = lay_on(local_, levels, again, laid.T_camera_world, {});
+  if (settings_.use_landmarks) again = find_again(local_.keyframes, seen);
+  const Alignment held = register_to_part(local_, levels, again, laid.T_camera_world, {});
   return is_good(held) ? held : laid;
 }
 
@@ -179,7 +179,7 @@ std::optional<LoopGap> KeyframeMap::close_loop(int last) {
   for (const auto& [d, k] : candidates) {
     const Keyframe& old = keyframes_[static_cast<std::size_t>(k)];
     const std::vector<SeenAgain> again = find_again({k}, now.landmarks);
-    const Alignment found = lay_on(part_of({k}), now.levels, again, now.T_camera_world, {settings_.coarsest, true});
+    const Alignment found = register_to_part(part_of({k}), now.levels, again, now.T_camera_world, {settings_.coarsest, true});
     const LoopGap gap = gap_between(now.T_camera_world, found.T_camera_world);
     if (!is_good(found) || gap.shift_m > kMostShift_m) continue;
     edges_.push_back({k, last, found.T_camera_world * old.T_camera_world.inverse(), found.information});
@@ -190,9 +190,9 @@ std::optional<LoopGap> KeyframeMap::close_loop(int last) {
 
 void KeyframeMap::correct_poses() {
   std::vector<Eigen::Isometry3d> poses = poses_of(keyframes_);
-  optimise_poses(edges_, poses);
+  optimise_pose_graph(edges_, poses);
   for (std::size_t k = 0; k < poses.size(); ++k) keyframes_[k].T_camera_world = poses[k];
-  steps_ = steps_from(static_cast<int>(keyframes_.size()) - 1, static_cast<int>(keyframes_.size()), edges_);
+  steps_ = graph_distances(static_cast<int>(keyframes_.size()) - 1, static_cast<int>(keyframes_.size()), edges_);
 }
 
 /// What the neighbours of a keyframe say of it. `again`: by neighbour, how its corners were found there; asked for in
@@ -213,8 +213,8 @@ std::vector<PoseEdge> KeyframeMap::edges_from(int from, int coarsest,
   for (const auto& [d, j] : near) {
     const Keyframe& to = keyframes_[static_cast<std::size_t>(j)];
     const auto [corners, is_new] = again.try_emplace(j);
-    if (is_new && settings_.corners_hold) corners->second = find_again(own.keyframes, to.landmarks);
-    const Alignment laid = lay_on(own, to.levels, corners->second, to.T_camera_world, {coarsest, false});
+    if (is_new && settings_.use_landmarks) corners->second = find_again(own.keyframes, to.landmarks);
+    const Alignment laid = register_to_part(own, to.levels, corners->second, to.T_camera_world, {coarsest, false});
     if (is_good(laid)) edges.push_back({from, j, laid.T_camera_world * one.T_camera_world.inverse(), laid.information});
   }
   return edges;
@@ -233,7 +233,7 @@ void KeyframeMap::refine(int rounds) {
     for (PoseEdge& edge : edges) edge.information *= 0.05;  // keep together what has no other tie
     for (const auto& of_one : found) edges.insert(edges.end(), of_one.begin(), of_one.end());
     std::vector<Eigen::Isometry3d> poses = poses_of(keyframes_);
-    optimise_poses(edges, poses);
+    optimise_pose_graph(edges, poses);
     for (std::size_t k = 0; k < poses.size(); ++k) keyframes_[k].T_camera_world = poses[k];
   }
   local_.keyframes.clear();

@@ -34,11 +34,11 @@ struct MapSettings {
   double least_seen_share = 0.25;
   double most_light_rms = 0.62;
   int coarsest = 2;                 ///< level on which registration begins
-  bool corners_hold = true;         ///< those of surroundings; of a thing that turns, shine has some too
+  bool use_landmarks = true;         ///< those of surroundings; of a thing that turns, shine has some too
   std::size_t fewest_corners = 12;  ///< in common with another frame, to hold a pose
   std::size_t sure_corners = 30;    ///< in common with a keyframe, to say a pose of their own
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the object, world frame
-  std::optional<PlaneKnown> plane;                   ///< where the camera stands still
+  std::optional<PlanePrior> plane;                   ///< where the camera stands still
   int threads = 1;
 };
 
@@ -55,7 +55,7 @@ struct SeenAgain {
 };
 
 /// How a frame is laid on keyframes that it is not tied to yet.
-struct LayLimits {
+struct RegistrationLimits {
   int coarsest = 0;          ///< level to begin on
   bool may_be_lost = false;  ///< the likely pose may be far off: corners may contradict it
 };
@@ -79,7 +79,7 @@ class KeyframeMap {
 
   /// How a frame lies on the keyframes of the local map, given how it lies on their surface and light: where these
   /// leave a turn open or misread it (something plain and round on a plain table), corners of the surroundings say it.
-  Alignment held_by_corners(const FrameLevels& levels, const Landmarks& seen, const Alignment& laid) const;
+  Alignment constrain_by_landmarks(const FrameLevels& levels, const Landmarks& seen, const Alignment& laid) const;
 
   /// Whether an alignment is one.
   bool is_good(const Alignment& alignment) const;
@@ -100,8 +100,8 @@ class KeyframeMap {
   std::vector<int> references_for(const Eigen::Isometry3d& T_camera_world) const;
   MapPart part_of(std::vector<int> keyframes) const;
   std::vector<SeenAgain> find_again(const std::vector<int>& keyframes, const Landmarks& seen) const;
-  Alignment lay_on(const MapPart& part, const FrameLevels& levels, const std::vector<SeenAgain>& again,
-                   const Eigen::Isometry3d& T_likely, const LayLimits& limits) const;
+  Alignment register_to_part(const MapPart& part, const FrameLevels& levels, const std::vector<SeenAgain>& again,
+                   const Eigen::Isometry3d& T_likely, const RegistrationLimits& limits) const;
   std::vector<PoseEdge> edges_from(int from, int coarsest, std::map<int, std::vector<SeenAgain>>& again) const;
   std::optional<LoopGap> close_loop(int last);
   void correct_poses();

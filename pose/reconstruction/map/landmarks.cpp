@@ -116,7 +116,7 @@ std::optional<Eigen::Vector3d> surface_at(const RgbdFrame& frame, const cv::Poin
 
 }  // namespace
 
-Landmarks find_landmarks(const RgbdFrame& frame, const cv::Mat& mask) {
+Landmarks detect_landmarks(const RgbdFrame& frame, const cv::Mat& mask) {
   constexpr int kMost = 600;
   std::vector<cv::KeyPoint> corners;
   Landmarks landmarks;
@@ -143,7 +143,7 @@ FlowFrame make_flow_frame(const RgbdFrame& frame) {
   return made;
 }
 
-std::vector<cv::Point2f> corners_to_follow(const FlowFrame& frame, const cv::Mat& mask) {
+std::vector<cv::Point2f> detect_flow_corners(const FlowFrame& frame, const cv::Mat& mask) {
   constexpr int kMost = 300;
   constexpr double kLeastQuality = 0.01;  // of the best corner's
   constexpr double kApart_px = 9.0;
@@ -152,7 +152,7 @@ std::vector<cv::Point2f> corners_to_follow(const FlowFrame& frame, const cv::Mat
   return corners;
 }
 
-std::optional<LandmarkMatch> follow_corners(const FlowFrame& a, const std::vector<cv::Point2f>& corners,
+std::optional<LandmarkMatch> track_corners(const FlowFrame& a, const std::vector<cv::Point2f>& corners,
                                             const FlowFrame& b) {
   constexpr float kReturns_px = 0.5F;
   if (corners.empty()) return std::nullopt;

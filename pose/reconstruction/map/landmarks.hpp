@@ -17,7 +17,7 @@ struct Landmarks {
 };
 
 /// ORB (Rublee, Rabaud, Konolige, Bradski 2011). `mask` (CV_8UC1 of the frame's size, or empty) says where.
-Landmarks find_landmarks(const RgbdFrame& frame, const cv::Mat& mask);
+Landmarks detect_landmarks(const RgbdFrame& frame, const cv::Mat& mask);
 
 /// How one picture's landmarks lie on another's.
 struct LandmarkMatch {
@@ -38,12 +38,12 @@ struct FlowFrame {
 
 FlowFrame make_flow_frame(const RgbdFrame& frame);
 
-/// Corners that can be followed from a frame (Shi & Tomasi 1994), pixels. `mask`: as for find_landmarks.
-std::vector<cv::Point2f> corners_to_follow(const FlowFrame& frame, const cv::Mat& mask);
+/// Corners that can be followed from a frame (Shi & Tomasi 1994), pixels. `mask`: as for detect_landmarks.
+std::vector<cv::Point2f> detect_flow_corners(const FlowFrame& frame, const cv::Mat& mask);
 
 /// Corners of one frame followed into the next, in which they are nearly where they were (Lucas & Kanade 1981), there
 /// and back.
-std::optional<LandmarkMatch> follow_corners(const FlowFrame& a, const std::vector<cv::Point2f>& corners,
+std::optional<LandmarkMatch> track_corners(const FlowFrame& a, const std::vector<cv::Point2f>& corners,
                                             const FlowFrame& b);
 
 }  // namespace houghstream::reconstruction

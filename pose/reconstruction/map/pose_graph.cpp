@@ -20,7 +20,7 @@ double trust(const Vector6& error) {
 
 }  // namespace
 
-void optimise_poses(const std::vector<PoseEdge>& edges, std::vector<Eigen::Isometry3d>& T_camera_world) {
+void optimise_pose_graph(const std::vector<PoseEdge>& edges, std::vector<Eigen::Isometry3d>& T_camera_world) {
   constexpr int kIterations = 12;
   constexpr int kPlainIterations = 4;  // first everything counts: a long loop's gap is no error of an edge
   constexpr double kEnough = 1e-6;
@@ -53,7 +53,7 @@ void optimise_poses(const std::vector<PoseEdge>& edges, std::vector<Eigen::Isome
   }
 }
 
-std::vector<int> steps_from(int start, int poses, const std::vector<PoseEdge>& edges) {
+std::vector<int> graph_distances(int start, int poses, const std::vector<PoseEdge>& edges) {
   std::vector<int> steps(static_cast<std::size_t>(poses), -1);
   std::vector<std::vector<int>> next(static_cast<std::size_t>(poses));
   for (const PoseEdge& edge : edges) {

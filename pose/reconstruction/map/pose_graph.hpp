@@ -18,9 +18,9 @@ struct PoseEdge {
 /// Corrects poses in place until the edges agree as well as they can: Gauss-Newton on a pose graph (Grisetti et al., "A
 /// tutorial on graph-based SLAM", 2010); what contradicts the others by more than some millimetres counts less. Pose 0
 /// stays. Poses that no edge ties to pose 0 stay as well.
-void optimise_poses(const std::vector<PoseEdge>& edges, std::vector<Eigen::Isometry3d>& T_camera_world);
+void optimise_pose_graph(const std::vector<PoseEdge>& edges, std::vector<Eigen::Isometry3d>& T_camera_world);
 
 /// For each pose the fewest edges that lead to it from `start`; -1 where none do.
-std::vector<int> steps_from(int start, int poses, const std::vector<PoseEdge>& edges);
+std::vector<int> graph_distances(int start, int poses, const std::vector<PoseEdge>& edges);
 
 }  // namespace houghstream::reconstruction

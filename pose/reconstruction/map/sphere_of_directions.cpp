@@ -38,7 +38,7 @@ const std::array<Eigen::Vector3d, kSphereDirections>& sphere_of_directions() {
   return directions;
 }
 
-void mark_seen(const Eigen::Vector3d& towards_camera, SeenDirections& seen) {
+void mark_covered(const Eigen::Vector3d& towards_camera, SeenDirections& seen) {
   constexpr double kCosine = 0.6428;  // of 50 degrees
   const Eigen::Vector3d unit = towards_camera.normalized();
   const auto& directions = sphere_of_directions();
@@ -49,7 +49,7 @@ int count_seen(const SeenDirections& seen) {
   return static_cast<int>(std::count(seen.begin(), seen.end(), true));
 }
 
-std::string describe_seen(const SeenDirections& seen, const Eigen::Vector3d& front) {
+std::string describe_coverage(const SeenDirections& seen, const Eigen::Vector3d& front) {
   std::string text = fmt::format("seen from {} of {} directions", count_seen(seen), kSphereDirections);
   std::vector<std::string> missing;
   const auto& directions = sphere_of_directions();

@@ -16,12 +16,12 @@ const std::array<Eigen::Vector3d, kSphereDirections>& sphere_of_directions();
 
 /// Marks those sides of the object that a camera in this direction (object frame, from the object's middle) looks at
 /// within 50 degrees.
-void mark_seen(const Eigen::Vector3d& towards_camera, SeenDirections& seen);
+void mark_covered(const Eigen::Vector3d& towards_camera, SeenDirections& seen);
 
 int count_seen(const SeenDirections& seen);
 
 /// "seen from 40 of 60 directions; from behind and from low nothing yet". In front is where the camera began, `front`
 /// in the object frame.
-std::string describe_seen(const SeenDirections& seen, const Eigen::Vector3d& front);
+std::string describe_coverage(const SeenDirections& seen, const Eigen::Vector3d& front);
 
 }  // namespace houghstream::reconstruction

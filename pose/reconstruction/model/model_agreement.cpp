@@ -15,7 +15,7 @@ namespace {
 
 /// Median distance of measured points on the mask from the model along the line of sight, times how steeply it meets
 /// the surface.
-void add_distances(const Mesh& mesh, const RgbdFrame& frame, const ShownView& view, std::vector<float>& distances) {
+void add_distances(const Mesh& mesh, const RgbdFrame& frame, const MaskedKeyframe& view, std::vector<float>& distances) {
   const cv::Rect box = cv::boundingRect(view.mask);
   if (box.empty()) return;
   const cv::Mat model = render_depth(mesh, view.T_camera_object, frame.camera, box);
@@ -41,7 +41,7 @@ double median(std::vector<float> values) {
 
 }  // namespace
 
-cv::Mat mask_of(const Mesh& mesh, const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_object) {
+cv::Mat render_visible_mask(const Mesh& mesh, const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_object) {
   const cv::Mat model =
       render_depth(mesh, T_camera_object, frame.camera, {0, 0, frame.camera.width, frame.camera.height});
   cv::Mat mask = cv::Mat::zeros(frame.depth.size(), CV_8UC1);
@@ -58,14 +58,14 @@ cv::Mat mask_of(const Mesh& mesh, const RgbdFrame& frame, const Eigen::Isometry3
   return mask;
 }
 
-double seen_through_share(const Mesh& mesh, const Take& take, const std::vector<ShownView>& views, int threads) {
+double free_space_violation(const Mesh& mesh, const Take& take, const std::vector<MaskedKeyframe>& views, int threads) {
   struct Count {
     double all = 0.0;
     double through = 0.0;
   };
   std::vector<Count> counts(views.size());
   parallel_for(threads, static_cast<int>(views.size()), [&](int i) {
-    const ShownView& view = views[static_cast<std::size_t>(i)];
+    const MaskedKeyframe& view = views[static_cast<std::size_t>(i)];
     const RgbdFrame& frame = take.keyframes[static_cast<std::size_t>(view.keyframe)].frame;
     const cv::Rect whole(0, 0, frame.camera.width, frame.camera.height);
     const cv::Mat model = render_depth(mesh, view.T_camera_object, frame.camera, whole);
@@ -97,7 +97,7 @@ double disagreement(const Mesh& mesh, const std::vector<ViewsOfTake>& of_takes, 
     std::vector<std::vector<float>> distances(of_take.views->size());
     parallel_for(threads, static_cast<int>(distances.size()), [&](int i) {
       const auto at = static_cast<std::size_t>(i);
-      const ShownView& view = (*of_take.views)[at];
+      const MaskedKeyframe& view = (*of_take.views)[at];
       const Keyframe& keyframe = of_take.take->keyframes[static_cast<std::size_t>(view.keyframe)];
       add_distances(mesh, keyframe.frame, view, distances[at]);
     });

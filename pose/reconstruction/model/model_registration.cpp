@@ -65,7 +65,7 @@ class Target {
     bool seen = false;
   };
   Hit nearest(const Eigen::Vector3f& point) const {
-    const SurfaceHit at = tree_.nearest(point);
+    const ClosestPoint at = tree_.nearest(point);
     Hit hit{Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), at.distance, true};
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = model_.mesh->triangles[at.triangle][k];
@@ -81,7 +81,7 @@ class Target {
  private:
   PartlySeen model_;
   std::vector<Eigen::Vector3f> lab_;
-  SurfaceTree tree_;
+  MeshBvh tree_;
 };
 
 Eigen::Isometry3d refine(const Target& a, const Points& b, Eigen::Isometry3d T, int iterations, double limit_m) {

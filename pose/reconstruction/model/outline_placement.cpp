@@ -81,7 +81,7 @@ double outline_overlap(const Mesh& mesh, const TrainingView& view) {
   return overlap_at(model == model, view.mask, {});
 }
 
-void place_by_outlines(const Mesh& mesh, int threads, std::vector<TrainingView>& views) {
+void align_silhouettes(const Mesh& mesh, int threads, std::vector<TrainingView>& views) {
   constexpr int kRounds = 3;
   parallel_for(threads, static_cast<int>(views.size()), [&](int i) {
     for (int round = 0; round < kRounds; ++round) place(mesh, views[static_cast<std::size_t>(i)]);

@@ -15,6 +15,6 @@ double outline_overlap(const Mesh& mesh, const TrainingView& view);
 /// surface lies at the measured depth. For views whose turn is known better than their place, such as those of a
 /// turntable whose axis is not known exactly. `mesh`: metres, object frame. Any number of threads gives the same
 /// result.
-void place_by_outlines(const Mesh& mesh, int threads, std::vector<TrainingView>& views);
+void align_silhouettes(const Mesh& mesh, int threads, std::vector<TrainingView>& views);
 
 }  // namespace houghstream::reconstruction

@@ -19,7 +19,7 @@ namespace houghstream::reconstruction {
 namespace {
 
 using fusion::DepthView;
-using fusion::DistanceGrid;
+using fusion::TsdfVolume;
 
 /// Where a box is seen, a few pixels wider; the whole picture where the camera is too near.
 cv::Rect region_of(const Eigen::AlignedBox3d& box, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
@@ -60,8 +60,8 @@ std::vector<DepthView> views_about(const Take& take, const Eigen::AlignedBox3d& 
   return views;
 }
 
-fusion::GridSettings grid_settings(double voxel, int threads) {
-  fusion::GridSettings settings;
+fusion::TsdfSettings grid_settings(double voxel, int threads) {
+  fusion::TsdfSettings settings;
   settings.voxel = voxel;
   settings.fewest_share = 0.02;
   settings.outline_weight = 0.0;  // beside a crop nothing is known
@@ -71,7 +71,7 @@ fusion::GridSettings grid_settings(double voxel, int threads) {
 
 /// The voxels of the coarse grid that the object fills, CV_8UC1 slices.
 struct Filled {
-  DistanceGrid grid;  ///< its layout
+  TsdfVolume grid;  ///< its layout
   std::vector<cv::Mat> slices;
   Eigen::AlignedBox3d box;
   bool touches_side = false;  ///< of the grid
@@ -86,7 +86,7 @@ struct Filled {
 };
 
 /// Parts that hang together of what is inside, seen, and not lower than the table's depth can reach; 0 = none.
-std::vector<int> label_parts(const DistanceGrid& grid, double lowest, int& parts) {
+std::vector<int> label_parts(const TsdfVolume& grid, double lowest, int& parts) {
   std::vector<int> labels(grid.distance.size(), 0);
   parts = 0;
   std::vector<std::size_t> open;
@@ -120,7 +120,7 @@ std::vector<int> label_parts(const DistanceGrid& grid, double lowest, int& parts
 }
 
 /// The part on which most of the chosen object's pixels lie; 0 = none.
-int chosen_part(const Take& take, const DistanceGrid& grid, const std::vector<int>& labels, int parts) {
+int chosen_part(const Take& take, const TsdfVolume& grid, const std::vector<int>& labels, int parts) {
   std::vector<int> votes(static_cast<std::size_t>(parts) + 1, 0);
   const Keyframe& first = take.keyframes.front();
   const Eigen::Isometry3d T_world_camera = first.T_camera_world.inverse();
@@ -141,15 +141,15 @@ int chosen_part(const Take& take, const DistanceGrid& grid, const std::vector<in
   return *most > 0 ? static_cast<int>(most - votes.begin()) : 0;
 }
 
-Filled fill(const Take& take, const Eigen::AlignedBox3d& box, const ModelMaking& settings) {
+Filled fill(const Take& take, const Eigen::AlignedBox3d& box, const ReconstructionSettings& settings) {
   Filled filled;
-  filled.grid = fusion::fuse_box(views_about(take, box, settings.threads), box,
+  filled.grid = fusion::integrate_box(views_about(take, box, settings.threads), box,
                                  grid_settings(settings.coarse_voxel_m, settings.threads));
   int parts = 0;
   const std::vector<int> labels = label_parts(filled.grid, box.min().z(), parts);
   const int part = chosen_part(take, filled.grid, labels, parts);
   if (part == 0) return filled;
-  const DistanceGrid& grid = filled.grid;
+  const TsdfVolume& grid = filled.grid;
   for (int k = 0; k < grid.nz; ++k) {
     cv::Mat slice = cv::Mat::zeros(grid.ny, grid.nx, CV_8UC1);
     for (int j = 0; j < grid.ny; ++j) {
@@ -166,7 +166,7 @@ Filled fill(const Take& take, const Eigen::AlignedBox3d& box, const ModelMaking&
 }
 
 /// The object's voxels in a box that holds all of it.
-Filled find_object(const Take& take, const ModelMaking& settings) {
+Filled find_object(const Take& take, const ReconstructionSettings& settings) {
   constexpr double kWidest_m = 0.45;
   double half =
       std::min(take.chosen.boxed ? 1.1 * take.chosen.radius_m + 0.01 : 1.4 * take.chosen.radius_m + 0.03, kWidest_m);
@@ -183,7 +183,7 @@ Filled find_object(const Take& take, const ModelMaking& settings) {
 }
 
 /// Grows the filled voxels by `beside_m` and fills what they enclose in each slice.
-void widen(const ModelMaking& settings, Filled& filled) {
+void widen(const ReconstructionSettings& settings, Filled& filled) {
   const int cells = static_cast<int>(std::ceil(settings.beside_m / settings.coarse_voxel_m));
   const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * cells + 1, 2 * cells + 1});
   std::vector<cv::Mat> wide(filled.slices.size());
@@ -205,7 +205,7 @@ void widen(const ModelMaking& settings, Filled& filled) {
 
 /// What is not about the object becomes outside; below the foot's height it is continued down to the table, which ends
 /// it.
-void cut_out(const Filled& filled, const ModelMaking& settings, DistanceGrid& grid) {
+void cut_out(const Filled& filled, const ReconstructionSettings& settings, TsdfVolume& grid) {
   const double truncation = 4.0 * grid.voxel;
   const int foot =
       std::clamp(static_cast<int>(std::ceil((settings.foot_m - grid.origin.z()) / grid.voxel)), 0, grid.nz - 1);
@@ -229,7 +229,7 @@ int light_of(const Take& take, int number) {
   return take.motion == Motion::kCamera ? number : -1;
 }
 
-ShownModel make_model(const Take& take, const ModelMaking& settings) {
+ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSettings& settings) {
   Filled filled = find_object(take, settings);
   Eigen::AlignedBox3d box = filled.box;
   const double voxel = box.diagonal().norm() > 0.3 ? 2.0 * settings.voxel_m : settings.voxel_m;
@@ -238,9 +238,9 @@ ShownModel make_model(const Take& take, const ModelMaking& settings) {
   box.min().z() = -0.002;
   widen(settings, filled);
   const std::vector<DepthView> views = views_about(take, box, settings.threads);
-  DistanceGrid grid = fusion::fuse_box(views, box, grid_settings(voxel, settings.threads));
+  TsdfVolume grid = fusion::integrate_box(views, box, grid_settings(voxel, settings.threads));
   cut_out(filled, settings, grid);
-  ShownModel model;
+  ReconstructedModel model;
   model.mesh = fusion::largest_part(fusion::extract_surface(grid));
   require(!model.mesh.triangles.empty(), "the views have no common surface, expected an object that all of them show");
   fusion::smooth_surface(settings.threads, model.mesh);
@@ -249,18 +249,18 @@ ShownModel make_model(const Take& take, const ModelMaking& settings) {
   model.T_world_object.translation().z() = 0.0;  // of the table
   for (Eigen::Vector3f& vertex : model.mesh.vertices) vertex -= model.T_world_object.translation().cast<float>();
   const int n = static_cast<int>(take.keyframes.size());
-  std::vector<ShownView> shown(static_cast<std::size_t>(n));
+  std::vector<MaskedKeyframe> shown(static_cast<std::size_t>(n));
   parallel_for(settings.threads, n, [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     const Keyframe& keyframe = take.keyframes[at];
     shown[at] = {i, keyframe.T_camera_world * model.T_world_object, {}};
-    shown[at].mask = mask_of(model.mesh, keyframe.frame, shown[at].T_camera_object);
+    shown[at].mask = render_visible_mask(model.mesh, keyframe.frame, shown[at].T_camera_object);
   });
-  for (ShownView& view : shown) {
+  for (MaskedKeyframe& view : shown) {
     if (cv::countNonZero(view.mask) > 0) model.views.push_back(std::move(view));
   }
   model.agreement_m = disagreement(model.mesh, {{&take, &model.views}}, settings.threads);
-  model.seen_through = seen_through_share(model.mesh, take, model.views, settings.threads);
+  model.seen_through = free_space_violation(model.mesh, take, model.views, settings.threads);
   return model;
 }
 
@@ -291,7 +291,7 @@ fusion::DepthView depth_view(const TrainingView& view, const Mesh& known, bool w
   return out;
 }
 
-void end_at_foot(double foot_m, fusion::DistanceGrid& grid) {
+void end_at_foot(double foot_m, fusion::TsdfVolume& grid) {
   const double truncation = 4.0 * grid.voxel;
   for (int k = 0; k < grid.nz; ++k) {
     const double below = (foot_m - grid.centre(0, 0, k).z()) / truncation;
@@ -306,10 +306,10 @@ void end_at_foot(double foot_m, fusion::DistanceGrid& grid) {
 
 }  // namespace
 
-std::vector<TrainingView> training_views(const Take& take, const std::vector<ShownView>& views,
+std::vector<TrainingView> training_views(const Take& take, const std::vector<MaskedKeyframe>& views,
                                          const std::string& name) {
   std::vector<TrainingView> out;
-  for (const ShownView& view : views) {
+  for (const MaskedKeyframe& view : views) {
     TrainingView made;
     made.frame = take.keyframes[static_cast<std::size_t>(view.keyframe)].frame;
     made.mask = view.mask;
@@ -365,22 +365,22 @@ void register_views(std::vector<TrainingView>& views, int threads) {
 }
 
 ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views, const Mesh& known,
-                               std::optional<double> foot_m, const ModelMaking& settings) {
+                               std::optional<double> foot_m, const ReconstructionSettings& settings) {
   std::vector<fusion::DepthView> depth_views(views.views.size());
   parallel_for(settings.threads, static_cast<int>(depth_views.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     depth_views[at] = depth_view(views.views[at], known, views.whole_pictures);
     if (!views.lights.empty()) depth_views[at].light = views.lights[at];
   });
-  fusion::GridSettings grid_settings;
+  fusion::TsdfSettings grid_settings;
   const Eigen::AlignedBox3d bounds = mesh_bounds(known).cast<double>();
   grid_settings.voxel = bounds.diagonal().norm() > 0.3 ? 2.0 * settings.voxel_m : settings.voxel_m;
   grid_settings.fewest_share = 0.02;
   grid_settings.outline_weight = 0.3;
   grid_settings.threads = settings.threads;
   const Eigen::Vector3d margin = Eigen::Vector3d::Constant(settings.beside_m);
-  fusion::DistanceGrid grid =
-      fusion::fuse_box(depth_views, Eigen::AlignedBox3d(bounds.min() - margin, bounds.max() + margin), grid_settings);
+  fusion::TsdfVolume grid =
+      fusion::integrate_box(depth_views, Eigen::AlignedBox3d(bounds.min() - margin, bounds.max() + margin), grid_settings);
   if (foot_m) end_at_foot(*foot_m, grid);
   ModelOfViews model;
   model.mesh = fusion::largest_part(fusion::extract_surface(grid));
@@ -390,13 +390,13 @@ ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views
   return model;
 }
 
-bool merge_takes(const Take& first, ShownModel& model, const Take& second, ShownModel& other,
-                 const ModelMaking& settings) {
+bool merge_takes(const Take& first, ReconstructedModel& model, const Take& second, ReconstructedModel& other,
+                 const ReconstructionSettings& settings) {
   const auto found = register_models({&model.mesh, &model.seen}, {&other.mesh, &other.seen}, false, settings.threads);
   if (!found) return false;
   const Eigen::Isometry3d T_other_model = found->T_a_b.inverse();
-  ShownModel moved = other;
-  for (ShownView& view : moved.views) view.T_camera_object = view.T_camera_object * T_other_model;
+  ReconstructedModel moved = other;
+  for (MaskedKeyframe& view : moved.views) view.T_camera_object = view.T_camera_object * T_other_model;
   moved.T_world_object = moved.T_world_object * T_other_model;
   Mesh both = model.mesh;  // its outline is that of both
   append_mesh(other.mesh, found->T_a_b, both);
@@ -406,9 +406,9 @@ bool merge_takes(const Take& first, ShownModel& model, const Take& second, Shown
   std::move(more.begin(), more.end(), std::back_inserter(views.views));
   views.lights.resize(views.views.size(), light_of(second, 1));
   ModelOfViews fused = fuse_masked_views("both takes", views, both, std::nullopt, settings);
-  moved.seen_through = std::max(seen_through_share(fused.mesh, first, model.views, settings.threads),
-                                seen_through_share(fused.mesh, second, moved.views, settings.threads));
-  if (moved.seen_through > kMostSeenThrough) return false;
+  moved.seen_through = std::max(free_space_violation(fused.mesh, first, model.views, settings.threads),
+                                free_space_violation(fused.mesh, second, moved.views, settings.threads));
+  if (moved.seen_through > kMaxFreeSpaceViolation) return false;
   model.seen_through = moved.seen_through;
   model.mesh = std::move(fused.mesh);
   model.seen = std::move(fused.seen);
@@ -417,9 +417,9 @@ bool merge_takes(const Take& first, ShownModel& model, const Take& second, Shown
   other = std::move(moved);
   for (const auto& [take, shown] : {std::pair{&first, &model}, std::pair{&second, &other}}) {
     parallel_for(settings.threads, static_cast<int>(shown->views.size()), [&, take = take, shown = shown](int i) {
-      ShownView& view = shown->views[static_cast<std::size_t>(i)];
+      MaskedKeyframe& view = shown->views[static_cast<std::size_t>(i)];
       view.mask =
-          mask_of(model.mesh, take->keyframes[static_cast<std::size_t>(view.keyframe)].frame, view.T_camera_object);
+          render_visible_mask(model.mesh, take->keyframes[static_cast<std::size_t>(view.keyframe)].frame, view.T_camera_object);
     });
   }
   model.agreement_m = disagreement(model.mesh, {{&first, &model.views}, {&second, &other.views}}, settings.threads);

@@ -11,16 +11,16 @@
 namespace houghstream::reconstruction {
 
 /// What a take says of its object.
-struct ShownModel {
+struct ReconstructedModel {
   Mesh mesh;               ///< metres; origin at the middle of its foot, z up as it stood; closed, normals, colours
   std::vector<bool> seen;  ///< per vertex: some view shows it; the others close the surface
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();  ///< world: of the take
-  std::vector<ShownView> views;                                      ///< those that show it, in the keyframes' order
+  std::vector<MaskedKeyframe> views;                                      ///< those that show it, in the keyframes' order
   double agreement_m = 0.0;   ///< see disagreement(), of all views that the model is made of
-  double seen_through = 0.0;  ///< see seen_through_share()
+  double seen_through = 0.0;  ///< see free_space_violation()
 };
 
-struct ModelMaking {
+struct ReconstructionSettings {
   double voxel_m = 0.0015;  ///< of the model; twice that for what is larger than 0.3 m
   double coarse_voxel_m = 0.004;
   double foot_m = 0.005;   ///< below that table and object are not told apart: the object is continued downwards
@@ -31,7 +31,7 @@ struct ModelMaking {
 /// Makes the model of a take's object: all that the keyframes show in its place is fused (Curless & Levoy 1996), the
 /// part that hangs together above the table where the object was chosen is kept, and the masks come of that model and
 /// of the depth, so that they hold neither table nor hand. Throws InputError where there is no such part.
-ShownModel make_model(const Take& take, const ModelMaking& settings);
+ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSettings& settings);
 
 /// DepthView::light of the take's keyframes: `number` where the camera moved and the light stood still about the
 /// object.
@@ -54,7 +54,7 @@ struct MaskedViews {
 /// `foot_m` is set, the object ends there: nobody has seen it from below. Throws InputError naming `name` where nothing
 /// is left.
 ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views, const Mesh& known,
-                               std::optional<double> foot_m, const ModelMaking& settings);
+                               std::optional<double> foot_m, const ReconstructionSettings& settings);
 
 /// Registers views of an object to one another, by their masks' pixels alone, from poses that are nearly right, and
 /// corrects their T_camera_object.
@@ -67,13 +67,13 @@ void append_mesh(const Mesh& mesh, const Eigen::Isometry3d& T_to_from, Mesh& to)
 Eigen::Vector3d foot_of(const Mesh& mesh);
 
 /// The keyframes of a take as views of its object.
-std::vector<TrainingView> training_views(const Take& take, const std::vector<ShownView>& views,
+std::vector<TrainingView> training_views(const Take& take, const std::vector<MaskedKeyframe>& views,
                                          const std::string& name);
 
 /// Lays the second take's model on the first and makes one of both, in the first one's frame; the views of both get
 /// poses and masks of it, and agreement_m is that of all of them. False where the second does not fit, or what comes of
-/// both is seen through (kMostSeenThrough): then nothing is changed.
-bool merge_takes(const Take& first, ShownModel& model, const Take& second, ShownModel& other,
-                 const ModelMaking& settings);
+/// both is seen through (kMaxFreeSpaceViolation): then nothing is changed.
+bool merge_takes(const Take& first, ReconstructedModel& model, const Take& second, ReconstructedModel& other,
+                 const ReconstructionSettings& settings);
 
 }  // namespace houghstream::reconstruction

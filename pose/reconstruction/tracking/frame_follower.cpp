@@ -6,12 +6,12 @@ namespace houghstream::reconstruction {
 namespace {
 
 double agreement_of(const Alignment& alignment) {
-  return alignment.inlier_share * std::min(1.0, alignment.seen_share / 0.4) - 0.5 * alignment.light_rms;
+  return alignment.inlier_share * std::min(1.0, alignment.visible_point_fraction / 0.4) - 0.5 * alignment.photometric_rms;
 }
 
 }  // namespace
 
-Alignment FrameFollower::lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest,
+Alignment FrameFollower::register_to_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest,
                                     KeyframeMap& map) const {
   AlignmentLimits limits;
   limits.coarsest = coarsest;
@@ -30,18 +30,18 @@ std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const Frame
   const bool goes_on = agreement_of(compare_frame(points, levels, T_goes_on, coarsest)) >
                        agreement_of(compare_frame(points, levels, T_last, coarsest));
   const std::optional<LandmarkMatch> flow =
-      motion == Motion::kObject ? std::nullopt : follow_corners(last_flow_, corners_to_follow(last_flow_, {}), now);
+      motion == Motion::kObject ? std::nullopt : track_corners(last_flow_, detect_flow_corners(last_flow_, {}), now);
   corners_.clear();
   if (flow && flow->inliers.size() >= map.settings().fewest_corners) {
     for (const auto& [before, after] : flow->inliers) corners_.push_back({T_last.inverse() * before, after});
   }
   const Eigen::Isometry3d T_likely = !corners_.empty() ? flow->T_b_a * T_last : goes_on ? T_goes_on : T_last;
-  Alignment best = lay_on_map(levels, T_likely, coarsest, map);
+  Alignment best = register_to_map(levels, T_likely, coarsest, map);
   // Stripes and tiles repeat: what suddenly agrees less has slipped by one.
-  if (!map.is_good(best) || best.light_rms > 1.4 * usual_light_rms_ + 0.03) {
+  if (!map.is_good(best) || best.photometric_rms > 1.4 * usual_light_rms_ + 0.03) {
     const Eigen::Isometry3d& T_else = goes_on ? T_last : T_goes_on;
-    for (const Alignment& other : {lay_on_map(levels, T_likely, 0, map), lay_on_map(levels, T_else, coarsest, map),
-                                   lay_on_map(levels, T_else, 1, map)}) {
+    for (const Alignment& other : {register_to_map(levels, T_likely, 0, map), register_to_map(levels, T_else, coarsest, map),
+                                   register_to_map(levels, T_else, 1, map)}) {
       if (agreement_of(other) > agreement_of(best)) best = other;
     }
   }
@@ -49,7 +49,7 @@ std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const Frame
   const double shift = (T_last.inverse() * best.T_camera_world).translation().norm();
   const bool too_far = motion == Motion::kObject && shift > kMostShift_m;
   if (!map.is_good(best) || too_far || map.difference(T_last, best.T_camera_world) > most) return std::nullopt;
-  usual_light_rms_ += 0.2 * (best.light_rms - usual_light_rms_);
+  usual_light_rms_ += 0.2 * (best.photometric_rms - usual_light_rms_);
   return best;
 }
 

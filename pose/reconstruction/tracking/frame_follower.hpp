@@ -24,11 +24,11 @@ class FrameFollower {
                                   KeyframeMap& map);
 
  private:
-  Alignment lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest,
+  Alignment register_to_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest,
                        KeyframeMap& map) const;
 
   FlowFrame last_flow_;
-  std::vector<SeenCorner> corners_;  ///< of it, as the present frame shows them
+  std::vector<LandmarkObservation> corners_;  ///< of it, as the present frame shows them
   double usual_light_rms_ = 0.3;
 };
 

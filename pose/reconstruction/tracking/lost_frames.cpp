@@ -22,7 +22,7 @@ std::vector<std::pair<double, int>> keyframes_by_distance(const KeyframeMap& map
 }
 
 /// The frame on the points of one keyframe, where that is sure.
-std::optional<Alignment> lay_on_keyframe(const KeyframeMap& map, int keyframe, const FrameLevels& levels,
+std::optional<Alignment> register_to_keyframe(const KeyframeMap& map, int keyframe, const FrameLevels& levels,
                                          const Eigen::Isometry3d& T_start) {
   AlignmentLimits limits;
   limits.coarsest = map.settings().coarsest;
@@ -32,9 +32,9 @@ std::optional<Alignment> lay_on_keyframe(const KeyframeMap& map, int keyframe, c
 }
 
 /// How a keyframe's corners lie on those of the frame.
-const KnownCorners::Place& place_by_corners(const KeyframeMap& map, int keyframe, KnownCorners& corners) {
+const LandmarkCache::Place& place_by_corners(const KeyframeMap& map, int keyframe, LandmarkCache& corners) {
   const auto [known, is_new] = corners.by_keyframe.try_emplace(keyframe);
-  KnownCorners::Place& place = known->second;
+  LandmarkCache::Place& place = known->second;
   if (!is_new) return place;
   const Landmarks& of_keyframe = map.keyframes()[static_cast<std::size_t>(keyframe)].landmarks;
   if (const std::optional<LandmarkMatch> match = match_landmarks(of_keyframe, *corners.seen))
@@ -44,30 +44,30 @@ const KnownCorners::Place& place_by_corners(const KeyframeMap& map, int keyframe
 
 }  // namespace
 
-std::optional<Alignment> find_by_views(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last) {
+std::optional<Alignment> relocalise_by_neighbours(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last) {
   constexpr std::size_t kTried = 4;
   const std::vector<std::pair<double, int>> by_distance = keyframes_by_distance(map, last.T_camera_world);
   for (std::size_t i = 0; i < std::min(kTried, by_distance.size()); ++i) {
     const auto [distance, k] = by_distance[i];
     if (distance > last.farthest) break;
     const Eigen::Isometry3d& T_start = map.keyframes()[static_cast<std::size_t>(k)].T_camera_world;
-    if (std::optional<Alignment> found = lay_on_keyframe(map, k, levels, T_start)) return found;
+    if (std::optional<Alignment> found = register_to_keyframe(map, k, levels, T_start)) return found;
   }
   return std::nullopt;
 }
 
-std::optional<Alignment> CornerSearch::find(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last,
-                                            bool everywhere, KnownCorners& corners) {
+std::optional<Alignment> Relocaliser::find(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last,
+                                            bool everywhere, LandmarkCache& corners) {
   const std::vector<Keyframe>& keyframes = map.keyframes();
   const std::vector<std::pair<double, int>> by_distance = keyframes_by_distance(map, last.T_camera_world);
   const std::size_t tried = everywhere ? keyframes.size() : 12;
-  KnownCorners::Place best;
+  LandmarkCache::Place best;
   int best_keyframe = -1;
   for (std::size_t i = 0; i < std::min(tried, by_distance.size()); ++i) {
     // The nearest half, and the others in turn.
     const std::size_t at = i < tried / 2 ? i : next_to_try_++ % by_distance.size();
     const int k = by_distance[at].second;
-    const KnownCorners::Place& place = place_by_corners(map, k, corners);
+    const LandmarkCache::Place& place = place_by_corners(map, k, corners);
     if (place.corners <= best.corners) continue;
     best = place;
     best_keyframe = k;
@@ -75,7 +75,7 @@ std::optional<Alignment> CornerSearch::find(const KeyframeMap& map, const FrameL
   if (best_keyframe < 0 || best.corners < map.settings().sure_corners) return std::nullopt;
   const Eigen::Isometry3d T = best.T_frame_keyframe * keyframes[static_cast<std::size_t>(best_keyframe)].T_camera_world;
   if (map.difference(T, last.T_camera_world) > last.farthest) return std::nullopt;
-  return lay_on_keyframe(map, best_keyframe, levels, T);
+  return register_to_keyframe(map, best_keyframe, levels, T);
 }
 
 }  // namespace houghstream::reconstruction

@@ -10,7 +10,7 @@
 namespace houghstream::reconstruction {
 
 /// Corners of a frame that is looked for again and again, and what those of each keyframe say of it: found once.
-struct KnownCorners {
+struct LandmarkCache {
   struct Place {
     std::size_t corners = 0;  ///< that agree; 0 = it says nothing
     Eigen::Isometry3d T_frame_keyframe = Eigen::Isometry3d::Identity();
@@ -23,7 +23,7 @@ struct KnownCorners {
 struct LostFrame {
   int number = 0;  ///< in its take
   RgbdFrame frame;
-  KnownCorners corners;
+  LandmarkCache corners;
 };
 
 /// From where a lost frame is looked for.
@@ -33,15 +33,15 @@ struct LastPlace {
 };
 
 /// Lays a frame on the keyframes nearest to the last place, one by one, with its view taken for theirs.
-std::optional<Alignment> find_by_views(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last);
+std::optional<Alignment> relocalise_by_neighbours(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last);
 
 /// Looks for frames by the corners that they have in common with keyframes.
-class CornerSearch {
+class Relocaliser {
  public:
   /// Lays a frame on the keyframe with the most corners in common, if these suffice. `corners.seen` are the frame's.
   /// Unless it is to look `everywhere`, it tries some keyframes: the nearest, and others in turn from call to call.
   std::optional<Alignment> find(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last,
-                                bool everywhere, KnownCorners& corners);
+                                bool everywhere, LandmarkCache& corners);
 
  private:
   std::size_t next_to_try_ = 0;

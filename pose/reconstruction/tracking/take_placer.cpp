@@ -49,7 +49,7 @@ const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
     take_.frames.back().left_out = !is_fit_for_model(levels.quality);
     std::optional<Alignment> found;
     if (motion_ == Motion::kObject)
-      lights_.mark_what_stays(object_pixels(levels.levels[0], chosen_, step_.T_last), levels);
+      lights_.mark_static_intensity(object_pixels(levels.levels[0], chosen_, step_.T_last), levels);
     if (state_.state == TakeState::kTracking) found = follower_.follow(now, levels, step_, motion_, map_);
     if (found && motion_ == Motion::kUnknown) {
       motion_ = judge_.judge(now, levels, found->T_camera_world);
@@ -59,7 +59,7 @@ const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
         found = follower_.follow(now, levels, step_, motion_, map_);
       }
     }
-    KnownCorners corners;
+    LandmarkCache corners;
     if (!found) found = find_again(frame, levels, false, corners);
     if (found) {
       accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), *found);
@@ -76,7 +76,7 @@ const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
 }
 
 void TakePlacer::choose(const RgbdFrame& frame) {
-  Choice choice = choose_object(frame, settings_.choice);
+  Choice choice = select_object(frame, settings_.choice);
   if (!choice.object) {
     state_.message = choice.reason;
     require(state_.frames < settings_.most_frames_to_choose && !settings_.choice.box_px, "{}", choice.reason);
@@ -89,7 +89,7 @@ void TakePlacer::choose(const RgbdFrame& frame) {
   step_.restart(chosen_.T_camera_stand);
   state_.state = TakeState::kTracking;
   round_.assign(36, false);
-  judge_ = MotionJudge(make_flow_frame(frame), levels, object_pixels(levels.levels[0], chosen_, chosen_.T_camera_stand),
+  judge_ = MotionClassifier(make_flow_frame(frame), levels, object_pixels(levels.levels[0], chosen_, chosen_.T_camera_stand),
                        chosen_.T_camera_stand, settings_.map.fewest_corners);
   follower_.set_last(judge_.first());
   Alignment at_start;
@@ -114,12 +114,12 @@ bool TakePlacer::is_fit_for_model(const PictureQuality& quality) {
 }
 
 std::optional<Alignment> TakePlacer::find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
-                                                KnownCorners& corners) {
+                                                LandmarkCache& corners) {
   // What is round or a box looks alike from several sides.
   const LastPlace last{step_.T_last, motion_ == Motion::kObject ? 0.5 : 1e9};
-  if (std::optional<Alignment> found = find_by_views(map_, levels, last)) return found;
+  if (std::optional<Alignment> found = relocalise_by_neighbours(map_, levels, last)) return found;
   if (motion_ == Motion::kObject) corners = {};  // they are of where the object is believed to be
-  if (!corners.seen) corners.seen = find_landmarks(frame, landmark_mask(frame, step_.T_last));
+  if (!corners.seen) corners.seen = detect_landmarks(frame, landmark_mask(frame, step_.T_last));
   return by_corners_.find(map_, levels, last, everywhere, corners);
 }
 
@@ -138,11 +138,11 @@ void TakePlacer::accept(int number, const RgbdFrame& frame, FrameLevels levels, 
       nearest < 0 ? 1e9
                   : map_.difference(step_.T_last, map_.keyframes()[static_cast<std::size_t>(nearest)].T_camera_world);
   if (nearest < 0 || (fit && away > settings_.keyframe_turn) || away > 2.0 * settings_.keyframe_turn) {
-    Landmarks landmarks = find_landmarks(frame, landmark_mask(frame, step_.T_last));
+    Landmarks landmarks = detect_landmarks(frame, landmark_mask(frame, step_.T_last));
     Alignment held = alignment;
     if (nearest >= 0) map_.local_map(step_.T_last);  // the keyframes that the new one is tied to
-    if (nearest >= 0 && map_.settings().corners_hold) {
-      held = map_.held_by_corners(levels, landmarks, alignment);
+    if (nearest >= 0 && map_.settings().use_landmarks) {
+      held = map_.constrain_by_landmarks(levels, landmarks, alignment);
       step_.correct(held.T_camera_world);
     }
     add_keyframe({frame, number, std::move(levels), {}, std::move(landmarks), step_.T_last}, held);
@@ -152,7 +152,7 @@ void TakePlacer::accept(int number, const RgbdFrame& frame, FrameLevels levels, 
   placed.T_camera_keyframe =
       step_.T_last * map_.keyframes()[static_cast<std::size_t>(placed.keyframe)].T_camera_world.inverse();
   const Eigen::Vector3d towards = step_.T_last.inverse().translation() - map_.settings().middle;
-  if (fit) mark_seen(towards, state_.seen);
+  if (fit) mark_covered(towards, state_.seen);
   const auto at = static_cast<std::size_t>((std::atan2(towards.y(), towards.x()) * kDegrees + 360.0) / 10.0) % 36;
   round_[at] = round_[at] || fit;
 }
@@ -163,12 +163,12 @@ void TakePlacer::follow_object_only() {
   constexpr double kAround = 0.6;
   const RgbdFrame& first = judge_.first().frame;
   MapSettings& map = map_.settings();
-  map.plane = PlaneKnown();
+  map.plane = PlanePrior();
   map.plane->normal = chosen_.plane.normal;
   map.plane->offset = chosen_.plane.offset;
   map.least_inlier_share = 0.6;
   map.coarsest = 1;
-  map.corners_hold = false;
+  map.use_landmarks = false;
   map.sure_corners = 12;
   const cv::Rect& box = chosen_.box_px;
   const cv::Size more(cvRound(kAround * box.width) + 20, cvRound(kAround * box.height) + 20);
@@ -179,7 +179,7 @@ void TakePlacer::follow_object_only() {
   tie_to_first_keyframe();
   state_.seen = {};
   step_.restart(chosen_.T_camera_stand);
-  Landmarks landmarks = find_landmarks(first, landmark_mask(first, step_.T_last));
+  Landmarks landmarks = detect_landmarks(first, landmark_mask(first, step_.T_last));
   add_keyframe({first, first_number_, make_levels(first, levels_), {}, std::move(landmarks), step_.T_last}, {});
 }
 
@@ -242,13 +242,13 @@ void TakePlacer::describe() {
   }
   state_.T_camera_object = step_.T_last;
   state_.box_px = box_of(chosen_, judge_.first().frame.camera, step_.T_last);
-  state_.message = describe_seen(state_.seen, chosen_.T_camera_stand.inverse().translation());
+  state_.message = describe_coverage(state_.seen, chosen_.T_camera_stand.inverse().translation());
   if (state_.frames - first_number_ <= kTold)
     state_.message = describe_choice(chosen_) + "; move the camera once around it, or turn it";
 }
 
 /// What was lost when it came may be found now that more of the surroundings is known.
-void TakePlacer::place_the_lost() {
+void TakePlacer::relocalise_lost_frames() {
   for (bool any = true; any;) {
     any = false;
     for (auto at = unplaced_.begin(); at != unplaced_.end();) {
@@ -268,7 +268,7 @@ void TakePlacer::place_the_lost() {
 
 Take TakePlacer::finish() {
   require(!map_.empty(), "{}", state_.message.empty() ? "no frame, expected some that show an object" : state_.message);
-  place_the_lost();
+  relocalise_lost_frames();
   map_.refine(3);
   take_.chosen = chosen_;
   take_.motion = motion_;

@@ -57,8 +57,8 @@ class TakePlacer {
   void require_same_size(const RgbdFrame& frame);
   void choose(const RgbdFrame& frame);
   std::optional<Alignment> find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
-                                      KnownCorners& corners);
-  void place_the_lost();
+                                      LandmarkCache& corners);
+  void relocalise_lost_frames();
   void accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   void note_lost(const FrameLevels& levels);
   bool is_fit_for_model(const PictureQuality& quality);
@@ -74,14 +74,14 @@ class TakePlacer {
   KeyframeMap map_;
   LevelSettings levels_;
   Motion motion_ = Motion::kUnknown;
-  MotionJudge judge_;  ///< from the frame on in which the object was chosen
-  LastLights lights_;  ///< while the object turns
+  MotionClassifier judge_;  ///< from the frame on in which the object was chosen
+  StaticShadingDetector lights_;  ///< while the object turns
   FrameFollower follower_;
   cv::Size size_;  ///< of all frames, pixels
   int first_number_ = 0;
   LastStep step_;  ///< T_camera_world of the last frame that was placed, and of the one before it
   std::vector<LostFrame> unplaced_;
-  CornerSearch by_corners_;
+  Relocaliser by_corners_;
   std::deque<double> sharpness_;
   Take take_;
   std::vector<bool> round_;  ///< each ten degrees of the turn

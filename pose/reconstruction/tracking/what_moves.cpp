@@ -33,7 +33,7 @@ double unchanged_share(const cv::Mat& light, const cv::Mat& first, const cv::Mat
 
 }  // namespace
 
-MotionJudge::MotionJudge(FlowFrame first, const FrameLevels& levels, const cv::Mat& on_object,
+MotionClassifier::MotionClassifier(FlowFrame first, const FrameLevels& levels, const cv::Mat& on_object,
                          const Eigen::Isometry3d& T_camera_world, std::size_t fewest_corners)
     : first_(std::move(first)),
       first_light_(levels.levels[0].light),
@@ -44,7 +44,7 @@ MotionJudge::MotionJudge(FlowFrame first, const FrameLevels& levels, const cv::M
   away_from_object_ = away_from_object_ == 0;
   cv::Mat away;
   cv::resize(away_from_object_, away, first_.frame.colour.size(), 0.0, 0.0, cv::INTER_NEAREST);
-  corners_ = corners_to_follow(first_, away);
+  corners_ = detect_flow_corners(first_, away);
   rest_ = choose_points(levels, away_from_object_, {});
   const Eigen::Isometry3f T_world_camera = T_first_.inverse().cast<float>();
   for (std::vector<SurfacePoint>& level : rest_) {
@@ -55,23 +55,23 @@ MotionJudge::MotionJudge(FlowFrame first, const FrameLevels& levels, const cv::M
   }
 }
 
-bool MotionJudge::camera_is_still(const FlowFrame& now, const FrameLevels& levels,
+bool MotionClassifier::camera_is_still(const FlowFrame& now, const FrameLevels& levels,
                                   const Eigen::Isometry3d& T_moved) const {
   constexpr double kMoved = 0.003;  // radians, of half of the corners
   constexpr double kBetter = 0.01;  // of light
-  const std::optional<LandmarkMatch> flow = follow_corners(first_, corners_, now);
+  const std::optional<LandmarkMatch> flow = track_corners(first_, corners_, now);
   if (flow && flow->inliers.size() >= fewest_corners_) {
     const auto moved = std::count_if(flow->inliers.begin(), flow->inliers.end(), [&](const auto& pair) {
       return bearing_error({pair.first, pair.second}, Eigen::Isometry3d::Identity()) > kMoved;
     });
     return 2 * static_cast<std::size_t>(moved) < flow->inliers.size();
   }
-  const double as_moved = compare_frame(rest_, levels, T_moved, 0).light_rms;
-  const double as_still = compare_frame(rest_, levels, T_first_, 0).light_rms;
+  const double as_moved = compare_frame(rest_, levels, T_moved, 0).photometric_rms;
+  const double as_still = compare_frame(rest_, levels, T_first_, 0).photometric_rms;
   return as_still < as_moved + kBetter;
 }
 
-Motion MotionJudge::judge(const FlowFrame& now, const FrameLevels& levels, Eigen::Isometry3d& T_camera_world) {
+Motion MotionClassifier::judge(const FlowFrame& now, const FrameLevels& levels, Eigen::Isometry3d& T_camera_world) {
   constexpr int kSure = 3;
   constexpr double kLess = 0.2;  // share of edges
   const bool is_still = camera_is_still(now, levels, T_camera_world);
@@ -84,7 +84,7 @@ Motion MotionJudge::judge(const FlowFrame& now, const FrameLevels& levels, Eigen
   return object_moves_ >= kSure ? Motion::kObject : Motion::kUnknown;
 }
 
-void LastLights::mark_what_stays(const cv::Mat& on_object, FrameLevels& levels) {
+void StaticShadingDetector::mark_static_intensity(const cv::Mat& on_object, FrameLevels& levels) {
   constexpr std::size_t kFramesAgo = 5;
   constexpr float kSame = 0.3F;
   constexpr double kRests = 0.03;

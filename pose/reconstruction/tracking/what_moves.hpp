@@ -15,12 +15,12 @@ namespace houghstream::reconstruction {
 /// Tells from the first frame of a take and the later ones what moves. The camera stands still as long as the corners
 /// of the surroundings are where they were at first; where there are few, as long as the surroundings look as they did
 /// then rather than as a moved camera would see them. The object moves where it alone looks different.
-class MotionJudge {
+class MotionClassifier {
  public:
-  MotionJudge() = default;
+  MotionClassifier() = default;
   /// `levels` are of the first frame; `on_object` is CV_8UC1, as large as the finest, and not 0 where the object is.
   /// `fewest_corners`: in common with the first frame, to say whether the camera stands still.
-  MotionJudge(FlowFrame first, const FrameLevels& levels, const cv::Mat& on_object,
+  MotionClassifier(FlowFrame first, const FrameLevels& levels, const cv::Mat& on_object,
               const Eigen::Isometry3d& T_camera_world, std::size_t fewest_corners);
 
   const FlowFrame& first() const { return first_; }
@@ -46,12 +46,12 @@ class MotionJudge {
 };
 
 /// The light of the last frames before a camera that stands still, while the object turns.
-class LastLights {
+class StaticShadingDetector {
  public:
   /// Shade and shine stay where they are while the object turns: what looks as it did some frames ago tells nothing of
   /// the turn, unless all of it does, and the object rests. Marks it in the next frame's levels (FrameLevel::stays).
-  /// `on_object`: as for MotionJudge.
-  void mark_what_stays(const cv::Mat& on_object, FrameLevels& levels);
+  /// `on_object`: as for MotionClassifier.
+  void mark_static_intensity(const cv::Mat& on_object, FrameLevels& levels);
 
  private:
   std::deque<std::vector<cv::Mat>> lights_;  ///< by level, the oldest frame first

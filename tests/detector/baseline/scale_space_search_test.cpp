@@ -71,7 +71,7 @@ void expect_same(const std::vector<Candidate>& a, const std::vector<Candidate>& 
     EXPECT_EQ(a[i].detection.box_px, b[i].detection.box_px);
     EXPECT_EQ(a[i].detection.vote_weight, b[i].detection.vote_weight);
     EXPECT_EQ(a[i].detection.vote_count, b[i].detection.vote_count);
-    EXPECT_EQ(a[i].evidence.mass_share, b[i].evidence.mass_share);
+    EXPECT_EQ(a[i].evidence.relative_vote_mass, b[i].evidence.relative_vote_mass);
   }
 }
 
@@ -87,7 +87,7 @@ TEST(ScaleSpaceSearch, FindsTheTaughtObjectsInEverySize) {
       EXPECT_GT(best.detection.score, quick_settings().evidence.threshold) << distance;
       EXPECT_GT(box_iou(best.detection.box_px, scene.box_px), 0.75F) << distance << " m, kind " << kind;
       EXPECT_GT(best.detection.vote_count, 0);
-      EXPECT_EQ(best.detection.score, vote_score(best.evidence.mass_share));
+      EXPECT_EQ(best.detection.score, vote_score(best.evidence.relative_vote_mass));
     }
   }
 }
@@ -140,7 +140,7 @@ TEST(ScaleSpaceSearch, EachSizeHasAHoughImageThatPeaksWhereTheObjectFits) {
   EXPECT_GT(peaks[2], peaks[0]);
   EXPECT_NEAR(at.x, (120 + 0.5) * 1.66, 4);
   EXPECT_NEAR(at.y, (110 + 0.5) * 1.66, 4);
-  EXPECT_FLOAT_EQ(static_cast<float>(peaks[2]), strongest(search(scene.frame, quick_settings())).evidence.mass_share);
+  EXPECT_FLOAT_EQ(static_cast<float>(peaks[2]), strongest(search(scene.frame, quick_settings())).evidence.relative_vote_mass);
 }
 
 TEST(ScaleSpaceSearch, AnObjectBetweenTwoSizesIsOneCandidate) {
@@ -192,7 +192,7 @@ TEST(ScaleSpaceSearch, AnEmptyRoomOffersLittle) {
 ScalePeak peak(int size, float x_px, float mass, std::int32_t class_id = 1) {
   ScalePeak out;
   out.candidate.detection.class_id = class_id;
-  out.candidate.evidence.mass_share = mass;
+  out.candidate.evidence.relative_vote_mass = mass;
   out.at_px = {x_px, 50.0F};
   out.reach_px = 8.0F;
   out.size = size;
@@ -201,7 +201,7 @@ ScalePeak peak(int size, float x_px, float mass, std::int32_t class_id = 1) {
 
 std::vector<float> kept_masses(const std::vector<ScalePeak>& peaks) {
   std::vector<float> masses;
-  for (const Candidate& candidate : maxima_over_sizes(peaks)) masses.push_back(candidate.evidence.mass_share);
+  for (const Candidate& candidate : maxima_over_sizes(peaks)) masses.push_back(candidate.evidence.relative_vote_mass);
   return masses;
 }
 

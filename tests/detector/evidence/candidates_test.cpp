@@ -16,7 +16,7 @@ namespace {
 
 std::vector<Candidate> candidates(const RgbdFrame& frame, const DetectionSettings& settings = {},
                                   const std::vector<std::uint32_t>& excluded_views = {}) {
-  const Search search{toy::forest_index(), settings, excluded_views};
+  const SearchContext search{toy::forest_index(), settings, excluded_views};
   DetectorWorkspace workspace;
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);
@@ -32,7 +32,7 @@ TEST(Candidates, TheStrongestOfAClassComesWithEvidenceForIt) {
   ASSERT_FALSE(found.empty());
   const Candidate& best = found.front();
   EXPECT_EQ(best.detection.class_id, 1);
-  EXPECT_GT(best.evidence.mass_share, 0.3F);
+  EXPECT_GT(best.evidence.relative_vote_mass, 0.3F);
   EXPECT_GT(best.evidence.fit.visible, 0.8F);
   EXPECT_GT(best.evidence.fit.likeness, 0.5F);
   EXPECT_GT(box_iou(best.detection.box_px, cv::Rect2f(cv::boundingRect(mask))), 0.7F);
@@ -65,16 +65,16 @@ TEST(Candidates, NoClassOffersMoreThanItMay) {
 }
 
 /// The middle of the toy view alone, as if another side of the object looked like it.
-TrainedView middle_part() {
+ViewTemplate middle_part() {
   const TrainingView whole = toy::training_views().front();
   const cv::Rect box = cv::boundingRect(whole.mask);
   const cv::Rect part(box.x + box.width / 4, box.y + box.height / 4, box.width / 2, box.height / 2);
   cv::Mat mask = cv::Mat::zeros(whole.mask.size(), CV_8U);
   whole.mask(part).copyTo(mask(part));
-  TrainedView view = toy::remembered_view();
+  ViewTemplate view = toy::remembered_view();
   for (float& side : view.box) side *= 0.5F;
   view.R_ray_object = Eigen::AngleAxisf(1.0F, Eigen::Vector3f::UnitX());
-  view.appearance = remember_appearance(whole.frame, mask, part, {0.0F, 0.0F, toy::kDistance});
+  view.appearance = make_template_grid(whole.frame, mask, part, {0.0F, 0.0F, toy::kDistance});
   return view;
 }
 
@@ -112,7 +112,7 @@ TEST(Candidates, APartThatAgreesBetterIsNotTakenForTheWholeInAnotherAttitude) {
 TEST(AttitudeSpread, GrowsWithTheViewsOfTheClass) {
   Forest forest;
   const auto add = [&](std::uint32_t class_index, std::size_t views) {
-    TrainedView view;
+    ViewTemplate view;
     view.class_index = class_index;
     forest.views.insert(forest.views.end(), views, view);
   };

@@ -12,14 +12,14 @@ namespace houghstream::toy {
 inline constexpr float kDistance = 0.7F;
 
 /// The first toy view (stripes on a relief) as a forest remembers it.
-inline TrainedView remembered_view() {
+inline ViewTemplate remembered_view() {
   const TrainingView view = training_views().front();
   const cv::Rect box = cv::boundingRect(view.mask);
   const double metres = view.frame.camera.metres_per_px(kDistance);
   const auto side = [&](int px, double centre) { return static_cast<float>((px - 0.5 - centre) * metres); };
-  TrainedView out;
+  ViewTemplate out;
   out.box = {side(box.x, 159.5), side(box.y, 119.5), side(box.br().x, 159.5), side(box.br().y, 119.5)};
-  out.appearance = remember_appearance(view.frame, view.mask, box, {0.0F, 0.0F, kDistance});
+  out.appearance = make_template_grid(view.frame, view.mask, box, {0.0F, 0.0F, kDistance});
   return out;
 }
 
@@ -27,20 +27,20 @@ inline TrainedView remembered_view() {
 inline LabFrame lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float scale) {
   cv::Mat blurred;
   LabLevels lab;
-  averaged_lab(colour, blurred, lab);
+  make_smoothed_lab(colour, blurred, lab);
   return {frame, lab, scale};
 }
 
 /// The view of an object so many times as large, seen from as far.
-inline TrainedView resized(TrainedView view, float size) {
+inline ViewTemplate resized(ViewTemplate view, float size) {
   for (float& side : view.box) side *= size;
   for (auto* cells : {&view.appearance.mm, &view.appearance.beside}) {
     for (std::int16_t& mm : *cells) {
-      if (mm > Appearance::kNoDepth) mm = static_cast<std::int16_t>(std::lround(size * static_cast<float>(mm)));
+      if (mm > TemplateGrid::kNoDepth) mm = static_cast<std::int16_t>(std::lround(size * static_cast<float>(mm)));
     }
   }
   for (OutlineCells& across : view.appearance.outline) {
-    if (across.gained_mm > Appearance::kNoDepth)
+    if (across.gained_mm > TemplateGrid::kNoDepth)
       across.gained_mm = static_cast<std::int16_t>(std::lround(size * static_cast<float>(across.gained_mm)));
   }
   return view;

@@ -12,7 +12,7 @@ namespace {
 
 Evidence with_mass(float share) {
   Evidence evidence;
-  evidence.mass_share = share;
+  evidence.relative_vote_mass = share;
   return evidence;
 }
 
@@ -48,7 +48,7 @@ TEST(ScoreTerms, EachOneIsListedOnce) {
   const std::array<float, kScoreTerms> values = listed(terms);
   for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i], static_cast<float>(i + 1)) << "listed twice";
   EXPECT_EQ(terms.constant, 1.0F);
-  EXPECT_EQ(terms.goes_on_likeness, static_cast<float>(kScoreTerms));
+  EXPECT_EQ(terms.boundary_continuation_correlation, static_cast<float>(kScoreTerms));
 }
 
 TEST(Score, WhatIsSeenThroughOrGoesOnSpeaksAgainstIt) {

@@ -10,17 +10,17 @@ namespace {
 
 TEST(ViewAlignment, AVoteBesideTheCentreFindsItsWayBack) {
   const TrainingView seen = toy::training_views().front();
-  const TrainedView view = toy::remembered_view();
+  const ViewTemplate view = toy::remembered_view();
   const LabFrame frame = toy::lab_frame(seen.frame, seen.frame.colour, 1.0F);
   const cv::Rect2f truth(cv::boundingRect(seen.mask));
-  const float cell = (view.box[2] - view.box[0]) / Appearance::kBoxSide;
+  const float cell = (view.box[2] - view.box[0]) / TemplateGrid::kBoxSide;
   for (const float sideways : {-2.0F, 2.0F}) {
     const Eigen::Vector3f beside(sideways * cell, 0.0F, toy::kDistance);
-    const PlacedView before = {0, beside, fit_view(view, beside, frame)};
-    const PlacedView placed = align_view({view}, before, frame);
-    const ViewFit& after = placed.fit;
+    const PlacedTemplate before = {0, beside, match_template(view, beside, frame)};
+    const PlacedTemplate placed = align_template({view}, before, frame);
+    const TemplateMatch& after = placed.fit;
     EXPECT_GT(agreement(after), agreement(before.fit));
-    EXPECT_EQ(agreement(after), agreement(fit_view(view, placed.centre_camera, frame)));
+    EXPECT_EQ(agreement(after), agreement(match_template(view, placed.centre_camera, frame)));
     EXPECT_GT(after.visible, 0.97F);
     EXPECT_GT(box_iou(after.visible_box_px, truth), 0.9F);
   }
@@ -28,11 +28,11 @@ TEST(ViewAlignment, AVoteBesideTheCentreFindsItsWayBack) {
 
 TEST(ViewAlignment, WhereNothingIsBetterNothingMoves) {
   const TrainingView seen = toy::training_views().front();
-  const TrainedView view = toy::remembered_view();
+  const ViewTemplate view = toy::remembered_view();
   const LabFrame frame = toy::lab_frame(seen.frame, seen.frame.colour, 1.0F);
   const Eigen::Vector3f outside(3.0F, 0.0F, toy::kDistance);
-  const PlacedView nothing = {0, outside, fit_view(view, outside, frame)};
-  const PlacedView aligned = align_view({view}, nothing, frame);
+  const PlacedTemplate nothing = {0, outside, match_template(view, outside, frame)};
+  const PlacedTemplate aligned = align_template({view}, nothing, frame);
   EXPECT_EQ(agreement(aligned.fit), agreement(nothing.fit));
   EXPECT_EQ(aligned.centre_camera, outside);
 }
@@ -41,31 +41,31 @@ TEST(ViewAlignment, WhereNothingIsBetterNothingMoves) {
 TEST(ViewAlignment, TheViewThatAgreesBestOnceAlignedIsTaken) {
   const TrainingView seen = toy::training_views().front();
   const LabFrame frame = toy::lab_frame(seen.frame, seen.frame.colour, 1.0F);
-  const TrainedView right = toy::remembered_view();
-  const float cell = (right.box[2] - right.box[0]) / Appearance::kBoxSide;
+  const ViewTemplate right = toy::remembered_view();
+  const float cell = (right.box[2] - right.box[0]) / TemplateGrid::kBoxSide;
   const Eigen::Vector3f beside(cell, 0.0F, toy::kDistance);
-  TrainedView wrong = right;
+  ViewTemplate wrong = right;
   wrong.box[0] -= cell;
   wrong.box[2] -= cell;
   for (auto& lab : wrong.appearance.lab) lab = {128, 128, 128};
-  const std::vector<TrainedView> views = {right, wrong};
-  std::vector<PlacedView> compared = {{0, beside, fit_view(right, beside, frame)},
-                                      {1, beside, fit_view(wrong, beside, frame)}};
-  ASSERT_EQ(best_unaligned(compared).view, 1U);
-  const std::vector<PlacedView> before = compared;
-  const PlacedView aligned = align_best_few(views, frame, compared);
+  const std::vector<ViewTemplate> views = {right, wrong};
+  std::vector<PlacedTemplate> compared = {{0, beside, match_template(right, beside, frame)},
+                                      {1, beside, match_template(wrong, beside, frame)}};
+  ASSERT_EQ(best_match(compared).view, 1U);
+  const std::vector<PlacedTemplate> before = compared;
+  const PlacedTemplate aligned = align_best_templates(views, frame, compared);
   EXPECT_EQ(aligned.view, 0U);
-  EXPECT_EQ(agreement(aligned.fit), agreement(align_view(views, before[0], frame).fit));
-  EXPECT_GT(agreement(aligned.fit), agreement(align_view(views, before[1], frame).fit));
+  EXPECT_EQ(agreement(aligned.fit), agreement(align_template(views, before[0], frame).fit));
+  EXPECT_GT(agreement(aligned.fit), agreement(align_template(views, before[1], frame).fit));
 }
 
 TEST(ViewAlignment, AnObjectOfAnotherSizeAgreesBetterInThatSize) {
   const TrainingView seen = toy::training_views().front();
   const LabFrame frame = toy::lab_frame(seen.frame, seen.frame.colour, 1.0F);
-  const TrainedView right = toy::remembered_view();
+  const ViewTemplate right = toy::remembered_view();
   const Eigen::Vector3f centre(0.0F, 0.0F, toy::kDistance);
-  const auto gain = [&](const TrainedView& view) {
-    return gain_of_other_size(view, {0, centre, fit_view(view, centre, frame)}, frame);
+  const auto gain = [&](const ViewTemplate& view) {
+    return alternative_scale_gain(view, {0, centre, match_template(view, centre, frame)}, frame);
   };
   EXPECT_LT(gain(right), -0.05F);
   for (const float seen_size : {0.7F, 1.4F}) {  // of the frame's object over the remembered one

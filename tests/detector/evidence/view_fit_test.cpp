@@ -16,45 +16,45 @@ namespace {
 using toy::kDistance;
 const Eigen::Vector3f kCentre(0.0F, 0.0F, kDistance);
 
-ViewFit fit(const RgbdFrame& frame, const Eigen::Vector3f& centre = kCentre) {
-  return fit_view(toy::remembered_view(), centre, toy::lab_frame(frame, frame.colour, 1.0F));
+TemplateMatch fit(const RgbdFrame& frame, const Eigen::Vector3f& centre = kCentre) {
+  return match_template(toy::remembered_view(), centre, toy::lab_frame(frame, frame.colour, 1.0F));
 }
 
 RgbdFrame tile_frame() {
   return toy::training_views().front().frame;
 }
 
-TEST(ViewFit, TheViewItselfFitsWholly) {
+TEST(TemplateMatch, TheViewItselfFitsWholly) {
   const TrainingView view = toy::training_views().front();
-  const ViewFit result = fit(view.frame);
+  const TemplateMatch result = fit(view.frame);
   EXPECT_GT(result.visible, 0.99F);
   EXPECT_GT(result.likeness, 0.8F);
   EXPECT_EQ(result.continued, 0.0F);
   EXPECT_GT(box_iou(result.visible_box_px, cv::Rect2f(cv::boundingRect(view.mask))), 0.9F);
 }
 
-TEST(ViewFit, FitsWhereverInThePictureTheObjectFacesTheCamera) {
+TEST(TemplateMatch, FitsWhereverInThePictureTheObjectFacesTheCamera) {
   for (const cv::Point2d at : {cv::Point2d(30, 119.5), cv::Point2d(290, 119.5), cv::Point2d(280, 200)}) {
     RgbdFrame frame = toy::room(5);
     toy::put_tile(0, at.x, at.y, kDistance, frame);
-    const ViewFit result = fit(frame, frame.camera.backproject(at.x, at.y, kDistance).cast<float>());
+    const TemplateMatch result = fit(frame, frame.camera.backproject(at.x, at.y, kDistance).cast<float>());
     EXPECT_GT(result.visible, 0.97F) << at;
     EXPECT_LT(result.unevenness, 0.2F) << at;
   }
 }
 
-TEST(ViewFit, ADepthErrorOfAVoteIsForgivenAndLargerOnesAreNot) {
+TEST(TemplateMatch, ADepthErrorOfAVoteIsForgivenAndLargerOnesAreNot) {
   EXPECT_GT(fit(tile_frame(), {0, 0, kDistance + 0.02F}).visible, 0.9F);
   EXPECT_LT(fit(tile_frame(), {0, 0, kDistance - 0.2F}).visible, 0.1F);
   EXPECT_GT(fit(tile_frame(), {0, 0, kDistance - 0.2F}).seen_through, 0.9F);
   EXPECT_GT(fit(tile_frame(), {0, 0, kDistance + 0.2F}).hidden, 0.9F);
 }
 
-TEST(ViewFit, AnOccluderHidesItsPartOfTheBox) {
+TEST(TemplateMatch, AnOccluderHidesItsPartOfTheBox) {
   RgbdFrame frame = tile_frame();
   const cv::Rect whole = cv::boundingRect(toy::training_views().front().mask);
   frame.depth(cv::Rect(whole.x + whole.width / 2, 0, 320 - whole.x - whole.width / 2, 240)).setTo(0.5F);
-  const ViewFit result = fit(frame);
+  const TemplateMatch result = fit(frame);
   EXPECT_NEAR(result.hidden, 0.5F, 0.06F);
   EXPECT_NEAR(result.visible, 0.5F, 0.06F);
   EXPECT_EQ(result.seen_through, 0.0F);
@@ -64,25 +64,25 @@ TEST(ViewFit, AnOccluderHidesItsPartOfTheBox) {
 }
 
 /// All but a strip at the left and one at the top is hidden, each narrower than a fifth of the object.
-TEST(ViewFit, TheVisibleBoxEnclosesWhatLittleIsSeen) {
+TEST(TemplateMatch, TheVisibleBoxEnclosesWhatLittleIsSeen) {
   RgbdFrame frame = tile_frame();
   const cv::Rect whole = cv::boundingRect(toy::training_views().front().mask);
   const cv::Point corner(whole.x + whole.width / 8, whole.y + whole.height / 8);
   frame.depth(cv::Rect(corner, whole.br())).setTo(0.5F);
-  const ViewFit result = fit(frame);
+  const TemplateMatch result = fit(frame);
   EXPECT_GT(result.hidden, 0.6F);
   EXPECT_GT(box_iou(result.visible_box_px, cv::Rect2f(whole)), 0.9F);
 }
 
-TEST(ViewFit, MissingDepthIsUnknownAndNeitherForNorAgainst) {
+TEST(TemplateMatch, MissingDepthIsUnknownAndNeitherForNorAgainst) {
   RgbdFrame frame = tile_frame();
   frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
-  const ViewFit result = fit(frame);
+  const TemplateMatch result = fit(frame);
   EXPECT_EQ(result.unknown, 1.0F);
   EXPECT_EQ(result.visible + result.hidden + result.seen_through + result.continued, 0.0F);
 }
 
-TEST(ViewFit, ColoursCountWhereDepthIsMissing) {
+TEST(TemplateMatch, ColoursCountWhereDepthIsMissing) {
   RgbdFrame frame = tile_frame();
   frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   EXPECT_GT(fit(frame).likeness, 0.8F);
@@ -90,7 +90,7 @@ TEST(ViewFit, ColoursCountWhereDepthIsMissing) {
   EXPECT_LT(fit(frame).likeness, 0.3F);
 }
 
-TEST(ViewFit, WhatHidesTheObjectDoesNotLendItItsColours) {
+TEST(TemplateMatch, WhatHidesTheObjectDoesNotLendItItsColours) {
   RgbdFrame frame = tile_frame();
   const float alone = fit(frame).likeness;
   const cv::Rect left(0, 0, frame.colour.cols / 2, frame.colour.rows);
@@ -99,13 +99,13 @@ TEST(ViewFit, WhatHidesTheObjectDoesNotLendItItsColours) {
   EXPECT_NEAR(fit(frame).likeness, alone, 0.1F);
 }
 
-TEST(ViewFit, AWallGoesOnBesideTheOutline) {
+TEST(TemplateMatch, AWallGoesOnBesideTheOutline) {
   RgbdFrame frame = tile_frame();
   frame.depth.setTo(kDistance);
   EXPECT_GT(fit(frame).continued, 0.5F);
 }
 
-TEST(ViewFit, ALargerThingGoesOnBesideTheOutlineAndComesNearerThere) {
+TEST(TemplateMatch, ALargerThingGoesOnBesideTheOutlineAndComesNearerThere) {
   const auto beside = [](float nearer) {
     RgbdFrame frame = tile_frame();
     cv::Mat around = frame.depth.clone();
@@ -119,12 +119,12 @@ TEST(ViewFit, ALargerThingGoesOnBesideTheOutlineAndComesNearerThere) {
   EXPECT_EQ(beside(-0.06F), 0.0F) << "what is behind";
 }
 
-OutlineFit outline_of(const RgbdFrame& frame, const Eigen::Vector3f& centre = kCentre) {
-  return look_across_outline(toy::remembered_view(), centre, toy::lab_frame(frame, frame.colour, 1.0F));
+BoundaryContinuation outline_of(const RgbdFrame& frame, const Eigen::Vector3f& centre = kCentre) {
+  return measure_boundary_continuation(toy::remembered_view(), centre, toy::lab_frame(frame, frame.colour, 1.0F));
 }
 
 /// What lies around the tile, `behind` metres behind its edges and painted in `colour`.
-OutlineFit outline_fit(double behind, const cv::Scalar& colour) {
+BoundaryContinuation outline_fit(double behind, const cv::Scalar& colour) {
   RgbdFrame frame = tile_frame();
   cv::Mat outside;
   cv::bitwise_not(toy::training_views().front().mask, outside);
@@ -133,26 +133,26 @@ OutlineFit outline_fit(double behind, const cv::Scalar& colour) {
   return outline_of(frame);
 }
 
-TEST(ViewFit, AnObjectEndsAtItsOutlineWhereDepthOrColourDoes) {
-  const OutlineFit alone = outline_fit(0.3, {0, 200, 0});
+TEST(TemplateMatch, AnObjectEndsAtItsOutlineWhereDepthOrColourDoes) {
+  const BoundaryContinuation alone = outline_fit(0.3, {0, 200, 0});
   EXPECT_LT(alone.surface_goes_on(), 0.05F);
   EXPECT_LT(alone.colour_goes_on(), 0.05F);
   EXPECT_LT(alone.goes_on(), 0.05F);
-  const OutlineFit lying_on_another = outline_fit(0.0, {0, 200, 0});
+  const BoundaryContinuation lying_on_another = outline_fit(0.0, {0, 200, 0});
   EXPECT_GT(lying_on_another.surface_goes_on(), 0.3F);
   EXPECT_LT(lying_on_another.colour_goes_on(), 0.05F);
   EXPECT_LT(lying_on_another.goes_on(), 0.05F);
 }
 
 /// The remembered view is a window of a plain wall.
-TEST(ViewFit, APartOfALargerThingDoesNotEndAtTheOutline) {
+TEST(TemplateMatch, APartOfALargerThingDoesNotEndAtTheOutline) {
   RgbdFrame wall = tile_frame();
   wall.depth.setTo(kDistance);
   wall.colour.setTo(cv::Scalar(90, 120, 150));
   const cv::Mat mask = toy::training_views().front().mask;
-  TrainedView window = toy::remembered_view();
-  window.appearance = remember_appearance(wall, mask, cv::boundingRect(mask), kCentre);
-  const auto outline = [&] { return look_across_outline(window, kCentre, toy::lab_frame(wall, wall.colour, 1.0F)); };
+  ViewTemplate window = toy::remembered_view();
+  window.appearance = make_template_grid(wall, mask, cv::boundingRect(mask), kCentre);
+  const auto outline = [&] { return measure_boundary_continuation(window, kCentre, toy::lab_frame(wall, wall.colour, 1.0F)); };
   EXPECT_GT(outline().surface_goes_on(), 0.9F);
   EXPECT_GT(outline().colour_goes_on(), 0.9F);
   EXPECT_GT(outline().goes_on(), 0.9F);
@@ -163,9 +163,9 @@ TEST(ViewFit, APartOfALargerThingDoesNotEndAtTheOutline) {
   EXPECT_LT(outline().colour_goes_on(), 0.1F) << "another thing of its colour, behind it";
 }
 
-TEST(ViewFit, WhatHidesTheOutlineHasNoSayInWhereTheObjectEnds) {
+TEST(TemplateMatch, WhatHidesTheOutlineHasNoSayInWhereTheObjectEnds) {
   RgbdFrame frame = tile_frame();
-  const OutlineFit whole = outline_of(frame);
+  const BoundaryContinuation whole = outline_of(frame);
   const cv::Rect left(0, 0, frame.colour.cols / 2, frame.colour.rows);
   frame.depth(left).setTo(0.5F);
   frame.colour(left).setTo(cv::Scalar(0, 255, 0));
@@ -175,18 +175,18 @@ TEST(ViewFit, WhatHidesTheOutlineHasNoSayInWhereTheObjectEnds) {
   EXPECT_EQ(outline_of(frame).colour_goes_on(), 0.0F);
 }
 
-TEST(ViewFit, AViewMayBeTakenForOneOfALargerObject) {
+TEST(TemplateMatch, AViewMayBeTakenForOneOfALargerObject) {
   const RgbdFrame frame = tile_frame();
   const LabFrame lab = toy::lab_frame(frame, frame.colour, 1.0F);
-  const ViewFit own = fit_view(toy::remembered_view(), kCentre, lab);
-  const ViewFit resized = fit_view(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab, 2.0F);
+  const TemplateMatch own = match_template(toy::remembered_view(), kCentre, lab);
+  const TemplateMatch resized = match_template(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab, 2.0F);
   EXPECT_NEAR(resized.visible, own.visible, 0.01F);
   EXPECT_NEAR(resized.likeness, own.likeness, 0.01F);
   EXPECT_GT(box_iou(resized.visible_box_px, own.visible_box_px), 0.99F);
-  EXPECT_LT(fit_view(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab).likeness, own.likeness - 0.1F);
+  EXPECT_LT(match_template(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab).likeness, own.likeness - 0.1F);
 }
 
-TEST(ViewFit, LikenessIgnoresLightButNotPattern) {
+TEST(TemplateMatch, LikenessIgnoresLightButNotPattern) {
   RgbdFrame dim = tile_frame();
   dim.colour.convertTo(dim.colour, -1, 0.5, 20.0);
   EXPECT_GT(fit(dim).likeness, 0.75F);
@@ -201,7 +201,7 @@ TEST(ViewFit, LikenessIgnoresLightButNotPattern) {
   EXPECT_LT(fit(noise).likeness, 0.3F);
 }
 
-TEST(ViewFit, AnotherReliefIsUnevenWhereItIsStillNear) {
+TEST(TemplateMatch, AnotherReliefIsUnevenWhereItIsStillNear) {
   const float of_itself = fit(tile_frame()).unevenness;
   RgbdFrame flat = tile_frame();
   const cv::Mat mask = toy::training_views().front().mask;
@@ -211,7 +211,7 @@ TEST(ViewFit, AnotherReliefIsUnevenWhereItIsStillNear) {
   EXPECT_LE(fit(flat).unevenness, 1.0F);
 }
 
-TEST(ViewFit, ColoursAreAveragedOverNeighbours) {
+TEST(TemplateMatch, ColoursAreAveragedOverNeighbours) {
   const RgbdFrame frame = tile_frame();
   cv::Mat speck = cv::Mat(9, 9, CV_8UC3, cv::Scalar(90, 90, 90));
   speck.at<cv::Vec3b>(4, 4) = {180, 180, 180};
@@ -223,7 +223,7 @@ TEST(ViewFit, ColoursAreAveragedOverNeighbours) {
   EXPECT_EQ(in_lab.scale, 0.5F);
 }
 
-TEST(ViewFit, PrintThatIsFinerThanWhatIsRememberedIsAveraged) {
+TEST(TemplateMatch, PrintThatIsFinerThanWhatIsRememberedIsAveraged) {
   constexpr int kLarger = 4;
   RgbdFrame frame = tile_frame();
   const float of_itself = fit(frame).likeness;
@@ -241,15 +241,15 @@ TEST(ViewFit, PrintThatIsFinerThanWhatIsRememberedIsAveraged) {
   EXPECT_GT(fit(frame).likeness, of_itself - 0.15F);
 }
 
-TEST(ViewFit, OutsideTheFrameNothingIsCompared) {
-  const ViewFit result = fit(tile_frame(), {2.0F, 0.0F, kDistance});
+TEST(TemplateMatch, OutsideTheFrameNothingIsCompared) {
+  const TemplateMatch result = fit(tile_frame(), {2.0F, 0.0F, kDistance});
   EXPECT_EQ(result.visible + result.hidden + result.seen_through + result.unknown, 0.0F);
-  const OutlineFit outline = outline_of(tile_frame(), {2.0F, 0.0F, kDistance});
+  const BoundaryContinuation outline = outline_of(tile_frame(), {2.0F, 0.0F, kDistance});
   EXPECT_EQ(outline.surface_goes_on() + outline.colour_goes_on(), 0.0F);
   EXPECT_TRUE(result.visible_box_px.empty());
 }
 
-TEST(ViewFit, WhatLiesOutsideTheFrameHasNoSayInTheDepth) {
+TEST(TemplateMatch, WhatLiesOutsideTheFrameHasNoSayInTheDepth) {
   const TrainingView view = toy::training_views().front();
   const cv::Rect box = cv::boundingRect(view.mask);
   RgbdFrame frame = view.frame;  // of which a third of the object is left

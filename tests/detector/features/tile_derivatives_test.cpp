@@ -42,7 +42,7 @@ LightnessDerivatives lightness_derivatives(const TilePlane<std::uint8_t>& lightn
   for (auto& bytes : out.bytes) bytes.reset(part, lightness.margin() - 3);
   out.dx.reset(part, lightness.margin() - 1);
   out.dy.reset(part, lightness.margin() - 1);
-  derive_lightness(lightness, out);
+  differentiate_lightness(lightness, out);
   return out;
 }
 
@@ -134,7 +134,7 @@ DepthDerivatives depth_derivatives(const TilePlane<float>& depth, const SobelKer
   for (auto& bytes : out.bytes) bytes.reset(part, margin);
   out.dx.reset(part, margin);
   out.dy.reset(part, margin);
-  derive_depth(depth, kernels, kFocal, out);
+  differentiate_depth(depth, kernels, kFocal, out);
   return out;
 }
 
@@ -231,7 +231,7 @@ TEST(TileDerivatives, StepsOfDepthAreRoundedLimitedAndNoneWhereUnknown) {
   simd::with_every_target([&] {
     TilePlane<std::uint16_t> counted;
     counted.reset({35, 3}, 2);
-    count_steps(depth, 0.004F, counted);
+    quantise_depth(depth, 0.004F, counted);
     EXPECT_EQ(wrong_pixels(counted, [&](int x, int y) { return steps[place(x, y)]; }), 0);
   });
 }

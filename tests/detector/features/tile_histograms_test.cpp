@@ -26,7 +26,7 @@ std::vector<int> shares_of(float dx, float dy) {
   tile_dx.load(across, {});
   tile_dy.load(down, {});
   for (auto& bin : bins) bin.reset(across.size(), 2);
-  share_gradients(tile_dx, tile_dy, 1.0F, bins);
+  bin_gradients(tile_dx, tile_dy, 1.0F, bins);
   std::vector<int> steps;
   for (const auto& bin : bins) {
     steps.push_back(bin.row(1)[17]);
@@ -104,7 +104,7 @@ TEST(TileHistograms, AreThoseOfTheReadableFeatures) {
       tile_dx.load(dx, {});
       tile_dy.load(dy, {});
       for (auto& bin : bins) bin.reset(size, 3);
-      share_gradients(tile_dx, tile_dy, 8.0F, bins);
+      bin_gradients(tile_dx, tile_dy, 8.0F, bins);
       TilePlane<std::uint8_t> bytes;
       bytes.reset(size, 1);
       int wrong = 0;

@@ -26,7 +26,7 @@ TEST_P(TileTurn, ValuesOfAPixelLieSideBySideAndOtherPixelsStay) {
     hwy::SetSupportedTargetsForTest(target);
     hwy::GetChosenTarget().DeInit();  // the next call chooses anew
     FeatureImage image(50, 8, planes);
-    turn_planes(rows, part, image);
+    interleave_planes(rows, part, image);
     int wrong = 0;
     for (int y = 0; y < image.height(); ++y) {
       for (int x = 0; x < image.width(); ++x) {

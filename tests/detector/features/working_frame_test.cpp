@@ -80,11 +80,11 @@ TEST(WorkingImages, AreBroughtIntoTheToneAndTheFrameStays) {
 
 TEST(WorkingImages, ShowAsMuchOfASurfaceInAPixelWhateverTheLens) {
   const Camera usual{640, 480, 525.0, 525.0, 319.5, 239.5};
-  EXPECT_EQ(octaves_scale(usual), 1.0F);
-  EXPECT_EQ(octaves_scale({640, 480, 615.0, 615.0, 319.5, 239.5}), 1.0F);
-  EXPECT_EQ(octaves_scale({640, 480, 1066.8, 1067.5, 319.5, 239.5}), 0.5F);
-  EXPECT_EQ(octaves_scale({320, 240, 262.5, 262.5, 159.5, 119.5}), 2.0F);
-  EXPECT_EQ(octaves_scale({160, 120, 60.0, 60.0, 79.5, 59.5}), 2.0F) << "there is nothing more to see in it";
+  EXPECT_EQ(focal_octave_scale(usual), 1.0F);
+  EXPECT_EQ(focal_octave_scale({640, 480, 615.0, 615.0, 319.5, 239.5}), 1.0F);
+  EXPECT_EQ(focal_octave_scale({640, 480, 1066.8, 1067.5, 319.5, 239.5}), 0.5F);
+  EXPECT_EQ(focal_octave_scale({320, 240, 262.5, 262.5, 159.5, 119.5}), 2.0F);
+  EXPECT_EQ(focal_octave_scale({160, 120, 60.0, 60.0, 79.5, 59.5}), 2.0F) << "there is nothing more to see in it";
   FeatureSettings settings;
   const Camera tele = usual.scaled(2.0);
   ASSERT_EQ(feature_levels(settings, tele).size(), feature_levels(settings).size());
@@ -108,7 +108,7 @@ TEST(WorkingImages, AreThoseOfEachLevelForAnyNumberOfThreads) {
     }
     cv::Mat blurred;
     LabLevels lab;
-    averaged_lab(images.frames[0].colour, blurred, lab);
+    make_smoothed_lab(images.frames[0].colour, blurred, lab);
     for (std::size_t l = 0; l < lab.size(); ++l) EXPECT_EQ(cv::norm(images.lab[l], lab[l], cv::NORM_INF), 0.0);
   }
 }

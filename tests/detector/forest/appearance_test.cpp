@@ -8,8 +8,8 @@
 namespace houghstream {
 namespace {
 
-constexpr int kSide = Appearance::kSide;
-constexpr int kRim = Appearance::kRim;
+constexpr int kSide = TemplateGrid::kSide;
+constexpr int kRim = TemplateGrid::kRim;
 
 std::size_t cell(int column, int row) {
   return static_cast<std::size_t>(row * kSide + column);
@@ -18,7 +18,7 @@ std::size_t cell(int column, int row) {
 const Camera kCamera{80, 80, 100, 100, 39.5, 39.5};
 
 /// A 40 pixel wide square, its left half 10 mm nearer and red, its right half 10 mm farther and without depth below.
-Appearance square() {
+TemplateGrid square() {
   RgbdFrame view;
   view.camera = kCamera;
   view.colour = cv::Mat(80, 80, CV_8UC3, cv::Scalar(200, 200, 200));
@@ -30,44 +30,44 @@ Appearance square() {
   cv::Mat mask = cv::Mat::zeros(80, 80, CV_8UC1);
   const cv::Rect box(20, 20, 40, 40);
   mask(box).setTo(255);
-  return remember_appearance(view, mask, box, {0.0F, 0.0F, 1.0F});
+  return make_template_grid(view, mask, box, {0.0F, 0.0F, 1.0F});
 }
 
-TEST(Appearance, DepthIsRelativeToTheCentreInMillimetres) {
-  const Appearance seen = square();
+TEST(TemplateGrid, DepthIsRelativeToTheCentreInMillimetres) {
+  const TemplateGrid seen = square();
   EXPECT_EQ(seen.mm[cell(kRim, kRim)], -10);
   EXPECT_EQ(seen.mm[cell(kSide - 1 - kRim, kRim)], 10);
-  EXPECT_EQ(seen.mm[cell(kSide - 1 - kRim, kSide - 1 - kRim)], Appearance::kNoDepth);
-  EXPECT_EQ(seen.mm[cell(0, 0)], Appearance::kBeside);
+  EXPECT_EQ(seen.mm[cell(kSide - 1 - kRim, kSide - 1 - kRim)], TemplateGrid::kNoDepth);
+  EXPECT_EQ(seen.mm[cell(0, 0)], TemplateGrid::kBeside);
 }
 
-TEST(Appearance, TheRimKnowsTheNearestDepthOfTheObjectButNotBelow) {
-  const Appearance seen = square();
+TEST(TemplateGrid, TheRimKnowsTheNearestDepthOfTheObjectButNotBelow) {
+  const TemplateGrid seen = square();
   EXPECT_EQ(seen.beside[cell(0, 6)], -10);
   EXPECT_EQ(seen.beside[cell(kSide - 1, 6)], 10);
-  EXPECT_EQ(seen.beside[cell(kRim, kRim)], Appearance::kBeside);  // on the object
-  EXPECT_EQ(seen.beside[cell(6, kSide - 1)], Appearance::kBeside);
+  EXPECT_EQ(seen.beside[cell(kRim, kRim)], TemplateGrid::kBeside);  // on the object
+  EXPECT_EQ(seen.beside[cell(6, kSide - 1)], TemplateGrid::kBeside);
 }
 
 /// Both ends of each of the square's 20 rows and columns.
-TEST(Appearance, TheOutlineIsCrossedAtBothEndsOfEachLine) {
-  const Appearance seen = square();
+TEST(TemplateGrid, TheOutlineIsCrossedAtBothEndsOfEachLine) {
+  const TemplateGrid seen = square();
   EXPECT_EQ(seen.outline.size(), 80U);
   for (const OutlineCells& across : seen.outline) {
     const auto on = [&](const OutlineCells::Cell& at) {
-      return seen.mm[cell(at.column, at.row)] != Appearance::kBeside;
+      return seen.mm[cell(at.column, at.row)] != TemplateGrid::kBeside;
     };
     EXPECT_TRUE(on(across.inside));
     EXPECT_FALSE(on(across.beyond));
     const int apart =
         std::abs(across.inside.row - across.beyond.row) + std::abs(across.inside.column - across.beyond.column);
     EXPECT_EQ(apart, OutlineCells::kApart);
-    EXPECT_TRUE(across.gained_mm == 0 || across.gained_mm == Appearance::kNoDepth);
+    EXPECT_TRUE(across.gained_mm == 0 || across.gained_mm == TemplateGrid::kNoDepth);
   }
 }
 
 /// A strip, one cell wide, is all outline.
-TEST(Appearance, WhatIsTooNarrowHasFewerCrossings) {
+TEST(TemplateGrid, WhatIsTooNarrowHasFewerCrossings) {
   RgbdFrame view;
   view.camera = kCamera;
   view.colour = cv::Mat(80, 80, CV_8UC3, cv::Scalar(200, 200, 200));
@@ -75,14 +75,14 @@ TEST(Appearance, WhatIsTooNarrowHasFewerCrossings) {
   cv::Mat mask = cv::Mat::zeros(80, 80, CV_8UC1);
   mask(cv::Rect(38, 20, 2, 40)).setTo(255);
   const cv::Rect box(20, 20, 40, 40);
-  const Appearance seen = remember_appearance(view, mask, box, {0.0F, 0.0F, 1.0F});
+  const TemplateGrid seen = make_template_grid(view, mask, box, {0.0F, 0.0F, 1.0F});
   EXPECT_NE(seen.outline[0].inside.row, 0);
   EXPECT_NE(seen.outline[1].inside.row, 0);
   EXPECT_EQ(seen.outline[2].inside.row, 0) << "the strip's two ends only";
 }
 
 /// A plane that gains 5 mm a pixel to the right: 10 mm a cell.
-TEST(Appearance, TheOutlineKnowsWhatASlopeGains) {
+TEST(TemplateGrid, TheOutlineKnowsWhatASlopeGains) {
   RgbdFrame view;
   view.camera = kCamera;
   view.colour = cv::Mat(80, 80, CV_8UC3, cv::Scalar(200, 200, 200));
@@ -91,14 +91,14 @@ TEST(Appearance, TheOutlineKnowsWhatASlopeGains) {
   cv::Mat mask = cv::Mat::zeros(80, 80, CV_8UC1);
   const cv::Rect box(20, 20, 40, 40);
   mask(box).setTo(255);
-  const Appearance seen = remember_appearance(view, mask, box, {0.0F, 0.0F, 1.0F});
+  const TemplateGrid seen = make_template_grid(view, mask, box, {0.0F, 0.0F, 1.0F});
   for (const OutlineCells& across : seen.outline) {
     const int right = across.beyond.column - across.inside.column;
     EXPECT_NEAR(across.gained_mm, 10 * right, 1);
   }
 }
 
-TEST(Appearance, OffTheAxisReliefIsAsItLiesAcrossTheRay) {
+TEST(TemplateGrid, OffTheAxisReliefIsAsItLiesAcrossTheRay) {
   const Eigen::Vector3f centre(0.3F, 0.0F, 1.0F);
   RgbdFrame view;
   view.camera = {80, 80, 100, 100, 9.5, 39.5};  // the centre at pixel (39.5, 39.5)
@@ -113,14 +113,14 @@ TEST(Appearance, OffTheAxisReliefIsAsItLiesAcrossTheRay) {
   cv::Mat mask = cv::Mat::zeros(80, 80, CV_8UC1);
   const cv::Rect box(30, 30, 20, 20);
   mask(box).setTo(255);
-  const Appearance seen = remember_appearance(view, mask, box, centre);
+  const TemplateGrid seen = make_template_grid(view, mask, box, centre);
   for (int row = kRim; row < kSide - kRim; ++row) {
     for (int column = kRim; column < kSide - kRim; ++column) EXPECT_NEAR(seen.mm[cell(column, row)], 0, 2);
   }
 }
 
-TEST(Appearance, ColoursAreLab) {
-  const Appearance seen = square();
+TEST(TemplateGrid, ColoursAreLab) {
+  const TemplateGrid seen = square();
   EXPECT_GT(seen.lab[cell(kRim, kRim)][1], 170);                   // red
   EXPECT_NEAR(seen.lab[cell(kSide - 1 - kRim, kRim)][1], 128, 3);  // grey
 }

@@ -108,7 +108,7 @@ TEST_F(ForestFile, AnIndexThatPointsNowhereIsRefused) {
 TEST_F(ForestFile, AnOutlineBesideItsViewIsRefused) {
   Forest bad = forest;
   ASSERT_FALSE(bad.views.empty());
-  bad.views.back().appearance.outline[7].beyond.column = Appearance::kSide;
+  bad.views.back().appearance.outline[7].beyond.column = TemplateGrid::kSide;
   save_forest(bad, file);
   EXPECT_THROW(load_forest(file), InputError);
 }

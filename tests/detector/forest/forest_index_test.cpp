@@ -17,7 +17,7 @@ TEST(ForestIndex, LeafHeadsTellWhatALeafKnowsBestAndWhereItsClassesBegin) {
   const ForestIndex index(forest);
   std::vector<float> certainties;
   std::vector<std::uint32_t> firsts;
-  for (const LeafHead& head : index.leaf_heads()) {
+  for (const LeafSummary& head : index.leaf_summaries()) {
     certainties.push_back(head.certainty);
     firsts.push_back(head.first_class);
   }
@@ -26,8 +26,8 @@ TEST(ForestIndex, LeafHeadsTellWhatALeafKnowsBestAndWhereItsClassesBegin) {
 }
 
 /// A view of the class, turned by so many radians.
-TrainedView turned_view(std::uint32_t class_index, float angle_rad) {
-  TrainedView view;
+ViewTemplate turned_view(std::uint32_t class_index, float angle_rad) {
+  ViewTemplate view;
   view.class_index = class_index;
   view.R_ray_object = Eigen::AngleAxisf(angle_rad, Eigen::Vector3f::UnitY());
   return view;
@@ -49,7 +49,7 @@ TEST(ForestIndex, ViewsHaveTheNearestOfTheirClassAsNeighbours) {
 TEST(ForestIndex, AForestWithoutLeavesHasNoHeads) {
   const Forest forest;
   const ForestIndex index(forest);
-  EXPECT_TRUE(index.leaf_heads().empty());
+  EXPECT_TRUE(index.leaf_summaries().empty());
   EXPECT_TRUE(index.packed().nodes.empty());
   EXPECT_TRUE(index.view_neighbours().empty());
 }

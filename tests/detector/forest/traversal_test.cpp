@@ -16,7 +16,7 @@ namespace {
 /// All leaves of a grid, patch by patch, as find_leaves and, with a number of threads below 0, reference_leaves
 /// tell them. -1 for patches that were given up.
 std::vector<std::int32_t> leaves_of(const ForestIndex& index, const std::vector<FeatureImage>& features,
-                                    const PatchGrid& patches, int threads, const EarlyEnd& early_end = {}) {
+                                    const PatchGrid& patches, int threads, const EarlyRejection& early_end = {}) {
   const std::size_t trees = index.forest().roots.size();
   std::vector<PatchRun> runs;
   list_runs(patches, runs);
@@ -69,7 +69,7 @@ class Traversal : public ::testing::Test {
     std::size_t given_up = 0;
     for (std::size_t p = 0; p < patches.size(); ++p) {
       float sum = 0.0F;
-      for (int tree = 0; tree < trees; ++tree) sum += index.leaf_heads()[expected[p * all + tree]].certainty;
+      for (int tree = 0; tree < trees; ++tree) sum += index.leaf_summaries()[expected[p * all + tree]].certainty;
       if (sum >= share * static_cast<float>(trees)) continue;
       ++given_up;
       std::fill_n(expected.begin() + static_cast<std::ptrdiff_t>(p * all), all, -1);
@@ -130,9 +130,9 @@ TEST_F(Traversal, SoDoPatchesAtEveryPixelWithDepth) {
 
 TEST_F(Traversal, NobodyIsGivenUpAfterTheLastTree) {
   const int trees = static_cast<int>(forest.roots.size());
-  EXPECT_TRUE((EarlyEnd{trees - 1, 0.1F}.is_used(forest)));
-  EXPECT_FALSE((EarlyEnd{trees, 0.1F}.is_used(forest)));
-  EXPECT_FALSE((EarlyEnd{0, 0.1F}.is_used(forest)));
+  EXPECT_TRUE((EarlyRejection{trees - 1, 0.1F}.is_enabled(forest)));
+  EXPECT_FALSE((EarlyRejection{trees, 0.1F}.is_enabled(forest)));
+  EXPECT_FALSE((EarlyRejection{0, 0.1F}.is_enabled(forest)));
 }
 
 TEST(FeatureLevels, MeetWithoutAGap) {

@@ -44,8 +44,8 @@ Forest forest_of(int trees, float miss) {
 }
 
 std::vector<float> masses(const TrainingSet& set, const TrainingSettings& settings, Forest forest) {
-  calibrate_masses(set, settings, kSigma, forest);
-  return {forest.classes[0].expected_mass, forest.classes[1].expected_mass};
+  estimate_nominal_vote_mass(set, settings, kSigma, forest);
+  return {forest.classes[0].nominal_vote_mass, forest.classes[1].nominal_vote_mass};
 }
 
 TEST(Calibration, VotesThatHitTheCentreGiveTheVisibleAreaTimesTheProbability) {
@@ -92,7 +92,7 @@ Forest giving(float one, float other) {
   forest.classes.resize(2);
   forest.classes[0].class_id = 3;
   forest.classes[1].class_id = 8;
-  for (ObjectClass& object : forest.classes) object.expected_mass = 12.0F;
+  for (ObjectClass& object : forest.classes) object.nominal_vote_mass = 12.0F;
   forest.leaves = {0, 1, 2};
   forest.leaf_weights = {1.0F / one, 1.0F / other};
   forest.leaf_classes.resize(2);
@@ -104,9 +104,9 @@ Forest giving(float one, float other) {
 
 TEST(Calibration, MassesFollowTheProbabilitiesWhereOthersWereAdded) {
   Forest after = giving(0.4F, 0.2F);
-  carry_masses(giving(0.6F, 0.4F), after);
-  EXPECT_NEAR(after.classes[1].expected_mass, 12.0F * 0.3F / 0.5F, 1e-5F);
-  EXPECT_EQ(after.classes[0].expected_mass, 12.0F) << "of which no leaf knows anything";
+  rescale_nominal_vote_mass(giving(0.6F, 0.4F), after);
+  EXPECT_NEAR(after.classes[1].nominal_vote_mass, 12.0F * 0.3F / 0.5F, 1e-5F);
+  EXPECT_EQ(after.classes[0].nominal_vote_mass, 12.0F) << "of which no leaf knows anything";
 }
 
 }  // namespace

@@ -129,7 +129,7 @@ Forest new_forest() {
 TEST(MixIn, EveryObjectWeighsTheSameAndTheBackgroundStays) {
   const Forest old = old_forest();
   Forest forest = new_forest();
-  mix_in({&old, 0, mixture_of(2, 1, 4)}, 0.5F, forest);
+  merge_leaf({&old, 0, compute_mixture(2, 1, 4)}, 0.5F, forest);
   // half of the old leaf: 0.06 background; objects 0.03 and 0.01, two thirds of it; new: a third of 0.08
   const float total = 0.06F + 0.02F + 0.0066667F + 0.0266667F;
   ASSERT_EQ(forest.leaf_classes.size(), 3U);
@@ -142,7 +142,7 @@ TEST(MixIn, EveryObjectWeighsTheSameAndTheBackgroundStays) {
 
 TEST(MixIn, AmongManyANewObjectWeighsAsMuchAsAKnownOne) {
   for (const float known : {1.0F, 4.0F, 10.0F, 20.0F}) {
-    const Mixture mixture = mixture_of(known, 1.0F, 4.0F);
+    const LeafMixture mixture = compute_mixture(known, 1.0F, 4.0F);
     const float one_known = mixture.known / (known + std::min(known, 4.0F));  // of a forest of `known` objects
     const float one_new = mixture.added / 2.0F;                               // of one object and a background
     EXPECT_NEAR(one_known, one_new, 1e-6F) << known;
@@ -154,7 +154,7 @@ TEST(MixIn, AmongManyANewObjectWeighsAsMuchAsAKnownOne) {
 TEST(MixIn, VotesAndViewsComeAlong) {
   const Forest old = old_forest();
   Forest forest = new_forest();
-  mix_in({&old, 0, mixture_of(2, 1, 4)}, 1.0F, forest);
+  merge_leaf({&old, 0, compute_mixture(2, 1, 4)}, 1.0F, forest);
   const LeafClass& entry = forest.leaf_classes[2];
   EXPECT_EQ(entry.class_index, 1);
   ASSERT_LT(entry.first_vote, forest.votes.size());
@@ -167,7 +167,7 @@ TEST(MixIn, ALeafThatNothingNewReachesKeepsWhatItKnows) {
   const Forest old = old_forest();
   Forest forest;
   forest.leaves = {0};
-  EXPECT_EQ(copy_leaf({&old, 0, mixture_of(1, 1, 4)}, forest), 0);
+  EXPECT_EQ(copy_leaf({&old, 0, compute_mixture(1, 1, 4)}, forest), 0);
   ASSERT_EQ(forest.leaf_classes.size(), 2U);
   const float total = 0.12F + 0.03F + 0.01F;
   EXPECT_NEAR(forest.leaf_weights.back(), total, 1e-5F);

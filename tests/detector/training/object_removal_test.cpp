@@ -68,7 +68,7 @@ TEST(RemoveObject, NothingOfItIsLeftAndTheFileLoads) {
   const Forest forest = remove_object(both(), "stripes");
   EXPECT_LT(forest.votes.size(), both().votes.size());
   EXPECT_EQ(forest.nodes.size(), both().nodes.size());
-  for (const TrainedView& view : forest.views) EXPECT_EQ(view.class_index, 0U);
+  for (const ViewTemplate& view : forest.views) EXPECT_EQ(view.class_index, 0U);
   const auto file = std::filesystem::temp_directory_path() / "houghstream_object_removal_test";
   save_forest(forest, file);
   EXPECT_EQ(load_forest(file).views.size(), forest.views.size());

@@ -41,11 +41,11 @@ TEST(ScoreTraining, GivesAFullySeenObjectMuchAndNothingLittle) {
   const Toys toys;
   const Forest forest = with_score_trained(toys, train_forest(toys.views, toy::quick_profile(), [](auto&) {}), 2);
   Evidence whole;
-  whole.mass_share = 1.0F;
+  whole.relative_vote_mass = 1.0F;
   whole.fit.visible = 1.0F;
   whole.fit.likeness = 0.8F;
   Evidence wall;
-  wall.mass_share = 0.03F;
+  wall.relative_vote_mass = 0.03F;
   wall.fit.visible = 1.0F;
   wall.fit.continued = 1.0F;
   wall.other_size = 0.0F;  // it looks the same in any size
@@ -73,7 +73,7 @@ TEST(ScoreTraining, MissingDepthIsNoMarkOfTheBackground) {
   leave_depth_in_discs(toys.views);
   const Forest forest = with_score_trained(toys, train_forest(toys.views, toy::quick_profile(), [](auto&) {}), 2);
   Evidence dazzled;
-  dazzled.mass_share = 0.3F;
+  dazzled.relative_vote_mass = 0.3F;
   dazzled.fit.visible = 0.15F;
   dazzled.fit.unknown = 0.85F;
   dazzled.fit.likeness = 0.6F;
@@ -106,7 +106,7 @@ ValidationFrame tiles_in_a_room(int index, bool is_there) {
 
 Evidence of_a_tile() {
   Evidence evidence;
-  evidence.mass_share = 1.0F;
+  evidence.relative_vote_mass = 1.0F;
   evidence.fit.visible = 1.0F;
   evidence.fit.likeness = 0.8F;
   return evidence;

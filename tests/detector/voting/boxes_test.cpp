@@ -23,7 +23,7 @@ cv::Rect2f box_of(const cv::Rect& supported) {
     }
   }
   BoxMemory memory;
-  return backprojected_box(forest, hypothesis, patches, Camera{640, 480, 500, 500, 319.5, 239.5}, memory);
+  return backproject_box(forest, hypothesis, patches, Camera{640, 480, 500, 500, 319.5, 239.5}, memory);
 }
 
 TEST(Boxes, SidesMoveOutToTheRememberedOnesUnlessHidden) {
@@ -41,7 +41,7 @@ TEST(Boxes, SidesMoveOutToTheRememberedOnesUnlessHidden) {
 
 TEST(Boxes, WithoutSupportThereIsNoBox) {
   BoxMemory memory;
-  EXPECT_EQ(backprojected_box({}, {}, {}, toy::kSmallCamera, memory), cv::Rect2f());
+  EXPECT_EQ(backproject_box({}, {}, {}, toy::kSmallCamera, memory), cv::Rect2f());
 }
 
 Detection boxed(float score, float x) {

@@ -48,7 +48,7 @@ PatchPosteriors all_voting(const ForestIndex& index, const PatchGrid& patches) {
 
 std::vector<Hypothesis> find(const PatchGrid& patches, float least_mass) {
   Forest forest = centre_forest();
-  forest.classes[0].expected_mass = 1.0F;
+  forest.classes[0].nominal_vote_mass = 1.0F;
   const ForestIndex index(forest);
   const PatchPosteriors posteriors = all_voting(index, patches);
   VotingSettings settings;

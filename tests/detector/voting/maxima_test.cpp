@@ -69,11 +69,11 @@ TEST(Maxima, LowOnesAndTooManyAreNotLookedAt) {
 }
 
 TEST(Maxima, OfManyClassesFewerOfEachAreLookedAt) {
-  EXPECT_EQ(each_of(1, 24), 24);
-  EXPECT_EQ(each_of(4, 24), 24);
-  EXPECT_EQ(each_of(6, 24), 16);
-  EXPECT_EQ(each_of(40, 24), 6);
-  EXPECT_EQ(each_of(40, 5), 5) << "no more than asked for";
+  EXPECT_EQ(per_class_budget(1, 24), 24);
+  EXPECT_EQ(per_class_budget(4, 24), 24);
+  EXPECT_EQ(per_class_budget(6, 24), 16);
+  EXPECT_EQ(per_class_budget(40, 24), 6);
+  EXPECT_EQ(per_class_budget(40, 5), 5) << "no more than asked for";
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 const cv::Rect kBox(20, 10, 16, 12);
 
-TrueObject some_object() {
-  TrueObject object;
+GroundTruthObject some_object() {
+  GroundTruthObject object;
   object.object_id = 3;
   object.T_camera_object =
       Eigen::Translation3d(0.1, -0.2, 1.5) * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized());
@@ -50,7 +50,7 @@ TEST(BopScene, WhatIsWrittenIsReadBack) {
   EXPECT_TRUE(std::isnan(frame.depth.at<float>(0, 0)));
   EXPECT_EQ(frame.id.utime - scene.read_frame(9).id.utime, 33333);
   ASSERT_EQ(scene.images()[10].objects.size(), 1U);
-  const TrueObject& object = scene.images()[10].objects[0];
+  const GroundTruthObject& object = scene.images()[10].objects[0];
   EXPECT_EQ(object.object_id, 3);
   EXPECT_TRUE(object.has_pose);
   EXPECT_TRUE(object.T_camera_object.isApprox(some_object().T_camera_object, 1e-9));
@@ -61,9 +61,9 @@ TEST(BopScene, WhatIsWrittenIsReadBack) {
 
 TEST(BopScene, ObjectsMayHaveABoxOnlyOrNoBox) {
   const fs::path folder = fresh_folder("bop_box_only");
-  TrueObject box_only = some_object();
+  GroundTruthObject box_only = some_object();
   box_only.has_pose = false;
-  TrueObject hidden = some_object();
+  GroundTruthObject hidden = some_object();
   hidden.box_visible_px = {};
   hidden.visible_fraction = 0.0;
   BopWriter writer(folder);
@@ -138,7 +138,7 @@ TEST(BopScene, ObjectsOfAnImageThatIsNotThereAreRefused) {
 /// A scene with one object of this "rotation".
 fs::path scene_with_rotation(const Eigen::Matrix3d& R) {
   fs::path folder = fresh_folder("bop_rotation");
-  TrueObject object = some_object();
+  GroundTruthObject object = some_object();
   object.T_camera_object.linear() = R;
   BopWriter writer(folder);
   writer.add(plain_frame(), {object}, {});

@@ -23,8 +23,8 @@ RgbdFrame room_frame() {
   return frame;
 }
 
-TrueObject mug() {
-  TrueObject object;
+GroundTruthObject mug() {
+  GroundTruthObject object;
   object.object_id = 2;
   object.T_camera_object.translation() = Eigen::Vector3d(0.0, 0.0, 1.0);
   object.box_visible_px = kOwnBox;
@@ -88,7 +88,7 @@ TEST(BopTraining, ViewsWithoutDepthAreLeftOutAndNothingLeftIsAnError) {
 TEST(BopTraining, EachObjectOfAnImageIsAViewByItsOwnMask) {
   const fs::path folder = fresh_folder("training_crowd");
   const cv::Rect second_box(40, 150, 20, 24);
-  TrueObject cup = mug();
+  GroundTruthObject cup = mug();
   cup.object_id = 5;
   cup.T_camera_object.translation().z() = 2.0;
   BopWriter writer(folder);
@@ -110,9 +110,9 @@ TEST(BopTraining, EachObjectOfAnImageIsAViewByItsOwnMask) {
 
 TEST(BopTraining, WhatIsMostlyHiddenIsLeftOutOfACrowd) {
   const fs::path folder = fresh_folder("training_hidden");
-  TrueObject hidden = mug();
+  GroundTruthObject hidden = mug();
   hidden.object_id = 7;
-  hidden.visible_fraction = kTaughtVisibility - 0.01;
+  hidden.visible_fraction = kMinTrainingVisibility - 0.01;
   BopWriter writer(folder);
   const cv::Mat mask = box_mask(kOwnBox, kWidth, kHeight);
   writer.add(room_frame(), {hidden, mug()}, {mask, mask});

@@ -8,28 +8,28 @@
 namespace houghstream::openni {
 namespace {
 
-TEST(LastingThread, ItsEndIsTheWorksEndAndTheNextWorkGetsTheSameThread) {
+TEST(PersistentThread, ItsEndIsTheWorksEndAndTheNextWorkGetsTheSameThread) {
   std::thread::id first;
   std::thread::id second;
   {
-    const LastingThread work([&] { first = std::this_thread::get_id(); });
+    const PersistentThread work([&] { first = std::this_thread::get_id(); });
   }
   {
-    const LastingThread work([&] { second = std::this_thread::get_id(); });
+    const PersistentThread work([&] { second = std::this_thread::get_id(); });
   }
   EXPECT_NE(first, std::thread::id());
   EXPECT_NE(first, std::this_thread::get_id());
   EXPECT_EQ(first, second);
 }
 
-TEST(LastingThread, TwoWorksRunBesideEachOther) {
+TEST(PersistentThread, TwoWorksRunBesideEachOther) {
   std::promise<void> to_first;
   std::promise<void> to_second;
-  const LastingThread first([&] {
+  const PersistentThread first([&] {
     to_second.set_value();
     to_first.get_future().wait();
   });
-  const LastingThread second([&] {
+  const PersistentThread second([&] {
     to_second.get_future().wait();
     to_first.set_value();
   });

@@ -43,8 +43,8 @@ TEST(ObjectStore, WhatIsWrittenIsReadBack) {
 TEST(ObjectStore, AnObjectThatIsNotThereIsNamedBesideThoseThatAre) {
   const fs::path folder = whole_store("store_called");
   const ObjectStore store = read_store(folder);
-  EXPECT_EQ(object_called(store, "brick").id, 5);
-  EXPECT_EQ(error_of([&] { object_called(store, "drill"); }),
+  EXPECT_EQ(find_object(store, "brick").id, 5);
+  EXPECT_EQ(error_of([&] { find_object(store, "drill"); }),
             (folder / "store.json").string() + ": no 'drill', expected one of mug, brick");
 }
 

@@ -47,7 +47,7 @@ inline std::map<std::string, std::string> files_of(const std::filesystem::path& 
 
 /// The store becomes one of a mug and of `second`, as teaching does it.
 inline void exchange(const std::filesystem::path& folder, const std::string& second) {
-  StoreBuild build(folder);
+  StoreTransaction build(folder);
   fill_store(build.folder(), second);
   build.publish();
 }

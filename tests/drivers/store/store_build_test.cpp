@@ -18,10 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(StoreBuild, TheOldStoreStaysWholeUntilTheNewOneIs) {
+TEST(StoreTransaction, TheOldStoreStaysWholeUntilTheNewOneIs) {
   const fs::path folder = whole_store("store_swap");
   {
-    StoreBuild build(folder);
+    StoreTransaction build(folder);
     fill_store(build.folder(), "bowl");
     EXPECT_EQ(read_store(folder).objects[1].name, "brick") << "before it is published";
     build.publish();
@@ -30,67 +30,67 @@ TEST(StoreBuild, TheOldStoreStaysWholeUntilTheNewOneIs) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
 }
 
-TEST(StoreBuild, WhatIsGivenUpLeavesNothing) {
+TEST(StoreTransaction, WhatIsGivenUpLeavesNothing) {
   const fs::path folder = whole_store("store_given_up");
   {
-    StoreBuild build(folder);
+    StoreTransaction build(folder);
     write_text(build.folder() / "forest", "half");
   }
   EXPECT_EQ(read_store(folder).objects[1].name, "brick");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1);
 }
 
-TEST(StoreBuild, WhatAnInterruptedTeachingLeftIsRemoved) {
+TEST(StoreTransaction, WhatAnInterruptedTeachingLeftIsRemoved) {
   const fs::path folder = whole_store("store_interrupted");
   const fs::path left = folder.parent_path() / ".store.partial-99999999";
   fs::create_directories(left / "models");
-  const StoreBuild build(folder);
+  const StoreTransaction build(folder);
   EXPECT_FALSE(fs::exists(left));
   EXPECT_EQ(read_store(folder).objects[1].name, "brick");
   fs::remove_all(build.folder());
 }
 
-TEST(StoreBuild, AnOldStoreThatWasPutAsideComesBack) {
+TEST(StoreTransaction, AnOldStoreThatWasPutAsideComesBack) {
   const fs::path folder = whole_store("store_aside");
   fs::rename(folder, folder.parent_path() / ".store.before");
-  const StoreBuild build(folder);
+  const StoreTransaction build(folder);
   EXPECT_EQ(read_store(folder).objects[1].name, "brick");
 }
 
-TEST(StoreBuild, OneAtATimeAndNothingElseIsReplaced) {
+TEST(StoreTransaction, OneAtATimeAndNothingElseIsReplaced) {
   const fs::path folder = whole_store("store_alone");
-  const StoreBuild first(folder);
-  expect_says(error_of([&] { StoreBuild second(folder); }), {folder.string(), "another teaching"});
+  const StoreTransaction first(folder);
+  expect_says(error_of([&] { StoreTransaction second(folder); }), {folder.string(), "another teaching"});
   const fs::path other = fresh_folder("store_other");
   write_text(other / "holiday.jpg", "");
-  expect_says(error_of([&] { StoreBuild build(other); }), {other.string(), "not replaced"});
+  expect_says(error_of([&] { StoreTransaction build(other); }), {other.string(), "not replaced"});
   EXPECT_TRUE(fs::exists(other / "holiday.jpg"));
   EXPECT_NO_THROW(require_place_for_store(folder)) << "whoever works on it";
   expect_says(error_of([&] { require_place_for_store(other); }), {other.string(), "not replaced"});
   expect_says(error_of([&] { require_place_for_store("/dev/null/store"); }), {"/dev/null", "cannot be a folder"});
 }
 
-TEST(StoreBuild, AStoreJsonOfAnybodyElseMakesNoStore) {
+TEST(StoreTransaction, AStoreJsonOfAnybodyElseMakesNoStore) {
   const fs::path shop = fresh_folder("store_shop");
   write_text(shop / "store.json", "{\"opens\": 9}");
-  EXPECT_FALSE(may_be_replaced(shop));
-  expect_says(error_of([&] { StoreBuild build(shop); }), {shop.string(), "holds no store.json of an object store"});
+  EXPECT_FALSE(is_replaceable(shop));
+  expect_says(error_of([&] { StoreTransaction build(shop); }), {shop.string(), "holds no store.json of an object store"});
   const fs::path torn = whole_store("store_torn");
   const std::string text = read_text(torn / "store.json");
   write_text(torn / "store.json", text.substr(0, text.size() / 2));
-  EXPECT_TRUE(may_be_replaced(torn)) << "what is left of a store";
+  EXPECT_TRUE(is_replaceable(torn)) << "what is left of a store";
 }
 
-/// Of another process: says 'y' where it works on the store, else 'n', and works until `go_on` is closed.
-[[noreturn]] void begin_and_tell(const fs::path& folder, int told, int go_on) {
+/// Of another process: says 'y' where it works on the store, else 'n', and works until `accept_poor_model` is closed.
+[[noreturn]] void begin_and_tell(const fs::path& folder, int told, int accept_poor_model) {
   const auto tell = [&](char byte) {
     if (write(told, &byte, 1) != 1) _exit(2);
   };
   try {
-    const StoreBuild build(folder);
+    const StoreTransaction build(folder);
     tell('y');
     char byte = 0;
-    while (read(go_on, &byte, 1) > 0) continue;
+    while (read(accept_poor_model, &byte, 1) > 0) continue;
   } catch (const InputError&) {
     tell('n');
   } catch (...) {
@@ -99,27 +99,27 @@ TEST(StoreBuild, AStoreJsonOfAnybodyElseMakesNoStore) {
   _exit(0);
 }
 
-TEST(StoreBuild, OfManyThatBeginTogetherOneWorks) {
+TEST(StoreTransaction, OfManyThatBeginTogetherOneWorks) {
   constexpr int kMany = 8;
   const fs::path folder = whole_store("store_together");
   for (int round = 0; round < 20; ++round) {
     int told[2];
-    int go_on[2];
+    int accept_poor_model[2];
     ASSERT_EQ(pipe(told), 0);
-    ASSERT_EQ(pipe(go_on), 0);
+    ASSERT_EQ(pipe(accept_poor_model), 0);
     std::vector<pid_t> children;
     for (int i = 0; i < kMany; ++i) {
       const pid_t child = fork();
       if (child == 0) {
-        close(go_on[1]);
-        begin_and_tell(folder, told[1], go_on[0]);
+        close(accept_poor_model[1]);
+        begin_and_tell(folder, told[1], accept_poor_model[0]);
       }
       children.push_back(child);
     }
     close(told[1]);
     std::string answers;
     for (char byte = 0; static_cast<int>(answers.size()) < kMany && read(told[0], &byte, 1) == 1;) answers += byte;
-    for (const int file : {told[0], go_on[0], go_on[1]}) close(file);
+    for (const int file : {told[0], accept_poor_model[0], accept_poor_model[1]}) close(file);
     for (const pid_t child : children) waitpid(child, nullptr, 0);
     EXPECT_EQ(answers.size(), static_cast<std::size_t>(kMany)) << "round " << round;
     EXPECT_EQ(std::count(answers.begin(), answers.end(), 'y'), 1) << "round " << round;
@@ -127,7 +127,7 @@ TEST(StoreBuild, OfManyThatBeginTogetherOneWorks) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
 }
 
-TEST(StoreBuild, AStoreThatALinkNamesIsExchangedWhereItLies) {
+TEST(StoreTransaction, AStoreThatALinkNamesIsExchangedWhereItLies) {
   const fs::path folder = whole_store("store_linked");
   const fs::path link = folder.parent_path() / "link";
   fs::create_directory_symlink(folder, link);
@@ -136,21 +136,21 @@ TEST(StoreBuild, AStoreThatALinkNamesIsExchangedWhereItLies) {
   EXPECT_EQ(read_store(folder).objects[1].name, "bowl");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 2);
   fs::remove_all(folder);
-  expect_says(error_of([&] { StoreBuild build(link); }), {link.string(), "a symbolic link to nothing"});
+  expect_says(error_of([&] { StoreTransaction build(link); }), {link.string(), "a symbolic link to nothing"});
 }
 
-TEST(StoreBuild, WhoReadsBeforeItsChangesBringsTheOldOneBack) {
+TEST(StoreTransaction, WhoReadsBeforeItsChangesBringsTheOldOneBack) {
   const fs::path folder = whole_store("store_brought_back");
   const fs::path aside = folder.parent_path() / ".store.before";
   fs::rename(folder, aside);
-  bring_back_store(folder);
+  recover_store(folder);
   EXPECT_FALSE(fs::exists(aside));
   EXPECT_EQ(read_store(folder).objects[1].name, "brick");
-  bring_back_store(folder.parent_path() / "nowhere");
+  recover_store(folder.parent_path() / "nowhere");
   EXPECT_FALSE(fs::exists(folder.parent_path() / "nowhere")) << "nothing is made";
-  const StoreBuild at_work(folder);
+  const StoreTransaction at_work(folder);
   fs::rename(folder, aside);
-  expect_says(error_of([&] { bring_back_store(folder); }), {folder.string(), "another teaching"});
+  expect_says(error_of([&] { recover_store(folder); }), {folder.string(), "another teaching"});
   EXPECT_TRUE(fs::exists(aside)) << "he puts his own there in a moment";
 }
 
@@ -182,7 +182,7 @@ void expect_foreign_files(const fs::path& store) {
   EXPECT_EQ(fs::status(store / "recordings").permissions(), fs::perms(0750));
 }
 
-TEST(StoreBuild, SomebodysFilesInAStoreStay) {
+TEST(StoreTransaction, SomebodysFilesInAStoreStay) {
   const fs::path folder = whole_store("store_foreign");
   put_foreign_files(folder);
   for (const char* second : {"bowl", "plate", "dish"}) {
@@ -193,11 +193,11 @@ TEST(StoreBuild, SomebodysFilesInAStoreStay) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
 }
 
-TEST(StoreBuild, WhatIsWrittenIntoAStoreWhileANewOneIsMadeStays) {
+TEST(StoreTransaction, WhatIsWrittenIntoAStoreWhileANewOneIsMadeStays) {
   const fs::path folder = whole_store("store_foreign_late");
   fs::create_directories(folder / "recordings");
   std::ofstream growing(folder / "recordings" / "take.partial");
-  StoreBuild build(folder);
+  StoreTransaction build(folder);
   fill_store(build.folder(), "bowl");
   growing << "first " << std::flush;
   write_text(folder / "recordings" / "second", "late");
@@ -207,7 +207,7 @@ TEST(StoreBuild, WhatIsWrittenIntoAStoreWhileANewOneIsMadeStays) {
   EXPECT_EQ(read_text(folder / "recordings" / "second"), "late");
 }
 
-TEST(StoreBuild, PartsOfTheOldStoreDoNotStay) {
+TEST(StoreTransaction, PartsOfTheOldStoreDoNotStay) {
   const fs::path folder = whole_store("store_own_parts");
   write_text(folder / "models" / "obj_000009.ply", "of an object that was removed");
   write_text(folder / "models" / "obj_000009.png", "its texture");
@@ -219,7 +219,7 @@ TEST(StoreBuild, PartsOfTheOldStoreDoNotStay) {
     EXPECT_FALSE(fs::exists(folder / file)) << file;
 }
 
-TEST(StoreBuild, SomebodysFilesInWhatAnInterruptedTeachingLeftComeBack) {
+TEST(StoreTransaction, SomebodysFilesInWhatAnInterruptedTeachingLeftComeBack) {
   const fs::path folder = whole_store("store_foreign_left");
   const fs::path left = folder.parent_path() / ".store.partial-99999999";
   for (const fs::path& old : {left, folder.parent_path() / ".store.before"}) {
@@ -230,7 +230,7 @@ TEST(StoreBuild, SomebodysFilesInWhatAnInterruptedTeachingLeftComeBack) {
     write_text(old / "recordings" / (old.filename().string() + ".lcmlog"), "events");
   }
   write_text(left / "forest.partial", "half");
-  { const StoreBuild build(folder); }
+  { const StoreTransaction build(folder); }
   EXPECT_EQ(read_store(folder).objects[1].name, "brick");
   EXPECT_EQ(read_text(folder / "NOTES.txt"), "the handle faces left");
   EXPECT_EQ(read_text(folder / "recordings" / ".store.partial-99999999.lcmlog"), "events");
@@ -239,18 +239,18 @@ TEST(StoreBuild, SomebodysFilesInWhatAnInterruptedTeachingLeftComeBack) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
 }
 
-/// What a StoreBuild says of a store with a folder that takes no files, to a user who is not root.
+/// What a StoreTransaction says of a store with a folder that takes no files, to a user who is not root.
 std::string said_of_shut_folder() {
   const fs::path folder = whole_store("store_foreign_shut");
   fs::create_directories(folder / "recordings");
   fs::permissions(folder / "recordings", fs::perms(0500));
-  const std::string said = error_of([&] { const StoreBuild build(folder); });
+  const std::string said = error_of([&] { const StoreTransaction build(folder); });
   fs::permissions(folder / "recordings", fs::perms(0700));
-  const std::string later = error_of([&] { const StoreBuild build(folder); });
+  const std::string later = error_of([&] { const StoreTransaction build(folder); });
   return said + "\n" + later;
 }
 
-TEST(StoreBuild, WhatCannotBeTakenAlongIsRefusedBeforeTheWork) {
+TEST(StoreTransaction, WhatCannotBeTakenAlongIsRefusedBeforeTheWork) {
   constexpr uid_t kNobody = 65534;
   fs::remove_all(fresh_folder("store_foreign_shut"));
   int told[2];
@@ -273,7 +273,7 @@ TEST(StoreBuild, WhatCannotBeTakenAlongIsRefusedBeforeTheWork) {
   EXPECT_EQ(said.substr(std::min(end, said.size())), "\n") << "and then it is not";
 }
 
-TEST(StoreBuild, WhoeverIsKilledAtAnyMomentLeavesSomebodysFiles) {
+TEST(StoreTransaction, WhoeverIsKilledAtAnyMomentLeavesSomebodysFiles) {
   const fs::path folder = whole_store("store_foreign_killed");
   put_foreign_files(folder);
   for (int i = 0; i < 60; ++i) {
@@ -301,7 +301,7 @@ std::string second_of(const fs::path& folder) {
   return store.objects.at(1).name;
 }
 
-TEST(StoreBuild, WhoeverIsKilledAtAnyMomentLeavesAWholeStore) {
+TEST(StoreTransaction, WhoeverIsKilledAtAnyMomentLeavesAWholeStore) {
   const fs::path folder = whole_store("store_killed");
   int published = 0;
   for (int i = 0; i < 60; ++i) {

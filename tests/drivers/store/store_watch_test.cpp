@@ -22,7 +22,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPeriod(10);
 
 /// What is made of a store here: the name of its second object.
-using Second = StoreWatch<std::string>;
+using Second = StoreWatcher<std::string>;
 
 std::shared_ptr<const std::string> load_second(const ObjectStore& store) {
   load_store_meshes(store);
@@ -47,7 +47,7 @@ int count_of(const std::string& text, const std::string& words) {
   return count;
 }
 
-TEST(StoreWatch, WhatIsAddedRenamedAndRemovedIsThere) {
+TEST(StoreWatcher, WhatIsAddedRenamedAndRemovedIsThere) {
   const fs::path folder = whole_store("watch_change");
   Second watch(folder, load_second);
   watch.follow(kPeriod);
@@ -69,7 +69,7 @@ TEST(StoreWatch, WhatIsAddedRenamedAndRemovedIsThere) {
   EXPECT_EQ(*in_use, "brick") << "who uses the old one may finish";
 }
 
-TEST(StoreWatch, AChangeIsSaid) {
+TEST(StoreWatcher, AChangeIsSaid) {
   const fs::path folder = whole_store("watch_said");
   start_log("drivers_tests", LogLevel::kInfo);
   testing::internal::CaptureStderr();
@@ -83,7 +83,7 @@ TEST(StoreWatch, AChangeIsSaid) {
   EXPECT_NE(said.find("2 objects from here on; new: bowl; gone: brick"), std::string::npos) << said;
 }
 
-TEST(StoreWatch, LoadingDoesNotKeepAProcessFromEnding) {
+TEST(StoreWatcher, LoadingDoesNotKeepAProcessFromEnding) {
   const fs::path folder = whole_store("watch_end");
   std::atomic<int> done{0};
   {
@@ -104,7 +104,7 @@ TEST(StoreWatch, LoadingDoesNotKeepAProcessFromEnding) {
   EXPECT_LT(done, 2000) << "half a minute of work is given up";
 }
 
-TEST(StoreWatch, WithoutFollowingItStays) {
+TEST(StoreWatcher, WithoutFollowingItStays) {
   const fs::path folder = whole_store("watch_still");
   const Second watch(folder, load_second);
   exchange(folder, "bowl");
@@ -114,7 +114,7 @@ TEST(StoreWatch, WithoutFollowingItStays) {
       << "at the start a fault ends it";
 }
 
-TEST(StoreWatch, ABadOneKeepsTheOldAndIsSaidOnce) {
+TEST(StoreWatcher, ABadOneKeepsTheOldAndIsSaidOnce) {
   const fs::path folder = whole_store("watch_bad");
   start_log("drivers_tests", LogLevel::kInfo);
   testing::internal::CaptureStderr();
@@ -146,7 +146,7 @@ TEST(StoreWatch, ABadOneKeepsTheOldAndIsSaidOnce) {
   EXPECT_EQ(count_of(said, "2 objects from here on; new: bowl; gone: brick"), 1) << said;
 }
 
-TEST(StoreWatch, OneThatIsNotThereYetIsAwaited) {
+TEST(StoreWatcher, OneThatIsNotThereYetIsAwaited) {
   const fs::path folder = fresh_folder("watch_awaited") / "store";
   Second watch(folder, load_second);
   watch.follow(kPeriod);
@@ -161,7 +161,7 @@ TEST(StoreWatch, OneThatIsNotThereYetIsAwaited) {
   EXPECT_NE(error_of([&] { const Second none(folder / "no" / "such", load_second); }), "") << "nor could it be made";
 }
 
-TEST(StoreWatch, WhatCannotBeLoadedForAMomentIsTriedAgain) {
+TEST(StoreWatcher, WhatCannotBeLoadedForAMomentIsTriedAgain) {
   const fs::path folder = whole_store("watch_transient");
   start_log("drivers_tests", LogLevel::kInfo);
   testing::internal::CaptureStderr();
@@ -186,7 +186,7 @@ TEST(StoreWatch, WhatCannotBeLoadedForAMomentIsTriedAgain) {
   EXPECT_EQ(count_of(said, "Too many open files"), 1) << "the second time is not said: " << said;
 }
 
-TEST(StoreWatch, OneThatIsMissingIsSaidToBeMissingOnceMoreWithWhatLiesNear) {
+TEST(StoreWatcher, OneThatIsMissingIsSaidToBeMissingOnceMoreWithWhatLiesNear) {
   const fs::path folder = whole_store("watch_near");
   fs::rename(folder, folder.parent_path() / "my_store");
   fs::copy(folder.parent_path() / "my_store", folder.parent_path() / "old.store", fs::copy_options::recursive);
@@ -210,7 +210,7 @@ TEST(StoreWatch, OneThatIsMissingIsSaidToBeMissingOnceMoreWithWhatLiesNear) {
       << said;
 }
 
-TEST(StoreWatch, OfTwoStoresAtOnceNothingIsTaken) {
+TEST(StoreWatcher, OfTwoStoresAtOnceNothingIsTaken) {
   const fs::path folder = whole_store("watch_mixed");
   std::atomic<bool> exchanges{false};
   Second watch(folder, [&](const ObjectStore& store) {
@@ -225,7 +225,7 @@ TEST(StoreWatch, OfTwoStoresAtOnceNothingIsTaken) {
 }
 
 /// Frames at 30 Hz while stores are exchanged and loaded, which takes a third of a second: none waits for it.
-TEST(StoreWatch, NoFrameIsLostAndHardlyOnePassedOverWhileAStoreIsReplaced) {
+TEST(StoreWatcher, NoFrameIsLostAndHardlyOnePassedOverWhileAStoreIsReplaced) {
   const fs::path folder = whole_store("watch_stream");
   Second watch(folder, [](const ObjectStore& store) {
     std::this_thread::sleep_for(milliseconds(330));

@@ -33,7 +33,7 @@ class Files : public testing::Test {
 
 TEST_F(Files, AreWhatTheyWereUntilThePublishing) {
   put("old");
-  WholeFile whole(file);
+  AtomicFile whole(file);
   std::ofstream(whole.partial()) << "new";
   EXPECT_EQ(read_file(file, "text"), "old");
   whole.publish();
@@ -43,27 +43,27 @@ TEST_F(Files, AreWhatTheyWereUntilThePublishing) {
 
 TEST_F(Files, StayWhatTheyWereWhereItFails) {
   put("old");
-  { const WholeFile whole(file); }
+  { const AtomicFile whole(file); }
   EXPECT_EQ(read_file(file, "text"), "old");
   EXPECT_EQ(entries(), 1U) << "the partial file is left";
-  EXPECT_THROW(write_whole_file(folder / "no" / "such" / "folder", "text"), InputError);
-  EXPECT_THROW(write_whole_file(folder, "text"), InputError);
+  EXPECT_THROW(write_file_atomically(folder / "no" / "such" / "folder", "text"), InputError);
+  EXPECT_THROW(write_file_atomically(folder, "text"), InputError);
 }
 
 TEST_F(Files, ClearWhatAKilledProgramLeft) {
   std::ofstream(file.string() + ".partial") << "half of an earlier one, longer than what comes";
-  write_whole_file(file, "new");
+  write_file_atomically(file, "new");
   EXPECT_EQ(read_file(file, "text"), "new");
   EXPECT_EQ(entries(), 1U);
 }
 
 TEST_F(Files, HaveOneWriterAtATime) {
-  const WholeFile first(file);
-  EXPECT_THROW(WholeFile{file}, InputError);
+  const AtomicFile first(file);
+  EXPECT_THROW(AtomicFile{file}, InputError);
 }
 
 TEST_F(Files, MayBeKeptInParts) {
-  WholeFile whole(file);
+  AtomicFile whole(file);
   std::ofstream(whole.partial()) << "a half";
   whole.keep();
   EXPECT_EQ(read_file(file.string() + ".partial", "text"), "a half");
@@ -72,7 +72,7 @@ TEST_F(Files, MayBeKeptInParts) {
 TEST_F(Files, MayBeKeptWhereTheyCannotBePublished) {
   const std::string partial = file.string() + ".partial";
   {
-    WholeFile whole(file);
+    AtomicFile whole(file);
     std::ofstream(whole.partial()) << "cannot be had again";
     fs::create_directory(file);
     EXPECT_THROW(whole.publish(), InputError);
@@ -82,7 +82,7 @@ TEST_F(Files, MayBeKeptWhereTheyCannotBePublished) {
   EXPECT_EQ(read_file(partial, "text"), "cannot be had again");
   fs::remove(file);
   {
-    WholeFile whole(file);
+    AtomicFile whole(file);
     fs::create_directory(file);
     EXPECT_THROW(whole.publish(), InputError);
   }
@@ -94,7 +94,7 @@ TEST_F(Files, KeepLinksAndRights) {
   chmod(file.c_str(), 0640);
   const fs::path link = folder / "link";
   fs::create_symlink(file, link);
-  write_whole_file(link, "new");
+  write_file_atomically(link, "new");
   EXPECT_TRUE(fs::is_symlink(link));
   EXPECT_EQ(read_file(file, "text"), "new");
   struct stat is {};
@@ -106,15 +106,15 @@ TEST_F(Files, EmptyNothingThatALinkBesideThemNames) {
   const fs::path other = folder / "other";
   std::ofstream(other) << "of somebody";
   fs::create_symlink(other, file.string() + ".partial");
-  EXPECT_THROW(write_whole_file(file, "new"), InputError);
+  EXPECT_THROW(write_file_atomically(file, "new"), InputError);
   EXPECT_EQ(read_file(other, "text"), "of somebody");
   EXPECT_TRUE(fs::is_symlink(file.string() + ".partial"));
 }
 
 TEST_F(Files, NeverReplaceADevice) {
-  EXPECT_NO_THROW(write_whole_file("/dev/null", "text"));
+  EXPECT_NO_THROW(write_file_atomically("/dev/null", "text"));
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
-  EXPECT_THROW(write_whole_file("/dev/full", "text"), InputError);
+  EXPECT_THROW(write_file_atomically("/dev/full", "text"), InputError);
 }
 
 TEST_F(Files, AreNotTheirOwnSource) {

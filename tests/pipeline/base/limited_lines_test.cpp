@@ -7,9 +7,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(LimitedLines, OneASecondOfEachKindAndTheOthersAreCounted) {
-  LimitedLines lines;
-  const LimitedLines::Clock::time_point start{};
+TEST(LogThrottle, OneASecondOfEachKindAndTheOthersAreCounted) {
+  LogThrottle lines;
+  const LogThrottle::Clock::time_point start{};
   EXPECT_EQ(lines.admit("a", "first", start), "first");
   for (int i = 1; i <= 30; ++i) EXPECT_FALSE(lines.admit("a", "next", start + milliseconds(i)).has_value());
   EXPECT_EQ(lines.admit("b", "other", start + milliseconds(31)), "other");
@@ -19,8 +19,8 @@ TEST(LimitedLines, OneASecondOfEachKindAndTheOthersAreCounted) {
   EXPECT_EQ(lines.held_back(), 0);
 }
 
-TEST(LimitedLines, KindsWithoutEndAreOne) {
-  LimitedLines lines;
+TEST(LogThrottle, KindsWithoutEndAreOne) {
+  LogThrottle lines;
   int admitted = 0;
   for (int i = 0; i < 1000; ++i) admitted += lines.admit(std::to_string(i), "x", {}).has_value() ? 1 : 0;
   EXPECT_LT(admitted, 70);

@@ -72,7 +72,7 @@ TEST(ParallelFor, WhoWorksAloneGetsNoHelpers) {
     return ids;
   };
   {
-    const WorkAlone alone;
+    const SerialScope alone;
     EXPECT_EQ(threads_of(), std::set<std::thread::id>{std::this_thread::get_id()});
     std::thread other([&] { EXPECT_GT(threads_of().size(), 1U) << "other threads are not meant"; });
     other.join();
@@ -84,11 +84,11 @@ TEST(ParallelFor, WhoWorksAloneGivesUpWhereItIsOver) {
   int done = 0;
   const auto work = [&] { parallel_for(4, 64, [&](int) { ++done; }); };
   {
-    const WorkAlone alone([&] { return done == 3; });
-    EXPECT_THROW(work(), WorkGivenUp);
+    const SerialScope alone([&] { return done == 3; });
+    EXPECT_THROW(work(), WorkCancelled);
   }
   EXPECT_EQ(done, 3);
-  const WorkAlone alone;
+  const SerialScope alone;
   done = 0;
   work();
   EXPECT_EQ(done, 64);

@@ -22,7 +22,7 @@ class RecordingNames : public testing::Test {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
   }
   void record(Existing existing, const std::string& text) const {
-    WholeFile whole(file, kPartialEnding, existing);
+    AtomicFile whole(file, kPartialEnding, existing);
     write_text(whole.partial(), text);
     whole.publish();
   }
@@ -85,7 +85,7 @@ TEST_F(RecordingNames, ReplacingReplacesWhatIsFinishedAndNothingThatWasInterrupt
 }
 
 TEST_F(RecordingNames, AFileThatComesMeanwhileStays) {
-  WholeFile whole(file, kPartialEnding, Existing::kRecordingKept);
+  AtomicFile whole(file, kPartialEnding, Existing::kRecordingKept);
   write_text(whole.partial(), "recorded");
   write_text(file, "of somebody else");
   whole.publish();
@@ -104,7 +104,7 @@ TEST_F(RecordingNames, ALinkIsFollowedToWhatItNames) {
 }
 
 TEST_F(RecordingNames, ADeviceIsWrittenAsItIs) {
-  const WholeFile whole("/dev/null", kPartialEnding, Existing::kRecordingKept);
+  const AtomicFile whole("/dev/null", kPartialEnding, Existing::kRecordingKept);
   EXPECT_EQ(whole.partial(), "/dev/null");
 }
 

@@ -39,7 +39,7 @@ detections_t numbered(std::int64_t utime) {
 TEST(LcmBus, CarriesMessages) {
   LcmBus bus("memq://");
   std::int64_t seen = 0;
-  bus.subscribe("X", [&](const Arrival& arrival) { seen = decode_message<detections_t>(arrival.bytes).utime; });
+  bus.subscribe("X", [&](const ReceivedMessage& arrival) { seen = decode_message<detections_t>(arrival.bytes).utime; });
   bus.publish("X", numbered(42));
   EXPECT_TRUE(bus.handle(milliseconds(100)));
   EXPECT_EQ(seen, 42);
@@ -49,7 +49,7 @@ TEST(LcmBus, CarriesMessages) {
 TEST(LcmBus, ThrowingHandlersDoNotStopIt) {
   LcmBus bus("memq://");
   int calls = 0;
-  bus.subscribe("X", [&](const Arrival&) {
+  bus.subscribe("X", [&](const ReceivedMessage&) {
     ++calls;
     throw std::runtime_error("handler failed");
   });
@@ -63,7 +63,7 @@ TEST(LcmBus, ThrowingHandlersDoNotStopIt) {
 /// The channels, of those that hold messages, from which a subscriber of `pattern` gets them.
 std::string heard(LcmBus& bus, const std::string& pattern, const std::function<void()>& play) {
   std::string names;
-  bus.subscribe(pattern, [&](const Arrival& arrival) { names += arrival.channel + " "; });
+  bus.subscribe(pattern, [&](const ReceivedMessage& arrival) { names += arrival.channel + " "; });
   play();
   return names;
 }
@@ -102,7 +102,7 @@ TEST(LcmBus, AFloodOfBadMessagesIsNotLoggedLineByLine) {
   start_log("test", LogLevel::kInfo);
   {
     LcmBus bus("memq://");
-    bus.subscribe("X", [&](const Arrival&) { throw std::runtime_error("handler failed"); });
+    bus.subscribe("X", [&](const ReceivedMessage&) { throw std::runtime_error("handler failed"); });
     for (int i = 0; i < 50; ++i) {
       bus.publish("X", numbered(i));
       bus.handle(milliseconds(100));
@@ -217,7 +217,7 @@ TEST(LcmBus, WithoutAServerItWaitsAndCountsWhatIsNotSent) {
   testing::internal::CaptureStderr();
   start_log("test", LogLevel::kInfo);
   LcmBus bus("tcpq://127.0.0.1:1");
-  bus.subscribe("X", [](const Arrival&) {});
+  bus.subscribe("X", [](const ReceivedMessage&) {});
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < 12; ++i) {
     EXPECT_TRUE(bus.handle(milliseconds(50)));
@@ -235,7 +235,7 @@ TEST(LcmBus, WithoutAServerItWaitsAndCountsWhatIsNotSent) {
 TEST(LcmBus, AServerThatComesLaterIsFoundByWhoPublishesNothing) {
   TcpServer server(false);
   LcmBus bus(server.url());
-  bus.subscribe("X", [](const Arrival&) {});
+  bus.subscribe("X", [](const ReceivedMessage&) {});
   EXPECT_TRUE(bus.handle(milliseconds(10)));
   EXPECT_FALSE(bus.is_reachable());
   server.start();
@@ -250,7 +250,7 @@ TEST(LcmBus, FramesOnAnotherChannelAreNamed) {
   start_log("test", LogLevel::kInfo);
   LcmBus bus("memq://");
   int frames = 0;
-  bus.subscribe_to_frames("WANTED", [&](const Arrival&) { ++frames; });
+  bus.subscribe_to_frames("WANTED", [&](const ReceivedMessage&) { ++frames; });
   const images_t frame = to_message(make_test_frame(1), WireFormat{}, 1);
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
   while (std::chrono::steady_clock::now() < end) {
@@ -343,7 +343,7 @@ TEST(LcmBus, ReadsALogWithoutSkippingAndWritesAnother) {
   LcmBus bus("file://" + input.string() + "?speed=0", output.string());
   EXPECT_TRUE(bus.is_log());
   std::vector<std::int64_t> utimes;
-  bus.subscribe("X", [&](const Arrival& arrival) {
+  bus.subscribe("X", [&](const ReceivedMessage& arrival) {
     utimes.push_back(read_utime(arrival.bytes, arrival.channel));
     bus.publish("Z", numbered(utimes.back()));
   });
@@ -363,7 +363,7 @@ TEST(LcmBus, ReadsALogWithoutSkippingAndWritesAnother) {
   const auto size = std::filesystem::file_size(output);
   {
     LcmBus fruitless("file://" + input.string(), output.string());
-    fruitless.subscribe("NOTHING", [](const Arrival&) {});
+    fruitless.subscribe("NOTHING", [](const ReceivedMessage&) {});
     while (fruitless.handle(milliseconds(0))) {
     }
     try {

@@ -7,20 +7,20 @@
 namespace houghstream {
 namespace {
 
-std::string text_of(const std::optional<BusPlace>& place) {
+std::string text_of(const std::optional<Endpoint>& place) {
   return place ? place->address + " " + place->port : "none";
 }
 
 TEST(LcmUrl, LeadsWhereLcmGoes) {
-  EXPECT_EQ(text_of(multicast_group("udpm://239.1.2.3:4000?ttl=1")), "239.1.2.3 4000");
-  EXPECT_EQ(text_of(multicast_group("udpm://239.1.2.3")), "239.1.2.3 7667");
-  EXPECT_EQ(text_of(multicast_group("udpm://")), "239.255.76.67 7667");
-  EXPECT_EQ(text_of(multicast_group("udpm://?ttl=1")), "239.255.76.67 7667");
-  EXPECT_EQ(text_of(multicast_group("tcpq://10.0.0.2:7800")), "none");
-  EXPECT_EQ(text_of(tcp_server("tcpq://10.0.0.2:7800")), "10.0.0.2 7800");
-  EXPECT_EQ(text_of(tcp_server("tcpq://10.0.0.2")), "10.0.0.2 7700");
-  EXPECT_EQ(text_of(tcp_server("tcpq://")), "127.0.0.1 7700");
-  EXPECT_EQ(text_of(tcp_server("memq://")), "none");
+  EXPECT_EQ(text_of(parse_multicast_group("udpm://239.1.2.3:4000?ttl=1")), "239.1.2.3 4000");
+  EXPECT_EQ(text_of(parse_multicast_group("udpm://239.1.2.3")), "239.1.2.3 7667");
+  EXPECT_EQ(text_of(parse_multicast_group("udpm://")), "239.255.76.67 7667");
+  EXPECT_EQ(text_of(parse_multicast_group("udpm://?ttl=1")), "239.255.76.67 7667");
+  EXPECT_EQ(text_of(parse_multicast_group("tcpq://10.0.0.2:7800")), "none");
+  EXPECT_EQ(text_of(parse_tcp_server("tcpq://10.0.0.2:7800")), "10.0.0.2 7800");
+  EXPECT_EQ(text_of(parse_tcp_server("tcpq://10.0.0.2")), "10.0.0.2 7700");
+  EXPECT_EQ(text_of(parse_tcp_server("tcpq://")), "127.0.0.1 7700");
+  EXPECT_EQ(text_of(parse_tcp_server("memq://")), "none");
 }
 
 TEST(LcmUrl, OptionsAreWhatLcmTakesThemFor) {

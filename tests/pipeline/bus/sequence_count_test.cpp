@@ -24,21 +24,21 @@ class Arrivals {
   }
   void pass(std::int64_t us) { now_us_ += us; }
 
-  SequenceCount count;
+  SequenceTracker count;
   std::int64_t received = 0;
 
  private:
   std::int64_t now_us_ = 0;
 };
 
-TEST(SequenceCount, GapsAreLost) {
+TEST(SequenceTracker, GapsAreLost) {
   Arrivals arrivals;
   EXPECT_EQ(arrivals.count.lost(), std::nullopt) << "without a number it cannot be told";
   for (const std::int64_t number : {5, 6, 9, 10}) EXPECT_EQ(arrivals.come(number), FrameOrder::kNext);
   EXPECT_EQ(arrivals.count.lost(), 2);
 }
 
-TEST(SequenceCount, WhatIsOvertakenIsLostUntilItComes) {
+TEST(SequenceTracker, WhatIsOvertakenIsLostUntilItComes) {
   Arrivals arrivals;
   for (const std::int64_t number : {0, 1, 4}) arrivals.come(number);
   EXPECT_EQ(arrivals.count.lost(), 2);
@@ -48,7 +48,7 @@ TEST(SequenceCount, WhatIsOvertakenIsLostUntilItComes) {
   EXPECT_EQ(arrivals.count.lost(), 0);
 }
 
-TEST(SequenceCount, WhatComesTwiceCountsOnce) {
+TEST(SequenceTracker, WhatComesTwiceCountsOnce) {
   Arrivals arrivals;
   for (const std::int64_t number : {0, 1, 2}) arrivals.come(number);
   EXPECT_EQ(arrivals.come(2), FrameOrder::kDuplicate);
@@ -57,7 +57,7 @@ TEST(SequenceCount, WhatComesTwiceCountsOnce) {
   EXPECT_EQ(arrivals.count.lost(), 0);
 }
 
-TEST(SequenceCount, ForgedNumbersLoseNothing) {
+TEST(SequenceTracker, ForgedNumbersLoseNothing) {
   Arrivals arrivals;
   const std::int64_t largest = std::numeric_limits<std::int64_t>::max();
   for (std::int64_t number = 0; number < 300; ++number) {
@@ -72,7 +72,7 @@ TEST(SequenceCount, ForgedNumbersLoseNothing) {
   EXPECT_EQ(arrivals.count.lost(), 0);
 }
 
-TEST(SequenceCount, ALongSilenceIsALoss) {
+TEST(SequenceTracker, ALongSilenceIsALoss) {
   Arrivals arrivals;
   arrivals.come(0);
   arrivals.come(5000);
@@ -81,7 +81,7 @@ TEST(SequenceCount, ALongSilenceIsALoss) {
   EXPECT_EQ(arrivals.count.lost(), 4999);
 }
 
-TEST(SequenceCount, ASenderThatIsStartedAgainLosesNothingByIt) {
+TEST(SequenceTracker, ASenderThatIsStartedAgainLosesNothingByIt) {
   for (const std::int64_t frames : {20, 200}) {
     for (const std::int64_t start : {0, 7'000'000}) {  // of a dataset the times are the same again
       Arrivals arrivals;
@@ -102,7 +102,7 @@ TEST(SequenceCount, ASenderThatIsStartedAgainLosesNothingByIt) {
 }
 
 // Sent = received + lost, whatever the way does to them.
-TEST(SequenceCount, IsExactUnderLossReorderingDuplicatesForgeriesAndRestarts) {
+TEST(SequenceTracker, IsExactUnderLossReorderingDuplicatesForgeriesAndRestarts) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     std::mt19937 random(seed);
     Arrivals arrivals;
@@ -129,7 +129,7 @@ TEST(SequenceCount, IsExactUnderLossReorderingDuplicatesForgeriesAndRestarts) {
 }
 
 // The same with numbers closer by; whether one that a lost frame had is forged nobody can know.
-TEST(SequenceCount, IsExactWhereForgeriesLieCloseBy) {
+TEST(SequenceTracker, IsExactWhereForgeriesLieCloseBy) {
   const std::vector<std::int64_t> forged = {0, 1, 450, 470, 700, 99'000, 1'000'000, 1'000'000'000'000'000};
   for (unsigned seed = 1; seed <= 300; ++seed) {
     std::mt19937 random(seed);
@@ -155,19 +155,19 @@ TEST(SequenceCount, IsExactWhereForgeriesLieCloseBy) {
 }
 
 // A damaged log's events may be dated anyhow.
-TEST(SequenceCount, ArrivalsMayBeAsFarApartAsNumbersCanTell) {
+TEST(SequenceTracker, ArrivalsMayBeAsFarApartAsNumbersCanTell) {
   constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
-  SequenceCount count;
+  SequenceTracker count;
   EXPECT_EQ(count.note({5, 1, 0}, kFirst), FrameOrder::kNext);
   EXPECT_NE(count.note({5, 1, 0}, kLast), FrameOrder::kDuplicate);
 }
 
-TEST(RepeatedMessages, AreTheSameBytesOfTheSameFrameSoonAfter) {
-  RepeatedMessages repeats;
+TEST(DuplicateFilter, AreTheSameBytesOfTheSameFrameSoonAfter) {
+  DuplicateFilter repeats;
   const std::vector<std::uint8_t> a = {1, 2, 3};
   const std::vector<std::uint8_t> b = {1, 2, 4};
-  const RepeatedMessages::Clock::time_point start{};
+  const DuplicateFilter::Clock::time_point start{};
   const auto soon = start + std::chrono::microseconds(10);
   EXPECT_FALSE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), start));
   EXPECT_TRUE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), soon));

@@ -75,7 +75,7 @@ TEST(StatusReporter, AFloodOfErrorsIsCountedAndSaidOnceASecondOfEachKind) {
 TEST(StatusReporter, IsPublishedOnceASecond) {
   LcmBus bus("memq://");
   int seen = 0;
-  bus.subscribe(channel::kStatus, [&](const Arrival& arrival) {
+  bus.subscribe(channel::kStatus, [&](const ReceivedMessage& arrival) {
     EXPECT_EQ(decode_message<status_t>(arrival.bytes).process, "hs-test");
     ++seen;
   });
@@ -112,7 +112,7 @@ TEST(StatusReporter, AnErrorThatQuotesAMessageIsCut) {
   StatusReporter status("test");
   status.count_refused(std::string(100'000, 'x'));
   EXPECT_EQ(status.message().last_error, std::string(1000, 'x') + "...");
-  status.remember_error(std::string(100'000, 'y'));
+  status.set_last_error(std::string(100'000, 'y'));
   EXPECT_EQ(status.message().last_error, std::string(1000, 'y') + "...");
 }
 

@@ -193,7 +193,7 @@ TEST(Renderer, ThePartThatShowsAMeshHasTheWholeImagesDepthBitForBit) {
     T_camera_object.translation() = place;
     T_camera_object.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
     const cv::Mat whole = render_depth(mesh, T_camera_object, kVga, cv::Rect(0, 0, kVga.width, kVga.height));
-    const RenderedPart part = render_depth_part(mesh, T_camera_object, kVga);
+    const RenderedRegion part = render_depth_region(mesh, T_camera_object, kVga);
     ASSERT_EQ(part.depth.size(), part.region_px.size()) << place.transpose();
     cv::Mat placed(whole.size(), CV_32FC1, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
     if (!part.depth.empty()) part.depth.copyTo(placed(part.region_px));

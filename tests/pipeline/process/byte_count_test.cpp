@@ -10,32 +10,32 @@
 namespace houghstream {
 namespace {
 
-TEST(ByteCount, CountsWhileItIsHeld) {
-  ByteCount count;
+TEST(ByteBudget, CountsWhileItIsHeld) {
+  ByteBudget count;
   {
-    const ByteCount::Held some = count.hold(3);
-    const ByteCount::Held more = count.hold(4);
+    const ByteBudget::Held some = count.hold(3);
+    const ByteBudget::Held more = count.hold(4);
     EXPECT_EQ(some.bytes(), 3U);
     EXPECT_EQ(count.total(), 7U);
   }
   EXPECT_EQ(count.total(), 0U);
-  EXPECT_EQ(ByteCount::Held().bytes(), 0U);
+  EXPECT_EQ(ByteBudget::Held().bytes(), 0U);
 }
 
-TEST(ByteCount, MovesWithItsItem) {
-  ByteCount count;
-  ByteCount::Held first = count.hold(3);
+TEST(ByteBudget, MovesWithItsItem) {
+  ByteBudget count;
+  ByteBudget::Held first = count.hold(3);
   {
-    const ByteCount::Held taken = std::move(first);
+    const ByteBudget::Held taken = std::move(first);
     EXPECT_EQ(taken.bytes(), 3U);
     EXPECT_EQ(count.total(), 3U);
   }
   EXPECT_EQ(count.total(), 0U);
 }
 
-TEST(ByteCount, IsGivenBackByWhatIsReplaced) {
-  ByteCount count;
-  std::map<std::string, ByteCount::Held> items;
+TEST(ByteBudget, IsGivenBackByWhatIsReplaced) {
+  ByteBudget count;
+  std::map<std::string, ByteBudget::Held> items;
   items.insert_or_assign("LEFT", count.hold(3));
   items.insert_or_assign("LEFT", count.hold(5));
   EXPECT_EQ(count.total(), 5U);
@@ -45,9 +45,9 @@ TEST(ByteCount, IsGivenBackByWhatIsReplaced) {
   EXPECT_EQ(count.total(), 0U);
 }
 
-TEST(ByteCount, IsGivenBackByWhatIsDropped) {
-  ByteCount count;
-  std::deque<ByteCount::Held> items;
+TEST(ByteBudget, IsGivenBackByWhatIsDropped) {
+  ByteBudget count;
+  std::deque<ByteBudget::Held> items;
   for (const unsigned bytes : {1U, 2U, 4U, 8U, 16U}) items.push_back(count.hold(bytes));
   items.pop_front();
   EXPECT_EQ(count.total(), 30U);

@@ -109,7 +109,7 @@ TEST(DetectProcess, FramesOfALogAreKeptWhereAskedEachBeforeItsResult) {
 TEST(DetectProcess, ABudgetSkipsFramesUntilSomethingThatWasFollowedIsLost) {
   ProcessOnMemq test({channel::kDetections, channel::kStatus});
   DetectProcessOptions options;
-  options.looks_per_second = 1.0;
+  options.max_rate_hz = 1.0;
   test.start([&](LcmBus& bus) { run_detect_process(bus, options, find_nothing); });
   const auto send = [&](std::int64_t utime) {
     test.bus.publish(channel::kFrame, frame_message(utime, utime));

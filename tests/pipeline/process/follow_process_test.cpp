@@ -153,16 +153,16 @@ TEST(FollowProcess, OneCameraTooManyIsRefusedAndNotFollowed) {
   PoseProcessOptions options;
   options.frame_channels = "CAMERA_.*";
   test.start([&](LcmBus& bus) { run_follow_process(bus, options, fake()); });
-  for (std::size_t i = 0; i < PairInbox::kCameras; ++i) {
+  for (std::size_t i = 0; i < FrameSynchroniser::kCameras; ++i) {
     test.bus.publish(fmt::format("CAMERA_{}", i), frame_message(1));
     ASSERT_TRUE(test.wait_for(channel::kPoses, i + 1));
   }
   test.bus.publish("CAMERA_TOO_MANY", frame_message(1));
   std::this_thread::sleep_for(milliseconds(200));
   test.stop();
-  EXPECT_EQ(test.count(channel::kPoses), PairInbox::kCameras);
+  EXPECT_EQ(test.count(channel::kPoses), FrameSynchroniser::kCameras);
   const auto status = test.last<status_t>(channel::kStatus);
-  EXPECT_EQ(status.frames_received, static_cast<std::int64_t>(PairInbox::kCameras) + 1);
+  EXPECT_EQ(status.frames_received, static_cast<std::int64_t>(FrameSynchroniser::kCameras) + 1);
   EXPECT_EQ(status.frames_refused, 1);
   EXPECT_EQ(status.frames_processed + status.frames_skipped + status.frames_refused, status.frames_received);
 }

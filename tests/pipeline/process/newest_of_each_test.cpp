@@ -9,8 +9,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(NewestOfEach, TheNewestWinsAndWhatIsPassedOverIsTold) {
-  NewestOfEach<int> slot;
+TEST(LatestPerChannel, TheNewestWinsAndWhatIsPassedOverIsTold) {
+  LatestPerChannel<int> slot;
   EXPECT_FALSE(slot.put("A", 1));
   EXPECT_TRUE(slot.put("A", 2));
   EXPECT_TRUE(slot.put("A", 3));
@@ -19,8 +19,8 @@ TEST(NewestOfEach, TheNewestWinsAndWhatIsPassedOverIsTold) {
   EXPECT_FALSE(slot.put("A", 4));
 }
 
-TEST(NewestOfEach, EveryItemIsTakenOrPassedOver) {
-  NewestOfEach<int> slot;
+TEST(LatestPerChannel, EveryItemIsTakenOrPassedOver) {
+  LatestPerChannel<int> slot;
   constexpr int kItems = 20000;
   int passed_over = 0;
   std::thread sender([&] {
@@ -39,8 +39,8 @@ TEST(NewestOfEach, EveryItemIsTakenOrPassedOver) {
   EXPECT_EQ(taken + passed_over, kItems);
 }
 
-TEST(NewestOfEach, AFastChannelDoesNotStarveASlowOne) {
-  NewestOfEach<int> slots;
+TEST(LatestPerChannel, AFastChannelDoesNotStarveASlowOne) {
+  LatestPerChannel<int> slots;
   EXPECT_FALSE(slots.put("SLOW", 1));
   EXPECT_FALSE(slots.put("FAST", 10));
   for (int i = 11; i < 20; ++i) EXPECT_TRUE(slots.put("FAST", i));
@@ -53,33 +53,33 @@ TEST(NewestOfEach, AFastChannelDoesNotStarveASlowOne) {
   EXPECT_EQ(slots.waiting(), 0U);
 }
 
-TEST(NewestOfEach, WhatWasOvertakenGivesWay) {
-  NewestOfEach<int> slot;
+TEST(LatestPerChannel, WhatWasOvertakenGivesWay) {
+  LatestPerChannel<int> slot;
   slot.put("A", 3);
-  EXPECT_TRUE(slot.put_late("A", 2)) << "the newer one waits";
+  EXPECT_TRUE(slot.push_late("A", 2)) << "the newer one waits";
   EXPECT_EQ(slot.take(milliseconds(0)), 3);
-  EXPECT_FALSE(slot.put_late("A", 2));
+  EXPECT_FALSE(slot.push_late("A", 2));
   EXPECT_EQ(slot.take(milliseconds(0)), 2);
 }
 
-TEST(NewestOfEach, HoldsAFewChannelsOnly) {
-  NewestOfEach<int> slot;
-  for (std::size_t i = 0; i < NewestOfEach<int>::kChannels; ++i) EXPECT_FALSE(slot.put(std::to_string(i), 1));
+TEST(LatestPerChannel, HoldsAFewChannelsOnly) {
+  LatestPerChannel<int> slot;
+  for (std::size_t i = 0; i < LatestPerChannel<int>::kChannels; ++i) EXPECT_FALSE(slot.put(std::to_string(i), 1));
   EXPECT_TRUE(slot.put("one more", 1));
   EXPECT_TRUE(slot.put("0", 2));
-  EXPECT_EQ(slot.waiting(), NewestOfEach<int>::kChannels);
+  EXPECT_EQ(slot.waiting(), LatestPerChannel<int>::kChannels);
 }
 
-TEST(NewestOfEach, LargeItemsOfManyChannelsAreKeptWithinABound) {
-  constexpr std::size_t kBytes = NewestOfEach<int>::kBytes;
-  NewestOfEach<int> slots;
+TEST(LatestPerChannel, LargeItemsOfManyChannelsAreKeptWithinABound) {
+  constexpr std::size_t kBytes = LatestPerChannel<int>::kBytes;
+  LatestPerChannel<int> slots;
   EXPECT_FALSE(slots.put("A", 1, 2 * kBytes)) << "one alone may be as large as it is";
   EXPECT_TRUE(slots.put("B", 2, 1));
   EXPECT_TRUE(slots.put("A", 3, kBytes - 1)) << "the one before gives way";
   EXPECT_FALSE(slots.put("B", 4, 1));
-  EXPECT_TRUE(slots.put_late("C", 5, 1));
+  EXPECT_TRUE(slots.push_late("C", 5, 1));
   EXPECT_EQ(slots.take(milliseconds(0)), 3);
-  EXPECT_FALSE(slots.put_late("C", 6, kBytes - 1));
+  EXPECT_FALSE(slots.push_late("C", 6, kBytes - 1));
   EXPECT_EQ(slots.take(milliseconds(0)), 4);
   EXPECT_EQ(slots.take(milliseconds(0)), 6);
 }

@@ -17,8 +17,8 @@ ObjectPoses poses(const FrameId& frame, const std::string& object) {
   return {frame, {pose}, {}};
 }
 
-TEST(PoseMemory, TheLastPosesOfTheCameraWhateverTheOtherOneSaw) {
-  PoseMemory memory;
+TEST(PoseHistory, TheLastPosesOfTheCameraWhateverTheOtherOneSaw) {
+  PoseHistory memory;
   EXPECT_TRUE(memory.before(detections({"LEFT", 1}, "mug")).poses.empty());
   memory.keep(poses({"LEFT", 1}, "mug"));
   memory.keep(poses({"RIGHT", 1}, "bowl"));
@@ -28,8 +28,8 @@ TEST(PoseMemory, TheLastPosesOfTheCameraWhateverTheOtherOneSaw) {
   EXPECT_EQ(memory.before(detections({"LEFT", 3}, "mug")).frame.utime, 2) << "one detector: the last ones, as they are";
 }
 
-TEST(PoseMemory, EachOfTwoDetectorsGoesOnFromItsOwnLastPoses) {
-  PoseMemory memory;
+TEST(PoseHistory, EachOfTwoDetectorsGoesOnFromItsOwnLastPoses) {
+  PoseHistory memory;
   for (std::int64_t utime = 1; utime <= 2; ++utime) {
     memory.keep(poses({"LEFT", utime}, "mug"));
     memory.keep(poses({"LEFT", utime}, "bowl"));

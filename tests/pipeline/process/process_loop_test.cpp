@@ -43,7 +43,7 @@ TEST(ProcessLoop, EveryEventOfALogIsWorkedOnBeforeTheNextIsRead) {
   std::vector<int> waiting;
   int events = 0;
   int worked = 0;
-  bus.subscribe("X", [&](const Arrival&) { ++events; });
+  bus.subscribe("X", [&](const ReceivedMessage&) { ++events; });
   run_process_loop(bus, status, [&](milliseconds) {
     if (worked == events) return false;
     waiting.push_back(events - worked++);
@@ -82,7 +82,7 @@ TEST(ProcessLoop, OnANetworkReceivingGoesOnWhileWorkTakesItsTime) {
   ProcessOnMemq test({channel::kStatus});
   std::atomic<int> received{0};
   std::atomic<int> received_during_work{0};
-  test.bus.subscribe("X", [&](const Arrival&) { ++received; });
+  test.bus.subscribe("X", [&](const ReceivedMessage&) { ++received; });
   StatusReporter status("test");
   test.start([&](LcmBus& bus) {
     run_process_loop(bus, status, [&](milliseconds) {

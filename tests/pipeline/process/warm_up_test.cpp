@@ -8,7 +8,7 @@ namespace houghstream {
 namespace {
 
 TEST(WarmUp, TheFrameIsAWholeOneWithDepthEverywhere) {
-  const RgbdFrame frame = frame_to_warm_up();
+  const RgbdFrame frame = make_warm_up_frame();
   EXPECT_NO_THROW(check_frame(frame, "test"));
   double nearest = 0.0;
   double farthest = 0.0;
@@ -19,16 +19,16 @@ TEST(WarmUp, TheFrameIsAWholeOneWithDepthEverywhere) {
 }
 
 TEST(WarmUp, IsTheSameInAThreadOfItsOwn) {
-  const RgbdFrame frame = frame_to_warm_up();
-  const RgbdFrame other = begin_to_warm_up().get();
+  const RgbdFrame frame = make_warm_up_frame();
+  const RgbdFrame other = start_warm_up().get();
   EXPECT_EQ(cv::norm(frame.colour, other.colour, cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::norm(frame.depth, other.depth, cv::NORM_INF), 0.0);
 }
 
 TEST(WarmUp, NoFewerThreadsThanTheWorkIsGiven) {
-  EXPECT_GE(threads_to_start(1), 1);
-  EXPECT_LE(threads_to_start(1), 8);
-  EXPECT_EQ(threads_to_start(40), 40);
+  EXPECT_GE(warm_up_threads(1), 1);
+  EXPECT_LE(warm_up_threads(1), 8);
+  EXPECT_EQ(warm_up_threads(40), 40);
 }
 
 }  // namespace

@@ -38,10 +38,10 @@ TEST(FrameResults, OneResultIsWhatItIs) {
   FrameResults results;
   EXPECT_FALSE(results.joined().has_value());
   results.add(kBowls);
-  EXPECT_FALSE(results.all_posed());
+  EXPECT_FALSE(results.has_all_poses());
   EXPECT_FALSE(results.joined()->poses.has_value());
   results.add(poses_of(kBowls, 10));
-  EXPECT_TRUE(results.all_posed());
+  EXPECT_TRUE(results.has_all_poses());
   EXPECT_EQ(results.joined()->detections.stages.size(), 2U);
   EXPECT_EQ(results.joined()->poses->poses.at(1).inliers, 11);
 }
@@ -73,7 +73,7 @@ TEST(FrameResults, PosesOfOneDetectorAloneStayWithItsDetections) {
   results.add(kBowls);
   results.add(kCan);
   results.add(poses_of(kCan, 20));
-  EXPECT_FALSE(results.all_posed());
+  EXPECT_FALSE(results.has_all_poses());
   const std::optional<FrameResult> all = results.joined();
   ASSERT_EQ(all->poses->poses.size(), 1U);
   EXPECT_EQ(all->poses->poses[0].detection_index, 1);
@@ -85,9 +85,9 @@ TEST(FrameResults, EmptyResultsHaveEmptyPoses) {
   results.add(kBowls);
   results.add(none);
   results.add(poses_of(none, 0));
-  EXPECT_FALSE(results.all_posed()) << "they are not the bowls'";
+  EXPECT_FALSE(results.has_all_poses()) << "they are not the bowls'";
   results.add(poses_of(kBowls, 10));
-  EXPECT_TRUE(results.all_posed());
+  EXPECT_TRUE(results.has_all_poses());
 }
 
 TEST(FrameResults, ALogThatIsPlayedAgainCountsOnce) {

@@ -15,41 +15,41 @@ cv::Mat striped(int dark, int bright) {
 TEST(Tone, AnyPictureIsInTheRangeOfAll) {
   cv::Mat picture = striped(0, 255);
   const cv::Mat before = picture.clone();
-  const ToneCurve curve = tone_curve(picture, {});
+  const AffineBrightness curve = fit_affine_brightness(picture, {});
   EXPECT_FALSE(curve.changes());
-  apply_tone(curve, picture, picture);
+  apply_affine_brightness(curve, picture, picture);
   EXPECT_EQ(cv::norm(picture, before, cv::NORM_INF), 0.0);
 }
 
 TEST(Tone, WhatIsInTheRangeStays) {
-  EXPECT_FALSE(tone_curve(striped(80, 140), {100.0F, 130.0F, 50.0F}).changes());
+  EXPECT_FALSE(fit_affine_brightness(striped(80, 140), {100.0F, 130.0F, 50.0F}).changes());
 }
 
 TEST(Tone, ContrastIsFlattenedAboutTheMean) {
   cv::Mat picture = striped(40, 180);  // 110, deviation 70
-  const ToneCurve curve = tone_curve(picture, {100.0F, 130.0F, 50.0F});
+  const AffineBrightness curve = fit_affine_brightness(picture, {100.0F, 130.0F, 50.0F});
   EXPECT_NEAR(curve.gain, 50.0F / 70.0F, 1e-5);
-  apply_tone(curve, picture, picture);
+  apply_affine_brightness(curve, picture, picture);
   EXPECT_NEAR(picture.at<cv::Vec3b>(0, 0)[1], 60, 1);
   EXPECT_NEAR(picture.at<cv::Vec3b>(4, 0)[1], 160, 1);
 }
 
 TEST(Tone, ContrastIsFlattenedToNoLessThanSixTenths) {
-  EXPECT_NEAR(tone_curve(striped(0, 255), {0.0F, 255.0F, 20.0F}).gain, 0.6F, 1e-6);
+  EXPECT_NEAR(fit_affine_brightness(striped(0, 255), {0.0F, 255.0F, 20.0F}).gain, 0.6F, 1e-6);
 }
 
 TEST(Tone, DarkAndBrightPicturesComeIntoTheRange) {
   cv::Mat dark = striped(20, 60);
-  apply_tone(tone_curve(dark, {100.0F, 130.0F, 50.0F}), dark, dark);
+  apply_affine_brightness(fit_affine_brightness(dark, {100.0F, 130.0F, 50.0F}), dark, dark);
   EXPECT_NEAR(cv::mean(dark)[0], 100.0, 1.0);
   cv::Mat bright = striped(190, 210);
-  apply_tone(tone_curve(bright, {100.0F, 130.0F, 50.0F}), bright, bright);
+  apply_affine_brightness(fit_affine_brightness(bright, {100.0F, 130.0F, 50.0F}), bright, bright);
   EXPECT_NEAR(cv::mean(bright)[2], 130.0, 1.0);
 }
 
 TEST(Tone, APictureOfOnePixelHasATone) {
   cv::Mat picture(1, 1, CV_8UC3, cv::Scalar(255, 0, 0));
-  EXPECT_NEAR(tone_curve(picture, {100.0F, 130.0F, 50.0F}).offset, 100.0F - 29.07F, 0.01F);
+  EXPECT_NEAR(fit_affine_brightness(picture, {100.0F, 130.0F, 50.0F}).offset, 100.0F - 29.07F, 0.01F);
 }
 
 }  // namespace

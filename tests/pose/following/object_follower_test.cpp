@@ -246,7 +246,7 @@ double handle_error_after_a_turn(FollowerSettings settings) {
 
 TEST(ObjectFollower, AWrongTurnIsNoticedByLookingAsIfItWereNotFollowed) {
   FollowerSettings trusting;
-  trusting.doubted_after_s = 1e9;
+  trusting.recheck_interval_s = 1e9;
   trusting.missed_after_s = 1e9;
   EXPECT_GT(handle_error_after_a_turn(trusting), 1.0);
   EXPECT_LT(handle_error_after_a_turn({}), 0.45) << "as good as a single look at it";
@@ -355,7 +355,7 @@ TEST(ObjectFollower, OneWrongStampLosesNothing) {
 
 TEST(ObjectFollower, LooksGoOnAfterAClockWasSetBackWhileOneWasOnItsWay) {
   FollowerSettings settings;
-  settings.doubted_after_s = 0.0;
+  settings.recheck_interval_s = 0.0;
   Following it(box_and_mug(), settings);
   const RgbdFrame before = it.film.next();
   it.follower.follow(estimator(), before);

@@ -36,9 +36,9 @@ TEST(AxisAlignment, FindsTheAxisOfATurntable) {
   const Eigen::Vector3d middle = training[0].T_camera_object.translation();
   wrong.translation() = middle - wrong.linear() * middle + Eigen::Vector3d(0.005, 0.0, 0.0);
   for (DepthView& view : views) view.T_camera_object = wrong * view.T_camera_object;
-  const double before = measure_agreement(views, {}).median_m;
+  const double before = measure_alignment_error(views, {}).median_m;
   align_views(views, {});
-  EXPECT_LT(measure_agreement(views, {}).median_m, 0.8 * before);
+  EXPECT_LT(measure_alignment_error(views, {}).median_m, 0.8 * before);
   EXPECT_LT(middle_error_m(views[3], training[3].T_camera_object), 0.0015);
   EXPECT_LT(axis_error_deg(views[3], training[3].T_camera_object), 0.5);
 }
@@ -69,7 +69,7 @@ TEST(AxisAlignment, ASingleViewStays) {
   std::vector<DepthView> views = make_views({training});
   align_views(views, {});
   EXPECT_EQ(views[0].T_camera_object.matrix(), training.T_camera_object.matrix());
-  EXPECT_EQ(measure_agreement(views, {}).pairs, 0);
+  EXPECT_EQ(measure_alignment_error(views, {}).pairs, 0);
 }
 
 }  // namespace

@@ -20,15 +20,15 @@ std::vector<DepthView> box_views() {
   return views;
 }
 
-GridSettings coarse() {
-  GridSettings settings;
+TsdfSettings coarse() {
+  TsdfSettings settings;
   settings.voxel = 0.003;
   return settings;
 }
 
-TEST(DistanceGrid, HoldsTheBoxsDistances) {
-  const GridSettings settings = coarse();
-  const DistanceGrid grid = fuse_distances(box_views(), settings);
+TEST(TsdfVolume, HoldsTheBoxsDistances) {
+  const TsdfSettings settings = coarse();
+  const TsdfVolume grid = integrate_views(box_views(), settings);
   const double truncation = settings.truncation_voxels * settings.voxel;
   std::vector<double> errors;
   int wrong_side = 0;
@@ -48,23 +48,23 @@ TEST(DistanceGrid, HoldsTheBoxsDistances) {
   EXPECT_LT(test_scene::median(errors), 0.001);
 }
 
-TEST(DistanceGrid, DoesNotDependOnThreads) {
-  GridSettings settings = coarse();
+TEST(TsdfVolume, DoesNotDependOnThreads) {
+  TsdfSettings settings = coarse();
   settings.voxel = 0.006;
   const std::vector<DepthView> views = box_views();
-  const DistanceGrid one = fuse_distances(views, settings);
+  const TsdfVolume one = integrate_views(views, settings);
   settings.threads = 3;
-  EXPECT_EQ(one.distance, fuse_distances(views, settings).distance);
+  EXPECT_EQ(one.distance, integrate_views(views, settings).distance);
 }
 
-TEST(DistanceGrid, BesideTheImagesIsFreeBesideThePictureNothingIsKnown) {
+TEST(TsdfVolume, BesideTheImagesIsFreeBesideThePictureNothingIsKnown) {
   DepthView view = make_depth_view(turntable_view(TurntableScene{test_scene::cereal_box()}, 0));
   const Eigen::AlignedBox3d box(Eigen::Vector3d(-0.2, -0.01, -0.01), Eigen::Vector3d(0.2, 0.01, 0.01));
-  GridSettings settings;
+  TsdfSettings settings;
   settings.voxel = 0.01;
   settings.outline_weight = 1.0;
   const auto weight_at = [&](double x) {
-    const DistanceGrid grid = fuse_box({view}, box, settings);
+    const TsdfVolume grid = integrate_box({view}, box, settings);
     const Eigen::Vector3d cell = (Eigen::Vector3d(x, 0.0, 0.0) - grid.origin) / grid.voxel;
     const Eigen::Vector3i at = cell.array().round().cast<int>();
     return grid.weight[grid.index(at.x(), at.y(), at.z())];
@@ -76,14 +76,14 @@ TEST(DistanceGrid, BesideTheImagesIsFreeBesideThePictureNothingIsKnown) {
   EXPECT_EQ(weight_at(0.2), 1.0F);
 }
 
-TEST(DistanceGrid, WhatCannotBeFusedIsRefused) {
-  EXPECT_THROW(fuse_distances({}, coarse()), InputError);
-  GridSettings tiny = coarse();
+TEST(TsdfVolume, WhatCannotBeFusedIsRefused) {
+  EXPECT_THROW(integrate_views({}, coarse()), InputError);
+  TsdfSettings tiny = coarse();
   tiny.most_voxels = 1000;
-  EXPECT_THROW(fuse_distances(box_views(), tiny), InputError);
-  GridSettings none = coarse();
+  EXPECT_THROW(integrate_views(box_views(), tiny), InputError);
+  TsdfSettings none = coarse();
   none.voxel = 0.0;
-  EXPECT_THROW(fuse_distances(box_views(), none), InputError);
+  EXPECT_THROW(integrate_views(box_views(), none), InputError);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ const Eigen::Vector3d kLarge(0.0, 0.0, 0.0);
 const Eigen::Vector3d kSmall(0.06, 0.0, 0.0);
 
 /// Spheres of 3 cm and 8 mm radius in voxels of 2 mm.
-DistanceGrid two_spheres() {
-  DistanceGrid grid;
+TsdfVolume two_spheres() {
+  TsdfVolume grid;
   grid.nx = 64;
   grid.ny = 40;
   grid.nz = 40;
@@ -65,7 +65,7 @@ TEST(GridSurface, TheLargestPartIsKept) {
 }
 
 TEST(GridSurface, WhatReachesTheBorderIsClosedThere) {
-  DistanceGrid grid = two_spheres();
+  TsdfVolume grid = two_spheres();
   std::fill(grid.distance.begin(), grid.distance.end(), -1.0F);
   const Mesh mesh = extract_surface(grid);
   EXPECT_EQ(open_edges(mesh), 0);
@@ -73,7 +73,7 @@ TEST(GridSurface, WhatReachesTheBorderIsClosedThere) {
 }
 
 TEST(GridSurface, NothingInsideIsNoSurface) {
-  DistanceGrid grid = two_spheres();
+  TsdfVolume grid = two_spheres();
   std::fill(grid.distance.begin(), grid.distance.end(), 1.0F);
   EXPECT_TRUE(extract_surface(grid).triangles.empty());
   EXPECT_TRUE(largest_part(extract_surface(grid)).triangles.empty());
@@ -86,7 +86,7 @@ TEST(GridSurface, WhatNobodySawIsTakenOutUnlessItIsSmallOrBelowTheFoot) {
     mesh.colours.assign(mesh.vertices.size(), cv::Vec3b(1, 2, 3));
     std::vector<bool> seen;
     for (const Eigen::Vector3f& vertex : mesh.vertices) seen.push_back(vertex.z() <= unseen_above);
-    mesh = without_unseen(mesh, seen, foot);
+    mesh = remove_unobserved(mesh, seen, foot);
     EXPECT_EQ(mesh.colours.size(), mesh.vertices.size());
     EXPECT_EQ(mesh.normals.size(), mesh.vertices.size());
     for (const auto& t : mesh.triangles) EXPECT_LT(*std::max_element(t.begin(), t.end()), mesh.vertices.size());

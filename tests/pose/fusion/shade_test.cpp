@@ -40,13 +40,13 @@ struct Ball {
   }
 };
 
-TEST(Shade, LightIsPartedFromPaint) {
+TEST(ShadingModel, LightIsPartedFromPaint) {
   const Ball ball;
   std::vector<Eigen::Vector3d> colours;
   colours.reserve(ball.normals.size());
   for (std::size_t i = 0; i < ball.normals.size(); ++i)
     colours.emplace_back(ball.paints[i] * light_on(ball.normals[i]));
-  const Shade shade = fit_shade(colours, ball.normals);
+  const ShadingModel shade = fit_shading(colours, ball.normals);
   double darkest = 1e9, brightest = -1e9;
   for (const Eigen::Vector3d& normal : ball.normals) {
     const double rest = std::log(light_on(normal)) - shade(normal);
@@ -56,14 +56,14 @@ TEST(Shade, LightIsPartedFromPaint) {
   EXPECT_LT(brightest - darkest, 0.6) << "log; the light itself spans " << std::log(1.25 / 0.25);
 }
 
-TEST(Shade, PaintsOfDifferentBrightnessAreNoShade) {
+TEST(ShadingModel, PaintsOfDifferentBrightnessAreNoShade) {
   const Ball ball;
-  const Shade shade = fit_shade(ball.paints, ball.normals);
+  const ShadingModel shade = fit_shading(ball.paints, ball.normals);
   for (const Eigen::Vector3d& normal : ball.normals) ASSERT_NEAR(shade(normal), 0.0, 0.05);
 }
 
-TEST(Shade, NothingSeenIsNoShade) {
-  EXPECT_EQ(fit_shade({}, {})(Eigen::Vector3d::UnitX()), 0.0);
+TEST(ShadingModel, NothingSeenIsNoShade) {
+  EXPECT_EQ(fit_shading({}, {})(Eigen::Vector3d::UnitX()), 0.0);
 }
 
 TEST(Exposures, OfARingOfViewsAreFound) {
@@ -97,7 +97,7 @@ double unevenness(const std::vector<DepthView>& views, Mesh mesh) {
   const std::vector<bool> seen = colour_mesh(views, 0.004, 1, mesh);
   std::vector<double> greens;
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (seen[i]) greens.push_back(linear_colour(mesh.colours[i])[1]);
+    if (seen[i]) greens.push_back(srgb_to_linear(mesh.colours[i])[1]);
   }
   std::sort(greens.begin(), greens.end());
   return 1.0 - greens[greens.size() / 10] / greens[9 * greens.size() / 10];
@@ -111,7 +111,7 @@ TEST(ViewColours, StandingLightAndExposureAreTakenOut) {
   int view = 0;
   scene.paint = [&](const Eigen::Vector3d& p) {
     const Eigen::Vector3d normal = Eigen::Vector3d(p.x(), p.y(), 0.0).normalized();
-    return coded_colour((view % 2 == 0 ? 0.7 : 1.0) * light_on(normal) * kBlue);
+    return linear_to_srgb((view % 2 == 0 ? 0.7 : 1.0) * light_on(normal) * kBlue);
   };
   std::vector<DepthView> views;
   for (; view < scene.views; ++view) {
@@ -127,7 +127,7 @@ TEST(ViewColours, StandingLightAndExposureAreTakenOut) {
   EXPECT_LT(unevenness(views, side), 0.25);
   Mesh coloured = side;
   colour_mesh(views, 0.004, 1, coloured);
-  EXPECT_NEAR(linear_colour(coloured.colours[3])[0], 0.3, 0.05) << "as bright as where the lamp shone on it";
+  EXPECT_NEAR(srgb_to_linear(coloured.colours[3])[0], 0.3, 0.05) << "as bright as where the lamp shone on it";
   for (DepthView& one : views) one.light = -1;
   EXPECT_GT(unevenness(views, side), 0.5) << "who knows where the light was: it stays";
 }

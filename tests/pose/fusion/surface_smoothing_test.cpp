@@ -15,7 +15,7 @@ constexpr double kVoxel_m = 0.002;
 
 /// Signed distances of a box with `noise_m` in them, as fusion leaves them.
 Mesh box_surface(double noise_m) {
-  DistanceGrid grid;
+  TsdfVolume grid;
   grid.voxel = kVoxel_m;
   grid.nx = grid.ny = grid.nz = 40;
   grid.origin = Eigen::Vector3d::Constant(-19.6 * kVoxel_m);

@@ -16,11 +16,11 @@
 namespace houghstream::test_scene {
 
 /// BGR of a surface point, object frame.
-using Paint = std::function<cv::Vec3b(const Eigen::Vector3d&)>;
+using Albedo = std::function<cv::Vec3b(const Eigen::Vector3d&)>;
 
 struct TurntableScene {
   Mesh mesh;
-  Paint paint = [](const Eigen::Vector3d&) { return cv::Vec3b(90, 120, 150); };
+  Albedo paint = [](const Eigen::Vector3d&) { return cv::Vec3b(90, 120, 150); };
   int views = 24;
   double elevation = 0.5;  ///< radians
   double noise_m = 0.0;    ///< standard deviation of depth; it is rounded to millimetres where there is noise

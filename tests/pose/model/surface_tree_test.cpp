@@ -31,24 +31,24 @@ Mesh sheet() {
   return mesh;
 }
 
-TEST(SurfaceTree, DistancesToOneTriangleAreThoseOfItsFaceEdgesAndCorners) {
+TEST(MeshBvh, DistancesToOneTriangleAreThoseOfItsFaceEdgesAndCorners) {
   Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
-  const SurfaceTree tree(mesh);
+  const MeshBvh tree(mesh);
   EXPECT_NEAR(tree.nearest({0.25F, 0.25F, -0.5F}).distance, 0.5F, 1e-6F) << "over the face";
   EXPECT_NEAR(tree.nearest({0.5F, -0.3F, 0.4F}).distance, 0.5F, 1e-6F) << "beside an edge";
   EXPECT_NEAR(tree.nearest({1.0F, 1.0F, 0.0F}).distance, std::sqrt(0.5F), 1e-6F) << "beside the long edge";
   EXPECT_NEAR(tree.nearest({-3.0F, -4.0F, 0.0F}).distance, 5.0F, 1e-6F) << "beyond a corner";
-  const SurfaceHit hit = tree.nearest({0.2F, 0.5F, 0.1F});
+  const ClosestPoint hit = tree.nearest({0.2F, 0.5F, 0.1F});
   EXPECT_NEAR(hit.weights[0], 0.3F, 1e-6F);
   EXPECT_NEAR(hit.weights[1], 0.2F, 1e-6F);
   EXPECT_NEAR(hit.weights[2], 0.5F, 1e-6F);
 }
 
-TEST(SurfaceTree, FindsWhatATryOfAllTrianglesFinds) {
+TEST(MeshBvh, FindsWhatATryOfAllTrianglesFinds) {
   const Mesh mesh = sheet();
-  const SurfaceTree tree(mesh);
+  const MeshBvh tree(mesh);
   Random random(5);
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3f point(static_cast<float>(random.uniform(-0.2, 1.2)),
@@ -58,16 +58,16 @@ TEST(SurfaceTree, FindsWhatATryOfAllTrianglesFinds) {
     for (const auto& triangle : mesh.triangles) {
       Mesh alone = mesh;
       alone.triangles = {triangle};
-      nearest = std::min(nearest, SurfaceTree(alone).nearest(point).distance);
+      nearest = std::min(nearest, MeshBvh(alone).nearest(point).distance);
     }
     EXPECT_NEAR(tree.nearest(point).distance, nearest, 1e-6F);
   }
 }
 
-TEST(SurfaceTree, RefusesAMeshWithoutTriangles) {
+TEST(MeshBvh, RefusesAMeshWithoutTriangles) {
   Mesh mesh;
   mesh.vertices = {{0, 0, 0}};
-  EXPECT_THROW(SurfaceTree tree(mesh), InputError);
+  EXPECT_THROW(MeshBvh tree(mesh), InputError);
 }
 
 }  // namespace

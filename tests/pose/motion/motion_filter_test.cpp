@@ -45,7 +45,7 @@ TEST(MotionFilter, WhatAllFramesErrByIsWithinTwoDeviationsHoweverManyTheyAre) {
     const Vector6 error = local_coordinates_about_world(filter.T_world_object(), turned_at(0, 0));
     EXPECT_LT(error.x(), 2.0 * std::sqrt(filter.covariance()(0, 0))) << rate_hz;
     for (int i = 0; i < 6; ++i) {
-      EXPECT_GT(filter.covariance()(i, i), settings.common_share * 1e-6) << i;
+      EXPECT_GT(filter.covariance()(i, i), settings.common_variance_fraction * 1e-6) << i;
       EXPECT_LT(filter.covariance()(i, i), 0.5 * 1e-6) << i;
     }
   }
@@ -53,13 +53,13 @@ TEST(MotionFilter, WhatAllFramesErrByIsWithinTwoDeviationsHoweverManyTheyAre) {
 
 TEST(MotionFilter, TheCommonErrorIsPartOfTheCovarianceAloneWhetherItMovesOrStands) {
   MotionSettings white;
-  white.common_share = 0.0;
+  white.common_variance_fraction = 0.0;
   std::vector<MotionFilter> filters = {MotionFilter(measurement_of(0, turned_at(0, 0)), {}),
                                        MotionFilter(measurement_of(0, turned_at(0, 0)), white)};
   const auto expect_common = [&] {
     EXPECT_EQ(filters[0].T_world_object().matrix(), filters[1].T_world_object().matrix());
     const Covariance6 more = filters[0].covariance() - filters[1].covariance();
-    EXPECT_TRUE(more.isApprox(MotionSettings().common_share * 1e-6 * Covariance6::Identity(), 1e-6)) << more;
+    EXPECT_TRUE(more.isApprox(MotionSettings().common_variance_fraction * 1e-6 * Covariance6::Identity(), 1e-6)) << more;
   };
   Vector6 velocity = Vector6::Zero();
   velocity.x() = 0.3;

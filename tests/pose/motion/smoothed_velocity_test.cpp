@@ -35,10 +35,10 @@ TEST(SmoothedVelocity, TheMotionThatTwoAgreeOnCarriesTheRestAndOneAloneDoesNot) 
   const Eigen::Isometry3d camera(Eigen::Translation3d(0.05, 0.0, 0.0));
   const Eigen::Isometry3d nearly(Eigen::Translation3d(0.052, 0.001, 0.0));
   const Eigen::Isometry3d pushed(Eigen::Translation3d(0.0, 0.2, 0.0));
-  EXPECT_FALSE(carried_along(kStart, {}).has_value());
-  EXPECT_FALSE(carried_along(kStart, {camera}).has_value());
-  EXPECT_FALSE(carried_along(kStart, {camera, pushed}).has_value());
-  const std::optional<Eigen::Isometry3d> carried = carried_along(kStart, {pushed, camera, nearly});
+  EXPECT_FALSE(predict_by_camera_motion(kStart, {}).has_value());
+  EXPECT_FALSE(predict_by_camera_motion(kStart, {camera}).has_value());
+  EXPECT_FALSE(predict_by_camera_motion(kStart, {camera, pushed}).has_value());
+  const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(kStart, {pushed, camera, nearly});
   ASSERT_TRUE(carried.has_value());
   EXPECT_TRUE(carried->isApprox(camera * kStart));
 }

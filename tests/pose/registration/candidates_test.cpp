@@ -32,7 +32,7 @@ TEST(RotationClusters, TwoModesComeOutHeaviestFirst) {
     votes.push_back({rotation_of(perturbed(second, 8.0, 0.0, random)), 0.7F});
   }
   InitialSettings settings;
-  settings.turned_clusters = 0;
+  settings.rotated_clusters = 0;
   const std::vector<RotationCandidate> found = rotation_clusters(votes, settings);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_LT(degrees_between(found[0].R_camera_object, rotation_of(first)), 4.0);
@@ -61,7 +61,7 @@ TEST(RotationClusters, NumberIsCappedEvenWithANarrowRadius) {
   }
   InitialSettings settings;
   settings.cluster_radius_deg = 0.0;
-  settings.turned_clusters = 0;
+  settings.rotated_clusters = 0;
   EXPECT_EQ(rotation_clusters(votes, settings).size(), 6U);
 }
 
@@ -105,7 +105,7 @@ void expect_best_placed_first(const Eigen::Vector3f& vote_centre) {
     return Eigen::Quaternionf(standing(azimuth, 30.0, 1.0).linear().cast<float>());
   };
   const Eigen::Vector3f centre = truth.cast<float>() * vote_centre + Eigen::Vector3f(0.01F, -0.01F, 0.02F);
-  const SeenObject seen{frame, model, centre, {}, {}, {}};
+  const ObjectObservation seen{frame, model, centre, {}, {}, {}};
   const SearchSettings settings;
   const std::vector<PoseCandidate> found = place_candidates(
       seen, {{rotation(150.0), 3.0F}, {rotation(60.0), 1.0F}, {rotation(100.0), 1.0F}, {rotation(330.0), 1.0F}},
@@ -138,7 +138,7 @@ TEST(Candidates, TheOriginMayLieBesideTheLineOfSight) {
   of_model.vote_centres["box"] = offset;
   const ObjectModel model = make_object_model("box", object, of_model);
   const Eigen::Vector3f centre = box.translation().cast<float>() + Eigen::Vector3f(0.01F, -0.01F, 0.04F);
-  const SeenObject seen{frame, model, centre, {}, {}, {}};
+  const ObjectObservation seen{frame, model, centre, {}, {}, {}};
   const RotationCandidate rotation{Eigen::Quaternionf(truth.linear().cast<float>()), 1.0F};
   const std::vector<PoseCandidate> found = place_candidates(seen, {rotation}, {});
   ASSERT_FALSE(found.empty());
@@ -151,7 +151,7 @@ TEST(Candidates, OfEarlierPosesOnlyThoseOfTheClassNearInTimeAndPlaceCount) {
   frame.id.utime = 2000000;
   ObjectModel model;
   model.vote_centre = {0.5F, 0.0F, 0.0F};
-  const SeenObject seen{frame, model, truth.cast<float>() * model.vote_centre, {}, {}, {}};
+  const ObjectObservation seen{frame, model, truth.cast<float>() * model.vote_centre, {}, {}, {}};
   ObjectPose pose;
   pose.class_name = "box";
   pose.T_camera_object = truth;

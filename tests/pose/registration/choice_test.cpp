@@ -20,8 +20,8 @@ struct Boxed {
 
   std::vector<RegistrationResult> choose_all(const std::vector<PoseCandidate>& candidates,
                                              const Eigen::Vector3f& centre) const {
-    const SeenObject seen{frame, model, centre, {}, region, lab_region(frame, region.box_px, {})};
-    return choose_poses(seen, register_candidates(seen, candidates, {}), {}, {});
+    const ObjectObservation seen{frame, model, centre, {}, region, lab_region(frame, region.box_px, {})};
+    return select_poses(seen, register_candidates(seen, candidates, {}), {}, {});
   }
 
   RegistrationResult choose(const std::vector<PoseCandidate>& candidates, const Eigen::Vector3f& centre) const {

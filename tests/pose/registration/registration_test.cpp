@@ -42,15 +42,15 @@ TEST(Registration, NothingToPairWithIsNotConvergedAndLeavesTheStart) {
 
 TEST(Registration, CandidatesKeepTheirOrderAndFineRegistrationThatLeavesTheDetectionIsDropped) {
   const RegistrationScene scene(cereal_box(), -0.13, standing(35.0, 30.0, 0.9));
-  const SeenObject seen = scene.seen();
+  const ObjectObservation seen = scene.seen();
   Eigen::Isometry3d away = scene.truth;
   away.translation().z() += 0.5;
   const std::vector<RegistrationResult> found = register_candidates(seen, {{away, 1.0F}, {scene.truth, 0.0F}}, {});
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].inliers, 0);
-  EXPECT_FALSE(ends_near(seen, found[0], {}));
+  EXPECT_FALSE(is_near_detection(seen, found[0], {}));
   EXPECT_LT(scene.error(found[1]), 0.003);
-  EXPECT_TRUE(ends_near(seen, found[1], {}));
+  EXPECT_TRUE(is_near_detection(seen, found[1], {}));
   RegistrationSettings strict;
   strict.max_shift_m = 0.0;
   EXPECT_EQ(register_finely(seen, found[1], strict).iterations, found[1].iterations);
@@ -59,7 +59,7 @@ TEST(Registration, CandidatesKeepTheirOrderAndFineRegistrationThatLeavesTheDetec
 
 TEST(Registration, PairDistancesGrowWithDepthsNoise) {
   const RegistrationScene scene(mug(), -0.05, standing(35.0, 30.0, 0.9));
-  SeenObject seen = scene.seen();
+  ObjectObservation seen = scene.seen();
   const RegistrationSettings settings;
   const CorrespondenceDistances near = correspondence_distances(seen, settings);
   EXPECT_EQ(near.start, settings.max_correspondence_start_m);

@@ -106,12 +106,12 @@ TEST(ColourScore, ContrastsAreOfWhatIsCompared) {
   const Mesh box = printed_box();
   RgbdFrame frame = coloured_frame(box, kPose, 1);
   const ColourComparison printed = compare(frame, box, kPose).value();
-  EXPECT_GT(printed.own_contrast, 20.0F);
-  EXPECT_GT(printed.seen_contrast, printed.left_over);
+  EXPECT_GT(printed.model_contrast, 20.0F);
+  EXPECT_GT(printed.observed_contrast, printed.left_over);
   frame.colour.setTo(cv::Scalar(90, 90, 90));
   const ColourComparison plain = compare(frame, box, kPose).value();
-  EXPECT_LT(plain.seen_contrast, 2.0F);
-  EXPECT_EQ(plain.own_contrast, printed.own_contrast);
+  EXPECT_LT(plain.observed_contrast, 2.0F);
+  EXPECT_EQ(plain.model_contrast, printed.model_contrast);
 }
 
 TEST(ColourScore, APrintIsJudgedWhereItAgreesBestWithinTwoPixels) {
@@ -121,8 +121,8 @@ TEST(ColourScore, APrintIsJudgedWhereItAgreesBestWithinTwoPixels) {
     RgbdFrame frame = coloured_frame(box, kPose, 1);
     const cv::Mat move = (cv::Mat_<double>(2, 3) << 1.0, 0.0, moved_px, 0.0, 1.0, 0.0);
     cv::warpAffine(frame.colour, frame.colour, move, frame.colour.size());
-    const SeenObject seen{frame, model, {}, {}, {}, lab_region(frame, cv::Rect(0, 0, 640, 480), {})};
-    return compare_print(seen, look_at_view(frame, model, T_camera_object, 400), kTolerance)->agreement;
+    const ObjectObservation seen{frame, model, {}, {}, {}, lab_region(frame, cv::Rect(0, 0, 640, 480), {})};
+    return compare_texture(seen, look_at_view(frame, model, T_camera_object, 400), kTolerance)->agreement;
   };
   EXPECT_GT(judged(kPose, 2.0), judged(kPose, 0.0) - 0.02F);
   EXPECT_LT(judged(kPose, 12.0), judged(kPose, 0.0) - 0.1F);
@@ -133,10 +133,10 @@ TEST(ColourScore, JudgingAPrintLeavesThePictureAsItIs) {
   const Mesh box = printed_box();
   const ObjectModel model = make_object_model("box", box, {});
   const RgbdFrame frame = coloured_frame(box, kPose, 1);
-  const SeenObject seen{frame, model, {}, {}, {}, lab_region(frame, cv::Rect(0, 0, 640, 480), {})};
-  const ViewLook look = look_at_view(frame, model, kPose, 400);
-  const float first = compare_print(seen, look, kTolerance)->agreement;
-  EXPECT_EQ(compare_print(seen, look, kTolerance)->agreement, first);
+  const ObjectObservation seen{frame, model, {}, {}, {}, lab_region(frame, cv::Rect(0, 0, 640, 480), {})};
+  const ProjectedView look = look_at_view(frame, model, kPose, 400);
+  const float first = compare_texture(seen, look, kTolerance)->agreement;
+  EXPECT_EQ(compare_texture(seen, look, kTolerance)->agreement, first);
 }
 
 TEST(ColourScore, WithoutColoursOrMeasuredDepthThereIsNoAnswer) {

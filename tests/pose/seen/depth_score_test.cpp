@@ -67,11 +67,11 @@ TEST(DepthScore, ShiftAlongTheRayIsFound) {
 
 const Eigen::Isometry3d kStanding = standing(30.0, 30.0, 0.8);
 
-TEST(ViewLook, AtTheTruePoseDepthIsThatOfTheModel) {
+TEST(ProjectedView, AtTheTruePoseDepthIsThatOfTheModel) {
   const Mesh box = printed_box();
   const ObjectModel model = make_object_model("box", box, {});
   const RgbdFrame frame = coloured_frame(box, kStanding, 1);
-  const ViewLook seen = look_at_view(frame, model, kStanding, 300);
+  const ProjectedView seen = look_at_view(frame, model, kStanding, 300);
   ASSERT_EQ(seen.looks.size(), 300U);
   int near = 0;
   for (std::size_t i = 0; i < seen.looks.size(); ++i) {
@@ -84,7 +84,7 @@ TEST(ViewLook, AtTheTruePoseDepthIsThatOfTheModel) {
   EXPECT_GT(near, 270);
 }
 
-TEST(ViewLook, OutsideTheImageAndWithoutDepthNothingIsKnown) {
+TEST(ProjectedView, OutsideTheImageAndWithoutDepthNothingIsKnown) {
   const Mesh box = printed_box();
   const ObjectModel model = make_object_model("box", box, {});
   RgbdFrame frame = coloured_frame(box, kStanding, 1);

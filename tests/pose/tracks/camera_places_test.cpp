@@ -20,26 +20,26 @@ std::filesystem::path written(const std::string& name, const std::string& text) 
   return file;
 }
 
-TEST(CameraPlaces, AMovingCameraIsInterpolatedAtTheFramesOwnTime) {
-  CameraPlaces places;
+TEST(CameraExtrinsics, AMovingCameraIsInterpolatedAtTheFramesOwnTime) {
+  CameraExtrinsics places;
   places.add("LEFT", 1000000, at(0.0, 0.0));
   places.add("LEFT", 1100000, at(1.0, 0.4));
-  const CameraPlace place = places.at("LEFT", 1025000);
+  const CameraPose place = places.at("LEFT", 1025000);
   ASSERT_TRUE(place.T_world_camera.has_value());
   EXPECT_TRUE(place.T_world_camera->isApprox(at(0.25, 0.1), 1e-9));
   EXPECT_TRUE(places.at("LEFT", 1100000).T_world_camera.has_value());
 }
 
-TEST(CameraPlaces, WhatIsMissingLateOrFarApartIsNoPlaceAndSaysWhy) {
-  CameraPlaces places;
+TEST(CameraExtrinsics, WhatIsMissingLateOrFarApartIsNoPlaceAndSaysWhy) {
+  CameraExtrinsics places;
   EXPECT_TRUE(places.at("LEFT", 1000000).may_come);
   places.add("LEFT", 1000000, at(0.0));
   places.add("LEFT", 1200000, at(0.1));
-  const CameraPlace late = places.at("LEFT", 1300000);
+  const CameraPose late = places.at("LEFT", 1300000);
   EXPECT_FALSE(late.T_world_camera.has_value());
   EXPECT_TRUE(late.may_come);
   EXPECT_EQ(late.reason, "the last transform of LEFT is 0.100 s older");
-  const CameraPlace before = places.at("LEFT", 500000);
+  const CameraPose before = places.at("LEFT", 500000);
   EXPECT_FALSE(before.T_world_camera.has_value() || before.may_come);
   EXPECT_NE(before.reason.find("0.500 s later: do the clocks agree?"), std::string::npos) << before.reason;
   places.add("LEFT", 2200000, at(0.3));
@@ -47,8 +47,8 @@ TEST(CameraPlaces, WhatIsMissingLateOrFarApartIsNoPlaceAndSaysWhy) {
             "the transforms of LEFT about it are 1.000 s apart, expected at most 0.5 s");
 }
 
-TEST(CameraPlaces, ACameraThatStandsNeedsFewTransformsAFixedOneNone) {
-  CameraPlaces places;
+TEST(CameraExtrinsics, ACameraThatStandsNeedsFewTransformsAFixedOneNone) {
+  CameraExtrinsics places;
   places.add("LEFT", 1000000, at(0.2));
   places.add("LEFT", 9000000, at(0.2));
   EXPECT_TRUE(places.at("LEFT", 5000000).T_world_camera.has_value());
@@ -57,10 +57,10 @@ TEST(CameraPlaces, ACameraThatStandsNeedsFewTransformsAFixedOneNone) {
   EXPECT_TRUE(places.at("RIGHT", 1).T_world_camera->isApprox(at(0.7)));
 }
 
-TEST(CameraPlaces, TimesMayBeAny) {
+TEST(CameraExtrinsics, TimesMayBeAny) {
   constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
-  CameraPlaces places;
+  CameraExtrinsics places;
   places.add("MOVING", kFirst, at(0.0));
   places.add("MOVING", kLast, at(0.1));
   EXPECT_NE(places.at("MOVING", 0).reason.find("s apart, expected at most 0.5 s"), std::string::npos);
@@ -73,9 +73,9 @@ TEST(CameraPlaces, TimesMayBeAny) {
   EXPECT_NE(places.at("EARLIER", kLast).reason.find("is 9223372036854.775 s older"), std::string::npos);
 }
 
-TEST(CameraPlaces, ACameraTooManyIsRefusedAndTheOthersGoOn) {
-  CameraPlaces places;
-  for (std::size_t i = 0; i < CameraPlaces::kMostMoving; ++i) places.add("CAMERA_" + std::to_string(i), 1000000, at(0));
+TEST(CameraExtrinsics, ACameraTooManyIsRefusedAndTheOthersGoOn) {
+  CameraExtrinsics places;
+  for (std::size_t i = 0; i < CameraExtrinsics::kMostMoving; ++i) places.add("CAMERA_" + std::to_string(i), 1000000, at(0));
   EXPECT_EQ(error_of([&] { places.add("FORGED", 1000000, at(0)); }),
             "transforms of more than 256 cameras, expected at most that many");
   places.add("CAMERA_0", 1100000, at(1.0));
@@ -83,8 +83,8 @@ TEST(CameraPlaces, ACameraTooManyIsRefusedAndTheOthersGoOn) {
   EXPECT_EQ(places.at("FORGED", 1000000).reason, "no transform of FORGED has come");
 }
 
-TEST(CameraPlaces, OursAreReadWithTheirParents) {
-  const auto places = read_camera_places(written("ours.yaml",
+TEST(CameraExtrinsics, OursAreReadWithTheirParents) {
+  const auto places = read_camera_extrinsics(written("ours.yaml",
                                                  "cameras:\n"
                                                  "  LEFT: {translation: [1.0, 0, 0.5], rotation: [1, 0, 0, 0]}\n"
                                                  "  RIGHT:\n"
@@ -96,8 +96,8 @@ TEST(CameraPlaces, OursAreReadWithTheirParents) {
   EXPECT_TRUE((places.at("RIGHT") * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d(1.0, 3.0, 0.5), 1e-6));
 }
 
-TEST(CameraPlaces, StaticTransformsAreReadAsRosPrintsThem) {
-  const auto places = read_camera_places(written("ros.yaml",
+TEST(CameraExtrinsics, StaticTransformsAreReadAsRosPrintsThem) {
+  const auto places = read_camera_extrinsics(written("ros.yaml",
                                                  "transforms:\n"
                                                  "- header:\n"
                                                  "    stamp:\n"
@@ -125,29 +125,29 @@ TEST(CameraPlaces, StaticTransformsAreReadAsRosPrintsThem) {
   EXPECT_TRUE(places.at("LEFT").translation().isApprox(Eigen::Vector3d(1.0, 0.5, 0.0)));
 }
 
-TEST(CameraPlaces, BadFilesAreOneLine) {
-  EXPECT_NE(error_of([] { read_camera_places("/nowhere.yaml"); }).find("/nowhere.yaml: missing or unreadable"),
+TEST(CameraExtrinsics, BadFilesAreOneLine) {
+  EXPECT_NE(error_of([] { read_camera_extrinsics("/nowhere.yaml"); }).find("/nowhere.yaml: missing or unreadable"),
             std::string::npos);
   const auto loop = written("loop.yaml",
                             "cameras:\n"
                             "  A: {parent: B, translation: [0, 0, 0], rotation: [1, 0, 0, 0]}\n"
                             "  B: {parent: A, translation: [0, 0, 0], rotation: [1, 0, 0, 0]}\n");
-  EXPECT_NE(error_of([&] { read_camera_places(loop); }).find("camera A: its parents go round in a loop"),
+  EXPECT_NE(error_of([&] { read_camera_extrinsics(loop); }).find("camera A: its parents go round in a loop"),
             std::string::npos);
   const auto bent = written("bent.yaml", "cameras:\n  A: {translation: [0, 0, 0], rotation: [1, 1, 0, 0]}\n");
-  EXPECT_NE(error_of([&] { read_camera_places(bent); }).find("camera A: quaternion of length 1.414, expected 1"),
+  EXPECT_NE(error_of([&] { read_camera_extrinsics(bent); }).find("camera A: quaternion of length 1.414, expected 1"),
             std::string::npos);
   const auto empty = written("empty.yaml", "other: 1\n");
-  EXPECT_NE(error_of([&] { read_camera_places(empty); }).find("neither 'cameras:' nor 'transforms:'"),
+  EXPECT_NE(error_of([&] { read_camera_extrinsics(empty); }).find("neither 'cameras:' nor 'transforms:'"),
             std::string::npos);
 }
 
 // What has them would be left out without a word.
-TEST(CameraPlaces, NamesThatNobodyReadsOrThatStandTwiceAreRefused) {
+TEST(CameraExtrinsics, NamesThatNobodyReadsOrThatStandTwiceAreRefused) {
   const std::string place = "translation: [0, 0, 0], rotation: [1, 0, 0, 0]}\n";
   const auto error_with = [&](const std::string& text) {
     const auto file = written("names.yaml", text);
-    return error_of([&] { read_camera_places(file); });
+    return error_of([&] { read_camera_extrinsics(file); });
   };
   EXPECT_EQ(error_with("cameras:\n  A: {parent: world, " + place + "  B: {parent: A, " + place), "");
   EXPECT_NE(error_with("cameras:\n  A: {parenu: B, " + place + "  B: {" + place)
@@ -163,23 +163,23 @@ TEST(CameraPlaces, NamesThatNobodyReadsOrThatStandTwiceAreRefused) {
   EXPECT_NE(error_with(message + message).find("'transforms' stands twice"), std::string::npos);
 }
 
-TEST(CameraPlaces, WhatIsNoNumberOrLiesTooDeepIsRefused) {
+TEST(CameraExtrinsics, WhatIsNoNumberOrLiesTooDeepIsRefused) {
   const auto words = written("words.yaml", "cameras:\n  A: {translation: [a, 0, 0], rotation: [1, 0, 0, 0]}\n");
-  EXPECT_NE(error_of([&] { read_camera_places(words); }).find("camera A: translation: expected 3 numbers"),
+  EXPECT_NE(error_of([&] { read_camera_extrinsics(words); }).find("camera A: translation: expected 3 numbers"),
             std::string::npos);
   const auto far_away = written("far.yaml", "cameras:\n  A: {translation: [1e300, 0, 0], rotation: [1, 0, 0, 0]}\n");
-  EXPECT_NE(error_of([&] { read_camera_places(far_away); }).find("expected metres within"), std::string::npos);
+  EXPECT_NE(error_of([&] { read_camera_extrinsics(far_away); }).find("expected metres within"), std::string::npos);
   const auto scalar = written("scalar.yaml", "cameras:\n  A: 5\n");
-  EXPECT_NE(error_of([&] { read_camera_places(scalar); }), "");
+  EXPECT_NE(error_of([&] { read_camera_extrinsics(scalar); }), "");
   const auto nameless = written("nameless.yaml", "cameras: [1, 2]\n");
-  EXPECT_NE(error_of([&] { read_camera_places(nameless); }).find("with names"), std::string::npos);
+  EXPECT_NE(error_of([&] { read_camera_extrinsics(nameless); }).find("with names"), std::string::npos);
   std::string deep = "cameras:\n";
   for (int i = 0; i < 5000; ++i) deep += " [\n";
   const auto brackets = written("deep.yaml", deep);
-  EXPECT_NE(error_of([&] { read_camera_places(brackets); }).find("no YAML"), std::string::npos);
+  EXPECT_NE(error_of([&] { read_camera_extrinsics(brackets); }).find("no YAML"), std::string::npos);
 }
 
-TEST(CameraPlaces, TheOptionIsParsed) {
+TEST(CameraExtrinsics, TheOptionIsParsed) {
   const auto [name, T] = parse_camera_place("LEFT=1,2,3,1,0,0,0");
   EXPECT_EQ(name, "LEFT");
   EXPECT_TRUE(T.translation().isApprox(Eigen::Vector3d(1, 2, 3)));
@@ -189,7 +189,7 @@ TEST(CameraPlaces, TheOptionIsParsed) {
   EXPECT_NE(error_of([] { parse_camera_place("1,2,3"); }).find("expected CHANNEL="), std::string::npos);
 }
 
-TEST(CameraPlaces, ACameraHasOnePlaceOfTheCommandLine) {
+TEST(CameraExtrinsics, ACameraHasOnePlaceOfTheCommandLine) {
   std::map<std::string, Eigen::Isometry3d> places = {{"LEFT", at(0.2)}};
   add_camera_place("RIGHT=1,2,3,1,0,0,0", places);
   EXPECT_EQ(places.at("RIGHT").translation().y(), 2.0);

@@ -41,7 +41,7 @@ TEST(ExtrinsicCheck, CamerasThatAgreeAreNotReported) {
 TEST(ExtrinsicCheck, TwoCentimetresAreReportedWithTheirDirection) {
   const ExtrinsicCheck check = after_frames({0.0, 0.02, 0.0});
   ASSERT_EQ(check.contradictions().size(), 1U);
-  const Contradiction found = check.contradictions()[0];
+  const ExtrinsicInconsistency found = check.contradictions()[0];
   EXPECT_EQ(found.first, "LEFT");
   EXPECT_EQ(found.second, "RIGHT");
   EXPECT_NEAR(found.offset_m.y(), 0.02, 0.003);

@@ -14,10 +14,10 @@ using test::models_on_foot;
 using test::on_table;
 using test::TrackedScene;
 
-SeenPose seen_can(const Eigen::Isometry3d& T_world_object, const TrackModels& models) {
+PoseObservation seen_can(const Eigen::Isometry3d& T_world_object, const TrackModels& models) {
   TrackedScene scene;
   scene.posed = {{"can", T_world_object}};
-  return seen_poses(scene.poses(), scene.T_world_camera, models).at(0);
+  return observe_poses(scene.poses(), scene.T_world_camera, models).at(0);
 }
 
 TEST(Track, TheCentreIsThatOfTheBoxOrTheOriginWithoutAModel) {
@@ -26,8 +26,8 @@ TEST(Track, TheCentreIsThatOfTheBoxOrTheOriginWithoutAModel) {
 }
 
 TEST(Track, APosesCovarianceIsThatOfWhereTheObjectIsNotOfWhereItsOriginIs) {
-  const SeenPose middle = seen_can(on_table(0, 0), make_track_models({{"can", block()}}, {}));
-  const SeenPose at_foot = seen_can(on_table(0, 0) * foot(), models_on_foot());
+  const PoseObservation middle = seen_can(on_table(0, 0), make_track_models({{"can", block()}}, {}));
+  const PoseObservation at_foot = seen_can(on_table(0, 0) * foot(), models_on_foot());
   EXPECT_TRUE(at_foot.measured.covariance.isApprox(middle.measured.covariance, 1e-4));
 }
 

@@ -70,7 +70,7 @@ inline double distance(const TrackedObject& object, const Eigen::Isometry3d& T) 
 /// A world that is told to a tracker frame by frame.
 class TrackedScene {
  public:
-  explicit TrackedScene(TrackerSettings settings = {})
+  explicit TrackedScene(ObjectTrackerSettings settings = {})
       : table_([] {
           Mesh mesh;
           test_scene::add_box(mesh, {-0.7F, -0.5F, -0.02F}, {0.7F, 0.7F, 0.0F});

@@ -100,8 +100,8 @@ TEST(TrackerNumbers, OneMoreThanWereEverSeenTogetherIsAnotherObjectThanTheHidden
 }
 
 TEST(TrackerNumbers, HowManyWereSeenTogetherIsForgottenWithThem) {
-  TrackerSettings settings;
-  settings.remembered_s = 0.5;
+  ObjectTrackerSettings settings;
+  settings.reidentification_s = 0.5;
   TrackedScene scene(settings);
   scene.show({{"can", on_table(-0.25, 0)}, {"can", on_table(0, 0)}});
   ASSERT_EQ(scene.frames(60).objects.size(), 2U);

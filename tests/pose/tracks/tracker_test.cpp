@@ -151,7 +151,7 @@ TEST(Tracker, WhatMovesIsFollowedWithItsVelocityAndStandsAgain) {
 }
 
 TEST(Tracker, MoreObjectsThanAllowedAreRefusedAndTheOthersToldOf) {
-  TrackerSettings settings;
+  ObjectTrackerSettings settings;
   settings.most_objects = 2;
   TrackedScene scene(settings);
   scene.show({{"can", on_table(-0.3, 0)}, {"can", on_table(0, 0)}, {"can", on_table(0.3, 0)}});
@@ -163,7 +163,7 @@ TEST(Tracker, MoreObjectsThanAllowedAreRefusedAndTheOthersToldOf) {
 }
 
 TEST(Tracker, WhatHasBeenGoneLongestMakesRoom) {
-  TrackerSettings settings;
+  ObjectTrackerSettings settings;
   settings.most_objects = 1;
   TrackedScene scene(settings);
   scene.show({{"can", on_table(0, 0)}});

@@ -36,16 +36,16 @@ TEST(FitPresence, ManyExamplesGiveTheNumbersThatDrewThem) {
   const PresenceSettings truth{1.0, 0.5, 0.2};
   const PresenceSettings found = fit_presence(drawn_by(truth, 20000), PresenceSettings{}, 10.0);
   EXPECT_NEAR(found.bias, truth.bias, 0.06);
-  EXPECT_NEAR(found.of_score, truth.of_score, 0.05);
-  EXPECT_NEAR(found.of_quality, truth.of_quality, 0.05);
+  EXPECT_NEAR(found.score_weight, truth.score_weight, 0.05);
+  EXPECT_NEAR(found.quality_weight, truth.quality_weight, 0.05);
 }
 
 TEST(FitPresence, NoExamplesLeaveThePrior) {
   const PresenceSettings prior{1.0, 0.5, 0.2};
   const PresenceSettings found = fit_presence({}, prior, 10.0);
   EXPECT_EQ(found.bias, prior.bias);
-  EXPECT_EQ(found.of_score, prior.of_score);
-  EXPECT_EQ(found.of_quality, prior.of_quality);
+  EXPECT_EQ(found.score_weight, prior.score_weight);
+  EXPECT_EQ(found.quality_weight, prior.quality_weight);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ PoseEvidence good() {
   evidence.depth.agreeing = 1800;
   evidence.depth.violating = 20;
   evidence.depth.outline = 165;
-  evidence.depth.outline_goes_on = 2.0F;
+  evidence.depth.boundary_continuations = 2.0F;
   evidence.colour = ColourComparison{400, 0.6F, 14.0F, 0.5F, 0, 24.0F, 40.0F};
   return evidence;
 }
@@ -46,7 +46,7 @@ TEST(PoseQuality, WhatWasSeenThroughSpeaksAgainstAPose) {
 
 TEST(PoseQuality, ASurfaceThatGoesOnSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
-  evidence.depth.outline_goes_on = 150.0F;
+  evidence.depth.boundary_continuations = 150.0F;
   EXPECT_LT(quality(evidence), quality(good()));
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByOutline);
 }
@@ -58,7 +58,7 @@ QualityTerms typical() {
 
 TEST(PoseQuality, AnotherPrintSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
-  evidence.colour->left_over = evidence.colour->seen_contrast;
+  evidence.colour->left_over = evidence.colour->observed_contrast;
   EXPECT_LT(quality(evidence), quality(good()));
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByColour);
   QualityTerms before = typical();
@@ -89,9 +89,9 @@ TEST(PoseQuality, ColoursThatContradictCountNoMoreThanAsMuch) {
 
 TEST(PoseQuality, PlainThingsAgreeWithLittle) {
   PoseEvidence evidence = good();
-  evidence.colour->seen_contrast = 12.0F;
+  evidence.colour->observed_contrast = 12.0F;
   evidence.colour->left_over = 10.0F;  // of shade and highlights, most is
-  evidence.colour->own_contrast = 5.0F;
+  evidence.colour->model_contrast = 5.0F;
   const QualityTerms plain = quality_terms(evidence, {});
   EXPECT_GT(plain.print, 0.7);
   EXPECT_GT(plain.contrast, quality_terms(good(), {}).contrast + 1.0) << "there was little to agree with";
@@ -99,7 +99,7 @@ TEST(PoseQuality, PlainThingsAgreeWithLittle) {
 
 TEST(PoseQuality, WhatTheCameraWasAtItsLimitForIsNoProofOfAnotherPrint) {
   PoseEvidence evidence = good();
-  evidence.colour->left_over = evidence.colour->seen_contrast;
+  evidence.colour->left_over = evidence.colour->observed_contrast;
   const double compared = quality_terms(evidence, {}).print;
   evidence.colour->clipped = 3 * evidence.colour->points;
   const double mostly_clipped = quality_terms(evidence, {}).print;

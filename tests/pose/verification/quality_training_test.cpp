@@ -137,7 +137,7 @@ TEST(LearnQualities, PresenceIsLearntFromQualitiesThatDidNotKnowTheExamples) {
     example.score = 0.5F;
     example.terms.detection_log_odds = example.is_right == (example.half == 0) ? 1.0 : -1.0;
   }
-  EXPECT_LT(learn_qualities({{"mug", examples}}).at("mug").presence.of_quality, 0.0);
+  EXPECT_LT(learn_qualities({{"mug", examples}}).at("mug").presence.quality_weight, 0.0);
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ std::optional<PoseEvidence> with_swapped_texture(const Mesh& box) {
   Detection detection;
   detection.box_px = cv::Rect2f(0.0F, 0.0F, 640.0F, 480.0F);
   detection.centre_camera = pose.translation().cast<float>();
-  const SeenFrame seen_frame = see_frame(frame, {}, {});
-  const SeenObject seen = see_object(seen_frame, detection, model, {});
+  const FrameContext seen_frame = make_frame_context(frame, {}, {});
+  const ObjectObservation seen = observe_object(seen_frame, detection, model, {});
   const PoseEvidence own = gather_evidence(seen, pose, 0.9F, {});
   const std::optional<PoseEvidence> other = evidence_with_swapped_texture(seen, pose, own, {});
   if (other) {

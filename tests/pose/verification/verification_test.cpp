@@ -27,7 +27,7 @@ TEST(Verification, TruePoseAgreesAlmostEverywhere) {
   EXPECT_LT(found.free_space_violation(), 0.01F);
   EXPECT_EQ(found.occluded, 0);
   EXPECT_GT(found.outline, 200);
-  EXPECT_LT(found.outline_goes_on, 0.15F * static_cast<float>(found.outline));
+  EXPECT_LT(found.boundary_continuations, 0.15F * static_cast<float>(found.outline));
 }
 
 TEST(Verification, ModelInFrontOfWhatWasSeenViolatesFreeSpace) {
@@ -54,7 +54,7 @@ TEST(Verification, PointsOfAViewTellWhatRenderedPixelsTell) {
     Eigen::Isometry3d pose = scene.truth;
     pose.translation() *= scale;
     const Verification pixels = verify_pose(scene.frame, scene.object, pose, kDepthTolerance);
-    const Verification points = verify_look(look_at_view(scene.frame, model, pose, 600), kDepthTolerance);
+    const Verification points = verify_projected_view(look_at_view(scene.frame, model, pose, 600), kDepthTolerance);
     EXPECT_GT(points.rendered, 300);
     EXPECT_NEAR(points.visible_fraction(), pixels.visible_fraction(), 0.06) << scale;
     EXPECT_NEAR(points.free_space_violation(), pixels.free_space_violation(), 0.06) << scale;
@@ -75,7 +75,7 @@ TEST(Verification, FaceSunkIntoTheTableAgreesButHasNoOutline) {
   EXPECT_GT(found.visible_fraction(), 0.4F);
   EXPECT_LT(found.free_space_violation(), 0.01F);
   EXPECT_GT(found.outline, 200);
-  EXPECT_GT(found.outline_goes_on, 0.8F * static_cast<float>(found.outline));
+  EXPECT_GT(found.boundary_continuations, 0.8F * static_cast<float>(found.outline));
 }
 
 TEST(Verification, WhatIsFlushWithTheTableEndsWhereItsColourDoes) {
@@ -84,11 +84,11 @@ TEST(Verification, WhatIsFlushWithTheTableEndsWhereItsColourDoes) {
   const auto goes_on = [&](const cv::Mat& lab) {
     const LabRegion colours{lab, {}, {}};
     const Verification found = verify_pose(scene.frame, scene.object, pose, kDepthTolerance, &colours);
-    return found.outline_goes_on / static_cast<float>(found.outline);
+    return found.boundary_continuations / static_cast<float>(found.outline);
   };
   cv::Mat lab(scene.frame.depth.size(), CV_8UC3, cv::Scalar(120, 128, 128));
   EXPECT_GT(goes_on(lab), 0.7F) << "all of one colour";
-  const RenderedPart part = render_depth_part(scene.object, pose, scene.frame.camera);
+  const RenderedRegion part = render_depth_region(scene.object, pose, scene.frame.camera);
   const cv::Mat is_object = part.depth == part.depth;  // not NaN
   lab(part.region_px).setTo(cv::Scalar(120, 170, 160), is_object);
   EXPECT_LT(goes_on(lab), 0.05F) << "the object is red";

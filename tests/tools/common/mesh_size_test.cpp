@@ -8,17 +8,17 @@ namespace houghstream {
 namespace {
 
 TEST(MeshSize, ObjectsOfACamerasRangeAreAsTheyShouldBe) {
-  for (const double size_m : {0.01, 0.2, 1.5}) EXPECT_EQ(fault_of_size(size_m, 1e-3, "--unit"), "") << size_m;
+  for (const double size_m : {0.01, 0.2, 1.5}) EXPECT_EQ(mesh_size_error(size_m, 1e-3, "--unit"), "") << size_m;
 }
 
 TEST(MeshSize, WhatIsReadInAWrongUnitIsToldTheRightOne) {
-  EXPECT_EQ(fault_of_size(1.6, 1e-2, "--model-unit"),
+  EXPECT_EQ(mesh_size_error(1.6, 1e-2, "--model-unit"),
             "1.6 m across when read in cm, expected 0.01 to 1.5 m, what the camera sees: "
             "--model-unit mm would make it 0.16 m");
-  EXPECT_EQ(fault_of_size(0.0002, 1e-3, "--unit"),
+  EXPECT_EQ(mesh_size_error(0.0002, 1e-3, "--unit"),
             "0.0002 m across when read in mm, expected 0.01 to 1.5 m, what the camera sees: "
             "--unit m would make it 0.2 m");
-  EXPECT_EQ(fault_of_size(40.0, 1e-3, "--unit"),
+  EXPECT_EQ(mesh_size_error(40.0, 1e-3, "--unit"),
             "40 m across when read in mm, expected 0.01 to 1.5 m, what the camera sees");
 }
 

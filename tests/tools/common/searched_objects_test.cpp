@@ -7,26 +7,26 @@
 namespace houghstream {
 namespace {
 
-TEST(SearchedObjects, AStoreGivesItsForestAndItsModels) {
+TEST(ObjectArguments, AStoreGivesItsForestAndItsModels) {
   const std::filesystem::path folder = store::whole_store("searched_objects");
-  SearchedObjects objects{folder.string(), "", ""};
-  const std::optional<store::ObjectStore> store = take_store(objects);
+  ObjectArguments objects{folder.string(), "", ""};
+  const std::optional<store::ObjectStore> store = resolve_store(objects);
   ASSERT_TRUE(store.has_value());
   EXPECT_EQ(store->objects.size(), 2U);
   EXPECT_EQ(objects.forest, store->forest_file().string());
   EXPECT_EQ(objects.models, store->models_folder().string());
 }
 
-TEST(SearchedObjects, WithoutAStoreNothingChanges) {
-  SearchedObjects objects{"", "my.forest", "models"};
-  EXPECT_FALSE(take_store(objects).has_value());
+TEST(ObjectArguments, WithoutAStoreNothingChanges) {
+  ObjectArguments objects{"", "my.forest", "models"};
+  EXPECT_FALSE(resolve_store(objects).has_value());
   EXPECT_EQ(objects.forest, "my.forest");
   EXPECT_EQ(objects.models, "models");
 }
 
-TEST(SearchedObjects, AStoreBesideItsPartsIsRefused) {
-  for (SearchedObjects objects : {SearchedObjects{"/no/such", "f", ""}, SearchedObjects{"/no/such", "", "m"}}) {
-    EXPECT_EQ(error_of([&] { take_store(objects); }),
+TEST(ObjectArguments, AStoreBesideItsPartsIsRefused) {
+  for (ObjectArguments objects : {ObjectArguments{"/no/such", "f", ""}, ObjectArguments{"/no/such", "", "m"}}) {
+    EXPECT_EQ(error_of([&] { resolve_store(objects); }),
               "expected either --objects STORE or --forest FILE and --models FOLDER");
   }
 }

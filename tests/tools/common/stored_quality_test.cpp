@@ -42,8 +42,8 @@ TEST(StoredQuality, ComesBackFromJsonAsItWas) {
     EXPECT_EQ(mug.typical.*term, learnt().typical.*term);
   }
   EXPECT_EQ(mug.presence.bias, learnt().presence.bias);
-  EXPECT_EQ(mug.presence.of_score, learnt().presence.of_score);
-  EXPECT_EQ(mug.presence.of_quality, learnt().presence.of_quality);
+  EXPECT_EQ(mug.presence.score_weight, learnt().presence.score_weight);
+  EXPECT_EQ(mug.presence.quality_weight, learnt().presence.quality_weight);
   EXPECT_EQ(mug.least, 0.35F) << "the threshold is its reader's";
 }
 
@@ -51,8 +51,8 @@ TEST(StoredQuality, AStoreThatKnowsNothingOfPresenceIsReadWithThatOfOthers) {
   nlohmann::json json = quality_to_json(learnt());
   json.erase("presence");
   QualitySettings others;
-  others.presence.of_quality = 0.125;
-  EXPECT_EQ(stored_quality(store_with(json), others).at("mug").presence.of_quality, 0.125);
+  others.presence.quality_weight = 0.125;
+  EXPECT_EQ(stored_quality(store_with(json), others).at("mug").presence.quality_weight, 0.125);
 }
 
 TEST(StoredQuality, TermsAreHeldByTheirNames) {

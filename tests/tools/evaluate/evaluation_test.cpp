@@ -279,8 +279,8 @@ TEST(PoseMetrics, PublishedPosesOfFalseDetectionsAndThoseOffAreWrong) {
 
 TEST(PoseMetrics, QualityIsJudgedByWithheldPosesToo) {
   std::vector<EvaluatedFrame> frames = posed_frames(1.0);
-  frames[0].poses_nothing_withheld = frames[0].poses;
-  frames[0].poses_nothing_withheld->poses[0].quality = 0.3F;
+  frames[0].unfiltered_poses = frames[0].poses;
+  frames[0].unfiltered_poses->poses[0].quality = 0.3F;
   frames[0].poses->poses[0].T_camera_object.reset();
   const std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2, false}}};
   const Evaluation evaluation = evaluate(frames, {"mug"}, models, {});

@@ -87,7 +87,7 @@ TEST(InProcess, PosesOfWeakDetectionsAreKnownButNotPublished) {
     for (std::size_t k = 0; k < all; ++k) {
       const ObjectPose& published = ranked[i].poses->poses[k];
       EXPECT_EQ(published.detection_index, static_cast<int>(k));
-      EXPECT_EQ(ranked[i].poses_nothing_withheld->poses[k].detection_index, static_cast<int>(k));
+      EXPECT_EQ(ranked[i].unfiltered_poses->poses[k].detection_index, static_cast<int>(k));
       if (k >= strong) {
         EXPECT_EQ(published.status, PoseStatus::kLowScore);
         EXPECT_EQ(published.class_name, ranked[i].detections->detections[k].class_name);
@@ -100,8 +100,8 @@ TEST(InProcess, PosesOfWeakDetectionsAreKnownButNotPublished) {
       EXPECT_EQ(published.T_camera_object->matrix(), same.T_camera_object->matrix());
     }
     EXPECT_GT(count_poses(ranked[i].poses), 0);
-    EXPECT_GT(count_poses(ranked[i].poses_nothing_withheld), count_poses(ranked[i].poses));
-    EXPECT_EQ(count_poses(usual[i].poses_nothing_withheld), count_poses(usual[i].poses));
+    EXPECT_GT(count_poses(ranked[i].unfiltered_poses), count_poses(ranked[i].poses));
+    EXPECT_EQ(count_poses(usual[i].unfiltered_poses), count_poses(usual[i].poses));
   }
 }
 
@@ -115,7 +115,7 @@ TEST(InProcess, PosesOfLowQualityAreKnownButNotPublished) {
   const std::vector<EvaluatedFrame> none = run(scene, 0.5F, rules);
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(count_poses(none[i].poses), 0);
-    EXPECT_EQ(count_poses(none[i].poses_nothing_withheld), count_poses(all[i].poses));
+    EXPECT_EQ(count_poses(none[i].unfiltered_poses), count_poses(all[i].poses));
     EXPECT_NE(none[i].poses->poses[0].status, PoseStatus::kValid) << "it says why";
     EXPECT_EQ(none[i].poses->poses[0].quality, all[i].poses->poses[0].quality);
   }
@@ -127,7 +127,7 @@ TEST(InProcess, CandidatesHavePosesThatArePublishedByALimitOfTheirOwn) {
   rules.pose.min_score = 0.0F;
   publish_from(0.0F, rules.pose);
   const std::vector<EvaluatedFrame> all = run(scene, 0.5F, rules);
-  rules.pose.quality.least_of_candidates = 2.0F;
+  rules.pose.quality.min_candidate_quality = 2.0F;
   const std::vector<EvaluatedFrame> none = run(scene, 0.5F, rules);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::vector<Detection>& found = all[i].detections->detections;
@@ -157,7 +157,7 @@ TEST(InProcess, WithoutModelsNobodyLooksForPoses) {
   ASSERT_EQ(frames.size(), 1U) << "those that were asked for";
   EXPECT_EQ(frames[0].detections->frame.utime, frames[0].utime);
   EXPECT_FALSE(frames[0].poses.has_value());
-  EXPECT_FALSE(frames[0].poses_nothing_withheld.has_value());
+  EXPECT_FALSE(frames[0].unfiltered_poses.has_value());
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ TEST(ReliabilityPicture, BarsAreAsHighAsWhatIsTrue) {
   const cv::Mat empty = reliability_picture(nothing, nothing);
   EXPECT_EQ(coloured_pixels(empty), 0);
   const auto pixels = [&](double share) {
-    std::vector<Statement> statements;
+    std::vector<Prediction> statements;
     statements.reserve(20);
     for (int i = 0; i < 20; ++i) statements.push_back({0.95, i < 20 * share});
     const cv::Mat picture = reliability_picture(nothing, calibrate(statements, 20));

@@ -20,7 +20,7 @@ RecordingSettings two_frames(const fs::path& folder) {
 
 TEST(ExportFrames, PngsHaveAListOfTheirTimesAndNeedNoCamera) {
   const fs::path folder = fresh_folder("export_list");
-  LossAccount losses;
+  LossReport losses;
   EXPECT_EQ(export_pngs(two_frames(folder), folder / "deep/png", losses), 2);
   EXPECT_EQ(read_text(folder / "deep/png/frames.csv"),
             "frame,utime,timestamp\n"
@@ -32,11 +32,11 @@ TEST(ExportFrames, PngsHaveAListOfTheirTimesAndNeedNoCamera) {
 TEST(ExportFrames, ASceneNeedsACameraForEachFrame) {
   const fs::path folder = fresh_folder("export_camera");
   RecordingSettings settings = two_frames(folder);
-  LossAccount without;
+  LossReport without;
   EXPECT_THROW(export_bop(settings, folder / "none", without), InputError);
   EXPECT_EQ(without.refused(), 2);
   settings.camera = make_test_frame(0).camera;
-  LossAccount with;
+  LossReport with;
   EXPECT_EQ(export_bop(settings, folder / "bop", with), 2);
   EXPECT_EQ(with.refused(), 0);
   const BopScene scene(folder / "bop");
@@ -47,7 +47,7 @@ TEST(ExportFrames, ASceneNeedsACameraForEachFrame) {
 TEST(ExportFrames, AFolderThatCannotBeWrittenIsAnError) {
   const fs::path folder = fresh_folder("export_refused");
   write_text(folder / "file", "");
-  LossAccount losses;
+  LossReport losses;
   EXPECT_THROW(export_pngs(two_frames(folder), folder / "file/png", losses), InputError);
   EXPECT_THROW(export_bop(two_frames(folder), folder / "file/bop", losses), InputError);
 }
@@ -58,7 +58,7 @@ TEST(ExportFrames, NothingIsMixedWithAnotherExport) {
   settings.camera = make_test_frame(0).camera;
   fs::create_directories(folder / "png");
   write_text(folder / "png/notes.txt", "mine");
-  LossAccount losses;
+  LossReport losses;
   EXPECT_EQ(export_pngs(settings, folder / "png", losses), 2) << "what is no picture may be there";
   EXPECT_EQ(export_bop(settings, folder / "bop", losses), 2);
   fs::rename(folder / "png/000001_color.png", folder / "png/000007_color.png");

@@ -51,7 +51,7 @@ fs::path log_of_three_frames() {
 }
 
 TEST(ExportObjects, CsvHasARowForEachObjectOfEachFrame) {
-  LossAccount losses;
+  LossReport losses;
   const fs::path log = log_of_three_frames();
   const fs::path out = log.parent_path() / "out.csv";
   EXPECT_EQ(export_objects_csv(log, out, losses), 3);
@@ -66,7 +66,7 @@ TEST(ExportObjects, CsvHasARowForEachObjectOfEachFrame) {
 }
 
 TEST(ExportObjects, JsonTellsEachObjectsStoryAndWhyItVanished) {
-  LossAccount losses;
+  LossReport losses;
   const fs::path log = log_of_three_frames();
   const fs::path out = log.parent_path() / "out.json";
   EXPECT_EQ(export_objects_json(log, out, losses), 3);
@@ -83,7 +83,7 @@ TEST(ExportObjects, JsonTellsEachObjectsStoryAndWhyItVanished) {
 }
 
 TEST(ExportObjects, AreNotWrittenOverTheirLogAndAreThereAsAWhole) {
-  LossAccount losses;
+  LossReport losses;
   const fs::path log = log_of_three_frames();
   const std::string before = read_text(log);
   const fs::path out = log.parent_path() / "out";
@@ -92,7 +92,7 @@ TEST(ExportObjects, AreNotWrittenOverTheirLogAndAreThereAsAWhole) {
   EXPECT_THROW(export_objects_csv(log, log.parent_path() / "link", losses), InputError);
   EXPECT_THROW(export_objects_json(log, log, losses), InputError);
   EXPECT_EQ(read_text(log), before);
-  const WholeFile held(out);
+  const AtomicFile held(out);
   EXPECT_THROW(export_objects_csv(log, out, losses), InputError) << "somebody else writes it";
 }
 
@@ -102,7 +102,7 @@ TEST(ExportObjects, ALogWithoutObjectsIsRefused) {
   const std::vector<std::uint8_t> bytes = {1, 2, 3};
   writer.write(1, "OTHER", {bytes.data(), bytes.size()});
   writer.close();
-  LossAccount losses;
+  LossReport losses;
   EXPECT_NE(error_of([&] {
               export_objects_csv(file, file.parent_path() / "out.csv", losses);
             }).find("no message on HOUGHSTREAM_OBJECTS, expected objects of hs-track"),

@@ -64,7 +64,7 @@ fs::path write_results(const std::string& name) {
 
 TEST(ExportResults, CsvHasARowForEachDetection) {
   const fs::path log = write_results("results_csv");
-  LossAccount losses;
+  LossReport losses;
   EXPECT_EQ(export_results_csv(log, log.parent_path() / "a.csv", losses), 2);
   EXPECT_EQ(losses.refused(), 1);
   std::istringstream lines(read_text(log.parent_path() / "a.csv"));
@@ -85,7 +85,7 @@ TEST(ExportResults, CsvHasARowForEachDetection) {
 
 TEST(ExportResults, JsonHasEmptyFramesToo) {
   const fs::path log = write_results("results_json");
-  LossAccount losses;
+  LossReport losses;
   EXPECT_EQ(export_results_json(log, log.parent_path() / "a.json", losses), 2);
   const nlohmann::json frames = read_json_object(log.parent_path() / "a.json").at("frames");
   ASSERT_EQ(frames.size(), 2U);
@@ -116,7 +116,7 @@ TEST(ExportResults, WhatIsFollowedIsWrittenWithoutDetections) {
   TestLog log(file);
   log.add(channel::kPoses, to_message(make_followed(10)));
   log.close();
-  LossAccount losses;
+  LossReport losses;
   EXPECT_EQ(export_results_csv(file, file.parent_path() / "a.csv", losses), 1);
   EXPECT_EQ(losses.line(), "");
   const std::string csv = read_text(file.parent_path() / "a.csv");
@@ -141,7 +141,7 @@ TEST(ExportResults, WhatIsFollowedAndDetectedIsWrittenOnce) {
     log.add(channel::kDetections, to_message(make_detections(10, 1)));
     if (answered) log.add(channel::kPoses, to_message(make_poses(10)));
     log.close();
-    LossAccount losses;
+    LossReport losses;
     export_results_json(file, file.parent_path() / "a.json", losses);
     const nlohmann::json found = read_json_object(file.parent_path() / "a.json").at("frames")[0]["detections"];
     ASSERT_EQ(found.size(), 2U);
@@ -160,7 +160,7 @@ TEST(ExportResults, CandidatesThatNoPoseConfirmsAreLeftOut) {
   log.add(channel::kDetections, to_message(found));
   log.add(channel::kPoses, to_message(make_poses(10)));
   log.close();
-  LossAccount losses;
+  LossReport losses;
   export_results_csv(file, file.parent_path() / "a.csv", losses);
   const std::string csv = read_text(file.parent_path() / "a.csv");
   EXPECT_NE(csv.find(",bowl,"), std::string::npos) << "it has a pose";
@@ -186,7 +186,7 @@ TEST(ExportResults, CamerasOfEqualTimesAndSeveralDetectorsAreAllThere) {
     }
   }
   log.close();
-  LossAccount losses;
+  LossReport losses;
   EXPECT_EQ(export_results_json(folder / "log", folder / "a.json", losses), 2 * kFrames);
   EXPECT_EQ(losses.line(), "");
   const nlohmann::json frames = read_json_object(folder / "a.json").at("frames");
@@ -211,7 +211,7 @@ TEST(ExportResults, PosesOfNoDetectionsAreCounted) {
   log.add(channel::kDetections, to_message(make_detections(1, 1, "LEFT")));
   log.add(channel::kPoses, to_message(make_poses(1, "RIGHT")));
   log.close();
-  LossAccount losses;
+  LossReport losses;
   EXPECT_EQ(export_results_csv(folder / "log", folder / "a.csv", losses), 1);
   EXPECT_NE(losses.line().find("poses of frame RIGHT 1"), std::string::npos) << losses.line();
 }
@@ -221,7 +221,7 @@ TEST(ExportResults, ALogWithoutResultsIsRefused) {
   TestLog log(folder / "log");
   log.add("OPENNI_FRAME", foreign_images(numbered_frame(0)));
   log.close();
-  LossAccount losses;
+  LossReport losses;
   EXPECT_THROW(export_results_csv(folder / "log", folder / "a.csv", losses), InputError);
   EXPECT_THROW(export_results_json(write_results("results_where"), folder / "no" / "a.json", losses), InputError);
 }

@@ -24,7 +24,7 @@ class FilterLog : public testing::Test {
 
   /// The numbers of the events that pass.
   std::vector<int> pass(const LogFilter& filter) const {
-    LossAccount losses;
+    LossReport losses;
     const std::int64_t count = filter_log(folder / "in", filter, folder / "out", losses);
     std::vector<int> numbers;
     LogReader log(folder / "out");
@@ -69,7 +69,7 @@ class DatedLog {
     writer.close();
   }
   std::int64_t kept(const LogFilter& filter) {
-    LossAccount losses;
+    LossReport losses;
     const std::int64_t count = filter_log(folder_ / "in", filter, folder_ / "out", losses);
     words = losses.line();
     return count;
@@ -112,7 +112,7 @@ TEST_F(FilterLog, WhatMakesNoSenseIsRefused) {
   fs::remove(folder / "out");
   EXPECT_THROW(pass(filter), InputError);
   EXPECT_FALSE(fs::exists(folder / "out")) << "nothing is written where nothing passes";
-  LossAccount losses;
+  LossReport losses;
   EXPECT_THROW(filter_log(folder / "in", {}, folder / "in", losses), InputError);
   EXPECT_GT(fs::file_size(folder / "in"), 300U);
 }

@@ -30,46 +30,46 @@ void put_at(const fs::path& file, std::streamoff position, char value) {
   log.put(value);
 }
 
-std::vector<std::int64_t> read_all(const fs::path& file, LossAccount& losses) {
+std::vector<std::int64_t> read_all(const fs::path& file, LossReport& losses) {
   std::vector<std::int64_t> timestamps;
-  GoodEvents events(file, losses);
+  IntactEvents events(file, losses);
   while (const auto event = events.next()) timestamps.push_back(event->timestamp);
   return timestamps;
 }
 
 using Timestamps = std::vector<std::int64_t>;
 
-TEST(GoodEvents, AHealthyLogIsReadToItsEnd) {
-  LossAccount losses;
+TEST(IntactEvents, AHealthyLogIsReadToItsEnd) {
+  LossReport losses;
   EXPECT_EQ(read_all(write_events("good_healthy", 3), losses), (Timestamps{0, 1, 2}));
   EXPECT_EQ(losses.line(), "");
 }
 
-TEST(GoodEvents, ACutLogLosesItsLastEventOnly) {
+TEST(IntactEvents, ACutLogLosesItsLastEventOnly) {
   const fs::path file = write_events("good_cut", 4);
   fs::resize_file(file, 4 * kEventBytes - 3);
-  LossAccount losses;
+  LossReport losses;
   EXPECT_EQ(read_all(file, losses), (Timestamps{0, 1, 2}));
   EXPECT_NE(losses.line().find("42 bytes lost at 1 damaged place, first: " + file.string() + ": cut in event 3"),
             std::string::npos)
       << losses.line();
 }
 
-TEST(GoodEvents, DamagedPlacesArePassedOver) {
+TEST(IntactEvents, DamagedPlacesArePassedOver) {
   const fs::path file = write_events("good_damaged", 9);
   put_at(file, 2 * kEventBytes, 'x');           // a sync word
   put_at(file, 5 * kEventBytes + 26, '\x01');   // a length: the event would reach far beyond the end
   put_at(file, 7 * kEventBytes + 27, 10 + 12);  // a length: the event reaches into the next
-  LossAccount losses;
+  LossReport losses;
   EXPECT_EQ(read_all(file, losses), (Timestamps{0, 1, 3, 4, 6, 8}));
   EXPECT_EQ(losses.damaged_places(), 3);
   EXPECT_NE(losses.line().find("135 bytes lost at 3 damaged places"), std::string::npos) << losses.line();
 }
 
-TEST(GoodEvents, WhatIsNoLogIsRefused) {
+TEST(IntactEvents, WhatIsNoLogIsRefused) {
   const fs::path folder = fresh_folder("good_none");
   write_text(folder / "text", std::string(1000, 'x'));
-  LossAccount losses;
+  LossReport losses;
   EXPECT_THROW(read_all(folder / "text", losses), InputError);
   EXPECT_THROW(read_all(folder / "missing", losses), InputError);
 }
@@ -93,7 +93,7 @@ void write_nested(const fs::path& file, std::uint32_t events) {
 }
 
 // Read anew from each of them on, this log of 6 MB would be 600 GB.
-TEST(GoodEvents, AForgedLogIsReadAFewTimesOnly) {
+TEST(IntactEvents, AForgedLogIsReadAFewTimesOnly) {
   const fs::path file = fresh_folder("good_forged") / "log";
   write_nested(file, 200'000);
   LogReader reader(file);
@@ -110,8 +110,8 @@ TEST(GoodEvents, AForgedLogIsReadAFewTimesOnly) {
   EXPECT_LE(events, 10U);
 }
 
-TEST(LossAccount, SaysInOneLineWhatWasLost) {
-  LossAccount losses;
+TEST(LossReport, SaysInOneLineWhatWasLost) {
+  LossReport losses;
   losses.note_refused("frame 7: no camera");
   losses.note_refused("frame 8: no camera");
   EXPECT_EQ(losses.line(), "2 left out, first: frame 7: no camera");

@@ -17,7 +17,7 @@ const Camera kCamera = make_test_frame(0).camera;
 
 TEST(ImportLog, KeepsTimesAndAddsWhatIsMissing) {
   const fs::path folder = fresh_folder("import_keeps");
-  LossAccount losses;
+  LossReport losses;
   RecordingSettings settings;
   settings.source = log_of(folder, kFrames, "OPENNI_FRAME", foreign_images);
   settings.camera = kCamera;
@@ -45,7 +45,7 @@ TEST(ImportLog, KeepsWhatIsGoodAndSaysWhatIsLost) {
   }
   log.close();
   fs::resize_file(folder / "log", fs::file_size(folder / "log") - 100);
-  LossAccount losses;
+  LossReport losses;
   RecordingSettings settings;
   settings.source = (folder / "log").string();
   EXPECT_EQ(import_log(settings, "FRAMES", folder / "out", losses), 2);
@@ -56,7 +56,7 @@ TEST(ImportLog, KeepsWhatIsGoodAndSaysWhatIsLost) {
 
 TEST(ImportLog, RefusesWhatMakesNoSense) {
   const fs::path folder = fresh_folder("import_refused");
-  LossAccount losses;
+  LossReport losses;
   RecordingSettings settings;
   settings.source = log_of(folder, kFrames, "OPENNI_FRAME", foreign_images);
   EXPECT_THROW(import_log(settings, "FRAMES", settings.source, losses), InputError) << "the log itself";

@@ -26,7 +26,7 @@ TEST(LogInfo, CountsChannelsTypesRatesAndGaps) {
   log.write(1'500'000'000'000'000 + 2'000'000, "ODD", {reinterpret_cast<const std::uint8_t*>("abcdefgh"), 8});
   log.close();
 
-  LossAccount losses;
+  LossReport losses;
   const LogInfo info = read_log_info(file, losses);
   EXPECT_EQ(losses.line(), "");
   EXPECT_EQ(info.events, 8);
@@ -54,7 +54,7 @@ TEST(LogInfo, AFrameThatIsDamagedIsCounted) {
   bytes.resize(bytes.size() - 5);
   log.add_bytes("OPENNI_FRAME", bytes);
   log.close();
-  LossAccount losses;
+  LossReport losses;
   const LogInfo info = read_log_info(file, losses);
   EXPECT_EQ(losses.refused(), 1);
   EXPECT_NE(to_text(info).find("raw colour 64x48, zipped depth 64x48, without a camera"), std::string::npos)

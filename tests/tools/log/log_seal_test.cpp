@@ -29,8 +29,8 @@ class SealLog : public testing::Test {
 
   /// Events of a log that can be read, and what is said of the rest.
   static std::pair<int, std::string> read(const fs::path& file) {
-    LossAccount losses;
-    GoodEvents events(file, losses);
+    LossReport losses;
+    IntactEvents events(file, losses);
     int count = 0;
     while (events.next()) ++count;
     return {count, losses.line()};
@@ -69,7 +69,7 @@ TEST_F(SealLog, EveryFlippedBitIsFound) {
   for (int i = 0; i < 60; ++i) {
     std::string bytes = whole;
     bytes[random() % bytes.size()] ^= static_cast<char>(1U << random() % 8);
-    write_whole_file(folder / "damaged", bytes);
+    write_file_atomically(folder / "damaged", bytes);
     const auto [kept, words] = read(folder / "damaged");
     // An event's number in its header is nobody's business: LCM counts anew.
     if (words.empty()) {
@@ -81,7 +81,7 @@ TEST_F(SealLog, EveryFlippedBitIsFound) {
   }
   std::string jpeg = whole;
   jpeg[whole.find("\xFF\xDA") + 40] ^= 4;
-  write_whole_file(folder / "damaged", jpeg);
+  write_file_atomically(folder / "damaged", jpeg);
   const auto [kept, words] = read(folder / "damaged");
   EXPECT_EQ(kept, events - 1);
   EXPECT_NE(words.find("checksum"), std::string::npos) << words;
@@ -89,7 +89,7 @@ TEST_F(SealLog, EveryFlippedBitIsFound) {
 
 TEST_F(SealLog, MissingEventsAreFound) {
   const std::string whole = read_file(sealed, "a log");
-  write_whole_file(folder / "cut", whole.substr(0, whole.size() - (28 + 5 + 3)));  // the last event
+  write_file_atomically(folder / "cut", whole.substr(0, whole.size() - (28 + 5 + 3)));  // the last event
   LogReader log(folder / "cut");
   EXPECT_THROW(while (log.next()){}, InputError);
   EXPECT_NE(read(folder / "cut").second.find("1 sealed event"), std::string::npos) << read(folder / "cut").second;
@@ -97,7 +97,7 @@ TEST_F(SealLog, MissingEventsAreFound) {
 
 TEST_F(SealLog, WhatIsDamagedIsNotSealed) {
   const std::string whole = read_file(original, "a log");
-  write_whole_file(folder / "cut", whole.substr(0, whole.size() - 2));
+  write_file_atomically(folder / "cut", whole.substr(0, whole.size() - 2));
   EXPECT_THROW(seal_log(folder / "cut", folder / "out"), InputError);
   EXPECT_FALSE(fs::exists(folder / "out"));
   EXPECT_THROW(seal_log(original, original), InputError);

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The pixel by which numbered frames differ, frame by frame.
-std::vector<int> numbers_in(const RecordingSettings& settings, LossAccount& losses) {
+std::vector<int> numbers_in(const RecordingSettings& settings, LossReport& losses) {
   std::vector<int> numbers;
   const NextFrame next = open_recording(settings, losses);
   while (const std::optional<RecordedFrame> frame = next()) {
@@ -30,7 +30,7 @@ TEST(Recording, TheFirstChannelWithFramesIsReadUnlessOneIsNamed) {
   log.add_bytes("OTHER", {1, 2, 3});
   for (int i = 0; i < 4; ++i) log.add(i % 2 == 0 ? "LEFT" : "RIGHT", foreign_images(numbered_frame(i)));
   log.close();
-  LossAccount losses;
+  LossReport losses;
   RecordingSettings settings;
   settings.source = (folder / "log").string();
   EXPECT_EQ(numbers_in(settings, losses), (std::vector<int>{0, 2}));
@@ -42,7 +42,7 @@ TEST(Recording, TheFirstChannelWithFramesIsReadUnlessOneIsNamed) {
 }
 
 TEST(Recording, WhatIsNotThereIsAnErrorThatNamesIt) {
-  LossAccount losses;
+  LossReport losses;
   for (const std::string source : {"/no/such.log", "/no/such.klg", "/no/such.oni", "oni:/no/such", "bop:/no/such"}) {
     RecordingSettings settings;
     settings.source = source;
@@ -65,7 +65,7 @@ TEST(Recording, OtherMakersRecordingsAreNamed) {
     RecordingSettings settings;
     settings.source = (folder / "taken.bag").string();
     write_text(settings.source, begin + std::string(100, 'x'));
-    LossAccount losses;
+    LossReport losses;
     try {
       open_recording(settings, losses);
       ADD_FAILURE() << name;
@@ -87,7 +87,7 @@ TEST(Recording, FramesKeepTheirOwnCameraAndTimeAndAreCounted) {
   RecordingSettings settings;
   settings.source = (folder / "log").string();
   settings.camera = Camera{64, 48, 99.0, 99.0, 31.0, 23.0};
-  LossAccount losses;
+  LossReport losses;
   const NextFrame next = open_recording(settings, losses);
   const std::optional<RecordedFrame> own = next();
   const std::optional<RecordedFrame> given = next();
@@ -109,20 +109,20 @@ TEST(Recording, AKlgFileIsKnownByItsNameOrByItsKindAndEndsWhereItIsCut) {
   settings.camera = make_test_frame(0).camera;
   for (const std::string& source : {(folder / "a.klg").string(), "klg:" + (folder / "plain").string()}) {
     settings.source = source;
-    LossAccount losses;
+    LossReport losses;
     EXPECT_EQ(numbers_in(settings, losses), (std::vector<int>{0, 1, 2})) << source;
     EXPECT_EQ(losses.line(), "") << source;
   }
   fs::resize_file(folder / "a.klg", fs::file_size(folder / "a.klg") - 1);
   settings.source = (folder / "a.klg").string();
-  LossAccount losses;
+  LossReport losses;
   EXPECT_EQ(numbers_in(settings, losses), (std::vector<int>{0, 1}));
   EXPECT_EQ(losses.damaged_places(), 1);
 }
 
 TEST(Recording, WhatCannotBeOpenedOrMakesNoSenseIsRefused) {
   const fs::path folder = fresh_folder("recording_refused");
-  LossAccount losses;
+  LossReport losses;
   RecordingSettings settings;
   for (const std::string source : {"nothing", "nothing.klg", "klg:nothing", "bop:nothing"}) {
     settings.source = source;

@@ -24,7 +24,7 @@ const Camera kCamera = make_test_frame(0).camera;
 void expect_round_trip(const std::string& source, const fs::path& folder, bool lossless_colour) {
   fs::remove_all(folder / "bop");
   fs::remove_all(folder / "png");
-  LossAccount losses;
+  LossReport losses;
   RecordingSettings settings;
   settings.source = source;
   settings.camera = kCamera;

@@ -49,7 +49,7 @@ struct MadeOfStore {
     models = PoseEstimator(store::load_store_meshes(list), PoseSettings()).models();
   }
 
-  std::string state_for(const KeptModels& kept) const { return kept.state_of(list, ModelSettings()); }
+  std::string state_for(const ModelCache& kept) const { return kept.state_of(list, ModelSettings()); }
 
   fs::path folder;
   store::ObjectStore list;
@@ -60,9 +60,9 @@ fs::path only_file_in(const fs::path& folder) {
   return fs::directory_iterator(folder)->path();
 }
 
-TEST(KeptModels, ComeBackBitForBit) {
+TEST(ModelCache, ComeBackBitForBit) {
   const MadeOfStore made("kept_models");
-  const KeptModels kept(fresh_folder("kept_models_cache") / "models");
+  const ModelCache kept(fresh_folder("kept_models_cache") / "models");
   EXPECT_FALSE(kept.find(made.list, made.state_for(kept)).has_value());
   kept.keep(made.list, made.state_for(kept), made.models);
   const auto found = kept.find(made.list, made.state_for(kept));
@@ -72,9 +72,9 @@ TEST(KeptModels, ComeBackBitForBit) {
   for (const auto& [name, model] : made.models) expect_same(found->at(name), model);
 }
 
-TEST(KeptModels, OfAnotherStateAreNone) {
+TEST(ModelCache, OfAnotherStateAreNone) {
   const MadeOfStore made("kept_models_state");
-  const KeptModels kept(fresh_folder("kept_models_state_cache"));
+  const ModelCache kept(fresh_folder("kept_models_state_cache"));
   const std::string before = made.state_for(kept);
   kept.keep(made.list, before, made.models);
   ModelSettings fewer;
@@ -85,10 +85,10 @@ TEST(KeptModels, OfAnotherStateAreNone) {
   EXPECT_FALSE(kept.find(made.list, made.state_for(kept)).has_value());
 }
 
-TEST(KeptModels, DamagedOnesOrThoseThatOthersMayWriteAreNone) {
+TEST(ModelCache, DamagedOnesOrThoseThatOthersMayWriteAreNone) {
   const MadeOfStore made("kept_models_damaged");
   const fs::path folder = fresh_folder("kept_models_damaged_cache");
-  const KeptModels kept(folder);
+  const ModelCache kept(folder);
   kept.keep(made.list, made.state_for(kept), made.models);
   const fs::path file = only_file_in(folder);
   const std::string whole = read_text(file);
@@ -106,10 +106,10 @@ TEST(KeptModels, DamagedOnesOrThoseThatOthersMayWriteAreNone) {
   EXPECT_FALSE(kept.find(made.list, made.state_for(kept)).has_value());
 }
 
-TEST(KeptModels, AreOfFewStoresAndNeedNoPlace) {
+TEST(ModelCache, AreOfFewStoresAndNeedNoPlace) {
   const MadeOfStore made("kept_models_few");
   const fs::path folder = fresh_folder("kept_models_few_cache");
-  const KeptModels kept(folder);
+  const ModelCache kept(folder);
   store::ObjectStore other = made.list;
   for (int i = 0; i < 12; ++i) {
     other.folder = made.folder.parent_path() / std::to_string(i);
@@ -117,8 +117,8 @@ TEST(KeptModels, AreOfFewStoresAndNeedNoPlace) {
   }
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 8);
   write_text(folder / "file", "");
-  EXPECT_NO_THROW(KeptModels(folder / "file").keep(made.list, "state", made.models));
-  EXPECT_FALSE(KeptModels("").find(made.list, "state").has_value());
+  EXPECT_NO_THROW(ModelCache(folder / "file").keep(made.list, "state", made.models));
+  EXPECT_FALSE(ModelCache("").find(made.list, "state").has_value());
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ TEST(RenderJobs, ASceneBringsTheModelsOfWhatItMayHold) {
   EXPECT_TRUE(models.symmetries.at(102).empty()) << "a teapot";
   const BopScene scene(folder);
   EXPECT_GE(scene.images().at(0).objects.size(), 8U);
-  for (const TrueObject& object : scene.images().at(0).objects)
+  for (const GroundTruthObject& object : scene.images().at(0).objects)
     EXPECT_EQ(models.names.count(object.object_id), 1U) << object.object_id;
   const fs::path demo = fresh_folder("render_jobs_demo");
   render_scene(into(demo), {"table_small_1", 1, 1});

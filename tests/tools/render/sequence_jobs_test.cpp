@@ -33,7 +33,7 @@ TEST(SequenceJobs, EveryFrameHasTheTruthOfAllInstancesAndOfTheCamera) {
   EXPECT_FALSE(json["frames"][11]["objects"][3].is_null());
   EXPECT_EQ(json["frames"][6]["cameras"][0]["visible"][3], 0.0);
   EXPECT_GT(json["frames"][0]["cameras"][0]["visible"][3], 0.5);
-  for (const TrueObject& object : scene.images()[6].objects) EXPECT_NE(object.object_id, 4);
+  for (const GroundTruthObject& object : scene.images()[6].objects) EXPECT_NE(object.object_id, 4);
   EXPECT_EQ(json["frames"][0]["cameras"][0]["T_world_camera"].size(), 7U);
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-Ending wait_for(Child& child) {
+ExitStatus wait_for(Child& child) {
   for (int i = 0; i < 1000; ++i) {
     if (const auto ending = child.ending()) return *ending;
     std::this_thread::sleep_for(milliseconds(10));
@@ -30,7 +30,7 @@ TEST(Child, TellsHowItEnded) {
   Child good({"/bin/sh", "-c", "exit 0"});
   EXPECT_TRUE(wait_for(good).success);
   Child bad({"/bin/sh", "-c", "exit 7"});
-  const Ending ending = wait_for(bad);
+  const ExitStatus ending = wait_for(bad);
   EXPECT_FALSE(ending.success);
   EXPECT_FALSE(ending.by_signal);
   EXPECT_EQ(ending.words, "ended with status 7");

@@ -17,9 +17,9 @@ status_t status_of(pid_t pid, float rate_hz) {
   return status;
 }
 
-TEST(StateBoard, TellsTheStreamsStateInOneLine) {
-  StateBoard board;
-  const auto now = StateBoard::Clock::now();
+TEST(StatusBoard, TellsTheStreamsStateInOneLine) {
+  StatusBoard board;
+  const auto now = StatusBoard::Clock::now();
   status_t detect = status_of(10, 9.84F);
   detect.latency_p50_ms = 119.4F;
   detect.frames_lost = 3;
@@ -36,9 +36,9 @@ TEST(StateBoard, TellsTheStreamsStateInOneLine) {
             "capture 30.0 Hz (restarts: 1) | new silent");
 }
 
-TEST(StateBoard, ShowsNothingThatSteersATerminal) {
-  StateBoard board;
-  const auto now = StateBoard::Clock::now();
+TEST(StatusBoard, ShowsNothingThatSteersATerminal) {
+  StatusBoard board;
+  const auto now = StatusBoard::Clock::now();
   status_t status = status_of(10, 1.0F);
   status.frames_refused = 1;
   status.last_error = "\x1b]0;mine\x07" + std::string(1000, 'a');
@@ -49,9 +49,9 @@ TEST(StateBoard, ShowsNothingThatSteersATerminal) {
   EXPECT_LT(line.size(), 400U);
 }
 
-TEST(StateBoard, ForgetsProcessesThatAreGone) {
-  StateBoard board;
-  const auto now = StateBoard::Clock::now();
+TEST(StatusBoard, ForgetsProcessesThatAreGone) {
+  StatusBoard board;
+  const auto now = StatusBoard::Clock::now();
   board.note(status_of(10, 1.0F), now);
   board.keep({{"detect", 11, 1}});
   EXPECT_EQ(board.line({{"detect", 10, 0}}, now), "detect silent");

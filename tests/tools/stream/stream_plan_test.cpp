@@ -29,7 +29,7 @@ TEST(StreamPlan, PutsTheStreamTogether) {
   EXPECT_FALSE(plans[0].ends_stream);
   EXPECT_TRUE(plans[2].ends_stream);
   EXPECT_TRUE(plans[3].ends_stream);
-  for (std::size_t i = 0; i < plans.size(); ++i) EXPECT_EQ(plans[i].awaits_others, i == 3) << "the source";
+  for (std::size_t i = 0; i < plans.size(); ++i) EXPECT_EQ(plans[i].is_started_last, i == 3) << "the source";
 }
 
 TEST(StreamPlan, AnObjectStoreIsForAll) {
@@ -123,7 +123,7 @@ TEST(StreamPlan, EachOfSeveralCamerasHasACaptureOfItsOwn) {
   EXPECT_EQ(plans[2].name, "capture LEFT");
   EXPECT_EQ(plans[2].command, (Words{"hs-capture", "--channel", "LEFT", "--source", "openni2:#1"}));
   EXPECT_EQ(plans[3].command, (Words{"hs-capture", "--channel", "RIGHT", "--source", "bop:my scene=1"}));
-  EXPECT_TRUE(plans[2].awaits_others && plans[3].awaits_others);
+  EXPECT_TRUE(plans[2].is_started_last && plans[3].is_started_last);
   for (const std::string wrong : {"LEFT=openni2 openni2:#2", "LEFT=openni2:#1 LEFT=openni2:#2"}) {
     options.source = wrong;
     EXPECT_THROW(plan_stream(options), InputError) << wrong;

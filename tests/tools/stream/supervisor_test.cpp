@@ -19,8 +19,8 @@ ChildPlan shell(const std::string& name, const std::string& script, bool ends_st
 
 SupervisorSettings quick() {
   SupervisorSettings settings;
-  settings.first_wait = milliseconds(20);
-  settings.longest_wait = milliseconds(80);
+  settings.initial_backoff = milliseconds(20);
+  settings.max_backoff = milliseconds(80);
   settings.start_time = milliseconds(100);
   return settings;
 }
@@ -149,10 +149,10 @@ TEST(Supervisor, WhoHangsIsKilledAndStartedAgain) {
                         [&](const std::string& words) { lines.push_back(words); });
   const pid_t hung = supervisor.states()[0].pid;
   const pid_t other = supervisor.states()[1].pid;
-  supervisor.note_running(hung);
+  supervisor.on_heartbeat(hung);
   kill(hung, SIGSTOP);
   ASSERT_TRUE(step_until(supervisor, [&] {
-    supervisor.note_running(other);
+    supervisor.on_heartbeat(other);
     return supervisor.states()[0].restarts == 1;
   }));
   EXPECT_NE(supervisor.states()[0].pid, hung);
@@ -166,13 +166,13 @@ TEST(Supervisor, WhoHangsIsKilledAndStartedAgain) {
 TEST(Supervisor, WhoNeverSpeaksIsGivenLonger) {
   SupervisorSettings settings = quick();
   settings.silence = milliseconds(50);
-  settings.start_silence = milliseconds(600);
+  settings.startup_timeout = milliseconds(600);
   // It ends with status 0 when it is asked to, as a window does: that is not the stream's end.
   Supervisor supervisor({shell("mute", "trap 'exit 0' TERM; while true; do sleep 0.02; done", true)}, settings,
                         be_silent);
   const auto start = std::chrono::steady_clock::now();
   ASSERT_TRUE(step_until(supervisor, [&] { return supervisor.states()[0].restarts == 1; }));
-  EXPECT_GE(std::chrono::steady_clock::now() - start, settings.start_silence);
+  EXPECT_GE(std::chrono::steady_clock::now() - start, settings.startup_timeout);
 }
 
 TEST(Supervisor, SilenceWhileNobodyListenedDoesNotCount) {
@@ -181,7 +181,7 @@ TEST(Supervisor, SilenceWhileNobodyListenedDoesNotCount) {
   std::vector<std::string> lines;
   Supervisor supervisor({shell("a", "exec sleep 100")}, settings,
                         [&](const std::string& words) { lines.push_back(words); });
-  supervisor.note_running(supervisor.states()[0].pid);
+  supervisor.on_heartbeat(supervisor.states()[0].pid);
   std::this_thread::sleep_for(milliseconds(1200));  // as with Ctrl-Z
   supervisor.step();
   EXPECT_EQ(lines.size(), 1U) << lines.back();
@@ -193,10 +193,10 @@ TEST(Supervisor, SilenceOfABusThatIsGoneDoesNotCount) {
   std::vector<std::string> lines;
   Supervisor supervisor({shell("a", "exec sleep 100")}, settings,
                         [&](const std::string& words) { lines.push_back(words); });
-  supervisor.note_running(supervisor.states()[0].pid);
+  supervisor.on_heartbeat(supervisor.states()[0].pid);
   for (int i = 0; i < 10; ++i) {
     std::this_thread::sleep_for(milliseconds(30));
-    supervisor.note_deaf();
+    supervisor.pause_watchdog();
     supervisor.step();
   }
   EXPECT_EQ(lines.size(), 1U) << lines.back();
@@ -230,24 +230,24 @@ TEST(Supervisor, WhoIsKnownToRunNeedNotWait) {
   SupervisorSettings settings = quick();
   settings.start_time = milliseconds(100'000);
   Supervisor supervisor({shell("a", "sleep 0.2; exit 3")}, settings, be_silent);
-  supervisor.note_running(supervisor.states()[0].pid);
+  supervisor.on_heartbeat(supervisor.states()[0].pid);
   EXPECT_TRUE(step_until(supervisor, [&] { return supervisor.states()[0].restarts == 1; }));
 }
 
 ChildPlan source_of_frames() {
   ChildPlan source = shell("capture", "exec sleep 100", true);
-  source.awaits_others = true;
+  source.is_started_last = true;
   return source;
 }
 
 TEST(Supervisor, TheSourceStartsWhenAllOthersHaveSpoken) {
   Supervisor supervisor({shell("a", "exec sleep 100"), shell("b", "exec sleep 100"), source_of_frames()}, quick(),
                         be_silent);
-  supervisor.note_running(supervisor.states()[0].pid);
+  supervisor.on_heartbeat(supervisor.states()[0].pid);
   EXPECT_TRUE(supervisor.step());
   EXPECT_TRUE(supervisor.states()[2].waits);
   EXPECT_EQ(supervisor.states()[2].pid, 0) << "b has said nothing yet";
-  supervisor.note_running(supervisor.states()[1].pid);
+  supervisor.on_heartbeat(supervisor.states()[1].pid);
   EXPECT_TRUE(supervisor.step());
   EXPECT_FALSE(supervisor.states()[2].waits);
   EXPECT_NE(supervisor.states()[2].pid, 0);
@@ -279,19 +279,19 @@ TEST(Supervisor, TheEndOfTheSourceEndsTheStream) {
 
 TEST(Supervisor, WhatTheSourceHasSentLastGoesThroughTheOthers) {
   ChildPlan source = shell("capture", "exit 0", true);
-  source.awaits_others = true;
+  source.is_started_last = true;
   SupervisorSettings settings = quick();
   settings.others_patience = milliseconds(10);
   Supervisor supervisor({shell("detect", "exec sleep 100"), source}, settings, be_silent);
   const pid_t detector = supervisor.states()[0].pid;
-  EXPECT_TRUE(supervisor.who_follows_source().empty());
+  EXPECT_TRUE(supervisor.downstream_pids().empty());
   bool ended = false;
   for (int i = 0; i < 1000 && !ended; ++i) {
     ended = !supervisor.step();
     std::this_thread::sleep_for(milliseconds(10));
   }
   ASSERT_TRUE(ended);
-  EXPECT_EQ(supervisor.who_follows_source(), std::vector<pid_t>{detector});
+  EXPECT_EQ(supervisor.downstream_pids(), std::vector<pid_t>{detector});
 }
 
 TEST(Supervisor, AMissingProgramIsNamed) {

@@ -7,15 +7,15 @@
 namespace houghstream::teach {
 namespace {
 
-PractisedObject object_of(int id, const std::string& name) {
-  PractisedObject object;
+CalibrationObject object_of(int id, const std::string& name) {
+  CalibrationObject object;
   object.name = name;
   object.in_room.id = id;
   return object;
 }
 
-world::SceneFrame frame_of(const std::vector<int>& ids) {
-  world::SceneFrame frame;
+world::RenderedFrame frame_of(const std::vector<int>& ids) {
+  world::RenderedFrame frame;
   for (const int id : ids) {
     frame.objects.emplace_back();
     frame.objects.back().object_id = id;
@@ -24,16 +24,16 @@ world::SceneFrame frame_of(const std::vector<int>& ids) {
 }
 
 TEST(Practice, NewObjectsThatNoFrameShowsAreNamed) {
-  const std::vector<PractisedObject> objects = {object_of(1, "old"), object_of(2, "mug"), object_of(4, "wardrobe")};
-  const std::vector<world::SceneFrame> frames = {frame_of({}), frame_of({2}), frame_of({2, 3})};
-  EXPECT_EQ(never_seen(frames, objects, {2, 4}), std::vector<std::string>{"wardrobe"});
-  EXPECT_TRUE(never_seen(frames, objects, {2}).empty());
-  EXPECT_EQ(never_seen({}, objects, {1, 2}), (std::vector<std::string>{"old", "mug"}));
+  const std::vector<CalibrationObject> objects = {object_of(1, "old"), object_of(2, "mug"), object_of(4, "wardrobe")};
+  const std::vector<world::RenderedFrame> frames = {frame_of({}), frame_of({2}), frame_of({2, 3})};
+  EXPECT_EQ(unobserved_objects(frames, objects, {2, 4}), std::vector<std::string>{"wardrobe"});
+  EXPECT_TRUE(unobserved_objects(frames, objects, {2}).empty());
+  EXPECT_EQ(unobserved_objects({}, objects, {1, 2}), (std::vector<std::string>{"old", "mug"}));
 }
 
 TEST(Practice, MoreRoomsThanMemoryHoldsAreRefused) {
-  PracticeSettings settings;
-  settings.rooms = PracticeSettings::kMostRooms + 1;
+  CalibrationSettings settings;
+  settings.rooms = CalibrationSettings::kMostRooms + 1;
   Forest forest;
   EXPECT_EQ(error_of([&] { practise({}, {}, settings, forest); }),
             "501 practice rooms, expected at most 500: all are in memory");

@@ -50,14 +50,14 @@ void add(FoundPoses& found, const std::string& class_name, const cv::Rect& box_p
   if (x) pose.T_camera_object = at(*x);
   found.frames[0].detections->detections.push_back(detection);
   found.frames[0].poses->poses.push_back(pose);
-  found.terms[0].push_back(x ? std::optional<FoundTerms>({terms, terms}) : std::nullopt);
+  found.terms[0].push_back(x ? std::optional<PoseTerms>({terms, terms}) : std::nullopt);
 }
 
 TEST(QualityExamples, APoseIsRightWithinATenthOfTheDiameter) {
   for (const double x : {0.0, 0.019, 0.021}) {
     FoundPoses found = one_frame();
     add(found, "corner", kBox, x);
-    const std::vector<Example> examples = judge_examples(found, corner());
+    const std::vector<Example> examples = label_examples(found, corner());
     ASSERT_EQ(examples.size(), 1U);
     EXPECT_EQ(examples[0].scene, "desk");
     EXPECT_EQ(examples[0].score, 0.9F);
@@ -72,7 +72,7 @@ TEST(QualityExamples, OfFalseDetectionsEveryPoseIsWrong) {
   add(found, "corner", kBox, 0.0);
   add(found, "corner", kElsewhere, 0.0);  // as good a pose, but the object has been found
   add(found, "mug", kBox, 0.0);           // has no model: nobody's
-  const std::vector<Example> examples = judge_examples(found, corner());
+  const std::vector<Example> examples = label_examples(found, corner());
   ASSERT_EQ(examples.size(), 2U);
   EXPECT_TRUE(examples[0].is_right);
   EXPECT_FALSE(examples[1].is_right);
@@ -83,15 +83,15 @@ TEST(QualityExamples, OfFalseDetectionsEveryPoseIsWrong) {
 TEST(QualityExamples, WhatCannotBeJudgedIsLeftOut) {
   FoundPoses without_pose = one_frame();
   add(without_pose, "corner", kBox, std::nullopt);
-  EXPECT_TRUE(judge_examples(without_pose, corner()).empty());
+  EXPECT_TRUE(label_examples(without_pose, corner()).empty());
   FoundPoses hardly_visible = one_frame();
   hardly_visible.frames[0].objects[0].truth.visible_fraction = 0.05;
   add(hardly_visible, "corner", kBox, 0.0);
-  EXPECT_TRUE(judge_examples(hardly_visible, corner()).empty());
+  EXPECT_TRUE(label_examples(hardly_visible, corner()).empty());
   FoundPoses box_only = one_frame();
   box_only.frames[0].objects[0].truth.has_pose = false;
   add(box_only, "corner", kBox, 0.0);
-  EXPECT_TRUE(judge_examples(box_only, corner()).empty());
+  EXPECT_TRUE(label_examples(box_only, corner()).empty());
 }
 
 }  // namespace

@@ -80,8 +80,8 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   EXPECT_TRUE(fs::exists(first.contact_sheet()));
   EXPECT_EQ(static_cast<int>(read_bop_training_views(options.dump_views).size()), first.objects[0].views);
 
-  EXPECT_EQ(first.tone.least_mean, kPractisedTone.least_mean) << "hs-pose reads it here";
-  EXPECT_EQ(load_forest(first.forest_file()).features.tone.most_deviation, kPractisedTone.most_deviation);
+  EXPECT_EQ(first.tone.least_mean, kCalibrationBrightness.least_mean) << "hs-pose reads it here";
+  EXPECT_EQ(load_forest(first.forest_file()).features.tone.most_deviation, kCalibrationBrightness.most_deviation);
 
   const nlohmann::json learnt = first.objects[0].quality;
   EXPECT_EQ(stored_quality(first, {}).count("bracket"), 1U);
@@ -98,7 +98,7 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   ASSERT_EQ(both.objects.size(), 2U);
   EXPECT_FALSE(both.objects[1].coloured);
   EXPECT_EQ(both.objects[1].id, 2);
-  EXPECT_EQ(both.tone.most_mean, kPractisedTone.most_mean);
+  EXPECT_EQ(both.tone.most_mean, kCalibrationBrightness.most_mean);
   EXPECT_EQ(both.objects[0].quality, learnt) << "what was learnt of an older object stays";
   EXPECT_EQ(stored_quality(both, {}).count("grey"), 1U);
   EXPECT_EQ(forest_names(options.out), (std::vector<std::string>{"bracket", "grey"}));
@@ -225,7 +225,7 @@ TEST(TeachJobs, PractisingAnewKeepsTheObjects) {
   fs::create_directory(options.out);  // an empty folder is no store
   teach_meshes(options);
   const store::ObjectStore before = store::read_store(options.out);
-  PracticeSettings other = options.practice;
+  CalibrationSettings other = options.practice;
   other.seed = 7;
   put_notes(options.out);
   practise_store(options.out, other);
@@ -247,7 +247,7 @@ TEST(TeachJobs, PractisingOneLeavesTheOthers) {
   options.meshes.sources.push_back((folder / "grey.ply").string());
   teach_meshes(options);
   const store::ObjectStore before = store::read_store(options.out);
-  PracticeSettings other = options.practice;
+  CalibrationSettings other = options.practice;
   other.seed = 7;
   practise_store(options.out, other, {"grey"});
   const store::ObjectStore after = store::read_store(options.out);

@@ -11,7 +11,7 @@ namespace houghstream::track {
 namespace {
 
 /// At a time of the steady clock, while the host's is being set back.
-void hear_of(Silence& silence, const std::string& process, std::int64_t time_us) {
+void hear_of(HeartbeatMonitor& silence, const std::string& process, std::int64_t time_us) {
   status_t status{};
   status.process = process;
   status.pid = 7;
@@ -21,23 +21,23 @@ void hear_of(Silence& silence, const std::string& process, std::int64_t time_us)
   silence.hear({channel::kStatus, {bytes.data(), bytes.size()}, time, set_back_us});
 }
 
-TEST(Silence, IsToldOnceOfWhoFindsObjects) {
-  Silence silence;
+TEST(HeartbeatMonitor, IsToldOnceOfWhoFindsObjects) {
+  HeartbeatMonitor silence;
   hear_of(silence, "hs-detect", 1000000);
   hear_of(silence, "hs-pose", 3000000);
   hear_of(silence, "hs-view", 1000000);
-  EXPECT_TRUE(silence.fallen_silent(4000000).empty());
-  EXPECT_EQ(silence.fallen_silent(4000001), std::vector<std::string>{"hs-detect (process 7)"});
-  EXPECT_TRUE(silence.fallen_silent(4000001).empty());
+  EXPECT_TRUE(silence.pop_timed_out(4000000).empty());
+  EXPECT_EQ(silence.pop_timed_out(4000001), std::vector<std::string>{"hs-detect (process 7)"});
+  EXPECT_TRUE(silence.pop_timed_out(4000001).empty());
   hear_of(silence, "hs-detect", 5000000);
-  EXPECT_EQ(silence.fallen_silent(9000000).size(), 2U);
+  EXPECT_EQ(silence.pop_timed_out(9000000).size(), 2U);
 }
 
-TEST(Silence, HearsNothingOfWhatIsNoStatus) {
-  Silence silence;
+TEST(HeartbeatMonitor, HearsNothingOfWhatIsNoStatus) {
+  HeartbeatMonitor silence;
   const std::vector<std::uint8_t> rubbish(100, 1);
   silence.hear({channel::kStatus, {rubbish.data(), rubbish.size()}, {}, 1});
-  EXPECT_TRUE(silence.fallen_silent(9000000).empty());
+  EXPECT_TRUE(silence.pop_timed_out(9000000).empty());
 }
 
 }  // namespace

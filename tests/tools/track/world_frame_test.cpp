@@ -7,38 +7,38 @@ namespace {
 
 using Places = std::map<std::string, Eigen::Isometry3d>;
 
-TEST(WorldFrame, IsTheOneCamerasWhereNoPlaceIsKnown) {
-  WorldFrame world(Places{});
+TEST(WorldReference, IsTheOneCamerasWhereNoPlaceIsKnown) {
+  WorldReference world(Places{});
   EXPECT_TRUE(world.place_of({"LEFT", 1}, true).may_come);
   EXPECT_EQ(world.name(), "");
   EXPECT_TRUE(world.place_of({"LEFT", 1}, false).T_world_camera);
   EXPECT_EQ(world.name(), "LEFT");
-  const tracks::CameraPlace other = world.place_of({"RIGHT", 1}, false);
+  const tracks::CameraPose other = world.place_of({"RIGHT", 1}, false);
   EXPECT_FALSE(other.T_world_camera);
   EXPECT_FALSE(other.may_come);
   EXPECT_NE(other.reason, "");
-  EXPECT_FALSE(world.take_begun());
+  EXPECT_FALSE(world.consume_reset());
 }
 
-TEST(WorldFrame, BeginsAnewWithTheFirstTransform) {
-  WorldFrame world(Places{});
+TEST(WorldReference, BeginsAnewWithTheFirstTransform) {
+  WorldReference world(Places{});
   world.place_of({"LEFT", 1}, false);
   const Eigen::Isometry3d there(Eigen::Translation3d(1, 2, 3));
   world.add("LEFT", 2, there);
-  const tracks::CameraPlace place = world.place_of({"LEFT", 2}, true);
+  const tracks::CameraPose place = world.place_of({"LEFT", 2}, true);
   ASSERT_TRUE(place.T_world_camera);
   EXPECT_TRUE(place.T_world_camera->isApprox(there));
   EXPECT_EQ(world.name(), "WORLD");
-  EXPECT_TRUE(world.take_begun());
-  EXPECT_FALSE(world.take_begun());
+  EXPECT_TRUE(world.consume_reset());
+  EXPECT_FALSE(world.consume_reset());
 }
 
-TEST(WorldFrame, KnowsCamerasThatStandStill) {
+TEST(WorldReference, KnowsCamerasThatStandStill) {
   const Eigen::Isometry3d there(Eigen::Translation3d(1, 2, 3));
-  WorldFrame world(Places{{"left", there}});
+  WorldReference world(Places{{"left", there}});
   ASSERT_TRUE(world.place_of({"left", 7}, true).T_world_camera);
   EXPECT_EQ(world.name(), "WORLD");
-  EXPECT_FALSE(world.take_begun());
+  EXPECT_FALSE(world.consume_reset());
   EXPECT_TRUE(world.place_of({"RIGHT", 7}, true).may_come);
   EXPECT_FALSE(world.place_of({"RIGHT", 7}, false).may_come);
 }

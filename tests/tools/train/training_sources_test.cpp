@@ -112,7 +112,7 @@ TEST(TrainingSources, ARenameWithoutEffectIsRefused) {
 TEST(TrainingSources, BopObjectsHaveNamesAlready) {
   const fs::path folder = fresh_folder("training_sources_bop");
   BopWriter writer(folder);
-  TrueObject object;
+  GroundTruthObject object;
   object.object_id = 1;
   object.T_camera_object.translation().z() = 1.0;
   object.box_visible_px = {20, 10, 16, 12};

@@ -130,7 +130,7 @@ TEST(BusWatcher, APreviewIsAJpegOfThePicture) {
   WatchedBus watched;
   watched.watcher.stop();  // from here on this thread receives
   image_t preview{};
-  watched.bus.subscribe(channel::kPreview, [&](const Arrival& arrival) {
+  watched.bus.subscribe(channel::kPreview, [&](const ReceivedMessage& arrival) {
     preview.decode(arrival.bytes.data, 0, static_cast<int>(arrival.bytes.size));
   });
   watched.watcher.publish_preview(cv::Mat(40, 60, CV_8UC3, cv::Scalar(0, 0, 200)), 9);

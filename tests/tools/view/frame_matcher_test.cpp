@@ -183,8 +183,8 @@ TEST(FrameMatcher, WhatWaitsHasSoManyBytesAndTheOldestGoes) {
   EXPECT_EQ(matcher.passed_over(), 2) << "one stays, however large";
 }
 
-TEST(MatchQueue, HoldsSoManyFramesAndSoManyBytes) {
-  MatchQueue queue(2, 100);
+TEST(MatchedFrameQueue, HoldsSoManyFramesAndSoManyBytes) {
+  MatchedFrameQueue queue(2, 100);
   const auto frame = [](std::int64_t utime, std::size_t bytes) {
     MatchedFrame out;
     out.id.utime = utime;

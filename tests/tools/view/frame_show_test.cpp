@@ -11,16 +11,16 @@
 namespace houghstream::view {
 namespace {
 
-ShowSettings to_pictures(const std::string& name) {
-  ShowSettings settings;
+FrameRendererSettings to_pictures(const std::string& name) {
+  FrameRendererSettings settings;
   settings.outputs.pictures = fresh_folder("frame_show_" + name);
   return settings;
 }
 
-TEST(FrameShow, DrawsAFrameToTheFilesAskedFor) {
+TEST(FrameRenderer, DrawsAFrameToTheFilesAskedFor) {
   WatchedBus watched;
-  ShowSettings settings = to_pictures("draws");
-  FrameShow frame_show(settings);
+  FrameRendererSettings settings = to_pictures("draws");
+  FrameRenderer frame_show(settings);
   frame_show.show(matched_frame(5), watched.watcher);
   frame_show.finish();
   const cv::Mat picture = cv::imread((settings.outputs.pictures / "5.jpg").string());
@@ -31,20 +31,20 @@ TEST(FrameShow, DrawsAFrameToTheFilesAskedFor) {
   EXPECT_EQ(watched.last_words().frames_processed, 1);
 }
 
-TEST(FrameShow, APausedFrameIsSkipped) {
+TEST(FrameRenderer, APausedFrameIsSkipped) {
   WatchedBus watched;
-  ShowSettings settings = to_pictures("paused");
+  FrameRendererSettings settings = to_pictures("paused");
   settings.picture.paused = true;
-  FrameShow frame_show(settings);
+  FrameRenderer frame_show(settings);
   frame_show.show(matched_frame(5), watched.watcher);
   EXPECT_TRUE(std::filesystem::is_empty(settings.outputs.pictures));
   EXPECT_EQ(watched.last_words().frames_skipped, 1);
 }
 
-TEST(FrameShow, WhatCannotBeUnderstoodIsRefusedAndTheNextOneIsShown) {
+TEST(FrameRenderer, WhatCannotBeUnderstoodIsRefusedAndTheNextOneIsShown) {
   WatchedBus watched;
-  ShowSettings settings = to_pictures("refused");
-  FrameShow frame_show(settings);
+  FrameRendererSettings settings = to_pictures("refused");
+  FrameRenderer frame_show(settings);
   MatchedFrame cut = matched_frame(5);
   cut.frame_bytes.resize(cut.frame_bytes.size() / 2);
   frame_show.show(cut, watched.watcher);
@@ -57,36 +57,36 @@ TEST(FrameShow, WhatCannotBeUnderstoodIsRefusedAndTheNextOneIsShown) {
   EXPECT_EQ(status.frames_processed, 1);
 }
 
-TEST(FrameShow, ACameraMayBeGivenForFramesWithoutOne) {
+TEST(FrameRenderer, ACameraMayBeGivenForFramesWithoutOne) {
   WatchedBus watched;
-  ShowSettings settings = to_pictures("camera");
+  FrameRendererSettings settings = to_pictures("camera");
   settings.camera = make_test_frame(1).camera;
-  FrameShow frame_show(settings);
+  FrameRenderer frame_show(settings);
   frame_show.show(matched_frame_without_camera(6), watched.watcher);
   EXPECT_TRUE(std::filesystem::exists(settings.outputs.pictures / "6.jpg"));
 }
 
-TEST(FrameShow, ASnapshotAloneIsSoonComplete) {
+TEST(FrameRenderer, ASnapshotAloneIsSoonComplete) {
   WatchedBus watched;
-  ShowSettings settings;
+  FrameRendererSettings settings;
   settings.outputs.snapshot = fresh_folder("frame_show_snapshot") / "shot.png";
-  FrameShow frame_show(settings);
+  FrameRenderer frame_show(settings);
   EXPECT_FALSE(frame_show.complete());
   frame_show.show(matched_frame(5), watched.watcher);
   EXPECT_TRUE(frame_show.complete());
 }
 
-TEST(FrameShow, ARowOrAColumnOfPixelsIsDrawnEverywhereAndEndsNothing) {
+TEST(FrameRenderer, ARowOrAColumnOfPixelsIsDrawnEverywhereAndEndsNothing) {
   for (const cv::Size size : {cv::Size(16384, 1), cv::Size(1, 16384)}) {
     for (const bool show_3d : {false, true}) {
       WatchedBus watched;
-      ShowSettings settings = to_pictures("long");
+      FrameRendererSettings settings = to_pictures("long");
       settings.outputs.snapshot = settings.outputs.pictures / "shot.jpg";
       settings.outputs.video = settings.outputs.pictures / "video.mp4";
       settings.preview = true;
       settings.picture.show_3d = show_3d;
       settings.picture.show_world = !show_3d;
-      FrameShow frame_show(settings);
+      FrameRenderer frame_show(settings);
       MatchedFrame odd = matched_frame(5);
       odd.frame_bytes = encode_message(to_message(make_test_frame(5, size.width, size.height), WireFormat{}, 0));
       odd.slot = 0;
@@ -103,7 +103,7 @@ TEST(FrameShow, ARowOrAColumnOfPixelsIsDrawnEverywhereAndEndsNothing) {
 }
 
 /// The share of the picture in which two files differ.
-double difference(const ShowSettings& settings, int one, int other) {
+double difference(const FrameRendererSettings& settings, int one, int other) {
   const auto read = [&](int utime) {
     return cv::imread((settings.outputs.pictures / (std::to_string(utime) + ".jpg")).string());
   };
@@ -112,11 +112,11 @@ double difference(const ShowSettings& settings, int one, int other) {
   return cv::mean(different > 40)[0] / 255.0;
 }
 
-TEST(FrameShow, AStoreThatChangesIsFollowed) {
+TEST(FrameRenderer, AStoreThatChangesIsFollowed) {
   WatchedBus watched;
-  ShowSettings settings = to_pictures("store");
+  FrameRendererSettings settings = to_pictures("store");
   settings.objects = store::whole_store("frame_show_objects");
-  FrameShow frame_show(settings);
+  FrameRenderer frame_show(settings);
   const auto show = [&](int utime) {
     MatchedFrame matched = matched_frame(utime);
     Detections detections;
@@ -144,13 +144,13 @@ TEST(FrameShow, AStoreThatChangesIsFollowed) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_GT(difference(settings, 1, utime), 0.0) << "an outline and axes as long as the model";
   settings.models = settings.objects + "/models";
-  EXPECT_THROW(FrameShow{settings}, InputError) << "one of both";
+  EXPECT_THROW(FrameRenderer{settings}, InputError) << "one of both";
 }
 
-TEST(FrameShow, WithoutModelsWhatIsFollowedIsShownToo) {
+TEST(FrameRenderer, WithoutModelsWhatIsFollowedIsShownToo) {
   WatchedBus watched;
-  ShowSettings settings = to_pictures("followed");
-  FrameShow frame_show(settings);
+  FrameRendererSettings settings = to_pictures("followed");
+  FrameRenderer frame_show(settings);
   frame_show.show(matched_frame(1), watched.watcher);
   MatchedFrame matched = matched_frame(2);
   ObjectPoses followed;
@@ -166,12 +166,12 @@ TEST(FrameShow, WithoutModelsWhatIsFollowedIsShownToo) {
   EXPECT_GT(difference(settings, 1, 2), 0.0);
 }
 
-TEST(FrameShow, NoModelsOrNoPictureAtAllIsAnError) {
-  ShowSettings settings = to_pictures("none");
-  FrameShow frame_show(settings);
+TEST(FrameRenderer, NoModelsOrNoPictureAtAllIsAnError) {
+  FrameRendererSettings settings = to_pictures("none");
+  FrameRenderer frame_show(settings);
   EXPECT_THROW(frame_show.finish(), InputError);
   settings.models = "/no/such/models";
-  EXPECT_THROW(FrameShow{settings}, InputError);
+  EXPECT_THROW(FrameRenderer{settings}, InputError);
 }
 
 }  // namespace

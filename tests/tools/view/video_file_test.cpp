@@ -95,7 +95,7 @@ class SmallFiles {
 
 TEST(VideoFile, WhatAFullDiskCutsTakesNobodysPlace) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "video_file_test_full.mp4";
-  write_whole_file(file, "what was there before");
+  write_file_atomically(file, "what was there before");
   {
     VideoFile video(file, 10.0);
     const SmallFiles full(2000);

@@ -19,7 +19,7 @@ ViewerSettings silent_stream(const std::string& name) {
 }
 
 TEST(ViewerSettings, FilesOrThePreviewTakeThePlaceOfAWindow) {
-  ShowSettings settings;
+  FrameRendererSettings settings;
   EXPECT_FALSE(settings.headless());
   settings.preview = true;
   EXPECT_TRUE(settings.headless());

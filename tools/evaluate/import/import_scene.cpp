@@ -23,8 +23,8 @@ std::map<std::string, int> number_names(const std::set<std::string>& names) {
   return ids;
 }
 
-TrueObject boxed_object(int object_id, const cv::Rect& box_px) {
-  TrueObject object;
+GroundTruthObject boxed_object(int object_id, const cv::Rect& box_px) {
+  GroundTruthObject object;
   object.object_id = object_id;
   object.has_pose = false;
   object.box_visible_px = box_px;
@@ -44,7 +44,7 @@ FrameFiles named_pair(const fs::path& source, const std::string& name) {
 /// Frames of another scene would be taken for this one's.
 void require_free(const fs::path& scene_folder, const fs::path& source) {
   require_other_file(scene_folder, source);
-  require(!holds_pictures(scene_folder), "{}: holds pictures already, expected a new folder or one without",
+  require(!has_images(scene_folder), "{}: holds pictures already, expected a new folder or one without",
           scene_folder.string());
 }
 
@@ -60,7 +60,7 @@ int import_boxes(const fs::path& source, const fs::path& scene_folder) {
   const std::map<std::string, int> ids = number_names(names);
   BopWriter writer(scene_folder);
   for (const DrawnFrame& frame : drawn.frames) {
-    std::vector<TrueObject> objects;
+    std::vector<GroundTruthObject> objects;
     for (const DrawnBox& box : frame.boxes) objects.push_back(boxed_object(ids.at(box.object), box.box_px));
     writer.add(read_frame_pair(named_pair(source, frame.name), drawn.camera, 0), objects, {});
   }
@@ -80,7 +80,7 @@ int import_uw_scene(const fs::path& video, const Camera& camera, const fs::path&
   const std::map<std::string, int> ids = number_names(names);
   BopWriter writer(scene_folder);
   for (const UwSceneFrame& frame : frames) {
-    std::vector<TrueObject> objects;
+    std::vector<GroundTruthObject> objects;
     for (const UwBox& box : frame.boxes) objects.push_back(boxed_object(ids.at(box.name), box.box_px));
     writer.add(read_frame_pair(frame.images, camera, 0), objects, {});
   }

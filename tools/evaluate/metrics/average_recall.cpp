@@ -11,10 +11,10 @@
 namespace houghstream {
 namespace {
 
-std::vector<const TrueObject*> targets_of(const EvaluatedFrame& frame, const std::string& class_name) {
-  std::vector<const TrueObject*> targets;
+std::vector<const GroundTruthObject*> targets_of(const EvaluatedFrame& frame, const std::string& class_name) {
+  std::vector<const GroundTruthObject*> targets;
   for (const NamedObject& object : frame.objects) {
-    const TrueObject& truth = object.truth;
+    const GroundTruthObject& truth = object.truth;
     const bool is_target = object.is_target.value_or(truth.visible_fraction >= kTargetVisibility);
     if (object.class_name == class_name && truth.has_pose && is_target) targets.push_back(&truth);
   }
@@ -41,14 +41,14 @@ std::map<std::string, FrameErrors> measure_frame(const EvaluatedFrame& frame, co
   std::map<std::string, FrameErrors> measured;
   std::optional<RgbdFrame> image;
   for (const auto& [name, model] : models) {
-    const std::vector<const TrueObject*> targets = targets_of(frame, name);
+    const std::vector<const GroundTruthObject*> targets = targets_of(frame, name);
     if (targets.empty()) continue;
     FrameErrors& result = measured[name];
     result.targets = static_cast<int>(targets.size());
     for (const ObjectPose* pose : strongest_poses(frame, name, targets.size())) {
       if (!image) image = scene.read_frame(frame.image);
       std::vector<BopErrors>& row = result.errors.emplace_back();
-      for (const TrueObject* target : targets)
+      for (const GroundTruthObject* target : targets)
         row.push_back(bop_errors(model, *pose->T_camera_object, target->T_camera_object, *image));
     }
   }

@@ -12,10 +12,10 @@ constexpr int kBins = 10;
 constexpr std::array<double, 4> kPrecisions = {0.90, 0.95, 0.98, 0.99};
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<ReliabilityBin> bins_of(const std::vector<Statement>& statements) {
+std::vector<ReliabilityBin> bins_of(const std::vector<Prediction>& statements) {
   std::vector<ReliabilityBin> bins(kBins);
   for (int i = 0; i < kBins; ++i) bins[i] = {static_cast<double>(i) / kBins, static_cast<double>(i + 1) / kBins};
-  for (const Statement& statement : statements) {
+  for (const Prediction& statement : statements) {
     ReliabilityBin& bin = bins[std::clamp(static_cast<int>(statement.stated * kBins), 0, kBins - 1)];
     ++bin.count;
     bin.mean_score += statement.stated;
@@ -37,7 +37,7 @@ double expected_error(const std::vector<ReliabilityBin>& bins, int count) {
 }
 
 /// `ranked`: highest first. Equals cannot be told apart by a threshold.
-ProposedThreshold propose(double precision, const std::vector<Statement>& ranked, int could_be_true) {
+ProposedThreshold propose(double precision, const std::vector<Prediction>& ranked, int could_be_true) {
   ProposedThreshold out{precision, std::nullopt, kNaN};
   int true_count = 0;
   for (std::size_t i = 0; i < ranked.size(); ++i) {
@@ -52,14 +52,14 @@ ProposedThreshold propose(double precision, const std::vector<Statement>& ranked
 
 }  // namespace
 
-Calibration calibrate(const std::vector<Statement>& statements, int could_be_true) {
+Calibration calibrate(const std::vector<Prediction>& statements, int could_be_true) {
   Calibration out;
   out.count = static_cast<int>(statements.size());
   out.bins = bins_of(statements);
   out.ece = expected_error(out.bins, out.count);
-  std::vector<Statement> ranked = statements;
+  std::vector<Prediction> ranked = statements;
   std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Statement& a, const Statement& b) { return a.stated > b.stated; });
+                   [](const Prediction& a, const Prediction& b) { return a.stated > b.stated; });
   for (const double precision : kPrecisions) out.proposed.push_back(propose(precision, ranked, could_be_true));
   return out;
 }

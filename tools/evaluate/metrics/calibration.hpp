@@ -6,7 +6,7 @@
 namespace houghstream {
 
 /// A probability that was stated, a score or a quality, and whether it came true.
-struct Statement {
+struct Prediction {
   double stated = 0.0;
   bool is_true = false;
 };
@@ -38,6 +38,6 @@ struct Calibration {
 };
 
 /// `could_be_true`: what a recall of 1 is.
-Calibration calibrate(const std::vector<Statement>& statements, int could_be_true);
+Calibration calibrate(const std::vector<Prediction>& statements, int could_be_true);
 
 }  // namespace houghstream

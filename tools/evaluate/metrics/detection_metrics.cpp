@@ -16,7 +16,7 @@ bool is_required(const NamedObject& object, const DetectionRules& rules) {
 }
 
 /// A detection of the class that no verdict is given of yet.
-JudgedDetection unjudged(const EvaluatedFrame& frame, std::size_t f, std::size_t index) {
+MatchedDetection unjudged(const EvaluatedFrame& frame, std::size_t f, std::size_t index) {
   const Detection& detection = frame.detections->detections[index];
   const ObjectPose* pose = frame.poses ? find_pose(*frame.poses, index) : nullptr;
   const bool has_pose = pose != nullptr && pose->status == PoseStatus::kValid;
@@ -25,14 +25,14 @@ JudgedDetection unjudged(const EvaluatedFrame& frame, std::size_t f, std::size_t
 }
 
 /// The class's detections over all frames, strongest first.
-std::vector<JudgedDetection> ranked_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
+std::vector<MatchedDetection> ranked_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                                                int max_per_class) {
-  const auto stronger = [](const JudgedDetection& a, const JudgedDetection& b) { return a.score > b.score; };
-  std::vector<JudgedDetection> all;
+  const auto stronger = [](const MatchedDetection& a, const MatchedDetection& b) { return a.score > b.score; };
+  std::vector<MatchedDetection> all;
   for (std::size_t f = 0; f < frames.size(); ++f) {
     if (!frames[f].detections) continue;
     const std::vector<Detection>& detections = frames[f].detections->detections;
-    std::vector<JudgedDetection> here;
+    std::vector<MatchedDetection> here;
     for (std::size_t i = 0; i < detections.size(); ++i) {
       if (detections[i].class_name != class_name) continue;
       here.push_back(unjudged(frames[f], f, i));
@@ -46,7 +46,7 @@ std::vector<JudgedDetection> ranked_detections(const std::vector<EvaluatedFrame>
 }
 
 /// Gives the detection its verdict, and takes the object that it finds.
-void judge(JudgedDetection& detection, const EvaluatedFrame& frame, const DetectionRules& rules,
+void judge(MatchedDetection& detection, const EvaluatedFrame& frame, const DetectionRules& rules,
            std::set<ObjectKey>& taken) {
   const Detection& found = frame.detections->detections[detection.index];
   double best_iou = 0.0;
@@ -68,11 +68,11 @@ void judge(JudgedDetection& detection, const EvaluatedFrame& frame, const Detect
 
 }  // namespace
 
-std::vector<JudgedDetection> judge_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
+std::vector<MatchedDetection> match_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                                               const DetectionRules& rules) {
-  std::vector<JudgedDetection> judged = ranked_detections(frames, class_name, rules.max_per_class);
+  std::vector<MatchedDetection> judged = ranked_detections(frames, class_name, rules.max_per_class);
   std::set<ObjectKey> taken;
-  for (JudgedDetection& detection : judged) judge(detection, frames[detection.frame], rules, taken);
+  for (MatchedDetection& detection : judged) judge(detection, frames[detection.frame], rules, taken);
   return judged;
 }
 
@@ -87,10 +87,10 @@ int count_required(const std::vector<EvaluatedFrame>& frames, const std::string&
   return required;
 }
 
-std::vector<CurvePoint> precision_recall_curve(const std::vector<JudgedDetection>& judged, int required) {
+std::vector<CurvePoint> precision_recall_curve(const std::vector<MatchedDetection>& judged, int required) {
   std::vector<CurvePoint> curve;
   int true_count = 0;
-  for (const JudgedDetection& detection : judged) {
+  for (const MatchedDetection& detection : judged) {
     if (detection.verdict == Verdict::kIgnored) continue;
     true_count += detection.verdict == Verdict::kTrue ? 1 : 0;
     const double precision = static_cast<double>(true_count) / static_cast<double>(curve.size() + 1);
@@ -99,11 +99,11 @@ std::vector<CurvePoint> precision_recall_curve(const std::vector<JudgedDetection
   return curve;
 }
 
-double average_precision(const std::vector<JudgedDetection>& judged, int required) {
+double average_precision(const std::vector<MatchedDetection>& judged, int required) {
   double sum = 0.0;
   int true_count = 0;
   int counted = 0;
-  for (const JudgedDetection& detection : judged) {
+  for (const MatchedDetection& detection : judged) {
     if (detection.verdict == Verdict::kIgnored) continue;
     ++counted;
     if (detection.verdict == Verdict::kTrue) sum += static_cast<double>(++true_count) / counted;
@@ -116,17 +116,17 @@ ClassResult evaluate_class(const std::vector<EvaluatedFrame>& frames, const std:
   ClassResult result;
   result.class_name = class_name;
   result.required = count_required(frames, class_name, rules);
-  result.judged = judge_detections(frames, class_name, rules);
+  result.judged = match_detections(frames, class_name, rules);
   result.auc = std::numeric_limits<double>::quiet_NaN();
   result.curve = precision_recall_curve(result.judged, result.required);
   if (result.required > 0) result.auc = average_precision(result.judged, result.required);
   return result;
 }
 
-std::vector<Statement> score_statements(const std::vector<ClassResult>& classes) {
-  std::vector<Statement> statements;
+std::vector<Prediction> score_predictions(const std::vector<ClassResult>& classes) {
+  std::vector<Prediction> statements;
   for (const ClassResult& result : classes) {
-    for (const JudgedDetection& detection : result.judged) {
+    for (const MatchedDetection& detection : result.judged) {
       if (detection.verdict == Verdict::kIgnored) continue;
       statements.push_back({static_cast<double>(detection.score), detection.verdict == Verdict::kTrue});
     }
@@ -158,7 +158,7 @@ double weighted_auc(const std::vector<ClassResult>& classes) {
 
 ReportedCount count_reported(const ClassResult& result, Verdict verdict, float min_score) {
   ReportedCount count;
-  for (const JudgedDetection& it : result.judged) {
+  for (const MatchedDetection& it : result.judged) {
     if (it.verdict != verdict) continue;
     count.detections += !it.is_candidate && it.score >= min_score ? 1 : 0;
     count.confirmed += it.is_candidate && it.has_pose ? 1 : 0;

@@ -18,7 +18,7 @@ struct DetectionRules {
 enum class Verdict { kTrue, kFalse, kIgnored };
 
 /// One detection of one class, judged.
-struct JudgedDetection {
+struct MatchedDetection {
   std::size_t frame = 0;  ///< in the evaluated frames
   std::size_t index = 0;  ///< in the frame's detections
   float score = 0.0F;
@@ -31,7 +31,7 @@ struct JudgedDetection {
 /// Judges all detections of a class, strongest first over all frames (ties by frame, then index). A detection is true
 /// when it overlaps a required object that no stronger detection has taken (the one of largest overlap); repeated
 /// detections are false; one that overlaps only an object that is not required is ignored.
-std::vector<JudgedDetection> judge_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
+std::vector<MatchedDetection> match_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                                               const DetectionRules& rules);
 
 /// Objects of the class that are visible enough to be required, or targets.
@@ -46,26 +46,26 @@ struct CurvePoint {
 
 /// One point per detection that counts. Of a class that stands nowhere all are false: precision and recall are 0, so
 /// that they count where several scenes are pooled.
-std::vector<CurvePoint> precision_recall_curve(const std::vector<JudgedDetection>& judged, int required);
+std::vector<CurvePoint> precision_recall_curve(const std::vector<MatchedDetection>& judged, int required);
 
 /// Area under the precision/recall curve, un-interpolated: the sum of the precision at each true positive over the
 /// number of required objects, so that missed recall counts 0 (average precision as in Buckley & Voorhees 2000).
 /// `required` > 0.
-double average_precision(const std::vector<JudgedDetection>& judged, int required);
+double average_precision(const std::vector<MatchedDetection>& judged, int required);
 
 /// How one class was detected.
 struct ClassResult {
   std::string class_name;
   int required = 0;
   double auc = 0.0;  ///< NaN where no object is required
-  std::vector<JudgedDetection> judged;
+  std::vector<MatchedDetection> judged;
   std::vector<CurvePoint> curve;
 };
 ClassResult evaluate_class(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                            const DetectionRules& rules);
 
 /// What the scores of all detections say that are true or false.
-std::vector<Statement> score_statements(const std::vector<ClassResult>& classes);
+std::vector<Prediction> score_predictions(const std::vector<ClassResult>& classes);
 
 /// Mean AUC over the classes that appear, each counting once; NaN where none appears.
 double mean_auc(const std::vector<ClassResult>& classes);

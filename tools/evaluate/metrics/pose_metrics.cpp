@@ -56,10 +56,10 @@ PoseModel make_pose_model(const Mesh& mesh, bool symmetric) {
 std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
                                     const PoseModel& model) {
   std::vector<JudgedPose> judged;
-  for (const JudgedDetection& detection : detections.judged) {
+  for (const MatchedDetection& detection : detections.judged) {
     const EvaluatedFrame& frame = frames[detection.frame];
     if (detection.verdict != Verdict::kTrue) continue;
-    const TrueObject& truth = frame.objects[detection.object].truth;
+    const GroundTruthObject& truth = frame.objects[detection.object].truth;
     if (!truth.has_pose) continue;
     JudgedPose row;
     row.frame = detection.frame;
@@ -85,16 +85,16 @@ std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, c
   return judged;
 }
 
-std::vector<Statement> pose_statements(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
+std::vector<Prediction> pose_predictions(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
                                        const PoseModel& model) {
-  std::vector<Statement> statements;
-  for (const JudgedDetection& detection : detections.judged) {
+  std::vector<Prediction> statements;
+  for (const MatchedDetection& detection : detections.judged) {
     const EvaluatedFrame& frame = frames[detection.frame];
     const ObjectPose* pose = frame.poses ? find_pose(*frame.poses, detection.index) : nullptr;
     if (detection.verdict == Verdict::kIgnored || pose == nullptr || !pose->T_camera_object) continue;
     bool is_right = false;
     if (detection.verdict == Verdict::kTrue) {
-      const TrueObject& truth = frame.objects[detection.object].truth;
+      const GroundTruthObject& truth = frame.objects[detection.object].truth;
       if (!truth.has_pose) continue;
       is_right =
           add_s_error(model.points, *pose->T_camera_object, truth.T_camera_object) < kRightBelow * model.diameter;

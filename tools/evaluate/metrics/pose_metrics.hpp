@@ -55,7 +55,7 @@ std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, c
 /// The poses of a class with their quality, those of true and of false detections: true where the detection is and
 /// ADD-S is below 10 % of the diameter. Those of ignored detections, and of objects whose truth has no pose, are left
 /// out.
-std::vector<Statement> pose_statements(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
+std::vector<Prediction> pose_predictions(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
                                        const PoseModel& model);
 
 /// Share of the true detections of objects at least `min_visible` visible whose ADD-S is below 10 % of the diameter; a

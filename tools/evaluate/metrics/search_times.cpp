@@ -35,7 +35,7 @@ void write_search_times(const std::vector<EvaluatedFrame>& frames, const std::fi
     out += fmt::format("{},{},{},{},{},{}\n", frame.scene, frame.image_id, milliseconds(stages, "detect."),
                        milliseconds(stages, "pose."), frame.detections->detections.size(), poses);
   }
-  write_whole_file(file, out);
+  write_file_atomically(file, out);
 }
 
 }  // namespace houghstream

@@ -48,14 +48,14 @@ Mesh about_its_middle(Mesh mesh) {
 
 /// What stands firmest comes first; what differs by less than kSameAttitudeDeg is left out.
 std::vector<Eigen::Vector3d> resting_ups(const Mesh& mesh) {
-  std::vector<RestingAttitude> all;
-  for (const RestingFamily& family : resting_families(about_its_middle(mesh), kNearlyFlat_m))
+  std::vector<StablePose> all;
+  for (const RestingFamily& family : find_stable_poses(about_its_middle(mesh), kNearlyFlat_m))
     all.insert(all.end(), family.begin(), family.end());
-  std::stable_sort(all.begin(), all.end(), [](const RestingAttitude& a, const RestingAttitude& b) {
+  std::stable_sort(all.begin(), all.end(), [](const StablePose& a, const StablePose& b) {
     return a.steepest_slope_rad() > b.steepest_slope_rad();
   });
   std::vector<Eigen::Vector3d> ups;
-  for (const RestingAttitude& attitude : all) {
+  for (const StablePose& attitude : all) {
     const Eigen::Vector3d up = attitude.R_table_object.row(2);
     const bool is_new = std::all_of(ups.begin(), ups.end(), [&](const Eigen::Vector3d& other) {
       return up.dot(other) < std::cos(radians(kSameAttitudeDeg));
@@ -70,7 +70,7 @@ Placed table_top(double height, Random& random) {
   constexpr double kThickness = 0.02;
   const cv::Mat cover =
       plain({256, 256}, hsv(random.uniform(0, 360), random.uniform(0.0, 0.5), random.uniform(0.2, 0.9)), 0.05, random);
-  Placed table{make_thing("table", turned_mesh({{0.6, 0.0}, {0.6, kThickness}}, cover), 0.08F),
+  Placed table{make_asset("table", turned_mesh({{0.6, 0.0}, {0.6, kThickness}}, cover), 0.08F),
                Eigen::Isometry3d::Identity(), 0, true};
   table.T_world_object.translate(Eigen::Vector3d(0.0, 0.0, height - 0.5 * kThickness));  // its origin is its middle
   return table;
@@ -135,7 +135,7 @@ ThingPtr make_taught_thing(Mesh mesh, bool has_colour) {
   if (!has_colour) mesh.texture.release();
   if (mesh.texture.empty()) mesh.uvs.clear();
   if (!has_colour) mesh.colours.assign(mesh.vertices.size(), cv::Vec3b(128, 128, 128));
-  return make_thing("taught", std::move(mesh), 0.15F);
+  return make_asset("taught", std::move(mesh), 0.15F);
 }
 
 ThingPtr plainly_painted(const Thing& thing, Random& random) {
@@ -147,7 +147,7 @@ ThingPtr plainly_painted(const Thing& thing, Random& random) {
 }
 
 MeshViews::MeshViews(Mesh mesh, const MeshViewSettings& settings, std::uint64_t seed)
-    : settings_(settings), seed_(world_seed(WorldUse::kTraining, seed)) {
+    : settings_(settings), seed_(world_seed(DatasetSplit::kTraining, seed)) {
   const Eigen::AlignedBox3f bounds = mesh_bounds(mesh);
   centre_ = bounds.center().cast<double>();
   for (const Eigen::Vector3f& vertex : mesh.vertices)
@@ -200,7 +200,7 @@ TrainingView MeshViews::render(int index) const {
   const std::uint64_t own = aspect_seed(seed_, 500U + static_cast<std::uint64_t>(index));
   Random random(aspect_seed(own, 2));
   World world;
-  set_light_and_photo(world, chance(random, 0.25) ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, 3));
+  set_lighting(world, chance(random, 0.25) ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, 3));
   world.focus_radius_m = std::max(0.3, 1.5 * radius_);
   Placed object{settings_.has_colour ? thing_ : plainly_painted(*thing_, random), Eigen::Isometry3d::Identity(), 1,
                 true};
@@ -224,7 +224,7 @@ TrainingView MeshViews::render(int index) const {
 
   TrainingView view;
   view.frame.camera = camera;
-  view.frame.colour = take_photo(seen.radiance, world.photo, aspect_seed(own, 4));
+  view.frame.colour = simulate_colour_camera(seen.radiance, world.photo, aspect_seed(own, 4));
   view.frame.depth = measure_depth({seen.geometry.depth, seen.cos_incidence, seen.reflectance, seen.gloss}, camera,
                                    DepthSensorSettings{}, aspect_seed(own, 5));
   view.mask = seen.geometry.id == 1;

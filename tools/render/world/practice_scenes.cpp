@@ -28,7 +28,7 @@ Eigen::Vector3d middle_of(const Thing& thing) {
 
 /// On the table in one of its attitudes, sometimes leaning. The middle of its box stands over the group's origin,
 /// wherever its own origin lies: the place on the table is reserved about that.
-Group put_down(const PracticeObject& object, const ThingPtr& thing, int id, Random& random) {
+Group put_down(const CalibrationSceneObject& object, const ThingPtr& thing, int id, Random& random) {
   constexpr double kLeaning = 0.2;
   Eigen::Matrix3d R = random_rotation(random);
   if (!object.ups.empty()) {
@@ -74,23 +74,23 @@ Eigen::Isometry3d draw_viewpoint(const World& world, Random& random) {
   return Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()) * look_at(eye, target);
 }
 
-int draw_practised(const std::vector<PracticeObject>& objects, Random& random) {
+int draw_practised(const std::vector<CalibrationSceneObject>& objects, Random& random) {
   std::vector<int> practised;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (objects[i].is_practised) practised.push_back(static_cast<int>(i));
+    if (objects[i].is_calibrated) practised.push_back(static_cast<int>(i));
   }
   return pick(random, practised);
 }
 
 }  // namespace
 
-World PracticeScenes::furnished(int room) const {
+World CalibrationScenes::furnished(int room) const {
   const std::uint64_t own =
-      aspect_seed(world_seed(WorldUse::kTraining, kFirstRoom + static_cast<std::uint64_t>(room)), seed_);
+      aspect_seed(world_seed(DatasetSplit::kTraining, kFirstRoom + static_cast<std::uint64_t>(room)), seed_);
   World world;
   Room walls = make_room(static_cast<RoomStyle>(room % kRoomStyles), aspect_seed(own, 1));
   world.items = std::move(walls.items);
-  set_light_and_photo(world, room % 3 == 2 ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, 2));
+  set_lighting(world, room % 3 == 2 ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, 2));
   Random lens(aspect_seed(own, 4));
   world.camera = draw_camera(lens);
   TableSetter setter(world, walls.table_half, aspect_seed(own, 3));
@@ -101,15 +101,15 @@ World PracticeScenes::furnished(int room) const {
   const int first = draw_practised(objects_, random);
   const int count = std::min(static_cast<int>(objects_.size()), random.between(3, kMostObjects));
   for (int i = 0; i < count; ++i) {
-    const PracticeObject& object = objects_[static_cast<std::size_t>(first + i) % objects_.size()];
+    const CalibrationSceneObject& object = objects_[static_cast<std::size_t>(first + i) % objects_.size()];
     const ThingPtr painted = object.has_colour ? object.thing : plainly_painted(*object.thing, random);
     Random shape(aspect_seed(own, 50U + static_cast<std::uint64_t>(i)));
-    setter.put(put_down(object, next_of_its_kind(*painted, shape), object.id, random), middle);
+    setter.put(put_down(object, make_instance_variant(*painted, shape), object.id, random), middle);
   }
   const int most_look_alikes = std::min(kMostLookAlikes, (count + 1) / 2);  // such as they are, they are the fewer ones
   for (int i = random.between(0, most_look_alikes); i > 0; --i) {
-    const PracticeObject& object = pick(random, objects_);
-    setter.put(put_down(object, look_alike(*object.thing, random), 0, random), all);
+    const CalibrationSceneObject& object = pick(random, objects_);
+    setter.put(put_down(object, make_hard_negative(*object.thing, random), 0, random), all);
   }
   for (int i = random.between(3, kMostDistractors); i > 0; --i) {
     const int kind = random.below(kDistractorKinds);
@@ -119,12 +119,12 @@ World PracticeScenes::furnished(int room) const {
   return world;
 }
 
-std::array<SceneFrame, PracticeScenes::kFramesPerRoom> PracticeScenes::render(int room) const {
+std::array<RenderedFrame, CalibrationScenes::kFramesPerRoom> CalibrationScenes::render(int room) const {
   const LitWorld lit_world = light_world(furnished(room));  // takes as long as a frame
-  std::array<SceneFrame, kFramesPerRoom> frames;
+  std::array<RenderedFrame, kFramesPerRoom> frames;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::uint64_t index = frames.size() * static_cast<std::uint64_t>(room) + i;
-    const std::uint64_t own = aspect_seed(world_seed(WorldUse::kTraining, seed_), kFirstRoom + index);
+    const std::uint64_t own = aspect_seed(world_seed(DatasetSplit::kTraining, seed_), kFirstRoom + index);
     Random random(own);
     frames[i] = render_frame(lit_world, draw_viewpoint(lit_world.world, random), aspect_seed(own, 1));
   }

@@ -9,33 +9,33 @@
 namespace houghstream::world {
 
 /// A mesh that stands about in practice scenes.
-struct PracticeObject {
+struct CalibrationSceneObject {
   int id = 0;
   ThingPtr thing;
   std::vector<Eigen::Vector3d> ups;  ///< object frame, see up_directions(); empty = any attitude
   bool has_colour = true;            ///< false: another plain colour in every room
-  bool is_practised = true;          ///< one of these stands in each room; others are company
+  bool is_calibrated = true;          ///< one of these stands in each room; others are company
 };
 
 /// Pictures in which taught objects are looked for before they count as taught: furnished rooms with the objects, all
 /// round and in their attitudes, among things that are none of them; some of those have an object's shape in other
 /// colours or its look in another size. Standing on something, beside and behind other things, as pictures put together
 /// from views never are. Rooms of training seeds that neither views nor backgrounds use.
-class PracticeScenes {
+class CalibrationScenes {
  public:
   static constexpr int kFramesPerRoom = 2;
 
   /// One of the `objects` at least is practised.
-  PracticeScenes(std::vector<PracticeObject> objects, std::uint64_t seed) : objects_(std::move(objects)), seed_(seed) {}
+  CalibrationScenes(std::vector<CalibrationSceneObject> objects, std::uint64_t seed) : objects_(std::move(objects)), seed_(seed) {}
 
-  /// Looks at room `room`, from 0, from different sides and distances. The truth names objects by PracticeObject::id.
+  /// Looks at room `room`, from 0, from different sides and distances. The truth names objects by CalibrationSceneObject::id.
   /// Same arguments, same frames; thread-safe.
-  std::array<SceneFrame, kFramesPerRoom> render(int room) const;
+  std::array<RenderedFrame, kFramesPerRoom> render(int room) const;
 
  private:
   World furnished(int room) const;
 
-  std::vector<PracticeObject> objects_;
+  std::vector<CalibrationSceneObject> objects_;
   std::uint64_t seed_;
 };
 

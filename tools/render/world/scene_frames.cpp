@@ -31,14 +31,14 @@ int silhouette_px(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, co
 }
 
 void add_truth(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, const cv::Mat& ids,
-               SceneFrame& result) {
+               RenderedFrame& result) {
   for (std::size_t i = 0; i < lit_world.world.items.size(); ++i) {
     const Placed& placed = lit_world.world.items[i];
     if (placed.object_id == 0) continue;
     const cv::Mat mask = ids == static_cast<double>(i + 1);
     const int visible = cv::countNonZero(mask);
     if (visible < kLeastVisiblePx) continue;
-    TrueObject object;
+    GroundTruthObject object;
     object.object_id = placed.object_id;
     object.T_camera_object = T_camera_world * placed.T_world_object;
     object.box_visible_px = cv::boundingRect(mask);
@@ -57,21 +57,21 @@ SensorKind parse_sensor(const std::string& name) {
   fail("sensor '{}', expected structured_light or time_of_flight", name);
 }
 
-SceneFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed,
+RenderedFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed,
                         SensorKind sensor) {
   const ShadedView view = shade_view(lit_world, lit_world.world.camera, T_camera_world);
   return record_view(lit_world, T_camera_world, view, noise_seed, sensor);
 }
 
-SceneFrame record_view(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, const ShadedView& view,
+RenderedFrame record_view(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, const ShadedView& view,
                        std::uint64_t noise_seed, SensorKind sensor) {
-  SceneFrame result;
+  RenderedFrame result;
   result.frame.camera = lit_world.world.camera;
-  result.frame.colour = take_photo(view.radiance, lit_world.world.photo, aspect_seed(noise_seed, 1));
+  result.frame.colour = simulate_colour_camera(view.radiance, lit_world.world.photo, aspect_seed(noise_seed, 1));
   const SensorView seen{view.geometry.depth, view.cos_incidence, view.reflectance, view.gloss};
   const std::uint64_t depth_seed = aspect_seed(noise_seed, 2);
   if (sensor == SensorKind::kTimeOfFlight) {
-    result.frame.colour = processed_photo(result.frame.colour, other_colour_camera());
+    result.frame.colour = apply_camera_response(result.frame.colour, other_colour_camera());
     result.frame.depth = measure_time_of_flight(seen, TimeOfFlightSettings{}, depth_seed);
   } else {
     result.frame.depth = measure_depth(seen, result.frame.camera, DepthSensorSettings{}, depth_seed);
@@ -80,7 +80,7 @@ SceneFrame record_view(const LitWorld& lit_world, const Eigen::Isometry3d& T_cam
   return result;
 }
 
-SceneFrame render_scene_frame(const Scene& scene, const LitWorld& lit_world, int index, int count, SensorKind sensor) {
+RenderedFrame render_scene_frame(const Scene& scene, const LitWorld& lit_world, int index, int count, SensorKind sensor) {
   const double time = count > 1 ? static_cast<double>(index) / (count - 1) : 0.0;
   const std::uint64_t noise_seed = aspect_seed(scene.seed, kFirstFrameAspect + static_cast<std::uint64_t>(index));
   return render_frame(lit_world, camera_at(scene.trajectory, time), noise_seed, sensor);

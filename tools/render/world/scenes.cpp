@@ -26,7 +26,7 @@ void add_other_instances(TableSetter& setter, const Clutter& clutter, std::uint6
   for (int i = 0; i < clutter.other_instances; ++i) {
     const ThingPtr thing = make_other_instance(1 + (first + i) % kClassCount,
                                                aspect_seed(seed, kFirstInstance + static_cast<std::uint64_t>(i)));
-    const bool lies = clutter.handling == Handling::kLying || (clutter.handling == Handling::kTilted && i % 2 == 1);
+    const bool lies = clutter.handling == ObjectPlacement::kLying || (clutter.handling == ObjectPlacement::kTilted && i % 2 == 1);
     if (lies)
       setter.put(put_lying(thing, 0, setter.random()), where);
     else
@@ -97,11 +97,11 @@ void add_held_objects(TableSetter& setter, const Trajectory& trajectory) {
   }
 }
 
-Eigen::AlignedBox2d place_of_objects(const TableSetter& setter, Handling handling) {
+Eigen::AlignedBox2d place_of_objects(const TableSetter& setter, ObjectPlacement handling) {
   switch (handling) {
-    case Handling::kLying: return setter.region(-0.75, 0.75, -0.7, 0.75);
-    case Handling::kTilted:
-    case Handling::kHeld: return setter.region(-0.85, 0.85, -0.85, 0.85);
+    case ObjectPlacement::kLying: return setter.region(-0.75, 0.75, -0.7, 0.75);
+    case ObjectPlacement::kTilted:
+    case ObjectPlacement::kHeld: return setter.region(-0.85, 0.85, -0.85, 0.85);
     default: return setter.region(-0.62, 0.62, -0.75, 0.6);
   }
 }
@@ -110,11 +110,11 @@ void add_objects(TableSetter& setter, const Clutter& clutter, const Trajectory& 
   const Eigen::AlignedBox2d where = place_of_objects(setter, clutter.handling);
   if (clutter.further != FurtherClasses::kNone) {
     add_many_objects(setter, clutter.further);
-  } else if (clutter.handling == Handling::kLying) {
+  } else if (clutter.handling == ObjectPlacement::kLying) {
     add_lying_objects(setter, where);
-  } else if (clutter.handling == Handling::kTilted) {
+  } else if (clutter.handling == ObjectPlacement::kTilted) {
     add_tilted_objects(setter, where);
-  } else if (clutter.handling == Handling::kHeld) {
+  } else if (clutter.handling == ObjectPlacement::kHeld) {
     add_held_objects(setter, trajectory);
   } else {
     for (int id = 1; clutter.taught_objects && id <= kClassCount; ++id) setter.stand_object(id, where);
@@ -122,7 +122,7 @@ void add_objects(TableSetter& setter, const Clutter& clutter, const Trajectory& 
   const int first = setter.random().below(kClassCount);
   for (int i = 0; i < clutter.look_alikes; ++i) {
     const int id = kClassCount + 1 + (first + i) % kClassCount;
-    if (clutter.handling == Handling::kLying)
+    if (clutter.handling == ObjectPlacement::kLying)
       setter.lay_object(id, where);
     else
       setter.stand_object(id, where);
@@ -135,7 +135,7 @@ Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutte
   Scene scene{name, seed, {}, make_trajectory(aspect_seed(seed, kCameraPath))};
   Room room = make_room(style, aspect_seed(seed, kRoom));
   scene.world.items = std::move(room.items);
-  set_light_and_photo(scene.world, time, aspect_seed(seed, kLight));
+  set_lighting(scene.world, time, aspect_seed(seed, kLight));
   TableSetter setter(scene.world, room.table_half, aspect_seed(seed, kLayout));
   if (style == RoomStyle::kDesk)
     setter.stand(make_distractor(kMonitor, aspect_seed(seed, kFirstDistractor + 500)),
@@ -150,7 +150,7 @@ namespace {
 
 struct Plan {
   const char* name;
-  WorldUse use;
+  DatasetSplit use;
   std::uint64_t world;  ///< number for world_seed()
   RoomStyle style;
   TimeOfDay time;
@@ -158,8 +158,8 @@ struct Plan {
 };
 
 constexpr std::uint64_t kDevelopment = 1ULL << 40U;  // first of its worlds, far beyond the numbers of training data
-constexpr WorldUse kTest = WorldUse::kTest;
-constexpr WorldUse kTraining = WorldUse::kTraining;
+constexpr DatasetSplit kTest = DatasetSplit::kTest;
+constexpr DatasetSplit kTraining = DatasetSplit::kTraining;
 constexpr TimeOfDay kDay = TimeOfDay::kDay;
 constexpr TimeOfDay kEvening = TimeOfDay::kEvening;
 constexpr FurtherClasses kNone = FurtherClasses::kNone;
@@ -192,34 +192,34 @@ constexpr std::array<Plan, 25> kPlans = {
       kDay,
       {true, 1, 0, 14, kOdd}},
      {kTwentyClassDevelopmentScenes[1], kTraining, kDevelopment + 21, RoomStyle::kTable, kDay, {true, 1, 0, 12, kEven}},
-     {kLyingScenes[0], kTest, 30, RoomStyle::kTable, kDay, {true, 1, 4, 12, kNone, 0.0, Handling::kLying}},
-     {kLyingScenes[1], kTest, 31, RoomStyle::kMeeting, kEvening, {true, 1, 4, 12, kNone, 0.0, Handling::kLying}},
+     {kLyingScenes[0], kTest, 30, RoomStyle::kTable, kDay, {true, 1, 4, 12, kNone, 0.0, ObjectPlacement::kLying}},
+     {kLyingScenes[1], kTest, 31, RoomStyle::kMeeting, kEvening, {true, 1, 4, 12, kNone, 0.0, ObjectPlacement::kLying}},
      {kLyingDevelopmentScenes[0],
       kTraining,
       kDevelopment + 30,
       RoomStyle::kTable,
       kDay,
-      {true, 1, 4, 12, kNone, 0.0, Handling::kLying}},
+      {true, 1, 4, 12, kNone, 0.0, ObjectPlacement::kLying}},
      {kLyingDevelopmentScenes[1],
       kTraining,
       kDevelopment + 31,
       RoomStyle::kMeeting,
       kEvening,
-      {true, 1, 4, 12, kNone, 0.0, Handling::kLying}},
-     {kHandledScenes[0], kTest, 40, RoomStyle::kTable, kDay, {true, 1, 4, 10, kNone, 0.0, Handling::kTilted}},
-     {kHandledScenes[1], kTest, 41, RoomStyle::kMeeting, kDay, {true, 1, 4, 10, kNone, 0.0, Handling::kHeld}},
+      {true, 1, 4, 12, kNone, 0.0, ObjectPlacement::kLying}},
+     {kHandledScenes[0], kTest, 40, RoomStyle::kTable, kDay, {true, 1, 4, 10, kNone, 0.0, ObjectPlacement::kTilted}},
+     {kHandledScenes[1], kTest, 41, RoomStyle::kMeeting, kDay, {true, 1, 4, 10, kNone, 0.0, ObjectPlacement::kHeld}},
      {kHandledDevelopmentScenes[0],
       kTraining,
       kDevelopment + 40,
       RoomStyle::kTable,
       kEvening,
-      {true, 1, 4, 10, kNone, 0.0, Handling::kTilted}},
+      {true, 1, 4, 10, kNone, 0.0, ObjectPlacement::kTilted}},
      {kHandledDevelopmentScenes[1],
       kTraining,
       kDevelopment + 41,
       RoomStyle::kMeeting,
       kDay,
-      {true, 1, 4, 10, kNone, 0.0, Handling::kHeld}}}};
+      {true, 1, 4, 10, kNone, 0.0, ObjectPlacement::kHeld}}}};
 
 /// The number N of "development_world_N", 0 to 999.
 std::optional<int> development_number(const std::string& name) {
@@ -261,7 +261,7 @@ Scene make_named_scene(const std::string& name) {
 }
 
 Scene make_background_scene(int index, std::uint64_t seed) {
-  const std::uint64_t own = world_seed(WorldUse::kTraining, seed * 100000U + static_cast<std::uint64_t>(index));
+  const std::uint64_t own = world_seed(DatasetSplit::kTraining, seed * 100000U + static_cast<std::uint64_t>(index));
   const auto style = static_cast<RoomStyle>(index % kRoomStyles);
   return make_scene("background", style, {false, 0, 0, 16, kNone}, TimeOfDay::kDay, own);
 }

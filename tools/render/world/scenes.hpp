@@ -22,7 +22,7 @@ struct Scene {
 enum class FurtherClasses : std::uint8_t { kNone, kOddIds, kEvenIds };
 
 /// How the taught objects are put down.
-enum class Handling : std::uint8_t {
+enum class ObjectPlacement : std::uint8_t {
   kStanding,  ///< once each
   kLying,     ///< twice: once lying and once on a wedge; their like lie too
   kTilted,    ///< three times: standing, lying, and leaning on a block at 10 to 60 degrees; their like stand or lie
@@ -37,7 +37,7 @@ struct Clutter {
   int distractors = 10;                            ///< how many things are tried; those that find no place are left out
   FurtherClasses further = FurtherClasses::kNone;  ///< eight of them, once each
   double taught_colours = 0.0;                     ///< share of the distractors' surfaces that have the four's colours
-  Handling handling = Handling::kStanding;
+  ObjectPlacement handling = ObjectPlacement::kStanding;
 };
 
 Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutter, TimeOfDay time, std::uint64_t seed);

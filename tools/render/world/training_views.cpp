@@ -17,7 +17,7 @@ constexpr std::uint64_t kFirstViewRoom = 900000;  // numbers of training worlds 
 
 ThingPtr make_turntable_disc(Random& random) {
   const cv::Mat cover = plain({256, 256}, hsv(random.uniform(0, 360), 0.1, random.uniform(0.3, 0.8)), 0.05, random);
-  return make_thing("turntable", turned_mesh({{0.17, 0.0}, {0.17, kTopM}}, cover), 0.08F);
+  return make_asset("turntable", turned_mesh({{0.17, 0.0}, {0.17, kTopM}}, cover), 0.08F);
 }
 
 double degrees(double value) {
@@ -35,10 +35,10 @@ Turntable::Turntable(const TurntableSettings& settings, std::uint64_t seed) : se
   require(different.size() == settings.attitudes.size(), "turntable: an attitude is named twice, expected each once");
   for (int pitch = 0; pitch < settings.pitches; ++pitch) {
     const auto number = seed * 100000U + kFirstViewRoom + static_cast<std::uint64_t>(pitch);
-    const std::uint64_t own = world_seed(WorldUse::kTraining, number);
+    const std::uint64_t own = world_seed(DatasetSplit::kTraining, number);
     World world;
     world.items = make_room(static_cast<RoomStyle>(pitch % kRoomStyles), aspect_seed(own, 1)).items;
-    set_light_and_photo(world, TimeOfDay::kDay, aspect_seed(own, 2));
+    set_lighting(world, TimeOfDay::kDay, aspect_seed(own, 2));
     world.focus_radius_m = 0.5;
     Random random(aspect_seed(own, 3));
     Placed disc{make_turntable_disc(random), Eigen::Isometry3d::Identity(), 0, true};
@@ -60,7 +60,7 @@ int Turntable::view_count(const AttitudeChoice* choice) const {
   return count;
 }
 
-SceneFrame Turntable::render(const TaughtObject& object, const AttitudeChoice* choice, int index) const {
+RenderedFrame Turntable::render(const TaughtObject& object, const AttitudeChoice* choice, int index) const {
   std::size_t block = 0;
   while (index >= azimuths(settings_.attitudes.at(block), choice) * settings_.pitches)
     index -= azimuths(settings_.attitudes.at(block++), choice) * settings_.pitches;
@@ -70,7 +70,7 @@ SceneFrame Turntable::render(const TaughtObject& object, const AttitudeChoice* c
   const int azimuth_index = index % azimuths_here;
   const std::uint64_t first = kAttitudeViews * static_cast<std::uint64_t>(attitude);
   const auto number = static_cast<std::uint64_t>(object.id) * 1000003U + first + static_cast<std::uint64_t>(index);
-  Random random(aspect_seed(world_seed(WorldUse::kTraining, seed_), number));
+  Random random(aspect_seed(world_seed(DatasetSplit::kTraining, seed_), number));
   Eigen::Matrix3d R_table_object = Eigen::Matrix3d::Identity();
   if (attitude != Attitude::kUpright) {
     require(choice != nullptr, "turntable: {}: no attitudes to choose from", object.name);

@@ -29,7 +29,7 @@ class Turntable {
 
   /// View `index` (attitude by attitude, pitch by pitch, azimuth by azimuth) of an object, with its truth. utime is
   /// left 0. `choice`: of the object; may be null where all views are upright.
-  SceneFrame render(const TaughtObject& object, const AttitudeChoice* choice, int index) const;
+  RenderedFrame render(const TaughtObject& object, const AttitudeChoice* choice, int index) const;
 
  private:
   int azimuths(Attitude attitude, const AttitudeChoice* choice) const;

@@ -33,7 +33,7 @@ std::vector<Failure> thinned(std::vector<Failure> failures, std::size_t apart) {
 
 std::vector<Failure> false_ones(const std::vector<EvaluatedFrame>& frames, const ClassResult& result, float least) {
   std::vector<Failure> out;
-  for (const JudgedDetection& judged : result.judged) {
+  for (const MatchedDetection& judged : result.judged) {
     if (judged.verdict != Verdict::kFalse || judged.score < least) continue;
     const Detection& detection = frames[judged.frame].detections->detections[judged.index];
     out.push_back({Failure::Kind::kFalse, result.class_name, judged.frame, detection.box_px, judged.score});
@@ -49,7 +49,7 @@ std::vector<Failure> missed_ones(const std::vector<EvaluatedFrame>& frames, cons
       const NamedObject& object = frames[f].objects[o];
       if (object.class_name != result.class_name || object.truth.visible_fraction < rules.detection.min_visible)
         continue;
-      const auto finds = [&](const JudgedDetection& judged) {
+      const auto finds = [&](const MatchedDetection& judged) {
         return judged.verdict == Verdict::kTrue && judged.score >= rules.operating_score && judged.frame == f &&
                judged.object == o;
       };

@@ -17,7 +17,7 @@ namespace {
 using namespace houghstream;
 
 struct FailureOptions {
-  SearchedObjects known;  ///< models are not looked at
+  ObjectArguments known;  ///< models are not looked at
   std::vector<std::string> scenes;
   std::string out;
   std::optional<float> operating_score;  ///< default: what hs-detect publishes
@@ -67,7 +67,7 @@ FailureOptions with_store(FailureOptions options) {
   require(options.known.store.empty() == !options.known.forest.empty(),
           "expected either --objects STORE or --forest FILE");
   options.operating_score = options.operating_score.value_or(EvidenceSettings{}.threshold);
-  take_store(options.known);
+  resolve_store(options.known);
   return options;
 }
 

@@ -47,7 +47,7 @@ std::vector<NamedBox> true_boxes(const EvaluatedFrame& frame, const Forest& fore
 std::vector<HoughPanel> search(const Forest& forest, const RgbdFrame& frame, const HoughOptions& options) {
   const DetectionSettings settings = options.search.change(baseline::detection_settings_of(forest));
   const ForestIndex index(forest);
-  const Search by{index, settings};
+  const SearchContext by{index, settings};
   const baseline::Way way = way_of(options.reference);
   const Detections found = baseline::StudyDetector(forest, settings, way).detect(frame);
   std::vector<HoughPanel> panels;

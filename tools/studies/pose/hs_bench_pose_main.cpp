@@ -23,7 +23,7 @@ namespace {
 using namespace houghstream;
 
 struct BenchOptions {
-  SearchedObjects known;
+  ObjectArguments known;
   std::vector<std::string> scenes;
   std::filesystem::path out;
   int every = 1;
@@ -44,8 +44,8 @@ BenchedMakers make_makers(const std::map<std::string, Mesh>& meshes, const Bench
   publish_from(0.0F, settings);
   makers.each_frame[kUnchecked] = estimator_maker(meshes, settings);
   if (options.no_rivals) return makers;
-  makers.rivals[kPrerejective] = rival_maker(make_prerejective_rival(meshes, options.pose, PrerejectiveSettings{}));
-  makers.rivals[kPpf] = rival_maker(make_ppf_rival(meshes, options.pose, PpfSettings{}));
+  makers.rivals[kPrerejective] = baseline_maker(make_prerejective_rival(meshes, options.pose, PrerejectiveSettings{}));
+  makers.rivals[kPpf] = baseline_maker(make_ppf_rival(meshes, options.pose, PpfSettings{}));
   return makers;
 }
 
@@ -103,8 +103,8 @@ void run(const BenchOptions& options) {
 BenchOptions with_store(BenchOptions options) {
   require(options.known.store.empty() == !options.known.forest.empty(),
           "expected either --objects STORE or --forest FILE and --models FOLDER");
-  if (const std::optional<store::ObjectStore> objects = take_store(options.known))
-    take_from_store(*objects, std::nullopt, options.pose);
+  if (const std::optional<store::ObjectStore> objects = resolve_store(options.known))
+    apply_store_settings(*objects, std::nullopt, options.pose);
   return options;
 }
 

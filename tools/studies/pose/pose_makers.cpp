@@ -28,8 +28,8 @@ PoseMaker estimator_maker(const std::map<std::string, Mesh>& models, PoseSetting
   };
 }
 
-PoseMaker rival_maker(std::unique_ptr<PoseRival> rival) {
-  const std::shared_ptr<const PoseRival> shared = std::move(rival);
+PoseMaker baseline_maker(std::unique_ptr<BaselineEstimator> rival) {
+  const std::shared_ptr<const BaselineEstimator> shared = std::move(rival);
   return [shared](const RgbdFrame& frame, const Detection& detection) {
     ObjectPose pose;
     pose.class_id = detection.class_id;

@@ -22,7 +22,7 @@ using PoseMaker = std::function<ObjectPose(const RgbdFrame&, const Detection&)>;
 PoseMaker estimator_maker(const std::map<std::string, Mesh>& models, PoseSettings settings);
 
 /// A rival; where it finds a pose, that is published, else the status is kNotConverged.
-PoseMaker rival_maker(std::unique_ptr<PoseRival> rival);
+PoseMaker baseline_maker(std::unique_ptr<BaselineEstimator> rival);
 
 /// The poses of a frame's detections, in their order, and the CPU time that each took, milliseconds.
 struct TimedPoses {

@@ -17,9 +17,9 @@ namespace houghstream {
 /// What others' libraries offer in place of our PoseEstimator, given the same detections. They look at depth only, and
 /// at what ours looks at: the pixels with depth inside find_region(). Of several poses the one is given for which the
 /// depth speaks most (score_pose()), as among ours.
-class PoseRival {
+class BaselineEstimator {
  public:
-  virtual ~PoseRival() = default;
+  virtual ~BaselineEstimator() = default;
 
   /// T_camera_object of the detection, metres; uses its class, box and centre, not its votes. Nothing where the class
   /// has no model, the centre is unknown, the region holds too few points, or no pose was found whose
@@ -33,12 +33,12 @@ class PoseRival {
 /// pcl::SampleConsensusPrerejective), then point-to-plane ICP (register_points_pcl()). Models by class name, metres.
 /// Throws InputError for settings out of range and for models as make_object_model() does. PCL draws from std::rand(),
 /// which each estimate seeds anew: one estimate runs at a time, and nothing else may draw while it does.
-std::unique_ptr<PoseRival> make_prerejective_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
+std::unique_ptr<BaselineEstimator> make_prerejective_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
                                                    const PrerejectiveSettings& settings);
 
 /// OpenCV: votes of point pairs (Drost et al. 2010, cv::ppf_match_3d::PPF3DDetector), then
 /// cv::ppf_match_3d::ICP of the best few poses. Models by class name, metres; throws as the other.
-std::unique_ptr<PoseRival> make_ppf_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
+std::unique_ptr<BaselineEstimator> make_ppf_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
                                           const PpfSettings& settings);
 
 }  // namespace houghstream

@@ -25,7 +25,7 @@ void measure_nearest(const EvaluatedFrame& frame, const ScoredModel& model, Pose
   }
 }
 
-PoseTrial judge_one(const PoseRun& run, const JudgedDetection& judged, const ScoredModel& model) {
+PoseTrial judge_one(const PoseRun& run, const MatchedDetection& judged, const ScoredModel& model) {
   const EvaluatedFrame& frame = run.frames[judged.frame];
   const Detection& detection = frame.detections->detections[judged.index];
   const ObjectPose& pose = frame.poses->poses[judged.index];
@@ -42,7 +42,7 @@ PoseTrial judge_one(const PoseRun& run, const JudgedDetection& judged, const Sco
   trial.status = pose.status;
   trial.quality = pose.quality;
   trial.T_camera_object = pose.T_camera_object;
-  const TrueObject* truth = judged.verdict == Verdict::kTrue ? &frame.objects[judged.object].truth : nullptr;
+  const GroundTruthObject* truth = judged.verdict == Verdict::kTrue ? &frame.objects[judged.object].truth : nullptr;
   if (truth != nullptr) {
     trial.visible_fraction = truth->visible_fraction;
     trial.distance_m = truth->T_camera_object.translation().z();
@@ -77,7 +77,7 @@ SceneModels load_scene_models(const std::filesystem::path& models, const std::se
 std::vector<PoseTrial> judge_run(const PoseRun& run, const std::map<std::string, ScoredModel>& models) {
   std::vector<PoseTrial> trials;
   for (const auto& [name, model] : models) {
-    for (const JudgedDetection& judged : evaluate_class(run.frames, name, DetectionRules{}).judged) {
+    for (const MatchedDetection& judged : evaluate_class(run.frames, name, DetectionRules{}).judged) {
       const std::vector<NamedObject>& objects = run.frames[judged.frame].objects;
       if (judged.verdict == Verdict::kTrue && !objects[judged.object].truth.has_pose) continue;
       trials.push_back(judge_one(run, judged, model));

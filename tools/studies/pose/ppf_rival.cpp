@@ -85,7 +85,7 @@ class PpfRival final : public SurfaceRival {
 
 }  // namespace
 
-std::unique_ptr<PoseRival> make_ppf_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
+std::unique_ptr<BaselineEstimator> make_ppf_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
                                           const PpfSettings& settings) {
   check_settings(settings);
   return std::make_unique<PpfRival>(models, pose, settings);

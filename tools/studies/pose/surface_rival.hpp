@@ -24,7 +24,7 @@ struct SeenSurface {
 };
 
 /// What the rivals have in common: the region that they look at, and the choice among their poses.
-class SurfaceRival : public PoseRival {
+class SurfaceRival : public BaselineEstimator {
  public:
   SurfaceRival(const std::map<std::string, Mesh>& models, const PoseSettings& pose, const SurfaceSettings& surface);
 

@@ -43,7 +43,7 @@ std::vector<quality::Example> gather(const LearnOptions& options) {
   for (const auto& [name, mesh] : meshes) judged_by[name] = make_pose_model(mesh, false);
   const DetectionSettings settings = options.search.settings_for(forest);
   const Detector detector(std::move(forest), settings);
-  const quality::PoseFinder finder({meshes, {}}, settings.threads);
+  const quality::UnfilteredPoseFinder finder({meshes, {}}, settings.threads);
   std::vector<quality::Example> examples;
   std::set<std::string> names;
   for (const std::string& folder : options.scenes) {
@@ -51,7 +51,7 @@ std::vector<quality::Example> gather(const LearnOptions& options) {
     const std::string name = scene_name(scene);
     require(names.insert(name).second, "{}: a second scene of this name", folder);
     const quality::FoundPoses found = finder.find(name, scene, detector, options.every);
-    const std::vector<quality::Example> here = quality::judge_examples(found, judged_by);
+    const std::vector<quality::Example> here = quality::label_examples(found, judged_by);
     log_info("{}: {} frames, {} poses", name, found.frames.size(), here.size());
     examples.insert(examples.end(), here.begin(), here.end());
   }

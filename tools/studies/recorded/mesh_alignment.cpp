@@ -45,7 +45,7 @@ class Target {
   }
 
  private:
-  Eigen::Vector3d surface_point(const SurfaceHit& hit) const {
+  Eigen::Vector3d surface_point(const ClosestPoint& hit) const {
     Eigen::Vector3f point = Eigen::Vector3f::Zero();
     for (std::size_t k = 0; k < 3; ++k) point += hit.weights[k] * mesh_.vertices[mesh_.triangles[hit.triangle][k]];
     return point.cast<double>();
@@ -66,7 +66,7 @@ class Target {
     Vector6d sums = Vector6d::Zero();
     for (const Eigen::Vector3f& point : points) {
       const Eigen::Vector3d p = T * point.cast<double>();
-      const SurfaceHit hit = tree_.nearest(p.cast<float>());
+      const ClosestPoint hit = tree_.nearest(p.cast<float>());
       if (hit.distance >= limit) continue;
       const Eigen::Vector3d n = normal(hit.triangle);
       const double left = 1.0 - std::pow(hit.distance / limit, 2);
@@ -95,7 +95,7 @@ class Target {
   }
 
   const Mesh& mesh_;
-  SurfaceTree tree_;
+  MeshBvh tree_;
 };
 
 Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3f>& points) {

@@ -11,7 +11,7 @@ namespace houghstream {
 
 Mesh crop_below(const Mesh& mesh, const Eigen::Hyperplane<float, 3>& plane) {
   const auto is_above = [&](std::uint32_t vertex) { return plane.signedDistance(mesh.vertices[vertex]) >= 0.0F; };
-  return mesh_part(mesh, [&](const std::array<std::uint32_t, 3>& triangle) {
+  return extract_submesh(mesh, [&](const std::array<std::uint32_t, 3>& triangle) {
     return std::all_of(triangle.begin(), triangle.end(), is_above);
   });
 }

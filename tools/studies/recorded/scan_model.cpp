@@ -14,7 +14,7 @@ Mesh moved(Mesh mesh, const Eigen::Isometry3d& T) {
   return mesh;
 }
 
-cv::Vec3b colour_at(const Mesh& mesh, const SurfaceHit& hit) {
+cv::Vec3b colour_at(const Mesh& mesh, const ClosestPoint& hit) {
   cv::Vec3f sum(0.0F, 0.0F, 0.0F);
   for (std::size_t k = 0; k < 3; ++k) {
     sum += hit.weights[k] * cv::Vec3f(mesh.colours[mesh.triangles[hit.triangle][k]]);
@@ -25,7 +25,7 @@ cv::Vec3b colour_at(const Mesh& mesh, const SurfaceHit& hit) {
 
 void take_colours(const Mesh& from, Mesh& to) {
   if (from.colours.empty()) return;
-  const SurfaceTree tree(from);
+  const MeshBvh tree(from);
   for (const Eigen::Vector3f& vertex : to.vertices) to.colours.push_back(colour_at(from, tree.nearest(vertex)));
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 /// Over the detections of all classes together, strongest first.
 void find_best_f1(const std::vector<ClassResult>& classes, LinemodTrial& trial) {
-  std::vector<JudgedDetection> all;
+  std::vector<MatchedDetection> all;
   int required = 0;
   for (const ClassResult& result : classes) {
     all.insert(all.end(), result.judged.begin(), result.judged.end());

@@ -53,7 +53,7 @@ std::int64_t instruction_set(const std::string& name) {
   fail("instruction set '{}', expected one that this processor has: {}", name, fmt::join(known, ", "));
 }
 
-void grant(const std::string& wish, const std::string& text, Wishes& wishes, Contender& contender) {
+void grant(const std::string& wish, const std::string& text, Wishes& wishes, BenchmarkedDetector& contender) {
   const std::size_t equals = std::min(wish.find('='), wish.size());
   const std::string name = wish.substr(0, equals);
   const std::string value = wish.substr(std::min(equals + 1, wish.size()));
@@ -81,13 +81,13 @@ void grant(const std::string& wish, const std::string& text, Wishes& wishes, Con
 
 }  // namespace
 
-Contender parse_contender(const std::string& text) {
+BenchmarkedDetector parse_contender(const std::string& text) {
   std::istringstream parts(text);
   std::string named_forest;
   std::getline(parts, named_forest, ',');
   const std::size_t equals = named_forest.find('=');
   require(equals != std::string::npos && equals > 0, "detector '{}', expected NAME=FOREST", text);
-  Contender contender;
+  BenchmarkedDetector contender;
   contender.name = named_forest.substr(0, equals);
   Wishes wishes;
   for (std::string wish; std::getline(parts, wish, ',');) grant(wish, text, wishes, contender);

@@ -11,7 +11,7 @@
 namespace houghstream {
 
 /// Something whose time on a frame is measured beside that of others.
-struct Contender {
+struct BenchmarkedDetector {
   std::string name;
   std::size_t frames = SIZE_MAX;     ///< looks at no more than so many of the frames; for slow ones
   std::int64_t instruction_set = 0;  ///< of Highway, that alone; 0 = the best that the processor has
@@ -23,7 +23,7 @@ struct Contender {
 /// ",set=SSE4|AVX2|AVX3" and so on (the names of Highway), ",frames=N", ",trees=N" (the first so many), ",scale=X",
 /// ",threshold=X" and ",min-mass=X" (as of hs-evaluate, so that time and accuracy are of the same settings).
 /// Loads the forest. Throws InputError naming what was not understood.
-Contender parse_contender(const std::string& text);
+BenchmarkedDetector parse_contender(const std::string& text);
 
 /// The frame with its image `scale` times as large: colour interpolated, depth of the nearest pixel.
 RgbdFrame resized_frame(const RgbdFrame& frame, double scale);

@@ -28,11 +28,11 @@ struct SpeedOptions {
 };
 
 /// OpenCV's LINEMOD, with templates of the views at the distances given.
-Contender make_linemod(const SpeedOptions& options) {
+BenchmarkedDetector make_linemod(const SpeedOptions& options) {
   const std::vector<TrainingView> views = read_training_sources(options.linemod_views);
   const auto linemod = std::make_shared<const LinemodDetector>(views, options.linemod, LinemodSelection{});
   log_info("LINEMOD: {} templates", linemod->training().templates);
-  Contender contender;
+  BenchmarkedDetector contender;
   contender.name = "linemod";
   contender.frames = options.linemod_frames;
   contender.detect = [linemod](const RgbdFrame& frame) { return linemod->detect(frame); };
@@ -48,7 +48,7 @@ void run(const SpeedOptions& options) {
   const BopScene scene(options.scene);
   std::vector<RgbdFrame> frames;
   for (std::size_t i = 0; i < scene.images().size(); i += options.every) frames.push_back(scene.read_frame(i));
-  std::vector<Contender> contenders;
+  std::vector<BenchmarkedDetector> contenders;
   for (const std::string& text : options.detectors) contenders.push_back(parse_contender(text));
   if (!options.linemod_views.views.empty()) contenders.push_back(make_linemod(options));
   require(!contenders.empty(), "nothing to measure: expected --detector or --linemod-views");

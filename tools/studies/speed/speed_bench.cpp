@@ -29,7 +29,7 @@ class InstructionSet {
   }
 };
 
-void look_at(const Contender& contender, const RgbdFrame& frame, SpeedResult& result) {
+void look_at(const BenchmarkedDetector& contender, const RgbdFrame& frame, SpeedResult& result) {
   using Clock = std::chrono::steady_clock;
   const InstructionSet set(contender.instruction_set);
   const Clock::time_point start = Clock::now();
@@ -43,7 +43,7 @@ void look_at(const Contender& contender, const RgbdFrame& frame, SpeedResult& re
 
 }  // namespace
 
-std::vector<SpeedResult> measure_speed(const std::vector<Contender>& contenders, const std::vector<RgbdFrame>& frames) {
+std::vector<SpeedResult> measure_speed(const std::vector<BenchmarkedDetector>& contenders, const std::vector<RgbdFrame>& frames) {
   require(!frames.empty(), "nothing to measure: the scene has no frames");
   std::vector<SpeedResult> results(contenders.size());
   for (std::size_t f = 0; f < frames.size(); ++f) {
@@ -59,7 +59,7 @@ std::vector<SpeedResult> measure_speed(const std::vector<Contender>& contenders,
   return results;
 }
 
-nlohmann::json to_json(const std::vector<Contender>& contenders, const std::vector<SpeedResult>& results) {
+nlohmann::json to_json(const std::vector<BenchmarkedDetector>& contenders, const std::vector<SpeedResult>& results) {
   nlohmann::json out = nlohmann::json::object();
   for (std::size_t c = 0; c < contenders.size(); ++c) {
     const SpeedResult& result = results[c];
@@ -76,7 +76,7 @@ nlohmann::json to_json(const std::vector<Contender>& contenders, const std::vect
   return out;
 }
 
-std::string speed_table(const std::vector<Contender>& contenders, const std::vector<SpeedResult>& results) {
+std::string speed_table(const std::vector<BenchmarkedDetector>& contenders, const std::vector<SpeedResult>& results) {
   std::vector<std::size_t> order(contenders.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto median = [&](std::size_t c) { return percentile(results[c].ms, 50.0); };

@@ -79,7 +79,7 @@ std::vector<Eigen::Isometry3d> true_from_taught(const TrueTakes& takes, const st
   std::vector<Eigen::Isometry3d> out;
   for (const ShownPose& pose : poses) {
     if (pose.frame >= takes.scenes[pose.scene].images().size()) continue;
-    const TrueObject* object = true_object(takes, pose.scene, pose.frame);
+    const GroundTruthObject* object = true_object(takes, pose.scene, pose.frame);
     if (object != nullptr) out.push_back(object->T_camera_object.inverse() * pose.T_camera_taught);
   }
   return out;
@@ -87,7 +87,7 @@ std::vector<Eigen::Isometry3d> true_from_taught(const TrueTakes& takes, const st
 
 std::vector<double> distances(const std::vector<Eigen::Vector3f>& points, const Eigen::Isometry3d& T_mesh_points,
                               const Mesh& mesh) {
-  const SurfaceTree tree(mesh);
+  const MeshBvh tree(mesh);
   std::vector<double> out;
   out.reserve(points.size());
   for (const Eigen::Vector3f& point : points)
@@ -103,7 +103,7 @@ std::vector<Eigen::Vector3f> seen_points(const TrueTakes& takes, const std::vect
   for (std::size_t s = 0; s < takes.scenes.size(); ++s) {
     const std::size_t step = std::max<std::size_t>(1, takes.scenes[s].images().size() / kFrames);
     for (std::size_t f = 0; f < takes.scenes[s].images().size(); f += step) {
-      const TrueObject* object = true_object(takes, s, f);
+      const GroundTruthObject* object = true_object(takes, s, f);
       if (object == nullptr) continue;
       const Camera& camera = takes.scenes[s].images()[f].camera;
       const cv::Rect all(0, 0, camera.width, camera.height);

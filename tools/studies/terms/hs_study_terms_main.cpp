@@ -52,7 +52,7 @@ std::vector<SceneGroup> parse_groups(const StudyOptions& options) {
   return groups;
 }
 
-std::vector<Candidate> candidates_in(const Search& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
+std::vector<Candidate> candidates_in(const SearchContext& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);
   find_posteriors(search, workspace);
@@ -73,7 +73,7 @@ terms::Group study(const StudyOptions& options, const SceneGroup& scenes, const 
           "{}: scores by votes alone, expected one that weighs evidence", forest_file);
   const DetectionSettings settings = settings_of(options, forest);
   const ForestIndex index(forest);
-  const Search search{index, settings};
+  const SearchContext search{index, settings};
   NamedSide known{"the forest " + forest_file, {}};
   terms::ModelsByClass models;
   for (const ObjectClass& object : forest.classes) {

@@ -23,7 +23,7 @@ class CameraTake : public ShowObserver {
  private:
   ShownFrames frames_;
   ShowObserver* observer_;
-  EnoughSeen enough_;
+  CoverageCriterion enough_;
   bool is_over_ = false;
 };
 

@@ -29,14 +29,14 @@ namespace {
 namespace fs = std::filesystem;
 using reconstruction::LostSpan;
 using reconstruction::PlacedFrame;
-using reconstruction::ShownView;
+using reconstruction::MaskedKeyframe;
 using reconstruction::Take;
 
-void write_poses(const Shown& shown, const fs::path& file) {
+void write_poses(const ShowResult& shown, const fs::path& file) {
   std::ofstream out(file);
   out << "frame,utime,tracked,r11,r12,r13,t1,r21,r22,r23,t2,r31,r32,r33,t3\n";
   const Take& take = shown.takes.front();
-  const ShownView& any = shown.views.front().front();
+  const MaskedKeyframe& any = shown.views.front().front();
   const Eigen::Isometry3d T_world_object =
       take.keyframes[static_cast<std::size_t>(any.keyframe)].T_camera_world.inverse() * any.T_camera_object;
   for (std::size_t i = 0; i < take.frames.size(); ++i) {
@@ -53,7 +53,7 @@ void write_poses(const Shown& shown, const fs::path& file) {
   require(out.good(), "{}: cannot be written", file.string());
 }
 
-OrderedJson report_json(const Shown& shown, const Verdict& verdict) {
+OrderedJson report_json(const ShowResult& shown, const Verdict& verdict) {
   OrderedJson json;
   int frames = 0, tracked = 0, keyframes = 0;
   double hz = 1e9;
@@ -93,7 +93,7 @@ OrderedJson report_json(const Shown& shown, const Verdict& verdict) {
 }
 
 /// The keyframes of all takes.
-std::vector<TrainingView> all_views(const Shown& shown) {
+std::vector<TrainingView> all_views(const ShowResult& shown) {
   std::vector<TrainingView> views;
   for (std::size_t t = 0; t < shown.takes.size(); ++t) {
     std::vector<TrainingView> of_take = training_views(shown.takes[t], shown.views[t], shown.name);
@@ -110,14 +110,14 @@ cv::Mat outline_picture(const Mesh& mesh, const TrainingView& view) {
   std::vector<std::vector<cv::Point>> outlines;
   cv::findContours(view.mask.clone(), outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
   cv::drawContours(picture, outlines, -1, {0, 200, 255}, 1);
-  cv::findContours(reconstruction::mask_of(mesh, nothing_hides, view.T_camera_object), outlines, cv::RETR_EXTERNAL,
+  cv::findContours(reconstruction::render_visible_mask(mesh, nothing_hides, view.T_camera_object), outlines, cv::RETR_EXTERNAL,
                    cv::CHAIN_APPROX_NONE);
   cv::drawContours(picture, outlines, -1, {0, 255, 0}, 1);
   return picture;
 }
 
 /// What was taken for the object in a take's first frame; that of turntable videos is given by their masks.
-void write_choices(const Shown& shown, const fs::path& folder) {
+void write_choices(const ShowResult& shown, const fs::path& folder) {
   for (std::size_t t = 0; t < shown.takes.size(); ++t) {
     const Take& take = shown.takes[t];
     if (take.chosen.mask.empty()) continue;
@@ -129,7 +129,7 @@ void write_choices(const Shown& shown, const fs::path& folder) {
   }
 }
 
-void write_pictures(const Shown& shown, const std::vector<TrainingView>& views, const fs::path& folder) {
+void write_pictures(const ShowResult& shown, const std::vector<TrainingView>& views, const fs::path& folder) {
   constexpr std::size_t kOutlines = 12;
   write_choices(shown, folder);
   fs::create_directories(folder / "outlines");
@@ -143,10 +143,10 @@ void write_pictures(const Shown& shown, const std::vector<TrainingView>& views, 
   write_image(sheet, folder / "contact_sheet.jpg");
 }
 
-void write_views(const Shown& shown, const std::vector<TrainingView>& views, const fs::path& folder) {
+void write_views(const ShowResult& shown, const std::vector<TrainingView>& views, const fs::path& folder) {
   BopWriter writer(folder / "000001");
   for (const TrainingView& view : views) {
-    TrueObject object;
+    GroundTruthObject object;
     object.object_id = 1;
     object.T_camera_object = view.T_camera_object;
     object.box_visible_px = cv::boundingRect(view.mask);
@@ -175,7 +175,7 @@ bool is_kept_entry(const fs::path& relative) {
   return *second == "000001" || *second == "models";
 }
 
-void write_page(const Shown& shown, const Verdict& verdict, const fs::path& folder) {
+void write_page(const ShowResult& shown, const Verdict& verdict, const fs::path& folder) {
   ShownPictures pictures;
   for (const char* name : {"chosen.png", "chosen_2.png"}) {
     if (fs::exists(folder / name)) pictures.chosen.emplace_back(name);
@@ -191,7 +191,7 @@ void write_page(const Shown& shown, const Verdict& verdict, const fs::path& fold
 
 }  // namespace
 
-std::string report_page(const Shown& shown, const Verdict& verdict, const ShownPictures& pictures) {
+std::string report_page(const ShowResult& shown, const Verdict& verdict, const ShownPictures& pictures) {
   std::string page =
       fmt::format("<!doctype html><meta charset=\"utf-8\"><title>{0}</title>\n<h1>{0}: {1}</h1>\n<pre>{2}</pre>\n",
                   escape_html(shown.name), verdict.good ? "good" : "poor", escape_html(describe(shown, verdict)));
@@ -216,7 +216,7 @@ void require_keepable(const fs::path& folder) {
   require_exchangeable(whole, is_kept_entry);
 }
 
-void keep_shown(const Shown& shown, const Verdict& verdict, const fs::path& folder) {
+void archive_session(const ShowResult& shown, const Verdict& verdict, const fs::path& folder) {
   require_keepable(folder);
   const fs::path whole = kept_folder(folder);
   const fs::path partial = whole.parent_path() / fmt::format(".{}.partial-{}", whole.filename().string(), getpid());

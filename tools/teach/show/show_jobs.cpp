@@ -24,7 +24,7 @@
 namespace houghstream::teach {
 namespace {
 
-using reconstruction::ShownModel;
+using reconstruction::ReconstructedModel;
 using reconstruction::Take;
 using reconstruction::TakePlacer;
 
@@ -48,7 +48,7 @@ void check_show_options(const ShowOptions& options) {
   if (!options.teach) return;
   require(!options.out.empty(), "--out is missing, expected the store to teach into, or --no-teach");
   store::require_place_for_store(options.out);
-  store::bring_back_store(options.out);
+  store::recover_store(options.out);
   if (!options.add && !options.replace) require_no_store(options.out);
   if (!options.add) return;
   const store::ObjectStore known = store::read_store(options.out);
@@ -72,8 +72,8 @@ std::string lack_of(const RgbdFrame& frame) {
   return {};
 }
 
-reconstruction::ModelMaking making_of(const ShowOptions& options) {
-  reconstruction::ModelMaking making;
+reconstruction::ReconstructionSettings making_of(const ShowOptions& options) {
+  reconstruction::ReconstructionSettings making;
   making.threads = options.threads;
   return making;
 }
@@ -88,10 +88,10 @@ struct TakeSource {
 
 struct ModelledTake {
   Take take;
-  ShownModel model;
+  ReconstructedModel model;
 };
 
-Take follow(const TakeSource& source, const ShowOptions& options, Telling& telling) {
+Take follow(const TakeSource& source, const ShowOptions& options, ProgressReporter& telling) {
   constexpr std::size_t kFewest = 20;
   constexpr int kAwake = 90;   // frames after which a camera has found its exposure
   constexpr int kAimed = 300;  // and in which somebody has pointed it at the object
@@ -124,12 +124,12 @@ Take follow(const TakeSource& source, const ShowOptions& options, Telling& telli
 }
 
 /// Errors name the take, of which there may be two.
-ModelledTake follow_and_model(const TakeSource& source, const ShowOptions& options, Telling& telling) {
+ModelledTake follow_and_model(const TakeSource& source, const ShowOptions& options, ProgressReporter& telling) {
   try {
     ModelledTake made;
     made.take = follow(source, options, telling);
     telling.step(ShowState::kFusing, 0.3, "the model is made");
-    made.model = make_model(made.take, making_of(options));
+    made.model = reconstruct_model(made.take, making_of(options));
     return made;
   } catch (const InputError& error) {
     fail("{}: {}", source.name, error.what());
@@ -137,12 +137,12 @@ ModelledTake follow_and_model(const TakeSource& source, const ShowOptions& optio
 }
 
 /// Follows one or two takes and makes a model of them.
-Shown show_takes(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second, Telling& telling) {
+ShowResult show_takes(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second, ProgressReporter& telling) {
   const auto begin = std::chrono::steady_clock::now();
-  Shown shown;
+  ShowResult shown;
   shown.name = options.name;
   ModelledTake first = follow_and_model({options.source, frames, options.box, options.at}, options, telling);
-  ShownModel& model = first.model;
+  ReconstructedModel& model = first.model;
   shown.takes.push_back(std::move(first.take));
   if (second) {
     const std::string name = options.second.empty() ? "the second take" : options.second;
@@ -156,7 +156,7 @@ Shown show_takes(const ShowOptions& options, const ShownFrames& frames, const Sh
   }
   shown.views.insert(shown.views.begin(), std::move(model.views));
   shown.seen_surface = share_of_seen(model.seen);
-  shown.mesh = fusion::without_unseen(model.mesh, model.seen, making_of(options).foot_m);
+  shown.mesh = fusion::remove_unobserved(model.mesh, model.seen, making_of(options).foot_m);
   shown.agreement_m = model.agreement_m;
   shown.seen_through = model.seen_through;
   shown.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -165,10 +165,10 @@ Shown show_takes(const ShowOptions& options, const ShownFrames& frames, const Sh
 
 /// Into the store twice: with scores and qualities of a little practice, so that a stream that runs finds the object
 /// soon, and again when they were learnt as thoroughly as those of any other.
-void teach_shown(const ShowOptions& options, const Shown& shown, Telling& telling) {
+void teach_shown(const ShowOptions& options, const ShowResult& shown, ProgressReporter& telling) {
   constexpr int kFirstRooms = 18;
   TeachOptions teach = options_to_teach(options, shown);
-  PracticeSettings thorough = teach.practice;
+  CalibrationSettings thorough = teach.practice;
   thorough.seed = options.seed;
   thorough.threads = options.threads;
   teach.practice.rooms = kFirstRooms;
@@ -180,12 +180,12 @@ void teach_shown(const ShowOptions& options, const Shown& shown, Telling& tellin
 }
 
 /// Judges what was shown, writes what is to be kept, and teaches it. Returns the exit status.
-int conclude(const ShowOptions& options, const Shown& shown, Telling& telling) {
+int conclude(const ShowOptions& options, const ShowResult& shown, ProgressReporter& telling) {
   constexpr int kPoor = 3;
   const Verdict verdict = judge(shown);
   fmt::print("{}", describe(shown, verdict));
-  if (!options.keep.empty()) keep_shown(shown, verdict, options.keep);
-  if (!verdict.good && !options.go_on) {
+  if (!options.keep.empty()) archive_session(shown, verdict, options.keep);
+  if (!verdict.good && !options.accept_poor_model) {
     telling.step(ShowState::kFailed, 1.0,
                  fmt::format("poor: {}{}", verdict.reasons.front(),
                              options.teach ? "; not taught (--go-on teaches it all the same)" : ""));
@@ -198,8 +198,8 @@ int conclude(const ShowOptions& options, const Shown& shown, Telling& telling) {
 }
 
 /// Says why where it fails.
-int told(const ShowOptions& options, ShowObserver* observer, const std::function<Shown(Telling&)>& show) {
-  Telling telling(options.name, observer);
+int told(const ShowOptions& options, ShowObserver* observer, const std::function<ShowResult(ProgressReporter&)>& show) {
+  ProgressReporter telling(options.name, observer);
   try {
     check_show_options(options);
     return conclude(options, show(telling), telling);
@@ -213,14 +213,14 @@ int told(const ShowOptions& options, ShowObserver* observer, const std::function
 
 int show_object(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second,
                 ShowObserver* observer) {
-  return told(options, observer, [&](Telling& telling) { return show_takes(options, frames, second, telling); });
+  return told(options, observer, [&](ProgressReporter& telling) { return show_takes(options, frames, second, telling); });
 }
 
 int show_sources(const ShowOptions& options, ShowObserver* observer) {
   check_show_options(options);
   check_second(options);
   if (is_turntable_videos(options.source))
-    return told(options, observer, [&](Telling&) { return show_turntable(options); });
+    return told(options, observer, [&](ProgressReporter&) { return show_turntable(options); });
   const ShownFrames second = options.second.empty() ? ShownFrames() : open_shown(options.second, options);
   if (!is_live(options.source)) return show_object(options, open_shown(options.source, options), second, observer);
   CameraTake take(open_shown(options.source, options), observer);

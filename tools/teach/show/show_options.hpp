@@ -22,12 +22,12 @@ struct ShowOptions {
   std::optional<cv::Rect> box;  ///< of the object in the first frame, pixels; none = nearest to `at`
   std::optional<cv::Point> at;  ///< a place on it there; none = the middle
   std::filesystem::path keep;   ///< where model, views, pictures and report go; empty = nowhere
-  bool go_on = false;           ///< teaches a poor model too
+  bool accept_poor_model = false;           ///< teaches a poor model too
   bool teach = true;            ///< false: the model only, the store is left alone
   double longest_s = 60.0;      ///< of a take from a live source
   std::string camera;           ///< WIDTHxHEIGHT,fx,fy,cx,cy of frames that come without; empty = they do not
   std::string channel;          ///< of the frames in a log; empty = the first that holds any
-  std::filesystem::path rooms_cache;  ///< see RoomSettings
+  std::filesystem::path rooms_cache;  ///< see BackgroundSettings
   std::uint64_t seed = 1;
   int threads = 2;
 };

@@ -59,7 +59,7 @@ void judge_take(const Take& take, std::vector<std::string>& reasons) {
 }
 
 /// What speaks against each of the takes.
-void judge_takes(const Shown& shown, std::vector<std::string>& reasons) {
+void judge_takes(const ShowResult& shown, std::vector<std::string>& reasons) {
   constexpr std::size_t kFewestKeyframes = 8;
   for (std::size_t t = 0; t < shown.takes.size(); ++t) {
     std::vector<std::string> of_take;
@@ -108,7 +108,7 @@ int tracked_frames(const Take& take) {
       std::count_if(take.frames.begin(), take.frames.end(), [](const PlacedFrame& frame) { return frame.tracked; }));
 }
 
-reconstruction::SeenDirections seen_by_all(const Shown& shown) {
+reconstruction::SeenDirections seen_by_all(const ShowResult& shown) {
   reconstruction::SeenDirections seen{};
   for (const Take& take : shown.takes) {
     for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] || take.seen[i];
@@ -126,7 +126,7 @@ double share_of_seen(const std::vector<bool>& seen) {
          static_cast<double>(std::max<std::size_t>(1, seen.size()));
 }
 
-Verdict judge(const Shown& shown) {
+Verdict judge(const ShowResult& shown) {
   constexpr double kMostDisagreement_m = 0.003;
   constexpr double kLeastSurface = 0.55;
   constexpr double kLeastOverlap = 0.9;
@@ -140,11 +140,11 @@ Verdict judge(const Shown& shown) {
                                           *shown.outline_overlap, kLeastOverlap));
   if (shown.seen_surface < kLeastSurface)
     verdict.reasons.push_back(fmt::format("only {:.0f} % of its surface was seen", 100.0 * shown.seen_surface));
-  if (shown.seen_through > reconstruction::kMostSeenThrough)
+  if (shown.seen_through > reconstruction::kMaxFreeSpaceViolation)
     verdict.reasons.push_back(
         fmt::format("the model is seen through in {:.0f} % of its outline, expected less than {:.0f}: a hand or the "
                     "table was taken for it",
-                    100.0 * shown.seen_through, 100.0 * reconstruction::kMostSeenThrough));
+                    100.0 * shown.seen_through, 100.0 * reconstruction::kMaxFreeSpaceViolation));
   if (!shown.second_fits)
     verdict.reasons.emplace_back(
         "the second take does not fit the first, or shows a hand or the table as if they were the object, expected the "
@@ -153,12 +153,12 @@ Verdict judge(const Shown& shown) {
   return verdict;
 }
 
-std::string describe(const Shown& shown, const Verdict& verdict) {
+std::string describe(const ShowResult& shown, const Verdict& verdict) {
   const Take& take = shown.takes.front();
   std::string text = fmt::format("{}: {}\n", shown.name, verdict.good ? "good" : "poor");
   for (const std::string& reason : verdict.reasons) text += "  " + reason + "\n";
   const Eigen::Vector3d front = take.chosen.T_camera_stand.inverse().translation();
-  text += fmt::format("  {}\n", reconstruction::describe_seen(seen_by_all(shown), front));
+  text += fmt::format("  {}\n", reconstruction::describe_coverage(seen_by_all(shown), front));
   for (const Take& one : shown.takes) text += describe_take(one);
   text +=
       fmt::format("  {:.0f} mm across, views agree within {:.2f} mm, {:.0f} % of the surface seen; {:.1f} s\n",

@@ -9,15 +9,15 @@
 namespace houghstream::teach {
 
 /// What is judged: takes that were followed, and the model of all of them.
-struct Shown {
+struct ShowResult {
   std::string name;
   std::vector<reconstruction::Take> takes;
-  std::vector<std::vector<reconstruction::ShownView>> views;  ///< of each take
+  std::vector<std::vector<reconstruction::MaskedKeyframe>> views;  ///< of each take
   Mesh mesh;
   double seen_surface = 0.0;  ///< share of the closed surface that some view shows
   bool second_fits = true;    ///< the second take, where there was one
   double agreement_m = 0.0;
-  double seen_through = 0.0;              ///< reconstruction::seen_through_share()
+  double seen_through = 0.0;              ///< reconstruction::free_space_violation()
   std::optional<double> outline_overlap;  ///< median over the views, with masks that were given
   double seconds = 0.0;                   ///< that it took until the model was there
 };
@@ -32,7 +32,7 @@ struct Verdict {
 };
 
 /// Of all takes that were merged, and of the model.
-Verdict judge(const Shown& shown);
+Verdict judge(const ShowResult& shown);
 
 /// Second of the take at which a frame was taken.
 double second_of(const reconstruction::Take& take, int frame);
@@ -41,12 +41,12 @@ double second_of(const reconstruction::Take& take, int frame);
 int tracked_frames(const reconstruction::Take& take);
 
 /// From which directions some take shows the object.
-reconstruction::SeenDirections seen_by_all(const Shown& shown);
+reconstruction::SeenDirections seen_by_all(const ShowResult& shown);
 
 /// By how much a turn missed its beginning.
 double degrees_of(const reconstruction::LoopGap& gap);
 
 /// The verdict and its figures in words, a few lines.
-std::string describe(const Shown& shown, const Verdict& verdict);
+std::string describe(const ShowResult& shown, const Verdict& verdict);
 
 }  // namespace houghstream::teach

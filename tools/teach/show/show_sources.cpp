@@ -29,7 +29,7 @@ class TakeTime {
   /// The camera is open; its first frame may need longer than a short take.
   void open() { end_ = after(std::max(longest_s_, kFirstFrameS)); }
   void note_first_frame() { end_ = after(longest_s_ + kLateS); }
-  bool is_over() const { return end_ && Clock::now() > *end_; }
+  bool is_cancelled() const { return end_ && Clock::now() > *end_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -53,7 +53,7 @@ class LiveFrames {
     camera.source = source;
     camera.camera = options.camera;
     openni::CameraListener listener;
-    listener.stop_requested = [this] { return stop_requested() || time_.is_over(); };
+    listener.stop_requested = [this] { return stop_requested() || time_.is_cancelled(); };
     source_ = capture::open_source(camera, listener);
     time_.open();
   }
@@ -98,7 +98,7 @@ class RecordedFrames {
   }
 
  private:
-  log_tools::LossAccount losses_;
+  log_tools::LossReport losses_;
   log_tools::NextFrame next_;
 };
 

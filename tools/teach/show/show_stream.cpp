@@ -35,7 +35,7 @@ class TakeObserver : public ShowObserver {
  private:
   TeachingPublisher publisher_;
   StreamTake& take_;
-  EnoughSeen enough_;
+  CoverageCriterion enough_;
 };
 
 /// From here on a stop signal ends the program.

@@ -15,12 +15,12 @@ using reconstruction::Take;
 /// What is taught of a view: the object with a margin, in the tone in which it is looked for.
 void crop_to_object(TrainingView& view) {
   constexpr int kMargin_px = 8;
-  const ToneCurve tone = tone_curve(view.frame.colour, kPractisedTone);
+  const AffineBrightness tone = fit_affine_brightness(view.frame.colour, kCalibrationBrightness);
   cv::Rect crop = cv::boundingRect(view.mask);
   crop = cv::Rect(crop.x - kMargin_px, crop.y - kMargin_px, crop.width + 2 * kMargin_px, crop.height + 2 * kMargin_px) &
          cv::Rect({0, 0}, view.mask.size());
   cv::Mat colour;
-  apply_tone(tone, view.frame.colour(crop), colour);
+  apply_affine_brightness(tone, view.frame.colour(crop), colour);
   view.frame.colour = colour;
   view.frame.depth = view.frame.depth(crop).clone();
   view.frame.camera = view.frame.camera.cropped(crop.x, crop.y, crop.width, crop.height);
@@ -30,11 +30,11 @@ void crop_to_object(TrainingView& view) {
 /// Gives the model of the takes the colours that it has in pictures of the tone in which it is looked for.
 void bring_into_tone(const std::vector<Take>& takes, std::vector<cv::Vec3b>& colours) {
   if (colours.empty()) return;
-  ToneCurve mean{0.0F, 0.0F};
+  AffineBrightness mean{0.0F, 0.0F};
   float count = 0.0F;
   for (const Take& take : takes) {
     for (const reconstruction::Keyframe& keyframe : take.keyframes) {
-      const ToneCurve tone = tone_curve(keyframe.frame.colour, kPractisedTone);
+      const AffineBrightness tone = fit_affine_brightness(keyframe.frame.colour, kCalibrationBrightness);
       mean.gain += tone.gain;
       mean.offset += tone.offset;
       count += 1.0F;
@@ -42,12 +42,12 @@ void bring_into_tone(const std::vector<Take>& takes, std::vector<cv::Vec3b>& col
   }
   if (count == 0.0F) return;
   cv::Mat all(colours);  // lies where they do
-  apply_tone({mean.gain / count, mean.offset / count}, all, all);
+  apply_affine_brightness({mean.gain / count, mean.offset / count}, all, all);
 }
 
 }  // namespace
 
-TeachOptions options_to_teach(const ShowOptions& options, const Shown& shown) {
+TeachOptions options_to_teach(const ShowOptions& options, const ShowResult& shown) {
   TeachOptions teach;
   TaughtMesh mesh;
   mesh.name = options.name;

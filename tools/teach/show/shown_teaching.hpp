@@ -8,6 +8,6 @@ namespace houghstream::teach {
 
 /// What teaches a shown object: its mesh as one that hs-teach mesh could have read, and the keyframes' views of it, all
 /// in the tone in which objects are looked for. Throws InputError for a mesh that cannot be taught.
-TeachOptions options_to_teach(const ShowOptions& options, const Shown& shown);
+TeachOptions options_to_teach(const ShowOptions& options, const ShowResult& shown);
 
 }  // namespace houghstream::teach

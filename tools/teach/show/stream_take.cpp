@@ -25,7 +25,7 @@ StreamTake::StreamTake(LcmBus& bus, StreamTakeSettings settings) : bus_(bus), se
           bus_.url());
   require(ChannelPattern(settings_.channel).is_name(), "channel '{}', expected the name of one camera's frames",
           settings_.channel);
-  bus_.subscribe_to_frames(settings_.channel, [this](const Arrival& arrival) { put(arrival); });
+  bus_.subscribe_to_frames(settings_.channel, [this](const ReceivedMessage& arrival) { put(arrival); });
   const BlockStopSignals block;
   thread_ = std::thread([this] { receive(); });
 }
@@ -58,7 +58,7 @@ void StreamTake::note_outage(Clock::duration time) {
 }
 
 // What is no frame never waits: it would take the place of frames.
-void StreamTake::put(const Arrival& arrival) {
+void StreamTake::put(const ReceivedMessage& arrival) {
   const std::lock_guard lock(mutex_);
   if (ended_) return;
   try {

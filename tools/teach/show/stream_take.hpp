@@ -63,7 +63,7 @@ class StreamTake {
     std::vector<std::uint8_t> bytes;  // encoded
     Clock::time_point arrival;
   };
-  void put(const Arrival& arrival);
+  void put(const ReceivedMessage& arrival);
   void refuse(const std::string& reason);
   void receive() noexcept;
   std::optional<Waiting> take();
@@ -86,7 +86,7 @@ class StreamTake {
   Clock::time_point last_;                  // arrival of the last frame that was taken or dropped
   cv::Size size_;                           // of the first frame
   std::string last_reason_;                 // why the last message was refused
-  LimitedLines lines_;
+  LogThrottle lines_;
   bool ended_ = false;
   std::string failure_;
   std::atomic<std::int64_t> passed_over_{0};

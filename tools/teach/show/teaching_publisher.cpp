@@ -89,7 +89,7 @@ void TeachingPublisher::repeat() noexcept {
   }
 }
 
-bool EnoughSeen::operator()(const ShowProgress& now) {
+bool CoverageCriterion::operator()(const ShowProgress& now) {
   constexpr std::int64_t kLeast_us = 6'000'000;
   constexpr std::int64_t kLongestStep_us = 10'000'000;
   const std::int64_t step_us = last_utime_ ? microseconds_between(*last_utime_, now.frame.utime) : 0;

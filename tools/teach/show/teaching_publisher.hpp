@@ -52,7 +52,7 @@ class TeachingPublisher : public ShowObserver {
 /// the frames' time, or half as long as that took, no further one. Steps of that time that lead back, or far ahead, are
 /// a clock that is set or a wrong stamp, and no time. Over the last third of a turn nothing new is seen,
 /// and still it has to be closed.
-class EnoughSeen {
+class CoverageCriterion {
  public:
   bool operator()(const ShowProgress& now);
 

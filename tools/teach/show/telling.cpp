@@ -6,11 +6,11 @@
 
 namespace houghstream::teach {
 
-Telling::Telling(const std::string& name, ShowObserver* observer) : observer_(observer) {
+ProgressReporter::ProgressReporter(const std::string& name, ShowObserver* observer) : observer_(observer) {
   now_.name = name;
 }
 
-void Telling::frame(const FrameId& id, const reconstruction::TakePlacerStatus& state) {
+void ProgressReporter::frame(const FrameId& id, const reconstruction::TakePlacerStatus& state) {
   using reconstruction::TakeState;
   now_.frame = id;
   now_.state = state.state == TakeState::kTracking ? ShowState::kTracking
@@ -26,7 +26,7 @@ void Telling::frame(const FrameId& id, const reconstruction::TakePlacerStatus& s
   tell();
 }
 
-void Telling::step(ShowState state, double progress, const std::string& message) {
+void ProgressReporter::step(ShowState state, double progress, const std::string& message) {
   now_.state = state;
   now_.progress = progress;
   now_.message = message;
@@ -36,13 +36,13 @@ void Telling::step(ShowState state, double progress, const std::string& message)
   tell();
 }
 
-void Telling::fail(const std::string& message) {
+void ProgressReporter::fail(const std::string& message) {
   now_.state = ShowState::kFailed;
   now_.message = message;
   if (observer_ != nullptr) observer_->progress(now_);
 }
 
-void Telling::tell() {
+void ProgressReporter::tell() {
   constexpr std::int64_t kApart_us = 1'000'000;  // of the take's time
   const std::string line = fmt::format("{}: {}", name_of(now_.state), now_.message);
   const bool is_choice = printed_state_ == ShowState::kChoosing && now_.state != ShowState::kChoosing;

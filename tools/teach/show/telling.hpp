@@ -10,10 +10,10 @@
 namespace houghstream::teach {
 
 /// Tells the observer and, where something new happens, the terminal how far a showing is. Not thread-safe.
-class Telling {
+class ProgressReporter {
  public:
   /// Of the object's `name`. `observer` may be null.
-  Telling(const std::string& name, ShowObserver* observer);
+  ProgressReporter(const std::string& name, ShowObserver* observer);
 
   /// After a frame of the take.
   void frame(const FrameId& id, const reconstruction::TakePlacerStatus& state);

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using reconstruction::ModelOfViews;
-using reconstruction::ShownView;
+using reconstruction::MaskedKeyframe;
 using reconstruction::Take;
 
 constexpr const char* kNominalCamera = "640x480,525,525,319.5,239.5";
@@ -61,7 +61,7 @@ Video make_video(const std::string& name, const std::vector<TrainingView>& views
   reconstruction::register_views(registered, threads);
   std::vector<Video> videos = {fuse(name, views, threads), fuse(name, std::move(registered), threads)};
   std::vector<TrainingView> placed = views;
-  reconstruction::place_by_outlines(videos.front().model.mesh, threads, placed);
+  reconstruction::align_silhouettes(videos.front().model.mesh, threads, placed);
   videos.push_back(fuse(name, std::move(placed), threads));
   log_info("{}: {} views, whose outlines overlap by {:.3f} by the axis, {:.3f} registered, {:.3f} placed by outlines",
            name, views.size(), videos[0].overlap, videos[1].overlap, videos[2].overlap);
@@ -127,7 +127,7 @@ class Merging {
     constexpr int kRounds = 4;
     for (int round = 0; round < kRounds; ++round) {
       std::vector<TrainingView> placed = views_;
-      reconstruction::place_by_outlines(model_.mesh, options_.threads, placed);
+      reconstruction::align_silhouettes(model_.mesh, options_.threads, placed);
       ModelOfViews again = fuse(placed, model_.mesh);
       const double overlap = teach::outline_overlap(again.mesh, placed);
       if (overlap <= overlap_) return;
@@ -146,7 +146,7 @@ class Merging {
 
   const ShowOptions& options_;
   const Video& first_;
-  reconstruction::ModelMaking making_;
+  reconstruction::ReconstructionSettings making_;
   std::vector<TrainingView> views_;
   Mesh outline_;
   ModelOfViews model_;
@@ -154,7 +154,7 @@ class Merging {
 };
 
 /// The views as a take that is over.
-Take take_of(const std::vector<TrainingView>& views, std::vector<ShownView>& shown) {
+Take take_of(const std::vector<TrainingView>& views, std::vector<MaskedKeyframe>& shown) {
   Take take;
   take.motion = reconstruction::Motion::kTurntable;
   take.degrees_round = 360;
@@ -165,7 +165,7 @@ Take take_of(const std::vector<TrainingView>& views, std::vector<ShownView>& sho
     keyframe.T_camera_world = views[i].T_camera_object;
     take.frames.push_back({views[i].frame.id, true, false, static_cast<int>(i), Eigen::Isometry3d::Identity()});
     take.keyframes.push_back(std::move(keyframe));
-    reconstruction::mark_seen(views[i].T_camera_object.inverse().translation(), take.seen);
+    reconstruction::mark_covered(views[i].T_camera_object.inverse().translation(), take.seen);
     shown.push_back({static_cast<int>(i), views[i].T_camera_object, views[i].mask});
   }
   take.chosen.T_camera_stand = views.front().T_camera_object;
@@ -183,7 +183,7 @@ bool is_turntable_videos(const std::string& source) {
   });
 }
 
-Shown show_turntable(const ShowOptions& options) {
+ShowResult show_turntable(const ShowOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const std::vector<Video> videos = read_videos(options);
   Merging merging(options, videos.front());
@@ -194,7 +194,7 @@ Shown show_turntable(const ShowOptions& options) {
   const Eigen::Vector3d foot = reconstruction::foot_of(model.mesh);
   for (Eigen::Vector3f& vertex : model.mesh.vertices) vertex -= foot.cast<float>();
   for (TrainingView& view : views) view.T_camera_object = view.T_camera_object * Eigen::Translation3d(foot);
-  Shown shown;
+  ShowResult shown;
   shown.name = options.name;
   shown.views.emplace_back();
   shown.takes.push_back(take_of(views, shown.views.front()));

@@ -56,26 +56,26 @@ StreamState StreamWatch::state(std::int64_t now_us) {
   return state;
 }
 
-void ShownCamera::note(const std::string& channel) {
+void SelectedCamera::note(const std::string& channel) {
   const std::lock_guard lock(mutex_);
   constexpr std::size_t kCameras = 64;
   if (heard_.empty()) shown_ = channel;
   if (heard_.size() < kCameras) heard_.insert(channel);
 }
 
-void ShownCamera::next() {
+void SelectedCamera::next() {
   const std::lock_guard lock(mutex_);
   if (heard_.empty()) return;
   const auto after = heard_.upper_bound(shown_);
   shown_ = after == heard_.end() ? *heard_.begin() : *after;
 }
 
-bool ShownCamera::is_shown(const std::string& channel) const {
+bool SelectedCamera::is_shown(const std::string& channel) const {
   const std::lock_guard lock(mutex_);
   return heard_.empty() || channel == shown_;
 }
 
-std::vector<std::string> ShownCamera::heard() const {
+std::vector<std::string> SelectedCamera::heard() const {
   const std::lock_guard lock(mutex_);
   return {heard_.begin(), heard_.end()};
 }

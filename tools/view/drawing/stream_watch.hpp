@@ -58,7 +58,7 @@ class StreamWatch {
 
 /// Which camera's frames are shown, of those that are on the bus: the first that is heard until another one is asked
 /// for. May be used from any thread.
-class ShownCamera {
+class SelectedCamera {
  public:
   /// A frame of this camera has come.
   void note(const std::string& channel);

@@ -88,14 +88,14 @@ void draw_words(cv::Mat& picture, const Teaching& teaching) {
 
 }  // namespace
 
-void draw_sphere(cv::Mat& picture, const cv::Rect& square, const std::vector<SeenDirection>& directions,
+void draw_sphere(cv::Mat& picture, const cv::Rect& square, const std::vector<ViewDirection>& directions,
                  const Eigen::Matrix3f& R_view_object) {
   constexpr float kReach = 0.86F;  // of the square's half side: what lies at the rim is drawn whole
   const float radius = 0.5F * static_cast<float>(std::min(square.width, square.height));
   const auto dot = [&](float towards) { return std::max(1, static_cast<int>(radius * (0.07F + 0.07F * towards))); };
   const cv::Point middle(square.x + square.width / 2, square.y + square.height / 2);
   cv::circle(picture, middle, static_cast<int>(radius), kUnseen, 1, cv::LINE_AA);
-  for (const SeenDirection& direction : directions) {
+  for (const ViewDirection& direction : directions) {
     const Eigen::Vector3f at = R_view_object * direction.direction;
     if (at.z() > 0.0F) continue;  // away from the camera
     const cv::Point place = middle + cv::Point(static_cast<int>(std::lround(kReach * radius * at.x())),

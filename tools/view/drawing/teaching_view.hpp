@@ -15,7 +15,7 @@ void draw_teaching(cv::Mat& picture, const Teaching& teaching, const RgbdFrame& 
 
 /// A sphere of directions as seen from where `R_view_object` turns it, in a square: those on the near side, seen ones
 /// filled. Places are those of the directions' points on the sphere, seen from far away.
-void draw_sphere(cv::Mat& picture, const cv::Rect& square, const std::vector<SeenDirection>& directions,
+void draw_sphere(cv::Mat& picture, const cv::Rect& square, const std::vector<ViewDirection>& directions,
                  const Eigen::Matrix3f& R_view_object);
 
 }  // namespace houghstream::view

@@ -26,7 +26,7 @@ class LivePage {
   explicit LivePage(const std::string& address, const std::vector<std::string>& names = {});
 
   bool is_looked_at() const { return board_.is_looked_at(); }
-  PageOrders take_orders() { return board_.take_orders(); }
+  PageCommands take_orders() { return board_.take_orders(); }
 
   /// Tells of a frame and draws what is wanted of it. Throws InputError as draw_overlay does.
   void show(const PageContent& content);

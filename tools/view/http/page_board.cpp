@@ -52,7 +52,7 @@ void PageBoard::put_stream(std::string json) {
   changed_.notify_all();
 }
 
-PageOrders PageBoard::take_orders() {
+PageCommands PageBoard::take_orders() {
   const std::lock_guard lock(mutex_);
   return std::exchange(orders_, {});
 }
@@ -69,13 +69,13 @@ void PageBoard::leave() {
   --viewers_;
 }
 
-std::optional<PageNews> PageBoard::news_after(const PageNews& seen, std::chrono::milliseconds timeout) {
+std::optional<PageUpdates> PageBoard::news_after(const PageUpdates& seen, std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, timeout, [&] {
     return closed_ || news_.frame_number > seen.frame_number || news_.stream_number > seen.stream_number;
   });
   if (closed_) return std::nullopt;
-  PageNews fresh = news_;
+  PageUpdates fresh = news_;
   if (news_.frame_number <= seen.frame_number) fresh.frame.clear();
   if (news_.stream_number <= seen.stream_number) fresh.stream.clear();
   return fresh;
@@ -92,7 +92,7 @@ Jpeg PageBoard::picture(PageView view, std::chrono::milliseconds timeout) {
   return picture.jpeg;
 }
 
-void PageBoard::order(const PageOrders& orders) {
+void PageBoard::order(const PageCommands& orders) {
   const std::lock_guard lock(mutex_);
   if (orders.paused) orders_.paused = orders.paused;
   if (orders.min_score) orders_.min_score = orders.min_score;

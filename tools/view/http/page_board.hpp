@@ -19,7 +19,7 @@ constexpr std::size_t kPageViews = 4;
 using Jpeg = std::shared_ptr<const std::vector<std::uint8_t>>;
 
 /// What the buttons of the page ask for.
-struct PageOrders {
+struct PageCommands {
   std::optional<bool> paused;
   std::optional<float> min_score;
   bool next_camera = false;
@@ -28,7 +28,7 @@ struct PageOrders {
 };
 
 /// What pages are told, as numbered JSON: what somebody has not seen yet has a higher number than what he has.
-struct PageNews {
+struct PageUpdates {
   std::int64_t frame_number = 0;
   std::string frame;
   std::int64_t stream_number = 0;
@@ -41,7 +41,7 @@ class PageBoard {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr int kMostViewers = 8;
-  static constexpr std::chrono::seconds kInterest{2};  ///< after a request its view is drawn for so long
+  static constexpr std::chrono::seconds kViewTimeout{2};  ///< after a request its view is drawn for so long
 
   /// For the thread that draws. Somebody listens, or asked for a picture of late.
   bool is_looked_at() const;
@@ -53,16 +53,16 @@ class PageBoard {
   void put_frame(std::string json);
   void put_picture(PageView view, std::vector<std::uint8_t> jpeg);
   void put_stream(std::string json);
-  PageOrders take_orders();
+  PageCommands take_orders();
 
   /// For those that serve. False where kMostViewers listen already.
   bool join();
   void leave();
   /// Waits until there is more than `seen`, or for `timeout`; what is not new is empty. Nothing once it is closed.
-  std::optional<PageNews> news_after(const PageNews& seen, std::chrono::milliseconds timeout);
+  std::optional<PageUpdates> news_after(const PageUpdates& seen, std::chrono::milliseconds timeout);
   /// The picture of the frame that is shown, waited for if need be; an older one, or nothing, after `timeout`.
   Jpeg picture(PageView view, std::chrono::milliseconds timeout);
-  void order(const PageOrders& orders);
+  void order(const PageCommands& orders);
 
   /// Nobody waits any longer.
   void close();
@@ -74,13 +74,13 @@ class PageBoard {
     Clock::time_point asked = Clock::time_point::min();
     int waiting = 0;
   };
-  bool is_wanted(const Picture& picture) const { return Clock::now() - kInterest < picture.asked; }
+  bool is_wanted(const Picture& picture) const { return Clock::now() - kViewTimeout < picture.asked; }
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::array<Picture, kPageViews> pictures_;
-  PageNews news_;
-  PageOrders orders_;
+  PageUpdates news_;
+  PageCommands orders_;
   int viewers_ = 0;
   bool closed_ = false;
 };

@@ -69,10 +69,10 @@ int status_of_content(const httplib::Request& request) {
   return request.get_header_value<std::uint64_t>("Content-Length") > kLongestOrder ? 413 : 0;
 }
 
-PageOrders parse_orders(const std::string& body) {
+PageCommands parse_orders(const std::string& body) {
   const nlohmann::json value = nlohmann::json::parse(body, nullptr, false);
   require(value.is_object(), "expected a JSON object");
-  PageOrders orders;
+  PageCommands orders;
   for (const auto& [key, wish] : value.items()) {
     if (key == "paused" && wish.is_boolean()) {
       orders.paused = wish.get<bool>();
@@ -93,7 +93,7 @@ class EventSender {
   explicit EventSender(PageBoard& board) : board_(board) {}
 
   bool operator()(std::size_t /*offset*/, httplib::DataSink& sink) {
-    const std::optional<PageNews> news = board_.news_after(seen_, kPatience);
+    const std::optional<PageUpdates> news = board_.news_after(seen_, kPatience);
     if (!news) {
       sink.done();
       return true;
@@ -108,7 +108,7 @@ class EventSender {
 
  private:
   PageBoard& board_;
-  PageNews seen_;
+  PageUpdates seen_;
 };
 
 }  // namespace

@@ -153,7 +153,7 @@ TEST(CameraColour, ToneChangesPicturesAndNothingWithoutAShare) {
   const cv::Mat before = chart();
   cv::Mat after = before.clone();
   Random random(3);
-  vary_tone(0.0, 1.0, after, random);
+  jitter_tone(0.0, 1.0, after, random);
   EXPECT_EQ(cv::norm(before, after, cv::NORM_INF), 0.0);
   double change = 0.0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -161,8 +161,8 @@ TEST(CameraColour, ToneChangesPicturesAndNothingWithoutAShare) {
     cv::Mat again = before.clone();
     Random first(seed);
     Random second(seed);
-    vary_tone(1.0, 1.0, after, first);
-    vary_tone(1.0, 1.0, again, second);
+    jitter_tone(1.0, 1.0, after, first);
+    jitter_tone(1.0, 1.0, again, second);
     EXPECT_EQ(cv::norm(after, again, cv::NORM_INF), 0.0);
     change = std::max(change, cv::norm(before, after, cv::NORM_L1) / (3.0 * static_cast<double>(before.total())));
   }

@@ -56,7 +56,7 @@ TEST(CameraDepth, HolesNeverFillUp) {
   const cv::Mat before = near_square();
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
-    CameraVariation camera = draw_camera(1.0, random);
+    CameraRandomisation camera = draw_camera(1.0, random);
     camera.depth.offset_px = {0, 0};
     cv::Mat after = before.clone();
     apply_depth(camera, kView, after, random);

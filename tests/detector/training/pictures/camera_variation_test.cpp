@@ -13,16 +13,16 @@ namespace {
 
 constexpr int kSeeds = 60;
 
-CameraVariation camera(double strength, std::uint64_t seed) {
+CameraRandomisation camera(double strength, std::uint64_t seed) {
   Random random(seed);
   return draw_camera(strength, random);
 }
 
-TEST(CameraVariation, StrengthZeroChangesNothing) {
+TEST(CameraRandomisation, StrengthZeroChangesNothing) {
   const RgbdFrame room = toy::room(3);
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     Random random(seed);
-    const CameraVariation none = draw_camera(0.0, random);
+    const CameraRandomisation none = draw_camera(0.0, random);
     cv::Mat colour = room.colour.clone();
     cv::Mat depth = room.depth.clone();
     apply_colour(none, colour, random);
@@ -32,14 +32,14 @@ TEST(CameraVariation, StrengthZeroChangesNothing) {
   }
 }
 
-TEST(CameraVariation, TheSameSeedIsTheSameCameraAndTakesTheSamePicture) {
+TEST(CameraRandomisation, TheSameSeedIsTheSameCameraAndTakesTheSamePicture) {
   const RgbdFrame room = toy::room(3);
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     cv::Mat colours[2];
     cv::Mat depths[2];
     for (int i = 0; i < 2; ++i) {
       Random random(seed);
-      const CameraVariation drawn = draw_camera(1.0, random);
+      const CameraRandomisation drawn = draw_camera(1.0, random);
       colours[i] = room.colour.clone();
       depths[i] = room.depth.clone();
       apply_colour(drawn, colours[i], random);
@@ -52,7 +52,7 @@ TEST(CameraVariation, TheSameSeedIsTheSameCameraAndTakesTheSamePicture) {
   }
 }
 
-TEST(CameraVariation, DrawnCamerasStayWithinTheirRangesAndReachThem) {
+TEST(CameraRandomisation, DrawnCamerasStayWithinTheirRangesAndReachThem) {
   double least_red = 10.0;
   double most_red = 0.0;
   std::set<int> offsets;
@@ -61,7 +61,7 @@ TEST(CameraVariation, DrawnCamerasStayWithinTheirRangesAndReachThem) {
   int compressed = 0;
   int time_of_flight = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
-    const CameraVariation drawn = camera(1.0, seed);
+    const CameraRandomisation drawn = camera(1.0, seed);
     const ColourVariation& colour = drawn.colour;
     const DepthVariation& depth = drawn.depth;
     least_red = std::min(least_red, colour.white_balance_bgr[2]);
@@ -90,14 +90,14 @@ TEST(CameraVariation, DrawnCamerasStayWithinTheirRangesAndReachThem) {
   EXPECT_NEAR(time_of_flight, 160, 40);
 }
 
-TEST(CameraVariation, LessStrengthChangesLess) {
+TEST(CameraRandomisation, LessStrengthChangesLess) {
   const RgbdFrame room = toy::room(3);
   double changes[3] = {0.0, 0.0, 0.0};
   const double strengths[3] = {0.2, 0.6, 1.2};
   for (int i = 0; i < 3; ++i) {
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
       Random random(seed);
-      const CameraVariation drawn = draw_camera(strengths[i], random);
+      const CameraRandomisation drawn = draw_camera(strengths[i], random);
       cv::Mat colour = room.colour.clone();
       apply_colour(drawn, colour, random);
       changes[i] += cv::norm(colour, room.colour, cv::NORM_L1) / static_cast<double>(colour.total() * kSeeds);
@@ -107,11 +107,11 @@ TEST(CameraVariation, LessStrengthChangesLess) {
   EXPECT_LT(1.2 * changes[1], changes[2]);
 }
 
-TEST(CameraVariation, AnySizeAndAnyStrengthIsTaken) {
+TEST(CameraRandomisation, AnySizeAndAnyStrengthIsTaken) {
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(3, 2), cv::Size(7, 9), cv::Size(33, 17)}) {
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
       Random random(seed);
-      const CameraVariation drawn = draw_camera(2.0, random);
+      const CameraRandomisation drawn = draw_camera(2.0, random);
       cv::Mat colour(size, CV_8UC3, cv::Scalar(10, 120, 250));
       cv::Mat depth(size, CV_32FC1, cv::Scalar(0.8));
       const cv::Mat before = colour.clone();
@@ -132,7 +132,7 @@ bool looks_through_another(double share, double strength, std::uint64_t seed) {
   frame.colour = room.colour.clone();
   frame.depth = room.depth.clone();
   Random random(seed);
-  look_through_another(share, strength, frame, random);
+  randomise_camera(share, strength, frame, random);
   const bool same_depth = cv::countNonZero(frame.depth == room.depth) == cv::countNonZero(room.depth == room.depth);
   const bool same_colour = cv::norm(frame.colour, room.colour, cv::NORM_INF) == 0.0;
   if (share <= 0.0 || strength <= 0.0) {
@@ -141,7 +141,7 @@ bool looks_through_another(double share, double strength, std::uint64_t seed) {
   return !same_depth || !same_colour;
 }
 
-TEST(CameraVariation, AnotherCameraLooksInItsShareOfThePictures) {
+TEST(CameraRandomisation, AnotherCameraLooksInItsShareOfThePictures) {
   int by_half = 0;
   int by_all = 0;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {

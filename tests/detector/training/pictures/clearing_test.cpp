@@ -35,7 +35,7 @@ TEST(ClearHaze, GivesAHazyObjectMoreContrastAndNeverMuchLess) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     cv::Mat hazy = ramp(60, 140);
     Random random(seed);
-    clear_haze(mask, hazy, random);
+    remove_haze(mask, hazy, random);
     EXPECT_GT(contrast(hazy), 0.95 * contrast(ramp(60, 140)));
     most = std::max(most, contrast(hazy));
   }
@@ -47,7 +47,7 @@ TEST(ClearHaze, LeavesAClearObjectsRangeNearlyAsItIs) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     cv::Mat clear = ramp(0, 245);
     Random random(seed);
-    clear_haze(mask, clear, random);
+    remove_haze(mask, clear, random);
     EXPECT_NEAR(contrast(clear), contrast(ramp(0, 245)), 0.1 * contrast(ramp(0, 245)));
   }
 }

@@ -15,7 +15,7 @@ PictureSettings plain() {
   PictureSettings settings;
   settings.light_variation = 0.0;
   settings.occluded_share = 0.0;
-  settings.cleared_share = 0.0;
+  settings.dehazed_fraction = 0.0;
   settings.sharpened_share = 0.0;
   return settings;
 }
@@ -163,7 +163,7 @@ TEST(VaryLight, StrengthZeroChangesNothing) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Random random(seed);
     cv::Mat lit = ramp.clone();
-    vary_light(lit, 0.0, -3.0, 3.0, random);
+    jitter_lighting(lit, 0.0, -3.0, 3.0, random);
     ASSERT_TRUE(same_values(lit, ramp));
   }
 }
@@ -175,7 +175,7 @@ TEST(VaryLight, StopsAreDoublings) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
       Random random(seed);
       cv::Mat lit = grey.clone();
-      vary_light(lit, 1.0, stops, stops, random);
+      jitter_lighting(lit, 1.0, stops, stops, random);
       sum += cv::mean(lit)[1] / 40.0;
     }
     return sum;

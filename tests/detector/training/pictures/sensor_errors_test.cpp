@@ -127,7 +127,7 @@ TEST(NearLoss, LeavesTheShareOfWhatIsNearAndAllThatIsFar) {
   for (const double kept : {0.05, 0.3, 1.0}) {
     cv::Mat depth = half_near();
     Random random(3);
-    lose_near_depth(0.8, kept, depth, random);
+    drop_near_depth(0.8, kept, depth, random);
     EXPECT_NEAR(measured(depth.colRange(0, kWidth / 2)), kept * near_px, 2.0);
     EXPECT_EQ(measured(depth.colRange(kWidth / 2, kWidth)), near_px);
     EXPECT_EQ(cv::countNonZero(depth == 0.5F) + cv::countNonZero(depth == 1.5F), measured(depth)) << "values stay";
@@ -137,7 +137,7 @@ TEST(NearLoss, LeavesTheShareOfWhatIsNearAndAllThatIsFar) {
 TEST(NearLoss, WhatStaysLiesInPatches) {
   cv::Mat depth(kHeight, kWidth, CV_32FC1, cv::Scalar(0.5));
   Random random(4);
-  lose_near_depth(0.8, 0.25, depth, random);
+  drop_near_depth(0.8, 0.25, depth, random);
   int kept = 0;
   int with_right_neighbour = 0;
   for (int y = 0; y < kHeight; ++y) {
@@ -153,7 +153,7 @@ TEST(NearLoss, WhatStaysLiesInPatches) {
 TEST(NearLoss, WithoutAnythingNearAllStays) {
   cv::Mat depth = half_near();
   Random random(5);
-  lose_near_depth(0.2, 0.05, depth, random);
+  drop_near_depth(0.2, 0.05, depth, random);
   EXPECT_EQ(measured(depth), measured(half_near()));
 }
 
@@ -161,9 +161,9 @@ TEST(NearLoss, TheSameSeedLosesTheSame) {
   cv::Mat first = half_near();
   cv::Mat second = half_near();
   Random random(6);
-  lose_near_depth(0.8, 0.2, first, random);
+  drop_near_depth(0.8, 0.2, first, random);
   Random again(6);
-  lose_near_depth(0.8, 0.2, second, again);
+  drop_near_depth(0.8, 0.2, second, again);
   EXPECT_EQ(cv::countNonZero((first == first) != (second == second)), 0);
 }
 

@@ -33,7 +33,7 @@ Profile open_profile(const std::string& name) {
   profile.training.occluded_share = 0.0;
   profile.training.light_variation = 0.0;
   profile.training.patches_per_view = 120;
-  profile.training.patches_per_room = 80;
+  profile.training.patches_per_background = 80;
   profile.training.composites_per_view = 1;
   return profile;
 }
@@ -234,7 +234,7 @@ TEST(TrainingPictures, ABackgroundIsDrawnFromWhereItsLevelSees) {
     Random random(7);
     PictureWorkspace own;
     const TrainingPicture picture = background_picture(room, level, input_of(profile), random, own);
-    const auto drawn = static_cast<std::size_t>(profile.training.patches_per_room / kBackgroundPictures);
+    const auto drawn = static_cast<std::size_t>(profile.training.patches_per_background / kBackgroundPictures);
     EXPECT_EQ(picture.samples.size(), drawn);
     EXPECT_EQ(picture.spare_background.size(), drawn * static_cast<std::size_t>(profile.training.spare_background));
     for (const auto* list : {&picture.samples, &picture.spare_background}) {

@@ -68,7 +68,7 @@ TEST(TrainingSet, TheVisibleAreaDoesNotDependOnTheDistanceTaught) {
 }
 
 TEST(TrainingSet, ViewsRememberTheirBoxInMetres) {
-  const std::vector<TrainedView> views = teach(flat_tile(), 0.7F).views;
+  const std::vector<ViewTemplate> views = teach(flat_tile(), 0.7F).views;
   ASSERT_EQ(views.size(), 1U);
   EXPECT_NEAR(views[0].box[0], -0.0613F, 0.001F);
   EXPECT_NEAR(views[0].box[3], 0.0613F, 0.001F);

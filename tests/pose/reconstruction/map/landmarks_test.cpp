@@ -29,19 +29,19 @@ void expect_motion(const LandmarkMatch& match, const Eigen::Isometry3d& T) {
 TEST(Landmarks, CornersAreFollowedIntoTheNextFrame) {
   const FlowFrame a = make_flow_frame(seen_from(0.4));
   const FlowFrame b = make_flow_frame(seen_from(0.43));
-  const std::optional<LandmarkMatch> match = follow_corners(a, corners_to_follow(a, {}), b);
+  const std::optional<LandmarkMatch> match = track_corners(a, detect_flow_corners(a, {}), b);
   ASSERT_TRUE(match);
   expect_motion(*match, motion_to(0.4, 0.43));
-  EXPECT_FALSE(follow_corners(a, {}, b)) << "no corners";
+  EXPECT_FALSE(track_corners(a, {}, b)) << "no corners";
   const cv::Mat nowhere = cv::Mat::zeros(a.grey.size(), CV_8UC1);
-  EXPECT_TRUE(corners_to_follow(a, nowhere).empty());
+  EXPECT_TRUE(detect_flow_corners(a, nowhere).empty());
 }
 
 TEST(Landmarks, FramesThatAreMadeOnceTellWhatTheirPicturesDo) {
   const FlowFrame a = make_flow_frame(seen_from(0.4));
   const FlowFrame b = make_flow_frame(seen_from(0.43));
-  const std::vector<cv::Point2f> corners = corners_to_follow(a, {});
-  const std::optional<LandmarkMatch> match = follow_corners(a, corners, b);
+  const std::vector<cv::Point2f> corners = detect_flow_corners(a, {});
+  const std::optional<LandmarkMatch> match = track_corners(a, corners, b);
   ASSERT_TRUE(match);
   std::vector<cv::Point2f> there;
   std::vector<std::uint8_t> went;
@@ -58,8 +58,8 @@ TEST(Landmarks, FramesThatAreMadeOnceTellWhatTheirPicturesDo) {
 }
 
 TEST(Landmarks, CornersAreRecognisedFromElsewhere) {
-  const Landmarks a = find_landmarks(seen_from(0.4), {});
-  const Landmarks b = find_landmarks(seen_from(0.6), {});
+  const Landmarks a = detect_landmarks(seen_from(0.4), {});
+  const Landmarks b = detect_landmarks(seen_from(0.6), {});
   const std::optional<LandmarkMatch> match = match_landmarks(a, b);
   ASSERT_TRUE(match);
   expect_motion(*match, motion_to(0.4, 0.6));

@@ -27,8 +27,8 @@ TEST(PoseGraph, SpreadsTheGapOfALoop) {
                      1e6 * Matrix6::Identity()});
   edges.push_back({0, kPoses - 1, on_circle(kPoses - 1, kPoses, 0.0) * on_circle(0, kPoses, 0.0).inverse(),
                    1e6 * Matrix6::Identity()});
-  EXPECT_EQ(steps_from(0, kPoses, edges)[12], 12);
-  optimise_poses(edges, poses);
+  EXPECT_EQ(graph_distances(0, kPoses, edges)[12], 12);
+  optimise_pose_graph(edges, poses);
   const auto error = [&](int i) {
     return local_coordinates_about_body(poses[static_cast<std::size_t>(i)].inverse() * on_circle(i, kPoses, 0.0))
         .tail<3>()
@@ -41,11 +41,11 @@ TEST(PoseGraph, SpreadsTheGapOfALoop) {
 
 TEST(SphereOfDirections, FillsAndSaysWhatIsMissing) {
   SeenDirections seen{};
-  mark_seen({1.0, 0.0, 0.7}, seen);
+  mark_covered({1.0, 0.0, 0.7}, seen);
   const int once = count_seen(seen);
   EXPECT_GT(once, 5);
   EXPECT_LT(once, 20);
-  const std::string text = describe_seen(seen, {1.0, 0.0, 0.7});
+  const std::string text = describe_coverage(seen, {1.0, 0.0, 0.7});
   EXPECT_NE(text.find("of 60 directions; from"), std::string::npos);
   EXPECT_NE(text.find("behind"), std::string::npos);
   EXPECT_EQ(text.find("in front"), std::string::npos);

@@ -16,7 +16,7 @@ TEST(OutlinePlacement, AViewMovesToWhereItsMaskIs) {
     views.back().T_camera_object.translation() += Eigen::Vector3d(0.007, -0.005, 0.012);
     EXPECT_LT(outline_overlap(scene.mesh, views.back()), 0.87);
   }
-  place_by_outlines(scene.mesh, 2, views);
+  align_silhouettes(scene.mesh, 2, views);
   for (int i = 0; i < 4; ++i) {
     const TrainingView& view = views[static_cast<std::size_t>(i)];
     EXPECT_GT(outline_overlap(scene.mesh, view), 0.97);
@@ -33,7 +33,7 @@ TEST(OutlinePlacement, WithoutDepthAndMaskNothingMoves) {
   views[0].mask.setTo(0);
   const Eigen::Isometry3d before = views[0].T_camera_object;
   EXPECT_EQ(outline_overlap(scene.mesh, views[0]), 0.0);
-  place_by_outlines(scene.mesh, 1, views);
+  align_silhouettes(scene.mesh, 1, views);
   EXPECT_EQ(views[0].T_camera_object.matrix(), before.matrix());
 }
 

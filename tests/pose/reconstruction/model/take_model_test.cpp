@@ -23,10 +23,10 @@ TEST(FuseMaskedViews, PicturesThatCutTheObjectOffDoNotCutTheModelOff) {
       view.frame.depth = view.frame.depth(lower_half);
       view.frame.camera = scene.camera.cropped(lower_half.x, lower_half.y, lower_half.width, lower_half.height);
     }
-    view.mask = mask_of(box, view.frame, view.T_camera_object);
+    view.mask = render_visible_mask(box, view.frame, view.T_camera_object);
     views.views.push_back(std::move(view));
   }
-  ModelMaking settings;
+  ReconstructionSettings settings;
   settings.voxel_m = 0.003;
   const Eigen::AlignedBox3f bounds = mesh_bounds(fuse_masked_views("box", views, box, 0.0, settings).mesh);
   EXPECT_NEAR(bounds.sizes().z(), scene.box.z(), 0.01);
@@ -48,15 +48,15 @@ Take take_about_box(double azimuth) {
 }
 
 /// The true box as the model of a take, which says of itself that it agrees badly.
-ShownModel true_model(const Take& take) {
-  ShownModel model;
+ReconstructedModel true_model(const Take& take) {
+  ReconstructedModel model;
   model.mesh = test_scene::box_of({});
   compute_normals(model.mesh);
   model.seen.assign(model.mesh.vertices.size(), true);
   for (std::size_t i = 0; i < take.keyframes.size(); ++i) {
     const Keyframe& keyframe = take.keyframes[i];
     model.views.push_back(
-        {static_cast<int>(i), keyframe.T_camera_world, mask_of(model.mesh, keyframe.frame, keyframe.T_camera_world)});
+        {static_cast<int>(i), keyframe.T_camera_world, render_visible_mask(model.mesh, keyframe.frame, keyframe.T_camera_world)});
   }
   model.agreement_m = 1.0;
   return model;
@@ -65,9 +65,9 @@ ShownModel true_model(const Take& take) {
 TEST(MergeTakes, HowWellTheViewsAgreeIsThatOfBothTakes) {
   const Take first = take_about_box(0.0);
   const Take second = take_about_box(0.26);
-  ShownModel model = true_model(first);
-  ShownModel other = true_model(second);
-  ModelMaking settings;
+  ReconstructedModel model = true_model(first);
+  ReconstructedModel other = true_model(second);
+  ReconstructionSettings settings;
   settings.voxel_m = 0.003;
   ASSERT_TRUE(merge_takes(first, model, second, other, settings));
   EXPECT_LT(model.agreement_m, 0.003);

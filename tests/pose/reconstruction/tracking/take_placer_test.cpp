@@ -50,7 +50,7 @@ TEST(TakePlacer, ClosesATurnAndMakesAModel) {
   ASSERT_TRUE(take.gap);
   EXPECT_LT(take.gap->shift_m, 0.01);
   EXPECT_LT(drift_m(take, 0, kFrames - 1), 0.003);
-  const ShownModel model = make_model(take, {});
+  const ReconstructedModel model = reconstruct_model(take, {});
   const Eigen::AlignedBox3f bounds = mesh_bounds(model.mesh);
   EXPECT_NEAR(bounds.min().z(), 0.0, 0.003);
   EXPECT_NEAR(bounds.max().z(), 0.16, 0.004);

@@ -38,7 +38,7 @@ TEST(ImportScene, BoxesBecomeASceneWithoutPosesInTheirOrder) {
   EXPECT_EQ(scene.images()[0].camera.fy, 61.0);
   ASSERT_EQ(scene.images()[0].objects.size(), 2U);
   EXPECT_TRUE(scene.images()[1].objects.empty());
-  const TrueObject& pack = scene.images()[0].objects[0];
+  const GroundTruthObject& pack = scene.images()[0].objects[0];
   EXPECT_FALSE(pack.has_pose);
   EXPECT_EQ(pack.box_visible_px, cv::Rect(10, 5, 20, 20));
   EXPECT_EQ(find_bop_names(scene_folder), (std::map<int, std::string>{{1, "can"}, {2, "pack"}}));
@@ -75,7 +75,7 @@ TEST(ImportScene, UwVideosBecomeScenesAsBoxesDo) {
   EXPECT_FLOAT_EQ(scene.read_frame(0).depth.at<float>(0, 0), 0.7F);
   EXPECT_TRUE(scene.images()[1].objects.empty());
   ASSERT_EQ(scene.images()[0].objects.size(), 2U);
-  const TrueObject& can = scene.images()[0].objects[0];
+  const GroundTruthObject& can = scene.images()[0].objects[0];
   EXPECT_FALSE(can.has_pose);
   EXPECT_EQ(can.object_id, 2);
   EXPECT_EQ(can.box_visible_px, cv::Rect(10, 5, 20, 20));

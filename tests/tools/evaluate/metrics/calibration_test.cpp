@@ -23,7 +23,7 @@ TEST(Calibration, TheErrorIsTheBinsDifferencesWeightedByTheirCounts) {
 }
 
 TEST(Calibration, WhatHoldsHasNoError) {
-  std::vector<Statement> statements;
+  std::vector<Prediction> statements;
   statements.reserve(100);
   for (int i = 0; i < 100; ++i) statements.push_back({0.75, i < 75});
   EXPECT_NEAR(calibrate(statements, 75).ece, 0.0, 1e-12);
@@ -38,7 +38,7 @@ TEST(Calibration, NothingWasStated) {
 
 TEST(Calibration, AThresholdIsTheSmallestScoreFromWhichThePrecisionHolds) {
   // 1 of 2 at the top; from 0.3 on 18 of 20 are true.
-  std::vector<Statement> statements = {{0.99, true}, {0.98, false}};
+  std::vector<Prediction> statements = {{0.99, true}, {0.98, false}};
   for (int i = 0; i < 17; ++i) statements.push_back({0.5 + 0.01 * i, true});
   statements.push_back({0.3, false});
   statements.push_back({0.2, false});

@@ -128,10 +128,10 @@ TEST(HandledScenes, TrueBoxesAndPosesAreThoseOfTheMeasuredDepth) {
   for (const char* name : handled_scenes()) {
     SCOPED_TRACE(name);
     const Scene& scene = handled_scene(name);
-    const SceneFrame seen = render_scene_frame(scene, light_world(scene.world), 2, 5);
+    const RenderedFrame seen = render_scene_frame(scene, light_world(scene.world), 2, 5);
     EXPECT_GE(seen.objects.size(), 6U);
     for (std::size_t i = 0; i < seen.objects.size(); ++i) {
-      const TrueObject& object = seen.objects[i];
+      const GroundTruthObject& object = seen.objects[i];
       const cv::Mat model = render_depth(make_taught_object(object.object_id).thing->mesh, object.T_camera_object,
                                          seen.frame.camera, cv::Rect(0, 0, 640, 480));
       std::vector<float> differences;

@@ -16,8 +16,8 @@ class SceneFrames : public ::testing::Test {
     scene = make_named_scene("table_small_2");
     lit_world = light_world(scene.world);
   }
-  static std::array<SceneFrame, 3> render(int threads) {
-    std::array<SceneFrame, 3> frames;
+  static std::array<RenderedFrame, 3> render(int threads) {
+    std::array<RenderedFrame, 3> frames;
     parallel_for(threads, 3, [&](int i) {
       frames[static_cast<std::size_t>(i)] = render_scene_frame(scene, lit_world, i * 100, 300);
     });
@@ -44,11 +44,11 @@ TEST_F(SceneFrames, AreTheSameForAnyNumberOfThreads) {
 
 TEST_F(SceneFrames, TruthAgreesWithThePicture) {
   int seen = 0;
-  for (const SceneFrame& view : render(1)) {
+  for (const RenderedFrame& view : render(1)) {
     check_frame(view.frame, "rendered");
     ASSERT_EQ(view.objects.size(), view.visible_masks.size());
     for (std::size_t i = 0; i < view.objects.size(); ++i) {
-      const TrueObject& object = view.objects[i];
+      const GroundTruthObject& object = view.objects[i];
       ++seen;
       EXPECT_GT(object.visible_fraction, 0.0);
       EXPECT_LE(object.visible_fraction, 1.0);
@@ -65,10 +65,10 @@ TEST_F(SceneFrames, TruthAgreesWithThePicture) {
 }
 
 TEST_F(SceneFrames, AnotherSensorSeesTheSameWorldInItsOwnWay) {
-  const SceneFrame usual = render_scene_frame(scene, lit_world, 100, 300);
-  const SceneFrame named = render_scene_frame(scene, lit_world, 100, 300, parse_sensor("structured_light"));
+  const RenderedFrame usual = render_scene_frame(scene, lit_world, 100, 300);
+  const RenderedFrame named = render_scene_frame(scene, lit_world, 100, 300, parse_sensor("structured_light"));
   EXPECT_TRUE(identical(usual.frame.colour, named.frame.colour) && identical(usual.frame.depth, named.frame.depth));
-  const SceneFrame other = render_scene_frame(scene, lit_world, 100, 300, parse_sensor("time_of_flight"));
+  const RenderedFrame other = render_scene_frame(scene, lit_world, 100, 300, parse_sensor("time_of_flight"));
   check_frame(other.frame, "rendered");
   EXPECT_FALSE(identical(usual.frame.colour, other.frame.colour));
   ASSERT_EQ(other.objects.size(), usual.objects.size());

@@ -63,8 +63,8 @@ std::vector<const char*> scenes_with_truth() {
 
 TEST(Scenes, TestAndTrainingSeedsNeverCoincide) {
   for (std::uint64_t number = 0; number < 2000; ++number) {
-    const std::uint64_t training = world_seed(WorldUse::kTraining, number);
-    const std::uint64_t test = world_seed(WorldUse::kTest, number);
+    const std::uint64_t training = world_seed(DatasetSplit::kTraining, number);
+    const std::uint64_t test = world_seed(DatasetSplit::kTest, number);
     EXPECT_EQ(training % 2, 0U);
     EXPECT_EQ(test % 2, 1U);
     EXPECT_EQ(aspect_seed(training, number) % 2, 0U);

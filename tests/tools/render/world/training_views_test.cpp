@@ -21,7 +21,7 @@ TEST(TrainingViews, ShowOneObjectFromAllRoundAtSeveralPitches) {
   ASSERT_EQ(turntable.view_count(nullptr), 8);
   const TaughtObject mug = make_taught_object(3);
   for (const int index : {0, 1, 5}) {
-    const SceneFrame view = turntable.render(mug, nullptr, index);
+    const RenderedFrame view = turntable.render(mug, nullptr, index);
     ASSERT_EQ(view.objects.size(), 1U);
     EXPECT_EQ(view.objects[0].object_id, 3);
     EXPECT_DOUBLE_EQ(view.objects[0].visible_fraction, 1.0);
@@ -39,7 +39,7 @@ TEST(TrainingViews, ShowOneObjectFromAllRoundAtSeveralPitches) {
 TEST(TrainingViews, TheCameraStandsAsFarAwayAsAsked) {
   TurntableSettings settings;
   settings.distance_m = 1.3;
-  const SceneFrame view = Turntable(settings, 1).render(make_taught_object(3), nullptr, 0);
+  const RenderedFrame view = Turntable(settings, 1).render(make_taught_object(3), nullptr, 0);
   EXPECT_NEAR(view.objects.at(0).T_camera_object.translation().norm(), 1.3, 0.08);
 }
 
@@ -52,7 +52,7 @@ TurntableSettings few_views(const std::vector<Attitude>& attitudes) {
 }
 
 // Share of the mask's pixels with depth at which the model, rendered by the truth, has the same depth.
-double agreeing_share(const SceneFrame& view, const Mesh& mesh) {
+double agreeing_share(const RenderedFrame& view, const Mesh& mesh) {
   const cv::Rect frame({0, 0}, view.frame.depth.size());
   const cv::Mat rendered = render_depth(mesh, view.objects.at(0).T_camera_object, view.frame.camera, frame);
   int measured = 0;
@@ -77,7 +77,7 @@ TEST(TrainingViews, LyingAndTiltedOnesMatchTheirTruth) {
     const int lying = 3 * choice.lying_count();
     ASSERT_EQ(turntable.view_count(&choice), lying + 5);
     for (const int index : {0, 1, 2, lying + 1}) {
-      const SceneFrame view = turntable.render(object, &choice, index);
+      const RenderedFrame view = turntable.render(object, &choice, index);
       ASSERT_EQ(view.objects.size(), 1U);
       EXPECT_GT(agreeing_share(view, object.thing->mesh), 0.9);
     }
@@ -100,8 +100,8 @@ TEST(TrainingViews, LyingOnesShowEverySideOfABox) {
 TEST(TrainingViews, UprightOnesDoNotDependOnTheOthers) {
   const TaughtObject mug = make_taught_object(3);
   const AttitudeChoice choice(mug.thing->mesh);
-  const SceneFrame alone = Turntable(few_views({Attitude::kUpright}), 1).render(mug, nullptr, 2);
-  const SceneFrame second =
+  const RenderedFrame alone = Turntable(few_views({Attitude::kUpright}), 1).render(mug, nullptr, 2);
+  const RenderedFrame second =
       Turntable(few_views({Attitude::kTilted, Attitude::kUpright}), 1).render(mug, &choice, 5 + 2);
   EXPECT_EQ(cv::norm(alone.frame.colour, second.frame.colour, cv::NORM_INF), 0.0);
   EXPECT_TRUE(alone.objects[0].T_camera_object.matrix() == second.objects[0].T_camera_object.matrix());

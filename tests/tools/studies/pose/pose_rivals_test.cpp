@@ -35,19 +35,19 @@ Table with_box() {
   return {cereal_box(), -0.13, standing(35.0, 30.0, 1.1)};
 }
 
-using Make = std::unique_ptr<PoseRival> (*)(const std::map<std::string, Mesh>&, const PoseSettings&);
+using Make = std::unique_ptr<BaselineEstimator> (*)(const std::map<std::string, Mesh>&, const PoseSettings&);
 
-std::unique_ptr<PoseRival> prerejective(const std::map<std::string, Mesh>& models, const PoseSettings& settings) {
+std::unique_ptr<BaselineEstimator> prerejective(const std::map<std::string, Mesh>& models, const PoseSettings& settings) {
   return make_prerejective_rival(models, settings, PrerejectiveSettings());
 }
 
-std::unique_ptr<PoseRival> point_pairs(const std::map<std::string, Mesh>& models, const PoseSettings& settings) {
+std::unique_ptr<BaselineEstimator> point_pairs(const std::map<std::string, Mesh>& models, const PoseSettings& settings) {
   return make_ppf_rival(models, settings, PpfSettings());
 }
 
 class PoseRivals : public testing::TestWithParam<Make> {
  protected:
-  static std::unique_ptr<PoseRival> rival(const Table& table, const PoseSettings& settings = {}) {
+  static std::unique_ptr<BaselineEstimator> rival(const Table& table, const PoseSettings& settings = {}) {
     return GetParam()({{"it", table.object}}, settings);
   }
 };

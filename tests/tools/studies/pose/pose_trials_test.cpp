@@ -47,7 +47,7 @@ PoseRun one_frame(const PoseMaker& maker) {
   return {"desk", {frame}, {made.ms}};
 }
 
-class FixedRival : public PoseRival {
+class FixedRival : public BaselineEstimator {
  public:
   explicit FixedRival(std::optional<Eigen::Isometry3d> pose) : pose_(std::move(pose)) {}
   std::optional<Eigen::Isometry3d> estimate(const RgbdFrame&, const Detection&) const override { return pose_; }
@@ -58,7 +58,7 @@ class FixedRival : public PoseRival {
 
 TEST(PoseTrials, ErrorsAreOfTheTrueObjectOrOfTheNearest) {
   const std::vector<PoseTrial> trials =
-      judge_run(one_frame(rival_maker(std::make_unique<FixedRival>(at(0.01, 2.0)))), corner());
+      judge_run(one_frame(baseline_maker(std::make_unique<FixedRival>(at(0.01, 2.0)))), corner());
   ASSERT_EQ(trials.size(), 2U);
   EXPECT_EQ(trials[0].verdict, Verdict::kTrue);
   EXPECT_EQ(trials[0].status, PoseStatus::kValid);
@@ -76,7 +76,7 @@ TEST(PoseTrials, ErrorsAreOfTheTrueObjectOrOfTheNearest) {
 
 TEST(PoseTrials, WithoutAPoseNoErrorIsKnown) {
   const std::vector<PoseTrial> trials =
-      judge_run(one_frame(rival_maker(std::make_unique<FixedRival>(std::nullopt))), corner());
+      judge_run(one_frame(baseline_maker(std::make_unique<FixedRival>(std::nullopt))), corner());
   ASSERT_EQ(trials.size(), 2U);
   EXPECT_EQ(trials[0].status, PoseStatus::kNotConverged);
   EXPECT_FALSE(trials[0].T_camera_object.has_value());

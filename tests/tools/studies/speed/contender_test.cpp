@@ -24,11 +24,11 @@ class ParseContender : public ::testing::Test {
     return (std::filesystem::temp_directory_path() / "contender_test.forest").string();
   }
 
-  static Contender parse(const std::string& wishes) { return parse_contender("ours=" + forest_file() + wishes); }
+  static BenchmarkedDetector parse(const std::string& wishes) { return parse_contender("ours=" + forest_file() + wishes); }
 };
 
 TEST_F(ParseContender, WishesAreGranted) {
-  const Contender contender = parse(",threads=1,frames=3,scale=0.5");
+  const BenchmarkedDetector contender = parse(",threads=1,frames=3,scale=0.5");
   EXPECT_EQ(contender.name, "ours");
   EXPECT_EQ(contender.frames, 3U);
   EXPECT_EQ(contender.image_scale, 0.5);

@@ -16,8 +16,8 @@ std::vector<RgbdFrame> some_frames(int count) {
 }
 
 /// Writes its name and the frame's number down.
-Contender scribe(const std::string& name, std::size_t frames, std::string& words) {
-  Contender contender;
+BenchmarkedDetector scribe(const std::string& name, std::size_t frames, std::string& words) {
+  BenchmarkedDetector contender;
   contender.name = name;
   contender.frames = frames;
   contender.detect = [name, &words](const RgbdFrame& frame) {
@@ -32,7 +32,7 @@ Contender scribe(const std::string& name, std::size_t frames, std::string& words
 
 TEST(MeasureSpeed, AllLookAtAFrameBeforeTheNextAndTakeTurnsToBegin) {
   std::string words;
-  const std::vector<Contender> contenders = {scribe("a", 100, words), scribe("b", 100, words),
+  const std::vector<BenchmarkedDetector> contenders = {scribe("a", 100, words), scribe("b", 100, words),
                                              scribe("slow", 1, words)};
   const auto results = measure_speed(contenders, some_frames(3));
   EXPECT_EQ(words, "a0 a0 b0 b0 slow0 b1 a1 a2 b2 ");  // the first ones are for warming up
@@ -42,7 +42,7 @@ TEST(MeasureSpeed, AllLookAtAFrameBeforeTheNextAndTakeTurnsToBegin) {
 
 TEST(MeasureSpeed, StagesAndDetectionsAreAddedUp) {
   std::string words;
-  const std::vector<Contender> contenders = {scribe("a", 100, words)};
+  const std::vector<BenchmarkedDetector> contenders = {scribe("a", 100, words)};
   const auto results = measure_speed(contenders, some_frames(4));
   const nlohmann::json json = to_json(contenders, results);
   EXPECT_EQ(json["a"]["frames"], 4);

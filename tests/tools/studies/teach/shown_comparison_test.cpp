@@ -52,7 +52,7 @@ Eigen::Isometry3d known_frame() {
 
 struct Shot {
   RgbdFrame frame;
-  TrueObject object;
+  GroundTruthObject object;
   cv::Mat mask;
 };
 

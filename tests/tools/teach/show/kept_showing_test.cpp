@@ -8,7 +8,7 @@ namespace houghstream::teach {
 namespace {
 
 TEST(ReportPage, NamesAndReasonsAreText) {
-  Shown shown;
+  ShowResult shown;
   shown.name = "<script>alert(1)</script>";
   shown.takes.emplace_back();
   shown.takes.front().frames.resize(2);

@@ -65,7 +65,7 @@ TEST(ShowJobs, NamesAQuarterTurnPoorAndKeepsItsReport) {
   const std::string text((std::istreambuf_iterator<char>(in)), {});
   EXPECT_NE(text.find("\"poor\""), std::string::npos);
   EXPECT_NE(text.find("too short"), std::string::npos);
-  options.go_on = true;
+  options.accept_poor_model = true;
   options.keep = folder / "";  // as a shell completes it
   std::ofstream(folder / "NOTES.txt") << "of somebody";
   std::ofstream(folder / "views" / "000001" / "earlier.png") << "of the earlier showing";

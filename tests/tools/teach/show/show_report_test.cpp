@@ -7,8 +7,8 @@
 namespace houghstream::teach {
 namespace {
 
-Shown good_turntable() {
-  Shown shown;
+ShowResult good_turntable() {
+  ShowResult shown;
   shown.name = "apple";
   shown.takes.emplace_back();
   shown.takes.front().motion = reconstruction::Motion::kTurntable;
@@ -19,7 +19,7 @@ Shown good_turntable() {
 }
 
 TEST(Verdict, OutlinesThatDoNotFitTheGivenMasksArePoor) {
-  Shown shown = good_turntable();
+  ShowResult shown = good_turntable();
   EXPECT_TRUE(judge(shown).good);
   shown.outline_overlap = 0.85;
   const Verdict verdict = judge(shown);
@@ -29,7 +29,7 @@ TEST(Verdict, OutlinesThatDoNotFitTheGivenMasksArePoor) {
 }
 
 TEST(Verdict, AModelThatIsSeenThroughIsPoor) {
-  Shown shown = good_turntable();
+  ShowResult shown = good_turntable();
   shown.seen_through = 0.063;
   const Verdict verdict = judge(shown);
   ASSERT_EQ(verdict.reasons.size(), 1U);
@@ -48,7 +48,7 @@ reconstruction::Take closed_turn() {
 }
 
 TEST(Verdict, EachTakeIsJudged) {
-  Shown shown = good_turntable();
+  ShowResult shown = good_turntable();
   shown.outline_overlap.reset();
   shown.takes = {closed_turn(), closed_turn()};
   shown.views.emplace_back(20);
@@ -61,7 +61,7 @@ TEST(Verdict, EachTakeIsJudged) {
 }
 
 TEST(Verdict, ATakeInTheDarkIsNotCalledShortWithoutSayingWhy) {
-  Shown shown = good_turntable();
+  ShowResult shown = good_turntable();
   shown.outline_overlap.reset();
   shown.takes = {closed_turn()};
   shown.takes[0].frames.resize(100);
@@ -76,7 +76,7 @@ TEST(Verdict, ATakeInTheDarkIsNotCalledShortWithoutSayingWhy) {
 }
 
 TEST(Verdict, OfATurntableNothingIsSaidThatOnlyTrackingKnows) {
-  Shown shown = good_turntable();
+  ShowResult shown = good_turntable();
   shown.mesh = tetrahedron(0.1F);
   shown.takes.front().keyframes.resize(20);
   shown.takes.front().chosen.T_camera_stand.translation() = Eigen::Vector3d(0.0, 0.0, 0.8);
@@ -87,7 +87,7 @@ TEST(Verdict, OfATurntableNothingIsSaidThatOnlyTrackingKnows) {
 }
 
 TEST(Verdict, WithoutGivenMasksTheirOverlapIsNotAsked) {
-  Shown shown = good_turntable();
+  ShowResult shown = good_turntable();
   shown.outline_overlap.reset();
   EXPECT_TRUE(judge(shown).good);
 }

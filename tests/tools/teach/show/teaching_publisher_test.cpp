@@ -37,7 +37,7 @@ ShowProgress tracked(std::int64_t utime) {
 /// A bus that remembers what was said of teachings.
 struct HeardTeaching {
   HeardTeaching() {
-    bus.subscribe(channel::kTeaching, [this](const Arrival& arrival) {
+    bus.subscribe(channel::kTeaching, [this](const ReceivedMessage& arrival) {
       teachings.push_back(teaching_from_message(decode_message<houghstream::teaching_t>(arrival.bytes)));
     });
   }
@@ -90,8 +90,8 @@ TEST(TeachingPublisher, ManyFramesAreFewMessagesAndTheLastOneIsSaidAgain) {
   EXPECT_GT(heard.teachings.size(), before) << "while nothing new is said";
 }
 
-TEST(EnoughSeen, WhenMoreThanHalfWasSeenAndNothingNewComes) {
-  EnoughSeen enough;
+TEST(CoverageCriterion, WhenMoreThanHalfWasSeenAndNothingNewComes) {
+  CoverageCriterion enough;
   ShowProgress now = tracked(1'000'000);
   EXPECT_FALSE(enough(now));
   now.frame.utime = 10'000'000;
@@ -110,8 +110,8 @@ TEST(EnoughSeen, WhenMoreThanHalfWasSeenAndNothingNewComes) {
 }
 
 // Times off the wire may be any, and a clock may be set back.
-TEST(EnoughSeen, GoesOnWhereTheClockJumps) {
-  EnoughSeen enough;
+TEST(CoverageCriterion, GoesOnWhereTheClockJumps) {
+  CoverageCriterion enough;
   ShowProgress now = tracked(std::numeric_limits<std::int64_t>::max());
   std::fill_n(now.seen.begin(), 31, true);
   EXPECT_FALSE(enough(now));
@@ -125,11 +125,11 @@ TEST(EnoughSeen, GoesOnWhereTheClockJumps) {
   EXPECT_TRUE(enough(now));
 }
 
-TEST(EnoughSeen, AClockThatIsSetForwardOrOneWrongStampEndsNoTake) {
+TEST(CoverageCriterion, AClockThatIsSetForwardOrOneWrongStampEndsNoTake) {
   constexpr std::int64_t kHour = 3'600'000'000;
   for (const std::int64_t step : {kHour, -kHour}) {
     for (const bool lasts : {true, false}) {
-      EnoughSeen enough;
+      CoverageCriterion enough;
       ShowProgress now = tracked(kHour);
       std::fill_n(now.seen.begin(), 31, true);
       EXPECT_FALSE(enough(now));

@@ -54,8 +54,8 @@ TEST(StreamWatch, TwoProcessesOfOneNameAreTwo) {
   EXPECT_EQ(watch.state(3'000'000).processes.size(), 2U);
 }
 
-TEST(ShownCamera, TheFirstIsShownUntilAnotherIsAskedFor) {
-  ShownCamera cameras;
+TEST(SelectedCamera, TheFirstIsShownUntilAnotherIsAskedFor) {
+  SelectedCamera cameras;
   EXPECT_TRUE(cameras.is_shown("ANY"));
   cameras.next();
   cameras.note("LEFT");

@@ -49,7 +49,7 @@ TEST(TeachingView, TheSphereFillsWhereItWasSeen) {
   from_minus_x << 0, -1, 0, 0, 0, -1, 1, 0, 0;
   EXPECT_GT(filled(from_x), 1000);
   EXPECT_EQ(filled(from_minus_x), 0);
-  for (SeenDirection& direction : mug.directions) direction.seen = true;
+  for (ViewDirection& direction : mug.directions) direction.seen = true;
   EXPECT_NEAR(filled(from_minus_x), filled(from_x), 0.2 * filled(from_x));
 }
 

@@ -130,9 +130,9 @@ TEST(LivePage, WithoutViewersNothingIsDue) {
 
 TEST(LivePage, AFrameThatNobodyLooksAtIsSkippedUndrawn) {
   WatchedBus watched;
-  ShowSettings settings;
+  FrameRendererSettings settings;
   settings.http = "127.0.0.1:0";
-  FrameShow frame_show(settings);
+  FrameRenderer frame_show(settings);
   MatchedFrame cut = matched_frame(5);
   cut.frame_bytes.resize(cut.frame_bytes.size() / 2);  // would be refused if anybody decoded it
   frame_show.show(cut, watched.watcher);
@@ -143,15 +143,15 @@ TEST(LivePage, AFrameThatNobodyLooksAtIsSkippedUndrawn) {
 }
 
 TEST(LivePage, TakesThePlaceOfAWindowAndABadAddressIsNamed) {
-  ShowSettings settings;
+  FrameRendererSettings settings;
   settings.http = "8080";
   EXPECT_TRUE(settings.headless());
   EXPECT_FALSE(settings.writes());
   settings.http = "eighty";
-  EXPECT_THROW(FrameShow{settings}, InputError);
+  EXPECT_THROW(FrameRenderer{settings}, InputError);
   settings.http = "127.0.0.1:0";
   settings.http_hosts = {"robot:80"};
-  EXPECT_THROW(FrameShow{settings}, InputError);
+  EXPECT_THROW(FrameRenderer{settings}, InputError);
 }
 
 }  // namespace

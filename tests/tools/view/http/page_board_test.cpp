@@ -28,12 +28,12 @@ TEST(PageBoard, EachSeesTheNewestOnce) {
   board.put_frame("a");
   board.put_frame("b");
   board.put_stream("s");
-  const std::optional<PageNews> first = board.news_after({}, kNow);
+  const std::optional<PageUpdates> first = board.news_after({}, kNow);
   ASSERT_TRUE(first);
   EXPECT_EQ(first->frame, "b");
   EXPECT_EQ(first->stream, "s");
   board.put_stream("t");
-  const std::optional<PageNews> second = board.news_after(*first, kNow);
+  const std::optional<PageUpdates> second = board.news_after(*first, kNow);
   ASSERT_TRUE(second);
   EXPECT_EQ(second->frame, "");
   EXPECT_EQ(second->stream, "t");
@@ -58,7 +58,7 @@ TEST(PageBoard, APictureThatIsWaitedForIsMissing) {
 TEST(PageBoard, OrdersAreTakenOnceAndTheLastCounts) {
   PageBoard board;
   EXPECT_TRUE(board.take_orders().empty());
-  PageOrders orders;
+  PageCommands orders;
   orders.paused = true;
   orders.next_camera = true;
   board.order(orders);
@@ -66,7 +66,7 @@ TEST(PageBoard, OrdersAreTakenOnceAndTheLastCounts) {
   orders.paused = false;
   orders.min_score = 0.25F;
   board.order(orders);
-  const PageOrders taken = board.take_orders();
+  const PageCommands taken = board.take_orders();
   EXPECT_EQ(taken.paused, false);
   EXPECT_EQ(taken.min_score, 0.25F);
   EXPECT_TRUE(taken.next_camera);

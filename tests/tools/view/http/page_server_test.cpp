@@ -139,7 +139,7 @@ TEST(PageServer, ThisMachinesButtonsNeedNoTokenButTheHeaderThatOthersCannotSend)
   ASSERT_TRUE(refused);
   EXPECT_NE(refused->body.find("a header X-Houghstream-Token"), std::string::npos) << refused->body;
   EXPECT_EQ(served.order(R"({"paused":true,"min_score":0.5})", kNoToken), 204);
-  const PageOrders orders = served.board.take_orders();
+  const PageCommands orders = served.board.take_orders();
   EXPECT_EQ(orders.paused, true);
   EXPECT_EQ(orders.min_score, 0.5F);
 }

@@ -71,7 +71,7 @@ ThingPtr make_milk_carton(Random& random) {
   // The ridge runs along x, so that its slopes look to the front and the back.
   Mesh roof = prism({{-half, 0.0}, {half, 0.0}, {0.0, kRoof}}, kWidth, gable, slope);
   const Mesh fin = box({kWidth, 0.004, 0.02}, plain({128, 32}, palette.accent * 0.95, 0.04, random));
-  return make_thing("milk_carton",
+  return make_asset("milk_carton",
                     finish_object(compose({at(box({kWidth, kWidth, kBody}, faces), {0, 0, 0.5 * kBody}),
                                            at(roof, {0, 0, kBody}, 0.5 * M_PI), at(fin, {0, 0, kBody + kRoof})})),
                     0.12F);
@@ -79,13 +79,13 @@ ThingPtr make_milk_carton(Random& random) {
 
 ThingPtr make_tea_box(Random& random) {
   const Palette palette{hsv(142, 0.7, 0.34), hsv(44, 0.75, 0.85), hsv(46, 0.35, 0.95), hsv(150, 0.8, 0.14)};
-  return make_thing("tea_box", carton_mesh({0.138, 0.068, 0.082}, palette, random), 0.12F);
+  return make_asset("tea_box", carton_mesh({0.138, 0.068, 0.082}, palette, random), 0.12F);
 }
 
 ThingPtr make_sponge(Random& random) {
   const cv::Mat foam = pores({512, 384}, hsv(50, 0.72, 0.9), random);
   const cv::Mat scourer = pores({512, 384}, hsv(135, 0.7, 0.36), random);
-  return make_thing("sponge",
+  return make_asset("sponge",
                     finish_object(compose({at(box({0.112, 0.072, 0.03}, foam), {0, 0, 0.015}),
                                            at(box({0.112, 0.072, 0.011}, scourer), {0, 0, 0.0355})})),
                     0.03F);
@@ -100,7 +100,7 @@ ThingPtr make_office_stapler(Random& random) {
                                             {0.01, 0.028}, {-0.05, 0.027}, {-0.074, 0.02}, {-0.082, 0.008}};
   const std::vector<Eigen::Vector2d> foot = {{-0.08, 0.0}, {0.07, 0.0}, {0.066, 0.01}, {-0.076, 0.012}};
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
-  return make_thing("office_stapler",
+  return make_asset("office_stapler",
                     finish_object(compose({at(prism(foot, 0.042, rubber, rubber), kOrigin),
                                            turned(box({0.14, 0.018, 0.012}, steel), {-0.004, 0, 0.024}, 0.12, y),
                                            turned(prism(arm, 0.036, shell, shell), {0.0, 0, 0.032}, 0.12, y)})),
@@ -122,7 +122,7 @@ ThingPtr make_beach_ball(Random& random) {
     cv::rectangle(texture, {left, 0, 112, 512}, hsv(hues[i], 0.85, 0.78), cv::FILLED);
   }
   for (const int end : {0, 476}) texture.rowRange(end, end + 36) = hsv(0, 0.0, 0.94);
-  return make_thing("beach_ball", finish_object(lathe(with_arc_length(profile), texture)), 0.25F);
+  return make_asset("beach_ball", finish_object(lathe(with_arc_length(profile), texture)), 0.25F);
 }
 
 ThingPtr make_toy_truck(Random& random) {
@@ -148,7 +148,7 @@ ThingPtr make_toy_truck(Random& random) {
   for (const double x : {-0.057, 0.057}) {
     for (const double y : {-0.03, 0.03}) parts.push_back(lying(wheel, {x, y, 0.021}, Eigen::Vector3d::UnitY()));
   }
-  return make_thing("toy_truck", finish_object(compose(parts)), 0.25F);
+  return make_asset("toy_truck", finish_object(compose(parts)), 0.25F);
 }
 
 ThingPtr make_banana(Random& random) {
@@ -163,7 +163,7 @@ ThingPtr make_banana(Random& random) {
     const double bulge = std::sqrt(std::max(0.0, 1.0 - std::pow(2.0 * share - 1.0, 4)));
     radii.push_back(share < 0.1 ? 0.0062 : 0.005 + 0.0145 * bulge);
   }
-  return make_thing("banana", finish_object(tapered_tube(path, radii, banana_skin(random), 12)), 0.12F);
+  return make_asset("banana", finish_object(tapered_tube(path, radii, banana_skin(random), 12)), 0.12F);
 }
 
 ThingPtr make_flashlight(Random& random) {
@@ -179,7 +179,7 @@ ThingPtr make_flashlight(Random& random) {
   const cv::Mat rubber = plain({64, 64}, hsv(4, 0.8, 0.7), 0.04, random);
   const Mesh button = box({0.022, 0.01, 0.008}, rubber);
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
-  return make_thing("flashlight",
+  return make_asset("flashlight",
                     finish_object(compose(
                         {lying(body, kOrigin, x), lying(glass, {0.0855, 0, 0}, x), at(button, {0.005, 0, 0.0185})})),
                     0.25F);

@@ -82,7 +82,7 @@ ThingPtr make_plate(Random& random) {
                                              {0.068, 0.0},    {0.068, 0.0},    {0.072, 0.005},  {0.088, 0.014},
                                              {0.118, 0.0265}, {0.118, 0.0265}, {0.1185, 0.029}, {0.117, 0.0305},
                                              {0.086, 0.0185}, {0.072, 0.0095}, {0.066, 0.008},  {0.0, 0.0075}};
-  return make_thing("plate", finish_object(lathe(with_arc_length(profile), glaze)), 0.3F);
+  return make_asset("plate", finish_object(lathe(with_arc_length(profile), glaze)), 0.3F);
 }
 
 ThingPtr make_teapot(Random& random) {
@@ -99,7 +99,7 @@ ThingPtr make_teapot(Random& random) {
   const Mesh body = lathe(with_arc_length(profile), glaze);
   const Mesh handle = tube(handle_path({0.06, 0.032}, {0.048, 0.098}, 0.06), 0.0075, glaze);
   const Mesh pour = tapered_tube(spout, {0.02, 0.0175, 0.0135, 0.0105, 0.009}, glaze, 16);
-  return make_thing("teapot",
+  return make_asset("teapot",
                     finish_object(compose({at(body, kOrigin), at(handle, kOrigin), at(pour, kOrigin),
                                            at(turned_mesh(knob, knob_glaze), {0, 0, 0.134})})),
                     0.35F);
@@ -116,7 +116,7 @@ ThingPtr make_pitcher(Random& random) {
   const double foot = -0.5 * shape.height;
   const Mesh handle = tube(handle_path({0.0597, foot + 0.063}, {0.0502, foot + 0.187}, 0.05), 0.0075, grip);
   const Mesh jug = with_lip(cup_mesh(shape, enamel), 0.026, 0.2 * shape.height, 0.5 * shape.height);
-  return make_thing("pitcher", finish_object(compose({at(jug, kOrigin), at(handle, kOrigin)})), 0.3F);
+  return make_asset("pitcher", finish_object(compose({at(jug, kOrigin), at(handle, kOrigin)})), 0.3F);
 }
 
 ThingPtr make_tumbler(Random& random) {
@@ -125,7 +125,7 @@ ThingPtr make_tumbler(Random& random) {
   draw_ring(glass, 0.53, 0.56, orange);
   draw_ring(glass, 0.58, 0.64, orange);
   draw_ring(glass, 0.66, 0.69, orange);
-  return make_thing("tumbler", cup_mesh({0.039, 0.029, 0.148, 0.0025}, glass), 0.4F);
+  return make_asset("tumbler", cup_mesh({0.039, 0.029, 0.148, 0.0025}, glass), 0.4F);
 }
 
 ThingPtr make_water_bottle(Random& random) {
@@ -146,7 +146,7 @@ ThingPtr make_water_bottle(Random& random) {
                                  {0.4 * r, 0.2}},
                                 plastic);
   const Mesh cap = cap_mesh(0.0155, 0.02, hsv(214, 0.85, 0.5), random);
-  return make_thing("water_bottle", finish_object(compose({at(body, {0, 0, 0.1}), at(cap, {0, 0, 0.209})})), 0.4F);
+  return make_asset("water_bottle", finish_object(compose({at(body, {0, 0, 0.1}), at(cap, {0, 0, 0.209})})), 0.4F);
 }
 
 ThingPtr make_shampoo_bottle(Random& random) {
@@ -158,7 +158,7 @@ ThingPtr make_shampoo_bottle(Random& random) {
       plastic);
   const Mesh cap = cap_mesh(0.0185, 0.034, hsv(70, 0.1, 0.95), random);
   const Mesh joined = compose({at(body, {0, 0, 0.082}), at(cap, {0, 0, 0.181})});
-  return make_thing("shampoo_bottle", finish_object(scaled(joined, {1.0, 0.62, 1.0})), 0.3F);
+  return make_asset("shampoo_bottle", finish_object(scaled(joined, {1.0, 0.62, 1.0})), 0.3F);
 }
 
 ThingPtr make_jam_jar(Random& random) {
@@ -173,7 +173,7 @@ ThingPtr make_jam_jar(Random& random) {
       turned_mesh({{0.034, 0.0}, {0.037, 0.005}, {0.0375, 0.06}, {0.036, 0.072}, {0.031, 0.08}, {0.031, 0.084}}, jam);
   const cv::Mat cloth = gingham({768, 192}, hsv(354, 0.8, 0.62), 16, random);
   const Mesh lid = turned_mesh({{0.0345, 0.0}, {0.0355, 0.003}, {0.0355, 0.013}, {0.034, 0.0155}}, cloth);
-  return make_thing("jam_jar", finish_object(compose({at(pot, {0, 0, 0.042}), at(lid, {0, 0, 0.0905})})), 0.35F);
+  return make_asset("jam_jar", finish_object(compose({at(pot, {0, 0, 0.042}), at(lid, {0, 0, 0.0905})})), 0.35F);
 }
 
 ThingPtr make_food_tin(Random& random) {
@@ -194,7 +194,7 @@ ThingPtr make_food_tin(Random& random) {
                                 {r, h - 0.001},
                                 {0.97 * r, h}},
                                texture);
-  return make_thing("food_tin", tin, 0.3F);
+  return make_asset("food_tin", tin, 0.3F);
 }
 
 }  // namespace houghstream::world

@@ -95,7 +95,7 @@ void repaint(bool other_print, Random& random, Mesh& mesh) {
 
 }  // namespace
 
-ThingPtr look_alike(const Thing& thing, Random& random) {
+ThingPtr make_hard_negative(const Thing& thing, Random& random) {
   Mesh mesh = thing.mesh;
   const double sort = random.uniform();
   if (sort < 0.25) {
@@ -110,10 +110,10 @@ ThingPtr look_alike(const Thing& thing, Random& random) {
   } else {
     repaint(chance(random, 0.6), random, mesh);
   }
-  return make_thing(thing.name, std::move(mesh), thing.gloss);
+  return make_asset(thing.name, std::move(mesh), thing.gloss);
 }
 
-ThingPtr next_of_its_kind(const Thing& thing, Random& random) {
+ThingPtr make_instance_variant(const Thing& thing, Random& random) {
   constexpr double kMostScale = 0.015;
   constexpr double kMostBent_m = 0.003;
   constexpr double kMostBent = 0.02;  // of what it measures across

@@ -57,15 +57,15 @@ ThingPtr make_other_instance(int class_id, std::uint64_t seed) {
   const double slimness = random.uniform(0.9, 1.12);
   const double s = likeness.size;
   switch (class_id) {
-    case 1: return make_thing("other_bowl", other_bowl(likeness, slimness, random), 0.25F);
+    case 1: return make_asset("other_bowl", other_bowl(likeness, slimness, random), 0.25F);
     case 2: {
       const Eigen::Vector3d size = s * Eigen::Vector3d(0.192, 0.058, 0.285 * slimness);
-      return make_thing("other_carton", carton_mesh(size, likeness.palette, random), 0.12F);
+      return make_asset("other_carton", carton_mesh(size, likeness.palette, random), 0.12F);
     }
-    case 3: return make_thing("other_mug", other_mug(likeness, slimness, random), 0.3F);
+    case 3: return make_asset("other_mug", other_mug(likeness, slimness, random), 0.3F);
     default: {
       const double radius = 0.033 * s;
-      return make_thing("other_can", can_mesh(radius, 0.122 * s * slimness, likeness.palette, random), 0.45F);
+      return make_asset("other_can", can_mesh(radius, 0.122 * s * slimness, likeness.palette, random), 0.45F);
     }
   }
 }

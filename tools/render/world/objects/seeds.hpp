@@ -7,13 +7,13 @@
 namespace houghstream::world {
 
 /// What a rendered world is for.
-enum class WorldUse : std::uint8_t { kTraining, kTest };
+enum class DatasetSplit : std::uint8_t { kTraining, kTest };
 
 /// The one rule that keeps training and test apart: every seed of a room, texture, light or distractor comes from
 /// here, and the seeds of training worlds are even, those of test worlds odd. So no two of them coincide.
-inline std::uint64_t world_seed(WorldUse use, std::uint64_t number) {
+inline std::uint64_t world_seed(DatasetSplit use, std::uint64_t number) {
   const std::uint64_t mixed = Random::for_item(0x486f756768ULL, number).bits();
-  return (mixed & ~1ULL) | (use == WorldUse::kTest ? 1ULL : 0ULL);
+  return (mixed & ~1ULL) | (use == DatasetSplit::kTest ? 1ULL : 0ULL);
 }
 
 /// Seed of one `aspect` (object on the table, wall, light ...) of a world; even or odd as the world's own.

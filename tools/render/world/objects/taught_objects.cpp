@@ -47,7 +47,7 @@ constexpr std::array<FurtherClass, kFurtherClassCount> kFurther = {{{"plate", tr
 ThingPtr bowl(bool second, Random& random) {
   const BowlShape shape = second ? BowlShape{0.084, 0.045, 0.056, 0.0035} : BowlShape{0.074, 0.036, 0.066, 0.004};
   const cv::Scalar colour = second ? hsv(205, 0.22, 0.72) : bgr(class_colours(1).base);
-  return make_thing(second ? "bowl_2" : "bowl", bowl_mesh(shape, plain({256, 256}, colour, 0.03, random)), 0.25F);
+  return make_asset(second ? "bowl_2" : "bowl", bowl_mesh(shape, plain({256, 256}, colour, 0.03, random)), 0.25F);
 }
 
 ThingPtr cereal_box(bool second, Random& random) {
@@ -55,7 +55,7 @@ ThingPtr cereal_box(bool second, Random& random) {
   Palette palette = random_palette(random);
   palette.base = second ? hsv(28, 0.8, 0.85) : bgr(class_colours(2).base);
   palette.accent = second ? hsv(340, 0.75, 0.7) : bgr(class_colours(2).accent);
-  return make_thing(second ? "cereal_box_2" : "cereal_box", carton_mesh(size, palette, random), 0.12F);
+  return make_asset(second ? "cereal_box_2" : "cereal_box", carton_mesh(size, palette, random), 0.12F);
 }
 
 ThingPtr coffee_mug(bool second, Random& random) {
@@ -63,7 +63,7 @@ ThingPtr coffee_mug(bool second, Random& random) {
   Palette palette = random_palette(random);
   palette.base = second ? hsv(150, 0.35, 0.5) : bgr(class_colours(3).base);
   palette.accent = second ? hsv(30, 0.6, 0.9) : bgr(class_colours(3).accent);
-  return make_thing(second ? "coffee_mug_2" : "coffee_mug", mug_mesh(shape, palette, random), 0.3F);
+  return make_asset(second ? "coffee_mug_2" : "coffee_mug", mug_mesh(shape, palette, random), 0.3F);
 }
 
 ThingPtr soda_can(bool second, Random& random) {
@@ -72,7 +72,7 @@ ThingPtr soda_can(bool second, Random& random) {
   palette.accent = second ? hsv(200, 0.15, 0.88) : bgr(class_colours(4).accent);
   const double radius = second ? 0.0285 : 0.033;
   const double height = second ? 0.146 : 0.122;
-  return make_thing(second ? "soda_can_2" : "soda_can", can_mesh(radius, height, palette, random), 0.45F);
+  return make_asset(second ? "soda_can_2" : "soda_can", can_mesh(radius, height, palette, random), 0.45F);
 }
 
 TaughtObject make_further_object(int id) {

@@ -23,7 +23,7 @@ float texel_density(const Mesh& mesh, const std::array<std::uint32_t, 3>& triang
 
 }  // namespace
 
-std::shared_ptr<const Thing> make_thing(std::string name, Mesh mesh, float gloss, float glow) {
+std::shared_ptr<const Thing> make_asset(std::string name, Mesh mesh, float gloss, float glow) {
   const bool textured = mesh.uvs.size() == mesh.vertices.size() && !mesh.texture.empty();
   const bool coloured = mesh.texture.empty() && mesh.colours.size() == mesh.vertices.size();
   require(mesh.normals.size() == mesh.vertices.size() && (textured || coloured),

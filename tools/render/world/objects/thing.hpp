@@ -21,7 +21,7 @@ struct Thing {
 };
 
 /// Prepares a finished mesh for shading: it has normals, and a texture with its coordinates or a colour per vertex.
-std::shared_ptr<const Thing> make_thing(std::string name, Mesh mesh, float gloss, float glow = 0.0F);
+std::shared_ptr<const Thing> make_asset(std::string name, Mesh mesh, float gloss, float glow = 0.0F);
 
 using ThingPtr = std::shared_ptr<const Thing>;
 

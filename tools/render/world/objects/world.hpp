@@ -28,7 +28,7 @@ struct Light {
 };
 
 /// How the colour camera turns light into a picture.
-struct PhotoSettings {
+struct ColourCameraSettings {
   double mean_level = 0.2;         ///< automatic exposure brings the picture's mean towards this, linear, 0 to 1
   double exposure_bias = 1.0;      ///< factor on what automatic exposure chose
   std::optional<double> exposure;  ///< factor on the light, where it is not chosen from the picture itself
@@ -47,7 +47,7 @@ struct World {
   std::vector<Light> lights;
   Eigen::Vector3f ambient_bgr = Eigen::Vector3f::Constant(0.3F);  ///< linear light from everywhere
   double focus_radius_m = 1.2;  ///< shadows are kept within this distance of the origin
-  PhotoSettings photo;
+  ColourCameraSettings photo;
   Camera camera = synthetic_camera();
 };
 

@@ -26,7 +26,7 @@ void turn_to_evening(World& world, Random& random) {
 
 }  // namespace
 
-void set_light_and_photo(World& world, TimeOfDay time, std::uint64_t seed) {
+void set_lighting(World& world, TimeOfDay time, std::uint64_t seed) {
   Random random(seed);
   const double warmth = random.uniform(-0.5, 0.9);
   const double azimuth = random.uniform(-0.9 * M_PI, 0.5 * M_PI);

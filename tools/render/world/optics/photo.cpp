@@ -25,14 +25,14 @@ std::array<std::uint8_t, kLevels> make_srgb_table() {
 
 }  // namespace
 
-double automatic_exposure(const cv::Mat& radiance, const PhotoSettings& settings) {
+double automatic_exposure(const cv::Mat& radiance, const ColourCameraSettings& settings) {
   constexpr double kFollow = 0.8;
   const cv::Scalar mean = cv::mean(cv::min(radiance, 1.5));
   const double level = std::max(1e-3, (mean[0] + mean[1] + mean[2]) / 3.0);
   return settings.exposure_bias * std::pow(settings.mean_level / level, kFollow);
 }
 
-cv::Mat take_photo(const cv::Mat& radiance, const PhotoSettings& settings, std::uint64_t seed) {
+cv::Mat simulate_colour_camera(const cv::Mat& radiance, const ColourCameraSettings& settings, std::uint64_t seed) {
   static const std::array<std::uint8_t, kLevels> kSrgb = make_srgb_table();
   cv::Mat blurred;
   cv::GaussianBlur(radiance, blurred, {5, 5}, settings.blur_px);
@@ -73,7 +73,7 @@ ColourResponse other_colour_camera() {
   return response;
 }
 
-cv::Mat processed_photo(const cv::Mat& photo, const ColourResponse& response) {
+cv::Mat apply_camera_response(const cv::Mat& photo, const ColourResponse& response) {
   const double corner_sq = 0.25 * (photo.cols * photo.cols + photo.rows * photo.rows);
   cv::Mat toned(photo.size(), CV_32FC3);
   for (int y = 0; y < photo.rows; ++y) {

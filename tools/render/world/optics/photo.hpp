@@ -8,11 +8,11 @@ namespace houghstream::world {
 
 /// The factor on the light that automatic exposure settles at for a picture (CV_32FC3, linear). Cameras do not follow
 /// the scene's brightness all the way: dark rooms stay darker.
-double automatic_exposure(const cv::Mat& radiance, const PhotoSettings& settings);
+double automatic_exposure(const cv::Mat& radiance, const ColourCameraSettings& settings);
 
 /// The picture a colour camera takes of linear light (CV_32FC3 BGR): lens blur, vignetting, automatic exposure
 /// unless the settings fix it, white balance, shot and read noise, sRGB. Returns CV_8UC3 BGR. Same seed, same picture.
-cv::Mat take_photo(const cv::Mat& radiance, const PhotoSettings& settings, std::uint64_t seed);
+cv::Mat simulate_colour_camera(const cv::Mat& radiance, const ColourCameraSettings& settings, std::uint64_t seed);
 
 /// How a camera's own processing departs from plain sRGB; as it stands, not at all. The steps and their order are those
 /// of Karaimer & Brown, "A Software Platform for Manipulating the Camera Imaging Pipeline", ECCV 2016; cameras differ
@@ -30,7 +30,7 @@ struct ColourResponse {
 /// A camera of another make: a cooler white, brighter middle tones, stronger colours and sharpened edges.
 ColourResponse other_colour_camera();
 
-/// What such a camera makes of a photo (CV_8UC3 BGR, as take_photo() gives it).
-cv::Mat processed_photo(const cv::Mat& photo, const ColourResponse& response);
+/// What such a camera makes of a photo (CV_8UC3 BGR, as simulate_colour_camera() gives it).
+cv::Mat apply_camera_response(const cv::Mat& photo, const ColourResponse& response);
 
 }  // namespace houghstream::world

@@ -17,7 +17,7 @@ Attitude parse_attitude(const std::string& name) {
 }
 
 AttitudeChoice::AttitudeChoice(const Mesh& mesh) {
-  for (const RestingFamily& family : lying_families(resting_families(mesh)))
+  for (const RestingFamily& family : lying_families(find_stable_poses(mesh)))
     turns_.insert(turns_.end(), family.size() > 1 ? 2 : 1, family);
 }
 

@@ -55,7 +55,7 @@ ThingPtr bottle(Random& random, const Dyes& dyes) {
                                  {0.36 * r, 0.97 * h},
                                  {0.4 * r, h}},
                                 texture);
-  return make_thing("bottle", mesh, 0.4F);
+  return make_asset("bottle", mesh, 0.4F);
 }
 
 ThingPtr book(Random& random, const Dyes& dyes) {
@@ -67,7 +67,7 @@ ThingPtr book(Random& random, const Dyes& dyes) {
   faces.left = carton_side({400, 80}, palette, random);
   faces.front = plain({320, 80}, {210, 225, 232}, 0.1, random);
   faces.right = faces.front;
-  return make_thing("book", finish_object(box(size, faces)), 0.08F);
+  return make_asset("book", finish_object(box(size, faces)), 0.08F);
 }
 
 ThingPtr jug(Random& random, const Dyes& dyes) {
@@ -89,7 +89,7 @@ ThingPtr jug(Random& random, const Dyes& dyes) {
            glaze);
   const Mesh spout = tube({{-0.7 * r, 0, 0.4 * h}, {-1.3 * r, 0, 0.65 * h}, {-1.6 * r, 0, 0.95 * h}}, 0.14 * r, glaze);
   const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  return make_thing("jug", finish_object(compose({at(body, origin), at(handle, origin), at(spout, origin)})), 0.35F);
+  return make_asset("jug", finish_object(compose({at(body, origin), at(handle, origin), at(spout, origin)})), 0.35F);
 }
 
 ThingPtr plates(Random& random, const Dyes& /*dyes*/) {
@@ -103,7 +103,7 @@ ThingPtr plates(Random& random, const Dyes& /*dyes*/) {
   const int count = random.between(1, 6);
   parts.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) parts.push_back(at(plate, {0, 0, 0.0075 * i}));
-  return make_thing("plates", finish_object(compose(parts)), 0.3F);
+  return make_asset("plates", finish_object(compose(parts)), 0.3F);
 }
 
 ThingPtr lamp(Random& random, const Dyes& dyes) {
@@ -118,7 +118,7 @@ ThingPtr lamp(Random& random, const Dyes& dyes) {
   const Mesh hood =
       lathe(with_arc_length({{0, 0.6 * h}, {1.1 * r, 0.6 * h}, {1.1 * r, 0.6 * h}, {0.7 * r, h}, {0.7 * r, h}, {0, h}}),
             shade);
-  return make_thing("lamp", finish_object(compose({at(foot, {0, 0, 0}), at(hood, {0, 0, 0})})), 0.1F);
+  return make_asset("lamp", finish_object(compose({at(foot, {0, 0, 0}), at(hood, {0, 0, 0})})), 0.1F);
 }
 
 ThingPtr plant(Random& random, const Dyes& /*dyes*/) {
@@ -136,13 +136,13 @@ ThingPtr plant(Random& random, const Dyes& /*dyes*/) {
     part.T_object_part.translate(Eigen::Vector3d(0.5 * length, 0, 0));
     parts.push_back(part);
   }
-  return make_thing("plant", finish_object(compose(parts)), 0.08F);
+  return make_asset("plant", finish_object(compose(parts)), 0.08F);
 }
 
 ThingPtr stapler(Random& random, const Dyes& dyes) {
   const cv::Mat shell = plain({128, 64}, dyes.plain(random), 0.08, random);
   const cv::Mat steel = metal({64, 64}, random);
-  return make_thing("stapler",
+  return make_asset("stapler",
                     finish_object(compose({at(box({0.15, 0.035, 0.012}, shell), {0, 0, 0.006}),
                                            at(box({0.13, 0.02, 0.008}, steel), {0, 0, 0.016}),
                                            at(box({0.14, 0.03, 0.025}, shell), {-0.004, 0, 0.0325})})),
@@ -152,7 +152,7 @@ ThingPtr stapler(Random& random, const Dyes& dyes) {
 ThingPtr cup(Random& random, const Dyes& dyes) {
   const cv::Mat texture = mug_print({512, 256}, dyes.print(random), random);
   const double r = random.uniform(0.033, 0.045);
-  return make_thing("cup", cup_mesh({r, random.uniform(0.7, 1.0) * r, random.uniform(0.08, 0.14), 0.003}, texture),
+  return make_asset("cup", cup_mesh({r, random.uniform(0.7, 1.0) * r, random.uniform(0.08, 0.14), 0.003}, texture),
                     0.35F);
 }
 
@@ -165,14 +165,14 @@ ThingPtr fruit(Random& random, const Dyes& /*dyes*/) {
     outline.emplace_back(r * std::cos(angle), flat * r * std::sin(angle));
   }
   const cv::Mat skin = plain({128, 128}, hsv(random.uniform(-10, 110), 0.8, random.uniform(0.5, 0.9)), 0.25, random);
-  return make_thing("fruit", turned_mesh(outline, skin), 0.2F);
+  return make_asset("fruit", turned_mesh(outline, skin), 0.2F);
 }
 
 ThingPtr keyboard(Random& random, const Dyes& /*dyes*/) {
   BoxFaces faces;
   faces.top = keyboard_top({900, 280}, random);
   faces.front = faces.top.rowRange(0, 12).clone();
-  return make_thing("keyboard", finish_object(box({0.42, 0.135, 0.018}, faces)), 0.08F);
+  return make_asset("keyboard", finish_object(box({0.42, 0.135, 0.018}, faces)), 0.08F);
 }
 
 ThingPtr tissue_box(Random& random, const Dyes& dyes) {
@@ -181,7 +181,7 @@ ThingPtr tissue_box(Random& random, const Dyes& dyes) {
   faces.front = chance(random, 0.5) ? poster({460, 180}, random) : carton_front({460, 180}, palette, random);
   faces.top = fabric({460, 240}, palette.base, random);
   cv::ellipse(faces.top, {230, 120}, {130, 40}, 0, 0, 360, {235, 240, 242}, cv::FILLED, cv::LINE_AA);
-  return make_thing("tissue_box", finish_object(box({0.23, 0.115, random.uniform(0.06, 0.11)}, faces)), 0.06F);
+  return make_asset("tissue_box", finish_object(box({0.23, 0.115, random.uniform(0.06, 0.11)}, faces)), 0.06F);
 }
 
 ThingPtr tin(Random& random, const Dyes& dyes) {
@@ -189,7 +189,7 @@ ThingPtr tin(Random& random, const Dyes& dyes) {
   const double h = random.uniform(0.07, 0.15);
   cv::Mat texture = metal({768, 512}, random);
   can_label({768, 300}, dyes.print(random), random).copyTo(texture.rowRange(110, 410));
-  return make_thing(
+  return make_asset(
       "tin",
       turned_mesh({{r, 0}, {r, 0.004}, {0.985 * r, 0.005}, {0.985 * r, h - 0.005}, {r, h - 0.004}, {r, h}}, texture),
       0.4F);
@@ -199,7 +199,7 @@ ThingPtr vase(Random& random, const Dyes& dyes) {
   const double r = random.uniform(0.04, 0.065);
   const double h = random.uniform(0.16, 0.26);
   const cv::Mat glaze = mug_print({512, 384}, dyes.print(random), random);
-  return make_thing(
+  return make_asset(
       "vase",
       turned_mesh(
           {{0.55 * r, 0}, {0.9 * r, 0.2 * h}, {r, 0.45 * h}, {0.7 * r, 0.7 * h}, {0.4 * r, 0.88 * h}, {0.5 * r, h}},
@@ -214,7 +214,7 @@ ThingPtr monitor(Random& random, const Dyes& /*dyes*/) {
   faces.front = screen_picture({960, 600}, random);
   const double width = random.uniform(0.4, 0.55);
   const double height = 0.6 * width;
-  return make_thing("monitor",
+  return make_asset("monitor",
                     finish_object(compose({at(box({width, 0.03, height}, faces), {0, 0, 0.1 + 0.5 * height}),
                                            at(box({0.05, 0.03, 0.12}, faces.back), {0, 0.03, 0.06}),
                                            at(box({0.24, 0.17, 0.012}, faces.back), {0, 0.03, 0.006})})),
@@ -223,7 +223,7 @@ ThingPtr monitor(Random& random, const Dyes& /*dyes*/) {
 
 ThingPtr small_carton(Random& random, const Dyes& dyes) {
   const Eigen::Vector3d size(random.uniform(0.06, 0.16), random.uniform(0.04, 0.08), random.uniform(0.08, 0.22));
-  return make_thing("carton", carton_mesh(size, dyes.print(random), random), 0.12F);
+  return make_asset("carton", carton_mesh(size, dyes.print(random), random), 0.12F);
 }
 
 ThingPtr jar(Random& random, const Dyes& dyes) {
@@ -233,7 +233,7 @@ ThingPtr jar(Random& random, const Dyes& dyes) {
   const cv::Mat lid = plain({64, 64}, dyes.plain(random), 0.05, random);
   const Mesh pot = turned_mesh({{r, 0}, {r, 0.85 * h}, {0.85 * r, 0.92 * h}}, body);
   const Mesh top = turned_mesh({{0.9 * r, 0}, {0.9 * r, 0.14 * h}}, lid);
-  return make_thing("jar", finish_object(compose({at(pot, {0, 0, 0.46 * h}), at(top, {0, 0, 0.98 * h})})), 0.3F);
+  return make_asset("jar", finish_object(compose({at(pot, {0, 0, 0.46 * h}), at(top, {0, 0, 0.98 * h})})), 0.3F);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ cv::Mat wood_or_paint(Random& random) {
 }
 
 ThingPtr from_parts(const char* name, const std::vector<Part>& parts, float gloss, float glow = 0.0F) {
-  return make_thing(name, compose(parts), gloss, glow);
+  return make_asset(name, compose(parts), gloss, glow);
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ ThingPtr make_cabinet(const Eigen::Vector3d& size, Random& random) {
   BoxFaces faces;
   faces.front = door;
   faces.back = faces.left = faces.right = faces.top = faces.bottom = side;
-  return make_thing("cabinet", box(size, faces), 0.12F);
+  return make_asset("cabinet", box(size, faces), 0.12F);
 }
 
 ThingPtr make_picture(Random& random) {
@@ -105,7 +105,7 @@ ThingPtr make_picture(Random& random) {
   BoxFaces faces;
   faces.front = poster({static_cast<int>(600 * width), static_cast<int>(600 * height)}, random);
   faces.top = faces.left = faces.right = faces.bottom = faces.back = plain({32, 32}, paint(random), 0.05, random);
-  return make_thing("picture", box({width, 0.02, height}, faces), 0.08F);
+  return make_asset("picture", box({width, 0.02, height}, faces), 0.08F);
 }
 
 ThingPtr make_window(Random& random) {
@@ -116,11 +116,11 @@ ThingPtr make_window(Random& random) {
   for (int i = 0; i < blinds; ++i) cv::line(view, {0, i * 256 / blinds}, {256, i * 256 / blinds}, {170, 170, 165}, 4);
   cv::line(view, {128, 0}, {128, 256}, {120, 120, 120}, 8);
   cv::rectangle(view, {0, 0, 256, 256}, {120, 120, 120}, 14);
-  return make_thing("window", box({width, 0.03, height}, view), 0.1F, 0.95F);
+  return make_asset("window", box({width, 0.03, height}, view), 0.1F, 0.95F);
 }
 
 ThingPtr make_bin(Random& random) {
-  return make_thing("bin", cup_mesh({0.14, 0.11, 0.32, 0.006}, plain({128, 128}, paint(random), 0.06, random)), 0.1F);
+  return make_asset("bin", cup_mesh({0.14, 0.11, 0.32, 0.006}, plain({128, 128}, paint(random), 0.06, random)), 0.1F);
 }
 
 }  // namespace houghstream::world

@@ -107,7 +107,7 @@ ThingPtr make_hand(const std::vector<Eigen::Vector3d>& points, const Grip& grip,
   mesh = finish_object(mesh);
   const Eigen::Vector3f moved = centre - mesh_bounds(mesh).center();
   for (Eigen::Vector3f& vertex : mesh.vertices) vertex += moved;
-  return make_thing("hand", mesh, 0.08F);
+  return make_asset("hand", mesh, 0.08F);
 }
 
 /// The share of the thing's silhouette that the hand hides in a view.

@@ -60,7 +60,7 @@ Placed make_block(const Leaning& leaning, const Eigen::AlignedBox3d& object, Ran
           ? wood({256, 256}, random)
           : plain({256, 256}, hsv(random.uniform(0, 360), random.uniform(0.1, 0.7), random.uniform(0.3, 0.9)), 0.05,
                   random);
-  Placed block{make_thing("block", finish_object(box(size, cover)), 0.1F), Eigen::Isometry3d::Identity(), 0, true};
+  Placed block{make_asset("block", finish_object(box(size, cover)), 0.1F), Eigen::Isometry3d::Identity(), 0, true};
   block.T_world_object.translation() << leaning.edge_m + 0.5 * size.x() + 1e-5, object.center().y(), 0.5 * size.z();
   return block;
 }

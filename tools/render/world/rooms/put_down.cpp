@@ -22,9 +22,9 @@ double radians(double degrees) {
 }
 
 // An attitude that stays on the slope; first the family, since a can has many sides and two ends.
-RestingAttitude steady_attitude(const Thing& thing, double slope_rad, Random& random) {
+StablePose steady_attitude(const Thing& thing, double slope_rad, Random& random) {
   std::vector<RestingFamily> steady;
-  for (const RestingFamily& family : resting_families(thing.mesh)) {
+  for (const RestingFamily& family : find_stable_poses(thing.mesh)) {
     if (family.front().steepest_slope_rad() >= slope_rad + kReserveRad) steady.push_back(family);
   }
   require(!steady.empty(), "{}: no attitude that stays on a slope of {:.2f} rad", thing.name, slope_rad);
@@ -46,7 +46,7 @@ ThingPtr make_wedge(const Eigen::Vector2d& half, double slope_rad, Random& rando
   const cv::Mat cover =
       plain({256, 256}, hsv(random.uniform(0, 360), random.uniform(0.1, 0.5), random.uniform(0.3, 0.8)), 0.05, random);
   const Mesh mesh = prism({{-x, 0}, {x, 0}, {x, kThinEndM + rise}, {-x, kThinEndM}}, 2.0 * half.y(), cover, cover);
-  return make_thing("wedge", finish_object(mesh), 0.1F);
+  return make_asset("wedge", finish_object(mesh), 0.1F);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ Group put_lying(const ThingPtr& thing, int object_id, Random& random) {
 
 Group put_on_wedge(const ThingPtr& thing, int object_id, Random& random) {
   const double slope_rad = radians(random.uniform(kLeastSlopeDeg, kMostSlopeDeg));
-  const RestingAttitude attitude = steady_attitude(*thing, slope_rad, random);
+  const StablePose attitude = steady_attitude(*thing, slope_rad, random);
   const Eigen::AngleAxisd turn(random.uniform(-M_PI, M_PI), Eigen::Vector3d::UnitZ());
   Placed placed = on_plane(thing, object_id, turn * attitude.R_table_object);
   const Eigen::Vector2d half = half_extent({placed}) + Eigen::Vector2d::Constant(kBesideM);

@@ -32,9 +32,9 @@ Eigen::Matrix3d turn_down(Eigen::Vector3d down) {
   return Eigen::Quaterniond::FromTwoVectors(down, -Eigen::Vector3d::UnitZ()).toRotationMatrix() * over;
 }
 
-RestingAttitude attitude_of(const TippingBody& body, const Eigen::Vector3d& down, double nearly_m) {
+StablePose attitude_of(const TippingBody& body, const Eigen::Vector3d& down, double nearly_m) {
   const Support support = body.support(down);
-  RestingAttitude attitude;
+  StablePose attitude;
   attitude.R_table_object = turn_down(down);
   attitude.centre_height_m = support.height_m;
   attitude.origin_height_m = support.height_m + down.dot(body.centre_of_mass());
@@ -43,23 +43,23 @@ RestingAttitude attitude_of(const TippingBody& body, const Eigen::Vector3d& down
 }
 
 /// The object's upward direction at rest, in the object frame.
-Eigen::Vector3d up_of(const RestingAttitude& attitude) {
+Eigen::Vector3d up_of(const StablePose& attitude) {
   return attitude.R_table_object.row(2);
 }
 
-bool akin(const RestingAttitude& a, const RestingAttitude& b) {
+bool akin(const StablePose& a, const StablePose& b) {
   return std::abs(a.centre_height_m - b.centre_height_m) < kSameHeightM &&
          std::abs(up_of(a).z() - up_of(b).z()) < kSameUpright;
 }
 
-void add_to_family(const RestingAttitude& attitude, std::vector<RestingFamily>& families) {
+void add_to_family(const StablePose& attitude, std::vector<RestingFamily>& families) {
   const auto own = std::find_if(families.begin(), families.end(),
                                 [&](const RestingFamily& family) { return akin(family.front(), attitude); });
   if (own == families.end()) {
     families.push_back({attitude});
     return;
   }
-  const bool known = std::any_of(own->begin(), own->end(), [&](const RestingAttitude& other) {
+  const bool known = std::any_of(own->begin(), own->end(), [&](const StablePose& other) {
     return up_of(other).dot(up_of(attitude)) > kSame;
   });
   if (!known) own->push_back(attitude);
@@ -67,15 +67,15 @@ void add_to_family(const RestingAttitude& attitude, std::vector<RestingFamily>& 
 
 }  // namespace
 
-double RestingAttitude::steepest_slope_rad() const {
+double StablePose::steepest_slope_rad() const {
   return std::atan2(margin_m, centre_height_m);
 }
 
-std::vector<RestingFamily> resting_families(const Mesh& mesh, double nearly_m) {
+std::vector<RestingFamily> find_stable_poses(const Mesh& mesh, double nearly_m) {
   const TippingBody body(mesh);
   std::vector<RestingFamily> families;
   for (int i = 0; i < kDrops; ++i) {
-    const RestingAttitude attitude = attitude_of(body, body.settled(spread_direction(i, kDrops)), nearly_m);
+    const StablePose attitude = attitude_of(body, body.settled(spread_direction(i, kDrops)), nearly_m);
     if (attitude.steepest_slope_rad() >= kLeastSlopeRad) add_to_family(attitude, families);
   }
   return families;

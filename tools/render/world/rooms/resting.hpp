@@ -8,7 +8,7 @@
 namespace houghstream::world {
 
 /// A way in which a thing lies still on a level table. Table frame: z up, z = 0 on its top.
-struct RestingAttitude {
+struct StablePose {
   Eigen::Matrix3d R_table_object = Eigen::Matrix3d::Identity();
   double origin_height_m = 0.0;  ///< of the object frame's origin over the table
   double centre_height_m = 0.0;  ///< of its centre of mass
@@ -19,12 +19,12 @@ struct RestingAttitude {
 };
 
 /// Attitudes that differ by a turn or a reflection only: a can's side is a family, its lid another. Never empty.
-using RestingFamily = std::vector<RestingAttitude>;
+using RestingFamily = std::vector<StablePose>;
 
 /// All families that a thing of even density, dropped in any attitude, is found in; each attitude once. What tips over
 /// on a slope of 1 degree does not rest. Surface within `nearly_m` of the table carries it too: that of a scan is never
 /// quite flat. Same result on every call. Throws InputError for a mesh without volume.
-std::vector<RestingFamily> resting_families(const Mesh& mesh, double nearly_m = 0.0);
+std::vector<RestingFamily> find_stable_poses(const Mesh& mesh, double nearly_m = 0.0);
 
 /// Those without the family that stands upright, z up. Throws InputError where nothing is left.
 std::vector<RestingFamily> lying_families(const std::vector<RestingFamily>& families);

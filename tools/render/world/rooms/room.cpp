@@ -65,7 +65,7 @@ void add_shell(Room& room, RoomStyle style, const Walls& walls, Random& random) 
   constexpr double kThick = 0.05;
   const auto add = [&room](const char* name, const Eigen::Vector3d& size, const cv::Mat& texture,
                            const Eigen::Vector3d& position) {
-    room.items.push_back(place(make_thing(name, box(size, texture), 0.03F), position));
+    room.items.push_back(place(make_asset(name, box(size, texture), 0.03F), position));
     room.items.back().casts_shadow = false;
   };
   add("floor", {2 * walls.side, depth, kThick}, floor, {0, middle, -kTableHeight - 0.5 * kThick});

@@ -70,7 +70,7 @@ Eigen::Isometry3d jerked(const Eigen::Isometry3d& T_camera_world, double seconds
 
 }  // namespace
 
-Sequence::Sequence(SequencePlan plan, WorldUse use) : plan_(std::move(plan)) {
+Sequence::Sequence(SequencePlan plan, DatasetSplit use) : plan_(std::move(plan)) {
   std::uint64_t number = kFirstWorld;  // every sequence has a room of its own
   for (const char letter : plan_.name) number = number * 31 + static_cast<std::uint8_t>(letter);
   seed_ = world_seed(use, number);
@@ -85,7 +85,7 @@ void Sequence::furnish() {
   World& world = lit_.world;
   Room room = make_room(RoomStyle::kTable, aspect_seed(seed_, kRoom));
   world.items = std::move(room.items);
-  set_light_and_photo(world, TimeOfDay::kDay, aspect_seed(seed_, kLight));
+  set_lighting(world, TimeOfDay::kDay, aspect_seed(seed_, kLight));
   TableSetter setter(world, room.table_half, aspect_seed(seed_, kTable));
   // Things that are not taught, about the objects: to both sides and behind; one is a look-alike.
   const int alike = kClassCount + 1 + setter.random().below(kClassCount);
@@ -211,7 +211,7 @@ World Sequence::world_at(double seconds) const {
   return world;
 }
 
-SceneFrame Sequence::render(int camera, double seconds, int index) const {
+RenderedFrame Sequence::render(int camera, double seconds, int index) const {
   const LitWorld lit{world_at(seconds), lit_.shadows};
   const std::uint64_t noise = aspect_seed(aspect_seed(seed_, kNoise), static_cast<std::uint64_t>(camera));
   return render_frame(lit, T_camera_world(camera, seconds), aspect_seed(noise, static_cast<std::uint64_t>(index)));

@@ -20,14 +20,14 @@ struct SequenceTruth {
 /// be made from several threads at once.
 class Sequence {
  public:
-  Sequence(SequencePlan plan, WorldUse use);
+  Sequence(SequencePlan plan, DatasetSplit use);
 
   const SequencePlan& plan() const { return plan_; }
   int cameras() const;
   SequenceTruth truth(double seconds) const;
 
-  /// What a camera sees then. Its objects are those of SceneFrame; the utime is left 0. `index` names the noise.
-  SceneFrame render(int camera, double seconds, int index) const;
+  /// What a camera sees then. Its objects are those of RenderedFrame; the utime is left 0. `index` names the noise.
+  RenderedFrame render(int camera, double seconds, int index) const;
 
  private:
   /// A hand that comes, moves an actor from one stop to the next, and goes.

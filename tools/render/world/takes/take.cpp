@@ -55,7 +55,7 @@ void Take::meter_light(int threads) {
   }
 }
 
-SceneFrame Take::render(int index) const {
+RenderedFrame Take::render(int index) const {
   const double now = time_of(index);
   const double exposure = exposures_.at(static_cast<std::size_t>(index));
   LitWorld lit_world = lit_at(now);

@@ -16,7 +16,7 @@ class Take {
   Take(const TakePlan& plan, int frames, int threads);
 
   /// Frame `index`, with its truth at the time of its middle row. The utime is left 0. const calls are thread-safe.
-  SceneFrame render(int index) const;
+  RenderedFrame render(int index) const;
 
  private:
   double time_of(int index) const { return seconds_ * index / (frames_ - 1); }

@@ -21,7 +21,7 @@ constexpr std::array<std::pair<const char*, TakeKind>, 12> kShown = {{{"bowl", T
 
 }  // namespace
 
-std::vector<NumberedTake> twelve_objects_takes(WorldUse use, int world, double seconds) {
+std::vector<NumberedTake> twelve_objects_takes(DatasetSplit use, int world, double seconds) {
   std::vector<NumberedTake> takes;
   for (const auto& [name, kind] : kShown) {
     const std::uint64_t room = static_cast<std::uint64_t>(world) * kShown.size() + takes.size() / 2;

@@ -18,6 +18,6 @@ struct NumberedTake {
 /// Both takes of the twelve objects of the scenes objects_20_b, _d and _f, from plain (bowl, tumbler, teapot) to
 /// printed (cartons, cans): eight before a camera that is carried round them, two on a turntable, two turned by hand.
 /// Every object has a room of its own, which both takes share. `world` names a set of rooms and movements.
-std::vector<NumberedTake> twelve_objects_takes(WorldUse use, int world, double seconds);
+std::vector<NumberedTake> twelve_objects_takes(DatasetSplit use, int world, double seconds);
 
 }  // namespace houghstream::world

@@ -71,7 +71,7 @@ void TakeStage::furnish(const TakePlan& plan) {
   Random random(aspect_seed(own, kTable));
   Room room = make_room(chance(random, 0.5) ? RoomStyle::kTable : RoomStyle::kMeeting, aspect_seed(own, kRoom));
   world_.items = std::move(room.items);
-  set_light_and_photo(world_, plan.number % 4 == 3 ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, kLight));
+  set_lighting(world_, plan.number % 4 == 3 ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, kLight));
   world_.focus_radius_m = kShadowRadiusM;
   TableSetter setter(world_, room.table_half, aspect_seed(own, kTable));
   for (int i = 0; i < 5; ++i) {
@@ -106,7 +106,7 @@ void TakeStage::put_object(const TakePlan& plan) {
 void TakeStage::add_turntable(const TakePlan& plan) {
   Random random(aspect_seed(world_seed(plan.use, kFirstWorld + plan.number), kTurning));
   const cv::Mat cover = plain({256, 256}, hsv(random.uniform(0, 360), 0.1, random.uniform(0.3, 0.8)), 0.05, random);
-  const ThingPtr disc = make_thing("turntable", turned_mesh({{0.16, 0.0}, {0.16, kDiscM}}, cover), 0.08F);
+  const ThingPtr disc = make_asset("turntable", turned_mesh({{0.16, 0.0}, {0.16, kDiscM}}, cover), 0.08F);
   turntable_ = world_.items.size();
   world_.items.push_back({disc, Eigen::Isometry3d::Identity(), 0, true});
   world_.items.back().T_world_object.translate(Eigen::Vector3d(0.0, 0.0, 0.5 * kDiscM));

@@ -27,7 +27,7 @@ struct TakePlan {
   int object_id = 1;  ///< as of make_taught_object()
   TakeKind kind = TakeKind::kHandHeld;
   bool laid_down = false;  ///< on its side or turned over; else upright
-  WorldUse use = WorldUse::kTest;
+  DatasetSplit use = DatasetSplit::kTest;
   std::uint64_t number = 0;  ///< of the world: takes of one number are of one room, whatever its objects do
   double seconds = 16.0;
 };

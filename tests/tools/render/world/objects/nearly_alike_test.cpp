@@ -36,7 +36,7 @@ TEST(NearlyAlike, TheNextOfItsKindIsAFewMillimetresOff) {
   double sum_m = 0.0;
   for (int seed = 0; seed < kSeeds; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
-    const ThingPtr next = next_of_its_kind(*box.thing, random);
+    const ThingPtr next = make_instance_variant(*box.thing, random);
     ASSERT_EQ(next->mesh.vertices.size(), box.thing->mesh.vertices.size());
     EXPECT_EQ(next->mesh.triangles.size(), box.thing->mesh.triangles.size());
     const double bent_m = std::sqrt(bent_by_m2(box.thing->mesh, next->mesh));
@@ -55,9 +55,9 @@ TEST(NearlyAlike, TheSameSeedGivesTheSameShapeAndTheColoursStay) {
   Random a(7);
   Random b(7);
   Random other(8);
-  const ThingPtr first = next_of_its_kind(*box.thing, a);
-  EXPECT_EQ(first->mesh.vertices, next_of_its_kind(*box.thing, b)->mesh.vertices);
-  EXPECT_NE(first->mesh.vertices, next_of_its_kind(*box.thing, other)->mesh.vertices);
+  const ThingPtr first = make_instance_variant(*box.thing, a);
+  EXPECT_EQ(first->mesh.vertices, make_instance_variant(*box.thing, b)->mesh.vertices);
+  EXPECT_NE(first->mesh.vertices, make_instance_variant(*box.thing, other)->mesh.vertices);
   EXPECT_EQ(first->mesh.colours, box.thing->mesh.colours);
   EXPECT_EQ(first->mesh.uvs, box.thing->mesh.uvs);
   EXPECT_EQ(first->mip_levels.size(), box.thing->mip_levels.size());
@@ -67,7 +67,7 @@ TEST(NearlyAlike, ALookAlikeDiffersInSizeOrColours) {
   const TaughtObject box = make_taught_object(2);
   for (int seed = 0; seed < kSeeds; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
-    const ThingPtr other = look_alike(*box.thing, random);
+    const ThingPtr other = make_hard_negative(*box.thing, random);
     const Eigen::Vector3f sizes = mesh_bounds(other->mesh).sizes().cwiseQuotient(mesh_bounds(box.thing->mesh).sizes());
     const bool other_size = (sizes - Eigen::Vector3f::Ones()).cwiseAbs().maxCoeff() > 0.05F;
     const bool other_colours =

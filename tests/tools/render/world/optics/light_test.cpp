@@ -7,7 +7,7 @@ namespace {
 
 World lit(TimeOfDay time, std::uint64_t seed) {
   World world;
-  set_light_and_photo(world, time, seed);
+  set_lighting(world, time, seed);
   return world;
 }
 

@@ -6,9 +6,9 @@ namespace houghstream::world {
 namespace {
 
 TEST(Photo, ExposureBringsDarkAndBrightRoomsCloser) {
-  const PhotoSettings settings;
+  const ColourCameraSettings settings;
   const auto mean = [&](double level) {
-    return cv::mean(take_photo(cv::Mat(60, 80, CV_32FC3, cv::Scalar::all(level)), settings, 1))[1];
+    return cv::mean(simulate_colour_camera(cv::Mat(60, 80, CV_32FC3, cv::Scalar::all(level)), settings, 1))[1];
   };
   EXPECT_GT(mean(0.05), 60.0);
   EXPECT_LT(mean(1.0), 190.0);
@@ -17,14 +17,14 @@ TEST(Photo, ExposureBringsDarkAndBrightRoomsCloser) {
 
 TEST(Photo, NoiseFollowsTheSeed) {
   const cv::Mat grey(60, 80, CV_32FC3, cv::Scalar::all(0.2));
-  const cv::Mat first = take_photo(grey, {}, 1);
-  EXPECT_EQ(cv::norm(first, take_photo(grey, {}, 1), cv::NORM_INF), 0.0);
-  EXPECT_GT(cv::norm(first, take_photo(grey, {}, 2), cv::NORM_INF), 0.0);
+  const cv::Mat first = simulate_colour_camera(grey, {}, 1);
+  EXPECT_EQ(cv::norm(first, simulate_colour_camera(grey, {}, 1), cv::NORM_INF), 0.0);
+  EXPECT_GT(cv::norm(first, simulate_colour_camera(grey, {}, 2), cv::NORM_INF), 0.0);
   cv::Scalar mean;
   cv::Scalar deviation;
-  PhotoSettings silent;
+  ColourCameraSettings silent;
   silent.shot_noise = silent.read_noise = silent.vignetting = 0.0;
-  cv::meanStdDev(take_photo(grey, silent, 1), mean, deviation);
+  cv::meanStdDev(simulate_colour_camera(grey, silent, 1), mean, deviation);
   EXPECT_EQ(deviation[0], 0.0);
 }
 
@@ -36,13 +36,13 @@ cv::Mat two_colours() {
 }
 
 TEST(ColourResponse, AsItStandsChangesNothing) {
-  EXPECT_EQ(cv::norm(processed_photo(two_colours(), {}), two_colours(), cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(apply_camera_response(two_colours(), {}), two_colours(), cv::NORM_INF), 0.0);
 }
 
 TEST(ColourResponse, EachStepDoesWhatItSays) {
   const cv::Mat photo = two_colours();
   const cv::Point middle(20, 30);
-  const auto changed = [&](const ColourResponse& response) { return processed_photo(photo, response); };
+  const auto changed = [&](const ColourResponse& response) { return apply_camera_response(photo, response); };
   ColourResponse cool;
   cool.white_balance_bgr = {1.1, 1.0, 0.9};
   EXPECT_EQ(changed(cool).at<cv::Vec3b>(middle), cv::Vec3b(66, 90, 126));
@@ -67,7 +67,7 @@ TEST(ColourResponse, EachStepDoesWhatItSays) {
 
 TEST(ColourResponse, TheOtherCameraIsCoolerBrighterAndStronger) {
   const cv::Mat photo = two_colours();
-  const cv::Mat other = processed_photo(photo, other_colour_camera());
+  const cv::Mat other = apply_camera_response(photo, other_colour_camera());
   const cv::Scalar before = cv::mean(photo);
   const cv::Scalar after = cv::mean(other);
   EXPECT_GT(after[0] / after[2], 1.1 * before[0] / before[2]);

@@ -13,9 +13,9 @@ const Camera kShadingCamera{160, 120, 150.0, 150.0, 79.5, 59.5};
 World floor_under_a_plate() {
   World world;
   const cv::Mat white(32, 32, CV_8UC3, cv::Scalar::all(255));
-  Placed floor{make_thing("floor", box({2, 2, 0.1}, white), 0.0F), Eigen::Isometry3d::Identity(), 0, true};
+  Placed floor{make_asset("floor", box({2, 2, 0.1}, white), 0.0F), Eigen::Isometry3d::Identity(), 0, true};
   floor.T_world_object.translate(Eigen::Vector3d(0, 0, -0.05));
-  Placed plate{make_thing("plate", box({0.2, 0.2, 0.01}, white), 0.0F), Eigen::Isometry3d::Identity(), 0, true};
+  Placed plate{make_asset("plate", box({0.2, 0.2, 0.01}, white), 0.0F), Eigen::Isometry3d::Identity(), 0, true};
   plate.T_world_object.translate(Eigen::Vector3d(0.3, 0, 0.3));
   world.items = {floor, plate};
   world.lights = {Light{{2.0, 0.0, 2.0}, Eigen::Vector3f::Ones(), 0.01, true}};
@@ -42,7 +42,7 @@ TEST(Shading, TextureIsWhereItBelongs) {
   World world;
   cv::Mat halves(64, 64, CV_8UC3, cv::Scalar(255, 0, 0));
   halves.colRange(32, 64).setTo(cv::Scalar(0, 0, 255));
-  world.items = {{make_thing("sign", box({1, 0.1, 1}, halves), 0.0F), Eigen::Isometry3d::Identity(), 0, true}};
+  world.items = {{make_asset("sign", box({1, 0.1, 1}, halves), 0.0F), Eigen::Isometry3d::Identity(), 0, true}};
   const ShadedView view = shade_view(light_world(world), kShadingCamera, look_at({0, -2, 0}, {0, 0, 0}));
   const cv::Vec3f left = view.radiance.at<cv::Vec3f>(60, 60);
   const cv::Vec3f right = view.radiance.at<cv::Vec3f>(60, 100);
@@ -66,8 +66,8 @@ TEST(Shading, ColoursOfVerticesShadeAsATextureOfTheSameColour) {
   coloured.texture.release();
   coloured.uvs.clear();
   coloured.colours.assign(coloured.vertices.size(), colour);
-  const ShadedView by_texture = seen_from_a_corner(make_thing("box", textured, 0.3F));
-  const ShadedView by_vertex = seen_from_a_corner(make_thing("box", coloured, 0.3F));
+  const ShadedView by_texture = seen_from_a_corner(make_asset("box", textured, 0.3F));
+  const ShadedView by_vertex = seen_from_a_corner(make_asset("box", coloured, 0.3F));
   EXPECT_GT(cv::countNonZero(by_texture.geometry.id), 1000);
   double brightest = 0.0;
   cv::minMaxLoc(by_texture.radiance.reshape(1), nullptr, &brightest);
@@ -83,7 +83,7 @@ TEST(Shading, ColoursOfVerticesBlendBetweenThem) {
   for (const Eigen::Vector3f& vertex : mesh.vertices)
     mesh.colours.push_back(vertex.x() < 0.0F ? cv::Vec3b(255, 0, 0) : cv::Vec3b(0, 0, 255));
   World world;
-  world.items = {{make_thing("box", mesh, 0.0F), Eigen::Isometry3d::Identity(), 0, true}};
+  world.items = {{make_asset("box", mesh, 0.0F), Eigen::Isometry3d::Identity(), 0, true}};
   const ShadedView view = shade_view(light_world(world), kShadingCamera, look_at({0, -1, 0}, {0, 0, 0}));
   const auto at = [&](double x) {
     const Eigen::Vector2d px = kShadingCamera.project(look_at({0, -1, 0}, {0, 0, 0}) * Eigen::Vector3d(x, -0.15, 0.0));

@@ -15,7 +15,7 @@ World shaded_floor() {
   mesh.texture = cv::Mat(4, 4, CV_8UC3, cv::Scalar::all(100));
   World world;
   Placed plate;
-  plate.thing = make_thing("plate", mesh, 0.0F);
+  plate.thing = make_asset("plate", mesh, 0.0F);
   world.items.push_back(plate);
   return world;
 }

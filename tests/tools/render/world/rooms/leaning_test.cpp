@@ -26,7 +26,7 @@ double least_lean_deg(const Placed& placed, const std::vector<RestingFamily>& fa
   const Eigen::Vector3d up = placed.T_world_object.linear().row(2);
   double most_cosine = -1.0;
   for (const RestingFamily& family : families) {
-    for (const RestingAttitude& attitude : family) {
+    for (const StablePose& attitude : family) {
       most_cosine = std::max(most_cosine, up.dot(attitude.R_table_object.row(2)));
     }
   }
@@ -79,7 +79,7 @@ TEST(Leaning, TheCentreOfMassIsBetweenTableAndBlock) {
 
 TEST(Leaning, NothingLeansAsItWouldRestAndSlantsDiffer) {
   for (int id = 1; id <= kClassCount; ++id) {
-    const auto families = resting_families(make_taught_object(id).thing->mesh);
+    const auto families = find_stable_poses(make_taught_object(id).thing->mesh);
     double least = 90.0;
     double most = 0.0;
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {

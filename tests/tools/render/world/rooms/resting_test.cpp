@@ -18,21 +18,21 @@ std::size_t count(const std::vector<RestingFamily>& families) {
   return sum;
 }
 
-Eigen::Vector3d up_of(const RestingAttitude& attitude) {
+Eigen::Vector3d up_of(const StablePose& attitude) {
   return attitude.R_table_object.row(2);
 }
 
 // The family of an attitude in which `up`, object frame, points upwards; null where there is none.
 const RestingFamily* family_with(const std::vector<RestingFamily>& families, const Eigen::Vector3d& up) {
   for (const RestingFamily& family : families) {
-    for (const RestingAttitude& attitude : family) {
+    for (const StablePose& attitude : family) {
       if (up_of(attitude).dot(up) > 0.9999) return &family;
     }
   }
   return nullptr;
 }
 
-double lowest_point(const Mesh& mesh, const RestingAttitude& attitude) {
+double lowest_point(const Mesh& mesh, const StablePose& attitude) {
   double lowest = 1.0;
   for (const Eigen::Vector3f& vertex : mesh.vertices) {
     const Eigen::Vector3d point = attitude.R_table_object * vertex.cast<double>();
@@ -42,7 +42,7 @@ double lowest_point(const Mesh& mesh, const RestingAttitude& attitude) {
 }
 
 // Whether a line over the table through the centre of mass's foot has touching points on both of its sides, all round.
-bool foot_is_between_touching_points(const Mesh& mesh, const RestingAttitude& attitude) {
+bool foot_is_between_touching_points(const Mesh& mesh, const StablePose& attitude) {
   const Eigen::Vector3d foot = attitude.R_table_object * TippingBody(mesh).centre_of_mass();
   for (int degrees = 0; degrees < 360; degrees += 5) {
     const double angle = degrees * M_PI / 180.0;
@@ -63,8 +63,8 @@ TEST(Resting, StandOnTheTableWithTheirWeightOverWhatTouchesIt) {
     const TaughtObject object = make_taught_object(id);
     const Mesh& mesh = object.thing->mesh;
     SCOPED_TRACE(object.name);
-    for (const RestingFamily& family : resting_families(mesh)) {
-      for (const RestingAttitude& attitude : family) {
+    for (const RestingFamily& family : find_stable_poses(mesh)) {
+      for (const StablePose& attitude : family) {
         EXPECT_NEAR(lowest_point(mesh, attitude), 0.0, 1e-6);
         EXPECT_NEAR(attitude.R_table_object.determinant(), 1.0, 1e-9);
         EXPECT_TRUE(foot_is_between_touching_points(mesh, attitude));
@@ -75,7 +75,7 @@ TEST(Resting, StandOnTheTableWithTheirWeightOverWhatTouchesIt) {
 
 TEST(Resting, BoxRestsOnItsSixSides) {
   const Mesh mesh = box({0.1, 0.2, 0.3}, cv::Mat(8, 8, CV_8UC3, cv::Scalar::all(128)));
-  const std::vector<RestingFamily> families = resting_families(mesh);
+  const std::vector<RestingFamily> families = find_stable_poses(mesh);
   EXPECT_EQ(count(families), 6U);
   for (int axis = 0; axis < 3; ++axis) {
     const RestingFamily* family = family_with(families, Eigen::Vector3d::Unit(axis));
@@ -87,7 +87,7 @@ TEST(Resting, BoxRestsOnItsSixSides) {
 }
 
 TEST(Resting, CanStandsOnBothEndsAndLiesOnAllOfItsSide) {
-  const std::vector<RestingFamily> families = resting_families(make_taught_object(4).thing->mesh);
+  const std::vector<RestingFamily> families = find_stable_poses(make_taught_object(4).thing->mesh);
   ASSERT_EQ(families.size(), 3U);
   EXPECT_NE(family_with(families, Eigen::Vector3d::UnitZ()), nullptr);
   EXPECT_NE(family_with(families, -Eigen::Vector3d::UnitZ()), nullptr);
@@ -95,7 +95,7 @@ TEST(Resting, CanStandsOnBothEndsAndLiesOnAllOfItsSide) {
 }
 
 TEST(Resting, MugLiesOnEitherSideOfItsHandle) {
-  const std::vector<RestingFamily> families = resting_families(make_taught_object(3).thing->mesh);
+  const std::vector<RestingFamily> families = find_stable_poses(make_taught_object(3).thing->mesh);
   ASSERT_EQ(families.size(), 3U);
   for (const RestingFamily& family : families) {
     if (std::abs(up_of(family.front()).z()) > 0.9) continue;
@@ -108,7 +108,7 @@ TEST(Resting, MugLiesOnEitherSideOfItsHandle) {
 TEST(Resting, AllTaughtObjectsHaveAnotherAttitudeThanUpright) {
   for (const int id : twenty_class_ids()) {
     const TaughtObject object = make_taught_object(id);
-    EXPECT_GE(count(lying_families(resting_families(object.thing->mesh))), 1U) << object.name;
+    EXPECT_GE(count(lying_families(find_stable_poses(object.thing->mesh))), 1U) << object.name;
   }
 }
 
@@ -116,7 +116,7 @@ TEST(Resting, SurfacesWithoutVolumeAreRefused) {
   Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
-  EXPECT_THROW(resting_families(mesh), InputError);
+  EXPECT_THROW(find_stable_poses(mesh), InputError);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ SequencePlan plan_of(const std::string& name) {
 }
 
 TEST(Sequence, WhatIsPushedStaysOnTheTableAndMovesSteadilyBetweenItsStops) {
-  const Sequence sequence(plan_of("pushed"), WorldUse::kTraining);
+  const Sequence sequence(plan_of("pushed"), DatasetSplit::kTraining);
   const double height = sequence.truth(0.0).T_world_object.at(2)->translation().z();
   double before = sequence.truth(2.0).T_world_object.at(2)->translation().y();
   for (double seconds = 2.1; seconds < 4.0; seconds += 0.1) {
@@ -26,7 +26,7 @@ TEST(Sequence, WhatIsPushedStaysOnTheTableAndMovesSteadilyBetweenItsStops) {
 }
 
 TEST(Sequence, WhatIsTakenAwayIsNotThereAndComesBackElsewhere) {
-  const Sequence sequence(plan_of("removed"), WorldUse::kTraining);
+  const Sequence sequence(plan_of("removed"), DatasetSplit::kTraining);
   EXPECT_TRUE(sequence.truth(1.0).T_world_object.at(3).has_value());
   EXPECT_FALSE(sequence.truth(6.0).T_world_object.at(3).has_value());
   ASSERT_TRUE(sequence.truth(12.0).T_world_object.at(3).has_value());
@@ -34,16 +34,16 @@ TEST(Sequence, WhatIsTakenAwayIsNotThereAndComesBackElsewhere) {
 }
 
 TEST(Sequence, TheArmHidesObjectsAndThreeCamerasLookFromThreeSides) {
-  const Sequence arm(plan_of("arm"), WorldUse::kTraining);
+  const Sequence arm(plan_of("arm"), DatasetSplit::kTraining);
   const auto visible = [&](double seconds) {
     double least = 1.0;
-    const SceneFrame view = arm.render(0, seconds, 0);
-    for (const TrueObject& object : view.objects) least = std::min(least, object.visible_fraction);
+    const RenderedFrame view = arm.render(0, seconds, 0);
+    for (const GroundTruthObject& object : view.objects) least = std::min(least, object.visible_fraction);
     return view.objects.size() < 4 ? 0.0 : least;
   };
   EXPECT_GT(visible(0.0), 0.5);
   EXPECT_LT(visible(4.7), 0.5);
-  const Sequence three(plan_of("cameras"), WorldUse::kTraining);
+  const Sequence three(plan_of("cameras"), DatasetSplit::kTraining);
   ASSERT_EQ(three.cameras(), 3);
   const SequenceTruth truth = three.truth(0.0);
   for (int i = 0; i < 3; ++i) {

@@ -16,7 +16,7 @@ LitWorld post() {
   World world;
   const cv::Mat white(8, 8, CV_8UC3, cv::Scalar::all(255));
   world.items.push_back(
-      {make_thing("post", box({0.1, 4.0, 0.02}, white), 0.0F), Eigen::Isometry3d::Identity(), 1, true});
+      {make_asset("post", box({0.1, 4.0, 0.02}, white), 0.0F), Eigen::Isometry3d::Identity(), 1, true});
   return light_world(world);
 }
 

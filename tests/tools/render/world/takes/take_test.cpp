@@ -14,12 +14,12 @@ TakePlan short_plan(TakeKind kind) {
   TakePlan plan;
   plan.object_id = 108;  // a tin
   plan.kind = kind;
-  plan.use = WorldUse::kTraining;
+  plan.use = DatasetSplit::kTraining;
   plan.seconds = 6.0;
   return plan;
 }
 
-double turned_between(const SceneFrame& a, const SceneFrame& b) {
+double turned_between(const RenderedFrame& a, const RenderedFrame& b) {
   const Eigen::Matrix3d R =
       a.objects.at(0).T_camera_object.linear().transpose() * b.objects.at(0).T_camera_object.linear();
   return Eigen::AngleAxisd(R).angle();
@@ -27,7 +27,7 @@ double turned_between(const SceneFrame& a, const SceneFrame& b) {
 
 TEST(Take, TheTruthIsWhereTheObjectIsSeen) {
   const Take take(short_plan(TakeKind::kHandHeld), 61, 1);
-  const SceneFrame frame = take.render(23);
+  const RenderedFrame frame = take.render(23);
   ASSERT_EQ(frame.objects.size(), 1U);
   EXPECT_EQ(frame.objects[0].object_id, 108);
   const Mesh mesh = make_taught_object(108).thing->mesh;
@@ -39,8 +39,8 @@ TEST(Take, TheTruthIsWhereTheObjectIsSeen) {
 }
 
 TEST(Take, SameArgumentsSameFrameAndOtherThreads) {
-  const SceneFrame one = Take(short_plan(TakeKind::kTurntable), 31, 1).render(9);
-  const SceneFrame other = Take(short_plan(TakeKind::kTurntable), 31, 2).render(9);
+  const RenderedFrame one = Take(short_plan(TakeKind::kTurntable), 31, 1).render(9);
+  const RenderedFrame other = Take(short_plan(TakeKind::kTurntable), 31, 2).render(9);
   EXPECT_EQ(cv::norm(one.frame.colour, other.frame.colour, cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::norm(one.frame.depth, other.frame.depth, cv::NORM_INF), 0.0);
 }
@@ -78,14 +78,14 @@ TEST(Take, AHandTurnsTheObjectAndIsAwayBetween) {
 }
 
 TEST(TakePlans, TwelveObjectsTwiceInRoomsOfTheirOwn) {
-  const std::vector<NumberedTake> takes = twelve_objects_takes(WorldUse::kTest, 0, 16.0);
+  const std::vector<NumberedTake> takes = twelve_objects_takes(DatasetSplit::kTest, 0, 16.0);
   ASSERT_EQ(takes.size(), 24U);
   for (std::size_t i = 0; i < takes.size(); ++i) {
     EXPECT_EQ(takes[i].scene, static_cast<int>(i) + 1);
     EXPECT_EQ(takes[i].plan.laid_down, i % 2 == 1);
     EXPECT_EQ(takes[i].plan.number, i / 2);
   }
-  EXPECT_EQ(twelve_objects_takes(WorldUse::kTest, 1, 16.0).front().plan.number, 12U);
+  EXPECT_EQ(twelve_objects_takes(DatasetSplit::kTest, 1, 16.0).front().plan.number, 12U);
 }
 
 TEST(TakeStage, TheSecondTakeIsOfTheSameRoomWithTheObjectLaidDown) {
