@@ -5,7 +5,7 @@
 
 #include "pose/model/object_model.hpp"
 #include "pose/registration/candidates.hpp"
-#include "pose/registration/choice.hpp"
+#include "pose/registration/pose_selection.hpp"
 #include "pose/registration/registration.hpp"
 #include "pose/seen/region.hpp"
 #include "pose/verification/quality.hpp"

@@ -6,7 +6,7 @@
 
 #include "detector/evidence/evidence_settings.hpp"
 #include "detector/evidence/score.hpp"
-#include "detector/evidence/view_alignment.hpp"
+#include "detector/evidence/template_alignment.hpp"
 #include "detector/forest/forest_index.hpp"
 #include "detector/voting/boxes.hpp"
 #include "detector/voting/hypotheses.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "detector/evidence/view_fit.hpp"
+#include "detector/evidence/template_matching.hpp"
 #include "detector/forest/forest.hpp"
 
 namespace houghstream {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "pipeline/types/tone.hpp"
+#include "pipeline/types/brightness.hpp"
 
 namespace houghstream {
 

@@ -4,7 +4,7 @@
 #include <climits>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/features/tile_turn.hpp"
+#include "detector/features/tile_interleave.hpp"
 #include "pipeline/base/checks.hpp"
 
 namespace houghstream {

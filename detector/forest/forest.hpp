@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "detector/features/feature_settings.hpp"
-#include "detector/forest/appearance.hpp"
+#include "detector/forest/view_template.hpp"
 #include "detector/forest/pixel_test.hpp"
 #include "detector/forest/score_model.hpp"
 
@@ -92,5 +92,8 @@ Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray);
 
 /// Walks one patch down one tree: the reference that find_leaves (traversal.hpp) is held against.
 std::int32_t find_leaf(const Forest& forest, int tree, const PatchView& patch);
+
+// The names of before, for one release.
+using TrainedView [[deprecated("is ViewTemplate now")]] = ViewTemplate;
 
 }  // namespace houghstream

@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "detector/forest/wide_walk.hpp"
+#include "detector/forest/batched_traversal.hpp"
 
 namespace houghstream {
 namespace {

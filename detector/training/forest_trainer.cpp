@@ -7,7 +7,7 @@
 #include <mutex>
 #include <set>
 
-#include "detector/training/calibration.hpp"
+#include "detector/training/vote_mass.hpp"
 #include "detector/training/hard_negatives.hpp"
 #include "detector/training/score_training.hpp"
 #include "detector/training/tree_trainer.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "detector/training/calibration.hpp"
+#include "detector/training/vote_mass.hpp"
 #include "pipeline/base/checks.hpp"
 
 namespace houghstream::training {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "drivers/openni/camera_options.hpp"
-#include "drivers/openni/recorded_start.hpp"
+#include "drivers/openni/stream_start.hpp"
 #include "drivers/openni/timestamp_pairing.hpp"
 #include "pipeline/base/files.hpp"
 

@@ -8,7 +8,7 @@
 #include "drivers/files/json_file.hpp"
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/symmetry.hpp"
-#include "pipeline/types/tone.hpp"
+#include "pipeline/types/brightness.hpp"
 
 // The object store: a folder with all that is known of the taught objects, which hs-teach writes and hs-detect and
 // hs-pose take as one argument.

@@ -8,7 +8,7 @@
 #include <new>
 #include <utility>
 
-#include "drivers/store/store_state.hpp"
+#include "drivers/store/store_stamp.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/host_clock.hpp"
 #include "pipeline/base/log_line.hpp"

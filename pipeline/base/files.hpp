@@ -105,4 +105,7 @@ class AtomicFile {
 /// InputError.
 void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);
 
+// The names of before, for one release.
+using WholeFile [[deprecated("is AtomicFile now")]] = AtomicFile;
+
 }  // namespace houghstream

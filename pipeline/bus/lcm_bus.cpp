@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/limited_lines.hpp"
+#include "pipeline/base/log_throttle.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/printable.hpp"
 #include "pipeline/base/service_notice.hpp"
@@ -25,7 +25,7 @@
 #include "pipeline/bus/frame_silence.hpp"
 #include "pipeline/bus/group_membership.hpp"
 #include "pipeline/bus/lcm_url.hpp"
-#include "pipeline/bus/own_host.hpp"
+#include "pipeline/bus/local_filter.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
 
 namespace houghstream {

@@ -103,4 +103,7 @@ class LcmBus {
 /// output log. For who publishes; asked before a bus is opened.
 void require_output_log(const std::string& url, const std::string& output_log);
 
+// The names of before, for one release.
+using Arrival [[deprecated("is ReceivedMessage now")]] = ReceivedMessage;
+
 }  // namespace houghstream

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/base/limited_lines.hpp"
+#include "pipeline/base/log_throttle.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/bus/sequence_count.hpp"
 #include "pipeline/types/known_objects.hpp"

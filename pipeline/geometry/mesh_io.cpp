@@ -15,8 +15,8 @@
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/image_decoding.hpp"
 #include "pipeline/geometry/mesh.hpp"
-#include "pipeline/geometry/mesh_paint.hpp"
-#include "pipeline/geometry/mesh_structure.hpp"
+#include "pipeline/geometry/material_merge.hpp"
+#include "pipeline/geometry/mesh_validation.hpp"
 
 namespace houghstream {
 namespace {

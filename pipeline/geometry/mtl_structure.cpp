@@ -3,7 +3,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
-#include "pipeline/geometry/mesh_structure.hpp"
+#include "pipeline/geometry/mesh_validation.hpp"
 #include "pipeline/geometry/mesh_text.hpp"
 
 namespace houghstream {

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/geometry/mesh_structure.hpp"
+#include "pipeline/geometry/mesh_validation.hpp"
 #include "pipeline/geometry/mesh_text.hpp"
 
 namespace houghstream {

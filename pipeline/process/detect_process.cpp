@@ -4,9 +4,9 @@
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
-#include "pipeline/process/look_budget.hpp"
-#include "pipeline/process/newest_of_each.hpp"
-#include "pipeline/process/pair_inbox.hpp"
+#include "pipeline/process/detection_throttle.hpp"
+#include "pipeline/process/latest_per_channel.hpp"
+#include "pipeline/process/frame_synchroniser.hpp"
 #include "pipeline/process/process_loop.hpp"
 
 namespace houghstream {

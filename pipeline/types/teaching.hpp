@@ -49,4 +49,7 @@ struct Teaching {
 /// How many of the directions were seen.
 int count_seen(const Teaching& teaching);
 
+// The names of before, for one release.
+using SeenDirection [[deprecated("is ViewDirection now")]] = ViewDirection;
+
 }  // namespace houghstream

@@ -6,7 +6,7 @@
 
 #include "pipeline/base/parallel.hpp"
 #include "pose/model/angles.hpp"
-#include "pose/registration/turn_search.hpp"
+#include "pose/registration/rotation_search.hpp"
 #include "pose/seen/depth_score.hpp"
 #include "pose/verification/pose_decision.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
-#include "pose/fusion/grid_surface.hpp"
+#include "pose/fusion/surface_nets.hpp"
 #include "pose/fusion/view_colours.hpp"
 
 namespace houghstream::fusion {

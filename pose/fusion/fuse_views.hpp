@@ -6,7 +6,7 @@
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/types/training_view.hpp"
 #include "pose/fusion/axis_alignment.hpp"
-#include "pose/fusion/distance_grid.hpp"
+#include "pose/fusion/tsdf_volume.hpp"
 
 namespace houghstream::fusion {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pipeline/base/parallel.hpp"
-#include "pose/fusion/shade.hpp"
+#include "pose/fusion/view_shading.hpp"
 
 namespace houghstream::fusion {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/symmetry.hpp"
-#include "pose/model/surface_tree.hpp"
+#include "pose/model/mesh_bvh.hpp"
 
 namespace houghstream {
 

@@ -60,4 +60,7 @@ struct ShiftSearch {
 DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                             const ShiftSearch& search);
 
+// The names of before, for one release.
+using ViewLook [[deprecated("is ProjectedView now")]] = ProjectedView;
+
 }  // namespace houghstream

@@ -6,7 +6,7 @@
 
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
-#include "pipeline/types/tone.hpp"
+#include "pipeline/types/brightness.hpp"
 #include "pose/model/object_model.hpp"
 
 namespace houghstream {
@@ -80,5 +80,9 @@ ObjectObservation observe_object(const FrameContext& seen, const Detection& dete
 
 /// Metres from where the object was detected to where it is at this pose.
 double distance_from_detected(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object);
+
+// The names of before, for one release.
+using SeenFrame [[deprecated("is FrameContext now")]] = FrameContext;
+using SeenObject [[deprecated("is ObjectObservation now")]] = ObjectObservation;
 
 }  // namespace houghstream

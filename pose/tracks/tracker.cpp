@@ -9,7 +9,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/log_odds.hpp"
 #include "pose/tracks/class_names.hpp"
-#include "pose/tracks/looked_for.hpp"
+#include "pose/tracks/searched_classes.hpp"
 #include "pose/tracks/world_clock.hpp"
 
 namespace houghstream::tracks {

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "pipeline/base/limited_lines.hpp"
+#include "pipeline/base/log_throttle.hpp"
 #include "pipeline/bus/sequence_count.hpp"
 #include "pipeline/types/frame_id.hpp"
 

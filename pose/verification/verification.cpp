@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "pipeline/base/no_value.hpp"
-#include "pipeline/geometry/across_outline.hpp"
+#include "pipeline/geometry/boundary_sample.hpp"
 #include "pipeline/geometry/renderer.hpp"
 
 namespace houghstream {

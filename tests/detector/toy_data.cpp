@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "detector/forest/relief_tilt.hpp"
+#include "detector/forest/off_axis_slope.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "pipeline/base/random.hpp"
 

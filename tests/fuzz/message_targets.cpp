@@ -5,7 +5,7 @@
 #include "pipeline/messages/wire_check.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
 #include "tests/tools/log/recordings.hpp"
-#include "tools/log/foreign_frames.hpp"
+#include "tools/log/third_party_frames.hpp"
 #include "tools/log/message_types.hpp"
 
 namespace houghstream::fuzz {

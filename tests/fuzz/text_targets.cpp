@@ -7,7 +7,7 @@
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/wire_check.hpp"
 #include "pipeline/types/camera.hpp"
-#include "pose/tracks/camera_places.hpp"
+#include "pose/tracks/camera_extrinsics.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
 #include "tools/common/key_values.hpp"
 #include "tools/stream/shell_words.hpp"

@@ -14,7 +14,7 @@
 #include <type_traits>
 
 #include "pipeline/base/checks.hpp"
-#include "tools/common/command_faults.hpp"
+#include "tools/common/command_errors.hpp"
 #include "tools/common/key_values.hpp"
 
 namespace houghstream {

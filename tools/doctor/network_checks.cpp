@@ -12,7 +12,7 @@
 #include "pipeline/base/printable.hpp"
 #include "pipeline/bus/frame_silence.hpp"
 #include "pipeline/bus/lcm_url.hpp"
-#include "pipeline/bus/own_host.hpp"
+#include "pipeline/bus/local_filter.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
 
 namespace houghstream::doctor {

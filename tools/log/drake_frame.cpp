@@ -6,7 +6,7 @@
 #include "pipeline/base/image_decoding.hpp"
 #include "pipeline/messages/codecs.hpp"
 #include "pipeline/types/frame.hpp"
-#include "tools/log/foreign_frames.hpp"
+#include "tools/log/third_party_frames.hpp"
 #include "tools/log/image_parts.hpp"
 
 namespace houghstream::log_tools {

@@ -18,7 +18,7 @@
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 #include "tools/common/progress_line.hpp"
-#include "tools/log/foreign_frames.hpp"
+#include "tools/log/third_party_frames.hpp"
 #include "tools/log/klg_file.hpp"
 #include "tools/log/message_types.hpp"
 

@@ -13,7 +13,7 @@
 #include "tools/common/mesh_size.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
-#include "tools/pose/kept_models.hpp"
+#include "tools/pose/model_cache.hpp"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "pose/model/surface_colour.hpp"
-#include "pose/model/surface_tree.hpp"
+#include "pose/model/mesh_bvh.hpp"
 
 namespace houghstream::teach {
 namespace {

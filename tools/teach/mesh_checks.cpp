@@ -10,7 +10,7 @@
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pose/model/surface_tree.hpp"
+#include "pose/model/mesh_bvh.hpp"
 #include "tools/common/mesh_size.hpp"
 
 namespace houghstream::teach {

@@ -8,7 +8,7 @@
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/files/image_file.hpp"
 #include "drivers/store/object_store.hpp"
-#include "drivers/store/store_build.hpp"
+#include "drivers/store/store_transaction.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/common/stored_forest.hpp"
 #include "tools/teach/contact_sheet.hpp"

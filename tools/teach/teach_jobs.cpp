@@ -13,7 +13,7 @@
 #include "detector/training/object_removal.hpp"
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/store/object_store.hpp"
-#include "drivers/store/store_build.hpp"
+#include "drivers/store/store_transaction.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/parallel.hpp"
@@ -21,8 +21,8 @@
 #include "tools/common/stored_quality.hpp"
 #include "tools/teach/contact_sheet.hpp"
 #include "tools/teach/lookalikes.hpp"
-#include "tools/teach/taught_forest.hpp"
-#include "tools/teach/taught_views.hpp"
+#include "tools/teach/store_forest.hpp"
+#include "tools/teach/store_views.hpp"
 
 namespace houghstream::teach {
 namespace {

@@ -8,8 +8,8 @@
 #include "detector/training/profiles.hpp"
 #include "tools/render/world/mesh_views.hpp"
 #include "tools/teach/mesh_sources.hpp"
-#include "tools/teach/practice.hpp"
-#include "tools/teach/training_rooms.hpp"
+#include "tools/teach/score_calibration.hpp"
+#include "tools/teach/background_images.hpp"
 
 namespace houghstream::teach {
 

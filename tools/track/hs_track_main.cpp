@@ -5,7 +5,7 @@
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
-#include "pose/tracks/camera_places.hpp"
+#include "pose/tracks/camera_extrinsics.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/track/track_models.hpp"
 #include "tools/track/track_process.hpp"

@@ -5,18 +5,18 @@
 #include <deque>
 #include <mutex>
 
-#include "pipeline/base/limited_lines.hpp"
+#include "pipeline/base/log_throttle.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/status_reporter.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
-#include "pipeline/process/byte_count.hpp"
-#include "pipeline/process/pair_inbox.hpp"
+#include "pipeline/process/byte_budget.hpp"
+#include "pipeline/process/frame_synchroniser.hpp"
 #include "pipeline/process/process_loop.hpp"
 #include "pipeline/types/shifted.hpp"
 #include "tools/track/recent_detections.hpp"
-#include "tools/track/silence.hpp"
+#include "tools/track/heartbeat_monitor.hpp"
 #include "tools/track/world_frame.hpp"
 
 namespace houghstream::track {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "pipeline/types/frame_id.hpp"
-#include "pose/tracks/camera_places.hpp"
+#include "pose/tracks/camera_extrinsics.hpp"
 
 namespace houghstream::track {
 

@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/limited_lines.hpp"
+#include "pipeline/base/log_throttle.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
-#include "pipeline/process/pair_inbox.hpp"
+#include "pipeline/process/frame_synchroniser.hpp"
 #include "tools/view/preview.hpp"
 
 namespace houghstream::view {

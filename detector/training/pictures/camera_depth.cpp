@@ -3,7 +3,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/training/pictures/camera_variation.hpp"
+#include "detector/training/pictures/camera_randomisation.hpp"
 #include "detector/training/pictures/composites.hpp"
 #include "pipeline/base/no_value.hpp"
 

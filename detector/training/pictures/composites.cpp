@@ -6,8 +6,8 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/forest/relief_tilt.hpp"
-#include "detector/training/pictures/clearing.hpp"
+#include "detector/forest/off_axis_slope.hpp"
+#include "detector/training/pictures/dehazing.hpp"
 
 namespace houghstream::training {
 namespace {

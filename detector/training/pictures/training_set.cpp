@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "detector/training/pictures/camera_variation.hpp"
+#include "detector/training/pictures/camera_randomisation.hpp"
 #include "detector/training/pictures/composites.hpp"
 #include "detector/training/pictures/sensor_errors.hpp"
 #include "pipeline/base/checks.hpp"

@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "detector/training/pictures/camera_variation.hpp"
+#include "detector/training/pictures/camera_randomisation.hpp"
 #include "detector/training/pictures/composites.hpp"
 #include "detector/training/pictures/sensor_errors.hpp"
 

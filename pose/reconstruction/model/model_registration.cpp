@@ -8,7 +8,7 @@
 #include "pipeline/base/parallel.hpp"
 #include "pipeline/base/random.hpp"
 #include "pose/model/object_model.hpp"
-#include "pose/model/surface_tree.hpp"
+#include "pose/model/mesh_bvh.hpp"
 #include "pose/motion/twist.hpp"
 #include "pose/reconstruction/map/frame_alignment.hpp"
 

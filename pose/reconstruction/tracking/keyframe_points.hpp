@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 
-#include "pose/reconstruction/choice/object_choice.hpp"
+#include "pose/reconstruction/choice/object_selection.hpp"
 #include "pose/reconstruction/map/keyframe_map.hpp"
 
 namespace houghstream::reconstruction {

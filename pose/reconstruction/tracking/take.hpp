@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "pipeline/types/frame_id.hpp"
-#include "pose/reconstruction/choice/object_choice.hpp"
+#include "pose/reconstruction/choice/object_selection.hpp"
 #include "pose/reconstruction/map/keyframe_map.hpp"
-#include "pose/reconstruction/map/sphere_of_directions.hpp"
+#include "pose/reconstruction/map/view_sphere.hpp"
 
 namespace houghstream::reconstruction {
 

@@ -8,9 +8,9 @@
 
 #include "pose/motion/last_step.hpp"
 #include "pose/reconstruction/tracking/frame_follower.hpp"
-#include "pose/reconstruction/tracking/lost_frames.hpp"
+#include "pose/reconstruction/tracking/relocalisation.hpp"
 #include "pose/reconstruction/tracking/take.hpp"
-#include "pose/reconstruction/tracking/what_moves.hpp"
+#include "pose/reconstruction/tracking/motion_classification.hpp"
 
 namespace houghstream::reconstruction {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/evidence/view_fit.hpp"
+#include "detector/evidence/template_matching.hpp"
 #include "detector/features/working_frame.hpp"
 #include "tests/detector/toy_data.hpp"
 

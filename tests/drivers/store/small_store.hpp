@@ -5,7 +5,7 @@
 
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/store/object_store.hpp"
-#include "drivers/store/store_build.hpp"
+#include "drivers/store/store_transaction.hpp"
 #include "tests/pipeline/geometry/tetrahedron.hpp"
 #include "tests/test_files.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/event_log.hpp"
-#include "pipeline/process/pair_inbox.hpp"
+#include "pipeline/process/frame_synchroniser.hpp"
 #include "tests/pipeline/process_test.hpp"
 
 namespace houghstream {

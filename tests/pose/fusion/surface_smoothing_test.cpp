@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "pipeline/base/random.hpp"
-#include "pose/fusion/grid_surface.hpp"
+#include "pose/fusion/surface_nets.hpp"
 
 namespace houghstream::fusion {
 namespace {

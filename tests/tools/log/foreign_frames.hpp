@@ -4,7 +4,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "tests/tools/log/recordings.hpp"
-#include "tools/log/foreign_frames.hpp"
+#include "tools/log/third_party_frames.hpp"
 
 namespace houghstream::log_tools {
 

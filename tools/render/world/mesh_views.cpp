@@ -14,7 +14,7 @@
 #include "tools/render/world/optics/light.hpp"
 #include "tools/render/world/optics/photo.hpp"
 #include "tools/render/world/optics/shading.hpp"
-#include "tools/render/world/rooms/resting.hpp"
+#include "tools/render/world/rooms/stable_poses.hpp"
 #include "tools/render/world/scene_frames.hpp"
 
 namespace houghstream::world {

@@ -8,7 +8,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pose/model/object_model.hpp"
-#include "pose/model/surface_tree.hpp"
+#include "pose/model/mesh_bvh.hpp"
 
 namespace houghstream {
 namespace {

@@ -1,8 +1,8 @@
 #include "tools/studies/recorded/scan_model.hpp"
 
 #include "pipeline/base/checks.hpp"
-#include "pose/fusion/grid_surface.hpp"
-#include "pose/model/surface_tree.hpp"
+#include "pose/fusion/surface_nets.hpp"
+#include "pose/model/mesh_bvh.hpp"
 #include "tools/studies/recorded/mesh_crop.hpp"
 
 namespace houghstream {

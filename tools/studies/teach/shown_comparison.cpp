@@ -5,7 +5,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/geometry/renderer.hpp"
-#include "pose/model/surface_tree.hpp"
+#include "pose/model/mesh_bvh.hpp"
 #include "tools/studies/recorded/mesh_alignment.hpp"
 
 namespace houghstream::studies {

@@ -6,7 +6,7 @@
 #include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
-#include "pose/tracks/camera_places.hpp"
+#include "pose/tracks/camera_extrinsics.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/studies/tracks/sequence_log.hpp"
 #include "tools/studies/tracks/track_metrics.hpp"

@@ -7,17 +7,17 @@
 #include <functional>
 
 #include "drivers/store/object_store.hpp"
-#include "drivers/store/store_build.hpp"
+#include "drivers/store/store_transaction.hpp"
 #include "pipeline/base/checks.hpp"
-#include "pose/fusion/grid_surface.hpp"
+#include "pose/fusion/surface_nets.hpp"
 #include "pose/reconstruction/model/take_model.hpp"
 #include "pose/reconstruction/tracking/take_placer.hpp"
 #include "tools/teach/show/camera_take.hpp"
-#include "tools/teach/show/kept_showing.hpp"
+#include "tools/teach/show/session_archive.hpp"
 #include "tools/teach/show/show_report.hpp"
 #include "tools/teach/show/show_sources.hpp"
-#include "tools/teach/show/shown_teaching.hpp"
-#include "tools/teach/show/telling.hpp"
+#include "tools/teach/show/show_teaching.hpp"
+#include "tools/teach/show/progress_reporter.hpp"
 #include "tools/teach/show/turntable_videos.hpp"
 #include "tools/teach/teach_jobs.hpp"
 

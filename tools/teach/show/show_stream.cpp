@@ -6,7 +6,7 @@
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
-#include "pose/reconstruction/map/sphere_of_directions.hpp"
+#include "pose/reconstruction/map/view_sphere.hpp"
 #include "tools/teach/show/stream_take.hpp"
 #include "tools/teach/show/teaching_publisher.hpp"
 

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "pipeline/base/limited_lines.hpp"
+#include "pipeline/base/log_throttle.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/messages/channels.hpp"
 #include "pipeline/types/frame.hpp"

@@ -11,7 +11,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "pose/fusion/fuse_views.hpp"
 #include "pose/reconstruction/model/model_registration.hpp"
-#include "pose/reconstruction/model/outline_placement.hpp"
+#include "pose/reconstruction/model/silhouette_alignment.hpp"
 #include "pose/reconstruction/model/take_model.hpp"
 
 namespace houghstream::teach {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/training/pictures/camera_variation.hpp"
+#include "detector/training/pictures/camera_randomisation.hpp"
 
 namespace houghstream::training {
 namespace {

@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
-#include "detector/training/pictures/camera_variation.hpp"
+#include "detector/training/pictures/camera_randomisation.hpp"
 
 namespace houghstream::training {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "pose/motion/twist.hpp"
-#include "pose/reconstruction/map/sphere_of_directions.hpp"
+#include "pose/reconstruction/map/view_sphere.hpp"
 
 namespace houghstream::reconstruction {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pipeline/base/random.hpp"
-#include "tools/render/world/rooms/resting.hpp"
+#include "tools/render/world/rooms/stable_poses.hpp"
 
 namespace houghstream::world {
 

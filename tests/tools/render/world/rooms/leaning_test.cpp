@@ -7,7 +7,7 @@
 
 #include "tools/render/world/objects/mesh_parts.hpp"
 #include "tools/render/world/objects/objects.hpp"
-#include "tools/render/world/rooms/resting.hpp"
+#include "tools/render/world/rooms/stable_poses.hpp"
 #include "tools/render/world/rooms/tipping.hpp"
 
 namespace houghstream::world {

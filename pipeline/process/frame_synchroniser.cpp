@@ -1,0 +1,205 @@
+#include "pipeline/process/frame_synchroniser.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+
+SharedBytes shared_copy(ByteView bytes) {
+  return std::make_shared<const std::vector<std::uint8_t>>(bytes.data, bytes.data + bytes.size);
+}
+
+void FrameSynchroniser::require_size(std::size_t bytes) {
+  require(bytes <= kWaitingBytes, "results of {} bytes, expected at most {}", bytes, kWaitingBytes);
+}
+
+void FrameSynchroniser::put_frame(const FrameId& id, SharedBytes bytes) {
+  bool is_awaited = false;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    Camera& camera = camera_of(id.channel);
+    detectors_.note_frame(id);
+    ByteBudget::Held held = frame_bytes_.hold(bytes->size());
+    ++camera.frames_seen;
+    camera.frames.push_back({{id, std::move(bytes)}, ++frames_, std::move(held)});
+    if (camera.frames.size() > kHistory) camera.frames.pop_front();
+    keep_within_bytes();
+    camera.fresh = newest_first_ && ahead_;
+    drop_unmatchable(camera);
+    is_awaited = camera.fresh || !camera.waiting.empty();
+  }
+  if (is_awaited) changed_.notify_one();
+}
+
+void FrameSynchroniser::add_detections(const FrameId& id, std::vector<std::uint8_t> bytes) {
+  require_size(bytes.size());
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    Camera& camera = camera_of(id.channel);
+    detectors_.note_result(id);
+    ByteBudget::Held held = waiting_bytes_.hold(bytes.size());
+    camera.waiting.push_back(
+        {id, std::move(bytes), std::chrono::steady_clock::now(), ++arrivals_, camera.frames_seen, std::move(held)});
+    drop_unmatchable(camera);
+    keep_waiting_within_bytes();
+  }
+  changed_.notify_one();
+}
+
+FrameSynchroniser::Camera& FrameSynchroniser::camera_of(const std::string& channel) {
+  require(cameras_.size() < kCameras || cameras_.count(channel) > 0,
+          "a camera more than the {} that are listened to; expected a pattern that fewer channels match", kCameras);
+  return cameras_[channel];
+}
+
+// There are frames.
+FrameSynchroniser::Camera& FrameSynchroniser::camera_to_shorten() {
+  Camera* chosen = nullptr;
+  for (auto& [channel, camera] : cameras_) {
+    if (camera.frames.empty()) continue;
+    const bool has_more = chosen == nullptr || camera.frames.size() > chosen->frames.size();
+    const bool is_older = chosen != nullptr && camera.frames.size() == chosen->frames.size() &&
+                          camera.frames.front().number < chosen->frames.front().number;
+    if (has_more || is_older) chosen = &camera;
+  }
+  return *chosen;
+}
+
+void FrameSynchroniser::keep_within_bytes() {
+  while (frame_bytes_.total() > kHistoryBytes) {
+    Camera& camera = camera_to_shorten();
+    if (camera.frames.front().number == frames_) return;  // the last one that has come is the only one left
+    camera.frames.pop_front();
+    if (camera.frames.empty()) camera.fresh = false;
+  }
+}
+
+void FrameSynchroniser::keep_waiting_within_bytes() {
+  while (waiting_bytes_.total() > kAllWaitingBytes) {
+    const auto most = std::max_element(cameras_.begin(), cameras_.end(), [](const auto& a, const auto& b) {
+      return a.second.waiting.size() < b.second.waiting.size();
+    });
+    give_up_first(most->second);
+  }
+}
+
+std::optional<SynchronisedMessages> FrameSynchroniser::take(std::chrono::milliseconds timeout) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  Camera* next = nullptr;
+  changed_.wait_for(lock, timeout, [&] {
+    next = next_camera();
+    return next != nullptr || any_fresh() || woken_;
+  });
+  woken_ = false;
+  if (next == nullptr) return std::nullopt;
+  return take_pair(*next);
+}
+
+void FrameSynchroniser::wake() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    woken_ = true;
+  }
+  changed_.notify_one();
+}
+
+std::optional<ArrivedFrame> FrameSynchroniser::pop_unmatched_frame() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (auto& [channel, camera] : cameras_) {
+    if (std::exchange(camera.fresh, false)) return camera.frames.back().frame;
+  }
+  return std::nullopt;
+}
+
+FrameSynchroniser::Dropped FrameSynchroniser::take_dropped() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(dropped_, {});
+}
+
+void FrameSynchroniser::flush() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (auto& [channel, camera] : cameras_) {
+    while (!camera.waiting.empty()) give_up_first(camera);
+  }
+}
+
+void FrameSynchroniser::give_up_first(Camera& camera) {
+  const FrameId& id = camera.waiting.front().id;
+  if (camera.find_frame(id) == nullptr) {
+    dropped_.without_frame.push_back(id);
+  } else {
+    ++dropped_.skipped;
+  }
+  camera.waiting.pop_front();
+}
+
+const FrameSynchroniser::Kept* FrameSynchroniser::Camera::find_frame(const FrameId& id) const {
+  const auto found =
+      std::find_if(frames.rbegin(), frames.rend(), [&](const Kept& kept) { return kept.frame.id == id; });
+  return found == frames.rend() ? nullptr : &*found;
+}
+
+std::optional<std::size_t> FrameSynchroniser::Camera::first_complete() const {
+  const auto found =
+      std::find_if(waiting.begin(), waiting.end(), [&](const Waiting& w) { return find_frame(w.id) != nullptr; });
+  if (found == waiting.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - waiting.begin());
+}
+
+// The camera with a pair that has its turn: the one served longest ago, or, in a log, the one whose detections came
+// first.
+FrameSynchroniser::Camera* FrameSynchroniser::next_camera() {
+  Camera* next = nullptr;
+  std::int64_t next_rank = 0;
+  for (auto& [channel, camera] : cameras_) {
+    if (newest_first_) drop_stale(channel, camera);
+    const std::optional<std::size_t> first = camera.first_complete();
+    if (!first) continue;
+    const std::int64_t rank = newest_first_ ? camera.turn : camera.waiting[*first].number;
+    if (next != nullptr && rank >= next_rank) continue;
+    next = &camera;
+    next_rank = rank;
+  }
+  return next;
+}
+
+// Of each detector of the camera the newest complete result stays; what came before these is given up, since results
+// do not say which detector they are of.
+void FrameSynchroniser::drop_stale(const std::string& channel, Camera& camera) {
+  int left = detectors_.of(channel);
+  auto oldest = camera.waiting.end();
+  while (left > 0 && oldest != camera.waiting.begin()) {
+    --oldest;
+    if (camera.find_frame(oldest->id) != nullptr) --left;
+  }
+  if (left > 0) return;
+  dropped_.skipped += oldest - camera.waiting.begin();
+  camera.waiting.erase(camera.waiting.begin(), oldest);
+}
+
+void FrameSynchroniser::drop_unmatchable(Camera& camera) {
+  // The second condition bounds memory where detections come and frames do not.
+  while (!camera.waiting.empty() && camera.find_frame(camera.waiting.front().id) == nullptr &&
+         (camera.frames_seen - camera.waiting.front().frames_before > kWait || camera.waiting.size() > kHistory)) {
+    give_up_first(camera);
+  }
+  while (camera.waiting.size() > kWaiting) give_up_first(camera);
+}
+
+SynchronisedMessages FrameSynchroniser::take_pair(Camera& camera) {
+  const auto chosen = camera.waiting.begin() + static_cast<std::ptrdiff_t>(*camera.first_complete());
+  if (chosen->id == camera.frames.back().frame.id) camera.fresh = false;
+  const Kept& kept = *camera.find_frame(chosen->id);
+  SynchronisedMessages pair{chosen->id, kept.frame.bytes, kept.number, std::move(chosen->bytes), chosen->arrival};
+  camera.turn = ++turns_;
+  camera.waiting.erase(chosen);
+  return pair;
+}
+
+bool FrameSynchroniser::any_fresh() const {
+  return std::any_of(cameras_.begin(), cameras_.end(), [](const auto& entry) { return entry.second.fresh; });
+}
+
+}  // namespace houghstream

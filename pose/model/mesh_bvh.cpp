@@ -1,0 +1,113 @@
+#include "pose/model/mesh_bvh.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr std::uint32_t kLeafTriangles = 4;
+
+using Corners = std::array<Eigen::Vector3f, 3>;
+
+Corners corners(const Mesh& mesh, std::uint32_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+}
+
+/// Weight of `b` for the point of the segment that is nearest to `p`.
+float along_segment(const Eigen::Vector3f& p, const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  const float length_sq = (b - a).squaredNorm();
+  return length_sq > 0.0F ? std::clamp((p - a).dot(b - a) / length_sq, 0.0F, 1.0F) : 0.0F;
+}
+
+std::array<float, 3> nearest_on_edges(const Eigen::Vector3f& p, const Corners& c) {
+  std::array<float, 3> best = {1.0F, 0.0F, 0.0F};
+  float best_sq = std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const float share = along_segment(p, c[i], c[j]);
+    const float distance_sq = (c[i] + share * (c[j] - c[i]) - p).squaredNorm();
+    if (distance_sq >= best_sq) continue;
+    best_sq = distance_sq;
+    best = {0.0F, 0.0F, 0.0F};
+    best[i] = 1.0F - share;
+    best[j] = share;
+  }
+  return best;
+}
+
+/// Weights of the triangle's point nearest to `p`: below it where `p` stands over the triangle, else on an edge.
+std::array<float, 3> nearest_weights(const Eigen::Vector3f& p, const Corners& c) {
+  const Eigen::Vector3f normal = (c[1] - c[0]).cross(c[2] - c[0]);
+  const float area_sq = normal.squaredNorm();
+  if (area_sq <= 0.0F) return nearest_on_edges(p, c);
+  const float w1 = (p - c[0]).cross(c[2] - c[0]).dot(normal) / area_sq;
+  const float w2 = (c[1] - c[0]).cross(p - c[0]).dot(normal) / area_sq;
+  const float w0 = 1.0F - w1 - w2;
+  return w0 >= 0.0F && w1 >= 0.0F && w2 >= 0.0F ? std::array<float, 3>{w0, w1, w2} : nearest_on_edges(p, c);
+}
+
+}  // namespace
+
+MeshBvh::MeshBvh(const Mesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
+  require(!mesh.triangles.empty(), "mesh of {} vertices without triangles, expected a surface", mesh.vertices.size());
+  std::iota(order_.begin(), order_.end(), 0U);
+  build(0, static_cast<std::uint32_t>(order_.size()));
+}
+
+std::uint32_t MeshBvh::build(std::uint32_t first, std::uint32_t count) {
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.push_back({});
+  Eigen::AlignedBox3f box;
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    for (const Eigen::Vector3f& corner : corners(mesh_, order_[i])) box.extend(corner);
+  }
+  nodes_[index].box = box;
+  nodes_[index].first = first;
+  if (count <= kLeafTriangles) {
+    nodes_[index].count = count;
+    return index;
+  }
+  Eigen::Index side = 0;
+  box.sizes().maxCoeff(&side);
+  const auto middle = [&](std::uint32_t triangle) {
+    const Corners c = corners(mesh_, triangle);
+    return c[0][side] + c[1][side] + c[2][side];
+  };
+  const auto begin = order_.begin() + first;
+  std::nth_element(begin, begin + count / 2, begin + count,
+                   [&](std::uint32_t a, std::uint32_t b) { return middle(a) < middle(b); });
+  build(first, count / 2);
+  const std::uint32_t right = build(first + count / 2, count - count / 2);
+  nodes_[index].right = right;
+  return index;
+}
+
+void MeshBvh::search(std::uint32_t index, const Eigen::Vector3f& point, ClosestPoint& best) const {
+  const Node& node = nodes_[index];
+  if (node.box.exteriorDistance(point) >= best.distance) return;
+  for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+    const Corners c = corners(mesh_, order_[i]);
+    const std::array<float, 3> w = nearest_weights(point, c);
+    const float distance = (w[0] * c[0] + w[1] * c[1] + w[2] * c[2] - point).norm();
+    if (distance < best.distance) best = {distance, order_[i], w};
+  }
+  if (node.count > 0) return;
+  const bool right_first =
+      nodes_[node.right].box.squaredExteriorDistance(point) < nodes_[index + 1].box.squaredExteriorDistance(point);
+  search(right_first ? node.right : index + 1, point, best);
+  search(right_first ? index + 1 : node.right, point, best);
+}
+
+ClosestPoint MeshBvh::nearest(const Eigen::Vector3f& point) const {
+  ClosestPoint best;
+  best.distance = std::numeric_limits<float>::infinity();
+  search(0, point, best);
+  return best;
+}
+
+}  // namespace houghstream

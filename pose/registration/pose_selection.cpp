@@ -1,0 +1,120 @@
+#include "pose/registration/pose_selection.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "pose/model/angles.hpp"
+#include "pose/registration/rotation_search.hpp"
+
+namespace houghstream {
+namespace {
+
+struct Scored {
+  RegistrationResult result;
+  float score = 0.0F;
+};
+
+/// The steps of the choice for one object, with what they share.
+class Choice {
+ public:
+  Choice(const ObjectObservation& seen, const std::vector<RotationCandidate>& votes, const ChoiceSettings& settings)
+      : seen_(seen),
+        votes_(votes),
+        settings_(settings),
+        tolerance_{settings.tolerance_m, seen.noise},
+        distances_(correspondence_distances(seen, settings.registration)) {}
+
+  RegistrationResult best_of(const std::vector<RegistrationResult>& registered) const {
+    RegistrationResult best;
+    float best_score = -std::numeric_limits<float>::infinity();
+    for (const RegistrationResult& result : registered) take_better(result, best, best_score);
+    return best;
+  }
+
+  /// The best of `result` and of the best turns of it, registered again.
+  RegistrationResult best_turn(const RegistrationResult& result, double step_deg, double reach_deg,
+                               std::size_t most) const {
+    RegistrationResult best = result;
+    float best_score = score_of(result);
+    const RotationRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, most, settings_.turn.points};
+    for (const ScoredPose& turn : best_rotations_about_z(seen_, result.T_camera_object, range, tolerance_)) {
+      RegistrationResult again = uphill(register_coarsely(
+          seen_, turn.T_camera_object, 0.5 * (distances_.start + distances_.end), settings_.registration));
+      again.iterations += result.iterations;
+      take_better(again, best, best_score);
+    }
+    return best;
+  }
+
+  /// `result`, and it turned by half a turn about each principal axis, registered again: a box looks the same to depth
+  /// then, and only its print tells. The best first, and none that ends elsewhere.
+  std::vector<Scored> flips_of(const RegistrationResult& result) const {
+    std::vector<Scored> flips = {{result, score_of(result)}};
+    const Eigen::Vector3d middle = seen_.model.middle.cast<double>();
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::AngleAxisd half_turn(M_PI, seen_.model.axes.col(axis).cast<double>());
+      const Eigen::Isometry3d flipped =
+          result.T_camera_object * Eigen::Translation3d(middle) * half_turn * Eigen::Translation3d(-middle);
+      RegistrationResult again =
+          uphill(register_coarsely(seen_, flipped, 0.5 * (distances_.start + distances_.end), settings_.registration));
+      again.iterations += result.iterations;
+      if (is_near_detection(seen_, again, settings_.registration)) flips.push_back({again, score_of(again)});
+    }
+    std::stable_sort(flips.begin(), flips.end(), [](const Scored& a, const Scored& b) { return a.score > b.score; });
+    return flips;
+  }
+
+ private:
+  void take_better(const RegistrationResult& result, RegistrationResult& best, float& best_score) const {
+    if (!is_near_detection(seen_, result, settings_.registration)) return;
+    const float score = score_of(result);
+    if (!(score > best_score)) return;
+    best = result;
+    best_score = score;
+  }
+
+  RegistrationResult uphill(RegistrationResult result) const {
+    const RotationSearchSettings& turn = settings_.turn;
+    const HillClimb climb{turn.fine_step_deg * kRadPerDeg, turn.climb_step_m, turn.hill_climb_rounds, turn.points};
+    result.T_camera_object = hill_climb_pose(seen_, result.T_camera_object, climb, tolerance_).T_camera_object;
+    return result;
+  }
+
+  /// How depth, colour and votes speak for the result.
+  float score_of(const RegistrationResult& result) const {
+    const ScoredPose judged = score_pose_jointly(seen_, result.T_camera_object, settings_.registration.fine_points, tolerance_);
+    const float support = vote_support(votes_, result.T_camera_object, settings_.initial);
+    return judged.score * (1.0F + settings_.initial.vote_gain * support);
+  }
+
+  const ObjectObservation& seen_;
+  const std::vector<RotationCandidate>& votes_;
+  const ChoiceSettings& settings_;
+  DepthTolerance tolerance_;
+  CorrespondenceDistances distances_;
+};
+
+}  // namespace
+
+std::vector<RegistrationResult> select_poses(const ObjectObservation& seen, const std::vector<RegistrationResult>& registered,
+                                             const std::vector<RotationCandidate>& votes,
+                                             const ChoiceSettings& settings) {
+  const Choice choice(seen, votes, settings);
+  const RotationSearchSettings& turn = settings.turn;
+  const RegistrationSettings& registration = settings.registration;
+  RegistrationResult best = choice.best_of(registered);
+  if (best.inliers == 0) return {best};
+  const RegistrationResult settled = register_finely(seen, best, registration);
+  const std::vector<Scored> flips = choice.flips_of(settled);
+  const RegistrationResult turned = choice.best_turn(flips.front().result, turn.step_deg, 180.0, turn.registered);
+  std::vector<RegistrationResult> fine = {register_finely(seen, turned, registration)};
+  for (std::size_t i = 1; i < flips.size() && fine.size() <= turn.rivals; ++i) {
+    if (flips[i].score < turn.min_alternative_ratio * flips.front().score) break;
+    fine.push_back(register_finely(seen, flips[i].result, registration));
+  }
+  for (RegistrationResult& result : fine)
+    result = register_finely(seen, choice.best_turn(result, turn.fine_step_deg, turn.step_deg, 1), registration);
+  return fine;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,85 @@
+#include "pose/registration/rotation_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pose/seen/colour_score.hpp"
+#include "pose/seen/depth_score.hpp"
+
+namespace houghstream {
+namespace {
+
+/// Those that are better than both neighbours; `ring`: the last one's next is the first.
+std::vector<ScoredPose> summits(const std::vector<ScoredPose>& turns, bool ring) {
+  std::vector<ScoredPose> best;
+  const std::size_t count = turns.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool above_last = (i == 0 && !ring) || turns[i].score >= turns[(i + count - 1) % count].score;
+    const bool above_next = (i + 1 == count && !ring) || turns[i].score > turns[(i + 1) % count].score;
+    if (above_last && above_next) best.push_back(turns[i]);
+  }
+  return best;
+}
+
+Eigen::Isometry3d turned(const Eigen::Isometry3d& T_camera_object, const ObjectModel& model, double angle_rad) {
+  const Eigen::Vector3d middle = model.middle.cast<double>();
+  const Eigen::AngleAxisd turn(angle_rad, Eigen::Vector3d::UnitZ());
+  return T_camera_object * Eigen::Translation3d(middle) * turn * Eigen::Translation3d(-middle);
+}
+
+}  // namespace
+
+ScoredPose score_pose_jointly(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, int points,
+                      const DepthTolerance& tolerance) {
+  const ProjectedView look = look_at_view(seen.frame, seen.model, T_camera_object, points);
+  const float depth = score_projected_view(look, tolerance).value;
+  return {T_camera_object, joint_score(depth, compare_colours(seen.colours, look, tolerance))};
+}
+
+ScoredPose hill_climb_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, const HillClimb& climb,
+                      const DepthTolerance& tolerance) {
+  ScoredPose best = score_pose_jointly(seen, T_camera_object, climb.points, tolerance);
+  constexpr int kMotions = 8;
+  double size = 1.0;
+  int failed = 0;  // one after the other, of this size
+  for (int round = 0; round < climb.rounds; ++round) {
+    bool improved = false;
+    for (int motion = 0; motion < kMotions && failed < kMotions; ++motion) {  // a ninth would repeat the first
+      const double way = (motion % 2 == 0 ? 1.0 : -1.0) * size;
+      Eigen::Isometry3d moved = best.T_camera_object;
+      if (motion < 2) {
+        moved = turned(moved, seen.model, way * climb.step_rad);
+      } else {
+        moved.translate(way * climb.step_m * Eigen::Vector3d::Unit(motion / 2 - 1));
+      }
+      const ScoredPose next = score_pose_jointly(seen, moved, climb.points, tolerance);
+      ++failed;
+      if (!(next.score > best.score)) continue;
+      best = next;
+      improved = true;
+      failed = 0;
+    }
+    if (improved) continue;
+    size *= 0.5;
+    failed = 0;
+  }
+  return best;
+}
+
+std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                                   const RotationRange& range, const DepthTolerance& tolerance) {
+  const int steps = static_cast<int>(std::floor(range.reach_rad / range.step_rad + 1e-9));
+  const bool all_round = 2.0 * range.reach_rad >= 2.0 * M_PI - 1e-9;  // then both ends are one pose
+  std::vector<ScoredPose> turns;
+  for (int i = -steps; i <= steps - (all_round ? 1 : 0); ++i) {
+    const Eigen::Isometry3d turn = turned(T_camera_object, seen.model, i * range.step_rad);
+    turns.push_back(score_pose_jointly(seen, turn, range.points, tolerance));
+  }
+  std::vector<ScoredPose> best = summits(turns, all_round);
+  std::stable_sort(best.begin(), best.end(),
+                   [](const ScoredPose& a, const ScoredPose& b) { return a.score > b.score; });
+  best.resize(std::min(best.size(), range.most));
+  return best;
+}
+
+}  // namespace houghstream

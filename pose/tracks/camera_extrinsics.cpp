@@ -1,0 +1,212 @@
+#include "pose/tracks/camera_extrinsics.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
+#include "pipeline/base/printable.hpp"
+#include "pipeline/base/yaml_text.hpp"
+#include "pipeline/types/frame_id.hpp"
+#include "pose/motion/twist.hpp"
+
+namespace houghstream::tracks {
+namespace {
+
+constexpr std::size_t kSamples = 2048;
+
+bool equal_places(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  constexpr double kSame = 1e-6;
+  return local_coordinates_about_world(a, b).cwiseAbs().maxCoeff() < kSame;
+}
+
+Eigen::Isometry3d rigid(const Eigen::Vector3d& translation, const Eigen::Vector4d& wxyz, const std::string& of) {
+  constexpr double kUnitTolerance = 1e-2;  // written by people, with a few digits
+  constexpr double kFarthestM = 1e6;
+  require(translation.allFinite() && translation.cwiseAbs().maxCoeff() <= kFarthestM,
+          "{}: translation ({}, {}, {}), expected metres within {}", of, translation.x(), translation.y(),
+          translation.z(), kFarthestM);
+  require(std::abs(wxyz.norm() - 1.0) < kUnitTolerance, "{}: quaternion of length {:.3f}, expected 1", of, wxyz.norm());
+  return Eigen::Translation3d(translation) * Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
+}
+
+/// A camera, or another frame, in its parent.
+struct Link {
+  std::string parent;
+  Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();
+};
+using Links = std::map<std::string, Link>;
+
+template <int Count>
+Eigen::Matrix<double, Count, 1> numbers_of(const YAML::Node& node, const std::string& of) {
+  Eigen::Matrix<double, Count, 1> out;
+  require(node.IsDefined() && node.IsSequence() && node.size() == Count, "{}: expected {} numbers", of, Count);
+  for (int i = 0; i < Count; ++i) {
+    const std::optional<double> number = yaml_number(node[i]);
+    require(number.has_value(), "{}: expected {} numbers", of, Count);
+    out[i] = *number;
+  }
+  return out;
+}
+
+double number_of(const YAML::Node& node, const char* key, const std::string& of) {
+  const std::optional<double> number = yaml_number(yaml_member(node, key));
+  require(number.has_value(), "{}: no number {}", of, key);
+  return *number;
+}
+
+/// What has a damaged name, or one that another has too, would be left out without a word.
+void require_names(const YAML::Node& map, const std::set<std::string>& known, const std::string& of) {
+  for (const std::string& name : yaml_names(map, of))
+    require(known.count(name) > 0, "{}: '{}', expected one of {}", of, printable(name), fmt::join(known, ", "));
+}
+
+void add_cameras(const YAML::Node& cameras, const std::string& file, Links& links) {
+  for (const auto& entry : cameras) {
+    require(entry.first.IsScalar(), "{}: a camera whose name is no text", file);
+    const std::string& name = entry.first.Scalar();
+    const YAML::Node& node = entry.second;
+    const std::string of = fmt::format("{}: camera {}", file, printable(name));
+    require(links.count(name) == 0, "{} stands twice", of);
+    require(node.IsMap(), "{}: expected translation and rotation", of);
+    const YAML::Node parent = yaml_member(node, "parent");
+    links[name] = {parent.IsDefined() && parent.IsScalar() ? parent.Scalar() : "world",
+                   rigid(numbers_of<3>(yaml_member(node, "translation"), of + ": translation"),
+                         numbers_of<4>(yaml_member(node, "rotation"), of + ": rotation"), of)};
+    require_names(node, {"parent", "translation", "rotation"}, of);
+  }
+}
+
+void add_transforms(const YAML::Node& transforms, const std::string& file, Links& links) {
+  for (const auto& node : transforms) {
+    const YAML::Node child = yaml_member(node, "child_frame_id");
+    const YAML::Node parent = yaml_member(yaml_member(node, "header"), "frame_id");
+    require(child.IsDefined() && child.IsScalar() && parent.IsDefined() && parent.IsScalar(),
+            "{}: a transform without header.frame_id and child_frame_id", file);
+    const std::string of = fmt::format("{}: frame {}", file, printable(child.Scalar()));
+    const YAML::Node t = yaml_member(yaml_member(node, "transform"), "translation");
+    const YAML::Node q = yaml_member(yaml_member(node, "transform"), "rotation");
+    links[child.Scalar()] = {
+        parent.Scalar(),
+        rigid({number_of(t, "x", of), number_of(t, "y", of), number_of(t, "z", of)},
+              {number_of(q, "w", of), number_of(q, "x", of), number_of(q, "y", of), number_of(q, "z", of)}, of)};
+  }
+}
+
+Links links_of(const YAML::Node& yaml, const std::string& file) {
+  Links links;
+  const YAML::Node cameras = yaml_member(yaml, "cameras");
+  const YAML::Node transforms = yaml_member(yaml, "transforms");
+  // What is in a list has no name that could be asked for.
+  require((!cameras.IsDefined() || cameras.IsMap()) && (!transforms.IsDefined() || transforms.IsSequence()),
+          "{}: expected 'cameras:' with names, or a list of 'transforms:'", file);
+  if (cameras.IsDefined()) add_cameras(cameras, file, links);
+  if (transforms.IsDefined()) add_transforms(transforms, file, links);
+  if (!links.empty()) require_names(yaml, {"cameras", "transforms"}, file);
+  return links;
+}
+
+Eigen::Isometry3d chained(const Links& links, const std::string& camera, const std::string& file) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  std::set<std::string> seen;
+  for (auto link = links.find(camera); link != links.end(); link = links.find(link->second.parent)) {
+    require(seen.insert(link->first).second, "{}: camera {}: its parents go round in a loop through {}", file, camera,
+            link->first);
+    T = link->second.T_parent_child * T;
+  }
+  return T;
+}
+
+}  // namespace
+
+void CameraExtrinsics::fix(const std::string& camera, const Eigen::Isometry3d& T_world_camera) {
+  fixed_[camera] = T_world_camera;
+}
+
+void CameraExtrinsics::add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera) {
+  require(moving_.size() < kMostMoving || moving_.count(camera) > 0,
+          "transforms of more than {} cameras, expected at most that many", kMostMoving);
+  std::deque<Sample>& samples = moving_[camera];
+  if (!samples.empty() && seconds_between(utime, samples.back().utime) > 1.0) samples.clear();
+  auto place = samples.end();
+  while (place != samples.begin() && (place - 1)->utime >= utime) --place;
+  if (place != samples.end() && place->utime == utime) {
+    place->T_world_camera = T_world_camera;
+  } else {
+    samples.insert(place, {utime, T_world_camera});
+  }
+  if (samples.size() > kSamples) samples.pop_front();
+}
+
+CameraPose CameraExtrinsics::at(const std::string& camera, std::int64_t utime) const {
+  const auto seconds = [&](std::int64_t other) { return seconds_between(utime, other); };
+  if (const auto fixed = fixed_.find(camera); fixed != fixed_.end()) return {fixed->second, false, ""};
+  const auto moving = moving_.find(camera);
+  if (moving == moving_.end()) return {std::nullopt, true, fmt::format("no transform of {} has come", camera)};
+  const std::deque<Sample>& samples = moving->second;
+  const auto after = std::lower_bound(samples.begin(), samples.end(), utime,
+                                      [](const Sample& sample, std::int64_t time) { return sample.utime < time; });
+  if (after == samples.end()) {
+    const std::size_t count = samples.size();
+    if (count >= 2 && equal_places(samples[count - 1].T_world_camera, samples[count - 2].T_world_camera))
+      return {samples.back().T_world_camera, false, ""};
+    return {std::nullopt, true,
+            fmt::format("the last transform of {} is {:.3f} s older", camera, -seconds(samples.back().utime))};
+  }
+  if (after->utime == utime) return {after->T_world_camera, false, ""};
+  if (after == samples.begin())
+    return {std::nullopt, false,
+            fmt::format("the first transform of {} is {:.3f} s later: do the clocks agree?", camera,
+                        seconds(after->utime))};
+  const Sample& before = *(after - 1);
+  const double gap = seconds_between(before.utime, after->utime);
+  if (gap > kMostGapS && !equal_places(before.T_world_camera, after->T_world_camera))
+    return {
+        std::nullopt, false,
+        fmt::format("the transforms of {} about it are {:.3f} s apart, expected at most {} s", camera, gap, kMostGapS)};
+  return {interpolate_pose(before.T_world_camera, after->T_world_camera, -seconds(before.utime) / gap), false, ""};
+}
+
+std::map<std::string, Eigen::Isometry3d> read_camera_extrinsics(const std::filesystem::path& file) {
+  constexpr std::size_t kMostFrames = 1024;  // each may hang on all others
+  const Links links =
+      links_of(parse_yaml(read_file(file, "a YAML file of camera poses"), file.string()), file.string());
+  require(!links.empty(), "{}: neither 'cameras:' nor 'transforms:', expected poses of cameras", file.string());
+  require(links.size() <= kMostFrames, "{}: poses of {} frames, expected at most {}", file.string(), links.size(),
+          kMostFrames);
+  std::map<std::string, Eigen::Isometry3d> places;
+  for (const auto& [camera, link] : links) places[camera] = chained(links, camera, file.string());
+  return places;
+}
+
+std::pair<std::string, Eigen::Isometry3d> parse_camera_place(const std::string& text) {
+  const std::string expected = "CHANNEL=x,y,z,qw,qx,qy,qz";
+  const std::size_t equals = text.find('=');
+  require(equals != std::string::npos && equals > 0, "--camera-pose '{}', expected {}", printable(text), expected);
+  std::vector<double> numbers;
+  std::istringstream rest(text.substr(equals + 1));
+  for (std::string word; std::getline(rest, word, ',');) {
+    char* end = nullptr;
+    numbers.push_back(std::strtod(word.c_str(), &end));
+    require(!word.empty() && end == word.c_str() + word.size(), "--camera-pose '{}': '{}' is no number, expected {}",
+            printable(text), printable(word), expected);
+  }
+  require(numbers.size() == 7, "--camera-pose '{}': {} numbers, expected {}", printable(text), numbers.size(),
+          expected);
+  return {text.substr(0, equals),
+          rigid({numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5], numbers[6]},
+                "--camera-pose " + printable(text))};
+}
+
+void add_camera_place(const std::string& text, std::map<std::string, Eigen::Isometry3d>& places) {
+  const auto [camera, T_world_camera] = parse_camera_place(text);
+  require(places.emplace(camera, T_world_camera).second,
+          "--camera-pose '{}': {} has a place already, of --cameras or of another --camera-pose", text, camera);
+}
+
+}  // namespace houghstream::tracks

@@ -1,0 +1,264 @@
+#include "detector/evidence/template_matching.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/base/random.hpp"
+#include "pipeline/types/detection.hpp"
+#include "tests/detector/evidence/remembered_view.hpp"
+#include "tests/detector/toy_data.hpp"
+
+namespace houghstream {
+namespace {
+
+using toy::kDistance;
+const Eigen::Vector3f kCentre(0.0F, 0.0F, kDistance);
+
+TemplateMatch fit(const RgbdFrame& frame, const Eigen::Vector3f& centre = kCentre) {
+  return match_template(toy::remembered_view(), centre, toy::lab_frame(frame, frame.colour, 1.0F));
+}
+
+RgbdFrame tile_frame() {
+  return toy::training_views().front().frame;
+}
+
+TEST(TemplateMatch, TheViewItselfFitsWholly) {
+  const TrainingView view = toy::training_views().front();
+  const TemplateMatch result = fit(view.frame);
+  EXPECT_GT(result.visible, 0.99F);
+  EXPECT_GT(result.likeness, 0.8F);
+  EXPECT_EQ(result.continued, 0.0F);
+  EXPECT_GT(box_iou(result.visible_box_px, cv::Rect2f(cv::boundingRect(view.mask))), 0.9F);
+}
+
+TEST(TemplateMatch, FitsWhereverInThePictureTheObjectFacesTheCamera) {
+  for (const cv::Point2d at : {cv::Point2d(30, 119.5), cv::Point2d(290, 119.5), cv::Point2d(280, 200)}) {
+    RgbdFrame frame = toy::room(5);
+    toy::put_tile(0, at.x, at.y, kDistance, frame);
+    const TemplateMatch result = fit(frame, frame.camera.backproject(at.x, at.y, kDistance).cast<float>());
+    EXPECT_GT(result.visible, 0.97F) << at;
+    EXPECT_LT(result.unevenness, 0.2F) << at;
+  }
+}
+
+TEST(TemplateMatch, ADepthErrorOfAVoteIsForgivenAndLargerOnesAreNot) {
+  EXPECT_GT(fit(tile_frame(), {0, 0, kDistance + 0.02F}).visible, 0.9F);
+  EXPECT_LT(fit(tile_frame(), {0, 0, kDistance - 0.2F}).visible, 0.1F);
+  EXPECT_GT(fit(tile_frame(), {0, 0, kDistance - 0.2F}).seen_through, 0.9F);
+  EXPECT_GT(fit(tile_frame(), {0, 0, kDistance + 0.2F}).hidden, 0.9F);
+}
+
+TEST(TemplateMatch, AnOccluderHidesItsPartOfTheBox) {
+  RgbdFrame frame = tile_frame();
+  const cv::Rect whole = cv::boundingRect(toy::training_views().front().mask);
+  frame.depth(cv::Rect(whole.x + whole.width / 2, 0, 320 - whole.x - whole.width / 2, 240)).setTo(0.5F);
+  const TemplateMatch result = fit(frame);
+  EXPECT_NEAR(result.hidden, 0.5F, 0.06F);
+  EXPECT_NEAR(result.visible, 0.5F, 0.06F);
+  EXPECT_EQ(result.seen_through, 0.0F);
+  EXPECT_NEAR(result.visible_box_px.x, static_cast<float>(whole.x), 3.0F);
+  EXPECT_NEAR(result.visible_box_px.width, 0.5F * static_cast<float>(whole.width), 4.0F);
+  EXPECT_NEAR(result.visible_box_px.height, static_cast<float>(whole.height), 3.0F);
+}
+
+/// All but a strip at the left and one at the top is hidden, each narrower than a fifth of the object.
+TEST(TemplateMatch, TheVisibleBoxEnclosesWhatLittleIsSeen) {
+  RgbdFrame frame = tile_frame();
+  const cv::Rect whole = cv::boundingRect(toy::training_views().front().mask);
+  const cv::Point corner(whole.x + whole.width / 8, whole.y + whole.height / 8);
+  frame.depth(cv::Rect(corner, whole.br())).setTo(0.5F);
+  const TemplateMatch result = fit(frame);
+  EXPECT_GT(result.hidden, 0.6F);
+  EXPECT_GT(box_iou(result.visible_box_px, cv::Rect2f(whole)), 0.9F);
+}
+
+TEST(TemplateMatch, MissingDepthIsUnknownAndNeitherForNorAgainst) {
+  RgbdFrame frame = tile_frame();
+  frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
+  const TemplateMatch result = fit(frame);
+  EXPECT_EQ(result.unknown, 1.0F);
+  EXPECT_EQ(result.visible + result.hidden + result.seen_through + result.continued, 0.0F);
+}
+
+TEST(TemplateMatch, ColoursCountWhereDepthIsMissing) {
+  RgbdFrame frame = tile_frame();
+  frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
+  EXPECT_GT(fit(frame).likeness, 0.8F);
+  frame.colour = toy::room(5).colour;
+  EXPECT_LT(fit(frame).likeness, 0.3F);
+}
+
+TEST(TemplateMatch, WhatHidesTheObjectDoesNotLendItItsColours) {
+  RgbdFrame frame = tile_frame();
+  const float alone = fit(frame).likeness;
+  const cv::Rect left(0, 0, frame.colour.cols / 2, frame.colour.rows);
+  frame.depth(left).setTo(0.5F);
+  frame.colour(left).setTo(cv::Scalar(0, 255, 0));
+  EXPECT_NEAR(fit(frame).likeness, alone, 0.1F);
+}
+
+TEST(TemplateMatch, AWallGoesOnBesideTheOutline) {
+  RgbdFrame frame = tile_frame();
+  frame.depth.setTo(kDistance);
+  EXPECT_GT(fit(frame).continued, 0.5F);
+}
+
+TEST(TemplateMatch, ALargerThingGoesOnBesideTheOutlineAndComesNearerThere) {
+  const auto beside = [](float nearer) {
+    RgbdFrame frame = tile_frame();
+    cv::Mat around = frame.depth.clone();
+    around.setTo(kDistance - nearer);
+    frame.depth.copyTo(around, toy::training_views().front().mask);
+    frame.depth = around;
+    return fit(frame).continued;
+  };
+  EXPECT_GT(beside(0.02F), 0.5F);
+  EXPECT_EQ(beside(0.06F), 0.0F) << "something in front";
+  EXPECT_EQ(beside(-0.06F), 0.0F) << "what is behind";
+}
+
+BoundaryContinuation outline_of(const RgbdFrame& frame, const Eigen::Vector3f& centre = kCentre) {
+  return measure_boundary_continuation(toy::remembered_view(), centre, toy::lab_frame(frame, frame.colour, 1.0F));
+}
+
+/// What lies around the tile, `behind` metres behind its edges and painted in `colour`.
+BoundaryContinuation outline_fit(double behind, const cv::Scalar& colour) {
+  RgbdFrame frame = tile_frame();
+  cv::Mat outside;
+  cv::bitwise_not(toy::training_views().front().mask, outside);
+  frame.depth.setTo(kDistance + behind, outside);
+  frame.colour.setTo(colour, outside);
+  return outline_of(frame);
+}
+
+TEST(TemplateMatch, AnObjectEndsAtItsOutlineWhereDepthOrColourDoes) {
+  const BoundaryContinuation alone = outline_fit(0.3, {0, 200, 0});
+  EXPECT_LT(alone.surface_goes_on(), 0.05F);
+  EXPECT_LT(alone.colour_goes_on(), 0.05F);
+  EXPECT_LT(alone.goes_on(), 0.05F);
+  const BoundaryContinuation lying_on_another = outline_fit(0.0, {0, 200, 0});
+  EXPECT_GT(lying_on_another.surface_goes_on(), 0.3F);
+  EXPECT_LT(lying_on_another.colour_goes_on(), 0.05F);
+  EXPECT_LT(lying_on_another.goes_on(), 0.05F);
+}
+
+/// The remembered view is a window of a plain wall.
+TEST(TemplateMatch, APartOfALargerThingDoesNotEndAtTheOutline) {
+  RgbdFrame wall = tile_frame();
+  wall.depth.setTo(kDistance);
+  wall.colour.setTo(cv::Scalar(90, 120, 150));
+  const cv::Mat mask = toy::training_views().front().mask;
+  ViewTemplate window = toy::remembered_view();
+  window.appearance = make_template_grid(wall, mask, cv::boundingRect(mask), kCentre);
+  const auto outline = [&] { return measure_boundary_continuation(window, kCentre, toy::lab_frame(wall, wall.colour, 1.0F)); };
+  EXPECT_GT(outline().surface_goes_on(), 0.9F);
+  EXPECT_GT(outline().colour_goes_on(), 0.9F);
+  EXPECT_GT(outline().goes_on(), 0.9F);
+  cv::Mat outside;
+  cv::bitwise_not(mask, outside);
+  wall.depth.setTo(kDistance + 0.3, outside);
+  EXPECT_LT(outline().surface_goes_on(), 0.1F);
+  EXPECT_LT(outline().colour_goes_on(), 0.1F) << "another thing of its colour, behind it";
+}
+
+TEST(TemplateMatch, WhatHidesTheOutlineHasNoSayInWhereTheObjectEnds) {
+  RgbdFrame frame = tile_frame();
+  const BoundaryContinuation whole = outline_of(frame);
+  const cv::Rect left(0, 0, frame.colour.cols / 2, frame.colour.rows);
+  frame.depth(left).setTo(0.5F);
+  frame.colour(left).setTo(cv::Scalar(0, 255, 0));
+  EXPECT_NEAR(outline_of(frame).goes_on(), whole.goes_on(), 0.1F);
+  frame.depth.setTo(0.5F);
+  EXPECT_EQ(outline_of(frame).goes_on(), 0.0F);
+  EXPECT_EQ(outline_of(frame).colour_goes_on(), 0.0F);
+}
+
+TEST(TemplateMatch, AViewMayBeTakenForOneOfALargerObject) {
+  const RgbdFrame frame = tile_frame();
+  const LabFrame lab = toy::lab_frame(frame, frame.colour, 1.0F);
+  const TemplateMatch own = match_template(toy::remembered_view(), kCentre, lab);
+  const TemplateMatch resized = match_template(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab, 2.0F);
+  EXPECT_NEAR(resized.visible, own.visible, 0.01F);
+  EXPECT_NEAR(resized.likeness, own.likeness, 0.01F);
+  EXPECT_GT(box_iou(resized.visible_box_px, own.visible_box_px), 0.99F);
+  EXPECT_LT(match_template(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab).likeness, own.likeness - 0.1F);
+}
+
+TEST(TemplateMatch, LikenessIgnoresLightButNotPattern) {
+  RgbdFrame dim = tile_frame();
+  dim.colour.convertTo(dim.colour, -1, 0.5, 20.0);
+  EXPECT_GT(fit(dim).likeness, 0.75F);
+  RgbdFrame noise = tile_frame();
+  Random random(3);
+  for (int y = 0; y < noise.colour.rows; ++y) {
+    for (int x = 0; x < noise.colour.cols; ++x) {
+      const auto value = static_cast<std::uint8_t>(random.below(256));
+      noise.colour.at<cv::Vec3b>(y, x) = {value, value, value};
+    }
+  }
+  EXPECT_LT(fit(noise).likeness, 0.3F);
+}
+
+TEST(TemplateMatch, AnotherReliefIsUnevenWhereItIsStillNear) {
+  const float of_itself = fit(tile_frame()).unevenness;
+  RgbdFrame flat = tile_frame();
+  const cv::Mat mask = toy::training_views().front().mask;
+  flat.depth.setTo(static_cast<float>(cv::mean(flat.depth, mask)[0]), mask);
+  EXPECT_LT(of_itself, 0.1F);
+  EXPECT_GT(fit(flat).unevenness, of_itself + 0.1F);
+  EXPECT_LE(fit(flat).unevenness, 1.0F);
+}
+
+TEST(TemplateMatch, ColoursAreAveragedOverNeighbours) {
+  const RgbdFrame frame = tile_frame();
+  cv::Mat speck = cv::Mat(9, 9, CV_8UC3, cv::Scalar(90, 90, 90));
+  speck.at<cv::Vec3b>(4, 4) = {180, 180, 180};
+  const LabFrame in_lab = toy::lab_frame(frame, speck, 0.5F);
+  cv::Mat lab;
+  cv::cvtColor(cv::Mat(1, 1, CV_8UC3, cv::Scalar(100, 100, 100)), lab, cv::COLOR_BGR2Lab);
+  EXPECT_EQ(in_lab.lab[0].at<cv::Vec3b>(4, 4), lab.at<cv::Vec3b>(0, 0));
+  EXPECT_EQ(in_lab.lab[0].at<cv::Vec3b>(3, 5), lab.at<cv::Vec3b>(0, 0));
+  EXPECT_EQ(in_lab.scale, 0.5F);
+}
+
+TEST(TemplateMatch, PrintThatIsFinerThanWhatIsRememberedIsAveraged) {
+  constexpr int kLarger = 4;
+  RgbdFrame frame = tile_frame();
+  const float of_itself = fit(frame).likeness;
+  cv::resize(frame.colour.clone(), frame.colour, {}, kLarger, kLarger, cv::INTER_NEAREST);
+  cv::resize(frame.depth.clone(), frame.depth, {}, kLarger, kLarger, cv::INTER_NEAREST);
+  Camera& camera = frame.camera;
+  camera = {kLarger * camera.width, kLarger * camera.height,           kLarger * camera.fx,
+            kLarger * camera.fy,    kLarger * (camera.cx + 0.5) - 0.5, kLarger * (camera.cy + 0.5) - 0.5};
+  for (int y = 0; y < frame.colour.rows; ++y) {
+    for (int x = 0; x < frame.colour.cols; ++x) {
+      cv::Vec3b& pixel = frame.colour.at<cv::Vec3b>(y, x);
+      for (int c = 0; c < 3; ++c) pixel[c] = cv::saturate_cast<std::uint8_t>(pixel[c] + (x / 3 % 2 == 0 ? 60 : -60));
+    }
+  }
+  EXPECT_GT(fit(frame).likeness, of_itself - 0.15F);
+}
+
+TEST(TemplateMatch, OutsideTheFrameNothingIsCompared) {
+  const TemplateMatch result = fit(tile_frame(), {2.0F, 0.0F, kDistance});
+  EXPECT_EQ(result.visible + result.hidden + result.seen_through + result.unknown, 0.0F);
+  const BoundaryContinuation outline = outline_of(tile_frame(), {2.0F, 0.0F, kDistance});
+  EXPECT_EQ(outline.surface_goes_on() + outline.colour_goes_on(), 0.0F);
+  EXPECT_TRUE(result.visible_box_px.empty());
+}
+
+TEST(TemplateMatch, WhatLiesOutsideTheFrameHasNoSayInTheDepth) {
+  const TrainingView view = toy::training_views().front();
+  const cv::Rect box = cv::boundingRect(view.mask);
+  RgbdFrame frame = view.frame;  // of which a third of the object is left
+  const int columns = box.x + box.width / 3;
+  frame.colour = frame.colour.colRange(0, columns).clone();
+  frame.depth = frame.depth.colRange(0, columns).clone();
+  frame.camera.width = columns;
+  EXPECT_GT(fit(frame, {0, 0, kDistance + 0.025F}).visible, 0.9F);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,205 @@
+#include "tools/teach/score_calibration.hpp"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "detector/detector.hpp"
+#include "detector/stages.hpp"
+#include "detector/training/forest_trainer.hpp"
+#include "detector/training/pictures/camera_randomisation.hpp"
+#include "detector/training/pictures/sensor_errors.hpp"
+#include "detector/training/score_training.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/parallel.hpp"
+#include "pose/verification/quality_training.hpp"
+#include "tools/common/progress_line.hpp"
+#include "tools/teach/quality_examples.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+constexpr std::uint64_t kCameras = 0x63616D657261ULL;
+
+/// Rendered once, looked at twice. The objects are not quite those that were taught: light, wear and printer differ.
+std::vector<world::RenderedFrame> render_frames(const std::vector<CalibrationObject>& objects,
+                                             const CalibrationSettings& settings, int rooms) {
+  std::vector<world::CalibrationSceneObject> in_room;
+  in_room.reserve(objects.size());
+  for (const CalibrationObject& object : objects) in_room.push_back(object.in_room);
+  const world::CalibrationScenes scenes(std::move(in_room), settings.seed);
+  constexpr int kEach = world::CalibrationScenes::kFramesPerRoom;
+  std::vector<world::RenderedFrame> frames(static_cast<std::size_t>(rooms * kEach));
+  ProgressLine progress("practice rooms", rooms);
+  parallel_for(settings.threads, rooms, [&](int room) {
+    int index = room * kEach;
+    for (world::RenderedFrame& frame : scenes.render(room)) {
+      Random random = Random::for_item(settings.seed ^ kCameras, static_cast<std::uint64_t>(index));
+      for (const cv::Mat& mask : frame.visible_masks) {
+        const cv::Rect part = cv::boundingRect(mask);
+        cv::Mat colour = frame.frame.colour(part);
+        training::resurface(mask(part), settings.surface_variation, random, colour);
+      }
+      frame.visible_masks.clear();
+      training::randomise_camera(settings.camera_share, settings.camera_variation, frame.frame, random);
+      frames[static_cast<std::size_t>(index)] = std::move(frame);
+      ++index;
+    }
+    progress.add(1.0);
+  });
+  return frames;
+}
+
+void warn_of(const std::vector<std::string>& names, int rooms) {
+  for (const std::string& name : names)
+    log_warning(
+        "{}: seen in none of {} practice rooms, expected some: what its scores and poses are worth is not learnt (too "
+        "large for a table, or too few --practice-rooms)",
+        name, rooms);
+}
+
+training::ValidationSource validation_source(const std::vector<world::RenderedFrame>& frames) {
+  return {static_cast<int>(frames.size()), [&frames](int index) {
+            const world::RenderedFrame& from = frames[static_cast<std::size_t>(index)];
+            training::ValidationFrame frame;
+            frame.frame = from.frame;
+            for (const GroundTruthObject& object : from.objects)
+              frame.objects.push_back({object.object_id, {}, object.box_visible_px, object.visible_fraction});
+            return frame;
+          }};
+}
+
+/// A half of the rooms: those of even, or of odd numbers.
+constexpr int kHalves = 2;
+
+int half_of(std::size_t frame) {
+  return static_cast<int>(frame) / world::CalibrationScenes::kFramesPerRoom % kHalves;
+}
+
+/// What practice has seen, and of which classes it is to learn.
+struct Practised {
+  const std::vector<world::RenderedFrame>& frames;
+  const std::vector<training::ScoreExamples>& examples;  ///< of each frame
+  const std::set<int>& new_ids;
+  int threads;
+};
+
+std::vector<std::size_t> frames_of(int half, const Practised& practised) {
+  std::vector<std::size_t> of_half;
+  for (std::size_t f = 0; f < practised.frames.size(); ++f) {
+    if (half_of(f) == half) of_half.push_back(f);
+  }
+  return of_half;
+}
+
+void fit_scores_without(int half, const Practised& practised, Forest& forest) {
+  std::vector<training::ScoreExamples> others;
+  for (std::size_t f = 0; f < practised.examples.size(); ++f) {
+    if (half_of(f) != half) others.push_back(practised.examples[f]);
+  }
+  training::fit_scores(others, practised.new_ids, forest);
+}
+
+/// Each half of the rooms is searched with scores that were fitted without it: what a score is worth to a pose is
+/// learnt where the score is as uncertain as it will be. The forest, which may be too large to be in memory twice,
+/// takes the scores of one half after the other, and is left with those of the last.
+quality::FoundPoses find_poses(const Practised& practised, const quality::PosedModels& models, Forest& forest) {
+  DetectionSettings detection = detection_settings(forest);
+  detection.threads = 1;
+  detection.evidence.threshold = PoseSettings{}.min_score;
+  std::map<int, std::string> names;
+  for (const ObjectClass& known : forest.classes) names[known.class_id] = known.name;
+  const quality::UnfilteredPoseFinder finder(models, 1);
+  quality::FoundPoses found;
+  found.frames.resize(practised.frames.size());
+  found.terms.resize(practised.frames.size());
+  PerWorker<DetectorWorkspace> workspaces;
+  workspaces.make_room(practised.threads);
+  ProgressLine progress("search in practice rooms", static_cast<double>(practised.frames.size()));
+  for (int half = 0; half < kHalves; ++half) {
+    fit_scores_without(half, practised, forest);
+    Detector detector(std::move(forest), detection);
+    const std::vector<std::size_t> searched = frames_of(half, practised);
+    parallel_for_workers(practised.threads, static_cast<int>(searched.size()), [&](int worker, int i) {
+      const std::size_t index = searched[static_cast<std::size_t>(i)];
+      const world::RenderedFrame& seen = practised.frames[index];
+      EvaluatedFrame& frame = found.frames[index];
+      for (const GroundTruthObject& object : seen.objects)
+        frame.objects.push_back({names.at(object.object_id), object, std::nullopt});
+      frame.detections = detector.detect(seen.frame, workspaces[worker]);
+      found.terms[index] = finder.find_in(seen.frame, frame);
+      progress.add(1.0);
+    });
+    forest = std::move(detector).take_forest();
+  }
+  return found;
+}
+
+std::map<std::string, std::vector<QualityExample>> quality_examples(const quality::FoundPoses& found,
+                                                                    const std::map<std::string, PoseModel>& models) {
+  std::map<std::string, std::vector<QualityExample>> by_name;
+  for (const auto& [name, model] : models) {
+    std::vector<QualityExample>& own = by_name[name];
+    for (const quality::Example& example : quality::label_examples(found, {{name, model}})) {
+      own.push_back(example);
+      own.back().half = half_of(example.frame);
+    }
+  }
+  return by_name;
+}
+
+}  // namespace
+
+int scene_count_for(std::size_t new_objects, const CalibrationSettings& settings) {
+  constexpr int kOfOne = 80;
+  constexpr int kOfEachMore = 25;
+  constexpr int kMost = 240;
+  return settings.rooms.value_or(std::min(kOfOne + kOfEachMore * (static_cast<int>(new_objects) - 1), kMost));
+}
+
+std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFrame>& frames,
+                                    const std::vector<CalibrationObject>& objects, const std::set<int>& new_ids) {
+  std::set<int> seen;
+  for (const world::RenderedFrame& frame : frames) {
+    for (const GroundTruthObject& object : frame.objects) seen.insert(object.object_id);
+  }
+  std::vector<std::string> names;
+  for (const CalibrationObject& object : objects) {
+    const int id = object.in_room.id;
+    if (new_ids.count(id) > 0 && seen.count(id) == 0) names.push_back(object.name);
+  }
+  return names;
+}
+
+std::map<std::string, QualitySettings> practise(const std::vector<CalibrationObject>& objects,
+                                                const std::set<int>& new_ids, const CalibrationSettings& settings,
+                                                Forest& forest) {
+  const int rooms = scene_count_for(new_ids.size(), settings);
+  require(rooms <= CalibrationSettings::kMostRooms, "{} practice rooms, expected at most {}: all are in memory", rooms,
+          CalibrationSettings::kMostRooms);
+  const std::vector<world::RenderedFrame> frames = render_frames(objects, settings, rooms);
+  warn_of(unobserved_objects(frames, objects, new_ids), rooms);
+  Profile profile = training::profile_of(forest);
+  profile.training.threads = settings.threads;
+  const std::vector<training::ScoreExamples> examples =
+      training::find_score_examples(validation_source(frames), 0, profile, forest);
+
+  quality::PosedModels models;
+  models.tone = forest.features.tone;
+  std::map<std::string, PoseModel> judged_by;
+  for (const CalibrationObject& object : objects) {
+    models.meshes[object.name] = object.mesh;
+    models.vote_centres[object.name] = object.vote_centre;
+    judged_by[object.name] = make_pose_model(object.mesh, false);
+  }
+  const quality::FoundPoses found = find_poses({frames, examples, new_ids, settings.threads}, models, forest);
+  training::fit_scores(examples, new_ids, forest);
+  std::map<std::string, QualitySettings> all = learn_qualities(quality_examples(found, judged_by));
+  std::map<std::string, QualitySettings> learnt;
+  for (const CalibrationObject& object : objects) {
+    if (new_ids.count(object.in_room.id) > 0) learnt[object.name] = all.at(object.name);
+  }
+  return learnt;
+}
+
+}  // namespace houghstream::teach

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "detector/forest/forest.hpp"
+#include "detector/training/profiles.hpp"
+#include "pose/verification/quality.hpp"
+#include "tools/render/world/calibration_scenes.hpp"
+
+namespace houghstream::teach {
+
+/// A taught object as practice needs it.
+struct CalibrationObject {
+  std::string name;
+  Mesh mesh;                                              ///< as poses are compared with it, metres
+  Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();  ///< see store::StoredObject
+  world::CalibrationSceneObject in_room;                          ///< its id is the class's
+};
+
+struct CalibrationSettings {
+  static constexpr int kMostRooms = 500;  ///< whose pictures, 4.3 MB a room, are all in memory at once: 2 GB
+
+  std::optional<int> rooms;  ///< each is looked at world::CalibrationScenes::kFramesPerRoom times; default: scene_count_for()
+  double surface_variation = 0.6;  ///< strength of the changes of objects' colours, see training::resurface
+  double camera_share = 0.8;       ///< of the frames, that another camera sees than the one that taught
+  double camera_variation = 0.8;   ///< see detector/training/pictures/camera_randomisation.hpp
+  std::uint64_t seed = 1;
+  int threads = 2;
+};
+
+/// In how many rooms so many new objects are practised. Where the settings do not say: as many as one more object in
+/// 60 s, and seven in five minutes, leave time for.
+int scene_count_for(std::size_t new_objects, const CalibrationSettings& settings = {});
+
+/// Names of the new objects that none of the frames shows: of such nothing can be learnt.
+std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFrame>& frames,
+                                    const std::vector<CalibrationObject>& objects, const std::set<int>& new_ids);
+
+/// Looks for the objects in rendered rooms (world::CalibrationScenes) through widely varied cameras, and learns what its
+/// detections and poses are worth: the scores' weights in `forest`, and the qualities, by name; both of the classes in
+/// `new_ids` only. A line of the log names those of them that stand in no room. Same result for any number of threads.
+/// Throws InputError for more rooms than CalibrationSettings::kMostRooms.
+std::map<std::string, QualitySettings> practise(const std::vector<CalibrationObject>& objects,
+                                                const std::set<int>& new_ids, const CalibrationSettings& settings,
+                                                Forest& forest);
+
+}  // namespace houghstream::teach

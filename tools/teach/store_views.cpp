@@ -1,0 +1,121 @@
+#include "tools/teach/store_views.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "drivers/datasets/object_pixels.hpp"
+#include "drivers/files/image_file.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/parallel.hpp"
+#include "tools/common/progress_line.hpp"
+#include "tools/teach/contact_sheet.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+namespace fs = std::filesystem;
+using store::ObjectStore;
+using store::StoredObject;
+
+/// So many views of each of so many objects: the fewer, the more there is time and memory for.
+int views_of_each(std::size_t objects) {
+  constexpr int kAll = 12600;
+  constexpr int kFewest = 1280;
+  constexpr int kMost = 2200;
+  return std::clamp(kAll / static_cast<int>(objects), kFewest, kMost);
+}
+
+/// The middle of an object's box: where the origin of a mesh lies, at a corner or a metre beside it, makes no
+/// difference.
+Eigen::Vector3f vote_centre_of(const Mesh& mesh) {
+  return mesh_bounds(mesh).center();
+}
+
+/// Votes are for the origin of the frame in which a view has its pose.
+void vote_for(const Eigen::Vector3f& centre, std::vector<TrainingView>& views) {
+  for (TrainingView& view : views) view.T_camera_object.translate(centre.cast<double>());
+}
+
+/// Training views of a mesh; those that show no depth of it are left out.
+std::vector<TrainingView> render_views(const TaughtMesh& taught, const TeachOptions& options, int most) {
+  world::MeshViewSettings settings = options.views;
+  settings.most_views = std::min(settings.most_views, most);
+  settings.attitudes = world::parse_mesh_attitudes(options.attitudes);
+  settings.has_colour = taught.coloured;
+  const world::MeshViews rendered(taught.mesh, settings,
+                                  options.seed * 1000003U + static_cast<std::uint64_t>(taught.id));
+  std::vector<TrainingView> views(static_cast<std::size_t>(rendered.count()));
+  parallel_for(options.threads, rendered.count(), [&](int i) {
+    TrainingView& view = views[static_cast<std::size_t>(i)];
+    view = rendered.render(i);
+    view.class_id = taught.id;
+    view.class_name = taught.name;
+    view.source = fmt::format("{} view {}", taught.file.string(), i);
+  });
+  const auto shows_nothing = [](const TrainingView& view) {
+    return count_depth_pixels(view.frame.depth, view.mask) == 0;
+  };
+  views.erase(std::remove_if(views.begin(), views.end(), shows_nothing), views.end());
+  require(!views.empty(), "{}: no view of it shows any depth, expected an object that a camera sees",
+          taught.file.string());
+  return views;
+}
+
+/// The views of one object as a scene folder in BOP format.
+void dump_views(const std::vector<TrainingView>& views, const fs::path& folder) {
+  BopWriter writer(folder);
+  for (const TrainingView& view : views) {
+    GroundTruthObject object;
+    object.object_id = view.class_id;
+    object.T_camera_object = view.T_camera_object;
+    object.box_visible_px = cv::boundingRect(view.mask);
+    writer.add(view.frame, {object}, {view.mask});
+  }
+  writer.finish();
+}
+
+}  // namespace
+
+std::vector<NamedModel> models_of(const std::vector<TaughtMesh>& meshes) {
+  std::vector<NamedModel> models;
+  models.reserve(meshes.size());
+  for (const TaughtMesh& taught : meshes) models.push_back({taught.id, taught.name, taught.mesh, taught.symmetries});
+  return models;
+}
+
+std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, const TeachOptions& options,
+                                     ObjectStore& made, const std::function<void(const std::string&)>& report) {
+  std::vector<TrainingView> all;
+  ProgressLine line("objects rendered", static_cast<double>(meshes.size()));
+  for (const TaughtMesh& taught : meshes) {
+    std::vector<TrainingView> views = render_views(taught, options, views_of_each(meshes.size()));
+    for (const TrainingView& own : options.own_views) {
+      if (own.class_name != taught.name) continue;
+      views.push_back(own);
+      views.back().class_id = taught.id;
+    }
+    StoredObject object;
+    object.id = taught.id;
+    object.name = taught.name;
+    object.mesh = taught.file.string();
+    object.coloured = taught.coloured;
+    object.views = static_cast<int>(views.size());
+    object.attitudes = options.attitudes;
+    report(title_of(object));
+    write_png(view_picture(views, title_of(object)), made.view_picture(object.id));
+    if (!options.dump_views.empty()) dump_views(views, options.dump_views / fmt::format("{:06d}", object.id));
+    object.vote_centre = vote_centre_of(taught.mesh);
+    vote_for(object.vote_centre, views);
+    made.objects.push_back(object);
+    std::move(views.begin(), views.end(), std::back_inserter(all));
+    line.add(1.0);
+  }
+  if (!options.dump_views.empty()) write_bop_models(models_of(meshes), options.dump_views / "models");
+  return all;
+}
+
+}  // namespace houghstream::teach
