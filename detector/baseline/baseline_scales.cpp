@@ -85,7 +85,8 @@ class ScaleSpaceScales : public training::Scales {
     return {static_cast<float>(offset.x() / camera.fx), static_cast<float>(offset.y() / camera.fy), 0.0F};
   }
 
-  std::vector<Candidate> search(const SearchContext& search, const RgbdFrame& frame, DetectorWorkspace&) const override {
+  std::vector<Candidate> search(const SearchContext& search, const RgbdFrame& frame,
+                                DetectorWorkspace&) const override {
     StageClock clock;
     return search_scale_space(search, Way::kFast, frame, clock);
   }

@@ -55,24 +55,25 @@ void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, 
   const float share = 1.0F / static_cast<float>(forest.roots.size());
   const auto width = static_cast<float>(seen.camera.width);
   const auto height = static_cast<float>(seen.camera.height);
-  seen.posteriors.for_each_supporting_patch(class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
-    for (std::uint32_t e = 0; e < count; ++e) {  // the cache misses below overlap
-      hwy::Prefetch(forest.votes.data() + forest.leaf_classes[entries[e]].first_vote);
-    }
-    const auto patch_x = static_cast<float>(seen.grid.x[p]);
-    const auto patch_y = static_cast<float>(seen.grid.y[p]);
-    for (std::uint32_t e = 0; e < count; ++e) {
-      const LeafClass& entry = forest.leaf_classes[entries[e]];
-      for (std::uint32_t v = entry.first_vote; v < entry.first_vote + entry.vote_count; ++v) {
-        const LeafVote& vote = forest.votes[v];
-        // rounded: positions inside the image are positive
-        const float x = patch_x + vote.offset.x() * seen.px_per_offset + 0.5F;
-        const float y = patch_y + vote.offset.y() * seen.px_per_offset + 0.5F;
-        if (x < 0.0F || y < 0.0F || x >= width || y >= height) continue;
-        visit(p, static_cast<int>(x), static_cast<int>(y), entry.probability * vote.weight * share, entry);
-      }
-    }
-  });
+  seen.posteriors.for_each_supporting_patch(
+      class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
+        for (std::uint32_t e = 0; e < count; ++e) {  // the cache misses below overlap
+          hwy::Prefetch(forest.votes.data() + forest.leaf_classes[entries[e]].first_vote);
+        }
+        const auto patch_x = static_cast<float>(seen.grid.x[p]);
+        const auto patch_y = static_cast<float>(seen.grid.y[p]);
+        for (std::uint32_t e = 0; e < count; ++e) {
+          const LeafClass& entry = forest.leaf_classes[entries[e]];
+          for (std::uint32_t v = entry.first_vote; v < entry.first_vote + entry.vote_count; ++v) {
+            const LeafVote& vote = forest.votes[v];
+            // rounded: positions inside the image are positive
+            const float x = patch_x + vote.offset.x() * seen.px_per_offset + 0.5F;
+            const float y = patch_y + vote.offset.y() * seen.px_per_offset + 0.5F;
+            if (x < 0.0F || y < 0.0F || x >= width || y >= height) continue;
+            visit(p, static_cast<int>(x), static_cast<int>(y), entry.probability * vote.weight * share, entry);
+          }
+        }
+      });
 }
 
 /// Vote mass per pixel over the class's expected mass.
@@ -150,7 +151,8 @@ std::vector<Hypothesis> gather_supporters(const SearchContext& search, int class
   return hypotheses;
 }
 
-Candidate make_candidate(const ObjectClass& object, const Hypothesis& hypothesis, float relative_vote_mass, cv::Rect2f box_px) {
+Candidate make_candidate(const ObjectClass& object, const Hypothesis& hypothesis, float relative_vote_mass,
+                         cv::Rect2f box_px) {
   Candidate candidate;
   candidate.evidence.relative_vote_mass = relative_vote_mass;
   Detection& detection = candidate.detection;
@@ -165,7 +167,8 @@ Candidate make_candidate(const ObjectClass& object, const Hypothesis& hypothesis
 }
 
 /// All maxima of one class in one size.
-std::vector<ScalePeak> level_peaks(const SearchContext& search, int class_index, const SeenLevel& seen, const Camera& camera) {
+std::vector<ScalePeak> level_peaks(const SearchContext& search, int class_index, const SeenLevel& seen,
+                                   const Camera& camera) {
   const ObjectClass& object = search.forest().classes[static_cast<std::size_t>(class_index)];
   const VotingSettings& settings = search.settings.voting;
   const cv::Mat image = hough_image(search, class_index, seen);
@@ -229,7 +232,8 @@ std::vector<Candidate> maxima_over_sizes(const std::vector<ScalePeak>& peaks) {
   return candidates;
 }
 
-std::vector<Candidate> search_scale_space(const SearchContext& search, Way way, const RgbdFrame& frame, StageClock& clock) {
+std::vector<Candidate> search_scale_space(const SearchContext& search, Way way, const RgbdFrame& frame,
+                                          StageClock& clock) {
   std::vector<ScalePeak> all;
   int sizes = 0;
   for (const FeatureLevel& level : scale_space_levels(search.forest().features)) {

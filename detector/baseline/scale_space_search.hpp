@@ -18,7 +18,8 @@ WorkingFrame scale_space_frame(const RgbdFrame& frame, const FeatureLevel& level
 /// its own; candidates are the maxima over place and size, see maxima_over_sizes. Boxes by back-projection of all
 /// supporting patches. A candidate's centre has no depth: centre_camera is NaN. Same result for any number of threads.
 /// Closes the stages "detect.resize", "detect.features", "detect.leaves" and "detect.votes" on the clock.
-std::vector<Candidate> search_scale_space(const SearchContext& search, Way way, const RgbdFrame& frame, StageClock& clock);
+std::vector<Candidate> search_scale_space(const SearchContext& search, Way way, const RgbdFrame& frame,
+                                          StageClock& clock);
 
 /// The Hough images of one class before maxima are taken, one per size, CV_32FC1: vote mass as a share of what a wholly
 /// visible object is expected to have.

@@ -46,10 +46,10 @@ float support_radius(const PointHistogramSettings& settings, int neighbours) {
 /// Of the plane through the pixels at these places of a disk of so many metres; NaN where too few are on the surface.
 Eigen::Vector3f normal_at(const WorkingFrame& frame, cv::Point at, const std::vector<cv::Point2f>& places,
                           float radius) {
-  constexpr float kLeastReach = 1.5F;  // pixels
+  constexpr float kMinReach = 1.5F;  // pixels
   const float depth = frame.filled_depth.at<float>(at);
   const Eigen::Vector3d middle = frame.camera.backproject(at.x, at.y, depth);
-  const float reach_px = std::max(kLeastReach, radius / static_cast<float>(frame.camera.metres_per_px(depth)));
+  const float reach_px = std::max(kMinReach, radius / static_cast<float>(frame.camera.metres_per_px(depth)));
   const float limit = same_surface_limit(radius);
   const cv::Rect inside(0, 0, frame.filled_depth.cols, frame.filled_depth.rows);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -81,7 +81,7 @@ HistogramCloud empty_cloud(cv::Size pixels, const PointHistogramSettings& settin
   cloud.normals.resize(count);
   cloud.reaches.resize(count, 0.0F);
   const std::vector<cv::Point2f> places = disk(settings.given);
-  const int steps = static_cast<int>(HistogramCloud::kFarthest / HistogramCloud::kReachStep);
+  const int steps = static_cast<int>(HistogramCloud::kMaxDistance / HistogramCloud::kReachStep);
   for (int i = 0; i <= steps; ++i) {  // where surfaces are far away, the points beside still are neighbours
     const float reach = std::max(1.0F, static_cast<float>(i) * HistogramCloud::kReachStep);
     cloud.shifts.push_back(shifts_of(places, reach));
@@ -110,7 +110,7 @@ HistogramCloud make_histogram_cloud(const WorkingFrame& frame, const PointHistog
       cloud.points[i].getVector3fMap() = frame.camera.backproject(at.x, at.y, depth).cast<float>();
       cloud.normals[i].getNormalVector3fMap() = normal;
       const auto reach_px = radius / static_cast<float>(frame.camera.metres_per_px(depth));
-      cloud.reaches[i] = std::min(HistogramCloud::kFarthest, reach_px / static_cast<float>(cloud.step_px));
+      cloud.reaches[i] = std::min(HistogramCloud::kMaxDistance, reach_px / static_cast<float>(cloud.step_px));
     }
   });
   return cloud;

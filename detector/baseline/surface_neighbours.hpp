@@ -22,7 +22,7 @@ struct HistogramCloud {
   std::vector<std::vector<cv::Point>> shifts;  ///< to the neighbours, for each reach in steps of kReachStep
 
   static constexpr float kReachStep = 0.25F;
-  static constexpr float kFarthest = 16.0F;  ///< reach; of what is nearer than that the support is cut off
+  static constexpr float kMaxDistance = 16.0F;  ///< reach; of what is nearer than that the support is cut off
 
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y * size.width + x); }
 };

@@ -25,8 +25,8 @@ SurfaceVectors points_of(const WorkingFrame& frame) {
   return points;
 }
 
-cv::Vec3f normal_of(const WindowMoments& moments, const Eigen::Vector3d& ray, int least_points) {
-  if (moments.count < least_points) return {kNoValue, kNoValue, kNoValue};
+cv::Vec3f normal_of(const WindowMoments& moments, const Eigen::Vector3d& ray, int min_points) {
+  if (moments.count < min_points) return {kNoValue, kNoValue, kNoValue};
   const Eigen::Vector3d normal = facing_normal(moments.covariance, ray);
   return {static_cast<float>(normal.x()), static_cast<float>(normal.y()), static_cast<float>(normal.z())};
 }
@@ -42,14 +42,14 @@ Eigen::Vector3d facing_normal(const Eigen::Matrix3d& covariance, const Eigen::Ve
 
 cv::Mat surface_normals(const WorkingFrame& frame, int neighbours, int threads) {
   const int radius = surface_window_radius(neighbours);
-  const int least_points = (2 * radius + 1) * (2 * radius + 1) / 4;
+  const int min_points = (2 * radius + 1) * (2 * radius + 1) / 4;
   const SurfaceVectors points = points_of(frame);
   cv::Mat normals(frame.filled_depth.size(), CV_32FC3);
   parallel_for(threads, normals.rows, [&](int y) {
     const std::vector<WindowMoments> moments = row_moments(points, y, radius);
     auto* out = normals.ptr<cv::Vec3f>(y);
     for (int x = 0; x < normals.cols; ++x) {
-      out[x] = normal_of(moments[static_cast<std::size_t>(x)], frame.camera.backproject(x, y, 1.0), least_points);
+      out[x] = normal_of(moments[static_cast<std::size_t>(x)], frame.camera.backproject(x, y, 1.0), min_points);
     }
   });
   return normals;

@@ -11,9 +11,9 @@ constexpr double kSteepest = 1.5;  // metres of depth per metre across
 
 /// NaN for NaN.
 float at_least_noise(double metres) {
-  constexpr float kLeast = 0.02F;
+  constexpr float kMin = 0.02F;
   const auto limit = static_cast<float>(metres);
-  return limit < kLeast ? kLeast : limit;
+  return limit < kMin ? kMin : limit;
 }
 
 enum Sum : std::size_t { kCount, kX, kY, kZ, kXX, kXY, kXZ, kYY, kYZ, kZZ, kSums };

@@ -10,7 +10,7 @@ namespace {
 
 using WeighedViews = std::vector<std::pair<std::uint32_t, float>>;
 
-constexpr std::size_t kMostAttitudes = 3;  // that are looked into, however many a class was taught in
+constexpr std::size_t kMaxAttitudes = 3;  // that are looked into, however many a class was taught in
 
 /// Views that are compared of a class that was taught in one attitude: the first that most votes remember.
 constexpr std::size_t kViews = 8;
@@ -52,7 +52,7 @@ PlacedTemplate climb(const EvidenceInput& input, PlacedTemplate best, std::vecto
 }
 
 /// Where to climb from: the view that agrees best, and those that agree next best of attitudes unlike these, up to
-/// `count`, at most kMostAttitudes.
+/// `count`, at most kMaxAttitudes.
 class SeedTemplates {
  public:
   SeedTemplates(const EvidenceInput& input, std::size_t count, std::vector<PlacedTemplate>& compared) {
@@ -73,14 +73,15 @@ class SeedTemplates {
   const PlacedTemplate* end() const { return starts_.data() + count_; }
 
  private:
-  std::array<PlacedTemplate, kMostAttitudes> starts_;
+  std::array<PlacedTemplate, kMaxAttitudes> starts_;
   std::size_t count_ = 0;
 };
 
 /// What a view says where it stands, `evidence` otherwise.
 void look_at_view(const EvidenceInput& input, const PlacedTemplate& placed, Evidence& evidence) {
   evidence.fit = placed.fit;
-  evidence.outline = measure_boundary_continuation(input.index.forest().views[placed.view], placed.centre_camera, input.frame);
+  evidence.outline =
+      measure_boundary_continuation(input.index.forest().views[placed.view], placed.centre_camera, input.frame);
 }
 
 /// Completes the evidence by the view that agrees best with the frame, aligned with it; of views of unlike attitudes by
@@ -211,7 +212,7 @@ float attitude_spread(const Forest& forest, std::uint32_t class_index) {
   constexpr float kOneAttitude = 150.0F;  // views of a turntable
   const auto views = std::count_if(forest.views.begin(), forest.views.end(),
                                    [&](const ViewTemplate& view) { return view.class_index == class_index; });
-  return std::clamp(static_cast<float>(views) / kOneAttitude, 1.0F, static_cast<float>(kMostAttitudes));
+  return std::clamp(static_cast<float>(views) / kOneAttitude, 1.0F, static_cast<float>(kMaxAttitudes));
 }
 
 }  // namespace houghstream

@@ -33,8 +33,8 @@ struct EvidenceInput {
 struct EvidenceMemory {
   struct Worker {
     std::vector<PlacedTemplate> compared;
-    std::vector<PlacedTemplate> way;                           ///< what was looked at from one view to a better one
-    std::vector<PlacedTemplate> best_way;                      ///< the same to the best
+    std::vector<PlacedTemplate> way;                       ///< what was looked at from one view to a better one
+    std::vector<PlacedTemplate> best_way;                  ///< the same to the best
     std::vector<std::pair<std::uint32_t, float>> weighed;  ///< views, and how much they speak for their rotation
     BoxMemory box;
   };

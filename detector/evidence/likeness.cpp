@@ -6,7 +6,7 @@
 namespace houghstream {
 namespace {
 
-constexpr int kFewest = 12;         // pairs from which a comparison means something
+constexpr int kMin = 12;            // pairs from which a comparison means something
 constexpr double kNeutral = 128.0;  // a* and b* of grey
 constexpr double kPale = 120.0;     // squared strength in the a*b* plane about which a hue begins to mean something
 
@@ -22,7 +22,7 @@ float Likeness::foreign_colour() const {
   constexpr double kPlain = 100.0;  // variance of a and b that plain surfaces have in changing light
   constexpr double kPalest = 0.5;   // strengths over the remembered one
   constexpr double kStrongest = 2.5;
-  if (count_ < kFewest) return 0.0F;
+  if (count_ < kMin) return 0.0F;
   const double count = count_;
   const auto mean = [&](std::size_t channel, std::size_t which) {
     return channels_[channel][which] / count - kNeutral;
@@ -49,7 +49,7 @@ Likeness::Strengths Likeness::strengths() const {
 }
 
 float Likeness::hue_conflict() const {
-  if (count_ < kFewest) return 0.0F;
+  if (count_ < kMin) return 0.0F;
   const Strengths sum = strengths();
   const double lacking = std::sqrt(sum.remembered_sq * sum.seen_sq) - sum.product;
   const double pale = kPale * count_;
@@ -59,7 +59,7 @@ float Likeness::hue_conflict() const {
 float Likeness::paleness() const {
   constexpr double kDarkest = 0.1;  // brightness over the remembered one
   constexpr double kBrightest = 4.0;
-  if (count_ < kFewest) return 0.0F;
+  if (count_ < kMin) return 0.0F;
   const Strengths sum = strengths();
   const double remembered = std::max(static_cast<double>(channels_[0][0]), 1.0);
   const double brightness = std::clamp(channels_[0][1] / remembered, kDarkest, kBrightest);
@@ -70,8 +70,8 @@ float Likeness::paleness() const {
 
 float Likeness::contrast() const {
   constexpr double kNoise = 9.0;  // variance that a plain surface's pixels have
-  constexpr double kMost = 2.0;
-  if (count_ < kFewest) return 0.0F;
+  constexpr double kMax = 2.0;
+  if (count_ < kMin) return 0.0F;
   const double count = count_;
   double remembered = 3.0 * kNoise;
   double seen = 3.0 * kNoise;
@@ -80,12 +80,12 @@ float Likeness::contrast() const {
     remembered += channels_[c][2] / count - mean * mean;
     seen += seen_variance(c);
   }
-  return static_cast<float>(std::clamp(0.5 * std::log(seen / remembered), -kMost, kMost));
+  return static_cast<float>(std::clamp(0.5 * std::log(seen / remembered), -kMax, kMax));
 }
 
 float Likeness::correlation() const {
   constexpr double kNoise = 9.0;  // variance that a plain surface's pixels have
-  if (count_ < kFewest) return 0.0F;
+  if (count_ < kMin) return 0.0F;
   const double count = count_;
   double covariance = 0.0;
   double remembered = 3.0 * kNoise;

@@ -22,11 +22,11 @@ ScoreTerms score_terms(const Evidence& evidence) {
   const TemplateMatch& fit = evidence.fit;
   const float foreign = std::min(fit.foreign_colour, 1.0F);
   constexpr float kNearest = 0.1F;  // metres, as far as a logarithm means something
-  constexpr float kLeast = 1e-4F;   // the same of shares
+  constexpr float kMin = 1e-4F;     // the same of shares
   constexpr float kUsualRadius_px = 40.0F;
-  const float log_mass = std::log(std::max(evidence.relative_vote_mass, kLeast));
+  const float log_mass = std::log(std::max(evidence.relative_vote_mass, kMin));
   const float log_shown = std::log(1.02F - fit.hidden);
-  const float log_certainty = std::log(std::max(evidence.certainty, kLeast));
+  const float log_certainty = std::log(std::max(evidence.certainty, kMin));
   ScoreTerms terms;
   terms.constant = 1.0F;
   terms.mass = log_mass;

@@ -7,13 +7,13 @@ namespace houghstream {
 
 /// What speaks for and against a hypothesis.
 struct Evidence {
-  float relative_vote_mass = 0.0F;   ///< vote mass over the class's nominal_vote_mass
-  float certainty = 1.0F;    ///< weight of the votes over the number of patches that cast them
-  float distance = 1.0F;     ///< of the centre from the camera, metres
-  float radius_px = 40.0F;   ///< of the object at that distance, at about the usual focal length: see focal_octave_scale
-  TemplateMatch fit;               ///< of the remembered view that fits best
-  BoundaryContinuation outline;        ///< of the same
-  float other_size = -0.4F;  ///< see alternative_scale_gain; about what objects have, where it was not looked for
+  float relative_vote_mass = 0.0F;  ///< vote mass over the class's nominal_vote_mass
+  float certainty = 1.0F;           ///< weight of the votes over the number of patches that cast them
+  float distance = 1.0F;            ///< of the centre from the camera, metres
+  float radius_px = 40.0F;  ///< of the object at that distance, at about the usual focal length: see focal_octave_scale
+  TemplateMatch fit;        ///< of the remembered view that fits best
+  BoundaryContinuation outline;  ///< of the same
+  float other_size = -0.4F;      ///< see alternative_scale_gain; about what objects have, where it was not looked for
 };
 
 /// The evidence as the terms that ScoreModel::weights multiply.

@@ -11,7 +11,7 @@ float agreement(const TemplateMatch& fit) {
 }
 
 PlacedTemplate align_template(const std::vector<ViewTemplate>& views, PlacedTemplate placed, const LabFrame& frame,
-                      float step_cells) {
+                              float step_cells) {
   constexpr int kSteps = 4;
   const ViewTemplate& view = views[placed.view];
   const float right = step_cells * (view.box[2] - view.box[0]) / TemplateGrid::kBoxSide;
@@ -36,14 +36,18 @@ PlacedTemplate align_template(const std::vector<ViewTemplate>& views, PlacedTemp
 }
 
 const PlacedTemplate& best_match(const std::vector<PlacedTemplate>& compared) {
-  const auto worse = [](const PlacedTemplate& a, const PlacedTemplate& b) { return agreement(a.fit) < agreement(b.fit); };
+  const auto worse = [](const PlacedTemplate& a, const PlacedTemplate& b) {
+    return agreement(a.fit) < agreement(b.fit);
+  };
   return *std::max_element(compared.begin(), compared.end(), worse);
 }
 
 PlacedTemplate align_best_templates(const std::vector<ViewTemplate>& views, const LabFrame& frame,
-                          std::vector<PlacedTemplate>& compared) {
+                                    std::vector<PlacedTemplate>& compared) {
   constexpr std::size_t kFew = 4;
-  const auto better = [](const PlacedTemplate& a, const PlacedTemplate& b) { return agreement(a.fit) > agreement(b.fit); };
+  const auto better = [](const PlacedTemplate& a, const PlacedTemplate& b) {
+    return agreement(a.fit) > agreement(b.fit);
+  };
   std::stable_sort(compared.begin(), compared.end(), better);
   PlacedTemplate best = compared.front();
   for (std::size_t i = 0; i < std::min(kFew, compared.size()); ++i) {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "detector/evidence/likeness.hpp"
 #include "detector/evidence/boundary_continuation.hpp"
+#include "detector/evidence/likeness.hpp"
 #include "detector/forest/off_axis_slope.hpp"
 #include "pipeline/base/no_value.hpp"
 
@@ -267,7 +267,8 @@ float tolerance_at(float z) {
 
 }  // namespace
 
-TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame, float size) {
+TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame,
+                             float size) {
   const Comparison comparison = compare(view, centre_camera, frame.frame, size);
   const float shift = common_shift(comparison);
   const float tolerance = tolerance_at(centre_camera.z());
@@ -289,7 +290,8 @@ TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& ce
   return fit;
 }
 
-BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame) {
+BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, const Eigen::Vector3f& centre_camera,
+                                                   const LabFrame& frame) {
   const Comparison comparison = compare(view, centre_camera, frame.frame, 1.0F);
   const CellColours colours(comparison, frame);
   const float shift = common_shift(comparison);

@@ -38,10 +38,11 @@ struct TemplateMatch {
 /// The likeness is blind to brightness, contrast and colour cast, which the light decides. With a `size` other than 1
 /// the view is taken for one of an object so many times as large.
 TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame,
-                 float size = 1.0F);
+                             float size = 1.0F);
 
 /// Whether what is seen ends where the view's outline is. What lies in front of the object, within or beyond, has no
 /// say.
-BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame);
+BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, const Eigen::Vector3f& centre_camera,
+                                                   const LabFrame& frame);
 
 }  // namespace houghstream

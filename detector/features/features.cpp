@@ -15,7 +15,7 @@ void list_parts(const FeatureTiles& tiles, FeatureMemory& memory) {
   memory.columns.assign(static_cast<std::size_t>(tiles.rows()), cv::Range(INT_MAX, INT_MIN));
   for (int row = 0; row < tiles.rows(); ++row) {
     const std::size_t first = memory.parts.size();
-    tiles.list_parts(row, kLongestPart, memory.parts);
+    tiles.list_parts(row, kMaxPart, memory.parts);
     if (memory.parts.size() == first) continue;
     const cv::Rect& last = memory.parts.back();
     memory.columns[static_cast<std::size_t>(row)] = {memory.parts[first].x, last.x + last.width};

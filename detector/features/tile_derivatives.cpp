@@ -186,7 +186,8 @@ SobelKernels sobel_kernels(int size_px) {
   return kernels;
 }
 
-void differentiate_depth(const TilePlane<float>& plane, const SobelKernels& kernels, float focal_px, DepthDerivatives& out) {
+void differentiate_depth(const TilePlane<float>& plane, const SobelKernels& kernels, float focal_px,
+                         DepthDerivatives& out) {
   HWY_DYNAMIC_DISPATCH(depth)(plane, kernels, focal_px, out);
 }
 

@@ -36,7 +36,8 @@ struct DepthDerivatives {
 
 /// Everything on all pixels of `out`, margins included; they are smaller than that of `depth` by at least half a
 /// kernel.
-void differentiate_depth(const TilePlane<float>& depth, const SobelKernels& kernels, float focal_px, DepthDerivatives& out);
+void differentiate_depth(const TilePlane<float>& depth, const SobelKernels& kernels, float focal_px,
+                         DepthDerivatives& out);
 
 /// Metres to whole steps: 0 where unknown, at most 65535.
 void quantise_depth(const TilePlane<float>& depth, float step, TilePlane<std::uint16_t>& steps);

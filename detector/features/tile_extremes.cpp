@@ -35,9 +35,9 @@ template <int kSide, class D, typename T = hn::TFromD<D>, class Store>
 HWY_INLINE void for_extremes(D d, const TilePlane<T>& plane, Neighbourhood around, const Store& store) {
   const auto lanes = static_cast<int>(hn::Lanes(d));
   T largest_of_columns[kWidestRow];
-  T smallest_of_columns[kWidestRow];
+  T min_of_columns[kWidestRow];
   T* largest = largest_of_columns + kWidestMargin;
-  T* smallest = smallest_of_columns + kWidestMargin;
+  T* smallest = min_of_columns + kWidestMargin;
   const int before = around.before();
   for (int y = 0; y < plane.height(); ++y) {
     const T* first = plane.row(y - before);

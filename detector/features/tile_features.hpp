@@ -27,7 +27,7 @@ struct TileSources {
 /// part for its memory.
 class TileFeatures {
  public:
-  /// The planes of `part`, at most kLongestPart pixels wide, in rows().
+  /// The planes of `part`, at most kMaxPart pixels wide, in rows().
   void compute(const TileSources& sources, cv::Rect part);
   const TileRows& rows() const { return rows_; }
 

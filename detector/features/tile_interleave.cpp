@@ -75,10 +75,12 @@ int turn_whole_blocks(const std::uint8_t* planes, int plane_stride, int count, s
   for (int x = 0; x < whole; x += kTurnSide) {
     int p = 0;
     for (; p + kTurned <= pixel_stride; p += kTurned) {
-      transpose_block<kTurned>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p, pixel_stride);
+      transpose_block<kTurned>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p,
+                               pixel_stride);
     }
     for (; p < pixel_stride; p += kTurnSide) {
-      transpose_block<kTurnSide>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p, pixel_stride);
+      transpose_block<kTurnSide>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p,
+                                 pixel_stride);
     }
   }
   return whole;

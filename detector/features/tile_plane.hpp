@@ -10,9 +10,9 @@
 
 namespace houghstream {
 
-constexpr int kLongestPart = 128;                                      ///< pixels side by side, at most
-constexpr int kWidestMargin = 40;                                      ///< around a part, at most
-constexpr int kWidestRow = kLongestPart + 2 * kWidestMargin + 2 * 64;  ///< with room for vectors past its end
+constexpr int kMaxPart = 128;                                      ///< pixels side by side, at most
+constexpr int kWidestMargin = 40;                                  ///< around a part, at most
+constexpr int kWidestRow = kMaxPart + 2 * kWidestMargin + 2 * 64;  ///< with room for vectors past its end
 
 /// Values of a part of an image, and of some pixels around it. Rows may be read and written a vector past their end.
 template <typename T>

@@ -138,9 +138,9 @@ std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings) {
 }
 
 float focal_octave_scale(const Camera& camera) {
-  constexpr double kMostOctaves = 3.0;
+  constexpr double kMaxOctaves = 3.0;
   const double octaves = std::round(std::log2(static_cast<double>(kReferenceFocal_px) / camera.fx));
-  return static_cast<float>(std::exp2(std::clamp(octaves, -kMostOctaves, 1.0)));
+  return static_cast<float>(std::exp2(std::clamp(octaves, -kMaxOctaves, 1.0)));
 }
 
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings, const Camera& camera) {

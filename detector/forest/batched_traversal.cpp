@@ -15,13 +15,13 @@ namespace houghstream::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t kMost = 256;  // patches that walk together
+constexpr std::size_t kMax = 256;  // patches that walk together
 using Int = hn::CappedTag<std::int32_t, 64>;
 using Ints = hn::Vec<Int>;
 
 /// Patches on their way, and what they see at each step. Behind the last one is room for the rest of its vector.
 template <typename T>
-using PerWalker = std::array<T, kMost + hn::MaxLanes(Int())>;
+using PerWalker = std::array<T, kMax + hn::MaxLanes(Int())>;
 struct Walkers {
   PerWalker<std::int32_t> at;      // PackedNode
   PerWalker<std::int32_t> who;     // of the patches that set out
@@ -48,7 +48,7 @@ struct Batch {
 Batch gather_batch(const PatchBatch& patches, std::size_t first) {
   Batch batch;
   batch.image = patches.image;
-  batch.count = std::min(kMost, static_cast<std::size_t>(patches.count) - first);
+  batch.count = std::min(kMax, static_cast<std::size_t>(patches.count) - first);
   for (std::size_t i = 0; i < batch.count; ++i) {
     const std::size_t p = first + i;
     batch.centre[i] = patches.y[p] * patches.image->row_stride() + patches.x[p] * patches.image->pixel_stride();
@@ -175,7 +175,7 @@ void walk_tree(const PackedTrees& trees, std::size_t tree, const Batch& batch, W
 void walk(const PackedTrees& trees, TreeRange range, const PatchBatch& patches, std::int32_t* leaves) {
   const auto count = static_cast<std::size_t>(patches.count);
   Walkers w;
-  for (std::size_t first = 0; first < count; first += kMost) {
+  for (std::size_t first = 0; first < count; first += kMax) {
     const Batch batch = gather_batch(patches, first);
     for (std::size_t tree = range.first; tree < range.last; ++tree) {
       walk_tree(trees, tree, batch, w, leaves + (tree - range.first) * count + first);

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "detector/features/feature_settings.hpp"
-#include "detector/forest/view_template.hpp"
 #include "detector/forest/pixel_test.hpp"
 #include "detector/forest/score_model.hpp"
+#include "detector/forest/view_template.hpp"
 
 namespace houghstream {
 
@@ -53,7 +53,7 @@ struct LeafClass {
 struct ObjectClass {
   int class_id = 0;  ///< from 1
   std::string name;
-  float radius = 0.0F;         ///< farthest seen surface point from the centre, metres
+  float radius = 0.0F;             ///< farthest seen surface point from the centre, metres
   float nominal_vote_mass = 1.0F;  ///< vote mass of a wholly visible object, square metres
   ScoreModel score_model;
 };

@@ -63,8 +63,8 @@ struct Writer : ArchiveWriter {
 struct Reader : ArchiveReader {
   using ArchiveReader::operator();
   void operator()(std::vector<ObjectClass>& classes) {
-    constexpr std::size_t kLeast = 4 + 8 + 2 * 4;  // id, the name's length, radius and mass
-    classes.resize(count(kLeast));
+    constexpr std::size_t kMin = 4 + 8 + 2 * 4;  // id, the name's length, radius and mass
+    classes.resize(count(kMin));
     for (ObjectClass& c : classes) archive_class(*this, c);
   }
 };
@@ -179,7 +179,7 @@ void check_settings(const Forest& forest, const std::string& source) {
       "{}: holes filled over {} pixels or {} m, expected up to 1000 pixels and 1 m", source, f.fill_distance_px,
       f.fill_distance);
   require(f.tone.is_sound(), "{}: a tone of means {} to {}, deviation up to {}, expected grey values of 0 to 255",
-          source, f.tone.least_mean, f.tone.most_mean, f.tone.most_deviation);
+          source, f.tone.min_mean, f.tone.max_mean, f.tone.max_deviation);
   require(
       forest.patch.radius >= 1 && forest.patch.radius <= 127 && forest.patch.unit > 0.0F && forest.patch.unit <= 1.0F,
       "{}: patch of {} steps of {} m, expected 1 to 127 steps below 1 m", source, forest.patch.radius,

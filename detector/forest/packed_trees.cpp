@@ -6,8 +6,8 @@
 namespace houghstream {
 namespace {
 
-constexpr std::size_t kMostNodes = std::size_t{1} << packed::kLimitShift;
-constexpr int kHighestLimit = 255;  // differences of bytes do not exceed it
+constexpr std::size_t kMaxNodes = std::size_t{1} << packed::kLimitShift;
+constexpr int kMaxLimit = 255;  // differences of bytes do not exceed it
 
 std::uint32_t step_bits(int step, int place) {
   constexpr std::uint32_t kMask = (1U << packed::kStepBits) - 1;
@@ -15,8 +15,8 @@ std::uint32_t step_bits(int step, int place) {
 }
 
 bool fits(const PixelTest& test) {
-  constexpr int kFarthest = (1 << (packed::kStepBits - 1)) - 1;
-  return std::max({std::abs(test.dx1), std::abs(test.dy1), std::abs(test.dx2), std::abs(test.dy2)}) <= kFarthest;
+  constexpr int kMaxDistance = (1 << (packed::kStepBits - 1)) - 1;
+  return std::max({std::abs(test.dx1), std::abs(test.dy1), std::abs(test.dx2), std::abs(test.dy2)}) <= kMaxDistance;
 }
 
 std::int32_t pack_way(std::size_t left, int limit) {
@@ -32,12 +32,12 @@ PackedNode pack_node(const PixelTest& test, std::size_t left) {
   bits |= static_cast<std::uint32_t>(test.plane) << packed::kPlaneShift;
   if (alone) bits |= packed::kAlone;
   if (test.kind == PixelTest::kWrapping) bits |= packed::kWraps;
-  return {bits, pack_way(left, std::clamp(test.threshold - 1, -kHighestLimit - 1, kHighestLimit))};
+  return {bits, pack_way(left, std::clamp(test.threshold - 1, -kMaxLimit - 1, kMaxLimit))};
 }
 
 /// One tree, breadth first, behind the others. False where it does not fit.
 bool append_packed(const Forest& forest, std::int32_t root, PackedTrees& trees) {
-  const std::size_t most = std::min(kMostNodes, forest.roots.size() + 2 * forest.nodes.size());
+  const std::size_t most = std::min(kMaxNodes, forest.roots.size() + 2 * forest.nodes.size());
   std::vector<std::int32_t> sources = {root};
   const std::size_t first = trees.nodes.size();
   for (std::size_t i = 0; i < sources.size(); ++i) {

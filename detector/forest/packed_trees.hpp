@@ -14,7 +14,8 @@ struct PackedNode {
   std::int32_t way = 0;
 };
 
-/// The trees once more, packed for traverse_batched: eight bytes for each node and leaf; the right child follows the left one.
+/// The trees once more, packed for traverse_batched: eight bytes for each node and leaf; the right child follows the
+/// left one.
 struct PackedTrees {
   std::vector<PackedNode> nodes;    ///< and leaves; empty = see pack_trees
   std::vector<std::int32_t> roots;  ///< per tree, into nodes

@@ -128,7 +128,7 @@ void place_patches(const WorkingImages& images, const PatchLayout& layout, Patch
     add_patches(frame, images.levels[level], static_cast<std::uint8_t>(level), layout, grid);
     tiles.clear(frame.colour.size());
     for (std::size_t p = first; p < grid.size(); ++p) {
-      tiles.add_patch(grid.x[p], grid.y[p], farthest_offset(layout.patch, grid.scale[p]));
+      tiles.add_patch(grid.x[p], grid.y[p], max_offset(layout.patch, grid.scale[p]));
     }
   }
 }

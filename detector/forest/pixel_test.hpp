@@ -39,7 +39,7 @@ inline std::int32_t patch_scale(const PatchSettings& patch, double focal_px, flo
 }
 
 /// How far the tests of a patch look, pixels.
-inline int farthest_offset(const PatchSettings& patch, std::int32_t scale) {
+inline int max_offset(const PatchSettings& patch, std::int32_t scale) {
   return (patch.radius * scale + 128) >> 8;
 }
 

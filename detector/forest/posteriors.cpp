@@ -60,9 +60,9 @@ void append_entries(const ForestIndex& index, std::size_t class_index, std::size
 
 }  // namespace
 
-void PatchPosteriors::reset(const ForestIndex& index, std::size_t runs, float least_share, int threads) {
+void PatchPosteriors::reset(const ForestIndex& index, std::size_t runs, float min_share, int threads) {
   index_ = &index;
-  least_share_ = least_share;
+  min_share_ = min_share;
   workers_.make_room(threads);
   supporters_.resize(runs * index.forest().classes.size());
   for (SupportingPatches& supporters : supporters_) {
@@ -79,12 +79,12 @@ void PatchPosteriors::note(const RunLeaves& seen) {
   sum_certainties(*index_, seen, sums);
   some.clear();
   for (std::uint32_t i = 0; i < seen.count; ++i) {
-    if (sums[i] / trees >= least_share_) some.push_back(i);
+    if (sums[i] / trees >= min_share_) some.push_back(i);
   }
   sum_by_class(*index_, some, seen, sums);
   for (std::size_t i = 0; i < some.size(); ++i) {
     for (std::size_t c = 0; c < classes; ++c) {
-      if (sums[i * classes + c] / trees < least_share_) continue;
+      if (sums[i * classes + c] / trees < min_share_) continue;
       SupportingPatches& supporters = supporters_[seen.run * classes + c];
       supporters.patches.push_back(seen.patches[some[i]]);
       append_entries(*index_, c, some[i], seen, supporters.entries);

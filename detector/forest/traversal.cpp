@@ -59,7 +59,7 @@ void walk_run(const LeafInput& input, const PatchRun& run, LeafMemory::Worker& o
   const std::size_t first = may_end ? static_cast<std::size_t>(input.early_end.trees) : trees;
   own.leaves.resize(run.count * trees);
   const PatchBatch all{&image, patches.x.data() + run.first, patches.y.data() + run.first,
-                           patches.scale.data() + run.first, static_cast<int>(run.count)};
+                       patches.scale.data() + run.first, static_cast<int>(run.count)};
   walk_trees(index, all, {0, first}, own.leaves.data());
   if (!may_end) {
     own.patches.resize(run.count);

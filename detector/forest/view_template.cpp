@@ -89,7 +89,7 @@ void mark_outline(TemplateGrid& appearance) {
 }  // namespace
 
 TemplateGrid make_template_grid(const RgbdFrame& view, const cv::Mat& mask, const cv::Rect& box_px,
-                               const Eigen::Vector3f& centre_camera) {
+                                const Eigen::Vector3f& centre_camera) {
   const OffAxisSlope tilt = off_axis_slope(centre_camera);
   const Eigen::Vector2d centre_px = view.camera.project(centre_camera.cast<double>());
   const double metres_per_px = view.camera.metres_per_px(centre_camera.z());

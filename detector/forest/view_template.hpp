@@ -41,7 +41,7 @@ struct TemplateGrid {
 /// What is to be remembered of a view: `mask` is CV_8UC1, 255 on the object, `box_px` its bounding box, `centre_camera`
 /// the object's centre, metres.
 TemplateGrid make_template_grid(const RgbdFrame& view, const cv::Mat& mask, const cv::Rect& box_px,
-                               const Eigen::Vector3f& centre_camera);
+                                const Eigen::Vector3f& centre_camera);
 
 // The names of before, for one release.
 using Appearance [[deprecated("is TemplateGrid now")]] = TemplateGrid;

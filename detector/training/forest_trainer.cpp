@@ -7,10 +7,10 @@
 #include <mutex>
 #include <set>
 
-#include "detector/training/vote_mass.hpp"
 #include "detector/training/hard_negatives.hpp"
 #include "detector/training/score_training.hpp"
 #include "detector/training/tree_trainer.hpp"
+#include "detector/training/vote_mass.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
 

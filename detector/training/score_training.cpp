@@ -51,12 +51,12 @@ ScoreExamples judge(const std::vector<Candidate>& candidates, const ValidationFr
 /// A room with objects, in which near surfaces may have lost their depth.
 ValidationFrame compose(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
                         const ComposedThings& things, const TrainingSettings& settings, Random& random) {
-  constexpr double kLeast = 0.05;  // of the depth is kept
-  constexpr double kMost = 0.6;
+  constexpr double kMin = 0.05;  // of the depth is kept
+  constexpr double kMax = 0.6;
   ValidationFrame composed = make_validation_frame(objects, room, things, settings, random);
   if (random.uniform() >= settings.near_dropout_fraction) return composed;
   const double limit = random.uniform(settings.min_distance, settings.max_distance);
-  const double kept = std::exp(random.uniform(std::log(kLeast), std::log(kMost)));
+  const double kept = std::exp(random.uniform(std::log(kMin), std::log(kMax)));
   drop_near_depth(limit, kept, composed.frame.depth, random);
   return composed;
 }
@@ -119,7 +119,8 @@ ValidationSource composed_frames(const std::vector<const TrainingView*>& objects
 }
 
 ValidationSource compose_hard_negative_frames(const std::vector<const TrainingView*>& objects,
-                                 const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings) {
+                                              const std::vector<const TrainingView*>& rooms,
+                                              const TrainingSettings& settings) {
   ValidationSource source = frames_from(settings.validation_frames, kHardNegativeObjects, objects, rooms, settings);
   source.count = (source.count + 1) / 2;  // for two numbers of each object
   return source;

@@ -30,7 +30,8 @@ ValidationSource composed_frames(const std::vector<const TrainingView*>& objects
 /// another's colours, as rooms in which people live are full of. Composed ones else hold hardly anything that ends
 /// where its outline is, but the objects, and scores that are learnt there are too high.
 ValidationSource compose_hard_negative_frames(const std::vector<const TrainingView*>& objects,
-                                 const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings);
+                                              const std::vector<const TrainingView*>& rooms,
+                                              const TrainingSettings& settings);
 
 /// What the forest finds in a frame, compared with what is there: by class id.
 using ScoreExamples = std::map<int, std::vector<ScoreExample>>;

@@ -141,8 +141,8 @@ class TreeGrower {
 
   std::int32_t follow_leaf(const Forest& old, std::int32_t leaf, const Samples& samples, int depth) {
     known_ = ExistingLeaf{&old, leaf,
-                       compute_mixture(static_cast<float>(old.classes.size()), static_cast<float>(set_.classes.size()),
-                                  settings_.max_background_weight)};
+                          compute_mixture(static_cast<float>(old.classes.size()),
+                                          static_cast<float>(set_.classes.size()), settings_.max_background_weight)};
     known_samples_ = std::max<std::size_t>(samples.size(), 1);
     if (samples.empty()) return -1 - copy_leaf(*known_, forest_);
     return grow_node(samples, depth);

@@ -10,8 +10,8 @@ namespace houghstream::training {
 namespace {
 
 /// Weight that a leaf's votes give to the true centre.
-float support_at_ground_truth(const Forest& forest, std::int32_t leaf, const TrainingSample& sample, std::size_t class_index,
-                       float vote_sigma) {
+float support_at_ground_truth(const Forest& forest, std::int32_t leaf, const TrainingSample& sample,
+                              std::size_t class_index, float vote_sigma) {
   float support = 0.0F;
   const auto l = static_cast<std::size_t>(leaf);
   for (std::uint32_t e = forest.leaves[l]; e < forest.leaves[l + 1]; ++e) {
@@ -70,7 +70,8 @@ std::map<int, double> mean_probabilities(const Forest& forest) {
 
 }  // namespace
 
-void estimate_nominal_vote_mass(const TrainingSet& set, const TrainingSettings& settings, float vote_sigma, Forest& forest) {
+void estimate_nominal_vote_mass(const TrainingSet& set, const TrainingSettings& settings, float vote_sigma,
+                                Forest& forest) {
   const int trees = static_cast<int>(forest.roots.size());
   std::vector<std::vector<Tally>> by_tree(static_cast<std::size_t>(trees));
   parallel_for(settings.threads, trees, [&](int t) {

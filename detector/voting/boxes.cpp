@@ -60,7 +60,7 @@ Sides template_sides(const Forest& forest, const Hypothesis& hypothesis, const C
 }  // namespace
 
 cv::Rect2f backproject_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
-                             const Camera& camera, BoxMemory& memory) {
+                           const Camera& camera, BoxMemory& memory) {
   if (hypothesis.patches.empty() || hypothesis.views.empty()) return {};
   constexpr float kHidden = 0.3F;  // of the object's width or height: from here on a side is taken to be hidden
   const Sides seen = supporting_sides(hypothesis, patches, memory);

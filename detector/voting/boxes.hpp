@@ -20,7 +20,7 @@ struct BoxMemory {
 /// little of it and support it weakly, so each side moves out to where the training views that the votes
 /// remember have theirs, unless the patches end so far from it that the object must be hidden there.
 cv::Rect2f backproject_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
-                             const Camera& camera, BoxMemory& memory);
+                           const Camera& camera, BoxMemory& memory);
 
 /// Strongest first; one whose box overlaps that of a stronger one of its class, or of a significantly stronger one of
 /// another class (paper, Section 2), by more than the settings allow is dropped (non-maximum suppression).

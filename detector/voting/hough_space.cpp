@@ -76,9 +76,11 @@ void cast_votes(const VotingInput& input, int class_index, CastMemory& memory, H
   space.width = grid.width;
   space.height = grid.height;
   space.voters.clear();
-  input.posteriors.for_each_supporting_patch(class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
-    for (std::uint32_t e = 0; e < count; ++e) space.voters.push_back({p, entries[e]});
-  });
+  input.posteriors.for_each_supporting_patch(class_index,
+                                             [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
+                                               for (std::uint32_t e = 0; e < count; ++e)
+                                                 space.voters.push_back({p, entries[e]});
+                                             });
   cast_all({input.forest, input.patches, space.voters, grid}, memory.cast);
   sum_by_cell(memory.cast, grid, memory.sums);
   lay_out(memory.sums, memory.next, space);

@@ -93,8 +93,8 @@ std::vector<std::size_t> by_work(std::size_t classes, const PatchPosteriors& pos
   std::vector<std::size_t> order(classes);
   for (std::size_t c = 0; c < classes; ++c) {
     order[c] = c;
-    posteriors.for_each_supporting_patch(static_cast<int>(c),
-                              [&](std::uint32_t, const std::uint32_t*, std::uint32_t count) { work[c] += count; });
+    posteriors.for_each_supporting_patch(
+        static_cast<int>(c), [&](std::uint32_t, const std::uint32_t*, std::uint32_t count) { work[c] += count; });
   }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return work[a] > work[b]; });
   return order;
@@ -126,7 +126,7 @@ void SparseSums::take(Weights& out) {
 std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t class_index, VotingMemory::Worker& own) {
   const VotingSettings& settings = input.settings;
   const std::size_t classes = input.forest.classes.size();
-  const float least_mass = settings.min_mass_share * input.forest.classes[class_index].nominal_vote_mass;
+  const float min_mass = settings.min_mass_share * input.forest.classes[class_index].nominal_vote_mass;
   const std::vector<Eigen::Vector3f> maxima =
       find_maxima(own.space, input.camera, settings, per_class_budget(classes, settings.maxima_per_class), own.maxima);
   std::vector<Hypothesis> weighed;
@@ -136,7 +136,7 @@ std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t c
   own.by_voter.resize(std::max(own.by_voter.size(), maxima.size()));
   for (std::size_t i = 0; i < maxima.size(); ++i) {
     weighed.push_back(score_maximum(input, maxima[i], own, own.by_voter[i]));
-    if (weighed.back().mass >= least_mass) order.push_back(i);
+    if (weighed.back().mass >= min_mass) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return weighed[a].mass > weighed[b].mass; });

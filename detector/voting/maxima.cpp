@@ -55,9 +55,9 @@ float start_depth(const HoughSpace& space, const HoughCell& cell, MaximaMemory& 
 
 int per_class_budget(std::size_t classes, int per_class) {
   constexpr int kFewClasses = 4;
-  constexpr int kLeast = 6;
+  constexpr int kMin = 6;
   const int shared = per_class * kFewClasses / std::max(static_cast<int>(classes), kFewClasses);
-  return std::max(shared, std::min(per_class, kLeast));
+  return std::max(shared, std::min(per_class, kMin));
 }
 
 std::vector<Eigen::Vector3f> find_maxima(const HoughSpace& space, const Camera& camera, const VotingSettings& settings,

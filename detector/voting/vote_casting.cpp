@@ -143,11 +143,11 @@ CellGrid::CellGrid(const Camera& camera, int cell_px)
       cy(static_cast<float>((camera.cy + 0.5) / cell_px)) {}
 
 void cast_all(const CastInput& input, CastVotes& cast) {
-  constexpr std::size_t kMostPerVoter = UINT8_MAX;
+  constexpr std::size_t kMaxPerVoter = UINT8_MAX;
   cast.count = 0;
   for (std::size_t next = 0; next < input.voters.size();) {
-    if (cast.count + kMostPerVoter + CastVotes::kSlack > cast.votes.size()) {
-      cast.votes.resize(2 * cast.votes.size() + kMostPerVoter + CastVotes::kSlack);
+    if (cast.count + kMaxPerVoter + CastVotes::kSlack > cast.votes.size()) {
+      cast.votes.resize(2 * cast.votes.size() + kMaxPerVoter + CastVotes::kSlack);
       cast.cells.resize(cast.votes.size());
       cast.voters.resize(cast.votes.size());
     }

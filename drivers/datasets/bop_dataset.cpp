@@ -46,9 +46,9 @@ Eigen::Isometry3d parse_pose(const json& entry, const std::string& where) {
   Eigen::Matrix3d R;
   R << r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8];
   const Eigen::Vector3d t(t_mm[0], t_mm[1], t_mm[2]);
-  constexpr double kFarthest_mm = 1e5;
-  require(t.norm() < kFarthest_mm, "{}: 'cam_t_m2c' is {} mm long, expected less than {}", where, t.norm(),
-          kFarthest_mm);
+  constexpr double kMaxDistance_mm = 1e5;
+  require(t.norm() < kMaxDistance_mm, "{}: 'cam_t_m2c' is {} mm long, expected less than {}", where, t.norm(),
+          kMaxDistance_mm);
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
   T_camera_object.linear() = nearest_rotation(R, where);
   T_camera_object.translation() = t * 1e-3;

@@ -93,8 +93,8 @@ constexpr double kMinTrainingVisibility = 0.75;
 /// All training views of a BOP training folder, rendered (also PBR) or recorded: every scene in or under it, one view
 /// for each object of each image, cropped around its mask_visib; its models/ lies beside or above, and its frame is the
 /// model's in all of them (`object_frame` stays empty). Images without objects are background (class_id 0, not
-/// cropped). Objects below kMinTrainingVisibility are left out, and those without depth, with a warning; throws InputError
-/// when nothing is left.
+/// cropped). Objects below kMinTrainingVisibility are left out, and those without depth, with a warning; throws
+/// InputError when nothing is left.
 std::vector<TrainingView> read_bop_training_views(const std::filesystem::path& folder, int threads = 1);
 
 }  // namespace houghstream

@@ -14,9 +14,9 @@ namespace fs = std::filesystem;
 /// models_info.json in BOP's format: millimetres, but metres here.
 double parse_diameter(const nlohmann::json& entry, const std::string& where) {
   const double diameter_mm = json_number(entry, "diameter", where);
-  constexpr double kLargest_mm = 1e5;
-  require(diameter_mm > 0.0 && diameter_mm < kLargest_mm, "{}: 'diameter' is {} mm, expected 0 to {}", where,
-          diameter_mm, kLargest_mm);
+  constexpr double kMax_mm = 1e5;
+  require(diameter_mm > 0.0 && diameter_mm < kMax_mm, "{}: 'diameter' is {} mm, expected 0 to {}", where, diameter_mm,
+          kMax_mm);
   return diameter_mm * 1e-3;
 }
 

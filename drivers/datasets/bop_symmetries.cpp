@@ -11,13 +11,13 @@ using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
 constexpr const char* kDiscrete = "symmetries_discrete";
 constexpr const char* kContinuous = "symmetries_continuous";
-constexpr std::size_t kMost = 256;  // they are combined with one another
-constexpr double kFarthest_mm = 1e5;
+constexpr std::size_t kMax = 256;  // they are combined with one another
+constexpr double kMaxDistance_mm = 1e5;
 
 const nlohmann::json& listed(const nlohmann::json& entry, const char* key, const std::string& where) {
   const nlohmann::json& list = entry.at(key);
   require(list.is_array(), "{}: '{}' is {}, expected a list", where, key, json_text(list));
-  require(list.size() <= kMost, "{}: '{}' lists {}, expected at most {}", where, key, list.size(), kMost);
+  require(list.size() <= kMax, "{}: '{}' lists {}, expected at most {}", where, key, list.size(), kMax);
   return list;
 }
 
@@ -28,7 +28,7 @@ Eigen::Isometry3d parse_motion(const nlohmann::json& holder, const std::string& 
   constexpr double kTolerance = 1e-3;
   const bool rigid = (R * R.transpose()).isIdentity(kTolerance) && R.determinant() > 0.0 &&
                      m.row(3).isApprox(Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0), kTolerance) &&
-                     m.topRightCorner<3, 1>().cwiseAbs().maxCoeff() < kFarthest_mm;
+                     m.topRightCorner<3, 1>().cwiseAbs().maxCoeff() < kMaxDistance_mm;
   require(rigid, "{}: '{}' holds {}, expected rigid motions", where, kDiscrete, json_text(holder.at(kDiscrete)));
   Eigen::Isometry3d motion(Eigen::Quaterniond(R).normalized());
   motion.translation() = m.topRightCorner<3, 1>() * 1e-3;
@@ -39,12 +39,12 @@ ContinuousSymmetry parse_axis(const nlohmann::json& entry, const std::string& wh
   const std::vector<double> axis = json_numbers(entry, "axis", 3, where);
   const std::vector<double> offset_mm = json_numbers(entry, "offset", 3, where);
   const Eigen::Vector3d direction(axis[0], axis[1], axis[2]);
-  constexpr double kShortest = 1e-6;
-  require(direction.norm() > kShortest && std::isfinite(direction.norm()),
+  constexpr double kMinDuration = 1e-6;
+  require(direction.norm() > kMinDuration && std::isfinite(direction.norm()),
           "{}: 'axis' of '{}' has length {}, expected a direction", where, kContinuous, direction.norm());
   for (const double offset : offset_mm)
-    require(std::abs(offset) < kFarthest_mm, "{}: 'offset' of '{}' is {} mm, expected less than {}", where, kContinuous,
-            offset, kFarthest_mm);
+    require(std::abs(offset) < kMaxDistance_mm, "{}: 'offset' of '{}' is {} mm, expected less than {}", where,
+            kContinuous, offset, kMaxDistance_mm);
   return {direction.normalized(), Eigen::Vector3d(offset_mm[0], offset_mm[1], offset_mm[2]) * 1e-3};
 }
 

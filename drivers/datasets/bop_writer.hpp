@@ -21,7 +21,8 @@ class BopWriter {
  public:
   explicit BopWriter(std::filesystem::path folder);
   /// `visible_masks` (CV_8UC1 0/255, one per object) may be empty: then no masks are written.
-  void add(const RgbdFrame& frame, const std::vector<GroundTruthObject>& objects, const std::vector<cv::Mat>& visible_masks);
+  void add(const RgbdFrame& frame, const std::vector<GroundTruthObject>& objects,
+           const std::vector<cv::Mat>& visible_masks);
   void finish();
 
  private:

@@ -84,15 +84,15 @@ std::vector<TimedImage> read_list(const fs::path& folder, const char* name) {
 
 std::vector<TumPair> pair_images(const fs::path& folder, const std::vector<TimedImage>& colours,
                                  const std::vector<TimedImage>& depths) {
-  constexpr std::int64_t kFarthest_us = 20000;
-  constexpr std::size_t kMostNear = 64;  // of one depth image: all of them are compared
+  constexpr std::int64_t kMaxDistance_us = 20000;
+  constexpr std::size_t kMaxNear = 64;  // of one depth image: all of them are compared
   std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;  // distance, depth, colour
   std::size_t first = 0;
   for (std::size_t d = 0; d < depths.size(); ++d) {
-    while (first < colours.size() && colours[first].utime < depths[d].utime - kFarthest_us) ++first;
-    for (std::size_t c = first; c < colours.size() && colours[c].utime <= depths[d].utime + kFarthest_us; ++c) {
-      require(c - first < kMostNear, "{}: more than {} colour images within 20 ms of {}, expected a sequence",
-              (folder / "rgb.txt").string(), kMostNear, depths[d].file.string());
+    while (first < colours.size() && colours[first].utime < depths[d].utime - kMaxDistance_us) ++first;
+    for (std::size_t c = first; c < colours.size() && colours[c].utime <= depths[d].utime + kMaxDistance_us; ++c) {
+      require(c - first < kMaxNear, "{}: more than {} colour images within 20 ms of {}, expected a sequence",
+              (folder / "rgb.txt").string(), kMaxNear, depths[d].file.string());
       candidates.emplace_back(std::abs(colours[c].utime - depths[d].utime), d, c);
     }
   }

@@ -128,10 +128,10 @@ class TurntableResidual : public cv::MinProblemSolver::Function {
   int getDims() const override { return 3; }
   double calc(const double* x) const override {
     // Turned upside down, the object would fit as well with the other direction.
-    constexpr double kLowest = -0.4;
-    constexpr double kHighest = 1.6;
+    constexpr double kMin = -0.4;
+    constexpr double kMaxHeight = 1.6;
     constexpr double kNever = 1e6;
-    if (x[2] < kLowest || x[2] > kHighest) return kNever;
+    if (x[2] < kMin || x[2] > kMaxHeight) return kNever;
     return mean_residual_sq(samples_, table_from(x, centre_, direction_));
   }
 

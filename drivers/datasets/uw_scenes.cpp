@@ -19,9 +19,9 @@ fs::path without_slash(const fs::path& folder) {
 std::string instance_name(const MatArray& structs, std::size_t index, const std::string& where) {
   const std::string category = mat_text(structs, index, "category", where);
   const double instance = mat_number(structs, index, "instance", where);
-  constexpr double kMost = 10000;
-  require(instance >= 1 && instance <= kMost && instance == std::floor(instance),
-          "{} field 'instance': {}, expected a whole number from 1 to {}", where, instance, kMost);
+  constexpr double kMax = 10000;
+  require(instance >= 1 && instance <= kMax && instance == std::floor(instance),
+          "{} field 'instance': {}, expected a whole number from 1 to {}", where, instance, kMax);
   return fmt::format("{}_{}", category, static_cast<int>(instance));
 }
 
@@ -43,8 +43,8 @@ cv::Rect read_box(const MatArray& structs, std::size_t index, const cv::Size& si
 }
 
 std::vector<UwBox> read_boxes(const MatArray& structs, const cv::Size& size, const std::string& where) {
-  constexpr std::size_t kMostBoxes = 1000;
-  require(structs.count <= kMostBoxes, "{}: {} boxes, expected at most {}", where, structs.count, kMostBoxes);
+  constexpr std::size_t kMaxBoxes = 1000;
+  require(structs.count <= kMaxBoxes, "{}: {} boxes, expected at most {}", where, structs.count, kMaxBoxes);
   std::vector<UwBox> boxes;
   for (std::size_t i = 0; i < structs.count; ++i) {
     const std::string place = fmt::format("{} box {}", where, i + 1);

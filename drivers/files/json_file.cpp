@@ -63,9 +63,9 @@ void write_json(const OrderedJson& json, const std::filesystem::path& file) {
 }
 
 std::string json_text(const nlohmann::json& value) {
-  constexpr std::size_t kLongest = 200;
+  constexpr std::size_t kMaxLength = 200;
   const std::string text = value.dump();
-  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+  return text.size() <= kMaxLength ? text : text.substr(0, kMaxLength) + "...";
 }
 
 void require_known_names(const nlohmann::json& object, const std::vector<std::string>& known,

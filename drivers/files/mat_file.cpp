@@ -17,7 +17,7 @@ namespace houghstream {
 namespace {
 
 constexpr int kDeepest = 16;
-constexpr std::size_t kMostElements = 1U << 24U;
+constexpr std::size_t kMaxElements = 1U << 24U;
 
 template <typename T>
 T value_at(const unsigned char* data, bool swapped) {
@@ -52,11 +52,11 @@ std::size_t parse_count(const MatElement& dimensions) {
           static_cast<std::uint32_t>(dimensions.type));
   std::size_t count = 1;
   for (const double size : sizes) {
-    require(size >= 0 && size <= static_cast<double>(kMostElements), "{}: damaged: an array is {} elements wide", file,
+    require(size >= 0 && size <= static_cast<double>(kMaxElements), "{}: damaged: an array is {} elements wide", file,
             size);
     count *= static_cast<std::size_t>(size);
-    require(count <= kMostElements, "{}: damaged: an array of {} elements, expected at most {}", file, count,
-            kMostElements);
+    require(count <= kMaxElements, "{}: damaged: an array of {} elements, expected at most {}", file, count,
+            kMaxElements);
   }
   return count;
 }
@@ -74,9 +74,9 @@ std::vector<std::string> parse_fields(MatBytes& bytes) {
   const MatElement names = bytes.take_element(true);
   require(names.bytes.size() % step == 0, "{}: damaged: field names of {} bytes, expected a multiple of {}",
           bytes.file(), names.bytes.size(), step);
-  constexpr std::size_t kMostFields = 1024;
-  require(names.bytes.size() / step <= kMostFields, "{}: damaged: {} field names, expected at most {}", bytes.file(),
-          names.bytes.size() / step, kMostFields);
+  constexpr std::size_t kMaxFields = 1024;
+  require(names.bytes.size() / step <= kMaxFields, "{}: damaged: {} field names, expected at most {}", bytes.file(),
+          names.bytes.size() / step, kMaxFields);
   std::vector<std::string> fields;
   for (std::size_t at = 0; at < names.bytes.size(); at += step)
     fields.push_back(text_of(names.bytes.data() + at, step));
@@ -170,17 +170,17 @@ constexpr std::size_t kHeaderBytes = 128;
 
 std::vector<unsigned char> read_bytes(const fs::path& path) {
   require_regular_file(path, "a MATLAB file");
-  constexpr std::uintmax_t kMostBytes = 16U << 20U;
+  constexpr std::uintmax_t kMaxBytes = 16U << 20U;
   std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);
-  require(!error && size <= kMostBytes, "{}: {} bytes, expected at most {}", path.string(), size, kMostBytes);
+  require(!error && size <= kMaxBytes, "{}: {} bytes, expected at most {}", path.string(), size, kMaxBytes);
   std::ifstream in(path, std::ios::binary);
   require(in.good() && fs::is_regular_file(path), "{}: missing or unreadable, expected a MATLAB file", path.string());
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::vector<unsigned char> inflate_all(const MatBytes& packed, const std::string& where) {
-  constexpr std::size_t kMostBytes = 16U << 20U;  // each 8 of them may be an array of a hundred
+  constexpr std::size_t kMaxBytes = 16U << 20U;  // each 8 of them may be an array of a hundred
   z_stream stream{};
   require(inflateInit(&stream) == Z_OK, "{}: no memory to decompress", where);
   const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&stream, inflateEnd);
@@ -194,7 +194,7 @@ std::vector<unsigned char> inflate_all(const MatBytes& packed, const std::string
     stream.avail_out = piece.size();
     state = inflate(&stream, Z_NO_FLUSH);
     out.insert(out.end(), piece.data(), stream.next_out);
-    require(out.size() <= kMostBytes, "{}: more than {} bytes decompressed", where, kMostBytes);
+    require(out.size() <= kMaxBytes, "{}: more than {} bytes decompressed", where, kMaxBytes);
   }
   require(state == Z_STREAM_END, "{}: compressed data are damaged (zlib says {})", where, state);
   return out;

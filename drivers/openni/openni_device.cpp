@@ -217,10 +217,10 @@ std::unique_ptr<OpenniDevice> OpenniDevice::open_file(const std::string& file, c
   require(state->device.isFile(), "{}: no recording, expected a .oni file", file);
   state->create_streams();
   state->mode = camera_mode_of(state->depth.getVideoMode());
-  constexpr int kMostHz = 1000;
+  constexpr int kMaxHz = 1000;
   require(
-      state->mode.width >= 1 && state->mode.height >= 1 && state->mode.rate_hz >= 1 && state->mode.rate_hz <= kMostHz,
-      "{}: states a mode of {}, expected pixels and 1 to {} Hz", file, mode_text(state->mode), kMostHz);
+      state->mode.width >= 1 && state->mode.height >= 1 && state->mode.rate_hz >= 1 && state->mode.rate_hz <= kMaxHz,
+      "{}: states a mode of {}, expected pixels and 1 to {} Hz", file, mode_text(state->mode), kMaxHz);
   ::openni::PlaybackControl* control = state->device.getPlaybackControl();
   check_openni(control->setRepeatEnabled(false), file + ": playing once");
   check_openni(control->setSpeed(-1.0F), file + ": playing at our pace");

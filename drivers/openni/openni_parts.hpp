@@ -28,7 +28,7 @@ class OpenniLibrary {
 
 /// Hears that a camera was unplugged or has failed.
 class DisconnectListener : public ::openni::OpenNI::DeviceDisconnectedListener,
-                  public ::openni::OpenNI::DeviceStateChangedListener {
+                           public ::openni::OpenNI::DeviceStateChangedListener {
  public:
   explicit DisconnectListener(std::string uri) : uri_(std::move(uri)) {
     ::openni::OpenNI::addDeviceDisconnectedListener(this);

@@ -9,12 +9,12 @@ namespace houghstream::openni {
 namespace {
 
 constexpr int kStep = 8;
-constexpr std::size_t kFewest = 4;              // images that tell a place from others
-constexpr std::int64_t kMostApartUs = 500'000;  // one recorder starts both streams
+constexpr std::size_t kMin = 4;                // images that tell a place from others
+constexpr std::int64_t kMaxApartUs = 500'000;  // one recorder starts both streams
 
 /// How well what is recorded fits what was seen at the same times, if the recording begins at `start_us`.
 StreamStart start_at(std::int64_t start_us, const std::vector<ImageThumbnail>& recorded,
-                       const std::vector<ImageThumbnail>& live) {
+                     const std::vector<ImageThumbnail>& live) {
   StreamStart start{start_us, 0.0, 0};
   for (const ImageThumbnail& image : recorded) {
     const auto same_time = std::find_if(live.begin(), live.end(), [&](const ImageThumbnail& other) {
@@ -31,14 +31,14 @@ StreamStart start_at(std::int64_t start_us, const std::vector<ImageThumbnail>& r
 
 /// The places where enough was seen, the earliest first.
 std::vector<StreamStart> possible_starts(const std::vector<ImageThumbnail>& recorded,
-                                           const std::vector<ImageThumbnail>& live) {
+                                         const std::vector<ImageThumbnail>& live) {
   std::vector<std::int64_t> starts;
   for (const ImageThumbnail& seen : live) {
     for (const ImageThumbnail& image : recorded) starts.push_back(seen.time_us - image.time_us);
   }
   std::sort(starts.begin(), starts.end());
   starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
-  const std::size_t fewest = std::min(kFewest, (recorded.size() + 1) / 2);
+  const std::size_t fewest = std::min(kMin, (recorded.size() + 1) / 2);
   std::vector<StreamStart> possible;
   for (const std::int64_t start_us : starts) {
     const StreamStart start = start_at(start_us, recorded, live);
@@ -73,7 +73,7 @@ std::optional<RecordedStarts> find_stream_starts(const FirstImages& recorded, co
   for (const StreamStart& depth : possible_starts(recorded.depth, live.depth)) {
     for (const StreamStart& colour : of_colour) {
       const RecordedStarts starts{depth, colour};
-      if (apart_us(starts) <= kMostApartUs && (!best || fits_better(starts, *best))) best = starts;
+      if (apart_us(starts) <= kMaxApartUs && (!best || fits_better(starts, *best))) best = starts;
     }
   }
   return best;

@@ -36,7 +36,7 @@ Eigen::Vector3f vote_centre(const nlohmann::json& entry, const std::string& wher
   if (!entry.contains("vote_centre_m")) return Eigen::Vector3f::Zero();
   const std::vector<double> xyz = json_numbers(entry, "vote_centre_m", 3, where);
   Eigen::Vector3f centre = Eigen::Vector3d(xyz[0], xyz[1], xyz[2]).cast<float>();
-  require(centre.norm() < kFarthestCentre_m, "{}: 'vote_centre_m' is {}, expected x, y, z in metres", where,
+  require(centre.norm() < kMaxCentre_m, "{}: 'vote_centre_m' is {}, expected x, y, z in metres", where,
           json_text(entry.at("vote_centre_m")));
   return centre;
 }
@@ -48,9 +48,9 @@ BrightnessRange parse_tone(const nlohmann::json& json, const std::string& file) 
   if (found == json.end()) return tone;
   require(found->is_object(), "{}: 'tone' is {}, expected means and a deviation of grey values", file,
           json_text(*found));
-  tone.least_mean = static_cast<float>(json_number(*found, "least_mean", file));
-  tone.most_mean = static_cast<float>(json_number(*found, "most_mean", file));
-  tone.most_deviation = static_cast<float>(json_number(*found, "most_deviation", file));
+  tone.min_mean = static_cast<float>(json_number(*found, "least_mean", file));
+  tone.max_mean = static_cast<float>(json_number(*found, "most_mean", file));
+  tone.max_deviation = static_cast<float>(json_number(*found, "most_deviation", file));
   require(tone.is_sound(), "{}: 'tone' is {}, expected grey values of 0 to 255", file, json_text(*found));
   return tone;
 }
@@ -249,9 +249,9 @@ void write_store_json(const ObjectStore& store) {
     if (!object.quality.is_null()) entry["quality"] = object.quality;
     json["objects"].push_back(entry);
   }
-  json["tone"] = {{"least_mean", store.tone.least_mean},
-                  {"most_mean", store.tone.most_mean},
-                  {"most_deviation", store.tone.most_deviation}};
+  json["tone"] = {{"least_mean", store.tone.min_mean},
+                  {"most_mean", store.tone.max_mean},
+                  {"most_deviation", store.tone.max_deviation}};
   json["settings"] = store.settings;
   write_json(json, store.json_file());
 }
@@ -261,12 +261,12 @@ void require_utf8_name(const std::string& name, const std::string& where) {
 }
 
 void require_new_name(const std::string& name, const std::string& where) {
-  constexpr std::size_t kLongest = 100;
+  constexpr std::size_t kMaxLength = 100;
   require_utf8_name(name, where);
   const bool is_word = !name.empty() && name.front() != '.' && name.find_first_of(" ,/\\=") == std::string::npos;
-  require(is_word && name.size() <= kLongest && printable(name) == name,
+  require(is_word && name.size() <= kMaxLength && printable(name) == name,
           "{}: the name '{}', expected a word of at most {} bytes without spaces, commas, slashes, '=' and a first dot",
-          where, printable(name), kLongest);
+          where, printable(name), kMaxLength);
 }
 
 std::vector<std::string> find_stores(const fs::path& folder) {

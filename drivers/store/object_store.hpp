@@ -19,7 +19,7 @@ namespace houghstream::store {
 constexpr int kStoreVersion = 1;
 
 /// A vote centre is nearer to the origin than this, metres: farther away coordinates lose what a mesh shows.
-constexpr float kFarthestCentre_m = 10.0F;
+constexpr float kMaxCentre_m = 10.0F;
 
 /// A taught object, as store.json says it.
 struct StoredObject {
@@ -37,7 +37,7 @@ struct StoredObject {
 struct ObjectStore {
   std::filesystem::path folder;
   std::vector<StoredObject> objects;                 ///< by id
-  BrightnessRange tone;                                    ///< of the pictures in which they were practised
+  BrightnessRange tone;                              ///< of the pictures in which they were practised
   OrderedJson settings;                              ///< of the last teaching, for people
   std::map<int, Symmetries> symmetries;              ///< by id, of models_info.json; empty for an object without any
   std::filesystem::path json_file() const;           ///< the list

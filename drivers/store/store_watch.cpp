@@ -27,8 +27,7 @@ constexpr int kReportMissing = 50;
 
 /// Differs whenever a file that is loaded has been written or exchanged, without reading any.
 std::string state_of_store(const ObjectStore& store) {
-  return fmt::format("{}\n{}\n{}", file_stamp(store.folder), file_stamp(store.forest_file()),
-                     mesh_stamp(store));
+  return fmt::format("{}\n{}\n{}", file_stamp(store.folder), file_stamp(store.forest_file()), mesh_stamp(store));
 }
 
 std::string state_of_store(const fs::path& folder) {
@@ -65,12 +64,12 @@ fs::path folder_above(const fs::path& folder) {
 
 /// What else may have been meant by the folder, in words.
 std::string describe_neighbours(const fs::path& folder) {
-  constexpr std::size_t kMost = 5;
+  constexpr std::size_t kMax = 5;
   const fs::path above = folder_above(folder);
   std::vector<std::string> names = find_stores(above);
   if (names.empty()) return fmt::format("no object store lies in {}", above.string());
-  if (names.size() > kMost) {
-    names.resize(kMost);
+  if (names.size() > kMax) {
+    names.resize(kMax);
     names.emplace_back("others");
   }
   return fmt::format("in {} lies {}", above.string(), fmt::join(names, ", "));

@@ -61,7 +61,7 @@ class AtomicFile {
   /// `ending` of the file that is written, for libraries that go by it. Throws InputError where it cannot be made, or
   /// another program is writing FILE.
   explicit AtomicFile(const std::filesystem::path& file, const std::string& ending = kPartialEnding,
-                     Existing existing = Existing::kReplaced);
+                      Existing existing = Existing::kReplaced);
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;

@@ -12,8 +12,8 @@
 namespace houghstream {
 namespace {
 
-constexpr std::uint64_t kMostPixels = 64'000'000;
-constexpr int kMostScans = 64;
+constexpr std::uint64_t kMaxPixels = 64'000'000;
+constexpr int kMaxScans = 64;
 constexpr std::uint8_t kScan = 0xDA;  // a JPEG's marker
 constexpr std::array<std::uint8_t, 8> kPngStart = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
 constexpr std::size_t kPngHeader = 24;  // up to the height
@@ -72,12 +72,11 @@ bool has_jpeg_end(const std::uint8_t* jpeg, std::size_t size) {
 
 /// What is of neither format is OpenCV's to judge.
 bool is_modest(const std::uint8_t* bytes, std::size_t size) {
-  if (is_jpeg(bytes, size))
-    return jpeg_pixels(bytes, size) <= kMostPixels && count_jpeg_scans(bytes, size) <= kMostScans;
+  if (is_jpeg(bytes, size)) return jpeg_pixels(bytes, size) <= kMaxPixels && count_jpeg_scans(bytes, size) <= kMaxScans;
   if (size < kPngHeader || !std::equal(kPngStart.begin(), kPngStart.end(), bytes)) return true;
   const std::uint64_t width = big_endian(bytes + 16, 4);
   const std::uint64_t height = big_endian(bytes + 20, 4);
-  return width * height <= kMostPixels;
+  return width * height <= kMaxPixels;
 }
 
 /// Of a JPEG all of it, of others what their header may have.

@@ -6,12 +6,11 @@
 
 namespace houghstream {
 
-std::optional<std::string> LogThrottle::admit(const std::string& kind, const std::string& line,
-                                               Clock::time_point now) {
-  constexpr std::size_t kMostKinds = 64;
+std::optional<std::string> LogThrottle::admit(const std::string& kind, const std::string& line, Clock::time_point now) {
+  constexpr std::size_t kMaxKinds = 64;
   constexpr std::chrono::seconds kPeriod(1);
   const std::lock_guard<std::mutex> lock(mutex_);
-  const bool is_known = kinds_.count(kind) > 0 || kinds_.size() < kMostKinds;
+  const bool is_known = kinds_.count(kind) > 0 || kinds_.size() < kMaxKinds;
   Kind& found = kinds_[is_known ? kind : std::string()];
   if (found.last && now - *found.last < kPeriod) {
     ++found.held_back;

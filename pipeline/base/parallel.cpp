@@ -159,7 +159,8 @@ void work_with_helpers(Items& items, int helpers) {
 
 }  // namespace
 
-SerialScope::SerialScope(std::function<bool()> is_cancelled) : is_over_(std::move(is_cancelled)), outer_(working_alone()) {
+SerialScope::SerialScope(std::function<bool()> is_cancelled)
+    : is_over_(std::move(is_cancelled)), outer_(working_alone()) {
   working_alone() = this;
 }
 

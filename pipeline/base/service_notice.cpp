@@ -34,7 +34,7 @@ StillFinishing::StillFinishing(From from) {
     std::unique_lock<std::mutex> lock(mutex_);
     while (!has_ended_ && from == From::kStopSignal && !stop_requested())
       ends_.wait_for(lock, std::chrono::milliseconds(20));
-    const auto end = std::chrono::steady_clock::now() + kLongest;
+    const auto end = std::chrono::steady_clock::now() + kMaxLength;
     while (!has_ended_ && std::chrono::steady_clock::now() < end) {
       notify_service(words);
       ends_.wait_for(lock, std::chrono::seconds(1));

@@ -20,7 +20,7 @@ class StillFinishing {
  public:
   /// So much more time is asked for each time.
   static constexpr std::chrono::seconds kExtension{5};
-  static constexpr std::chrono::minutes kLongest{10};
+  static constexpr std::chrono::minutes kMaxLength{10};
 
   enum class From {
     kNow,

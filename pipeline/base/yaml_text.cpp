@@ -23,8 +23,8 @@ std::string one_document(const std::string& text) {
 }  // namespace
 
 YAML::Node parse_yaml(const std::string& text, const std::string& source) {
-  constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
-  require(text.size() <= kMostBytes, "{}: {} bytes of YAML, expected at most {}", source, text.size(), kMostBytes);
+  constexpr std::size_t kMaxBytes = std::size_t{1} << 20U;
+  require(text.size() <= kMaxBytes, "{}: {} bytes of YAML, expected at most {}", source, text.size(), kMaxBytes);
   YAML::Node map;
   try {
     map = YAML::Load(one_document(text));

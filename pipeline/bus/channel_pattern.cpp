@@ -12,11 +12,11 @@ namespace houghstream {
 namespace {
 
 re2::RE2::Options expression_options() {
-  constexpr std::int64_t kMostMemory = std::int64_t{1} << 20;  // of an expression and of what it keeps to match faster
+  constexpr std::int64_t kMaxMemory = std::int64_t{1} << 20;  // of an expression and of what it keeps to match faster
   re2::RE2::Options options;
   options.set_encoding(re2::RE2::Options::EncodingLatin1);  // a name is bytes, which need not be UTF-8
   options.set_never_capture(true);
-  options.set_max_mem(kMostMemory);
+  options.set_max_mem(kMaxMemory);
   options.set_log_errors(false);
   return options;
 }

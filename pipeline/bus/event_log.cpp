@@ -89,7 +89,7 @@ namespace {
 
 constexpr std::int32_t kSync = static_cast<std::int32_t>(0xEDA1DA01U);
 constexpr std::size_t kHeaderBytes = 28;
-constexpr std::uint32_t kMostData = 1U << 28U;  // LCM sends no more
+constexpr std::uint32_t kMaxData = 1U << 28U;  // LCM sends no more
 
 }  // namespace
 
@@ -106,8 +106,8 @@ LogWriter::LogWriter(const std::filesystem::path& file, Existing existing)
 }
 
 void LogWriter::write(std::int64_t timestamp, const std::string& channel, ByteView data) {
-  require(!channel.empty() && channel.size() <= channel::kMostBytes, "{}: a channel of {} bytes, expected 1 to {}",
-          file_, channel.size(), channel::kMostBytes);
+  require(!channel.empty() && channel.size() <= channel::kMaxBytes, "{}: a channel of {} bytes, expected 1 to {}",
+          file_, channel.size(), channel::kMaxBytes);
   std::string name = channel;
   lcm_eventlog_event_t event{};
   event.timestamp = timestamp;
@@ -167,13 +167,13 @@ LogReader::Header LogReader::read_header() {
   header.timestamp = reader.read_int64();
   header.channel_bytes = static_cast<std::uint32_t>(reader.read_int32());
   header.data_bytes = static_cast<std::uint32_t>(reader.read_int32());
-  require(header.channel_bytes >= 1 && header.channel_bytes <= channel::kMostBytes,
+  require(header.channel_bytes >= 1 && header.channel_bytes <= channel::kMaxBytes,
           "{}: event {} has a channel of {} bytes, expected 1 to {}", file_, events_, header.channel_bytes,
-          channel::kMostBytes);
+          channel::kMaxBytes);
   const std::uint64_t event_bytes = kHeaderBytes + std::uint64_t{header.channel_bytes} + header.data_bytes;
   require(event_bytes <= left, "{}: cut in event {}: {} of its {} bytes are there", file_, events_, left, event_bytes);
-  require(header.data_bytes <= kMostData, "{}: event {} has a message of {} bytes, expected at most {}", file_, events_,
-          header.data_bytes, kMostData);
+  require(header.data_bytes <= kMaxData, "{}: event {} has a message of {} bytes, expected at most {}", file_, events_,
+          header.data_bytes, kMaxData);
   return header;
 }
 
@@ -262,8 +262,8 @@ LogReader::Damage LogReader::skip_damage() {
   const std::uint64_t damaged = position_;
   // A wrong length in a header reaches into later events: those are looked for too. A forged log may hold nothing but
   // such headers, each of which would have the rest read once more.
-  const std::uint64_t most_again = 4 * size_ + (std::uint64_t{1} << 20U);
-  const bool goes_back = events_ > 0 && looked_again_ + (damaged - last_position_) <= most_again;
+  const std::uint64_t max_again = 4 * size_ + (std::uint64_t{1} << 20U);
+  const bool goes_back = events_ > 0 && looked_again_ + (damaged - last_position_) <= max_again;
   const std::uint64_t from = (goes_back ? last_position_ : damaged) + 1;
   if (goes_back) looked_again_ += damaged - last_position_;
   std::optional<std::uint64_t> found = find_event(from);

@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/log_throttle.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/log_throttle.hpp"
 #include "pipeline/base/printable.hpp"
 #include "pipeline/base/service_notice.hpp"
 #include "pipeline/base/stop_signal.hpp"
@@ -119,8 +119,8 @@ bool subscribe_at(lcm_t* lcm, Subscription& subscription) {
 class ChannelCounts {
  public:
   void note(const std::string& channel) {
-    constexpr std::size_t kMostTold = 20;
-    if (counts_.size() == kMostTold && counts_.count(channel) == 0) {
+    constexpr std::size_t kMaxTold = 20;
+    if (counts_.size() == kMaxTold && counts_.count(channel) == 0) {
       has_more_ = true;
     } else {
       ++counts_[channel];
@@ -155,7 +155,7 @@ struct LcmBus::State {
   std::mutex look_mutex;            // of the next two, and of `lcm` where it is exchanged
   std::chrono::steady_clock::time_point next_look;
   std::string send_fault;                 // why the last short message could not be sent
-  LogThrottle complaints;                // of handlers
+  LogThrottle complaints;                 // of handlers
   std::list<Subscription> subscriptions;  // LCM keeps pointers to them
   std::optional<FrameSilence> frame_silence;
   std::optional<Subscription> everything;  // of who looks for frames

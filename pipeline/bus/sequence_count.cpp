@@ -8,8 +8,8 @@
 namespace houghstream {
 namespace {
 
-constexpr std::int64_t kProbation = 16;         // frames that a single number may tell to be lost
-constexpr std::int64_t kMostLost = 100'000;    // and two beside each other: an hour
+constexpr std::int64_t kProbation = 16;        // frames that a single number may tell to be lost
+constexpr std::int64_t kMaxLost = 100'000;     // and two beside each other: an hour
 constexpr std::int64_t kRepeatUs = 1'000'000;  // a duplicate comes within this time
 constexpr std::size_t kRuns = 4;               // senders on one channel whose numbers are kept apart
 constexpr std::int64_t kBeside = 8;            // so close are the first numbers after a jump
@@ -107,7 +107,7 @@ void SequenceTracker::jump(Run& run, std::int64_t low, std::int64_t high) {
     run.before.push_front(run.course);
     if (run.before.size() > kJumps) run.before.pop_back();
     const std::int64_t missing = low - run.course.newest - 1;
-    if (low > run.course.newest && missing <= kMostLost) run.course.lost += missing;
+    if (low > run.course.newest && missing <= kMaxLost) run.course.lost += missing;
     run.course.first = run.course.newest = low;
     run.course.seen = {};
   }
@@ -127,7 +127,7 @@ void SequenceTracker::jump(Run& run, std::int64_t low, std::int64_t high) {
 }
 
 bool DuplicateFilter::is_repeated(const FrameId& frame, const std::uint8_t* bytes, std::size_t size,
-                                   Clock::time_point arrival) {
+                                  Clock::time_point arrival) {
   constexpr std::chrono::microseconds kRepeat(kRepeatUs);
   while (!heard_.empty() && (arrival - heard_.front().arrival > kRepeat || heard_.size() >= kHeard)) heard_.pop_front();
   const std::size_t hash = std::hash<std::string_view>()(std::string_view(reinterpret_cast<const char*>(bytes), size));

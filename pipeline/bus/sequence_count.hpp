@@ -61,7 +61,7 @@ class SequenceTracker {
     std::int64_t id = 0;
     SequenceRange course;
     std::list<SequenceRange> before;  // what it was before the last jumps that were believed
-    std::deque<Seen> far;      // the last frames that lie far from it
+    std::deque<Seen> far;             // the last frames that lie far from it
   };
 
   Run& run_of(std::int64_t id, const Seen& frame, bool& is_new);

@@ -14,12 +14,12 @@ namespace houghstream {
 namespace {
 
 constexpr std::chrono::seconds kPeriod(1);
-constexpr std::size_t kMostSources = 256;          // a sender of rubbish may make up channels without end
-constexpr std::size_t kLongestReason = 1000;       // bytes: it may quote what somebody else has sent
+constexpr std::size_t kMaxSources = 256;           // a sender of rubbish may make up channels without end
+constexpr std::size_t kMaxReasonLength = 1000;     // bytes: it may quote what somebody else has sent
 constexpr std::chrono::seconds kLatencyWindow(5);  // at 30 Hz enough frames for a 99th percentile
 
 std::string shortened(const std::string& reason) {
-  return reason.size() <= kLongestReason ? reason : reason.substr(0, kLongestReason) + "...";
+  return reason.size() <= kMaxReasonLength ? reason : reason.substr(0, kMaxReasonLength) + "...";
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ FrameOrder StatusReporter::note_number(const FrameNumber& number, const std::str
   const std::int64_t now_us =
       std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (sequences_.size() >= kMostSources && sequences_.count(source) == 0) return FrameOrder::kNext;
+  if (sequences_.size() >= kMaxSources && sequences_.count(source) == 0) return FrameOrder::kNext;
   const FrameOrder order = sequences_[source].note(number, now_us);
   if (order == FrameOrder::kDuplicate) ++duplicates_;
   return order;

@@ -64,7 +64,7 @@ class FarthestPoints {
   }
 
   /// The first of those that are farthest once this one is chosen too.
-  std::size_t farthest_with(const Eigen::Vector3f& chosen) {
+  std::size_t max_with(const Eigen::Vector3f& chosen) {
     Lanes farthest = Lanes::Zero();
     for (Group& group : groups_) {
       const Lanes x = group.x - chosen.x();
@@ -130,7 +130,7 @@ SurfacePoints sample_surface(const Mesh& mesh, int count, std::uint64_t seed) {
   for (int n = 0; n < count; ++n) {
     out.points.push_back(candidates.points[chosen]);
     out.normals.push_back(candidates.normals[chosen]);
-    chosen = distances.farthest_with(out.points.back());
+    chosen = distances.max_with(out.points.back());
   }
   return out;
 }

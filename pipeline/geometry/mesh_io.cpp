@@ -14,8 +14,8 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/image_decoding.hpp"
-#include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/material_merge.hpp"
+#include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/mesh_validation.hpp"
 
 namespace houghstream {
@@ -58,11 +58,11 @@ void require_whole(const std::filesystem::path& file) {
 /// What the steps behind the reading believe: corners may be wherever a buffer of its own says, and a polygon takes the
 /// cube of its corners to be cut into triangles.
 void check_faces(const aiMesh& part, const std::string& file) {
-  constexpr unsigned kMostCorners = 1024;
+  constexpr unsigned kMaxCorners = 1024;
   for (unsigned i = 0; i < part.mNumFaces; ++i) {
     const aiFace& face = part.mFaces[i];
-    require(face.mNumIndices <= kMostCorners, "{}: face {} with {} corners, expected at most {}", file, i,
-            face.mNumIndices, kMostCorners);
+    require(face.mNumIndices <= kMaxCorners, "{}: face {} with {} corners, expected at most {}", file, i,
+            face.mNumIndices, kMaxCorners);
     for (unsigned k = 0; k < face.mNumIndices; ++k) {
       require(face.mIndices[k] < part.mNumVertices, "{}: face {} names vertex {} of {}", file, i, face.mIndices[k],
               part.mNumVertices);

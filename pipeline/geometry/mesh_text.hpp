@@ -17,8 +17,8 @@ namespace houghstream::mesh_text {
 using Words = std::vector<std::string_view>;
 
 inline std::string shown(std::string_view text) {
-  constexpr std::size_t kMost = 40;
-  return printable(text.substr(0, kMost));
+  constexpr std::size_t kMax = 40;
+  return printable(text.substr(0, kMax));
 }
 
 /// Lines without their ends; takes one off the front.

@@ -3,8 +3,8 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
-#include "pipeline/geometry/mesh_validation.hpp"
 #include "pipeline/geometry/mesh_text.hpp"
+#include "pipeline/geometry/mesh_validation.hpp"
 
 namespace houghstream {
 namespace {
@@ -88,21 +88,21 @@ std::vector<std::filesystem::path> material_files(std::string_view obj, const st
 }  // namespace
 
 void check_mtl(std::string_view bytes, const std::string& source) {
-  constexpr std::size_t kLongestLine = 1000;
+  constexpr std::size_t kMaxLineLength = 1000;
   require(bytes.find('\0') == std::string_view::npos, "{}: holds a byte 0, expected text", source);
   bool has_material = false;
   Lines lines(bytes);
   while (const std::optional<std::string_view> line = lines.next()) {
-    require(line->size() <= kLongestLine, "{}: line {} of {} bytes, expected at most {}", source, lines.number(),
-            line->size(), kLongestLine);
+    require(line->size() <= kMaxLineLength, "{}: line {} of {} bytes, expected at most {}", source, lines.number(),
+            line->size(), kMaxLineLength);
     const Words words = split(*line);
     if (!words.empty())
       check_mtl_line(words, has_material, fmt::format("{}: line {} '{}'", source, lines.number(), shown(*line)));
   }
   // The library refuses what is shorter than a material with a name, without closing the file.
-  constexpr std::size_t kShortest = std::string_view("newmtl a").size();
-  require(bytes.empty() || bytes.size() >= kShortest, "{}: {} bytes, expected none, or {} and more", source,
-          bytes.size(), kShortest);
+  constexpr std::size_t kMinDuration = std::string_view("newmtl a").size();
+  require(bytes.empty() || bytes.size() >= kMinDuration, "{}: {} bytes, expected none, or {} and more", source,
+          bytes.size(), kMinDuration);
 }
 
 void check_materials(std::string_view obj, const std::filesystem::path& file) {

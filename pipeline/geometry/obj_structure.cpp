@@ -2,8 +2,8 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/geometry/mesh_validation.hpp"
 #include "pipeline/geometry/mesh_text.hpp"
+#include "pipeline/geometry/mesh_validation.hpp"
 
 namespace houghstream {
 namespace {

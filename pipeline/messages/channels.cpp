@@ -30,10 +30,10 @@ unsigned int short_number(const std::string& text) {
 }  // namespace
 
 std::string camera_name(const std::string& camera_channel) {
-  constexpr std::size_t kLongest = 31;
+  constexpr std::size_t kMaxLength = 31;
   std::string name = upper_case(camera_channel);
-  if (name.size() <= kLongest) return name;
-  return fmt::format("{}_{:04X}", name.substr(0, kLongest - 5), short_number(camera_channel));
+  if (name.size() <= kMaxLength) return name;
+  return fmt::format("{}_{:04X}", name.substr(0, kMaxLength - 5), short_number(camera_channel));
 }
 
 std::string to_world(const std::string& camera_channel) {

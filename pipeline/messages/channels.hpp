@@ -7,7 +7,7 @@
 namespace houghstream::channel {
 
 /// The longest name: LCM's reader of logs refuses longer ones, and on a network LCM itself those of more than 63.
-inline constexpr std::size_t kMostBytes = 999;
+inline constexpr std::size_t kMaxBytes = 999;
 
 inline const std::string kFrame = "OPENNI_FRAME";                      ///< images_t
 inline const std::string kDetections = "HOUGHSTREAM_DETECTIONS";       ///< detections_t

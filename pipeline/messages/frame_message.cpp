@@ -160,11 +160,11 @@ std::vector<StageTime> stages_of(const images_t& message) {
     require(reader.read_int64() == stage_time_t::getHash(), "metadata '{}' is not a list of stage_time_t",
             metadata::kStages);
     // Half of what a result may have: who works on the frame adds his own.
-    require(stages.size() < kMostStages / 2, "metadata '{}' lists more than {} stages", metadata::kStages,
-            kMostStages / 2);
+    require(stages.size() < kMaxStages / 2, "metadata '{}' lists more than {} stages", metadata::kStages,
+            kMaxStages / 2);
     std::string stage = reader.read_string();
-    require(stage.size() <= kLongestName, "metadata '{}' names a stage of {} bytes, expected at most {}",
-            metadata::kStages, stage.size(), kLongestName);
+    require(stage.size() <= kMaxNameLength, "metadata '{}' names a stage of {} bytes, expected at most {}",
+            metadata::kStages, stage.size(), kMaxNameLength);
     stages.push_back({std::move(stage), reader.read_int64()});
     check_stage_time(stages.back().duration_us, metadata::kStages);
   }

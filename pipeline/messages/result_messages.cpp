@@ -69,9 +69,9 @@ Detection detection_from_message(const detection_t& message) {
   const cv::Rect2f box(message.box_x, message.box_y, message.box_width, message.box_height);
   check_wire_box(box, message.class_name + ": box");
   const Eigen::Vector3f centre(message.centre_camera);
-  const bool has_centre = centre.allFinite() && static_cast<double>(centre.cwiseAbs().maxCoeff()) <= kFarthestM;
+  const bool has_centre = centre.allFinite() && static_cast<double>(centre.cwiseAbs().maxCoeff()) <= kMaxDistanceM;
   require(has_centre || centre.array().isNaN().all(), "{}: centre ({}, {}, {}), expected metres within {}, or NaN",
-          message.class_name, centre.x(), centre.y(), centre.z(), kFarthestM);
+          message.class_name, centre.x(), centre.y(), centre.z(), kMaxDistanceM);
   require(std::isfinite(message.score) && std::isfinite(message.vote_weight), "{}: score {} and vote weight {}",
           message.class_name, message.score, message.vote_weight);
   Detection out;

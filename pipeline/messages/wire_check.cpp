@@ -17,8 +17,8 @@ namespace {
 
 /// The longest message of a type. A frame of kMaxPixels has less, uncompressed and with rows filled up; LCM itself
 /// refuses what has more than 1 << 28.
-std::size_t most_bytes(std::int64_t fingerprint) {
-  if (fingerprint == images_t::getHash()) return kMostFrameBytes;
+std::size_t max_bytes(std::int64_t fingerprint) {
+  if (fingerprint == images_t::getHash()) return kMaxFrameBytes;
   if (fingerprint == status_t::getHash()) return std::size_t{1} << 16U;
   if (fingerprint == known_objects_t::getHash() || fingerprint == teaching_t::getHash()) return std::size_t{1} << 20U;
   if (fingerprint == objects_t::getHash()) return std::size_t{1} << 22U;
@@ -26,9 +26,9 @@ std::size_t most_bytes(std::int64_t fingerprint) {
 }
 
 // Fewest bytes that an entry of a list can take on the wire: its numbers, and 5 bytes for an empty string.
-constexpr std::size_t kLeastMetadata = 5 + 4;
-constexpr std::size_t kLeastImage = 8 + 5 * 4 + 4;
-constexpr std::size_t kLeastStage = 5 + 8;
+constexpr std::size_t kMinMetadata = 5 + 4;
+constexpr std::size_t kMinImage = 8 + 5 * 4 + 4;
+constexpr std::size_t kMinStage = 5 + 8;
 constexpr std::size_t kVote = 4 * 4 + 4;
 constexpr std::size_t kDetectionNumbers = 4 + 1 + 4 * 4 + 3 * 4 + 4 + 4;  // score to n_votes_total
 constexpr std::size_t kPoseNumbers = 4 + 4 + 1 + 3 * 8 + 4 * 8 + 1 + 4 + 4 + 5 * 4;
@@ -46,17 +46,17 @@ std::string read_within(WireReader& reader, std::size_t most, const char* what) 
 }
 
 std::string read_channel(WireReader& reader) {
-  return read_within(reader, channel::kMostBytes, "a channel");
+  return read_within(reader, channel::kMaxBytes, "a channel");
 }
 
 void walk_name(WireReader& reader) {
-  read_within(reader, kLongestName, "a name");
+  read_within(reader, kMaxNameLength, "a name");
 }
 
 void walk_image(WireReader& reader, FrameHeader& header) {
   reader.skip(8 + 4 * 4);  // utime, width, height, row_stride, pixelformat
   reader.skip(reader.read_count(1));
-  for (std::size_t left = reader.read_count(kLeastMetadata); left > 0; --left) {
+  for (std::size_t left = reader.read_count(kMinMetadata); left > 0; --left) {
     const std::string key = reader.read_string();
     const ByteView value = reader.read_bytes(reader.read_count(1));
     if (key == metadata::kSequence) header.sequence = parse_sequence(value);
@@ -67,15 +67,15 @@ void walk_image(WireReader& reader, FrameHeader& header) {
 FrameHeader walk_images(WireReader& reader) {
   FrameHeader header;
   header.utime = reader.read_int64();
-  const std::size_t images = reader.read_count(2 + kLeastImage);
+  const std::size_t images = reader.read_count(2 + kMinImage);
   reader.skip(2 * images);
   for (std::size_t i = 0; i < images; ++i) walk_image(reader, header);
   return header;
 }
 
 void walk_stages(WireReader& reader) {
-  const std::size_t stages = reader.read_count(kLeastStage);
-  require(stages <= kMostStages, "{}: {} stages, expected at most {}", reader.source(), stages, kMostStages);
+  const std::size_t stages = reader.read_count(kMinStage);
+  require(stages <= kMaxStages, "{}: {} stages, expected at most {}", reader.source(), stages, kMaxStages);
   for (std::size_t left = stages; left > 0; --left) {
     walk_name(reader);
     check_stage_time(reader.read_int64(), reader.source());
@@ -150,7 +150,7 @@ void walk_teaching(WireReader& reader) {
 }
 
 WireReader open_message(ByteView bytes, std::int64_t fingerprint, const std::string& type) {
-  const std::size_t most = most_bytes(fingerprint);
+  const std::size_t most = max_bytes(fingerprint);
   require(bytes.size <= most, "{}: {} bytes, expected at most {}", type, bytes.size, most);
   WireReader reader(bytes, type);
   const std::int64_t found = reader.read_int64();
@@ -206,9 +206,9 @@ std::int64_t parse_sequence(ByteView text) {
 }
 
 void check_stage_time(std::int64_t duration_us, const std::string& source) {
-  constexpr std::int64_t kLongestUs = 1'000'000'000'000;  // eleven days: times are added up
-  require(duration_us >= -kLongestUs && duration_us <= kLongestUs, "{}: a stage of {} us, expected less than {}",
-          source, duration_us, kLongestUs);
+  constexpr std::int64_t kMaxDurationUs = 1'000'000'000'000;  // eleven days: times are added up
+  require(duration_us >= -kMaxDurationUs && duration_us <= kMaxDurationUs,
+          "{}: a stage of {} us, expected less than {}", source, duration_us, kMaxDurationUs);
 }
 
 void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& type) {

@@ -14,12 +14,12 @@
 namespace houghstream {
 
 /// A frame of 4K (kMaxPixels), uncompressed, has less. Whoever keeps encoded frames can count on it.
-inline constexpr std::size_t kMostFrameBytes = std::size_t{64} << 20U;
+inline constexpr std::size_t kMaxFrameBytes = std::size_t{64} << 20U;
 
 /// Stage times of a result, and the bytes that the name of a class, a stage or a process may have: more, or longer
 /// ones, are refused.
-inline constexpr std::size_t kMostStages = 256;
-inline constexpr std::size_t kLongestName = 255;
+inline constexpr std::size_t kMaxStages = 256;
+inline constexpr std::size_t kMaxNameLength = 255;
 
 /// What names a frame, read without decoding its images.
 struct FrameHeader {

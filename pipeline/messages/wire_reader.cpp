@@ -35,12 +35,12 @@ std::int64_t WireReader::read_int64() {
   return static_cast<std::int64_t>(read_big_endian(8));
 }
 
-std::size_t WireReader::read_count(std::size_t least_bytes) {
+std::size_t WireReader::read_count(std::size_t min_bytes) {
   const std::int32_t count = read_int32();
   require(count >= 0, "{}: a count of {} at byte {}, expected 0 or more", source_, count, position_ - 4);
-  require(static_cast<std::size_t>(count) <= left() / least_bytes,
+  require(static_cast<std::size_t>(count) <= left() / min_bytes,
           "{}: a count of {} at byte {}, expected at most {} in the {} bytes that are left", source_, count,
-          position_ - 4, left() / least_bytes, left());
+          position_ - 4, left() / min_bytes, left());
   return static_cast<std::size_t>(count);
 }
 

@@ -23,8 +23,8 @@ class WireReader {
   std::int16_t read_int16();
   std::int32_t read_int32();
   std::int64_t read_int64();
-  /// A count of entries that take at least `least_bytes` each.
-  std::size_t read_count(std::size_t least_bytes);
+  /// A count of entries that take at least `min_bytes` each.
+  std::size_t read_count(std::size_t min_bytes);
   std::string read_string();
   ByteView read_bytes(std::size_t size);
   void skip(std::size_t size) { read_bytes(size); }

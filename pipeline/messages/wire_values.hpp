@@ -13,15 +13,15 @@ inline constexpr double kUnitTolerance = 1e-3;
 
 /// Beyond the Moon: no camera's world is larger, and no box reaches so many pixels. Who draws or adds up places need
 /// not mind overflows.
-inline constexpr double kFarthestM = 1e9;
-inline constexpr float kFarthestPx = 1e6F;
+inline constexpr double kMaxDistanceM = 1e9;
+inline constexpr float kMaxDistancePx = 1e6F;
 
 /// The rigid motion of a translation, metres, and a quaternion, w first. Throws InputError that begins with `of` where
-/// it is none or lies beyond kFarthestM; `or_else` says what else would have done.
+/// it is none or lies beyond kMaxDistanceM; `or_else` says what else would have done.
 Eigen::Isometry3d pose_from_wire(const double* trans, const double* quat, const std::string& of,
                                  const char* or_else = "");
 
-/// Throws InputError that begins with `of` for a box that is empty, or not within kFarthestPx.
+/// Throws InputError that begins with `of` for a box that is empty, or not within kMaxDistancePx.
 void check_wire_box(const cv::Rect2f& box, const std::string& of, const char* or_else = "");
 
 }  // namespace houghstream

@@ -5,8 +5,8 @@
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/process/detection_throttle.hpp"
-#include "pipeline/process/latest_per_channel.hpp"
 #include "pipeline/process/frame_synchroniser.hpp"
+#include "pipeline/process/latest_per_channel.hpp"
 #include "pipeline/process/process_loop.hpp"
 
 namespace houghstream {

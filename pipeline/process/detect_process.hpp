@@ -16,7 +16,7 @@ struct DetectProcessOptions {
   std::string process = "hs-detect";             ///< its name in status_t
   std::string frame_channels = channel::kFrame;  ///< a ChannelPattern: one camera's channel, or several cameras'
   std::optional<Camera> camera;                  ///< for frames that do not bring their own
-  double max_rate_hz = 0.0;                 ///< at each camera's frames; 0 = at each one, as far as there is time
+  double max_rate_hz = 0.0;                      ///< at each camera's frames; 0 = at each one, as far as there is time
   bool keep_frames = false;                      ///< of a log: copies the frames' events to the output log too
   std::function<KnownObjects()> objects;         ///< what its store holds, for the status; empty = no store
 };

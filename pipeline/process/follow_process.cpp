@@ -12,9 +12,9 @@
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
-#include "pipeline/process/model_check.hpp"
-#include "pipeline/process/latest_per_channel.hpp"
 #include "pipeline/process/frame_synchroniser.hpp"
+#include "pipeline/process/latest_per_channel.hpp"
+#include "pipeline/process/model_check.hpp"
 #include "pipeline/process/pose_output.hpp"
 #include "pipeline/process/process_loop.hpp"
 #include "pipeline/process/recent_frames.hpp"
@@ -45,7 +45,8 @@ class FollowProcess {
   void run() {
     status_.set_known_objects(options_.objects);
     catch_stop_signals();
-    bus_.subscribe_to_frames(options_.frame_channels, [this](const ReceivedMessage& arrival) { receive_frame(arrival); });
+    bus_.subscribe_to_frames(options_.frame_channels,
+                             [this](const ReceivedMessage& arrival) { receive_frame(arrival); });
     bus_.subscribe(channel::kDetections, [this](const ReceivedMessage& arrival) { receive_detections(arrival); });
     log_info("ready: follows in frames from {}, detections from {} at {}", options_.frame_channels,
              channel::kDetections, bus_.url());

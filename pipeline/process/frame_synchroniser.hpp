@@ -59,8 +59,8 @@ class FrameSynchroniser {
   static constexpr std::int64_t kWait = 30;
 
   /// `newest_first`: take() serves the cameras in turn, and passes over older detections of a camera: of each of its
-  /// detectors one result stays. Otherwise everything is worked on in the order of arrival. `ahead`: pop_unmatched_frame() is
-  /// used.
+  /// detectors one result stays. Otherwise everything is worked on in the order of arrival. `ahead`:
+  /// pop_unmatched_frame() is used.
   explicit FrameSynchroniser(bool newest_first, bool ahead = true) : newest_first_(newest_first), ahead_(ahead) {}
 
   /// Throws InputError where detections or poses of so many bytes are refused.
@@ -131,8 +131,8 @@ class FrameSynchroniser {
   bool ahead_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  ByteBudget frame_bytes_;                  // of all cameras
-  ByteBudget waiting_bytes_;                // of their detections
+  ByteBudget frame_bytes_;                 // of all cameras
+  ByteBudget waiting_bytes_;               // of their detections
   std::map<std::string, Camera> cameras_;  // by channel
   DetectorCount detectors_;
   std::int64_t arrivals_ = 0;  // of detections

@@ -17,9 +17,9 @@ DecodedFrame decode_for_poses(const std::vector<std::uint8_t>& bytes, const std:
 }
 
 void require_max_detections(const Detections& detections) {
-  constexpr std::size_t kMost = 512;
-  require(detections.detections.size() <= kMost, "frame {}: {} detections, expected at most {}",
-          to_string(detections.frame), detections.detections.size(), kMost);
+  constexpr std::size_t kMax = 512;
+  require(detections.detections.size() <= kMax, "frame {}: {} detections, expected at most {}",
+          to_string(detections.frame), detections.detections.size(), kMax);
 }
 
 TransformPublisher::TransformPublisher(LcmBus& bus, const std::string& frame_channels)

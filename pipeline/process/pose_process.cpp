@@ -13,8 +13,8 @@
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
-#include "pipeline/process/model_check.hpp"
 #include "pipeline/process/frame_synchroniser.hpp"
+#include "pipeline/process/model_check.hpp"
 #include "pipeline/process/pose_history.hpp"
 #include "pipeline/process/pose_output.hpp"
 #include "pipeline/process/process_loop.hpp"
@@ -53,7 +53,8 @@ class PoseProcess {
   void run() {
     status_.set_known_objects(options_.objects);
     catch_stop_signals();
-    bus_.subscribe_to_frames(options_.frame_channels, [this](const ReceivedMessage& arrival) { receive_frame(arrival); });
+    bus_.subscribe_to_frames(options_.frame_channels,
+                             [this](const ReceivedMessage& arrival) { receive_frame(arrival); });
     bus_.subscribe(channel::kDetections, [this](const ReceivedMessage& arrival) { receive_detections(arrival); });
     log_info("ready: frames from {}, detections from {} at {}", options_.frame_channels, channel::kDetections,
              bus_.url());

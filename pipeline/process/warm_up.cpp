@@ -36,8 +36,8 @@ std::shared_future<RgbdFrame> start_warm_up() {
 }
 
 int warm_up_threads(int threads_of_work) {
-  constexpr int kMost = 8;
-  return std::max(threads_of_work, std::min(static_cast<int>(std::thread::hardware_concurrency()), kMost));
+  constexpr int kMax = 8;
+  return std::max(threads_of_work, std::min(static_cast<int>(std::thread::hardware_concurrency()), kMax));
 }
 
 }  // namespace houghstream

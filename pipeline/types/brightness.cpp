@@ -35,12 +35,12 @@ GreyStatistics grey_statistics(const cv::Mat& colour) {
 }  // namespace
 
 AffineBrightness fit_affine_brightness(const cv::Mat& colour, const BrightnessRange& range) {
-  constexpr double kLeastGain = 0.6;
-  if (range.least_mean <= 0.0F && range.most_mean >= 255.0F && range.most_deviation >= 127.5F) return {};
+  constexpr double kMinGain = 0.6;
+  if (range.min_mean <= 0.0F && range.max_mean >= 255.0F && range.max_deviation >= 127.5F) return {};
   const GreyStatistics grey = grey_statistics(colour);
   const double gain =
-      grey.deviation > range.most_deviation ? std::max<double>(kLeastGain, range.most_deviation / grey.deviation) : 1.0;
-  const double mean = std::clamp<double>(grey.mean, range.least_mean, range.most_mean);
+      grey.deviation > range.max_deviation ? std::max<double>(kMinGain, range.max_deviation / grey.deviation) : 1.0;
+  const double mean = std::clamp<double>(grey.mean, range.min_mean, range.max_mean);
   return {static_cast<float>(gain), static_cast<float>(mean - gain * grey.mean)};
 }
 

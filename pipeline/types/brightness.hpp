@@ -7,13 +7,13 @@ namespace houghstream {
 /// Brightness and contrast of pictures: mean and standard deviation of their grey values (ITU-R BT.601), 0 to 255. As
 /// it stands, every picture is in the range.
 struct BrightnessRange {
-  float least_mean = 0.0F;
-  float most_mean = 255.0F;
-  float most_deviation = 255.0F;
+  float min_mean = 0.0F;
+  float max_mean = 255.0F;
+  float max_deviation = 255.0F;
   /// Whether these are grey values that a picture can be brought to.
   bool is_sound() const {
-    return least_mean >= 0.0F && least_mean <= most_mean && most_mean <= 255.0F && most_deviation >= 1.0F &&
-           most_deviation <= 255.0F;
+    return min_mean >= 0.0F && min_mean <= max_mean && max_mean <= 255.0F && max_deviation >= 1.0F &&
+           max_deviation <= 255.0F;
   }
 };
 

@@ -33,11 +33,11 @@ void check_camera(const Camera& camera, const std::string& source) {
   constexpr int kMaxSize = 16384;
   require(camera.width >= 1 && camera.width <= kMaxSize && camera.height >= 1 && camera.height <= kMaxSize,
           "{}: camera size {}x{}, expected 1 to {} pixels each", source, camera.width, camera.height, kMaxSize);
-  constexpr double kLeastFocal = 0.1;  // of any lens, at any size: what lies at a pixel has numbers that can be counted
-  constexpr double kMostFocal = 1e7;
-  const auto is_focal = [](double f) { return f >= kLeastFocal && f <= kMostFocal; };
+  constexpr double kMinFocal = 0.1;  // of any lens, at any size: what lies at a pixel has numbers that can be counted
+  constexpr double kMaxFocal = 1e7;
+  const auto is_focal = [](double f) { return f >= kMinFocal && f <= kMaxFocal; };
   require(is_focal(camera.fx) && is_focal(camera.fy), "{}: focal lengths {} and {}, expected {} to {} pixels", source,
-          camera.fx, camera.fy, kLeastFocal, kMostFocal);
+          camera.fx, camera.fy, kMinFocal, kMaxFocal);
   const bool centred = std::abs(camera.cx) <= 2.0 * camera.width && std::abs(camera.cy) <= 2.0 * camera.height;
   require(std::isfinite(camera.cx) && std::isfinite(camera.cy) && centred,
           "{}: principal point ({}, {}), expected within one image size of the {}x{} image", source, camera.cx,

@@ -90,8 +90,8 @@ void FrameResults::add(Detections detections) {
   if (same != results_.end()) {
     same->detections = std::move(detections);
   } else {
-    require(results_.size() < kMost, "frame {}: more than {} detections_t, expected one of each detector",
-            to_string(detections.frame), kMost);
+    require(results_.size() < kMax, "frame {}: more than {} detections_t, expected one of each detector",
+            to_string(detections.frame), kMax);
     results_.push_back({std::move(detections), std::nullopt});
   }
   unmatched_.erase(
@@ -105,8 +105,8 @@ void FrameResults::add(ObjectPoses poses) {
     return;
   }
   if (place(poses)) return;
-  require(unmatched_.size() < kMost, "frame {}: more than {} object_poses_t of no detections", to_string(poses.frame),
-          kMost);
+  require(unmatched_.size() < kMax, "frame {}: more than {} object_poses_t of no detections", to_string(poses.frame),
+          kMax);
   unmatched_.push_back(std::move(poses));
 }
 

@@ -31,7 +31,7 @@ class FrameResults {
  public:
   /// Results of one frame, and poses of none of them, that are kept: nobody has so many detectors, and each new one is
   /// compared with all.
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMax = 64;
 
   /// One that finds the very same objects as an earlier one takes its place: it is a log that is played again. Throws
   /// InputError for one too many.

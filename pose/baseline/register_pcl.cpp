@@ -17,17 +17,17 @@ using Cloud = pcl::PointCloud<pcl::PointNormal>;
 class GuardedEstimation
     : public pcl::registration::TransformationEstimationPointToPlaneLLS<pcl::PointNormal, pcl::PointNormal> {
  public:
-  explicit GuardedEstimation(double longest_step_m) : longest_step_m_(longest_step_m) {}
+  explicit GuardedEstimation(double max_step_m) : max_step_m_(max_step_m) {}
 
   void estimateRigidTransformation(const Cloud& source, const Cloud& target, const pcl::Correspondences& pairs,
                                    Matrix4& step) const override {
     TransformationEstimationPointToPlaneLLS::estimateRigidTransformation(source, target, pairs, step);
-    const bool sane = step.allFinite() && step.topRightCorner<3, 1>().norm() < longest_step_m_;
+    const bool sane = step.allFinite() && step.topRightCorner<3, 1>().norm() < max_step_m_;
     if (!sane) step.setIdentity();
   }
 
  private:
-  double longest_step_m_;
+  double max_step_m_;
 };
 
 void push(Cloud& cloud, const Eigen::Vector3f& point, const Eigen::Vector3f& normal) {
@@ -81,10 +81,10 @@ Eigen::Isometry3d rigid_motion(const Eigen::Matrix4d& matrix) {
 RegistrationResult register_points_pcl(const std::vector<Eigen::Vector3f>& points_camera, const ObjectModel& model,
                                        const Eigen::Isometry3d& T_camera_object, const RegistrationStage& stage,
                                        const RegistrationSettings& settings) {
-  constexpr std::size_t kLeastPoints = 12;  // twice the unknowns
+  constexpr std::size_t kMinPoints = 12;  // twice the unknowns
   RegistrationResult result;
   result.T_camera_object = T_camera_object;
-  if (points_camera.size() < kLeastPoints) return result;
+  if (points_camera.size() < kMinPoints) return result;
   const ModelView& view = nearest_view(model, T_camera_object);
   const Cloud::Ptr source = measured_cloud(points_camera, T_camera_object.inverse());
   const Cloud::Ptr target = model_cloud(view);

@@ -37,16 +37,16 @@ cv::Rect2f expected_box(const RgbdFrame& frame, const ObjectModel& model, const 
   return box;
 }
 
-ObjectObservation see_expected(const FrameContext& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-                        const PoseSettings& settings) {
+ObjectObservation see_expected(const FrameContext& frame, const ObjectModel& model,
+                               const Eigen::Isometry3d& T_camera_object, const PoseSettings& settings) {
   Detection expected;
   expected.box_px = expected_box(frame.frame, model, T_camera_object);
   expected.centre_camera = T_camera_object.cast<float>() * model.vote_centre;
   return observe_object(frame, expected, model, settings.region);
 }
 
-RegistrationResult register_near(const ObjectObservation& seen, const Eigen::Isometry3d& start, const ExpectedObject& expected,
-                                 const FollowerInput& input) {
+RegistrationResult register_near(const ObjectObservation& seen, const Eigen::Isometry3d& start,
+                                 const ExpectedObject& expected, const FollowerInput& input) {
   const PoseSettings& settings = input.pose;
   const FollowSettings& follow = input.follow;
   const CorrespondenceDistances distances = correspondence_distances(seen, settings.registration);
@@ -57,7 +57,7 @@ RegistrationResult register_near(const ObjectObservation& seen, const Eigen::Iso
   RegistrationResult result = settings.registration.engine(seen, start, coarse, settings.registration);
   if (expected.settle && result.inliers > 0) {
     const HillClimb climb{follow.settle_step_deg * kRadPerDeg, follow.settle_step_m, follow.settle_rounds,
-                      follow.settle_points};
+                          follow.settle_points};
     const DepthTolerance tolerance{settings.verification.tolerance_m, seen.noise};
     result.T_camera_object = hill_climb_pose(seen, result.T_camera_object, climb, tolerance).T_camera_object;
   }
@@ -115,8 +115,8 @@ FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, co
   const RegistrationResult result = register_near(seen, start, expected, input);
   copy_registration_evidence(result, pose);
   const double jump_m = (middle_of(model, result.T_camera_object) - middle_of(model, start)).norm();
-  const double most_m = expected.is_lost ? settings.registration.max_shift_m : input.follow.max_jump_m;
-  if (result.inliers == 0 || !(jump_m <= most_m)) {
+  const double max_m = expected.is_lost ? settings.registration.max_shift_m : input.follow.max_jump_m;
+  if (result.inliers == 0 || !(jump_m <= max_m)) {
     pose.status = PoseStatus::kNotConverged;
     return followed;
   }

@@ -27,7 +27,7 @@ struct FollowSettings {
   int settle_rounds = 4;
   int settle_points = 250;
 
-  float hidden_share = 0.5F;   ///< of the rendered pixels, behind something: it is hidden rather than gone
+  float hidden_share = 0.5F;              ///< of the rendered pixels, behind something: it is hidden rather than gone
   float max_free_space_violation = 0.3F;  ///< of the others, seen through: it is gone even so
 };
 
@@ -39,7 +39,7 @@ struct ExpectedObject {
   std::vector<Eigen::Isometry3d> starts;  ///< T_camera_object, the likeliest first; at least one
   bool settle = false;                    ///< its print may move it a little too, at some cost
   bool is_lost = false;                   ///< it is looked for as far away as a detection's pose is
-  bool check_occlusion = true;               ///< whether it is hidden where it is expected first: that renders it once more
+  bool check_occlusion = true;           ///< whether it is hidden where it is expected first: that renders it once more
   std::optional<Verification> verified;  ///< of an earlier frame: its outline is taken for this one's
 };
 
@@ -55,8 +55,8 @@ struct FollowedPose {
 /// finely as Stoiber et al. (2022) follow objects, by few points of the view, then verified as any pose is. Rendering
 /// the model costs most: with an outline of an earlier frame, points of the view take its place as long as they
 /// suffice. What is withheld has always been rendered. Where nothing suffices and the object is hidden where it was
-/// expected first, its status is kOccluded (ExpectedObject::check_occlusion). Of a class without a model it is kNoModel.
-/// Throws InputError for a frame that is none.
+/// expected first, its status is kOccluded (ExpectedObject::check_occlusion). Of a class without a model it is
+/// kNoModel. Throws InputError for a frame that is none.
 std::vector<FollowedPose> follow_objects(const PoseEstimator& estimator, const FollowSettings& settings,
                                          const RgbdFrame& frame, const std::vector<ExpectedObject>& expected);
 

@@ -10,9 +10,9 @@
 namespace houghstream {
 namespace {
 
-constexpr double kOvertakenS = 1.0;                     // by which a frame may come late
-constexpr std::int64_t kJumpUs = 10'000'000;            // to a later frame: a camera may be away for a moment
-constexpr std::int64_t kLongestIntervalUs = 1'000'000;  // between frames of which one follows the other
+constexpr double kOvertakenS = 1.0;                 // by which a frame may come late
+constexpr std::int64_t kJumpUs = 10'000'000;        // to a later frame: a camera may be away for a moment
+constexpr std::int64_t kMaxIntervalUs = 1'000'000;  // between frames of which one follows the other
 
 float probability(double odds) {
   return static_cast<float>(logistic(odds));
@@ -41,7 +41,7 @@ void follow_clock(std::int64_t utime, FollowedCamera& camera) {
   const FollowedFrame& last = camera.shown.back();
   const std::int64_t passed_us = microseconds_between(last.utime, utime);
   if (passed_us >= 0 && passed_us <= kJumpUs) {
-    camera.interval_us = std::min(passed_us, kLongestIntervalUs);
+    camera.interval_us = std::min(passed_us, kMaxIntervalUs);
   } else {
     camera.ahead_us = microseconds_between(utime, shifted(last.clock_us, camera.interval_us));
   }
@@ -67,8 +67,8 @@ FollowedObject* find_followed(std::int64_t number, FollowedCamera& camera) {
 
 /// Each detection's place in `shown`, or -1. The nearest ones first, each pose
 /// of one detection; withheld ones are nobody's.
-std::vector<int> match_detections(const PoseEstimator& estimator, const Detections& detections, const FollowedFrame& shown,
-                                  double reach_m) {
+std::vector<int> match_detections(const PoseEstimator& estimator, const Detections& detections,
+                                  const FollowedFrame& shown, double reach_m) {
   struct Pair {
     double distance = 0.0;
     std::size_t detection = 0;
@@ -98,8 +98,8 @@ std::vector<int> match_detections(const PoseEstimator& estimator, const Detectio
 
 /// What the look says of those that were there: found, with this score, or not
 /// found though in full view.
-void update_from_detections(const Detections& detections, const DetectionAssociation& look, const FollowerSettings& settings,
-               FollowedCamera& camera) {
+void update_from_detections(const Detections& detections, const DetectionAssociation& look,
+                            const FollowerSettings& settings, FollowedCamera& camera) {
   constexpr float kFullView = 0.7F;  // visible fraction
   const FollowedFrame& shown = look.shown;
   for (std::size_t p = 0; p < shown.poses.size(); ++p) {
@@ -127,7 +127,8 @@ int choose_recheck(const DetectionAssociation& look, const FollowerSettings& set
   for (const int match : look.matches) {
     FollowedObject* object =
         match >= 0 ? find_followed(shown.numbers[static_cast<std::size_t>(match)], camera) : nullptr;
-    if (object == nullptr || seconds_between(object->doubted_us, shown.clock_us) < settings.recheck_interval_s) continue;
+    if (object == nullptr || seconds_between(object->doubted_us, shown.clock_us) < settings.recheck_interval_s)
+      continue;
     if (chosen != nullptr && chosen->doubted_us <= object->doubted_us) continue;
     chosen = object;
     place = match;
@@ -140,7 +141,7 @@ int choose_recheck(const DetectionAssociation& look, const FollowerSettings& set
 /// that. Notes in the camera's objects what the look says of them: found, with
 /// this score, or not found though in full view; and which one is doubted.
 DetectionAssociation associate_detections(const PoseEstimator& estimator, const Detections& detections,
-                                 const FollowerSettings& settings, FollowedCamera& camera) {
+                                          const FollowerSettings& settings, FollowedCamera& camera) {
   DetectionAssociation look{{}, std::vector<int>(detections.detections.size(), -1), -1};
   const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
                                  [&](const FollowedFrame& one) { return one.utime == detections.frame.utime; });
@@ -156,7 +157,7 @@ DetectionAssociation associate_detections(const PoseEstimator& estimator, const 
 /// the object goes on from it: what is between the two stays the same in the
 /// object's own frame.
 void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, const FollowerSettings& settings,
-                  FollowedObject& object) {
+                       FollowedObject& object) {
   constexpr double kMargin = 1e-6;  // of two poses of one object small differences count
   const double better = log_odds(pose.quality, kMargin) - log_odds(followed.pose.quality, kMargin);
   if (better < settings.better_log_odds) return;
@@ -193,13 +194,13 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
 /// there once more.
 std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                                      FollowedCamera& camera) const {
-  constexpr double kLongest = 0.25;    // seconds; no speed says anything about a later frame
+  constexpr double kMaxLength = 0.25;  // seconds; no speed says anything about a later frame
   constexpr std::int64_t kSettle = 4;  // settled and rendered in one frame of so
                                        // many, not all objects in the same one
   std::vector<ExpectedObject> expected;
   for (const FollowedObject& object : camera.objects) {
     const double dt = seconds_between(object.clock_us, clock_of(frame.id.utime, camera));
-    const double used = dt <= kLongest ? dt : 0.0;
+    const double used = dt <= kMaxLength ? dt : 0.0;
     const bool settle = (camera.frames + object.number) % kSettle == 0;
     expected.push_back({object.class_id,
                         object.class_name,
@@ -218,7 +219,7 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
 /// Those without a valid pose from where they were last, and from where the
 /// camera's motion has brought them.
 void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
-                                  std::vector<FollowedPose>& poses) const {
+                                std::vector<FollowedPose>& poses) const {
   std::vector<Eigen::Isometry3d> motions;
   std::vector<std::size_t> failed;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -251,7 +252,7 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
     if (before == PoseStatus::kOccluded || (!better && found[k].pose.status == PoseStatus::kOccluded)) {
       pose.pose.status = PoseStatus::kOccluded;
     }
-    if (pose.pose.quality < settings_.least_kept_quality) pose.T_camera_object = expected[k].starts.front();
+    if (pose.pose.quality < settings_.min_kept_quality) pose.T_camera_object = expected[k].starts.front();
   }
 }
 
@@ -259,7 +260,7 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
 /// the camera's motion has brought it.
 void ObjectFollower::note_result(const FollowedPose& result, std::int64_t clock_us, FollowedObject& object) const {
   const bool valid = result.pose.status == PoseStatus::kValid;
-  const bool kept = valid || result.pose.quality >= settings_.least_kept_quality;
+  const bool kept = valid || result.pose.quality >= settings_.min_kept_quality;
   const double dt = seconds_between(object.clock_us, clock_us);
   if (valid && dt > 0.0)
     object.velocity.update(object.T_camera_object, result.T_camera_object, dt, settings_.speed_gain);
@@ -273,8 +274,8 @@ void ObjectFollower::note_result(const FollowedPose& result, std::int64_t clock_
 
 bool ObjectFollower::is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const {
   const bool hidden = result.pose.status == PoseStatus::kOccluded;
-  const double longest = hidden ? settings_.longest_hidden_s : settings_.longest_withheld_s;
-  return object.failures >= settings_.most_failures || result.pose.status == PoseStatus::kNoModel ||
+  const double longest = hidden ? settings_.max_hidden_s : settings_.max_withheld_s;
+  return object.failures >= settings_.max_failures || result.pose.status == PoseStatus::kNoModel ||
          seconds_between(object.valid_us, clock_us) > longest;
 }
 
@@ -321,7 +322,8 @@ ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFra
     if (look.matches[i] >= 0) {
       const auto place = static_cast<std::size_t>(look.matches[i]);
       FollowedObject* object = find_followed(look.shown.numbers[place], camera);
-      if (pose.T_camera_object && object != nullptr) adopt_better_pose(pose, look.shown.poses[place], settings_, *object);
+      if (pose.T_camera_object && object != nullptr)
+        adopt_better_pose(pose, look.shown.poses[place], settings_, *object);
       pose = look.shown.poses[place].pose;
     } else if (pose.T_camera_object) {
       add_object(estimator, detections.frame, pose, camera);
@@ -336,7 +338,7 @@ ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFra
 /// Takes the place of one of its class that is withheld, or of one of another
 /// class that is less sure; is known where one of its class is followed there.
 void ObjectFollower::add_object(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose,
-                             FollowedCamera& camera) {
+                                FollowedCamera& camera) {
   FollowedObject found;
   found.number = found_++;
   found.class_id = pose.class_id;

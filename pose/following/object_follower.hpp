@@ -17,22 +17,22 @@ namespace houghstream {
 
 /// When what is followed is given up, and which detection is of it.
 struct FollowerSettings {
-  FollowSettings follow;            ///< how one object is found again in one frame
-  int most_failures = 3;            ///< frames one after the other without evidence: it is lost
-  float least_kept_quality = 0.3F;  ///< a pose that is withheld is followed on from this quality on
-  double longest_withheld_s = 1.0;  ///< but no longer without a valid pose
-  double longest_hidden_s = 2.0;    ///< the same while it is hidden
-  double reach_m = 0.07;            ///< between a detection's centre and a followed pose
-                                    ///< of its class: it is of that one
-  double apart = 0.5;               ///< of the smaller radius: closer together two objects are one
-  double logit_gain = 0.3;          ///< how much one look moves the score's log odds
-  float miss_score = 0.3F;        ///< what a look is worth that does not find an
-                                    ///< object in full view...
-  double missed_after_s = 1.0;      ///< ...once none has found it for so long
-  double recheck_interval_s = 0.15;    ///< a detection's pose is looked for anew,
-                                    ///< beside the followed one...
-  double better_log_odds = 0.3;     ///< ...and takes its place where its quality is so much better
-  double speed_gain = 0.5;          ///< how much the last step moves the speed
+  FollowSettings follow;             ///< how one object is found again in one frame
+  int max_failures = 3;              ///< frames one after the other without evidence: it is lost
+  float min_kept_quality = 0.3F;     ///< a pose that is withheld is followed on from this quality on
+  double max_withheld_s = 1.0;       ///< but no longer without a valid pose
+  double max_hidden_s = 2.0;         ///< the same while it is hidden
+  double reach_m = 0.07;             ///< between a detection's centre and a followed pose
+                                     ///< of its class: it is of that one
+  double apart = 0.5;                ///< of the smaller radius: closer together two objects are one
+  double logit_gain = 0.3;           ///< how much one look moves the score's log odds
+  float miss_score = 0.3F;           ///< what a look is worth that does not find an
+                                     ///< object in full view...
+  double missed_after_s = 1.0;       ///< ...once none has found it for so long
+  double recheck_interval_s = 0.15;  ///< a detection's pose is looked for anew,
+                                     ///< beside the followed one...
+  double better_log_odds = 0.3;      ///< ...and takes its place where its quality is so much better
+  double speed_gain = 0.5;           ///< how much the last step moves the speed
 };
 
 /// An object that is followed from frame to frame of one camera. Its times are
@@ -103,7 +103,7 @@ class ObjectFollower {
   std::vector<FollowedPose> follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                        FollowedCamera& camera) const;
   void retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
-                    std::vector<FollowedPose>& poses) const;
+                  std::vector<FollowedPose>& poses) const;
   void note_result(const FollowedPose& result, std::int64_t clock_us, FollowedObject& object) const;
   bool is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const;
   void give_up(const PoseEstimator& estimator, FollowedCamera& camera, FollowedFrame& shown) const;

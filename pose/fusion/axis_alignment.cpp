@@ -32,13 +32,13 @@ Eigen::Vector3d direction_to_camera(const DepthView& view) {
 }
 
 std::vector<std::vector<int>> find_neighbours(const std::vector<DepthView>& views, int most) {
-  constexpr double kLeastCosine = 0.7;  // farther round, too little is seen by both
+  constexpr double kMinCosine = 0.7;  // farther round, too little is seen by both
   std::vector<std::vector<int>> neighbours(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
     std::vector<std::pair<double, int>> by_angle;
     for (std::size_t j = 0; j < views.size(); ++j) {
       const double cosine = direction_to_camera(views[i]).dot(direction_to_camera(views[j]));
-      if (j != i && cosine > kLeastCosine) by_angle.emplace_back(-cosine, static_cast<int>(j));
+      if (j != i && cosine > kMinCosine) by_angle.emplace_back(-cosine, static_cast<int>(j));
     }
     std::sort(by_angle.begin(), by_angle.end());
     // Next neighbours tell little about the axis, far ones much: spread over all that see the same.
@@ -56,7 +56,7 @@ double tukey_weight(double distance, double limit) {
 /// Compares points of one view with the surface of another.
 Equations compare(const std::vector<SurfaceSample>& samples, const DepthView& from, const DepthView& to,
                   double limit_m) {
-  constexpr double kLeastCosine = 0.7;  // of two normals of one surface
+  constexpr double kMinCosine = 0.7;  // of two normals of one surface
   const Eigen::Isometry3d T_to_from = to.T_camera_object * from.T_camera_object.inverse();
   const Eigen::Matrix3d R = T_to_from.linear();
   Equations out;
@@ -66,7 +66,7 @@ Equations compare(const std::vector<SurfaceSample>& samples, const DepthView& fr
     if (!px || !std::isfinite(to.depth.at<float>(*px))) continue;
     const Eigen::Vector3d n = to.normal(*px);
     const double distance = n.dot(p - to.camera.backproject(px->x, px->y, to.depth.at<float>(*px)));
-    if (n.dot(R * sample.normal) < kLeastCosine || std::abs(distance) >= limit_m) continue;
+    if (n.dot(R * sample.normal) < kMinCosine || std::abs(distance) >= limit_m) continue;
     const Eigen::Vector3d n_from = R.transpose() * n;
     Vector6d slope;  // of the distance, by the motion
     slope << p.cross(n) - sample.point.cross(n_from), n - n_from;
@@ -108,7 +108,7 @@ std::vector<Equations> compare_all(const std::vector<DepthView>& views, const Co
   std::vector<Equations> equations(views.size());
   parallel_for(settings.threads, static_cast<int>(views.size()), [&](int i) {
     for (const int j : comparison.neighbours[i]) {
-      equations[i].add(compare(comparison.samples[i], views[i], views[j], settings.farthest_pair_m));
+      equations[i].add(compare(comparison.samples[i], views[i], views[j], settings.max_pair_m));
     }
   });
   return equations;

@@ -8,12 +8,12 @@ namespace houghstream::fusion {
 
 /// How the views of a model are laid on each other.
 struct AlignmentSettings {
-  int iterations = 15;            ///< of Gauss-Newton; 0 = none
-  int neighbours = 8;             ///< views that each one is compared with, the nearest in direction
-  int points_per_view = 1200;     ///< compared points
-  double farthest_pair_m = 0.01;  ///< Tukey's limit: what is farther apart is not the same surface
-  double damping = 2e-4;          ///< of a motion of the object's size, against the measured distances
-  int threads = 1;                ///< any number gives the same result
+  int iterations = 15;         ///< of Gauss-Newton; 0 = none
+  int neighbours = 8;          ///< views that each one is compared with, the nearest in direction
+  int points_per_view = 1200;  ///< compared points
+  double max_pair_m = 0.01;    ///< Tukey's limit: what is farther apart is not the same surface
+  double damping = 2e-4;       ///< of a motion of the object's size, against the measured distances
+  int threads = 1;             ///< any number gives the same result
 };
 
 /// How well views agree: point to plane, over all compared points.

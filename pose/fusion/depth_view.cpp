@@ -16,7 +16,7 @@ constexpr int kRadius_px = 3;  // of the planes that give normals
 /// too few pixels around belong to the same surface.
 bool fit_plane(const cv::Mat& depth, const Camera& camera, int x, int y, Eigen::Vector3d& n) {
   constexpr float kSameSurface_m = 0.01F;
-  constexpr int kFewest = (2 * kRadius_px + 1) * (2 * kRadius_px + 1) * 2 / 5;
+  constexpr int kMin = (2 * kRadius_px + 1) * (2 * kRadius_px + 1) * 2 / 5;
   const float z = depth.at<float>(y, x);
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d sums = Eigen::Vector3d::Zero();
@@ -31,13 +31,13 @@ bool fit_plane(const cv::Mat& depth, const Camera& camera, int x, int y, Eigen::
       ++count;
     }
   }
-  if (count < kFewest) return false;
+  if (count < kMin) return false;
   n = squares.ldlt().solve(sums);
   return n.allFinite() && n.norm() > 0.0;
 }
 
 void set_surface(const cv::Mat& depth, DepthView& out) {
-  constexpr double kLeastFacing = 0.2;
+  constexpr double kMinFacing = 0.2;
   out.depth = cv::Mat(depth.size(), CV_32FC1, cv::Scalar(kNoValue));
   out.normals = cv::Mat(depth.size(), CV_32FC3, cv::Scalar::all(0.0));
   for (int y = 0; y < depth.rows; ++y) {
@@ -45,7 +45,7 @@ void set_surface(const cv::Mat& depth, DepthView& out) {
       Eigen::Vector3d n;
       if (!std::isfinite(depth.at<float>(y, x)) || !fit_plane(depth, out.camera, x, y, n)) continue;
       n = -n.normalized();
-      if (-n.dot(out.camera.backproject(x, y, 1.0).normalized()) < kLeastFacing) continue;
+      if (-n.dot(out.camera.backproject(x, y, 1.0).normalized()) < kMinFacing) continue;
       out.depth.at<float>(y, x) = depth.at<float>(y, x);
       out.normals.at<cv::Vec3f>(y, x) = cv::Vec3f(Eigen::Vector3f(n.cast<float>()).data());
     }

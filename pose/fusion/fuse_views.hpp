@@ -20,8 +20,8 @@ struct FusionSettings {
 
 /// A model and how it came about.
 struct FusedModel {
-  Mesh mesh;                ///< object frame of the views, metres; closed, with normals and colours
-  std::vector<bool> seen;   ///< per vertex: some view shows it; the others close the surface
+  Mesh mesh;                     ///< object frame of the views, metres; closed, with normals and colours
+  std::vector<bool> seen;        ///< per vertex: some view shows it; the others close the surface
   AlignmentError before, after;  ///< of the views, before and after their alignment
 };
 

@@ -137,7 +137,7 @@ Mesh largest_part(const Mesh& mesh) {
 }
 
 Mesh remove_unobserved(const Mesh& mesh, const std::vector<bool>& seen, double foot_z_m) {
-  constexpr double kLeast_m2 = 1e-4;
+  constexpr double kMin_m2 = 1e-4;
   Parts parts(mesh.vertices.size());
   std::vector<double> area(mesh.vertices.size(), 0.0);
   const auto is_guess = [&](const std::array<std::uint32_t, 3>& t) {
@@ -156,7 +156,7 @@ Mesh remove_unobserved(const Mesh& mesh, const std::vector<bool>& seen, double f
     area[parts.find(t[0])] += 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
   }
   return extract_submesh(
-      mesh, [&](const std::array<std::uint32_t, 3>& t) { return !is_guess(t) || area[parts.find(t[0])] <= kLeast_m2; });
+      mesh, [&](const std::array<std::uint32_t, 3>& t) { return !is_guess(t) || area[parts.find(t[0])] <= kMin_m2; });
 }
 
 }  // namespace houghstream::fusion

@@ -69,10 +69,10 @@ TsdfVolume make_grid(const Extent& extent, const TsdfSettings& settings) {
   grid.origin = extent.low - Eigen::Vector3d::Constant(margin);
   const Eigen::Vector3d size = (extent.high - extent.low + Eigen::Vector3d::Constant(2.0 * margin)) / settings.voxel;
   const double voxels = (size.x() + 2.0) * (size.y() + 2.0) * (size.z() + 2.0);
-  require(voxels < static_cast<double>(settings.most_voxels),
+  require(voxels < static_cast<double>(settings.max_voxels),
           "object of {:.3f} x {:.3f} x {:.3f} m in voxels of {} m, expected fewer than {} voxels",
           extent.high.x() - extent.low.x(), extent.high.y() - extent.low.y(), extent.high.z() - extent.low.z(),
-          settings.voxel, settings.most_voxels);
+          settings.voxel, settings.max_voxels);
   grid.nx = static_cast<int>(size.x()) + 2;
   grid.ny = static_cast<int>(size.y()) + 2;
   grid.nz = static_cast<int>(size.z()) + 2;
@@ -138,7 +138,7 @@ void finish_slice(const Extent& extent, const TsdfSettings& settings, double few
 TsdfVolume fuse_extent(const std::vector<DepthView>& views, const Extent& extent, const TsdfSettings& settings) {
   require(settings.voxel > 0.0, "voxels of {} m, expected more than 0", settings.voxel);
   TsdfVolume grid = make_grid(extent, settings);
-  const double fewest = std::max(1.0, settings.fewest_share * static_cast<double>(views.size()));
+  const double fewest = std::max(1.0, settings.min_share * static_cast<double>(views.size()));
   parallel_for(settings.threads, grid.nz, [&](int k) {
     fill_slice(views, settings, k, grid);
     finish_slice(extent, settings, fewest, k, grid);
@@ -153,7 +153,7 @@ TsdfVolume integrate_views(const std::vector<DepthView>& views, const TsdfSettin
 }
 
 TsdfVolume integrate_box(const std::vector<DepthView>& views, const Eigen::AlignedBox3d& box,
-                      const TsdfSettings& settings) {
+                         const TsdfSettings& settings) {
   Extent extent;
   extent.low = box.min();
   extent.high = box.max();

@@ -26,9 +26,9 @@ struct TsdfVolume {
 struct TsdfSettings {
   double voxel = 0.0015;           ///< metres
   double truncation_voxels = 4.0;  ///< distances beyond are only "in front"
-  double fewest_share = 0.05;      ///< of the views: a voxel of less weight counts as never seen
+  double min_share = 0.05;         ///< of the views: a voxel of less weight counts as never seen
   double outline_weight = 0.5;     ///< of a view whose mask says that nothing is there
-  std::size_t most_voxels = 40'000'000;
+  std::size_t max_voxels = 40'000'000;
   int threads = 1;  ///< any number gives the same result
 };
 
@@ -37,12 +37,12 @@ struct TsdfSettings {
 /// the mask carve free space, beside the view's images too, unless they miss DepthView::picture. What no view has seen
 /// lies behind surfaces and counts as inside, so that the solid is closed. Where all views look from one side, it ends
 /// at the lowest that was seen, on which the object stands, and what is unseen at the highest. Throws InputError
-/// without views or points, or where they need more than `most_voxels`.
+/// without views or points, or where they need more than `max_voxels`.
 TsdfVolume integrate_views(const std::vector<DepthView>& views, const TsdfSettings& settings);
 
 /// The same in a box of the object frame, metres, whatever else the views show there: what no view has seen is inside,
-/// with weight 0. Throws InputError where the box needs more than `most_voxels`.
+/// with weight 0. Throws InputError where the box needs more than `max_voxels`.
 TsdfVolume integrate_box(const std::vector<DepthView>& views, const Eigen::AlignedBox3d& box,
-                      const TsdfSettings& settings);
+                         const TsdfSettings& settings);
 
 }  // namespace houghstream::fusion

@@ -77,15 +77,15 @@ Lighting::Lighting(const std::vector<DepthView>& views, double tolerance_m, cons
 }
 
 void Lighting::add_samples(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh) {
-  constexpr std::size_t kMost = 4000;
-  constexpr double kLeastFacing = 0.3;
-  const std::size_t step = std::max<std::size_t>(mesh.vertices.size() / kMost, 1);
+  constexpr std::size_t kMax = 4000;
+  constexpr double kMinFacing = 0.3;
+  const std::size_t step = std::max<std::size_t>(mesh.vertices.size() / kMax, 1);
   for (std::size_t v = 0; v < mesh.vertices.size(); v += step) vertices_.push_back(static_cast<int>(v));
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     const auto v = static_cast<std::size_t>(vertices_[i]);
     for (std::size_t k = 0; k < views.size(); ++k) {
       const Sight seen = sight(views[k], mesh.vertices[v].cast<double>(), mesh.normals[v].cast<double>(), tolerance_m);
-      if (seen.facing < kLeastFacing || is_clipped(seen.colour)) continue;
+      if (seen.facing < kMinFacing || is_clipped(seen.colour)) continue;
       const Eigen::Vector3d colour = srgb_to_linear(seen.colour);
       samples_.push_back(
           {static_cast<int>(i), static_cast<int>(k), std::log(colour.mean()), seen.facing * seen.facing});

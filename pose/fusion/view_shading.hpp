@@ -32,7 +32,8 @@ class ShadingModel {
   double operator()(const Eigen::Vector3d& normal) const;
 
  private:
-  friend ShadingModel fit_shading(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals);
+  friend ShadingModel fit_shading(const std::vector<Eigen::Vector3d>& colours,
+                                  const std::vector<Eigen::Vector3d>& normals);
   Eigen::Matrix<double, 8, 1> weights_ = Eigen::Matrix<double, 8, 1>::Zero();
 };
 

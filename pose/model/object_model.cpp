@@ -131,7 +131,7 @@ std::vector<SeenPoint> ViewMaker::seen_from(const Eigen::Vector3f& direction, fl
       Eigen::Vector3f normal = face_normals_[static_cast<std::size_t>(triangle)];
       const float facing = normal.dot((eye - point).normalized());
       if (facing < 0.0F) normal = -normal;  // the mesh may be open, or its triangles turned
-      if (!(std::abs(facing) >= settings_.least_facing)) continue;
+      if (!(std::abs(facing) >= settings_.min_facing)) continue;
       seen.push_back({point, normal, static_cast<std::size_t>(triangle), rendered.bary.at<cv::Vec2f>(y, x)});
     }
   }

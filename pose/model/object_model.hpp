@@ -16,7 +16,7 @@ struct ModelSettings {
   int points_per_view = 600;     ///< at most
   double view_distance_m = 1.2;  ///< from the model's centre
   int pixels_per_diameter = 72;  ///< of the pictures from which visible points are drawn
-  double least_facing = 0.15;    ///< cosine between normal and line of sight below which a point is too grazing
+  double min_facing = 0.15;      ///< cosine between normal and line of sight below which a point is too grazing
   std::map<std::string, Eigen::Vector3f> vote_centres;  ///< ObjectModel::vote_centre by name; of others the origin
 };
 

@@ -90,14 +90,14 @@ std::vector<ContinuousSymmetry> continuous_axes(const RotationSymmetryTest& chec
 }
 
 /// One turn per axis: the smallest that fits, of which the others are multiples.
-std::vector<Eigen::Isometry3d> smallest_turns(const RotationSymmetryTest& check, const Moments& moments) {
-  constexpr int kMostFold = 6;
+std::vector<Eigen::Isometry3d> min_turns(const RotationSymmetryTest& check, const Moments& moments) {
+  constexpr int kMaxFold = 6;
   std::vector<Eigen::Isometry3d> turns;
   std::vector<Eigen::Vector3d> known;
   for (const Eigen::Vector3d& axis : candidate_axes(moments)) {
     const auto same = [&](const Eigen::Vector3d& other) { return std::abs(other.dot(axis)) > kSameDirection; };
     if (std::any_of(known.begin(), known.end(), same)) continue;
-    for (int fold = kMostFold; fold >= 2; --fold) {
+    for (int fold = kMaxFold; fold >= 2; --fold) {
       if (!check.fits(axis, 2.0 * M_PI / fold)) continue;
       turns.push_back(check.turn(axis, 2.0 * M_PI / fold));
       known.push_back(axis);
@@ -109,7 +109,7 @@ std::vector<Eigen::Isometry3d> smallest_turns(const RotationSymmetryTest& check,
 
 /// All that the turns combine to, without the identity.
 std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& turns) {
-  constexpr std::size_t kLargestGroup = 60;  // the icosahedron's
+  constexpr std::size_t kMaxGroup = 60;  // the icosahedron's
   std::vector<Eigen::Isometry3d> group = {Eigen::Isometry3d::Identity()};
   for (std::size_t i = 0; i < group.size(); ++i) {
     for (const Eigen::Isometry3d& turn : turns) {
@@ -117,7 +117,7 @@ std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& tu
       const bool known = std::any_of(group.begin(), group.end(), [&](const Eigen::Isometry3d& other) {
         return Eigen::AngleAxisd(other.linear().transpose() * product.linear()).angle() < 10.0 * kRadPerDeg;
       });
-      if (!known && group.size() < kLargestGroup) group.push_back(product);
+      if (!known && group.size() < kMaxGroup) group.push_back(product);
     }
   }
   group.erase(group.begin());
@@ -126,7 +126,8 @@ std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& tu
 
 }  // namespace
 
-RotationSymmetryTest::RotationSymmetryTest(const Mesh& mesh, const Eigen::Vector3d& centre, const SymmetrySearch& settings)
+RotationSymmetryTest::RotationSymmetryTest(const Mesh& mesh, const Eigen::Vector3d& centre,
+                                           const SymmetrySearch& settings)
     : mesh_(mesh),
       settings_(settings),
       tree_(mesh),
@@ -135,8 +136,8 @@ RotationSymmetryTest::RotationSymmetryTest(const Mesh& mesh, const Eigen::Vector
   constexpr int kPoints = 1000;
   constexpr std::uint64_t kSeed = 1;
   samples_ = sample_surface(mesh, kPoints, kSeed).points;
-  constexpr std::size_t kMostCorners = 2000;
-  const std::size_t step = mesh.vertices.size() / kMostCorners + 1;
+  constexpr std::size_t kMaxCorners = 2000;
+  const std::size_t step = mesh.vertices.size() / kMaxCorners + 1;
   for (std::size_t i = 0; i < mesh.vertices.size(); i += step) corners_.push_back(mesh.vertices[i]);
   if (!settings.compare_colours || !has_colours(mesh)) return;
   for (const Eigen::Vector3f& point : samples_) colours_.push_back(colour_at(mesh, tree_.nearest(point)));
@@ -169,7 +170,7 @@ Symmetries find_symmetries(const Mesh& mesh, const SymmetrySearch& settings) {
   Symmetries found;
   found.continuous = continuous_axes(check, moments);
   if (found.continuous.empty()) {
-    found.discrete = group_of(smallest_turns(check, moments));
+    found.discrete = group_of(min_turns(check, moments));
   } else if (found.continuous.size() == 1) {
     const Eigen::Vector3d across = found.continuous.front().axis.unitOrthogonal();
     if (check.fits(across, M_PI)) found.discrete = {check.turn(across, M_PI)};

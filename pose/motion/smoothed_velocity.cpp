@@ -35,7 +35,7 @@ bool SmoothedVelocity::is_zero() const {
 }
 
 std::optional<Eigen::Isometry3d> predict_by_camera_motion(const Eigen::Isometry3d& T_camera_object,
-                                               const std::vector<Eigen::Isometry3d>& motions) {
+                                                          const std::vector<Eigen::Isometry3d>& motions) {
   for (std::size_t i = 0; i < motions.size(); ++i) {
     for (std::size_t j = i + 1; j < motions.size(); ++j) {
       if (is_near(motions[i] * T_camera_object, motions[j] * T_camera_object)) return motions[i] * T_camera_object;

@@ -30,6 +30,6 @@ class SmoothedVelocity {
 /// far as it can be told. Motions are of the camera's frame: T_after * T_before^-1 of other objects. Nothing where no
 /// two agree.
 std::optional<Eigen::Isometry3d> predict_by_camera_motion(const Eigen::Isometry3d& T_camera_object,
-                                               const std::vector<Eigen::Isometry3d>& motions);
+                                                          const std::vector<Eigen::Isometry3d>& motions);
 
 }  // namespace houghstream

@@ -42,12 +42,12 @@ RotationCandidate mean_rotation(const std::vector<RotationVote>& votes) {
 }
 
 /// The vote with most weight within the radius; ties go to the first.
-std::size_t densest(const std::vector<RotationVote>& votes, float least_likeness) {
+std::size_t densest(const std::vector<RotationVote>& votes, float min_likeness) {
   std::size_t best = 0;
   float best_weight = -1.0F;
   for (std::size_t i = 0; i < votes.size(); ++i) {
     float weight = 0.0F;
-    for (const RotationVote& other : votes) weight += likeness(votes[i], other) >= least_likeness ? other.weight : 0.0F;
+    for (const RotationVote& other : votes) weight += likeness(votes[i], other) >= min_likeness ? other.weight : 0.0F;
     if (weight > best_weight) {
       best_weight = weight;
       best = i;
@@ -91,11 +91,11 @@ std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>
   std::vector<RotationVote> left = usable_votes(votes);
   constexpr double kSelf = 0.9999;  // a vote is always in its own cluster
   const double limit = std::cos(0.5 * settings.cluster_radius_deg * kRadPerDeg);
-  const auto least_likeness = static_cast<float>(std::min(limit, kSelf));
+  const auto min_likeness = static_cast<float>(std::min(limit, kSelf));
   std::vector<RotationCandidate> candidates;
   while (!left.empty() && static_cast<int>(candidates.size()) < settings.clusters) {
-    const RotationVote centre = left[densest(left, least_likeness)];
-    const auto far = [&](const RotationVote& vote) { return likeness(vote, centre) < least_likeness; };
+    const RotationVote centre = left[densest(left, min_likeness)];
+    const auto far = [&](const RotationVote& vote) { return likeness(vote, centre) < min_likeness; };
     const auto near_begin = std::stable_partition(left.begin(), left.end(), far);
     candidates.push_back(mean_rotation({near_begin, left.end()}));
     left.erase(near_begin, left.end());
@@ -118,7 +118,8 @@ float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Iso
   return most > 0.0F ? std::min(1.0F, sum / most) : 0.0F;
 }
 
-std::vector<PoseCandidate> place_candidates(const ObjectObservation& seen, const std::vector<RotationCandidate>& rotations,
+std::vector<PoseCandidate> place_candidates(const ObjectObservation& seen,
+                                            const std::vector<RotationCandidate>& rotations,
                                             const SearchSettings& settings) {
   std::vector<PoseCandidate> candidates;
   for (const RotationCandidate& rotation : rotations) {

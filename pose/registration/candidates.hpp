@@ -13,9 +13,9 @@ namespace houghstream {
 /// Rotations from the votes.
 struct InitialSettings {
   double cluster_radius_deg = 25.0;
-  int clusters = 6;         ///< at most
+  int clusters = 6;          ///< at most
   int rotated_clusters = 1;  ///< of the heaviest also turned by quarters about the object's z axis
-  float vote_gain = 0.1F;   ///< how much a rotation that the votes agree on is preferred after registration
+  float vote_gain = 0.1F;    ///< how much a rotation that the votes agree on is preferred after registration
 };
 
 /// Coarse choice by depth score: each rotation at several places, the best go to registration.
@@ -60,7 +60,8 @@ struct PoseCandidate {
 
 /// Tries each rotation at places about the detected centre, moved along the line of sight onto the measured surface;
 /// gives the best place of each rotation, best first, at most SearchSettings::keep.
-std::vector<PoseCandidate> place_candidates(const ObjectObservation& seen, const std::vector<RotationCandidate>& rotations,
+std::vector<PoseCandidate> place_candidates(const ObjectObservation& seen,
+                                            const std::vector<RotationCandidate>& rotations,
                                             const SearchSettings& settings);
 
 /// What an earlier frame's poses add: those of the class that lie near the detected centre, as they were then. None of

@@ -82,7 +82,8 @@ class Choice {
 
   /// How depth, colour and votes speak for the result.
   float score_of(const RegistrationResult& result) const {
-    const ScoredPose judged = score_pose_jointly(seen_, result.T_camera_object, settings_.registration.fine_points, tolerance_);
+    const ScoredPose judged =
+        score_pose_jointly(seen_, result.T_camera_object, settings_.registration.fine_points, tolerance_);
     const float support = vote_support(votes_, result.T_camera_object, settings_.initial);
     return judged.score * (1.0F + settings_.initial.vote_gain * support);
   }
@@ -96,7 +97,8 @@ class Choice {
 
 }  // namespace
 
-std::vector<RegistrationResult> select_poses(const ObjectObservation& seen, const std::vector<RegistrationResult>& registered,
+std::vector<RegistrationResult> select_poses(const ObjectObservation& seen,
+                                             const std::vector<RegistrationResult>& registered,
                                              const std::vector<RotationCandidate>& votes,
                                              const ChoiceSettings& settings) {
   const Choice choice(seen, votes, settings);

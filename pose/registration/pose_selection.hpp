@@ -9,14 +9,14 @@ namespace houghstream {
 
 /// Turns about the object's z axis that are tried after registration, degrees.
 struct RotationSearchSettings {
-  double step_deg = 15.0;       ///< all the way round
-  double fine_step_deg = 3.0;   ///< up to one step to each side
-  double climb_step_m = 0.004;  ///< shifts along the object's axes that are tried with small turns
-  int hill_climb_rounds = 4;         ///< of those, to each side
-  int points = 250;             ///< of a view
-  std::size_t registered = 3;   ///< the best turns all round are registered again
-  std::size_t rivals = 1;       ///< flips beside the best one that are chosen too,
-  float min_alternative_ratio = 0.8F;     ///< where they score at least so much of it
+  double step_deg = 15.0;              ///< all the way round
+  double fine_step_deg = 3.0;          ///< up to one step to each side
+  double climb_step_m = 0.004;         ///< shifts along the object's axes that are tried with small turns
+  int hill_climb_rounds = 4;           ///< of those, to each side
+  int points = 250;                    ///< of a view
+  std::size_t registered = 3;          ///< the best turns all round are registered again
+  std::size_t rivals = 1;              ///< flips beside the best one that are chosen too,
+  float min_alternative_ratio = 0.8F;  ///< where they score at least so much of it
 };
 
 /// The settings that the choice reads; each stands beside its stage.
@@ -33,7 +33,8 @@ struct ChoiceSettings {
 /// little, and registration has the last word. Behind it come half turns that score nearly as well, registered finely:
 /// points of a view part them badly, verification better. A single one without inliers where no candidate ended near
 /// the detected centre. `votes` are the modes of the detection's rotations.
-std::vector<RegistrationResult> select_poses(const ObjectObservation& seen, const std::vector<RegistrationResult>& registered,
+std::vector<RegistrationResult> select_poses(const ObjectObservation& seen,
+                                             const std::vector<RegistrationResult>& registered,
                                              const std::vector<RotationCandidate>& votes,
                                              const ChoiceSettings& settings);
 

@@ -12,7 +12,7 @@ namespace {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr int kLeastPairs = 12;    // for a step: twice the unknowns
+constexpr int kMinPairs = 12;      // for a step: twice the unknowns
 constexpr double kDamping = 1e-3;  // of the Hessian's mean diagonal; holds rotations that symmetric surfaces leave open
 
 /// Weighted sums of products over the correspondences. Arms lead from the model's centre to the points, in its radius.
@@ -97,8 +97,9 @@ LinearSystem build_linear_system(const CorrespondenceSums& totals, double point_
 }
 
 /// Finds the correspondences of the first `count` points of the view nearest to the pose, and sums them up.
-CorrespondenceSums find_and_accumulate_correspondences(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
-                                                       std::size_t count, const CorrespondenceSearch& search) {
+CorrespondenceSums find_and_accumulate_correspondences(const ObjectObservation& seen,
+                                                       const Eigen::Isometry3d& T_camera_object, std::size_t count,
+                                                       const CorrespondenceSearch& search) {
   const ObjectModel& model = seen.model;
   const ModelView& view = nearest_view(model, T_camera_object);
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
@@ -150,7 +151,7 @@ RegistrationResult register_projective(const ObjectObservation& seen, const Eige
     const CorrespondenceSums pairs = find_and_accumulate_correspondences(
         seen, result.T_camera_object, points, {static_cast<float>(distance), stage.search_steps});
     result.converged = false;
-    if (pairs.count < kLeastPairs) break;
+    if (pairs.count < kMinPairs) break;
     const LinearSystem equations = build_linear_system(pairs, settings.point_weight);
     result.converged = apply_gauss_newton_step(equations, model, result.T_camera_object) < settings.converged_m;
     if (result.converged && distance <= stage.max_correspondence_end_m * 1.01) break;

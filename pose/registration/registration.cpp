@@ -9,8 +9,8 @@ CorrespondenceDistances correspondence_distances(const ObjectObservation& seen, 
   return {std::max(end, settings.max_correspondence_start_m), end};
 }
 
-RegistrationResult register_coarsely(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, double start_m,
-                                     const RegistrationSettings& settings) {
+RegistrationResult register_coarsely(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                                     double start_m, const RegistrationSettings& settings) {
   const RegistrationStage stage{settings.coarse_iterations, settings.coarse_points, start_m,
                                 correspondence_distances(seen, settings).end};
   return settings.engine(seen, T_camera_object, stage, settings);
@@ -26,7 +26,8 @@ RegistrationResult register_finely(const ObjectObservation& seen, const Registra
   return is_near_detection(seen, fine, settings) ? fine : result;
 }
 
-bool is_near_detection(const ObjectObservation& seen, const RegistrationResult& result, const RegistrationSettings& settings) {
+bool is_near_detection(const ObjectObservation& seen, const RegistrationResult& result,
+                       const RegistrationSettings& settings) {
   return distance_from_detected(seen, result.T_camera_object) <= settings.max_shift_m;
 }
 

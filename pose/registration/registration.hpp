@@ -33,7 +33,8 @@ struct RegistrationSettings;
 
 /// Registers the model of a seen object to the measured depth, from one start. Has no memory of its own; may be called
 /// from several threads at once.
-using RegistrationEngine = RegistrationResult (*)(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+using RegistrationEngine = RegistrationResult (*)(const ObjectObservation& seen,
+                                                  const Eigen::Isometry3d& T_camera_object,
                                                   const RegistrationStage& stage, const RegistrationSettings& settings);
 
 /// Ours: each visible model point is paired with the nearest measured point about its pixel (projective data
@@ -65,8 +66,8 @@ struct CorrespondenceDistances {
 CorrespondenceDistances correspondence_distances(const ObjectObservation& seen, const RegistrationSettings& settings);
 
 /// With few points, from pairs `start_m` apart on.
-RegistrationResult register_coarsely(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, double start_m,
-                                     const RegistrationSettings& settings);
+RegistrationResult register_coarsely(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                                     double start_m, const RegistrationSettings& settings);
 
 /// With many points from where another registration ended; that one's result where this one leads too far away. Counts
 /// the iterations of both.
@@ -74,7 +75,8 @@ RegistrationResult register_finely(const ObjectObservation& seen, const Registra
                                    const RegistrationSettings& settings);
 
 /// The result is where the detection is.
-bool is_near_detection(const ObjectObservation& seen, const RegistrationResult& result, const RegistrationSettings& settings);
+bool is_near_detection(const ObjectObservation& seen, const RegistrationResult& result,
+                       const RegistrationSettings& settings);
 
 /// Every candidate registered coarsely, in their order.
 std::vector<RegistrationResult> register_candidates(const ObjectObservation& seen,

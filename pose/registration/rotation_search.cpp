@@ -30,14 +30,14 @@ Eigen::Isometry3d turned(const Eigen::Isometry3d& T_camera_object, const ObjectM
 }  // namespace
 
 ScoredPose score_pose_jointly(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, int points,
-                      const DepthTolerance& tolerance) {
+                              const DepthTolerance& tolerance) {
   const ProjectedView look = look_at_view(seen.frame, seen.model, T_camera_object, points);
   const float depth = score_projected_view(look, tolerance).value;
   return {T_camera_object, joint_score(depth, compare_colours(seen.colours, look, tolerance))};
 }
 
-ScoredPose hill_climb_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, const HillClimb& climb,
-                      const DepthTolerance& tolerance) {
+ScoredPose hill_climb_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                           const HillClimb& climb, const DepthTolerance& tolerance) {
   ScoredPose best = score_pose_jointly(seen, T_camera_object, climb.points, tolerance);
   constexpr int kMotions = 8;
   double size = 1.0;
@@ -67,7 +67,7 @@ ScoredPose hill_climb_pose(const ObjectObservation& seen, const Eigen::Isometry3
 }
 
 std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
-                                   const RotationRange& range, const DepthTolerance& tolerance) {
+                                               const RotationRange& range, const DepthTolerance& tolerance) {
   const int steps = static_cast<int>(std::floor(range.reach_rad / range.step_rad + 1e-9));
   const bool all_round = 2.0 * range.reach_rad >= 2.0 * M_PI - 1e-9;  // then both ends are one pose
   std::vector<ScoredPose> turns;

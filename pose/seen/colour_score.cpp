@@ -10,8 +10,8 @@ namespace houghstream {
 namespace {
 
 // What exposure and haze make of a remembered contrast.
-constexpr double kLeastGain = 0.4;
-constexpr double kMostGain = 2.5;
+constexpr double kMinGain = 0.4;
+constexpr double kMaxGain = 2.5;
 
 /// About grey.
 template <typename Lab>
@@ -29,7 +29,7 @@ double variance(const ColourProducts& products, Eigen::Index channel) {
 double chroma_left_over(const ColourProducts& products, Eigen::Index remembered, Eigen::Index seen) {
   const double own = variance(products, remembered);
   const double covariance = products(remembered, seen) - products(remembered, kOne) * products(seen, kOne);
-  const double gain = std::clamp(covariance / std::max(own, 1e-3), kLeastGain, kMostGain);
+  const double gain = std::clamp(covariance / std::max(own, 1e-3), kMinGain, kMaxGain);
   return std::max(0.0, variance(products, seen) - gain * (2.0 * covariance - gain * own));
 }
 
@@ -43,7 +43,7 @@ double lightness_left_over(const ColourProducts& products) {
   curvature.diagonal().array() += kRidge;
   const Terms with_seen = products.block<kTerms, 1>(0, kSeenLightness);
   Terms weights = curvature.ldlt().solve(with_seen);
-  const double gain = std::clamp(weights[0], kLeastGain, kMostGain);
+  const double gain = std::clamp(weights[0], kMinGain, kMaxGain);
   if (gain != weights[0]) {
     const Eigen::Matrix<double, kOthers, 1> rest = with_seen.tail<kOthers>() - gain * curvature.block<kOthers, 1>(1, 0);
     weights << gain, curvature.bottomRightCorner<kOthers, kOthers>().ldlt().solve(rest);
@@ -56,12 +56,12 @@ float chroma_conflict(const ColourProducts& products) {
   constexpr double kPlain = 100.0;  // variance that plain surfaces have in changing light
   constexpr double kPalest = 0.5;   // strengths over the remembered one
   constexpr double kStrongest = 2.5;
-  constexpr double kMost = 4.0;
+  constexpr double kMax = 4.0;
   const Eigen::Vector2d own(products(kA, kOne), products(kB, kOne));
   const Eigen::Vector2d seen(products(kSeenA, kOne), products(kSeenB, kOne));
   const double strength = std::clamp(own.dot(seen) / std::max(own.squaredNorm(), 1.0), kPalest, kStrongest);
   const double spread_sq = kPlain + variance(products, kSeenA) + variance(products, kSeenB);
-  return static_cast<float>(std::min(kMost, (seen - strength * own).norm() / std::sqrt(spread_sq)));
+  return static_cast<float>(std::min(kMax, (seen - strength * own).norm() / std::sqrt(spread_sq)));
 }
 
 /// The compared points, and those where the camera was at its limit.
@@ -103,7 +103,7 @@ ColourComparison compare(const SummedColours& sums) {
 
 std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ProjectedView& seen,
                                                 const DepthTolerance& tolerance) {
-  constexpr int kFewest = 30;
+  constexpr int kMin = 30;
   constexpr float kNormalUnits = 100.0F;  // brings normals to the size of the other terms
   if (seen.view.colours.empty()) return std::nullopt;
   const auto width = static_cast<float>(tolerance.at(seen.depth));
@@ -128,19 +128,19 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
     count = 0;
   }
   sums.compared.add(points, count);
-  if (sums.compared.count() < kFewest) return std::nullopt;
+  if (sums.compared.count() < kMin) return std::nullopt;
   return compare(sums);
 }
 
 std::optional<ColourComparison> compare_texture(const ObjectObservation& seen, const ProjectedView& look,
-                                              const DepthTolerance& tolerance) {
+                                                const DepthTolerance& tolerance) {
   constexpr double kDetails = 2.5;  // averaged over so many of the model's details, so that a little beside is near,
-  constexpr double kMost = 5.0;     // or so many pixels,
+  constexpr double kMax = 5.0;      // or so many pixels,
   constexpr int kAlready = 3;       // which LabRegion's are averaged over
   const LabRegion& colours = seen.colours;
   if (colours.lab.empty() || !(look.depth > 0.0)) return std::nullopt;
   const double detail_m = 2.0 * static_cast<double>(seen.model.radius) / ModelSettings{}.pixels_per_diameter;
-  const double averaged_px = std::min(kDetails * detail_m / seen.frame.camera.metres_per_px(look.depth), kMost);
+  const double averaged_px = std::min(kDetails * detail_m / seen.frame.camera.metres_per_px(look.depth), kMax);
   const int side = 2 * static_cast<int>(0.5 * averaged_px) + 1;
   const int reach = side > kAlready ? 2 : 1;
   LabRegion moved{{}, {}, colours.clipped};  // a copy of the picture would be the picture, and change with it

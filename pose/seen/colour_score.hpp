@@ -26,9 +26,9 @@ struct ColourComparison {
   /// or a camera gives these: over the spread of those seen, at most 4. Where the camera was at its limit too: what is
   /// left without is edges and shade, of another hue.
   float chroma_conflict = 0.0F;
-  int clipped = 0;             ///< not compared: the camera was at its limit
+  int clipped = 0;                 ///< not compared: the camera was at its limit
   float observed_contrast = 0.0F;  ///< standard deviation of the seen colours, the channels weighted as in `left_over`
-  float model_contrast = 0.0F;   ///< the same of the model's
+  float model_contrast = 0.0F;     ///< the same of the model's
 };
 
 /// Compares the points that were looked at. Nothing where the model has no colours or too few points agree.
@@ -39,7 +39,7 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
 /// where they agree best (less where the object is small): cameras' colours are registered to their depth, and poses
 /// found, no better than that. For judging a pose, not for choosing between poses, which differ by less.
 std::optional<ColourComparison> compare_texture(const ObjectObservation& seen, const ProjectedView& look,
-                                              const DepthTolerance& tolerance);
+                                                const DepthTolerance& tolerance);
 
 /// Depth and colour together: the square root of `depth_value` (DepthScore::value), whose noise would else drown what
 /// little the turns of a round thing differ in colour, less a part where the colours do not explain what is seen.

@@ -43,7 +43,7 @@ float densest_mean(const std::vector<float>& sorted, float width) {
 }  // namespace
 
 ProjectedView look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-                      int points) {
+                           int points) {
   const double depth = (T_camera_object * model.centre.cast<double>()).z();
   ProjectedView result{nearest_view(model, T_camera_object), T_camera_object.cast<float>(), depth, {}};
   const auto columns = static_cast<float>(frame.depth.cols);

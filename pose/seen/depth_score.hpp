@@ -26,7 +26,7 @@ struct ProjectedView {
   std::vector<Look> looks;  ///< of the first points of the view
 };
 ProjectedView look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-                      int points);
+                           int points);
 
 /// How the measured depth speaks for a pose, judged at the visible points of the model.
 struct DepthScore {

@@ -77,7 +77,7 @@ FrameContext make_frame_context(const RgbdFrame& frame, const RegionSettings& se
 }
 
 ObjectObservation observe_object(const FrameContext& seen, const Detection& detection, const ObjectModel& model,
-                      const RegionSettings& settings) {
+                                 const RegionSettings& settings) {
   const DepthRegion region = find_region(seen.frame, detection, model, settings);
   ObjectObservation object{seen.frame, model, detection.centre_camera, seen.noise, region, {}};
   if (region.points >= settings.min_points) object.colours = lab_region(seen.frame, region.box_px, seen.tone);

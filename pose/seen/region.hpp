@@ -4,9 +4,9 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "pipeline/types/brightness.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
-#include "pipeline/types/brightness.hpp"
 #include "pose/model/object_model.hpp"
 
 namespace houghstream {
@@ -31,7 +31,7 @@ struct RegionSettings {
   double enlarge = 0.15;        ///< of the box's size, on each side
   double gate_margin_m = 0.06;  ///< depth farther from the centre than the model's radius plus this is not the object
   int min_points = 60;          ///< pixels with depth inside the gate; with fewer there is no pose
-  BrightnessRange tone;               ///< the frame's colours are brought into it
+  BrightnessRange tone;         ///< the frame's colours are brought into it
 };
 
 /// Where in the depth image a detected object can be: its box, a little enlarged, and a range of depth.
@@ -60,8 +60,8 @@ LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const Affi
 /// A frame in which objects are looked at. The frame must outlive it.
 struct FrameContext {
   const RgbdFrame& frame;
-  DepthNoise noise;  ///< of its depth
-  AffineBrightness tone;    ///< brings its colours into RegionSettings::tone
+  DepthNoise noise;       ///< of its depth
+  AffineBrightness tone;  ///< brings its colours into RegionSettings::tone
 };
 FrameContext make_frame_context(const RgbdFrame& frame, const RegionSettings& settings, const DepthNoise& noise);
 
@@ -76,7 +76,7 @@ struct ObjectObservation {
   LabRegion colours;  ///< of the region's box; empty where the region has too few points
 };
 ObjectObservation observe_object(const FrameContext& seen, const Detection& detection, const ObjectModel& model,
-                      const RegionSettings& settings);
+                                 const RegionSettings& settings);
 
 /// Metres from where the object was detected to where it is at this pose.
 double distance_from_detected(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object);

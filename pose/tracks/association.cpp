@@ -7,8 +7,8 @@
 
 namespace houghstream::tracks {
 
-ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseObservation>& poses, const TrackModels& models,
-                        std::vector<Track>& tracks) {
+ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseObservation>& poses,
+                          const TrackModels& models, std::vector<Track>& tracks) {
   ClassGroup one{
       {}, {}, symmetries_of(models, class_name), centre_of(models, class_name), radius_of(models, class_name)};
   for (Track& track : tracks) {

@@ -26,8 +26,8 @@ struct ClassGroup {
 };
 
 /// In their orders. Points into the tracks, the poses and the models.
-ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseObservation>& poses, const TrackModels& models,
-                        std::vector<Track>& tracks);
+ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseObservation>& poses,
+                          const TrackModels& models, std::vector<Track>& tracks);
 
 /// For each object which measured pose is its, -1 for none: they are near each other and turned alike, and what is
 /// confirmed comes before a candidate.

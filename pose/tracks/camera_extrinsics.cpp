@@ -27,10 +27,10 @@ bool equal_places(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 
 Eigen::Isometry3d rigid(const Eigen::Vector3d& translation, const Eigen::Vector4d& wxyz, const std::string& of) {
   constexpr double kUnitTolerance = 1e-2;  // written by people, with a few digits
-  constexpr double kFarthestM = 1e6;
-  require(translation.allFinite() && translation.cwiseAbs().maxCoeff() <= kFarthestM,
+  constexpr double kMaxDistanceM = 1e6;
+  require(translation.allFinite() && translation.cwiseAbs().maxCoeff() <= kMaxDistanceM,
           "{}: translation ({}, {}, {}), expected metres within {}", of, translation.x(), translation.y(),
-          translation.z(), kFarthestM);
+          translation.z(), kMaxDistanceM);
   require(std::abs(wxyz.norm() - 1.0) < kUnitTolerance, "{}: quaternion of length {:.3f}, expected 1", of, wxyz.norm());
   return Eigen::Translation3d(translation) * Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
 }
@@ -129,8 +129,8 @@ void CameraExtrinsics::fix(const std::string& camera, const Eigen::Isometry3d& T
 }
 
 void CameraExtrinsics::add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera) {
-  require(moving_.size() < kMostMoving || moving_.count(camera) > 0,
-          "transforms of more than {} cameras, expected at most that many", kMostMoving);
+  require(moving_.size() < kMaxMoving || moving_.count(camera) > 0,
+          "transforms of more than {} cameras, expected at most that many", kMaxMoving);
   std::deque<Sample>& samples = moving_[camera];
   if (!samples.empty() && seconds_between(utime, samples.back().utime) > 1.0) samples.clear();
   auto place = samples.end();
@@ -165,20 +165,20 @@ CameraPose CameraExtrinsics::at(const std::string& camera, std::int64_t utime) c
                         seconds(after->utime))};
   const Sample& before = *(after - 1);
   const double gap = seconds_between(before.utime, after->utime);
-  if (gap > kMostGapS && !equal_places(before.T_world_camera, after->T_world_camera))
+  if (gap > kMaxGapS && !equal_places(before.T_world_camera, after->T_world_camera))
     return {
         std::nullopt, false,
-        fmt::format("the transforms of {} about it are {:.3f} s apart, expected at most {} s", camera, gap, kMostGapS)};
+        fmt::format("the transforms of {} about it are {:.3f} s apart, expected at most {} s", camera, gap, kMaxGapS)};
   return {interpolate_pose(before.T_world_camera, after->T_world_camera, -seconds(before.utime) / gap), false, ""};
 }
 
 std::map<std::string, Eigen::Isometry3d> read_camera_extrinsics(const std::filesystem::path& file) {
-  constexpr std::size_t kMostFrames = 1024;  // each may hang on all others
+  constexpr std::size_t kMaxFrames = 1024;  // each may hang on all others
   const Links links =
       links_of(parse_yaml(read_file(file, "a YAML file of camera poses"), file.string()), file.string());
   require(!links.empty(), "{}: neither 'cameras:' nor 'transforms:', expected poses of cameras", file.string());
-  require(links.size() <= kMostFrames, "{}: poses of {} frames, expected at most {}", file.string(), links.size(),
-          kMostFrames);
+  require(links.size() <= kMaxFrames, "{}: poses of {} frames, expected at most {}", file.string(), links.size(),
+          kMaxFrames);
   std::map<std::string, Eigen::Isometry3d> places;
   for (const auto& [camera, link] : links) places[camera] = chained(links, camera, file.string());
   return places;

@@ -24,9 +24,9 @@ struct CameraPose {
 class CameraExtrinsics {
  public:
   /// Transforms farther apart say nothing of the time between them, unless they are equal.
-  static constexpr double kMostGapS = 0.5;
+  static constexpr double kMaxGapS = 0.5;
   /// Cameras that move; further ones are refused: a sender of rubbish may make up channels without end.
-  static constexpr std::size_t kMostMoving = 256;
+  static constexpr std::size_t kMaxMoving = 256;
 
   void fix(const std::string& camera, const Eigen::Isometry3d& T_world_camera);
 

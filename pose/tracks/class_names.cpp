@@ -63,8 +63,8 @@ void ClassNames::update(const ModelChange& change, const TrackModels& models) {
   }
 }
 
-ObjectPoses ClassNames::resolve(const FrameObservation& seen, const TrackModels& models, const std::vector<Track>& tracks,
-                                double same_rotation_rad) const {
+ObjectPoses ClassNames::resolve(const FrameObservation& seen, const TrackModels& models,
+                                const std::vector<Track>& tracks, double same_rotation_rad) const {
   ObjectPoses poses = seen.poses;
   poses.poses.erase(std::remove_if(poses.poses.begin(), poses.poses.end(),
                                    [&](const ObjectPose& pose) { return removed_.count(pose.class_name) > 0; }),

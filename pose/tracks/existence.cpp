@@ -32,7 +32,8 @@ bool is_detected(const UnobservedContext& frame, const std::string& class_name, 
 
 }  // namespace
 
-void update_unobserved(const UnobservedContext& frame, const MissedDetection& missed, const ExistenceSettings& how, Track& track) {
+void update_unobserved(const UnobservedContext& frame, const MissedDetection& missed, const ExistenceSettings& how,
+                       Track& track) {
   const FrameObservation& seen = frame.seen;
   const auto known = frame.models.find(track.class_name);
   const TrackModel* model = known == frame.models.end() ? nullptr : &known->second;

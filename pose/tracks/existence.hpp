@@ -9,19 +9,19 @@ namespace houghstream::tracks {
 /// Whether an object is there: log odds that grow and fall with what is seen. Rates are per second of a camera's
 /// frames: frames that follow one another closely show the same errors and say little new.
 struct ExistenceSettings {
-  double prior = -1.5;         ///< of what was never seen before
-  double gain = 0.5;           ///< of a pose's own log odds, at 30 Hz
-  double most = 6.0;           ///< however often it was seen
-  double confirmed = 2.2;      ///< published from here on,
-  int confirmed_frames = 3;    ///< seen in so many frames,
-  double confirmed_s = 0.08;   ///< so long apart
-  double gone = -1.0;          ///< below it is gone
-  double seen_through = 30.0;  ///< a second, where the camera sees through it
-  double displaced_rate = 12.0;   ///< a second, where another class is recognised in its place
-  double goes_on = 3.0;        ///< a second, where depth agrees but the surface is larger
-  double unrecognised = 0.6;   ///< a second, where depth agrees but nothing is recognised
-  double lost = 14.0;          ///< a second, where it moved when it was seen last; hidden, a quarter of it
-  double unconfirmed = 4.0;    ///< a second, of what is not yet published and not seen
+  double prior = -1.5;           ///< of what was never seen before
+  double gain = 0.5;             ///< of a pose's own log odds, at 30 Hz
+  double most = 6.0;             ///< however often it was seen
+  double confirmed = 2.2;        ///< published from here on,
+  int confirmed_frames = 3;      ///< seen in so many frames,
+  double confirmed_s = 0.08;     ///< so long apart
+  double gone = -1.0;            ///< below it is gone
+  double seen_through = 30.0;    ///< a second, where the camera sees through it
+  double displaced_rate = 12.0;  ///< a second, where another class is recognised in its place
+  double goes_on = 3.0;          ///< a second, where depth agrees but the surface is larger
+  double unrecognised = 0.6;     ///< a second, where depth agrees but nothing is recognised
+  double lost = 14.0;            ///< a second, where it moved when it was seen last; hidden, a quarter of it
+  double unconfirmed = 4.0;      ///< a second, of what is not yet published and not seen
 };
 
 /// A result, beside which objects are laid of which it has no pose.
@@ -42,6 +42,7 @@ struct MissedDetection {
 
 /// What the frame says of an object that it shows no pose of: its log odds fall, it may be gone, and where the camera
 /// has the word, its state and the reason are told.
-void update_unobserved(const UnobservedContext& frame, const MissedDetection& missed, const ExistenceSettings& how, Track& track);
+void update_unobserved(const UnobservedContext& frame, const MissedDetection& missed, const ExistenceSettings& how,
+                       Track& track);
 
 }  // namespace houghstream::tracks

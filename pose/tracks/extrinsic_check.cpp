@@ -11,7 +11,7 @@ constexpr std::int64_t kTogetherUs = 40000;  // of frames that are compared
 constexpr double kReachM = 0.3;              // an object that is seen farther away is another one
 constexpr std::size_t kOffsets = 300;
 constexpr std::size_t kEnough = 20;
-constexpr std::size_t kMostSeen = 500;  // objects of a view: each is compared with each of another camera's
+constexpr std::size_t kMaxSeen = 500;  // objects of a view: each is compared with each of another camera's
 
 Eigen::Vector3d median_of(const std::deque<Eigen::Vector3d>& offsets) {
   Eigen::Vector3d out;
@@ -31,7 +31,7 @@ Eigen::Vector3d median_of(const std::deque<Eigen::Vector3d>& offsets) {
 void ExtrinsicCheck::add(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera, const TrackModels& models) {
   View view{poses.frame.utime, {}};
   for (const ObjectPose& pose : poses.poses) {
-    if (pose.T_camera_object && view.objects.size() < kMostSeen)
+    if (pose.T_camera_object && view.objects.size() < kMaxSeen)
       view.objects.push_back(
           {pose.class_name, T_world_camera * *pose.T_camera_object * centre_of(models, pose.class_name)});
   }
@@ -56,7 +56,7 @@ void ExtrinsicCheck::add(const ObjectPoses& poses, const Eigen::Isometry3d& T_wo
   // Several detectors' results of one frame are one view.
   View& last = last_[poses.frame.channel];
   if (last.utime != view.utime) last = {view.utime, {}};
-  const std::size_t room = kMostSeen - std::min(kMostSeen, last.objects.size());
+  const std::size_t room = kMaxSeen - std::min(kMaxSeen, last.objects.size());
   const auto taken = static_cast<std::ptrdiff_t>(std::min(room, view.objects.size()));
   last.objects.insert(last.objects.end(), view.objects.begin(), view.objects.begin() + taken);
 }
@@ -72,7 +72,8 @@ std::vector<ExtrinsicInconsistency> ExtrinsicCheck::pairs() const {
 
 std::vector<ExtrinsicInconsistency> ExtrinsicCheck::contradictions() const {
   std::vector<ExtrinsicInconsistency> out = pairs();
-  out.erase(std::remove_if(out.begin(), out.end(), [](const ExtrinsicInconsistency& c) { return c.offset_m.norm() < kReport_m; }),
+  out.erase(std::remove_if(out.begin(), out.end(),
+                           [](const ExtrinsicInconsistency& c) { return c.offset_m.norm() < kReport_m; }),
             out.end());
   return out;
 }

@@ -23,7 +23,7 @@ bool have_common(const std::set<std::string>& a, const std::set<std::string>& b)
 }  // namespace
 
 void SearchedClasses::note(const ObjectPoses& poses) {
-  constexpr std::size_t kMost = 500;  // classes of one detector
+  constexpr std::size_t kMax = 500;  // classes of one detector
   const std::set<std::string> names = reported_classes(poses);
   Camera& camera = cameras_[poses.frame.channel];
   if (camera.utime != poses.frame.utime) camera.classes.clear();
@@ -32,7 +32,7 @@ void SearchedClasses::note(const ObjectPoses& poses) {
   camera.classes.insert(names.begin(), names.end());
   for (const std::string& name : names) {
     Coverage& company = companies_[name];
-    if (company.classes.size() < kMost) company.classes.insert(names.begin(), names.end());
+    if (company.classes.size() < kMax) company.classes.insert(names.begin(), names.end());
     company.utime = std::max(company.utime, poses.frame.utime);
   }
 }

@@ -37,7 +37,7 @@ class SearchedClasses {
   bool is_reporting(const std::string& class_name, std::int64_t utime) const;
 
   std::map<std::string, Coverage> companies_;  // by class
-  std::map<std::string, Camera> cameras_;     // by channel
+  std::map<std::string, Camera> cameras_;      // by channel
 };
 
 }  // namespace houghstream::tracks

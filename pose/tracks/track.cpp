@@ -14,20 +14,20 @@ namespace houghstream::tracks {
 namespace {
 
 constexpr std::size_t kHypotheses = 3;
-constexpr double kMostWeight = 6.0;
+constexpr double kMaxWeight = 6.0;
 constexpr double kForgetS = 3.0;
 
 Covariance6 covariance_of(const ObjectPose& pose, const Eigen::Isometry3d& T_world_camera,
                           const Eigen::Vector3d& centre, double radius_m) {
   constexpr double kAcross = 0.0015;  // metres a metre of distance, of an object of which all is seen
   constexpr double kAlong = 0.002;
-  constexpr double kLeastTurn = 0.008;  // radians
+  constexpr double kMinTurn = 0.008;  // radians
   const Eigen::Vector3d ray = *pose.T_camera_object * centre;
   const double distance = std::max(0.3, ray.norm());
   const double unclear = 1.0 / std::sqrt(std::clamp(static_cast<double>(pose.visible_fraction), 0.1, 1.0));
   const double across = kAcross * distance * unclear;
   const double along = kAlong * distance * distance * unclear;
-  const double turn = kLeastTurn + across / std::max(0.02, radius_m);
+  const double turn = kMinTurn + across / std::max(0.02, radius_m);
   const Eigen::Vector3d direction = T_world_camera.linear() * ray.normalized();
   const Eigen::Matrix3d beam = direction * direction.transpose();
   Covariance6 out = Covariance6::Zero();
@@ -78,7 +78,7 @@ const Symmetries& symmetries_of(const TrackModels& models, const std::string& na
 }
 
 std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
-                                 const TrackModels& models) {
+                                           const TrackModels& models) {
   std::vector<PoseObservation> out;
   for (const ObjectPose& pose : poses.poses) {
     if (!pose.T_camera_object) continue;
@@ -96,7 +96,7 @@ std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen
 Look look_at(const RgbdFrame& frame, const TrackModel& model, const Eigen::Isometry3d& T_camera_object) {
   constexpr double kToleranceM = 0.012;
   constexpr double kNearestM = 0.05;
-  constexpr int kLeastPx = 30;
+  constexpr int kMinPx = 30;
   constexpr double kMeasured = 0.2;  // of the pixels, with depth
   constexpr double kHidden = 0.6;
   constexpr double kThrough = 0.35;
@@ -107,7 +107,7 @@ Look look_at(const RgbdFrame& frame, const TrackModel& model, const Eigen::Isome
     return {};
   const Verification seen = verify_pose(frame, model.mesh, T_camera_object, {kToleranceM, DepthNoise{}});
   const int judged = seen.agreeing + seen.violating + seen.occluded;
-  if (seen.rendered < kLeastPx || judged < kMeasured * seen.rendered) return {};
+  if (seen.rendered < kMinPx || judged < kMeasured * seen.rendered) return {};
   Look look;
   look.seen_through = static_cast<double>(seen.violating) / std::max(1, seen.agreeing + seen.violating);
   look.goes_on = seen.boundary_continuations > 0.5F * static_cast<float>(seen.outline);
@@ -184,7 +184,7 @@ void PoseTrack::take(const PoseObservation& pose, const Symmetries& symmetries, 
   for (Hypothesis& hypothesis : hypotheses_) hypothesis.weight *= std::exp(-passed / kForgetS);
   const std::size_t index = hypothesis_for(pose.measured, symmetries);
   Hypothesis& hypothesis = hypotheses_[index];
-  hypothesis.weight = std::min(kMostWeight, hypothesis.weight + std::max(0.1, log_odds_of(pose.quality)));
+  hypothesis.weight = std::min(kMaxWeight, hypothesis.weight + std::max(0.1, log_odds_of(pose.quality)));
   PoseObservation turned = pose;
   turned.measured.T_world_object =
       nearest_equivalent(pose.measured.T_world_object, hypothesis.filter.T_world_object(), symmetries);
@@ -217,7 +217,8 @@ void PoseTrack::update_standing(const PoseObservation& pose, bool doubted, Hypot
   constexpr std::size_t kTurns = 8;   // measured turned only
   const Vector6 apart = local_coordinates_about_world(pose.measured.T_world_object, hypothesis.filter.T_world_object());
   const Covariance6& noise = pose.measured.covariance;
-  const double place_gate = std::max(settings_.static_gate_m, 4.0 * std::sqrt(noise.topLeftCorner<3, 3>().trace() / 3.0));
+  const double place_gate =
+      std::max(settings_.static_gate_m, 4.0 * std::sqrt(noise.topLeftCorner<3, 3>().trace() / 3.0));
   const double turn_gate = std::max(settings_.stands_rad, 4.0 * std::sqrt(noise(5, 5)));
   const bool in_place = apart.head<3>().norm() < place_gate;
   ObserverHistory& witness = witnesses_[pose.frame.channel];
@@ -244,8 +245,8 @@ void PoseTrack::update_standing(const PoseObservation& pose, bool doubted, Hypot
 
 void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypothesis) {
   constexpr double kWithinS = 0.4;
-  constexpr double kLeastS = 0.28;
-  constexpr std::size_t kLeast = 6;
+  constexpr double kMinS = 0.28;
+  constexpr std::size_t kMin = 6;
   // Another camera's frame may be a little older: from where it was then it has gone on.
   const double late_s = std::min(settings_.motion.coast_s, seconds_between(measured.utime, hypothesis.filter.utime()));
   PoseMeasurement now = measured;
@@ -254,7 +255,7 @@ void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypot
   hypothesis.filter.update(now);
   recent_.push_back(measured);
   while (seconds_between(recent_.front().utime, measured.utime) > kWithinS) recent_.pop_front();
-  if (recent_.size() < kLeast || seconds_between(recent_.front().utime, measured.utime) < kLeastS) return;
+  if (recent_.size() < kMin || seconds_between(recent_.front().utime, measured.utime) < kMinS) return;
   // The mean of the earlier half beside that of the later one, each about the pose in its middle.
   const Eigen::Isometry3d& T_middle = recent_[recent_.size() / 2].T_world_object;
   std::array<Vector6, 2> means = {Vector6::Zero(), Vector6::Zero()};

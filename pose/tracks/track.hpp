@@ -68,7 +68,7 @@ struct PoseObservation {
 /// The valid poses of a frame in the world. Their covariance grows with the distance, more along the line of sight than
 /// across it, and where little of an object is seen.
 std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
-                                 const TrackModels& models);
+                                           const TrackModels& models);
 
 /// Log odds of a pose's quality, which is cut to 0.02 and 0.98.
 double log_odds_of(double quality);
@@ -85,7 +85,7 @@ Look look_at(const RgbdFrame& frame, const TrackModel& model, const Eigen::Isome
 struct PoseTrackSettings {
   MotionSettings motion;
   double same_rotation_rad = 0.44;  ///< poses turned farther apart are two hypotheses
-  double static_gate_m = 0.008;          ///< what stands is not measured farther away than this, nor than 4 sigma
+  double static_gate_m = 0.008;     ///< what stands is not measured farther away than this, nor than 4 sigma
   double stands_rad = 0.21;
   double rest_threshold_m = 0.004;  ///< what moved stands when two fifths of a second differ by less
   double settles_rad = 0.09;
@@ -127,7 +127,7 @@ class PoseTrack {
   std::size_t best_ = 0;
   std::int64_t weighed_utime_ = 0;
   std::map<std::string, ObserverHistory> witnesses_;  // by camera
-  std::deque<PoseMeasurement> recent_;        // while it moves
+  std::deque<PoseMeasurement> recent_;                // while it moves
 };
 
 /// An object, or what may become one.

@@ -33,11 +33,13 @@ struct Tracker::State {
   WorldObjects update(const FrameObservation& seen, CameraClock& camera);
   CameraClock* begin_frame(const FrameObservation& seen);
   std::vector<PoseObservation> new_poses(const FrameObservation& seen, CameraClock& camera) const;
-  std::vector<PoseObservation> associate(const std::vector<PoseObservation>& poses, const std::string& class_name, double seconds);
+  std::vector<PoseObservation> associate(const std::vector<PoseObservation>& poses, const std::string& class_name,
+                                         double seconds);
   void take(Track& track, const PoseObservation& pose, double seconds);
   bool has_room();
   void begin(const PoseObservation& pose);
-  void update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses, CameraClock& camera);
+  void update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses,
+                                CameraClock& camera);
   void confirm(std::int64_t utime);
   Track* find_reidentified(const Track& candidate, std::int64_t utime);
   void forget(std::int64_t utime);
@@ -182,16 +184,16 @@ CameraClock* Tracker::State::begin_frame(const FrameObservation& seen) {
 std::vector<PoseObservation> Tracker::State::new_poses(const FrameObservation& seen, CameraClock& camera) const {
   std::vector<PoseObservation> poses = observe_poses(seen.poses, seen.T_world_camera, models);
   std::set<std::string>& told = camera.classes;
-  poses.erase(
-      std::remove_if(poses.begin(), poses.end(), [&](const PoseObservation& pose) { return told.count(pose.class_name) > 0; }),
-      poses.end());
+  poses.erase(std::remove_if(poses.begin(), poses.end(),
+                             [&](const PoseObservation& pose) { return told.count(pose.class_name) > 0; }),
+              poses.end());
   for (const PoseObservation& pose : poses) told.insert(pose.class_name);
   return poses;
 }
 
 /// Gives the poses of a class to its objects; those that no object is near are left.
-std::vector<PoseObservation> Tracker::State::associate(const std::vector<PoseObservation>& poses, const std::string& class_name,
-                                                double seconds) {
+std::vector<PoseObservation> Tracker::State::associate(const std::vector<PoseObservation>& poses,
+                                                       const std::string& class_name, double seconds) {
   const ClassGroup one = group_by_class(class_name, poses, models, tracks);
   const std::vector<int> given = assign_poses(one, settings.association);
   std::vector<bool> taken(one.measured.size(), false);
@@ -213,12 +215,12 @@ std::vector<PoseObservation> Tracker::State::associate(const std::vector<PoseObs
 
 void Tracker::State::take(Track& track, const PoseObservation& pose, double seconds) {
   constexpr double kRateHz = 30.0;
-  constexpr double kMost = 4.0;
+  constexpr double kMax = 4.0;
   const double share = std::clamp(seconds * kRateHz, 0.5, 1.5);
   track.pose.take(pose, symmetries_of(models, track.class_name), track.seen_through_s > 0.0);
   track.log_odds =
       std::min(settings.existence.most,
-               track.log_odds + share * settings.existence.gain * std::clamp(log_odds_of(pose.quality), 0.3, kMost));
+               track.log_odds + share * settings.existence.gain * std::clamp(log_odds_of(pose.quality), 0.3, kMax));
   ++track.seen;
   track.seen_now = true;
   track.seen_through_s = 0.0;
@@ -229,7 +231,7 @@ void Tracker::State::take(Track& track, const PoseObservation& pose, double seco
 
 /// For one object more: what has been gone longest makes room.
 bool Tracker::State::has_room() {
-  if (tracks.size() < settings.most_objects) return true;
+  if (tracks.size() < settings.max_objects) return true;
   auto oldest = tracks.end();
   for (auto it = tracks.begin(); it != tracks.end(); ++it) {
     if (!it->there() && (oldest == tracks.end() || it->deleted_utime < oldest->deleted_utime)) oldest = it;
@@ -260,7 +262,8 @@ void Tracker::State::begin(const PoseObservation& pose) {
 }
 
 /// What is not seen is missed once a frame, however many results that has.
-void Tracker::State::update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses, CameraClock& camera) {
+void Tracker::State::update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses,
+                                              CameraClock& camera) {
   looked_for.note(seen.poses);
   const UnobservedContext unseen{seen, poses, models, settings.association.reach_m, settings.pose.motion.coast_s};
   std::set<std::string> missed_now;

@@ -14,10 +14,10 @@ struct ObjectTrackerSettings {
   PoseTrackSettings pose;
   AssociationSettings association;
   ExistenceSettings existence;
-  double gone_report_s = 2.0;        ///< what is gone is published for so long
-  double reidentification_s = 600.0;     ///< what comes back within this time keeps its number
-  double hand_occlusion_s = 3.0;          ///< what a hand hides for so long may be in the hand
-  std::size_t most_objects = 500;  ///< and candidates; further ones are refused
+  double gone_report_s = 2.0;         ///< what is gone is published for so long
+  double reidentification_s = 600.0;  ///< what comes back within this time keeps its number
+  double hand_occlusion_s = 3.0;      ///< what a hand hides for so long may be in the hand
+  std::size_t max_objects = 500;      ///< and candidates; further ones are refused
 };
 
 /// The objects of a world, over time and over all cameras: which measured pose is of which object (class, place,
@@ -38,7 +38,7 @@ class Tracker {
   /// another camera's, as long as that goes on.
   std::optional<WorldObjects> update(const FrameObservation& seen);
 
-  /// Poses of the last frame of objects for which there was no room (ObjectTrackerSettings::most_objects).
+  /// Poses of the last frame of objects for which there was no room (ObjectTrackerSettings::max_objects).
   std::size_t refused() const;
 
   /// Forgets all objects: they were in another coordinate frame.

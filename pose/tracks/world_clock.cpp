@@ -85,11 +85,12 @@ TimeOrder WorldClock::order_behind(const Camera& camera, const StampedFrame& fra
 }
 
 TimeOrder WorldClock::order_ahead(std::int64_t last_utime, const StampedFrame& frame, std::int64_t utime) {
-  constexpr std::int64_t kLongestUs = 60'000'000;
+  constexpr std::int64_t kMaxDurationUs = 60'000'000;
   if (seconds_between(last_utime, utime) <= kBackS) return TimeOrder::kNext;
   const bool is_told_by_another = std::abs(seconds_between(newest_->utime, utime)) <= kBackS;
   if (!is_told_by_another && !is_confirmed(last_utime, frame.id, utime)) return TimeOrder::kLate;
-  if (microseconds_between(newest_->utime, utime) > kLongestUs) move_to(shifted(newest_->utime, kLongestUs), frame.id);
+  if (microseconds_between(newest_->utime, utime) > kMaxDurationUs)
+    move_to(shifted(newest_->utime, kMaxDurationUs), frame.id);
   return TimeOrder::kNext;
 }
 
@@ -110,7 +111,7 @@ void WorldClock::move_to(std::int64_t world_utime, const FrameId& frame) {
 
 CameraClock& WorldClock::set(const StampedFrame& frame) {
   constexpr double kUsualS = 1.0 / 30.0;
-  constexpr double kMostS = 0.1;
+  constexpr double kMaxS = 0.1;
   behind_ = 0;
   const FrameId now{frame.id.channel, shifted(frame.id.utime, ahead_us_)};
   doubted_.erase(now.channel);
@@ -118,7 +119,7 @@ CameraClock& WorldClock::set(const StampedFrame& frame) {
   Camera& camera = cameras_[now.channel];
   CameraClock& clock = camera.clock;
   const double passed_s = seconds_between(clock.utime, now.utime);
-  const double seconds = clock.results == 0 ? kUsualS : std::min(kMostS, passed_s);
+  const double seconds = clock.results == 0 ? kUsualS : std::min(kMaxS, passed_s);
   if (clock.results > 0 && passed_s > 0.0) camera.interval_s = passed_s;
   if (clock.results == 0 || now.utime != clock.utime) clock = {now.utime, 0, seconds, {}, {}};
   camera.number = frame.number;

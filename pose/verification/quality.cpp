@@ -11,18 +11,18 @@ namespace {
 double texture_agreement(const ColourComparison& colour) {
   constexpr double kShading = 250.0;  // variance that highlights, shade and noise make on a plain surface
   constexpr double kPlain = 0.7;      // agreement of most plain surfaces
-  constexpr double kLeast = -0.5;
+  constexpr double kMin = -0.5;
   const auto left_over = static_cast<double>(colour.left_over);
   const auto seen = static_cast<double>(colour.observed_contrast);
   const double agreement = 1.0 - left_over * left_over / (kShading + seen * seen);
   const double compared = static_cast<double>(colour.points) / static_cast<double>(colour.points + colour.clipped);
-  return compared * std::max(kLeast, agreement) + (1.0 - compared) * kPlain;
+  return compared * std::max(kMin, agreement) + (1.0 - compared) * kPlain;
 }
 
 }  // namespace
 
-PoseEvidence gather_evidence(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, float detection_score,
-                             const VerificationSettings& settings) {
+PoseEvidence gather_evidence(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                             float detection_score, const VerificationSettings& settings) {
   const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
   const ProjectedView look = look_at_view(seen.frame, seen.model, T_camera_object, settings.points);
   return {detection_score, verify_pose(seen.frame, seen.model.mesh, T_camera_object, tolerance, &seen.colours),

@@ -41,7 +41,7 @@ std::optional<float> colours_apart_sq(const BoundaryView& view, const cv::Point&
 /// From the outline's pixel `at` towards `side`. Nothing where that says nothing: across a notch, beside the frame,
 /// or behind another thing.
 std::optional<BoundarySample> sample_boundary(const BoundaryView& view, const cv::Point& at, const cv::Point& side,
-                                         const DepthTolerance& tolerance) {
+                                              const DepthTolerance& tolerance) {
   constexpr double kInside = 0.004;  // metres: not on the edge, whose depth and colour are mixed
   constexpr double kBeyond = 0.008;
   const double metres_per_px = view.frame.camera.metres_per_px(view.model(at));

@@ -16,9 +16,10 @@ struct ListedVoter {
 
 inline std::vector<ListedVoter> voters_for(int class_index, const PatchPosteriors& posteriors) {
   std::vector<ListedVoter> found;
-  posteriors.for_each_supporting_patch(class_index, [&](std::uint32_t patch, const std::uint32_t* entries, std::uint32_t count) {
-    found.push_back({patch, {entries, entries + count}});
-  });
+  posteriors.for_each_supporting_patch(class_index,
+                                       [&](std::uint32_t patch, const std::uint32_t* entries, std::uint32_t count) {
+                                         found.push_back({patch, {entries, entries + count}});
+                                       });
   return found;
 }
 

@@ -5,8 +5,8 @@
 #include "pipeline/messages/wire_check.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
 #include "tests/tools/log/recordings.hpp"
-#include "tools/log/third_party_frames.hpp"
 #include "tools/log/message_types.hpp"
+#include "tools/log/third_party_frames.hpp"
 
 namespace houghstream::fuzz {
 namespace {

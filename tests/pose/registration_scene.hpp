@@ -21,7 +21,9 @@ struct RegistrationScene {
     frame = noisy_frame({{&object, truth, 1}, {&ground, truth * Eigen::Translation3d(0, 0, foot), 2}}, 7);
     model = make_object_model("it", object, ModelSettings());
   }
-  ObjectObservation seen() const { return observe_object({frame, {}, {}}, detection_of("it", object, truth, 1), model, {}); }
+  ObjectObservation seen() const {
+    return observe_object({frame, {}, {}}, detection_of("it", object, truth, 1), model, {});
+  }
   RegistrationResult with(RegistrationEngine engine, const Eigen::Isometry3d& start, int iterations) const {
     return engine(seen(), start, {iterations, 400, 0.035, 0.012}, RegistrationSettings());
   }

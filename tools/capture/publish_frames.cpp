@@ -31,9 +31,9 @@ class FrameFeed {
             "--rate is for recordings; a camera's rate belongs to its --mode");
     require(!source_->is_live() || !settings.loop, "--loop is for recordings; a camera has no end");
     rate_hz_ = settings.rate_hz.value_or(source_->rate_hz());
-    constexpr double kLeastHz = 1e-3;  // no clock counts the periods of the smallest numbers
-    require(std::isfinite(rate_hz_) && rate_hz_ >= kLeastHz && rate_hz_ <= 1000.0, "rate of {} Hz, expected {} to 1000",
-            rate_hz_, kLeastHz);
+    constexpr double kMinHz = 1e-3;  // no clock counts the periods of the smallest numbers
+    require(std::isfinite(rate_hz_) && rate_hz_ >= kMinHz && rate_hz_ <= 1000.0, "rate of {} Hz, expected {} to 1000",
+            rate_hz_, kMinHz);
   }
 
   std::optional<RgbdFrame> next() {

@@ -8,8 +8,8 @@
 namespace houghstream {
 namespace {
 
-constexpr double kSmallest_m = 0.01;
-constexpr double kLargest_m = 1.5;  // what the camera's range of 0.3 to 2.6 m shows whole
+constexpr double kMin_m = 0.01;
+constexpr double kMax_m = 1.5;  // what the camera's range of 0.3 to 2.6 m shows whole
 
 struct Unit {
   const char* name;
@@ -27,15 +27,15 @@ std::string unit_name(double unit_m) {
 }  // namespace
 
 std::string mesh_size_error(double size_m, double unit_m, const std::string& unit) {
-  if (size_m >= kSmallest_m && size_m <= kLargest_m) return "";
+  if (size_m >= kMin_m && size_m <= kMax_m) return "";
   std::vector<std::string> fitting;
   for (const Unit& other : kUnits) {
     const double so_m = size_m / unit_m * other.metres;
-    if (so_m >= kSmallest_m && so_m <= kLargest_m)
+    if (so_m >= kMin_m && so_m <= kMax_m)
       fitting.push_back(fmt::format("{} {} would make it {:.3g} m", unit, other.name, so_m));
   }
   return fmt::format("{:.4g} m across when read in {}, expected {} to {} m, what the camera sees{}{}", size_m,
-                     unit_name(unit_m), kSmallest_m, kLargest_m, fitting.empty() ? "" : ": ", fmt::join(fitting, ", "));
+                     unit_name(unit_m), kMin_m, kMax_m, fitting.empty() ? "" : ": ", fmt::join(fitting, ", "));
 }
 
 std::string fault_of_sizes(const std::map<std::string, Mesh>& models, double unit_m, const std::string& unit) {

@@ -42,11 +42,11 @@ PresenceSettings presence_from(const nlohmann::json& entry, const PresenceSettin
 
 nlohmann::json quality_to_json(const QualitySettings& settings) {
   const PresenceSettings& presence = settings.presence;
-  return {
-      {"bias", settings.bias},
-      {"weights", to_json(settings.weights)},
-      {"typical", to_json(settings.typical)},
-      {"presence", {{"bias", presence.bias}, {"of_score", presence.score_weight}, {"of_quality", presence.quality_weight}}}};
+  return {{"bias", settings.bias},
+          {"weights", to_json(settings.weights)},
+          {"typical", to_json(settings.typical)},
+          {"presence",
+           {{"bias", presence.bias}, {"of_score", presence.score_weight}, {"of_quality", presence.quality_weight}}}};
 }
 
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects,

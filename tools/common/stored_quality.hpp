@@ -16,8 +16,8 @@ namespace houghstream {
 constexpr float kStoreQuality = 0.6F;
 constexpr float kStoreCandidateQuality = 0.75F;
 
-/// As the object store holds it: {"bias", "weights": {TERM: }, "typical": {TERM: }, "presence": {"bias", "score_weight",
-/// "quality_weight"}}.
+/// As the object store holds it: {"bias", "weights": {TERM: }, "typical": {TERM: }, "presence": {"bias",
+/// "score_weight", "quality_weight"}}.
 nlohmann::json quality_to_json(const QualitySettings& settings);
 
 /// What the store has learnt of its objects' qualities, by name; the limits of each are those of `others`. Throws

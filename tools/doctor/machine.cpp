@@ -64,13 +64,13 @@ std::set<std::string> heard_frame_channels(const std::string& url) {
 }
 
 std::map<std::string, std::string> heard_errors(const std::string& url) {
-  constexpr std::size_t kMostProcesses = 64;  // a sender of rubbish may make up names without end
+  constexpr std::size_t kMaxProcesses = 64;  // a sender of rubbish may make up names without end
   std::map<std::string, std::string> errors;
   try {
     LcmBus bus(url, "", Existing::kReplaced, AtStart::kFail);
     bus.subscribe(channel::kStatus, [&](const ReceivedMessage& arrival) {
       const auto status = decode_message<status_t>(arrival.bytes);
-      const bool is_known = errors.count(status.process) > 0 || errors.size() < kMostProcesses;
+      const bool is_known = errors.count(status.process) > 0 || errors.size() < kMaxProcesses;
       if (!status.last_error.empty() && is_known) errors[status.process] = status.last_error;
     });
     handle_until(bus, milliseconds(1500), [] { return false; });

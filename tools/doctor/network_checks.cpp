@@ -28,8 +28,8 @@ constexpr const char* kBus = "the bus";
 
 /// Text off the wire, which is anybody's.
 std::string off_the_wire(const std::string& text) {
-  constexpr std::size_t kLongest = 300;
-  return printable(text.substr(0, kLongest));
+  constexpr std::size_t kMaxLength = 300;
+  return printable(text.substr(0, kMaxLength));
 }
 
 std::string server_remedy(const Endpoint& server) {

@@ -6,8 +6,8 @@
 #include "pipeline/base/image_decoding.hpp"
 #include "pipeline/messages/codecs.hpp"
 #include "pipeline/types/frame.hpp"
-#include "tools/log/third_party_frames.hpp"
 #include "tools/log/image_parts.hpp"
+#include "tools/log/third_party_frames.hpp"
 
 namespace houghstream::log_tools {
 namespace {
@@ -136,9 +136,9 @@ bool is_colour(const DrakeImage& image) {
 }
 
 std::vector<DrakeImage> read_images(WireReader& reader) {
-  constexpr std::size_t kLeastImage = 4 + 8 + 5 + 4 * 4 + 4;
+  constexpr std::size_t kMinImage = 4 + 8 + 5 + 4 * 4 + 4;
   std::vector<DrakeImage> images;
-  for (std::size_t left = reader.read_count(kLeastImage); left > 0; --left) images.push_back(read_image(reader));
+  for (std::size_t left = reader.read_count(kMinImage); left > 0; --left) images.push_back(read_image(reader));
   return images;
 }
 

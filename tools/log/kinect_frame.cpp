@@ -1,8 +1,8 @@
 #include <houghstream/kinect_frame_msg_t.hpp>
 
 #include "pipeline/base/checks.hpp"
-#include "tools/log/third_party_frames.hpp"
 #include "tools/log/image_parts.hpp"
+#include "tools/log/third_party_frames.hpp"
 
 namespace houghstream::log_tools {
 namespace {

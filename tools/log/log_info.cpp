@@ -52,8 +52,8 @@ class Counter {
     ChannelInfo& channel = info_.channels[event.channel];
     if (channel.messages++ == 0) channel.first = channel.last = event.timestamp;
     const std::int64_t gap = microseconds_between(channel.last, event.timestamp);
-    if (gap > channel.longest_gap) {
-      channel.longest_gap = gap;
+    if (gap > channel.max_gap) {
+      channel.max_gap = gap;
       channel.gap_at = event.timestamp;
     }
     channel.last = std::max(channel.last, event.timestamp);
@@ -124,7 +124,7 @@ std::string to_text(const LogInfo& info) {
                         printable(fmt::format("{}", fmt::join(channel.types, ", "))), channel.messages,
                         channel.rate_hz(), megabytes(channel.bytes), mean_kb);
     text += channel.messages < 2 ? "-\n"
-                                 : fmt::format("{:.3f} s before {:.3f} s\n", seconds(channel.longest_gap),
+                                 : fmt::format("{:.3f} s before {:.3f} s\n", seconds(channel.max_gap),
                                                seconds(microseconds_between(info.first, channel.gap_at)));
   }
   for (const auto& [name, channel] : info.channels) {

@@ -17,7 +17,7 @@ struct ChannelInfo {
   std::uint64_t bytes = 0;
   std::int64_t first = 0;        ///< timestamp, microseconds since the epoch
   std::int64_t last = 0;         ///< timestamp of the latest
-  std::int64_t longest_gap = 0;  ///< between two messages, microseconds
+  std::int64_t max_gap = 0;      ///< between two messages, microseconds
   std::int64_t gap_at = 0;       ///< timestamp of the message after that gap
   std::string frames;            ///< what the first frame looks like; "" where the channel holds none
   std::int64_t frames_lost = 0;  ///< as gaps in the source's numbering tell

@@ -18,9 +18,9 @@
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 #include "tools/common/progress_line.hpp"
-#include "tools/log/third_party_frames.hpp"
 #include "tools/log/klg_file.hpp"
 #include "tools/log/message_types.hpp"
+#include "tools/log/third_party_frames.hpp"
 
 namespace houghstream::log_tools {
 namespace {

@@ -64,9 +64,9 @@ void FrameTimes::note_objects(const FrameId& frame, Time time) {
 }
 
 void FrameTimes::note_status(const status_t& status) {
-  constexpr std::size_t kMost = 64;  // a sender of rubbish may make them up without end
+  constexpr std::size_t kMax = 64;  // a sender of rubbish may make them up without end
   const std::pair<std::string, std::int32_t> key(status.process, status.pid);
-  if (processes_.size() < kMost || processes_.count(key) > 0) processes_[key] = status;
+  if (processes_.size() < kMax || processes_.count(key) > 0) processes_[key] = status;
 }
 
 std::size_t FrameTimes::frames() const {

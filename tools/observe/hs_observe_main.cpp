@@ -67,7 +67,8 @@ void observe(const ObserveOptions& options) {
   stamp(channel::kDetections, &FrameTimes::note_detections);
   stamp(channel::kPoses, &FrameTimes::note_poses);
   stamp(channel::kObjects, &FrameTimes::note_objects);
-  bus.subscribe(channel::kStatus, [&](const ReceivedMessage& a) { times.note_status(decode_message<status_t>(a.bytes)); });
+  bus.subscribe(channel::kStatus,
+                [&](const ReceivedMessage& a) { times.note_status(decode_message<status_t>(a.bytes)); });
   log_info("ready: at {}", bus.url());
 
   const Clock::time_point start = Clock::now();

@@ -71,10 +71,10 @@ struct ModelReader : ArchiveReader {
     for (ModelView& view : views) archive_view(*this, view);
   }
   void operator()(cv::Mat& texture) {
-    constexpr std::size_t kMost = 1U << 15U;
+    constexpr std::size_t kMax = 1U << 15U;
     const std::size_t rows = count(1);
     const std::size_t columns = count(1);
-    require(rows <= kMost && columns <= kMost && 3 * rows * columns <= bytes.size(), "a texture");
+    require(rows <= kMax && columns <= kMax && 3 * rows * columns <= bytes.size(), "a texture");
     if (rows * columns == 0) return;
     texture.create(static_cast<int>(rows), static_cast<int>(columns), CV_8UC3);
     take(texture.data, 3 * rows * columns);
@@ -141,7 +141,7 @@ ModelCache::ModelCache(fs::path folder) : folder_(std::move(folder)), program_(s
 std::string ModelCache::state_of(const store::ObjectStore& store, const ModelSettings& settings) const {
   std::string state = fmt::format("{}{}\n", program_, mesh_stamp(store));
   state += fmt::format("{} {} {} {} {}\n", settings.views_per_edge, settings.points_per_view, settings.view_distance_m,
-                       settings.pixels_per_diameter, settings.least_facing);
+                       settings.pixels_per_diameter, settings.min_facing);
   for (const auto& [name, centre] : settings.vote_centres)
     state += fmt::format("{} {} {} {}\n", name, centre.x(), centre.y(), centre.z());
   return state;
@@ -198,8 +198,8 @@ void ModelCache::keep(const store::ObjectStore& store, const std::string& state,
     const std::uint32_t crc = checksum(writer.bytes);
     fs::create_directories(folder_);
     const fs::path file = file_of(store);
-    write_file_atomically(file,
-                     std::string(kStart) + std::string(reinterpret_cast<const char*>(&crc), sizeof crc) + writer.bytes);
+    write_file_atomically(
+        file, std::string(kStart) + std::string(reinterpret_cast<const char*>(&crc), sizeof crc) + writer.bytes);
     fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
     forget_oldest(folder_);
   } catch (const std::exception& error) {

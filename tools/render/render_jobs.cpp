@@ -13,7 +13,7 @@ using namespace world;
 
 namespace {
 
-constexpr int kMostFrames = 100000;
+constexpr int kMaxFrames = 100000;
 constexpr int kFramesPerRoom = 5;
 
 std::vector<int> object_ids(const std::vector<std::string>& names) {
@@ -62,8 +62,8 @@ void write_models(const RenderOptions& options, const std::vector<TaughtObject>&
 }
 
 std::filesystem::path fresh_scene(const RenderOptions& options, const std::filesystem::path& folder) {
-  require(options.replace || !has_images(folder),
-          "{}: holds pictures already; --replace puts others in their place", folder.string());
+  require(options.replace || !has_images(folder), "{}: holds pictures already; --replace puts others in their place",
+          folder.string());
   remove_images(folder);
   return folder;
 }
@@ -90,7 +90,7 @@ void render_training(const RenderOptions& options, const std::vector<std::string
 }
 
 void render_background(const RenderOptions& options, int count) {
-  require(count >= 1 && count <= kMostFrames, "background: {} frames, expected 1 to {}", count, kMostFrames);
+  require(count >= 1 && count <= kMaxFrames, "background: {} frames, expected 1 to {}", count, kMaxFrames);
   BopWriter writer(fresh_scene(options, options.out));
   const int rooms = (count + kFramesPerRoom - 1) / kFramesPerRoom;
   for (int room = 0; room < rooms; ++room) {
@@ -106,7 +106,7 @@ void render_background(const RenderOptions& options, int count) {
 }
 
 void render_scene(const RenderOptions& options, const SceneJob& job) {
-  require(job.frames >= 1 && job.frames <= kMostFrames, "scene: {} frames, expected 1 to {}", job.frames, kMostFrames);
+  require(job.frames >= 1 && job.frames <= kMaxFrames, "scene: {} frames, expected 1 to {}", job.frames, kMaxFrames);
   require(job.every >= 1, "scene: every {}th frame, expected at least 1", job.every);
   const Scene scene = make_named_scene(job.name);
   fresh_scene(options, options.out);

@@ -85,15 +85,15 @@ Child::~Child() {
 }
 
 void Child::pass_on_words() {
-  constexpr std::size_t kLongestLine = 1000;
+  constexpr std::size_t kMaxLineLength = 1000;
   std::array<char, 4096> piece{};
-  constexpr int kMostPieces = 32;  // more than a pipe holds: who writes without end does not keep us
+  constexpr int kMaxPieces = 32;  // more than a pipe holds: who writes without end does not keep us
   ssize_t size = 0;
-  for (int i = 0; i < kMostPieces && words_ >= 0 && (size = read(words_, piece.data(), piece.size())) > 0; ++i) {
+  for (int i = 0; i < kMaxPieces && words_ >= 0 && (size = read(words_, piece.data(), piece.size())) > 0; ++i) {
     std::fwrite(piece.data(), 1, static_cast<std::size_t>(size), stderr);
     for (ssize_t at = 0; at < size; ++at) {
       const char c = piece[static_cast<std::size_t>(at)];
-      if (c != '\n' && line_.size() < kLongestLine) line_ += c;
+      if (c != '\n' && line_.size() < kMaxLineLength) line_ += c;
       if (c != '\n') continue;
       if (!line_.empty()) last_words_ = std::exchange(line_, "");
     }

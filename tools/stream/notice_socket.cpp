@@ -18,8 +18,8 @@ std::optional<std::chrono::microseconds> extension_in(std::string_view words) {
   if (at == std::string_view::npos || (at > 0 && words[at - 1] != '\n')) return std::nullopt;
   std::int64_t value = 0;
   const auto [end, fault] = std::from_chars(words.data() + at + kKey.size(), words.data() + words.size(), value);
-  constexpr std::int64_t kMostUs = 60'000'000;  // of one notice
-  if (fault != std::errc() || value < 0 || value > kMostUs) return std::nullopt;
+  constexpr std::int64_t kMaxUs = 60'000'000;  // of one notice
+  if (fault != std::errc() || value < 0 || value > kMaxUs) return std::nullopt;
   return std::chrono::microseconds(value);
 }
 
@@ -44,9 +44,9 @@ NoticeSocket::~NoticeSocket() {
 std::optional<std::chrono::microseconds> NoticeSocket::extension() {
   std::array<char, 4096> words{};
   std::optional<std::chrono::microseconds> extension;
-  constexpr int kMostNotices = 64;  // who sends without end does not keep us
+  constexpr int kMaxNotices = 64;  // who sends without end does not keep us
   ssize_t size = 0;
-  for (int i = 0; i < kMostNotices && socket_ >= 0 && (size = recv(socket_, words.data(), words.size(), 0)) >= 0; ++i) {
+  for (int i = 0; i < kMaxNotices && socket_ >= 0 && (size = recv(socket_, words.data(), words.size(), 0)) >= 0; ++i) {
     if (const auto asked = extension_in({words.data(), static_cast<std::size_t>(size)})) extension = asked;
   }
   return extension;

@@ -11,13 +11,13 @@ namespace houghstream::stream {
 namespace {
 
 std::string describe(const status_t& status) {
-  constexpr std::size_t kLongestError = 300;
+  constexpr std::size_t kMaxErrorLength = 300;
   std::string text = fmt::format("{:.1f} Hz", status.rate_hz);
   if (std::isfinite(status.latency_p50_ms)) text += fmt::format(" {:.0f} ms", status.latency_p50_ms);
   if (status.frames_lost > 0) text += fmt::format(", {} lost", status.frames_lost);
   if (status.frames_refused > 0)
     text +=
-        fmt::format(", {} refused: {}", status.frames_refused, printable(status.last_error.substr(0, kLongestError)));
+        fmt::format(", {} refused: {}", status.frames_refused, printable(status.last_error.substr(0, kMaxErrorLength)));
   return text;
 }
 

@@ -15,14 +15,15 @@ using std::chrono::milliseconds;
 namespace {
 
 // Steps come every 20 ms and less; a longer pause was this process's own.
-constexpr milliseconds kLongestStep(500);
+constexpr milliseconds kMaxStep(500);
 
 double seconds(milliseconds time) {
   return std::chrono::duration<double>(time).count();
 }
 
 std::string last_words_of(const Child& child) {
-  return child.last_stderr_line().empty() ? "it has said nothing" : "its last words: " + printable(child.last_stderr_line());
+  return child.last_stderr_line().empty() ? "it has said nothing"
+                                          : "its last words: " + printable(child.last_stderr_line());
 }
 
 }  // namespace
@@ -72,7 +73,7 @@ void Supervisor::start_waiting() {
 void Supervisor::plan_restart(Member& member, const std::string& words) {
   const bool settled = Clock::now() - member.since > settings_.settled;
   member.failures = settled ? 1 : member.failures + 1;
-  require(member.failures < settings_.most_failures, "{} {}, {} times in a row: it is given up; {}", member.plan.name,
+  require(member.failures < settings_.max_failures, "{} {}, {} times in a row: it is given up; {}", member.plan.name,
           words, member.failures, last_words_of(*member.child));
   member.wait = std::clamp(2 * member.wait, settings_.initial_backoff, settings_.max_backoff);
   if (member.failures == 1) member.wait = milliseconds(0);
@@ -134,7 +135,7 @@ bool Supervisor::look_after(Member& member, Clock::duration listened) {
 
 bool Supervisor::step() {
   const Clock::time_point now = Clock::now();
-  const Clock::duration listened = std::min<Clock::duration>(now - last_step_, kLongestStep);
+  const Clock::duration listened = std::min<Clock::duration>(now - last_step_, kMaxStep);
   last_step_ = now;
   start_waiting();
   return std::all_of(members_.begin(), members_.end(), [&](Member& member) { return look_after(member, listened); });

@@ -35,7 +35,7 @@ void add_practice_options(CommandLine& command, TeachOptions& options) {
                   fmt::format("rendered rooms in which scores and qualities are learnt, two pictures of each; 4.3 MB "
                               "of memory a room; default {}, with each further new object more, {} of seven",
                               scene_count_for(1), scene_count_for(7)))
-      .range(3, CalibrationSettings::kMostRooms);
+      .range(3, CalibrationSettings::kMaxRooms);
   command.add_option("--seed", options.seed, "same seed, same meshes: same store").capture_default_str();
   command.add_option("--threads", options.threads, "any number gives the same store")
       .range(1, 256)
@@ -118,7 +118,7 @@ CommandLine add_show(CommandLine& app, ShowOptions& options, ShowWords& words) {
   show.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy of frames that come without");
   show.add_option("--channel", options.channel,
                   "of the frames in a log; default: the first that holds any; of a stream OPENNI_FRAME");
-  show.add_option("--seconds", options.longest_s, "that a take of a camera lasts at most")
+  show.add_option("--seconds", options.max_duration_s, "that a take of a camera lasts at most")
       .range(0.1, 86400.0)
       .capture_default_str();
   show.add_option("--cache", options.rooms_cache, "where rendered rooms are kept; default ~/.cache/houghstream");

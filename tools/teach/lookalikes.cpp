@@ -9,21 +9,21 @@
 #include <memory>
 #include <optional>
 
-#include "pose/model/surface_colour.hpp"
 #include "pose/model/mesh_bvh.hpp"
+#include "pose/model/surface_colour.hpp"
 
 namespace houghstream::teach {
 namespace {
 
 constexpr int kPoints = 400;
-constexpr float kMostScale = 1.25F;
+constexpr float kMaxScale = 1.25F;
 constexpr float kSpreadTolerance = 0.08F;  // of the spread along each principal axis
 constexpr float kTolerance = 0.02F;        // mean distance between the surfaces, of the diameter
 constexpr int kFirstLook = 50;             // points that rule most ways out
 constexpr int kTurns = 36;
 constexpr double kDetail_m = 0.005;       // finer print does not count
 constexpr float kColourDistance = 30.0F;  // in L*a*b* of 8 bits: the same print in another light
-constexpr float kLeastAlike = 0.75F;      // share of the surface whose colours agree
+constexpr float kMinAlike = 0.75F;        // share of the surface whose colours agree
 
 /// A mesh as it is compared.
 struct Shape {
@@ -82,7 +82,7 @@ bool same_colours(const Shape& one, const Eigen::Matrix3f& map, const Shape& oth
       difference_sq += std::pow(static_cast<float>(a[k]) - static_cast<float>(b[k]), 2.0F);
     alike += difference_sq < kColourDistance * kColourDistance ? 1 : 0;
   }
-  return static_cast<float>(alike) >= kLeastAlike * static_cast<float>(one.points.size());
+  return static_cast<float>(alike) >= kMinAlike * static_cast<float>(one.points.size());
 }
 
 /// All ways to lay three axes on three axes: 48, half of them mirrored.
@@ -101,7 +101,7 @@ std::vector<Eigen::Matrix3f> axis_maps() {
 
 std::optional<Lookalike> compare(const Shape& one, const Shape& other) {
   const float scale = other.spread.norm() / one.spread.norm();
-  if (scale > kMostScale || scale < 1.0F / kMostScale) return std::nullopt;
+  if (scale > kMaxScale || scale < 1.0F / kMaxScale) return std::nullopt;
   const Eigen::Vector3f off = (scale * one.spread - other.spread).cwiseAbs();
   if (off.maxCoeff() > kSpreadTolerance * other.spread.maxCoeff()) return std::nullopt;
   std::optional<Lookalike> mirrored;

@@ -24,9 +24,9 @@ void require_size(const std::string& where, double unit_m, const Mesh& mesh) {
 /// CAD in an assembly's coordinates may lie far beside its origin.
 void require_near_origin(const std::string& where, const Mesh& mesh) {
   const float away = mesh_bounds(mesh).center().norm();
-  require(away < store::kFarthestCentre_m,
+  require(away < store::kMaxCentre_m,
           "{}: its middle lies {:.4g} m from the origin of its coordinates, expected less than {:.0f} m", where, away,
-          store::kFarthestCentre_m);
+          store::kMaxCentre_m);
 }
 
 /// Vertices at one place have one number: where texture is cut, the surface is not.
@@ -119,8 +119,8 @@ void check_mesh(const std::string& where, double unit_m, Mesh& mesh) {
   require_size(where, unit_m, mesh);
   require_near_origin(where, mesh);
   const Topology found = examine(mesh);
-  constexpr double kLeastVolume = 1e-3;  // of the box's: below, a plate has no inside
-  if (found.volume_m3 < -kLeastVolume * found.box_volume_m3) {
+  constexpr double kMinVolume = 1e-3;  // of the box's: below, a plate has no inside
+  if (found.volume_m3 < -kMinVolume * found.box_volume_m3) {
     turn_faces(mesh);
     log_warning("{}: the surface faces inwards (volume {:.4g} cm3), expected outwards: turned around", where,
                 found.volume_m3 * 1e6);

@@ -53,7 +53,8 @@ UnfilteredPoseFinder::UnfilteredPoseFinder(const PosedModels& models, int thread
   for (const auto& [name, mesh] : models.meshes) models_.emplace(name, make_object_model(name, mesh, settings_.model));
 }
 
-FoundPoses UnfilteredPoseFinder::find(const std::string& name, const BopScene& scene, const Detector& detector, int every) const {
+FoundPoses UnfilteredPoseFinder::find(const std::string& name, const BopScene& scene, const Detector& detector,
+                                      int every) const {
   FoundPoses found{name, every_nth(read_truth(scene, find_bop_names(scene.folder())), every), {}};
   for (EvaluatedFrame& truth : found.frames) {
     const RgbdFrame frame = scene.read_frame(truth.image);
@@ -63,13 +64,15 @@ FoundPoses UnfilteredPoseFinder::find(const std::string& name, const BopScene& s
   return found;
 }
 
-std::vector<std::optional<PoseTerms>> UnfilteredPoseFinder::find_in(const RgbdFrame& frame, EvaluatedFrame& found) const {
+std::vector<std::optional<PoseTerms>> UnfilteredPoseFinder::find_in(const RgbdFrame& frame,
+                                                                    EvaluatedFrame& found) const {
   found.poses = estimator_.estimate(frame, *found.detections);
   return terms_of(frame, *found.detections, *found.poses);
 }
 
-std::vector<std::optional<PoseTerms>> UnfilteredPoseFinder::terms_of(const RgbdFrame& frame, const Detections& detections,
-                                                            const ObjectPoses& poses) const {
+std::vector<std::optional<PoseTerms>> UnfilteredPoseFinder::terms_of(const RgbdFrame& frame,
+                                                                     const Detections& detections,
+                                                                     const ObjectPoses& poses) const {
   std::vector<std::optional<PoseTerms>> all;
   const FrameContext seen_frame = make_frame_context(frame, settings_.region, settings_.noise);
   for (const ObjectPose& pose : poses.poses) {

@@ -58,7 +58,7 @@ class UnfilteredPoseFinder {
 
  private:
   std::vector<std::optional<PoseTerms>> terms_of(const RgbdFrame& frame, const Detections& detections,
-                                                  const ObjectPoses& poses) const;
+                                                 const ObjectPoses& poses) const;
 
   PoseSettings settings_;
   PoseEstimator estimator_;

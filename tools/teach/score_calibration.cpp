@@ -23,7 +23,7 @@ constexpr std::uint64_t kCameras = 0x63616D657261ULL;
 
 /// Rendered once, looked at twice. The objects are not quite those that were taught: light, wear and printer differ.
 std::vector<world::RenderedFrame> render_frames(const std::vector<CalibrationObject>& objects,
-                                             const CalibrationSettings& settings, int rooms) {
+                                                const CalibrationSettings& settings, int rooms) {
   std::vector<world::CalibrationSceneObject> in_room;
   in_room.reserve(objects.size());
   for (const CalibrationObject& object : objects) in_room.push_back(object.in_room);
@@ -153,12 +153,13 @@ std::map<std::string, std::vector<QualityExample>> quality_examples(const qualit
 int scene_count_for(std::size_t new_objects, const CalibrationSettings& settings) {
   constexpr int kOfOne = 80;
   constexpr int kOfEachMore = 25;
-  constexpr int kMost = 240;
-  return settings.rooms.value_or(std::min(kOfOne + kOfEachMore * (static_cast<int>(new_objects) - 1), kMost));
+  constexpr int kMax = 240;
+  return settings.rooms.value_or(std::min(kOfOne + kOfEachMore * (static_cast<int>(new_objects) - 1), kMax));
 }
 
 std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFrame>& frames,
-                                    const std::vector<CalibrationObject>& objects, const std::set<int>& new_ids) {
+                                            const std::vector<CalibrationObject>& objects,
+                                            const std::set<int>& new_ids) {
   std::set<int> seen;
   for (const world::RenderedFrame& frame : frames) {
     for (const GroundTruthObject& object : frame.objects) seen.insert(object.object_id);
@@ -175,8 +176,8 @@ std::map<std::string, QualitySettings> practise(const std::vector<CalibrationObj
                                                 const std::set<int>& new_ids, const CalibrationSettings& settings,
                                                 Forest& forest) {
   const int rooms = scene_count_for(new_ids.size(), settings);
-  require(rooms <= CalibrationSettings::kMostRooms, "{} practice rooms, expected at most {}: all are in memory", rooms,
-          CalibrationSettings::kMostRooms);
+  require(rooms <= CalibrationSettings::kMaxRooms, "{} practice rooms, expected at most {}: all are in memory", rooms,
+          CalibrationSettings::kMaxRooms);
   const std::vector<world::RenderedFrame> frames = render_frames(objects, settings, rooms);
   warn_of(unobserved_objects(frames, objects, new_ids), rooms);
   Profile profile = training::profile_of(forest);

@@ -19,13 +19,14 @@ struct CalibrationObject {
   std::string name;
   Mesh mesh;                                              ///< as poses are compared with it, metres
   Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();  ///< see store::StoredObject
-  world::CalibrationSceneObject in_room;                          ///< its id is the class's
+  world::CalibrationSceneObject in_room;                  ///< its id is the class's
 };
 
 struct CalibrationSettings {
-  static constexpr int kMostRooms = 500;  ///< whose pictures, 4.3 MB a room, are all in memory at once: 2 GB
+  static constexpr int kMaxRooms = 500;  ///< whose pictures, 4.3 MB a room, are all in memory at once: 2 GB
 
-  std::optional<int> rooms;  ///< each is looked at world::CalibrationScenes::kFramesPerRoom times; default: scene_count_for()
+  std::optional<int>
+      rooms;  ///< each is looked at world::CalibrationScenes::kFramesPerRoom times; default: scene_count_for()
   double surface_variation = 0.6;  ///< strength of the changes of objects' colours, see training::resurface
   double camera_share = 0.8;       ///< of the frames, that another camera sees than the one that taught
   double camera_variation = 0.8;   ///< see detector/training/pictures/camera_randomisation.hpp
@@ -39,12 +40,13 @@ int scene_count_for(std::size_t new_objects, const CalibrationSettings& settings
 
 /// Names of the new objects that none of the frames shows: of such nothing can be learnt.
 std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFrame>& frames,
-                                    const std::vector<CalibrationObject>& objects, const std::set<int>& new_ids);
+                                            const std::vector<CalibrationObject>& objects,
+                                            const std::set<int>& new_ids);
 
-/// Looks for the objects in rendered rooms (world::CalibrationScenes) through widely varied cameras, and learns what its
-/// detections and poses are worth: the scores' weights in `forest`, and the qualities, by name; both of the classes in
-/// `new_ids` only. A line of the log names those of them that stand in no room. Same result for any number of threads.
-/// Throws InputError for more rooms than CalibrationSettings::kMostRooms.
+/// Looks for the objects in rendered rooms (world::CalibrationScenes) through widely varied cameras, and learns what
+/// its detections and poses are worth: the scores' weights in `forest`, and the qualities, by name; both of the classes
+/// in `new_ids` only. A line of the log names those of them that stand in no room. Same result for any number of
+/// threads. Throws InputError for more rooms than CalibrationSettings::kMaxRooms.
 std::map<std::string, QualitySettings> practise(const std::vector<CalibrationObject>& objects,
                                                 const std::set<int>& new_ids, const CalibrationSettings& settings,
                                                 Forest& forest);

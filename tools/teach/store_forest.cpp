@@ -9,7 +9,7 @@
 namespace houghstream::teach {
 namespace {
 
-int most_views(const std::vector<TrainingView>& views) {
+int max_views(const std::vector<TrainingView>& views) {
   std::map<int, int> counts;
   for (const TrainingView& view : views) counts[view.class_id] += view.class_id > 0 ? 1 : 0;
   int most = 1;
@@ -19,17 +19,17 @@ int most_views(const std::vector<TrainingView>& views) {
 
 }  // namespace
 
-Forest train_store_forest(std::vector<TrainingView> views, const std::optional<Forest>& old, const TeachOptions& options,
-                    const std::function<void(const std::string&)>& report) {
+Forest train_store_forest(std::vector<TrainingView> views, const std::optional<Forest>& old,
+                          const TeachOptions& options, const std::function<void(const std::string&)>& report) {
   constexpr double kToneShare = 0.7;  // see TrainingSettings
   constexpr int kPatches = 26000;     // of an object: what trees are grown of, and how long that takes
-  constexpr int kFewestPatches = 100;
-  constexpr int kMostPatches = 250;
+  constexpr int kMinPatches = 100;
+  constexpr int kMaxPatches = 250;
   constexpr int kViewsPerPicture = 2;  // a remembered view costs a tenth of one that trees learn from
   // Many attitudes want many patches and small leaves; that fewer of them choose a test pays for it.
   constexpr int kNodeSamples = 700;
   constexpr int kTestsPerNode = 1000;
-  constexpr int kFewestOfLeaf = 10;
+  constexpr int kMinOfLeaf = 10;
   Profile profile = options.profile;
   if (old) {
     profile = training::profile_of(*old);
@@ -44,11 +44,11 @@ Forest train_store_forest(std::vector<TrainingView> views, const std::optional<F
   profile.training.tone_jitter_fraction = kToneShare;
   if (!old) profile.features.tone = kCalibrationBrightness;
   profile.training.views_per_picture = kViewsPerPicture;
-  const int pictures = std::max(most_views(views) / kViewsPerPicture, 1);
-  profile.training.patches_per_view = std::clamp(kPatches / pictures, kFewestPatches, kMostPatches);
+  const int pictures = std::max(max_views(views) / kViewsPerPicture, 1);
+  profile.training.patches_per_view = std::clamp(kPatches / pictures, kMinPatches, kMaxPatches);
   profile.training.node_samples = kNodeSamples;
   profile.training.tests_per_node = kTestsPerNode;
-  profile.training.min_samples = kFewestOfLeaf;
+  profile.training.min_samples = kMinOfLeaf;
   profile.training.seed = options.seed;
   profile.training.threads = options.threads;
   return old ? training::add_objects(*old, std::move(views), profile, report)

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 using store::ObjectStore;
 using store::StoredObject;
 
-/// The meshes, what is known of them, and the pictures of views. What else lies there is somebody's, which StoreTransaction
-/// carries over.
+/// The meshes, what is known of them, and the pictures of views. What else lies there is somebody's, which
+/// StoreTransaction carries over.
 void copy_files(const ObjectStore& from, const fs::path& to) {
   for (const char* folder : {"models", "views"}) {
     std::error_code error;

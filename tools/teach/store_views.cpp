@@ -24,9 +24,9 @@ using store::StoredObject;
 /// So many views of each of so many objects: the fewer, the more there is time and memory for.
 int views_of_each(std::size_t objects) {
   constexpr int kAll = 12600;
-  constexpr int kFewest = 1280;
-  constexpr int kMost = 2200;
-  return std::clamp(kAll / static_cast<int>(objects), kFewest, kMost);
+  constexpr int kMin = 1280;
+  constexpr int kMax = 2200;
+  return std::clamp(kAll / static_cast<int>(objects), kMin, kMax);
 }
 
 /// The middle of an object's box: where the origin of a mesh lies, at a corner or a metre beside it, makes no
@@ -43,7 +43,7 @@ void vote_for(const Eigen::Vector3f& centre, std::vector<TrainingView>& views) {
 /// Training views of a mesh; those that show no depth of it are left out.
 std::vector<TrainingView> render_views(const TaughtMesh& taught, const TeachOptions& options, int most) {
   world::MeshViewSettings settings = options.views;
-  settings.most_views = std::min(settings.most_views, most);
+  settings.max_views = std::min(settings.max_views, most);
   settings.attitudes = world::parse_mesh_attitudes(options.attitudes);
   settings.has_colour = taught.coloured;
   const world::MeshViews rendered(taught.mesh, settings,

@@ -83,8 +83,8 @@ void require_new(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) 
 }
 
 /// The objects of the finished store, looked for in rooms; what is learnt of the new ones goes into forest and store.
-void practise_all(const std::vector<NamedModel>& models, const std::set<int>& new_ids, const CalibrationSettings& settings,
-                  Forest& forest, ObjectStore& made) {
+void practise_all(const std::vector<NamedModel>& models, const std::set<int>& new_ids,
+                  const CalibrationSettings& settings, Forest& forest, ObjectStore& made) {
   std::vector<CalibrationObject> objects(models.size());
   parallel_for(settings.threads, static_cast<int>(models.size()), [&](int i) {
     const NamedModel& model = models[static_cast<std::size_t>(i)];
@@ -267,7 +267,8 @@ void remove_from_store(const fs::path& folder, const std::string& name) {
   build.publish();
 }
 
-void practise_store(const fs::path& folder, const CalibrationSettings& settings, const std::vector<std::string>& names) {
+void practise_store(const fs::path& folder, const CalibrationSettings& settings,
+                    const std::vector<std::string>& names) {
   const Progress progress;
   require_store(folder);
   store::StoreTransaction build(folder);

@@ -7,9 +7,9 @@
 
 #include "detector/training/profiles.hpp"
 #include "tools/render/world/mesh_views.hpp"
+#include "tools/teach/background_images.hpp"
 #include "tools/teach/mesh_sources.hpp"
 #include "tools/teach/score_calibration.hpp"
-#include "tools/teach/background_images.hpp"
 
 namespace houghstream::teach {
 
@@ -30,7 +30,7 @@ struct TeachOptions {
   std::filesystem::path dump_views;            ///< BOP training folder to write the views to as well; empty = none
   world::MeshViewSettings views;               ///< attitudes and colour are those of the object
   Profile profile = make_profile("realtime");  ///< with `add` its training only, the rest is the forest's
-  CalibrationSettings practice;                   ///< seed and threads are those below
+  CalibrationSettings practice;                ///< seed and threads are those below
   std::uint64_t seed = 1;
   int threads = 2;
 };

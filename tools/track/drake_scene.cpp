@@ -103,8 +103,8 @@ drake_viewer_geometry_data_t DrakeScene::shape_of(const std::string& class_name)
   std::fill_n(shape.color, 4, 1.0F);
   const auto mesh = meshes_.find(class_name);
   if (mesh == meshes_.end()) {
-    constexpr std::size_t kMostTold = 64;  // a sender of rubbish may make up classes without end
-    if (told_.size() < kMostTold && told_.insert(class_name).second)
+    constexpr std::size_t kMaxTold = 64;  // a sender of rubbish may make up classes without end
+    if (told_.size() < kMaxTold && told_.insert(class_name).second)
       log_warning(
           "Drake's viewers show a box in place of {}: its model is not known here, expected it in --objects or "
           "--models",

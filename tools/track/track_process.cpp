@@ -5,8 +5,8 @@
 #include <deque>
 #include <mutex>
 
-#include "pipeline/base/log_throttle.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/log_throttle.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/status_reporter.hpp"
 #include "pipeline/messages/messages.hpp"
@@ -15,8 +15,8 @@
 #include "pipeline/process/frame_synchroniser.hpp"
 #include "pipeline/process/process_loop.hpp"
 #include "pipeline/types/shifted.hpp"
-#include "tools/track/recent_detections.hpp"
 #include "tools/track/heartbeat_monitor.hpp"
+#include "tools/track/recent_detections.hpp"
 #include "tools/track/world_frame.hpp"
 
 namespace houghstream::track {
@@ -36,7 +36,7 @@ ByteView view(const std::vector<std::uint8_t>& bytes) {
 struct Waiting {
   SynchronisedMessages messages;
   std::int64_t since_us = 0;  ///< on the clock of now_us()
-  ByteBudget::Held held;       ///< of the frame
+  ByteBudget::Held held;      ///< of the frame
 };
 
 class TrackProcess {
@@ -57,7 +57,8 @@ class TrackProcess {
 
   tracks::ExtrinsicCheck run() {
     status_.set_known_objects(options_.objects);
-    bus_.subscribe_to_frames(options_.frame_channels, [this](const ReceivedMessage& arrival) { receive_frame(arrival); });
+    bus_.subscribe_to_frames(options_.frame_channels,
+                             [this](const ReceivedMessage& arrival) { receive_frame(arrival); });
     bus_.subscribe(channel::kDetections, [this](const ReceivedMessage& arrival) { receive_detections(arrival); });
     bus_.subscribe(channel::kPoses, [this](const ReceivedMessage& arrival) { receive_poses(arrival); });
     bus_.subscribe(".*_TO_WORLD", [this](const ReceivedMessage& arrival) { receive_transform(arrival); });
@@ -177,10 +178,11 @@ class TrackProcess {
 
   /// A copy of its frame goes with each pose, and poses may be sent without end.
   void keep_waiting(SynchronisedMessages messages) {
-    constexpr std::size_t kMost = 1024;
+    constexpr std::size_t kMax = 1024;
     ByteBudget::Held held = waiting_bytes_.hold(messages.frame->size());
     waiting_.push_back({std::move(messages), now_us(), std::move(held)});
-    while (waiting_.size() > 1 && (waiting_.size() > kMost || waiting_bytes_.total() > FrameSynchroniser::kHistoryBytes)) {
+    while (waiting_.size() > 1 &&
+           (waiting_.size() > kMax || waiting_bytes_.total() > FrameSynchroniser::kHistoryBytes)) {
       refuse(waiting_.front().messages.id, "too many wait for the transforms of their cameras");
       waiting_.pop_front();
     }
@@ -233,7 +235,7 @@ class TrackProcess {
     if (tracker_.refused() > 0)
       status_.note_bad_message(fmt::format("frame {}: no room for {} objects more, expected at most {} in all",
                                            to_string(poses.frame), tracker_.refused(),
-                                           tracks::ObjectTrackerSettings().most_objects));
+                                           tracks::ObjectTrackerSettings().max_objects));
     objects->world = world_.name();
     objects->stages.insert(objects->stages.end(), clock.times().begin(), clock.times().end());
     output_.publish(*objects);

@@ -20,7 +20,8 @@ class WorldReference {
   /// `fixed`: cameras that stand still, T_world_camera by the channels of their frames.
   explicit WorldReference(const std::map<std::string, Eigen::Isometry3d>& fixed);
 
-  /// A transform of a camera that moves, as CameraExtrinsics::add() takes it. Throws InputError for one camera too many.
+  /// A transform of a camera that moves, as CameraExtrinsics::add() takes it. Throws InputError for one camera too
+  /// many.
   void add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera);
 
   /// Where the frame's camera was; `may_come` only while it is worth waiting, for the `patient`. Where the place is

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/log_throttle.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/log_throttle.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/channels.hpp"

@@ -16,13 +16,13 @@ namespace houghstream::view {
 class MatchedFrameQueue {
  public:
   /// `capacity` frames, and fewer where they and their results have more than so many bytes.
-  MatchedFrameQueue(std::size_t capacity, std::size_t most_bytes) : capacity_(capacity), most_bytes_(most_bytes) {}
+  MatchedFrameQueue(std::size_t capacity, std::size_t max_bytes) : capacity_(capacity), max_bytes_(max_bytes) {}
 
   /// How many older ones had to be dropped.
   std::int64_t push(MatchedFrame frame) {
     const std::lock_guard lock(mutex_);
     std::int64_t dropped = 0;
-    for (; !frames_.empty() && (frames_.size() >= capacity_ || bytes_ + frame.bytes > most_bytes_); ++dropped) {
+    for (; !frames_.empty() && (frames_.size() >= capacity_ || bytes_ + frame.bytes > max_bytes_); ++dropped) {
       take_first();
     }
     bytes_ += frame.bytes;
@@ -47,7 +47,7 @@ class MatchedFrameQueue {
   }
 
   std::size_t capacity_;
-  std::size_t most_bytes_;
+  std::size_t max_bytes_;
   std::size_t bytes_ = 0;
   std::mutex mutex_;
   std::condition_variable arrived_;

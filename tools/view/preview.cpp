@@ -10,14 +10,14 @@ namespace houghstream::view {
 
 PreviewPicture encode_preview(const cv::Mat& picture, std::size_t max_bytes) {
   constexpr double kSmaller = 0.75;
-  constexpr int kLeastPixels = 16;
+  constexpr int kMinPixels = 16;
   cv::Mat current = picture;
   while (true) {
     for (const int quality : {85, 70, 55}) {
       std::vector<std::uint8_t> jpeg = encode_jpeg(current, quality);
       if (jpeg.size() <= max_bytes) return {current.cols, current.rows, std::move(jpeg)};
     }
-    if (std::min(current.cols, current.rows) < kLeastPixels) break;
+    if (std::min(current.cols, current.rows) < kMinPixels) break;
     cv::Mat smaller;
     cv::resize(current, smaller, {}, kSmaller, kSmaller, cv::INTER_AREA);
     current = smaller;

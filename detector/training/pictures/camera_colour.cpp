@@ -57,8 +57,8 @@ std::array<float, 3> normals(Random& random) {
 }
 
 void blur(const ColourVariation& camera, cv::Mat& colour) {
-  constexpr double kLeastBlur = 0.25;  // below, a Gaussian is one pixel
-  if (camera.blur_px > kLeastBlur) cv::GaussianBlur(colour, colour, {0, 0}, camera.blur_px);
+  constexpr double kMinBlur = 0.25;  // below, a Gaussian is one pixel
+  if (camera.blur_px > kMinBlur) cv::GaussianBlur(colour, colour, {0, 0}, camera.blur_px);
   if (camera.motion_px < 1.0) return;
   const int reach = static_cast<int>(std::ceil(0.5 * camera.motion_px));
   cv::Mat kernel = cv::Mat::zeros(2 * reach + 1, 2 * reach + 1, CV_32FC1);
@@ -75,11 +75,11 @@ void blur(const ColourVariation& camera, cv::Mat& colour) {
 /// What automatic exposure makes of the picture's brightness, times what it is off by.
 double exposure(const ColourVariation& camera, const cv::Mat& colour) {
   constexpr double kMiddleGrey = 110.0;
-  constexpr double kMostStops = 1.0;
+  constexpr double kMaxStops = 1.0;
   const cv::Scalar mean = cv::mean(colour);
   const double level = std::max(1.0, (mean[0] + mean[1] + mean[2]) / 3.0);
   const double followed = 2.2 * std::log2(kMiddleGrey / level);  // coded values go with the light to the power of 1/2.2
-  return std::exp2(camera.exposure_stops + camera.exposure_follow * std::clamp(followed, -kMostStops, kMostStops));
+  return std::exp2(camera.exposure_stops + camera.exposure_follow * std::clamp(followed, -kMaxStops, kMaxStops));
 }
 
 /// Light that the sensor counts, white-balanced and clipped: CV_16UC3, 0 to kLevels - 1.
@@ -97,9 +97,9 @@ cv::Mat sensed(const ColourVariation& camera, const cv::Mat& colour, Random& ran
   }
   const double centre_x = camera.vignette_centre[0] * colour.cols;
   const double centre_y = camera.vignette_centre[1] * colour.rows;
-  const double farthest_x = std::max(centre_x, colour.cols - centre_x);
-  const double farthest_y = std::max(centre_y, colour.rows - centre_y);
-  const auto falloff = static_cast<float>(camera.vignetting / (farthest_x * farthest_x + farthest_y * farthest_y));
+  const double max_x = std::max(centre_x, colour.cols - centre_x);
+  const double max_y = std::max(centre_y, colour.rows - centre_y);
+  const auto falloff = static_cast<float>(camera.vignetting / (max_x * max_x + max_y * max_y));
   const bool noisy = camera.shot_noise > 0.0 || camera.read_noise > 0.0;
   cv::Mat out(colour.size(), CV_16UC3);
   for (int y = 0; y < colour.rows; ++y) {

@@ -45,7 +45,7 @@ cv::Mat nearest_around(const cv::Mat& depth, int right_px, int down_px) {
   return nearest;
 }
 
-cv::Mat farthest_around(const cv::Mat& depth) {
+cv::Mat max_around(const cv::Mat& depth) {
   cv::Mat farthest = depth.clone();
   cv::patchNaNs(farthest, 0.0);
   cv::dilate(farthest, farthest, cv::Mat());  // 3x3
@@ -62,17 +62,17 @@ struct Edges {
 Edges find_edges(const cv::Mat& depth) {
   Edges edges;
   edges.nearest = nearest_around(depth, 1, 1);
-  edges.farthest = farthest_around(depth);
+  edges.farthest = max_around(depth);
   edges.mask = edges.farthest > (1.0 + kEdgeStep) * edges.nearest;
   return edges;
 }
 
 void shift(const std::array<int, 2>& by_px, cv::Mat& depth) {
   if (by_px[0] == 0 && by_px[1] == 0) return;
-  const int most_px = std::max(std::abs(by_px[0]), std::abs(by_px[1]));
+  const int max_px = std::max(std::abs(by_px[0]), std::abs(by_px[1]));
   cv::Mat padded;
-  cv::copyMakeBorder(depth, padded, most_px, most_px, most_px, most_px, cv::BORDER_REPLICATE);
-  padded(cv::Rect({most_px - by_px[0], most_px - by_px[1]}, depth.size())).copyTo(depth);
+  cv::copyMakeBorder(depth, padded, max_px, max_px, max_px, max_px, cv::BORDER_REPLICATE);
+  padded(cv::Rect({max_px - by_px[0], max_px - by_px[1]}, depth.size())).copyTo(depth);
 }
 
 void grow(const std::array<int, 2>& by_px, cv::Mat& depth) {
@@ -154,8 +154,8 @@ Surfaces find_surfaces(const cv::Mat& depth, const cv::Mat& colour, double focal
 
 /// What axial noise grows by on surfaces seen at more than 60 degrees (Nguyen et al.).
 float oblique_noise(float slant_sq, float z) {
-  constexpr float kMostSlant = 4.0F;  // the term grows without bound
-  const float angle = std::atan(std::min(kMostSlant, std::sqrt(slant_sq)));
+  constexpr float kMaxSlant = 4.0F;  // the term grows without bound
+  const float angle = std::atan(std::min(kMaxSlant, std::sqrt(slant_sq)));
   const float ratio = angle / (static_cast<float>(M_PI_2) - angle);
   return 0.0001F / std::sqrt(z) * ratio * ratio;
 }
@@ -196,8 +196,8 @@ void add_time_of_flight_noise(const DepthVariation& camera, const Surfaces& surf
   const auto turns = static_cast<float>(2.0 * M_PI / camera.wiggle_wave);
   const auto phase = static_cast<float>(camera.wiggle_phase);
   const auto dark_bias = static_cast<float>(camera.dark_bias);
-  constexpr float kMostSigma = 0.03F;  // more is not reported
-  constexpr float kGrey = 0.3F;        // from here on nothing is too dark
+  constexpr float kMaxSigma = 0.03F;  // more is not reported
+  constexpr float kGrey = 0.3F;       // from here on nothing is too dark
   for (int y = 0; y < depth.rows; ++y) {
     auto* row = depth.ptr<float>(y);
     const auto* slant_sq = surfaces.slant_sq.ptr<float>(y);
@@ -206,7 +206,7 @@ void add_time_of_flight_noise(const DepthVariation& camera, const Surfaces& surf
       const float z = row[x];
       if (std::isnan(z)) continue;
       const float amplitude_sq = reflectance[x] * reflectance[x] / ((1.0F + slant_sq[x]) * z * z * z * z);
-      const float sigma = std::min(kMostSigma, std::sqrt(floor_sq + light_sq / amplitude_sq));
+      const float sigma = std::min(kMaxSigma, std::sqrt(floor_sq + light_sq / amplitude_sq));
       const float dark = std::max(0.0F, 1.0F - reflectance[x] / kGrey);
       row[x] += wiggle * std::sin(turns * z + phase) + dark_bias * dark + sigma * quick_normal(random);
     }
@@ -249,13 +249,13 @@ void cast_shadow(double baseline_m, double focal_px, cv::Mat& depth) {
 
 void make_holes(const DepthVariation& camera, const Edges& edges, const Surfaces& surfaces, cv::Mat& depth,
                 Random& random) {
-  if (camera.edge_loss <= 0.0 && camera.least_cosine <= 0.0 && camera.least_signal <= 0.0) return;
+  if (camera.edge_loss <= 0.0 && camera.min_cosine <= 0.0 && camera.min_signal <= 0.0) return;
   cv::Mat near_edges;
   cv::dilate(edges.mask, near_edges, cv::Mat());  // where a slant is one across the edge
   const cv::Mat noise = window_noise(depth.size(), random);
   const auto edge_loss = static_cast<float>(camera.edge_loss);
-  const auto cosine_sq = static_cast<float>(camera.least_cosine * camera.least_cosine);
-  const auto signal_sq = static_cast<float>(camera.least_signal * camera.least_signal);
+  const auto cosine_sq = static_cast<float>(camera.min_cosine * camera.min_cosine);
+  const auto signal_sq = static_cast<float>(camera.min_signal * camera.min_signal);
   for (int y = 0; y < depth.rows; ++y) {
     auto* row = depth.ptr<float>(y);
     const auto* noise_row = noise.ptr<float>(y);
@@ -280,8 +280,8 @@ void make_holes(const DepthVariation& camera, const Edges& edges, const Surfaces
 }
 
 bool needs_edges(const DepthVariation& camera) {
-  return camera.jitter_px > 0.0 || camera.flying_share > 0.0 || camera.edge_loss > 0.0 || camera.least_cosine > 0.0 ||
-         camera.least_signal > 0.0;
+  return camera.jitter_px > 0.0 || camera.flying_share > 0.0 || camera.edge_loss > 0.0 || camera.min_cosine > 0.0 ||
+         camera.min_signal > 0.0;
 }
 
 }  // namespace

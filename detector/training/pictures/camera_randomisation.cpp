@@ -79,8 +79,8 @@ DepthVariation draw_depth(Draw draw) {
   }
   depth.smoothing_px = random.uniform() < 0.5 ? 3 : 5;
   depth.edge_loss = std::min(1.0, draw.part(0.0, 0.6));
-  depth.least_cosine = std::min(0.5, draw.part(0.0, 0.3));
-  depth.least_signal = std::max(0.0, draw.part(-0.01, 0.015));
+  depth.min_cosine = std::min(0.5, draw.part(0.0, 0.3));
+  depth.min_signal = std::max(0.0, draw.part(-0.01, 0.015));
   return depth;
 }
 

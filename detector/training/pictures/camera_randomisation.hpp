@@ -78,8 +78,8 @@ struct DepthVariation {
   int smoothing_px = 3;                              ///< window
   double edge_loss = 0.0;                            ///< share of pixels at edges that get no depth, 0 to 1
   double shadow_m = 0.0;                             ///< projector to the right (or left: negative) of the camera
-  double least_cosine = 0.0;                         ///< surfaces seen flatter than this get no depth
-  double least_signal = 0.0;                         ///< reflectance * cosine / z^2, m^-2: less gets no depth
+  double min_cosine = 0.0;                           ///< surfaces seen flatter than this get no depth
+  double min_signal = 0.0;                           ///< reflectance * cosine / z^2, m^-2: less gets no depth
 };
 
 struct CameraRandomisation {

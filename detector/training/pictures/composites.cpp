@@ -199,13 +199,13 @@ void jitter_exposure(cv::Mat& colour, double strength, Random& random) {
 
 std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
                                         const PictureSettings& settings, Random& random) {
-  constexpr double kMostSharpness = 1.5;
+  constexpr double kMaxSharpness = 1.5;
   constexpr int kMargin = 48;  // frame pixels around the object: patches at its edge see the room
   const double view_distance = view.T_camera_object.translation().z();
   Composite out;
   out.scale = view_distance / distance * background.camera.fx / view.frame.camera.fx;
   const bool sharpen = settings.sharpened_share > 0.0 && random.uniform() < settings.sharpened_share;
-  const Patchwork part = resized_object(view, out.scale, sharpen ? kMostSharpness * random.uniform() : 0.0);
+  const Patchwork part = resized_object(view, out.scale, sharpen ? kMaxSharpness * random.uniform() : 0.0);
   const cv::Size window(part.mask.cols + 2 * kMargin, part.mask.rows + 2 * kMargin);
   if (window.width > background.colour.cols || window.height > background.colour.rows) return std::nullopt;
 

@@ -21,7 +21,7 @@ double quantile(const std::array<int, 256>& counts, int rank) {
 }  // namespace
 
 void remove_haze(const cv::Mat& mask, cv::Mat& colour, Random& random) {
-  constexpr double kMostHaze = 60.0;  // grey levels; more is the object's own brightness
+  constexpr double kMaxHaze = 60.0;  // grey levels; more is the object's own brightness
   constexpr int kBrightest = 245;
   std::array<int, 256> darkest{};
   std::array<int, 256> brightest{};
@@ -35,7 +35,7 @@ void remove_haze(const cv::Mat& mask, cv::Mat& colour, Random& random) {
       ++count;
     }
   }
-  const double haze = random.uniform() * std::min(kMostHaze, quantile(darkest, count / 20));
+  const double haze = random.uniform() * std::min(kMaxHaze, quantile(darkest, count / 20));
   const double top = std::max(haze + 1.0, quantile(brightest, count - count / 20));
   const double gain = std::exp2(random.uniform() * std::log2(std::max(1.0, (kBrightest - 0.0) / (top - haze))));
   const double saturation = std::exp2(random.uniform(-0.2, 0.5));

@@ -14,19 +14,19 @@ namespace {
 
 /// Each pixel takes the nearest depth around it; holes lend none and take none.
 cv::Mat grown(const cv::Mat& depth, int right_px, int down_px) {
-  constexpr double kFarthest = 1e6;
+  constexpr double kMaxDistance = 1e6;
   cv::Mat out = depth.clone();
-  cv::patchNaNs(out, kFarthest);
+  cv::patchNaNs(out, kMaxDistance);
   cv::erode(out, out, cv::getStructuringElement(cv::MORPH_RECT, {2 * right_px + 1, 2 * down_px + 1}));
   out.setTo(std::numeric_limits<float>::quiet_NaN(), ~(depth == depth));  // vectorised, != may call two NaN equal
   return out;
 }
 
-/// Moved to the right and down, at most `most_px`; the border's pixels fill what is left free.
-cv::Mat moved(const cv::Mat& depth, int right_px, int down_px, int most_px) {
+/// Moved to the right and down, at most `max_px`; the border's pixels fill what is left free.
+cv::Mat moved(const cv::Mat& depth, int right_px, int down_px, int max_px) {
   cv::Mat padded;
-  cv::copyMakeBorder(depth, padded, most_px, most_px, most_px, most_px, cv::BORDER_REPLICATE);
-  return padded(cv::Rect({most_px - right_px, most_px - down_px}, depth.size())).clone();
+  cv::copyMakeBorder(depth, padded, max_px, max_px, max_px, max_px, cv::BORDER_REPLICATE);
+  return padded(cv::Rect({max_px - right_px, max_px - down_px}, depth.size())).clone();
 }
 
 /// Smooth errors in cells of random size, metres.
@@ -56,26 +56,26 @@ cv::Mat smooth_noise(cv::Size size, Random& random) {
 }  // namespace
 
 void misregister(double strength, cv::Mat& depth, Random& random) {
-  constexpr double kMost = 2.0;  // pixels
-  const int most_px = static_cast<int>(std::lround(strength * kMost));
-  if (most_px <= 0) return;
-  const int wider = random.between(0, most_px);
-  const int higher = random.between(0, most_px);
-  const int right = random.between(-most_px, most_px);
-  const int down = random.between(-most_px, most_px);
-  depth = moved(grown(depth, wider, higher), right, down, most_px);
+  constexpr double kMax = 2.0;  // pixels
+  const int max_px = static_cast<int>(std::lround(strength * kMax));
+  if (max_px <= 0) return;
+  const int wider = random.between(0, max_px);
+  const int higher = random.between(0, max_px);
+  const int right = random.between(-max_px, max_px);
+  const int down = random.between(-max_px, max_px);
+  depth = moved(grown(depth, wider, higher), right, down, max_px);
 }
 
 TrainingView bent(const TrainingView& view, double strength, Random& random) {
-  constexpr double kMostSlope = 0.07;    // metres of depth a metre to the side
-  constexpr double kMostRipple = 0.002;  // metres, standard deviation
+  constexpr double kMaxSlope = 0.07;    // metres of depth a metre to the side
+  constexpr double kMaxRipple = 0.002;  // metres, standard deviation
   if (strength <= 0.0) return view;
   const Eigen::Vector3d centre = view.T_camera_object.translation();
-  const double metres = strength * kMostSlope * view.frame.camera.metres_per_px(centre.z());
+  const double metres = strength * kMaxSlope * view.frame.camera.metres_per_px(centre.z());
   const double right = metres * random.uniform(-1.0, 1.0);
   const double down = metres * random.uniform(-1.0, 1.0);
   const Eigen::Vector2d middle = view.frame.camera.project(centre);
-  const cv::Mat error = ripples(view.frame.depth.size(), strength * kMostRipple * random.uniform(), random);
+  const cv::Mat error = ripples(view.frame.depth.size(), strength * kMaxRipple * random.uniform(), random);
   cv::Mat depth = view.frame.depth + error;  // a picture of its own: the view's stays as it is
   for (int y = 0; y < error.rows; ++y) {
     for (int x = 0; x < error.cols; ++x) {
@@ -88,10 +88,10 @@ TrainingView bent(const TrainingView& view, double strength, Random& random) {
 }
 
 void resurface(const cv::Mat& mask, double strength, Random& random, cv::Mat& colour) {
-  constexpr double kCast = 0.15;        // stops, each channel
-  constexpr double kGamma = 0.3;        // powers of two
-  constexpr double kUneven = 0.35;      // stops, deviation
-  constexpr double kMostBlur_px = 1.5;  // standard deviation
+  constexpr double kCast = 0.15;       // stops, each channel
+  constexpr double kGamma = 0.3;       // powers of two
+  constexpr double kUneven = 0.35;     // stops, deviation
+  constexpr double kMaxBlur_px = 1.5;  // standard deviation
   if (strength <= 0.0) return;
   const double saturation = std::exp2(strength * random.uniform(-0.8, 0.5));
   const double gamma = std::exp2(strength * kGamma * random.uniform(-1.0, 1.0));
@@ -105,7 +105,7 @@ void resurface(const cv::Mat& mask, double strength, Random& random, cv::Mat& co
   }
   cv::Mat light;
   cv::resize(coarse, light, mask.size(), 0, 0, cv::INTER_CUBIC);
-  const double blur_px = strength * kMostBlur_px * random.uniform(-1.0, 1.0);
+  const double blur_px = strength * kMaxBlur_px * random.uniform(-1.0, 1.0);
   if (blur_px > 0.2) {
     cv::Mat blurred;
     cv::GaussianBlur(colour, blurred, {0, 0}, blur_px);

@@ -93,7 +93,7 @@ cv::Rect seen_by(const TrainingPicture& picture, const PatchSettings& patch) {
   cv::Rect seen;
   for (const auto* list : {&picture.samples, &picture.spare_background}) {
     for (const TrainingSample& sample : *list) {
-      const int reach = farthest_offset(patch, sample.scale);
+      const int reach = max_offset(patch, sample.scale);
       seen |= cv::Rect(sample.x - reach, sample.y - reach, 2 * reach + 1, 2 * reach + 1);
     }
   }

@@ -24,14 +24,14 @@ cv::Point2d meant_place(const RgbdFrame& frame, const ChoiceSettings& settings) 
 
 /// The cluster that is meant; 0 = none.
 int meant_cluster(const Clusters& clusters, const RgbdFrame& frame, const ChoiceSettings& settings) {
-  constexpr int kFewestPixels = 60;
-  constexpr double kHighestFoot_m = 0.035;
+  constexpr int kMinPixels = 60;
+  constexpr double kMaxFoot_m = 0.035;
   int best = 0;
   double best_rank = 1e18;
   for (std::size_t i = 1; i < clusters.list.size(); ++i) {
     const Cluster& cluster = clusters.list[i];
-    if (cluster.pixels < kFewestPixels || cluster.lowest > kHighestFoot_m) continue;
-    if (!settings.box_px && cluster.to_middle_px > settings.farthest_share * frame.depth.cols) continue;
+    if (cluster.pixels < kMinPixels || cluster.lowest > kMaxFoot_m) continue;
+    if (!settings.box_px && cluster.to_middle_px > settings.max_share * frame.depth.cols) continue;
     const double rank = settings.box_px ? -cluster.pixels : cluster.to_middle_px - 1e-6 * cluster.pixels;
     if (rank >= best_rank) continue;
     best_rank = rank;
@@ -47,9 +47,9 @@ std::string fault_of(const ChosenObject& object, const RgbdFrame& frame, const C
     return fmt::format(
         "what is meant is {:.0f} cm large, expected at most {:.0f} cm that stand apart from other things", 1e2 * widest,
         1e2 * settings.largest_m);
-  if (std::max(object.radius_m, object.height_m) < settings.smallest_m)
+  if (std::max(object.radius_m, object.height_m) < settings.min_m)
     return fmt::format("what is meant is {:.0f} mm large, expected at least {:.0f} mm", 1e3 * widest,
-                       1e3 * settings.smallest_m);
+                       1e3 * settings.min_m);
   const cv::Rect inner(2, 2, frame.depth.cols - 4, frame.depth.rows - 4);
   if ((object.box_px & inner) != object.box_px)
     return "what is meant is cut by the picture's edge, expected the whole object in the first picture";
@@ -93,7 +93,7 @@ bool is_level(const RgbdFrame& frame, const Plane& plane, int x, int y) {
 /// smaller.
 std::optional<Plane> carried_by(const RgbdFrame& frame, const ChosenObject& object) {
   constexpr double kBin_m = 0.002;
-  constexpr double kHighest_m = 0.06;
+  constexpr double kMax_m = 0.06;
   constexpr double kAbove_m = 0.012;
   constexpr double kLeastShare = 0.25;
   std::array<int, 31> levels{};
@@ -103,8 +103,7 @@ std::optional<Plane> carried_by(const RgbdFrame& frame, const ChosenObject& obje
       if (object.mask.at<std::uint8_t>(y, x) == 0) continue;
       ++all;
       const double height = object.plane.height(frame.camera.backproject(x, y, frame.depth.at<float>(y, x)));
-      if (height < kHighest_m && is_level(frame, object.plane, x, y))
-        ++levels[static_cast<std::size_t>(height / kBin_m)];
+      if (height < kMax_m && is_level(frame, object.plane, x, y)) ++levels[static_cast<std::size_t>(height / kBin_m)];
     }
   }
   std::size_t best = 1;
@@ -149,7 +148,7 @@ Choice choose_on(const RgbdFrame& frame, const Plane& plane, const ChoiceSetting
   const PlaneAxes axes(plane, frame.camera.backproject(meant.x, meant.y, 1.0));
   const cv::Rect whole({0, 0}, frame.depth.size());
   const Clusters clusters =
-      find_clusters(frame, plane, axes, {settings.box_px.value_or(whole) & whole, meant, settings.farthest_m});
+      find_clusters(frame, plane, axes, {settings.box_px.value_or(whole) & whole, meant, settings.max_distance_m});
   const int chosen = meant_cluster(clusters, frame, settings);
   if (chosen == 0) return {{}, nothing_there(settings)};
   ChosenObject object = make_object(frame, plane, axes, clusters, chosen);
@@ -179,7 +178,7 @@ Choice select_object(const RgbdFrame& frame, const ChoiceSettings& settings) {
     return {{},
             fmt::format("{},{} lies not within the picture, which has {}x{} pixels", settings.at_px->x,
                         settings.at_px->y, whole.width, whole.height)};
-  const std::vector<Plane> planes = find_planes(frame, settings.farthest_m, settings.seed);
+  const std::vector<Plane> planes = find_planes(frame, settings.max_distance_m, settings.seed);
   if (planes.empty()) return {{}, "no table or other level surface is seen, expected one on which the object stands"};
   Choice first;
   for (const Plane& plane : planes) {

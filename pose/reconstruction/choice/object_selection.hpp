@@ -32,10 +32,10 @@ struct Choice {
 struct ChoiceSettings {
   std::optional<cv::Rect> box_px;  ///< about the object; none: what is nearest to at_px
   std::optional<cv::Point> at_px;  ///< on the object or nearly so; none: the image's middle
-  double smallest_m = 0.012;       ///< sides of an object
+  double min_m = 0.012;            ///< sides of an object
   double largest_m = 0.6;
-  double farthest_m = 2.0;       ///< from the camera
-  double farthest_share = 0.25;  ///< of the image's width: how far from its middle or from at_px, without a box
+  double max_distance_m = 2.0;  ///< from the camera
+  double max_share = 0.25;      ///< of the image's width: how far from its middle or from at_px, without a box
   std::uint64_t seed = 1;
 };
 

@@ -16,18 +16,18 @@ constexpr double kHalfExtent_m = 0.8;  // of the plane that is looked at
 /// Where each pixel above the plane falls on it; (-1,-1) for the others.
 cv::Mat cells_of_pixels(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes, const SearchedPart& searched,
                         cv::Mat& grid) {
-  constexpr double kLowest_m = 0.006;  // what is lower is taken for the plane
-  constexpr double kHighest_m = 0.75;
+  constexpr double kMin_m = 0.006;  // what is lower is taken for the plane
+  constexpr double kMax_m = 0.75;
   const cv::Rect& where = searched.region_px;
   cv::Mat cells(frame.depth.size(), CV_32SC2, cv::Scalar(-1, -1));
   grid = cv::Mat::zeros(PlaneAxes::cells(), PlaneAxes::cells(), CV_8UC1);
   for (int y = where.y; y < where.br().y; ++y) {
     for (int x = where.x; x < where.br().x; ++x) {
       const float z = frame.depth.at<float>(y, x);
-      if (!(z > 0.1F && z < searched.farthest_m)) continue;
+      if (!(z > 0.1F && z < searched.max_distance_m)) continue;
       const Eigen::Vector3d p = frame.camera.backproject(x, y, z);
       const double height = plane.height(p);
-      if (height < std::max(kLowest_m, 3.0 * depth_sigma(z)) || height > kHighest_m) continue;
+      if (height < std::max(kMin_m, 3.0 * depth_sigma(z)) || height > kMax_m) continue;
       const auto cell = axes.cell_of(p);
       if (!cell) continue;
       cells.at<cv::Vec2i>(y, x) = {cell->x, cell->y};

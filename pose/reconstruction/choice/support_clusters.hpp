@@ -41,9 +41,9 @@ struct Clusters {
 
 /// What of a picture is looked at.
 struct SearchedPart {
-  cv::Rect region_px;       ///< within the picture
-  cv::Point2d target_px;     ///< the place that is meant
-  double farthest_m = 0.0;  ///< from the camera
+  cv::Rect region_px;           ///< within the picture
+  cv::Point2d target_px;        ///< the place that is meant
+  double max_distance_m = 0.0;  ///< from the camera
 };
 
 /// All that stands on a plane, or floats above it.

@@ -16,13 +16,13 @@ double plane_distance_limit(double z) {
   return 0.004 + 2.0 * depth_sigma(z);
 }
 
-std::vector<Eigen::Vector3d> scattered_points(const RgbdFrame& frame, double farthest_m) {
+std::vector<Eigen::Vector3d> scattered_points(const RgbdFrame& frame, double max_distance_m) {
   constexpr int kStep_px = 4;
   std::vector<Eigen::Vector3d> points;
   for (int y = kStep_px / 2; y < frame.depth.rows; y += kStep_px) {
     for (int x = kStep_px / 2; x < frame.depth.cols; x += kStep_px) {
       const float z = frame.depth.at<float>(y, x);
-      if (z > 0.15F && z < farthest_m) points.push_back(frame.camera.backproject(x, y, z));
+      if (z > 0.15F && z < max_distance_m) points.push_back(frame.camera.backproject(x, y, z));
     }
   }
   return points;
@@ -88,13 +88,13 @@ bool may_carry(const Plane& plane) {
 
 }  // namespace
 
-std::vector<Plane> find_planes(const RgbdFrame& frame, double farthest_m, std::uint64_t seed) {
-  constexpr int kMost = 5;
-  std::vector<Eigen::Vector3d> points = scattered_points(frame, farthest_m);
+std::vector<Plane> find_planes(const RgbdFrame& frame, double max_distance_m, std::uint64_t seed) {
+  constexpr int kMax = 5;
+  std::vector<Eigen::Vector3d> points = scattered_points(frame, max_distance_m);
   const auto fewest = std::max<std::size_t>(150, points.size() / 15);
   Random random(seed);
   std::vector<Plane> planes;
-  for (int i = 0; i < kMost && points.size() > fewest; ++i) {
+  for (int i = 0; i < kMax && points.size() > fewest; ++i) {
     std::optional<Plane> plane = largest_plane(points, random);
     if (!plane) break;
     for (int again = 0; again < 2; ++again) {
@@ -114,7 +114,7 @@ std::vector<Plane> find_planes(const RgbdFrame& frame, double farthest_m, std::u
 
 Plane refine_plane(const RgbdFrame& frame, const cv::Mat& mask, const Plane& plane, const Eigen::Vector3d& middle,
                    double radius_m) {
-  constexpr std::size_t kFewest = 200;
+  constexpr std::size_t kMin = 200;
   Plane refined = plane;
   for (int again = 0; again < 3; ++again) {
     std::vector<Eigen::Vector3d> points;
@@ -127,7 +127,7 @@ Plane refine_plane(const RgbdFrame& frame, const cv::Mat& mask, const Plane& pla
           points.push_back(p);
       }
     }
-    if (points.size() < kFewest) return plane;
+    if (points.size() < kMin) return plane;
     refined = fit_plane(points);
   }
   return refined;

@@ -18,8 +18,9 @@ struct Plane {
 };
 
 /// Planes on which things may stand, the largest first: RANSAC (Fischler & Bolles 1981) on the depth up to
-/// `farthest_m`, refined by least squares; only such as face upwards or the camera. Same input and seed, same result.
-std::vector<Plane> find_planes(const RgbdFrame& frame, double farthest_m, std::uint64_t seed);
+/// `max_distance_m`, refined by least squares; only such as face upwards or the camera. Same input and seed, same
+/// result.
+std::vector<Plane> find_planes(const RgbdFrame& frame, double max_distance_m, std::uint64_t seed);
 
 /// The plane nearest to the measured points that are close to it, of those pixels where `mask` (CV_8UC1, may be empty)
 /// is 0 and within `radius_m` of `middle`.

@@ -123,7 +123,8 @@ class Look {
     // Faint slopes are shade and shine, which do not move with the surface.
     const double slope_sq = seen.slope_u * seen.slope_u + seen.slope_v * seen.slope_v;
     const double edge = slope_sq / (slope_sq + kShade * kShade);
-    sums.add(row, residual, edge * weight / (limits_.photometric_sigma * limits_.photometric_sigma * (1.0 + far * far)));
+    sums.add(row, residual,
+             edge * weight / (limits_.photometric_sigma * limits_.photometric_sigma * (1.0 + far * far)));
   }
 
   const FrameLevel& frame_;
@@ -186,7 +187,7 @@ double bearing_error(const LandmarkObservation& corner, const Eigen::Isometry3d&
 
 Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
                       const PoseConstraints& holds, const AlignmentLimits& limits) {
-  constexpr int kFewest = 40;
+  constexpr int kMin = 40;
   Alignment out;
   out.T_camera_world = T_camera_world;
   Sums sums;
@@ -194,7 +195,7 @@ Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const
     const auto l = static_cast<std::size_t>(level);
     for (int i = 0; i <= limits.iterations; ++i) {
       sums = look(points[l], frame.levels[l], out.T_camera_world, level, limits);
-      if (sums.pairs < kFewest) break;
+      if (sums.pairs < kMin) break;
       if (holds.plane) add_plane(*holds.plane, out.T_camera_world, sums);
       for (const LandmarkObservation& corner : holds.corners) add_corner(corner, out.T_camera_world, sums);
       if (i == limits.iterations) break;

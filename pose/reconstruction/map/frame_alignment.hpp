@@ -31,12 +31,12 @@ struct PoseConstraints {
 };
 
 struct AlignmentLimits {
-  int iterations = 7;         ///< on each level, at most
-  int coarsest = 2;           ///< level to begin on
-  int finest = 0;             ///< level to end on
+  int iterations = 7;               ///< on each level, at most
+  int coarsest = 2;                 ///< level to begin on
+  int finest = 0;                   ///< level to end on
   double photometric_sigma = 0.35;  ///< of FrameLevel::light
-  double gate_m = 0.014;      ///< on the finest level; what is farther apart is no pair. Twice that on the next
-  double enough_m = 1e-4;     ///< a step that moves nothing farther ends a level
+  double gate_m = 0.014;            ///< on the finest level; what is farther apart is no pair. Twice that on the next
+  double enough_m = 1e-4;           ///< a step that moves nothing farther ends a level
   bool use_photometric = true;
 };
 
@@ -46,9 +46,9 @@ struct Alignment {
   Matrix6 information = Matrix6::Zero();  ///< of a twist for retract_about_body(), at the end
   int pairs = 0;                          ///< points with a measured partner
   double inlier_share = 0.0;              ///< of the points in the image that nothing hides: those with a partner
-  double visible_point_fraction = 0.0;                ///< of all points: those in the image, not hidden, with depth
-  double geometric_rms_m = 0.0;               ///< of the pairs, along normals
-  double photometric_rms = 0.0;                 ///< of the pairs, robust
+  double visible_point_fraction = 0.0;    ///< of all points: those in the image, not hidden, with depth
+  double geometric_rms_m = 0.0;           ///< of the pairs, along normals
+  double photometric_rms = 0.0;           ///< of the pairs, robust
 };
 
 /// Lays a frame on points of surface: distances along the points' normals (Chen & Medioni 1992), partners found by

@@ -88,7 +88,7 @@ PictureQuality judge(const cv::Mat& grey) {
 /// The normal of the plane through the depth around a pixel, towards the camera; 1/z is linear in the pixel there.
 bool fit_normal(const FrameLevel& level, int x, int y, Eigen::Vector3f& normal) {
   constexpr int kRadius_px = 3;
-  constexpr int kFewest = 30;  // of 49
+  constexpr int kMin = 30;  // of 49
   const float z = level.depth.at<float>(y, x);
   const float same = 0.008F + 0.012F * z;
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
@@ -105,7 +105,7 @@ bool fit_normal(const FrameLevel& level, int x, int y, Eigen::Vector3f& normal) 
       ++count;
     }
   }
-  if (count < kFewest) return false;
+  if (count < kMin) return false;
   // 1/z = a u + b v + c about the pixel; the plane n.X = 1 has n = (a fx, b fy, c - a (x - cx) - b (y - cy)).
   const Eigen::Vector3f f = squares.ldlt().solve(sums);
   const auto fx = static_cast<float>(level.camera.fx);
@@ -136,7 +136,7 @@ bool strongest_pixel(const FrameLevel& level, const cv::Rect& square, const cv::
   return strongest >= 0.0F;
 }
 
-std::vector<SurfacePoint> points_of(const FrameLevel& level, const cv::Mat& mask, int square_px, double least_facing) {
+std::vector<SurfacePoint> points_of(const FrameLevel& level, const cv::Mat& mask, int square_px, double min_facing) {
   constexpr int kBorder_px = 4;
   std::vector<SurfacePoint> points;
   for (int y = kBorder_px; y + square_px <= level.depth.rows - kBorder_px; y += square_px) {
@@ -146,7 +146,7 @@ std::vector<SurfacePoint> points_of(const FrameLevel& level, const cv::Mat& mask
       SurfacePoint point;
       if (!fit_normal(level, px.x, px.y, point.normal)) continue;
       point.point = level.camera.backproject(px.x, px.y, level.depth.at<float>(px)).cast<float>();
-      if (-point.normal.dot(point.point.normalized()) < static_cast<float>(least_facing)) continue;
+      if (-point.normal.dot(point.point.normalized()) < static_cast<float>(min_facing)) continue;
       const bool stays = !level.stays.empty() && level.stays.at<std::uint8_t>(px) != 0;
       point.light = stays ? kNoValue : level.light.at<float>(px);
       points.push_back(point);
@@ -165,7 +165,7 @@ FrameLevels make_levels(const RgbdFrame& frame, const LevelSettings& settings) {
   cv::cvtColor(frame.colour(region), grey, cv::COLOR_BGR2GRAY);
   cv::Mat depth = frame.depth(region);
   Camera camera = frame.camera.cropped(region.x, region.y, region.width, region.height);
-  while (grey.cols > settings.least_width) {
+  while (grey.cols > settings.min_width) {
     grey = half_light(grey);
     depth = half_depth(depth);
     camera = half_camera(camera);
@@ -190,7 +190,7 @@ LevelPoints choose_points(const FrameLevels& frame, const cv::Mat& mask, const P
     if (!mask.empty() && at_level.size() != level.depth.size())
       cv::resize(mask, at_level, level.depth.size(), 0, 0, cv::INTER_NEAREST);
     points.push_back(
-        points_of(level, at_level, std::max(2, static_cast<int>(std::lround(square))), settings.least_facing));
+        points_of(level, at_level, std::max(2, static_cast<int>(std::lround(square))), settings.min_facing));
     square *= 0.75;
   }
   return points;

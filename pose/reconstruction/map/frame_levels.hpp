@@ -31,8 +31,8 @@ struct FrameLevels {
 
 /// What of a frame is taken.
 struct LevelSettings {
-  cv::Rect region_px;     ///< of the frame; empty = all
-  int least_width = 400;  ///< pixels: what is wider is halved before
+  cv::Rect region_px;   ///< of the frame; empty = all
+  int min_width = 400;  ///< pixels: what is wider is halved before
   int levels = 3;
 };
 
@@ -52,8 +52,8 @@ using LevelPoints = std::vector<std::vector<SurfacePoint>>;
 /// Which points of a frame are kept: in each square of pixels the one with the strongest edge of light, of those with
 /// depth and a normal.
 struct PointSettings {
-  int square_px = 6;          ///< of the finest level; 3/4 of it on the next, and so on
-  double least_facing = 0.2;  ///< cosine between normal and line of sight
+  int square_px = 6;        ///< of the finest level; 3/4 of it on the next, and so on
+  double min_facing = 0.2;  ///< cosine between normal and line of sight
 };
 
 /// Camera frame. `mask` (CV_8UC1 of the first level's size, or empty) chooses pixels.

@@ -31,8 +31,9 @@ double KeyframeMap::difference(const Eigen::Isometry3d& a, const Eigen::Isometry
 }
 
 bool KeyframeMap::is_good(const Alignment& alignment) const {
-  return alignment.pairs >= 100 && alignment.inlier_share >= settings_.least_inlier_share &&
-         alignment.visible_point_fraction >= settings_.least_seen_share && alignment.photometric_rms <= settings_.most_light_rms;
+  return alignment.pairs >= 100 && alignment.inlier_share >= settings_.min_inlier_share &&
+         alignment.visible_point_fraction >= settings_.min_seen_share &&
+         alignment.photometric_rms <= settings_.max_light_rms;
 }
 
 int KeyframeMap::nearest(const Eigen::Isometry3d& T_camera_world) const {
@@ -119,15 +120,16 @@ std::vector<SeenAgain> KeyframeMap::find_again(const std::vector<int>& keyframes
   std::vector<SeenAgain> again;
   for (const int k : keyframes) {
     std::optional<LandmarkMatch> match = match_landmarks(keyframes_[static_cast<std::size_t>(k)].landmarks, seen);
-    if (match && match->inliers.size() >= settings_.fewest_corners) again.push_back({k, std::move(*match)});
+    if (match && match->inliers.size() >= settings_.min_corners) again.push_back({k, std::move(*match)});
   }
   return again;
 }
 
 /// Corners that contradict the likely pose are mistaken, wallpaper for instance, unless it may be far off and many
 /// agree.
-Alignment KeyframeMap::register_to_part(const MapPart& part, const FrameLevels& levels, const std::vector<SeenAgain>& again,
-                              const Eigen::Isometry3d& T_likely, const RegistrationLimits& limits) const {
+Alignment KeyframeMap::register_to_part(const MapPart& part, const FrameLevels& levels,
+                                        const std::vector<SeenAgain>& again, const Eigen::Isometry3d& T_likely,
+                                        const RegistrationLimits& limits) const {
   constexpr double kContradicts = 0.015;  // radians
   PoseConstraints holds{settings_.plane, {}};
   std::size_t most = 0;
@@ -140,9 +142,9 @@ Alignment KeyframeMap::register_to_part(const MapPart& part, const FrameLevels& 
     most = match.inliers.size();
     T_by_corners = match.T_b_a * keyframe.T_camera_world;
   }
-  const auto contradict = std::count_if(holds.corners.begin(), holds.corners.end(), [&](const LandmarkObservation& corner) {
-    return bearing_error(corner, T_likely) > kContradicts;
-  });
+  const auto contradict =
+      std::count_if(holds.corners.begin(), holds.corners.end(),
+                    [&](const LandmarkObservation& corner) { return bearing_error(corner, T_likely) > kContradicts; });
   AlignmentLimits alignment;
   alignment.coarsest = limits.coarsest;
   if (!settings_.use_landmarks) {
@@ -157,7 +159,8 @@ Alignment KeyframeMap::register_to_part(const MapPart& part, const FrameLevels& 
   return align_frame(part.points, levels, jumps ? T_by_corners : T_likely, holds, alignment);
 }
 
-Alignment KeyframeMap::constrain_by_landmarks(const FrameLevels& levels, const Landmarks& seen, const Alignment& laid) const {
+Alignment KeyframeMap::constrain_by_landmarks(const FrameLevels& levels, const Landmarks& seen,
+                                              const Alignment& laid) const {
   std::vector<SeenAgain> again;
   if (settings_.use_landmarks) again = find_again(local_.keyframes, seen);
   const Alignment held = register_to_part(local_, levels, again, laid.T_camera_world, {});
@@ -165,8 +168,8 @@ Alignment KeyframeMap::constrain_by_landmarks(const FrameLevels& levels, const L
 }
 
 std::optional<LoopGap> KeyframeMap::close_loop(int last) {
-  constexpr int kMostTries = 2;
-  constexpr double kMostShift_m = 0.2;
+  constexpr int kMaxTries = 2;
+  constexpr double kMaxShift_m = 0.2;
   const Keyframe& now = keyframes_[static_cast<std::size_t>(last)];
   std::vector<std::pair<double, int>> candidates;
   for (int k = 0; k < last; ++k) {
@@ -175,13 +178,14 @@ std::optional<LoopGap> KeyframeMap::close_loop(int last) {
       candidates.emplace_back(d, k);
   }
   std::sort(candidates.begin(), candidates.end());
-  if (candidates.size() > kMostTries) candidates.resize(kMostTries);
+  if (candidates.size() > kMaxTries) candidates.resize(kMaxTries);
   for (const auto& [d, k] : candidates) {
     const Keyframe& old = keyframes_[static_cast<std::size_t>(k)];
     const std::vector<SeenAgain> again = find_again({k}, now.landmarks);
-    const Alignment found = register_to_part(part_of({k}), now.levels, again, now.T_camera_world, {settings_.coarsest, true});
+    const Alignment found =
+        register_to_part(part_of({k}), now.levels, again, now.T_camera_world, {settings_.coarsest, true});
     const LoopGap gap = gap_between(now.T_camera_world, found.T_camera_world);
-    if (!is_good(found) || gap.shift_m > kMostShift_m) continue;
+    if (!is_good(found) || gap.shift_m > kMaxShift_m) continue;
     edges_.push_back({k, last, found.T_camera_world * old.T_camera_world.inverse(), found.information});
     return gap;
   }

@@ -30,13 +30,13 @@ struct MapSettings {
   double loop_alike = 0.35;  ///< radians between views: a loop may be closed
   int loop_steps = 8;        ///< keyframes in between that make a loop
   int references = 3;        ///< keyframes of the local map
-  double least_inlier_share = 0.75;
-  double least_seen_share = 0.25;
-  double most_light_rms = 0.62;
-  int coarsest = 2;                 ///< level on which registration begins
-  bool use_landmarks = true;         ///< those of surroundings; of a thing that turns, shine has some too
-  std::size_t fewest_corners = 12;  ///< in common with another frame, to hold a pose
-  std::size_t sure_corners = 30;    ///< in common with a keyframe, to say a pose of their own
+  double min_inlier_share = 0.75;
+  double min_seen_share = 0.25;
+  double max_light_rms = 0.62;
+  int coarsest = 2;               ///< level on which registration begins
+  bool use_landmarks = true;      ///< those of surroundings; of a thing that turns, shine has some too
+  std::size_t min_corners = 12;   ///< in common with another frame, to hold a pose
+  std::size_t sure_corners = 30;  ///< in common with a keyframe, to say a pose of their own
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the object, world frame
   std::optional<PlanePrior> plane;                   ///< where the camera stands still
   int threads = 1;
@@ -101,7 +101,7 @@ class KeyframeMap {
   MapPart part_of(std::vector<int> keyframes) const;
   std::vector<SeenAgain> find_again(const std::vector<int>& keyframes, const Landmarks& seen) const;
   Alignment register_to_part(const MapPart& part, const FrameLevels& levels, const std::vector<SeenAgain>& again,
-                   const Eigen::Isometry3d& T_likely, const RegistrationLimits& limits) const;
+                             const Eigen::Isometry3d& T_likely, const RegistrationLimits& limits) const;
   std::vector<PoseEdge> edges_from(int from, int coarsest, std::map<int, std::vector<SeenAgain>>& again) const;
   std::optional<LoopGap> close_loop(int last);
   void correct_poses();

@@ -70,10 +70,10 @@ std::size_t count_fitting(const Pairs& pairs, const Eigen::Isometry3d& T, std::s
   return count;
 }
 
-std::optional<LandmarkMatch> most_agree_on(const Pairs& pairs) {
+std::optional<LandmarkMatch> max_agree_on(const Pairs& pairs) {
   constexpr int kTrials = 300;
-  constexpr std::size_t kFewest = 8;
-  if (pairs.size() < kFewest) return std::nullopt;
+  constexpr std::size_t kMin = 8;
+  if (pairs.size() < kMin) return std::nullopt;
   Random random(1);
   Pairs three(3);
   std::size_t most = 0;
@@ -87,13 +87,13 @@ std::optional<LandmarkMatch> most_agree_on(const Pairs& pairs) {
     most = count;
     T_most = T;
   }
-  if (most < kFewest) return std::nullopt;
+  if (most < kMin) return std::nullopt;
   Pairs best = agreeing(pairs, T_most);
   LandmarkMatch match;
   for (int again = 0; again < 2; ++again) {
     match.T_b_a = motion_between(best);
     best = agreeing(pairs, match.T_b_a);
-    if (best.size() < kFewest) return std::nullopt;
+    if (best.size() < kMin) return std::nullopt;
   }
   match.inliers = std::move(best);
   return match;
@@ -117,11 +117,11 @@ std::optional<Eigen::Vector3d> surface_at(const RgbdFrame& frame, const cv::Poin
 }  // namespace
 
 Landmarks detect_landmarks(const RgbdFrame& frame, const cv::Mat& mask) {
-  constexpr int kMost = 600;
+  constexpr int kMax = 600;
   std::vector<cv::KeyPoint> corners;
   Landmarks landmarks;
   cv::Mat descriptors;
-  cv::ORB::create(kMost, 1.2F, 6, 15, 0, 2, cv::ORB::HARRIS_SCORE, 31, 10)
+  cv::ORB::create(kMax, 1.2F, 6, 15, 0, 2, cv::ORB::HARRIS_SCORE, 31, 10)
       ->detectAndCompute(grey_of(frame), mask, corners, descriptors);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const std::optional<Eigen::Vector3d> point = surface_at(frame, corners[i].pt);
@@ -134,7 +134,7 @@ Landmarks detect_landmarks(const RgbdFrame& frame, const cv::Mat& mask) {
 
 std::optional<LandmarkMatch> match_landmarks(const Landmarks& a, const Landmarks& b) {
   if (a.points.empty() || b.points.empty()) return std::nullopt;
-  return most_agree_on(like_pairs(a, b));
+  return max_agree_on(like_pairs(a, b));
 }
 
 FlowFrame make_flow_frame(const RgbdFrame& frame) {
@@ -144,16 +144,16 @@ FlowFrame make_flow_frame(const RgbdFrame& frame) {
 }
 
 std::vector<cv::Point2f> detect_flow_corners(const FlowFrame& frame, const cv::Mat& mask) {
-  constexpr int kMost = 300;
-  constexpr double kLeastQuality = 0.01;  // of the best corner's
+  constexpr int kMax = 300;
+  constexpr double kMinQuality = 0.01;  // of the best corner's
   constexpr double kApart_px = 9.0;
   std::vector<cv::Point2f> corners;
-  cv::goodFeaturesToTrack(frame.grey, corners, kMost, kLeastQuality, kApart_px, mask);
+  cv::goodFeaturesToTrack(frame.grey, corners, kMax, kMinQuality, kApart_px, mask);
   return corners;
 }
 
 std::optional<LandmarkMatch> track_corners(const FlowFrame& a, const std::vector<cv::Point2f>& corners,
-                                            const FlowFrame& b) {
+                                           const FlowFrame& b) {
   constexpr float kReturns_px = 0.5F;
   if (corners.empty()) return std::nullopt;
   std::vector<cv::Point2f> there;
@@ -171,7 +171,7 @@ std::optional<LandmarkMatch> track_corners(const FlowFrame& a, const std::vector
     const std::optional<Eigen::Vector3d> to = surface_at(b.frame, there[i]);
     if (from && to) pairs.emplace_back(*from, *to);
   }
-  return most_agree_on(pairs);
+  return max_agree_on(pairs);
 }
 
 }  // namespace houghstream::reconstruction

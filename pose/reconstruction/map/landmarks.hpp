@@ -44,6 +44,6 @@ std::vector<cv::Point2f> detect_flow_corners(const FlowFrame& frame, const cv::M
 /// Corners of one frame followed into the next, in which they are nearly where they were (Lucas & Kanade 1981), there
 /// and back.
 std::optional<LandmarkMatch> track_corners(const FlowFrame& a, const std::vector<cv::Point2f>& corners,
-                                            const FlowFrame& b);
+                                           const FlowFrame& b);
 
 }  // namespace houghstream::reconstruction

@@ -15,7 +15,8 @@ namespace {
 
 /// Median distance of measured points on the mask from the model along the line of sight, times how steeply it meets
 /// the surface.
-void add_distances(const Mesh& mesh, const RgbdFrame& frame, const MaskedKeyframe& view, std::vector<float>& distances) {
+void add_distances(const Mesh& mesh, const RgbdFrame& frame, const MaskedKeyframe& view,
+                   std::vector<float>& distances) {
   const cv::Rect box = cv::boundingRect(view.mask);
   if (box.empty()) return;
   const cv::Mat model = render_depth(mesh, view.T_camera_object, frame.camera, box);

@@ -7,8 +7,8 @@
 
 #include "pipeline/base/parallel.hpp"
 #include "pipeline/base/random.hpp"
-#include "pose/model/object_model.hpp"
 #include "pose/model/mesh_bvh.hpp"
+#include "pose/model/object_model.hpp"
 #include "pose/motion/twist.hpp"
 #include "pose/reconstruction/map/frame_alignment.hpp"
 
@@ -150,7 +150,7 @@ std::optional<ModelRegistration> register_models(const PartlySeen& a, const Part
   constexpr std::size_t kCoarse = 120;
   constexpr std::size_t kFine = 1200;
   constexpr std::size_t kKept = 24;
-  constexpr double kMost_m = 0.004;
+  constexpr double kMax_m = 0.004;
   const Target target(a);
   const std::vector<Eigen::Vector3f> lab = lab_of(*b.mesh);
   const Points few = sample(b, lab, kCoarse);
@@ -179,7 +179,7 @@ std::optional<ModelRegistration> register_models(const PartlySeen& a, const Part
     c.cost = cost_of(target, many, c.found.T_a_b, c.found.median_m);
   });
   const Candidate& best = *std::min_element(candidates.begin(), candidates.end(), better);
-  if (best.found.median_m > kMost_m) return std::nullopt;
+  if (best.found.median_m > kMax_m) return std::nullopt;
   return best.found;
 }
 

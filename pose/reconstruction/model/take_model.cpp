@@ -9,9 +9,9 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
 #include "pipeline/geometry/renderer.hpp"
-#include "pose/fusion/tsdf_volume.hpp"
 #include "pose/fusion/surface_nets.hpp"
 #include "pose/fusion/surface_smoothing.hpp"
+#include "pose/fusion/tsdf_volume.hpp"
 #include "pose/fusion/view_colours.hpp"
 #include "pose/reconstruction/model/model_registration.hpp"
 
@@ -63,7 +63,7 @@ std::vector<DepthView> views_about(const Take& take, const Eigen::AlignedBox3d& 
 fusion::TsdfSettings grid_settings(double voxel, int threads) {
   fusion::TsdfSettings settings;
   settings.voxel = voxel;
-  settings.fewest_share = 0.02;
+  settings.min_share = 0.02;
   settings.outline_weight = 0.0;  // beside a crop nothing is known
   settings.threads = threads;
   return settings;
@@ -144,7 +144,7 @@ int chosen_part(const Take& take, const TsdfVolume& grid, const std::vector<int>
 Filled fill(const Take& take, const Eigen::AlignedBox3d& box, const ReconstructionSettings& settings) {
   Filled filled;
   filled.grid = fusion::integrate_box(views_about(take, box, settings.threads), box,
-                                 grid_settings(settings.coarse_voxel_m, settings.threads));
+                                      grid_settings(settings.coarse_voxel_m, settings.threads));
   int parts = 0;
   const std::vector<int> labels = label_parts(filled.grid, box.min().z(), parts);
   const int part = chosen_part(take, filled.grid, labels, parts);
@@ -375,12 +375,12 @@ ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views
   fusion::TsdfSettings grid_settings;
   const Eigen::AlignedBox3d bounds = mesh_bounds(known).cast<double>();
   grid_settings.voxel = bounds.diagonal().norm() > 0.3 ? 2.0 * settings.voxel_m : settings.voxel_m;
-  grid_settings.fewest_share = 0.02;
+  grid_settings.min_share = 0.02;
   grid_settings.outline_weight = 0.3;
   grid_settings.threads = settings.threads;
   const Eigen::Vector3d margin = Eigen::Vector3d::Constant(settings.beside_m);
-  fusion::TsdfVolume grid =
-      fusion::integrate_box(depth_views, Eigen::AlignedBox3d(bounds.min() - margin, bounds.max() + margin), grid_settings);
+  fusion::TsdfVolume grid = fusion::integrate_box(
+      depth_views, Eigen::AlignedBox3d(bounds.min() - margin, bounds.max() + margin), grid_settings);
   if (foot_m) end_at_foot(*foot_m, grid);
   ModelOfViews model;
   model.mesh = fusion::largest_part(fusion::extract_surface(grid));
@@ -418,8 +418,8 @@ bool merge_takes(const Take& first, ReconstructedModel& model, const Take& secon
   for (const auto& [take, shown] : {std::pair{&first, &model}, std::pair{&second, &other}}) {
     parallel_for(settings.threads, static_cast<int>(shown->views.size()), [&, take = take, shown = shown](int i) {
       MaskedKeyframe& view = shown->views[static_cast<std::size_t>(i)];
-      view.mask =
-          render_visible_mask(model.mesh, take->keyframes[static_cast<std::size_t>(view.keyframe)].frame, view.T_camera_object);
+      view.mask = render_visible_mask(model.mesh, take->keyframes[static_cast<std::size_t>(view.keyframe)].frame,
+                                      view.T_camera_object);
     });
   }
   model.agreement_m = disagreement(model.mesh, {{&first, &model.views}, {&second, &other.views}}, settings.threads);

@@ -15,7 +15,7 @@ struct ReconstructedModel {
   Mesh mesh;               ///< metres; origin at the middle of its foot, z up as it stood; closed, normals, colours
   std::vector<bool> seen;  ///< per vertex: some view shows it; the others close the surface
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();  ///< world: of the take
-  std::vector<MaskedKeyframe> views;                                      ///< those that show it, in the keyframes' order
+  std::vector<MaskedKeyframe> views;                                 ///< those that show it, in the keyframes' order
   double agreement_m = 0.0;   ///< see disagreement(), of all views that the model is made of
   double seen_through = 0.0;  ///< see free_space_violation()
 };

@@ -6,13 +6,14 @@ namespace houghstream::reconstruction {
 namespace {
 
 double agreement_of(const Alignment& alignment) {
-  return alignment.inlier_share * std::min(1.0, alignment.visible_point_fraction / 0.4) - 0.5 * alignment.photometric_rms;
+  return alignment.inlier_share * std::min(1.0, alignment.visible_point_fraction / 0.4) -
+         0.5 * alignment.photometric_rms;
 }
 
 }  // namespace
 
 Alignment FrameFollower::register_to_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest,
-                                    KeyframeMap& map) const {
+                                         KeyframeMap& map) const {
   AlignmentLimits limits;
   limits.coarsest = coarsest;
   return align_frame(map.local_map(T_start), levels, T_start, {map.settings().plane, corners_}, limits);
@@ -20,9 +21,9 @@ Alignment FrameFollower::register_to_map(const FrameLevels& levels, const Eigen:
 
 std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const FrameLevels& levels, const LastStep& step,
                                                Motion motion, KeyframeMap& map) {
-  constexpr double kMostTurn = 0.15;     // radians a frame, from rest
-  constexpr double kMostEver = 0.4;      // radians a frame
-  constexpr double kMostShift_m = 0.02;  // a frame, of an object that turns where it stands
+  constexpr double kMaxTurn = 0.15;     // radians a frame, from rest
+  constexpr double kMaxEver = 0.4;      // radians a frame
+  constexpr double kMaxShift_m = 0.02;  // a frame, of an object that turns where it stands
   const Eigen::Isometry3d& T_last = step.T_last;
   const Eigen::Isometry3d T_goes_on = motion == Motion::kObject ? step.repeat_of_object() : step.repeat_of_camera();
   const int coarsest = map.settings().coarsest;
@@ -32,7 +33,7 @@ std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const Frame
   const std::optional<LandmarkMatch> flow =
       motion == Motion::kObject ? std::nullopt : track_corners(last_flow_, detect_flow_corners(last_flow_, {}), now);
   corners_.clear();
-  if (flow && flow->inliers.size() >= map.settings().fewest_corners) {
+  if (flow && flow->inliers.size() >= map.settings().min_corners) {
     for (const auto& [before, after] : flow->inliers) corners_.push_back({T_last.inverse() * before, after});
   }
   const Eigen::Isometry3d T_likely = !corners_.empty() ? flow->T_b_a * T_last : goes_on ? T_goes_on : T_last;
@@ -40,14 +41,15 @@ std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const Frame
   // Stripes and tiles repeat: what suddenly agrees less has slipped by one.
   if (!map.is_good(best) || best.photometric_rms > 1.4 * usual_light_rms_ + 0.03) {
     const Eigen::Isometry3d& T_else = goes_on ? T_last : T_goes_on;
-    for (const Alignment& other : {register_to_map(levels, T_likely, 0, map), register_to_map(levels, T_else, coarsest, map),
-                                   register_to_map(levels, T_else, 1, map)}) {
+    for (const Alignment& other :
+         {register_to_map(levels, T_likely, 0, map), register_to_map(levels, T_else, coarsest, map),
+          register_to_map(levels, T_else, 1, map)}) {
       if (agreement_of(other) > agreement_of(best)) best = other;
     }
   }
-  const double most = std::min(kMostTurn + 2.0 * map.difference(T_last, step.T_before), kMostEver);
+  const double most = std::min(kMaxTurn + 2.0 * map.difference(T_last, step.T_before), kMaxEver);
   const double shift = (T_last.inverse() * best.T_camera_world).translation().norm();
-  const bool too_far = motion == Motion::kObject && shift > kMostShift_m;
+  const bool too_far = motion == Motion::kObject && shift > kMaxShift_m;
   if (!map.is_good(best) || too_far || map.difference(T_last, best.T_camera_world) > most) return std::nullopt;
   usual_light_rms_ += 0.2 * (best.photometric_rms - usual_light_rms_);
   return best;

@@ -25,7 +25,7 @@ class FrameFollower {
 
  private:
   Alignment register_to_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest,
-                       KeyframeMap& map) const;
+                            KeyframeMap& map) const;
 
   FlowFrame last_flow_;
   std::vector<LandmarkObservation> corners_;  ///< of it, as the present frame shows them

@@ -44,7 +44,7 @@ void remove_skin(const cv::Mat& colour, cv::Mat& mask) {
 }  // namespace
 
 cv::Mat object_pixels(const FrameLevel& level, const ChosenObject& object, const Eigen::Isometry3d& T_camera_world) {
-  constexpr double kLowest_m = 0.006;
+  constexpr double kMin_m = 0.006;
   const double widest = 1.3 * object.radius_m + 0.01;
   const Eigen::Isometry3d T_world_camera = T_camera_world.inverse();
   cv::Mat mask = cv::Mat::zeros(level.depth.size(), CV_8UC1);
@@ -53,7 +53,7 @@ cv::Mat object_pixels(const FrameLevel& level, const ChosenObject& object, const
       const float z = level.depth.at<float>(y, x);
       if (!(z > 0.1F)) continue;
       const Eigen::Vector3d p = T_world_camera * level.camera.backproject(x, y, z);
-      const bool is_on_it = p.z() > kLowest_m && p.z() < object.height_m + 0.03 && std::hypot(p.x(), p.y()) < widest;
+      const bool is_on_it = p.z() > kMin_m && p.z() < object.height_m + 0.03 && std::hypot(p.x(), p.y()) < widest;
       mask.at<std::uint8_t>(y, x) = is_on_it ? 255 : 0;
     }
   }

@@ -34,11 +34,11 @@ double unchanged_share(const cv::Mat& light, const cv::Mat& first, const cv::Mat
 }  // namespace
 
 MotionClassifier::MotionClassifier(FlowFrame first, const FrameLevels& levels, const cv::Mat& on_object,
-                         const Eigen::Isometry3d& T_camera_world, std::size_t fewest_corners)
+                                   const Eigen::Isometry3d& T_camera_world, std::size_t min_corners)
     : first_(std::move(first)),
       first_light_(levels.levels[0].light),
       T_first_(T_camera_world),
-      fewest_corners_(fewest_corners) {
+      min_corners_(min_corners) {
   cv::dilate(on_object, about_object_, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
   cv::dilate(on_object, away_from_object_, cv::getStructuringElement(cv::MORPH_ELLIPSE, {41, 41}));
   away_from_object_ = away_from_object_ == 0;
@@ -56,11 +56,11 @@ MotionClassifier::MotionClassifier(FlowFrame first, const FrameLevels& levels, c
 }
 
 bool MotionClassifier::camera_is_still(const FlowFrame& now, const FrameLevels& levels,
-                                  const Eigen::Isometry3d& T_moved) const {
+                                       const Eigen::Isometry3d& T_moved) const {
   constexpr double kMoved = 0.003;  // radians, of half of the corners
   constexpr double kBetter = 0.01;  // of light
   const std::optional<LandmarkMatch> flow = track_corners(first_, corners_, now);
-  if (flow && flow->inliers.size() >= fewest_corners_) {
+  if (flow && flow->inliers.size() >= min_corners_) {
     const auto moved = std::count_if(flow->inliers.begin(), flow->inliers.end(), [&](const auto& pair) {
       return bearing_error({pair.first, pair.second}, Eigen::Isometry3d::Identity()) > kMoved;
     });

@@ -19,9 +19,9 @@ class MotionClassifier {
  public:
   MotionClassifier() = default;
   /// `levels` are of the first frame; `on_object` is CV_8UC1, as large as the finest, and not 0 where the object is.
-  /// `fewest_corners`: in common with the first frame, to say whether the camera stands still.
+  /// `min_corners`: in common with the first frame, to say whether the camera stands still.
   MotionClassifier(FlowFrame first, const FrameLevels& levels, const cv::Mat& on_object,
-              const Eigen::Isometry3d& T_camera_world, std::size_t fewest_corners);
+                   const Eigen::Isometry3d& T_camera_world, std::size_t min_corners);
 
   const FlowFrame& first() const { return first_; }
 
@@ -38,7 +38,7 @@ class MotionClassifier {
   FlowFrame first_;
   cv::Mat first_light_, about_object_, away_from_object_;  ///< of its finest level
   Eigen::Isometry3d T_first_ = Eigen::Isometry3d::Identity();
-  std::size_t fewest_corners_ = 0;
+  std::size_t min_corners_ = 0;
   std::vector<cv::Point2f> corners_;  ///< of it, away from the object
   LevelPoints rest_;                  ///< points away from the object, world frame
   int object_moves_ = 0;

@@ -23,7 +23,7 @@ std::vector<std::pair<double, int>> keyframes_by_distance(const KeyframeMap& map
 
 /// The frame on the points of one keyframe, where that is sure.
 std::optional<Alignment> register_to_keyframe(const KeyframeMap& map, int keyframe, const FrameLevels& levels,
-                                         const Eigen::Isometry3d& T_start) {
+                                              const Eigen::Isometry3d& T_start) {
   AlignmentLimits limits;
   limits.coarsest = map.settings().coarsest;
   Alignment found = align_frame(map.points_of({keyframe}), levels, T_start, {map.settings().plane, {}}, limits);
@@ -44,7 +44,8 @@ const LandmarkCache::Place& place_by_corners(const KeyframeMap& map, int keyfram
 
 }  // namespace
 
-std::optional<Alignment> relocalise_by_neighbours(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last) {
+std::optional<Alignment> relocalise_by_neighbours(const KeyframeMap& map, const FrameLevels& levels,
+                                                  const LastPlace& last) {
   constexpr std::size_t kTried = 4;
   const std::vector<std::pair<double, int>> by_distance = keyframes_by_distance(map, last.T_camera_world);
   for (std::size_t i = 0; i < std::min(kTried, by_distance.size()); ++i) {
@@ -57,7 +58,7 @@ std::optional<Alignment> relocalise_by_neighbours(const KeyframeMap& map, const 
 }
 
 std::optional<Alignment> Relocaliser::find(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last,
-                                            bool everywhere, LandmarkCache& corners) {
+                                           bool everywhere, LandmarkCache& corners) {
   const std::vector<Keyframe>& keyframes = map.keyframes();
   const std::vector<std::pair<double, int>> by_distance = keyframes_by_distance(map, last.T_camera_world);
   const std::size_t tried = everywhere ? keyframes.size() : 12;

@@ -33,7 +33,8 @@ struct LastPlace {
 };
 
 /// Lays a frame on the keyframes nearest to the last place, one by one, with its view taken for theirs.
-std::optional<Alignment> relocalise_by_neighbours(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last);
+std::optional<Alignment> relocalise_by_neighbours(const KeyframeMap& map, const FrameLevels& levels,
+                                                  const LastPlace& last);
 
 /// Looks for frames by the corners that they have in common with keyframes.
 class Relocaliser {

@@ -35,7 +35,7 @@ void TakePlacer::require_same_size(const RgbdFrame& frame) {
 }
 
 const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
-  constexpr std::size_t kMostUnplaced = 100;
+  constexpr std::size_t kMaxUnplaced = 100;
   const auto begin = std::chrono::steady_clock::now();
   require_same_size(frame);
   take_.frames.push_back({frame.id, false, false, -1, Eigen::Isometry3d::Identity()});
@@ -66,7 +66,7 @@ const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
       follower_.set_last(std::move(now));
     } else {
       note_lost(levels);
-      if (unplaced_.size() < kMostUnplaced)
+      if (unplaced_.size() < kMaxUnplaced)
         unplaced_.push_back({static_cast<int>(take_.frames.size()) - 1, frame, std::move(corners)});
     }
   }
@@ -79,7 +79,7 @@ void TakePlacer::choose(const RgbdFrame& frame) {
   Choice choice = select_object(frame, settings_.choice);
   if (!choice.object) {
     state_.message = choice.reason;
-    require(state_.frames < settings_.most_frames_to_choose && !settings_.choice.box_px, "{}", choice.reason);
+    require(state_.frames < settings_.max_frames_to_choose && !settings_.choice.box_px, "{}", choice.reason);
     return;
   }
   chosen_ = std::move(*choice.object);
@@ -89,8 +89,9 @@ void TakePlacer::choose(const RgbdFrame& frame) {
   step_.restart(chosen_.T_camera_stand);
   state_.state = TakeState::kTracking;
   round_.assign(36, false);
-  judge_ = MotionClassifier(make_flow_frame(frame), levels, object_pixels(levels.levels[0], chosen_, chosen_.T_camera_stand),
-                       chosen_.T_camera_stand, settings_.map.fewest_corners);
+  judge_ =
+      MotionClassifier(make_flow_frame(frame), levels, object_pixels(levels.levels[0], chosen_, chosen_.T_camera_stand),
+                       chosen_.T_camera_stand, settings_.map.min_corners);
   follower_.set_last(judge_.first());
   Alignment at_start;
   at_start.T_camera_world = chosen_.T_camera_stand;
@@ -103,12 +104,12 @@ bool TakePlacer::is_fit_for_model(const PictureQuality& quality) {
   sharpness_.push_back(quality.sharpness);
   if (sharpness_.size() > kAround) sharpness_.pop_front();
   const bool badly_exposed =
-      quality.dark_share > settings_.most_dark_share || quality.bright_share > settings_.most_bright_share;
+      quality.dark_share > settings_.max_dark_share || quality.bright_share > settings_.max_bright_share;
   take_.badly_exposed += badly_exposed ? 1 : 0;
   if (badly_exposed) return false;
   if (around.size() < 3) return true;
   std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2), around.end());
-  const bool blurred = quality.sharpness < settings_.least_sharpness * around[around.size() / 2];
+  const bool blurred = quality.sharpness < settings_.min_sharpness * around[around.size() / 2];
   take_.blurred += blurred ? 1 : 0;
   return !blurred;
 }
@@ -166,7 +167,7 @@ void TakePlacer::follow_object_only() {
   map.plane = PlanePrior();
   map.plane->normal = chosen_.plane.normal;
   map.plane->offset = chosen_.plane.offset;
-  map.least_inlier_share = 0.6;
+  map.min_inlier_share = 0.6;
   map.coarsest = 1;
   map.use_landmarks = false;
   map.sure_corners = 12;
@@ -224,7 +225,7 @@ void TakePlacer::note_lost(const FrameLevels& levels) {
   const double speed = map_.difference(step_.T_last, step_.T_before);
   std::string why = "the picture jumped, or something hid what was followed";
   if (speed > kFast ||
-      levels.quality.sharpness < settings_.least_sharpness * (sharpness_.empty() ? 0.0 : sharpness_.front()))
+      levels.quality.sharpness < settings_.min_sharpness * (sharpness_.empty() ? 0.0 : sharpness_.front()))
     why = "too fast";
   state_.state = TakeState::kLost;
   take_.lost.push_back({number, number, why});

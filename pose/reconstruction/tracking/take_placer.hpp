@@ -8,9 +8,9 @@
 
 #include "pose/motion/last_step.hpp"
 #include "pose/reconstruction/tracking/frame_follower.hpp"
+#include "pose/reconstruction/tracking/motion_classification.hpp"
 #include "pose/reconstruction/tracking/relocalisation.hpp"
 #include "pose/reconstruction/tracking/take.hpp"
-#include "pose/reconstruction/tracking/motion_classification.hpp"
 
 namespace houghstream::reconstruction {
 
@@ -18,12 +18,12 @@ enum class TakeState : std::uint8_t { kChoosing, kTracking, kLost };
 
 struct TakePlacerSettings {
   ChoiceSettings choice;
-  MapSettings map;                 ///< middle and plane are those of the object
-  int most_frames_to_choose = 45;  ///< without an object in so many frames, there is none
-  double keyframe_turn = 0.12;     ///< radians between the views of keyframes
-  double least_sharpness = 0.5;    ///< of the median of the frames around; what is less is blurred
-  double most_dark_share = 0.7;    ///< of a picture; what is more is badly exposed
-  double most_bright_share = 0.4;
+  MapSettings map;                ///< middle and plane are those of the object
+  int max_frames_to_choose = 45;  ///< without an object in so many frames, there is none
+  double keyframe_turn = 0.12;    ///< radians between the views of keyframes
+  double min_sharpness = 0.5;     ///< of the median of the frames around; what is less is blurred
+  double max_dark_share = 0.7;    ///< of a picture; what is more is badly exposed
+  double max_bright_share = 0.4;
 };
 
 /// What can be said at any time.
@@ -74,7 +74,7 @@ class TakePlacer {
   KeyframeMap map_;
   LevelSettings levels_;
   Motion motion_ = Motion::kUnknown;
-  MotionClassifier judge_;  ///< from the frame on in which the object was chosen
+  MotionClassifier judge_;        ///< from the frame on in which the object was chosen
   StaticShadingDetector lights_;  ///< while the object turns
   FrameFollower follower_;
   cv::Size size_;  ///< of all frames, pixels

@@ -140,7 +140,8 @@ TEST(ScaleSpaceSearch, EachSizeHasAHoughImageThatPeaksWhereTheObjectFits) {
   EXPECT_GT(peaks[2], peaks[0]);
   EXPECT_NEAR(at.x, (120 + 0.5) * 1.66, 4);
   EXPECT_NEAR(at.y, (110 + 0.5) * 1.66, 4);
-  EXPECT_FLOAT_EQ(static_cast<float>(peaks[2]), strongest(search(scene.frame, quick_settings())).evidence.relative_vote_mass);
+  EXPECT_FLOAT_EQ(static_cast<float>(peaks[2]),
+                  strongest(search(scene.frame, quick_settings())).evidence.relative_vote_mass);
 }
 
 TEST(ScaleSpaceSearch, AnObjectBetweenTwoSizesIsOneCandidate) {

@@ -43,7 +43,7 @@ TEST(SurfaceNeighbours, FarAwayThePointsBesideAreTheNeighboursNearbyTheSupportIs
   EXPECT_GE(neighbours_of(far, 30, 20).indices.size(), 5U);
   const HistogramCloud near = make_histogram_cloud(wall_at(0.1), settings(), 1);
   const std::size_t middle = near.index(30, 20);
-  EXPECT_EQ(near.reaches[middle], HistogramCloud::kFarthest);
+  EXPECT_EQ(near.reaches[middle], HistogramCloud::kMaxDistance);
   EXPECT_FALSE(neighbours_of(near, 30, 20).indices.empty());
 }
 

@@ -50,7 +50,7 @@ TEST(ViewAlignment, TheViewThatAgreesBestOnceAlignedIsTaken) {
   for (auto& lab : wrong.appearance.lab) lab = {128, 128, 128};
   const std::vector<ViewTemplate> views = {right, wrong};
   std::vector<PlacedTemplate> compared = {{0, beside, match_template(right, beside, frame)},
-                                      {1, beside, match_template(wrong, beside, frame)}};
+                                          {1, beside, match_template(wrong, beside, frame)}};
   ASSERT_EQ(best_match(compared).view, 1U);
   const std::vector<PlacedTemplate> before = compared;
   const PlacedTemplate aligned = align_best_templates(views, frame, compared);

@@ -152,7 +152,9 @@ TEST(TemplateMatch, APartOfALargerThingDoesNotEndAtTheOutline) {
   const cv::Mat mask = toy::training_views().front().mask;
   ViewTemplate window = toy::remembered_view();
   window.appearance = make_template_grid(wall, mask, cv::boundingRect(mask), kCentre);
-  const auto outline = [&] { return measure_boundary_continuation(window, kCentre, toy::lab_frame(wall, wall.colour, 1.0F)); };
+  const auto outline = [&] {
+    return measure_boundary_continuation(window, kCentre, toy::lab_frame(wall, wall.colour, 1.0F));
+  };
   EXPECT_GT(outline().surface_goes_on(), 0.9F);
   EXPECT_GT(outline().colour_goes_on(), 0.9F);
   EXPECT_GT(outline().goes_on(), 0.9F);

@@ -67,7 +67,7 @@ int half_of(int derivative) {
 
 TEST(TileDerivatives, OfLightnessAreThoseOfSobelAtEveryPixel) {
   Random random(1);
-  for (const int width : {1, 37, kLongestPart}) {
+  for (const int width : {1, 37, kMaxPart}) {
     const auto lightness = plane_of<std::uint8_t>({width, 5}, 6, [&](int x, int y) {
       return y < 2 ? random.below(256) : 100 + random.below(1 + std::abs(x) % 9);
     });

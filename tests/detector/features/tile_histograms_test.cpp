@@ -86,7 +86,7 @@ TEST(TileHistograms, TheWindowReachesTwoPixelsAndKeepsTheMean) {
 
 TEST(TileHistograms, AreThoseOfTheReadableFeatures) {
   Random random(3);
-  for (const cv::Size size : {cv::Size(1, 1), cv::Size(45, 7), cv::Size(kLongestPart, 4)}) {
+  for (const cv::Size size : {cv::Size(1, 1), cv::Size(45, 7), cv::Size(kMaxPart, 4)}) {
     cv::Mat_<float> dx(size);
     cv::Mat_<float> dy(size);
     for (cv::Mat_<float>* plane : {&dx, &dy}) {

@@ -148,8 +148,8 @@ TEST_F(ForestFile, SettingsThatNoProfileHasAreRefused) {
   expect_refused("holes filled over", [&](Forest& f) { f.features.fill_distance_px = nan; });
   expect_refused("24 pixels or -1 m", [](Forest& f) { f.features.fill_distance = -1.0F; });
   expect_refused("a tone of means 140 to 130", [](Forest& f) { f.features.tone = {140.0F, 130.0F, 50.0F}; });
-  expect_refused("deviation up to 0,", [](Forest& f) { f.features.tone.most_deviation = 0.0F; });
-  expect_refused("a tone of means", [&](Forest& f) { f.features.tone.least_mean = nan; });
+  expect_refused("deviation up to 0,", [](Forest& f) { f.features.tone.max_deviation = 0.0F; });
+  expect_refused("a tone of means", [&](Forest& f) { f.features.tone.min_mean = nan; });
   expect_refused("patch of 0 steps", [](Forest& f) { f.patch.radius = 0; });
   expect_refused("patch of", [&](Forest& f) { f.patch.unit = nan; });
 }

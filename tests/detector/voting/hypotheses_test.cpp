@@ -46,13 +46,13 @@ PatchPosteriors all_voting(const ForestIndex& index, const PatchGrid& patches) {
   return posteriors;
 }
 
-std::vector<Hypothesis> find(const PatchGrid& patches, float least_mass) {
+std::vector<Hypothesis> find(const PatchGrid& patches, float min_mass) {
   Forest forest = centre_forest();
   forest.classes[0].nominal_vote_mass = 1.0F;
   const ForestIndex index(forest);
   const PatchPosteriors posteriors = all_voting(index, patches);
   VotingSettings settings;
-  settings.min_mass_share = least_mass;
+  settings.min_mass_share = min_mass;
   const VotingInput input{forest, patches, posteriors, toy::kSmallCamera, settings};
   VotingMemory::Worker own;
   cast_votes(input, 0, own.casting, own.space);

@@ -36,7 +36,8 @@ std::vector<ImageThumbnail> some_of(const std::vector<ImageThumbnail>& images, s
 }
 
 /// Of two streams that saw the same.
-std::optional<RecordedStarts> starts_in(const std::vector<ImageThumbnail>& recorded, const std::vector<ImageThumbnail>& live) {
+std::optional<RecordedStarts> starts_in(const std::vector<ImageThumbnail>& recorded,
+                                        const std::vector<ImageThumbnail>& live) {
   return find_stream_starts({recorded, recorded}, {live, live});
 }
 

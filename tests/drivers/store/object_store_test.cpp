@@ -82,13 +82,13 @@ TEST(ObjectStore, AVoteCentreIsThreeNumbersOrTheOrigin) {
 TEST(ObjectStore, AToneIsARangeOfGreyValuesOrHoldsEveryPicture) {
   const fs::path folder = whole_store("store_tone");
   ObjectStore store = read_store(folder);
-  EXPECT_EQ(store.tone.least_mean, 0.0F);
-  EXPECT_EQ(store.tone.most_mean, 255.0F);
+  EXPECT_EQ(store.tone.min_mean, 0.0F);
+  EXPECT_EQ(store.tone.max_mean, 255.0F);
   store.tone = {90.0F, 120.0F, 45.0F};
   write_store_json(store);
-  EXPECT_EQ(read_store(folder).tone.most_mean, 120.0F);
-  EXPECT_EQ(read_store(folder).tone.most_deviation, 45.0F);
-  store.tone.least_mean = 121.0F;
+  EXPECT_EQ(read_store(folder).tone.max_mean, 120.0F);
+  EXPECT_EQ(read_store(folder).tone.max_deviation, 45.0F);
+  store.tone.min_mean = 121.0F;
   write_store_json(store);
   expect_says(error_of_reading(folder), {"store.json: 'tone' is {", "121.0", "expected grey values of 0 to 255"});
   replace_in_file(folder / "store.json", "121.0", "\"dark\"");
@@ -96,7 +96,7 @@ TEST(ObjectStore, AToneIsARangeOfGreyValuesOrHoldsEveryPicture) {
   nlohmann::json without = read_json_object(folder / "store.json");
   without.erase("tone");
   write_text(folder / "store.json", without.dump());
-  EXPECT_EQ(read_store(folder).tone.most_deviation, 255.0F);
+  EXPECT_EQ(read_store(folder).tone.max_deviation, 255.0F);
 }
 
 // What may be missing would be, without a word.

@@ -74,7 +74,8 @@ TEST(StoreTransaction, AStoreJsonOfAnybodyElseMakesNoStore) {
   const fs::path shop = fresh_folder("store_shop");
   write_text(shop / "store.json", "{\"opens\": 9}");
   EXPECT_FALSE(is_replaceable(shop));
-  expect_says(error_of([&] { StoreTransaction build(shop); }), {shop.string(), "holds no store.json of an object store"});
+  expect_says(error_of([&] { StoreTransaction build(shop); }),
+              {shop.string(), "holds no store.json of an object store"});
   const fs::path torn = whole_store("store_torn");
   const std::string text = read_text(torn / "store.json");
   write_text(torn / "store.json", text.substr(0, text.size() / 2));

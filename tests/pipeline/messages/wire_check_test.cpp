@@ -125,11 +125,11 @@ std::string fault_of(const Message& message) {
 
 TEST(WireCheck, NamesAndListsThatAreKeptAreNotAsLongAsMessages) {
   Detection detection;
-  detection.class_name = std::string(kLongestName, 'x');
+  detection.class_name = std::string(kMaxNameLength, 'x');
   Detections detections;
   detections.frame = {std::string(999, 'C'), 7};
   detections.detections = {detection};
-  detections.stages.assign(kMostStages, {"detect.leaves", 3});
+  detections.stages.assign(kMaxStages, {"detect.leaves", 3});
   EXPECT_EQ(fault_of(to_message(detections)), "");
 
   Detections longer = detections;
@@ -154,8 +154,8 @@ TEST(WireCheck, NamesAndListsThatAreKeptAreNotAsLongAsMessages) {
 
 TEST(WireCheck, AFrameOfMoreBytesThanAnyImageHasIsRefused) {
   images_t message = to_message(make_test_frame(5), WireFormat{}, 41);
-  message.images[0].metadata[0].value.assign(kMostFrameBytes, 0);
-  message.images[0].metadata[0].n = static_cast<std::int32_t>(kMostFrameBytes);
+  message.images[0].metadata[0].value.assign(kMaxFrameBytes, 0);
+  message.images[0].metadata[0].n = static_cast<std::int32_t>(kMaxFrameBytes);
   const std::vector<std::uint8_t> bytes = encode_message(message);
   EXPECT_THROW(read_frame_header(view_of(bytes)), InputError);
   EXPECT_THROW(decode_message<images_t>(view_of(bytes)), InputError);

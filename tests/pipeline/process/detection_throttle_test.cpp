@@ -51,7 +51,8 @@ TEST(DetectionThrottle, ALossOfACameraThatIsNotKnownTakesNoCamerasPlace) {
 TEST(DetectionThrottle, EveryFrameOfACameraTooManyIsLookedAt) {
   DetectionThrottle budget(5.0);
   EXPECT_TRUE(budget.is_due({"LEFT", 0}));
-  for (std::size_t i = 1; i < DetectionThrottle::kCameras; ++i) EXPECT_TRUE(budget.is_due({"FORGED_" + std::to_string(i), 0}));
+  for (std::size_t i = 1; i < DetectionThrottle::kCameras; ++i)
+    EXPECT_TRUE(budget.is_due({"FORGED_" + std::to_string(i), 0}));
   EXPECT_EQ(looks(budget, 3, "LATE"), (std::vector<int>{0, 1, 2}));
   EXPECT_FALSE(budget.is_due({"LEFT", 40000})) << "the others have theirs";
   EXPECT_FALSE(budget.is_due({"FORGED_1", 40000}));

@@ -142,8 +142,9 @@ TEST(FrameSynchroniser, MemoryIsBoundedWhereResultsOfOneFrameComeWithoutEnd) {
     EXPECT_EQ(dropped.skipped, count - static_cast<std::int64_t>(FrameSynchroniser::kWaiting));
     EXPECT_TRUE(dropped.without_frame.empty());
   }
-  EXPECT_THROW(FrameSynchroniser(true).add_detections(id(1), std::vector<std::uint8_t>(FrameSynchroniser::kWaitingBytes + 1)),
-               InputError);
+  EXPECT_THROW(
+      FrameSynchroniser(true).add_detections(id(1), std::vector<std::uint8_t>(FrameSynchroniser::kWaitingBytes + 1)),
+      InputError);
 }
 
 TEST(FrameSynchroniser, TwoCamerasOfEqualTimesKeepTheirFramesApart) {
@@ -254,7 +255,8 @@ TEST(FrameSynchroniser, TheLastFrameStaysHoweverLargeItIs) {
 
 TEST(FrameSynchroniser, ListensToAFewCamerasOnly) {
   FrameSynchroniser inbox(true);
-  for (std::size_t i = 0; i < FrameSynchroniser::kCameras; ++i) inbox.put_frame({std::to_string(i), 1}, arrived_bytes(1));
+  for (std::size_t i = 0; i < FrameSynchroniser::kCameras; ++i)
+    inbox.put_frame({std::to_string(i), 1}, arrived_bytes(1));
   EXPECT_THROW(inbox.put_frame({"one more", 1}, arrived_bytes(1)), InputError);
   EXPECT_THROW(inbox.add_detections({"one more", 1}, {1}), InputError);
   EXPECT_NO_THROW(inbox.put_frame({"0", 2}, arrived_bytes(1)));
@@ -267,8 +269,8 @@ TEST(FrameSynchroniser, LargeDetectionsOfManyCamerasAreKeptWithinABound) {
     for (int camera = 0; camera < kCameras; ++camera)
       inbox.add_detections({std::to_string(camera), i}, std::vector<std::uint8_t>(FrameSynchroniser::kWaitingBytes));
   }
-  constexpr std::size_t kMost = FrameSynchroniser::kAllWaitingBytes / FrameSynchroniser::kWaitingBytes;
-  EXPECT_EQ(inbox.take_dropped().without_frame.size(), kCameras * 60 - kMost);
+  constexpr std::size_t kMax = FrameSynchroniser::kAllWaitingBytes / FrameSynchroniser::kWaitingBytes;
+  EXPECT_EQ(inbox.take_dropped().without_frame.size(), kCameras * 60 - kMax);
   for (int camera = 0; camera < kCameras; ++camera) inbox.put_frame({std::to_string(camera), 59}, arrived_bytes(1));
   for (int camera = 0; camera < kCameras; ++camera) EXPECT_TRUE(inbox.take(kNow).has_value());
 }

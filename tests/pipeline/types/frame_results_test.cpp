@@ -146,12 +146,12 @@ TEST(FrameResults, OtherPosesAnswerNothing) {
 
 TEST(FrameResults, MoreThanAnybodysDetectorsAreRefused) {
   FrameResults results;
-  for (std::size_t i = 0; i < FrameResults::kMost; ++i)
+  for (std::size_t i = 0; i < FrameResults::kMax; ++i)
     results.add(Detections{kFrame, {found("can", static_cast<float>(i))}, {}});
   EXPECT_NO_THROW(results.add(Detections{kFrame, {found("can", 3.0F)}, {}})) << "played again";
   EXPECT_THROW(results.add(kBowls), InputError);
   FrameResults early;
-  for (std::size_t i = 0; i < FrameResults::kMost; ++i) early.add(poses_of(kCan, 1));
+  for (std::size_t i = 0; i < FrameResults::kMax; ++i) early.add(poses_of(kCan, 1));
   EXPECT_THROW(early.add(poses_of(kCan, 1)), InputError);
 }
 

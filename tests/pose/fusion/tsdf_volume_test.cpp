@@ -79,7 +79,7 @@ TEST(TsdfVolume, BesideTheImagesIsFreeBesideThePictureNothingIsKnown) {
 TEST(TsdfVolume, WhatCannotBeFusedIsRefused) {
   EXPECT_THROW(integrate_views({}, coarse()), InputError);
   TsdfSettings tiny = coarse();
-  tiny.most_voxels = 1000;
+  tiny.max_voxels = 1000;
   EXPECT_THROW(integrate_views(box_views(), tiny), InputError);
   TsdfSettings none = coarse();
   none.voxel = 0.0;

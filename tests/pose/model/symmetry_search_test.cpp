@@ -182,7 +182,8 @@ TEST(RotationSymmetryTest, ColoursMayDifferALittleOnMostOrMuchOnFewPoints) {
   settings.largest_differing = 0.4;
   EXPECT_TRUE(RotationSymmetryTest(mesh, kOrigin, settings).fits(kUp, M_PI));
   settings.largest_differing = 0.05;
-  EXPECT_TRUE(RotationSymmetryTest(mesh, kOrigin, settings).fits(Eigen::Vector3d::UnitY(), M_PI)) << "the back stays the back";
+  EXPECT_TRUE(RotationSymmetryTest(mesh, kOrigin, settings).fits(Eigen::Vector3d::UnitY(), M_PI))
+      << "the back stays the back";
 }
 
 TEST(RotationSymmetryTest, RefusesAMeshWithoutSurface) {

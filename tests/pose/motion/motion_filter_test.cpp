@@ -59,7 +59,8 @@ TEST(MotionFilter, TheCommonErrorIsPartOfTheCovarianceAloneWhetherItMovesOrStand
   const auto expect_common = [&] {
     EXPECT_EQ(filters[0].T_world_object().matrix(), filters[1].T_world_object().matrix());
     const Covariance6 more = filters[0].covariance() - filters[1].covariance();
-    EXPECT_TRUE(more.isApprox(MotionSettings().common_variance_fraction * 1e-6 * Covariance6::Identity(), 1e-6)) << more;
+    EXPECT_TRUE(more.isApprox(MotionSettings().common_variance_fraction * 1e-6 * Covariance6::Identity(), 1e-6))
+        << more;
   };
   Vector6 velocity = Vector6::Zero();
   velocity.x() = 0.3;

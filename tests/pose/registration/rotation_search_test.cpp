@@ -20,14 +20,15 @@ struct SeenBox {
   ObjectModel model = make_object_model("box", printed_box(), {});
   Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
   RgbdFrame frame = coloured_frame(model.mesh, truth, 3);
-  ObjectObservation seen{frame, model, truth.translation().cast<float>(), {}, {}, lab_region(frame, {0, 0, 640, 480}, {})};
+  ObjectObservation seen{frame, model, truth.translation().cast<float>(),
+                         {},    {},    lab_region(frame, {0, 0, 640, 480}, {})};
 };
 
 TEST(TurnSearch, FindsTheWayBackFromEveryQuarter) {
   const SeenBox box;
   for (const double degrees : {90.0, 180.0, 270.0}) {
-    const auto turns =
-        best_rotations_about_z(box.seen, turned(box.truth, degrees), {15.0 * kRadPerDeg, 180.0 * kRadPerDeg, 3, 250}, kTolerance);
+    const auto turns = best_rotations_about_z(box.seen, turned(box.truth, degrees),
+                                              {15.0 * kRadPerDeg, 180.0 * kRadPerDeg, 3, 250}, kTolerance);
     ASSERT_FALSE(turns.empty());
     EXPECT_LT(turn_between_deg(turns.front().T_camera_object, box.truth), 1.0) << degrees;
   }
@@ -35,7 +36,8 @@ TEST(TurnSearch, FindsTheWayBackFromEveryQuarter) {
 
 TEST(TurnSearch, TheBestComesFirstAndNeighboursOfABetterOneAreLeftOut) {
   const SeenBox box;
-  const auto turns = best_rotations_about_z(box.seen, box.truth, {5.0 * kRadPerDeg, 180.0 * kRadPerDeg, 4, 250}, kTolerance);
+  const auto turns =
+      best_rotations_about_z(box.seen, box.truth, {5.0 * kRadPerDeg, 180.0 * kRadPerDeg, 4, 250}, kTolerance);
   ASSERT_LE(turns.size(), 4U);
   for (std::size_t i = 1; i < turns.size(); ++i) {
     EXPECT_GE(turns[i - 1].score, turns[i].score);

@@ -45,7 +45,8 @@ TEST(Region, ColoursAreBroughtIntoTheToneOfTheWholeFrame) {
   frame.colour(cv::Rect(200, 150, 100, 80)).setTo(cv::Scalar::all(60));
   RegionSettings settings;
   const auto lightness = [&] {
-    const ObjectObservation seen = observe_object(make_frame_context(frame, settings, DepthNoise()), patch_detection(), kModel, settings);
+    const ObjectObservation seen =
+        observe_object(make_frame_context(frame, settings, DepthNoise()), patch_detection(), kModel, settings);
     return seen.colours.lab.at<cv::Vec3b>(50, 50)[0];
   };
   const int dark = lightness();

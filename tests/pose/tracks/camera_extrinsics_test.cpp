@@ -75,7 +75,8 @@ TEST(CameraExtrinsics, TimesMayBeAny) {
 
 TEST(CameraExtrinsics, ACameraTooManyIsRefusedAndTheOthersGoOn) {
   CameraExtrinsics places;
-  for (std::size_t i = 0; i < CameraExtrinsics::kMostMoving; ++i) places.add("CAMERA_" + std::to_string(i), 1000000, at(0));
+  for (std::size_t i = 0; i < CameraExtrinsics::kMaxMoving; ++i)
+    places.add("CAMERA_" + std::to_string(i), 1000000, at(0));
   EXPECT_EQ(error_of([&] { places.add("FORGED", 1000000, at(0)); }),
             "transforms of more than 256 cameras, expected at most that many");
   places.add("CAMERA_0", 1100000, at(1.0));
@@ -85,12 +86,12 @@ TEST(CameraExtrinsics, ACameraTooManyIsRefusedAndTheOthersGoOn) {
 
 TEST(CameraExtrinsics, OursAreReadWithTheirParents) {
   const auto places = read_camera_extrinsics(written("ours.yaml",
-                                                 "cameras:\n"
-                                                 "  LEFT: {translation: [1.0, 0, 0.5], rotation: [1, 0, 0, 0]}\n"
-                                                 "  RIGHT:\n"
-                                                 "    parent: LEFT\n"
-                                                 "    translation: [0.0, 2, 0]\n"
-                                                 "    rotation: [0.7071, 0, 0, 0.7071]\n"));
+                                                     "cameras:\n"
+                                                     "  LEFT: {translation: [1.0, 0, 0.5], rotation: [1, 0, 0, 0]}\n"
+                                                     "  RIGHT:\n"
+                                                     "    parent: LEFT\n"
+                                                     "    translation: [0.0, 2, 0]\n"
+                                                     "    rotation: [0.7071, 0, 0, 0.7071]\n"));
   ASSERT_EQ(places.size(), 2U);
   EXPECT_TRUE(places.at("RIGHT").translation().isApprox(Eigen::Vector3d(1.0, 2.0, 0.5)));
   EXPECT_TRUE((places.at("RIGHT") * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d(1.0, 3.0, 0.5), 1e-6));
@@ -98,30 +99,30 @@ TEST(CameraExtrinsics, OursAreReadWithTheirParents) {
 
 TEST(CameraExtrinsics, StaticTransformsAreReadAsRosPrintsThem) {
   const auto places = read_camera_extrinsics(written("ros.yaml",
-                                                 "transforms:\n"
-                                                 "- header:\n"
-                                                 "    stamp:\n"
-                                                 "      sec: 1700000000\n"
-                                                 "      nanosec: 5\n"
-                                                 "    frame_id: map\n"
-                                                 "  child_frame_id: stand\n"
-                                                 "  transform:\n"
-                                                 "    translation:\n"
-                                                 "      x: 1.0\n"
-                                                 "      y: 0.0\n"
-                                                 "      z: 0.0\n"
-                                                 "    rotation:\n"
-                                                 "      x: 0.0\n"
-                                                 "      y: 0.0\n"
-                                                 "      z: 0.0\n"
-                                                 "      w: 1.0\n"
-                                                 "- header:\n"
-                                                 "    frame_id: stand\n"
-                                                 "  child_frame_id: LEFT\n"
-                                                 "  transform:\n"
-                                                 "    translation: {x: 0.0, y: 0.5, z: 0.0}\n"
-                                                 "    rotation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}\n"
-                                                 "---\n"));
+                                                     "transforms:\n"
+                                                     "- header:\n"
+                                                     "    stamp:\n"
+                                                     "      sec: 1700000000\n"
+                                                     "      nanosec: 5\n"
+                                                     "    frame_id: map\n"
+                                                     "  child_frame_id: stand\n"
+                                                     "  transform:\n"
+                                                     "    translation:\n"
+                                                     "      x: 1.0\n"
+                                                     "      y: 0.0\n"
+                                                     "      z: 0.0\n"
+                                                     "    rotation:\n"
+                                                     "      x: 0.0\n"
+                                                     "      y: 0.0\n"
+                                                     "      z: 0.0\n"
+                                                     "      w: 1.0\n"
+                                                     "- header:\n"
+                                                     "    frame_id: stand\n"
+                                                     "  child_frame_id: LEFT\n"
+                                                     "  transform:\n"
+                                                     "    translation: {x: 0.0, y: 0.5, z: 0.0}\n"
+                                                     "    rotation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}\n"
+                                                     "---\n"));
   EXPECT_TRUE(places.at("LEFT").translation().isApprox(Eigen::Vector3d(1.0, 0.5, 0.0)));
 }
 

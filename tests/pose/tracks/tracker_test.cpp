@@ -152,7 +152,7 @@ TEST(Tracker, WhatMovesIsFollowedWithItsVelocityAndStandsAgain) {
 
 TEST(Tracker, MoreObjectsThanAllowedAreRefusedAndTheOthersToldOf) {
   ObjectTrackerSettings settings;
-  settings.most_objects = 2;
+  settings.max_objects = 2;
   TrackedScene scene(settings);
   scene.show({{"can", on_table(-0.3, 0)}, {"can", on_table(0, 0)}, {"can", on_table(0.3, 0)}});
   EXPECT_EQ(scene.frames(10).objects.size(), 2U);
@@ -164,7 +164,7 @@ TEST(Tracker, MoreObjectsThanAllowedAreRefusedAndTheOthersToldOf) {
 
 TEST(Tracker, WhatHasBeenGoneLongestMakesRoom) {
   ObjectTrackerSettings settings;
-  settings.most_objects = 1;
+  settings.max_objects = 1;
   TrackedScene scene(settings);
   scene.show({{"can", on_table(0, 0)}});
   scene.frames(60);

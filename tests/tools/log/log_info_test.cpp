@@ -35,7 +35,7 @@ TEST(LogInfo, CountsChannelsTypesRatesAndGaps) {
   const ChannelInfo& frames = info.channels.at("OPENNI_FRAME");
   EXPECT_EQ(frames.messages, 6);
   EXPECT_NEAR(frames.rate_hz(), 5 / 0.9, 1e-9);
-  EXPECT_EQ(frames.longest_gap, 500'000);
+  EXPECT_EQ(frames.max_gap, 500'000);
   EXPECT_EQ(frames.gap_at - info.first, 900'000);
   EXPECT_EQ(frames.frames_lost, 2);
   const std::string text = to_text(info);

@@ -300,7 +300,7 @@ TEST(Supervisor, AMissingProgramIsNamed) {
 
 TEST(Supervisor, WhoDiesAgainAndAgainIsGivenUpWithItsLastWords) {
   SupervisorSettings settings = quick();
-  settings.most_failures = 3;
+  settings.max_failures = 3;
   settings.start_time = milliseconds(0);  // it has run, and dies all the same
   Supervisor supervisor({shell("a", "sleep 0.05; echo the disk is gone >&2; exit 3")}, settings, be_silent);
   try {

@@ -33,7 +33,7 @@ TEST(Practice, NewObjectsThatNoFrameShowsAreNamed) {
 
 TEST(Practice, MoreRoomsThanMemoryHoldsAreRefused) {
   CalibrationSettings settings;
-  settings.rooms = CalibrationSettings::kMostRooms + 1;
+  settings.rooms = CalibrationSettings::kMaxRooms + 1;
   Forest forest;
   EXPECT_EQ(error_of([&] { practise({}, {}, settings, forest); }),
             "501 practice rooms, expected at most 500: all are in memory");

@@ -80,8 +80,8 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   EXPECT_TRUE(fs::exists(first.contact_sheet()));
   EXPECT_EQ(static_cast<int>(read_bop_training_views(options.dump_views).size()), first.objects[0].views);
 
-  EXPECT_EQ(first.tone.least_mean, kCalibrationBrightness.least_mean) << "hs-pose reads it here";
-  EXPECT_EQ(load_forest(first.forest_file()).features.tone.most_deviation, kCalibrationBrightness.most_deviation);
+  EXPECT_EQ(first.tone.min_mean, kCalibrationBrightness.min_mean) << "hs-pose reads it here";
+  EXPECT_EQ(load_forest(first.forest_file()).features.tone.max_deviation, kCalibrationBrightness.max_deviation);
 
   const nlohmann::json learnt = first.objects[0].quality;
   EXPECT_EQ(stored_quality(first, {}).count("bracket"), 1U);
@@ -98,7 +98,7 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   ASSERT_EQ(both.objects.size(), 2U);
   EXPECT_FALSE(both.objects[1].coloured);
   EXPECT_EQ(both.objects[1].id, 2);
-  EXPECT_EQ(both.tone.most_mean, kCalibrationBrightness.most_mean);
+  EXPECT_EQ(both.tone.max_mean, kCalibrationBrightness.max_mean);
   EXPECT_EQ(both.objects[0].quality, learnt) << "what was learnt of an older object stays";
   EXPECT_EQ(stored_quality(both, {}).count("grey"), 1U);
   EXPECT_EQ(forest_names(options.out), (std::vector<std::string>{"bracket", "grey"}));
@@ -153,7 +153,7 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   EXPECT_EQ(after.objects[0].views, before.objects[0].views);
   EXPECT_EQ(after.objects[0].quality, before.objects[0].quality);
   EXPECT_EQ(after.settings, before.settings);
-  EXPECT_EQ(after.tone.most_mean, before.tone.most_mean);
+  EXPECT_EQ(after.tone.max_mean, before.tone.max_mean);
   EXPECT_TRUE(fs::exists(after.contact_sheet()));
   cv::Mat difference;
   cv::absdiff(read_colour_image(after.view_picture(1)), views, difference);

@@ -57,7 +57,8 @@ struct WatchedBus {
   status_t last_words() {
     std::optional<status_t> last;
     watcher.stop();  // from here on this thread receives
-    bus.subscribe(channel::kStatus, [&](const ReceivedMessage& arrival) { last = decode_message<status_t>(arrival.bytes); });
+    bus.subscribe(channel::kStatus,
+                  [&](const ReceivedMessage& arrival) { last = decode_message<status_t>(arrival.bytes); });
     watcher.finish();
     while (!last && bus.handle(std::chrono::milliseconds(1000))) {
     }

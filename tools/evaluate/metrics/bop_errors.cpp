@@ -25,8 +25,8 @@ std::vector<Eigen::Vector2d> projected(const Vertices& vertices, const Eigen::Is
 }
 
 /// Largest squared distance between the projections, or something from `enough` on.
-double farthest_sq(const std::vector<Eigen::Vector2d>& estimated, const Vertices& vertices, const Eigen::Isometry3d& T,
-                   const Camera& camera, double enough) {
+double max_sq(const std::vector<Eigen::Vector2d>& estimated, const Vertices& vertices, const Eigen::Isometry3d& T,
+              const Camera& camera, double enough) {
   double farthest = 0.0;
   for (std::size_t i = 0; i < vertices.size() && farthest < enough; ++i) {
     const Eigen::Vector3d point = T * vertices[i].cast<double>();
@@ -97,7 +97,7 @@ double mspd_error(const Vertices& vertices, const std::vector<Eigen::Isometry3d>
   if (estimated.empty()) return kInfinity;
   double best_sq = kInfinity;
   for (const Eigen::Isometry3d& symmetry : symmetries)
-    best_sq = std::min(best_sq, farthest_sq(estimated, vertices, T_true * symmetry, camera, best_sq));
+    best_sq = std::min(best_sq, max_sq(estimated, vertices, T_true * symmetry, camera, best_sq));
   return std::sqrt(best_sq);
 }
 

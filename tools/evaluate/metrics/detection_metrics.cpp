@@ -25,8 +25,8 @@ MatchedDetection unjudged(const EvaluatedFrame& frame, std::size_t f, std::size_
 }
 
 /// The class's detections over all frames, strongest first.
-std::vector<MatchedDetection> ranked_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
-                                               int max_per_class) {
+std::vector<MatchedDetection> ranked_detections(const std::vector<EvaluatedFrame>& frames,
+                                                const std::string& class_name, int max_per_class) {
   const auto stronger = [](const MatchedDetection& a, const MatchedDetection& b) { return a.score > b.score; };
   std::vector<MatchedDetection> all;
   for (std::size_t f = 0; f < frames.size(); ++f) {
@@ -69,7 +69,7 @@ void judge(MatchedDetection& detection, const EvaluatedFrame& frame, const Detec
 }  // namespace
 
 std::vector<MatchedDetection> match_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
-                                              const DetectionRules& rules) {
+                                               const DetectionRules& rules) {
   std::vector<MatchedDetection> judged = ranked_detections(frames, class_name, rules.max_per_class);
   std::set<ObjectKey> taken;
   for (MatchedDetection& detection : judged) judge(detection, frames[detection.frame], rules, taken);

@@ -32,7 +32,7 @@ struct MatchedDetection {
 /// when it overlaps a required object that no stronger detection has taken (the one of largest overlap); repeated
 /// detections are false; one that overlaps only an object that is not required is ignored.
 std::vector<MatchedDetection> match_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
-                                              const DetectionRules& rules);
+                                               const DetectionRules& rules);
 
 /// Objects of the class that are visible enough to be required, or targets.
 int count_required(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,

@@ -86,7 +86,7 @@ std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, c
 }
 
 std::vector<Prediction> pose_predictions(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
-                                       const PoseModel& model) {
+                                         const PoseModel& model) {
   std::vector<Prediction> statements;
   for (const MatchedDetection& detection : detections.judged) {
     const EvaluatedFrame& frame = frames[detection.frame];

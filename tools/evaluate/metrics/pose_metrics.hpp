@@ -56,7 +56,7 @@ std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, c
 /// ADD-S is below 10 % of the diameter. Those of ignored detections, and of objects whose truth has no pose, are left
 /// out.
 std::vector<Prediction> pose_predictions(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
-                                       const PoseModel& model);
+                                         const PoseModel& model);
 
 /// Share of the true detections of objects at least `min_visible` visible whose ADD-S is below 10 % of the diameter; a
 /// detection without a pose has none. NaN where there is no such detection.

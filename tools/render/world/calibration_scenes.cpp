@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/render/world/objects/shape_variants.hpp"
 #include "tools/render/world/objects/objects.hpp"
 #include "tools/render/world/objects/pixel_noise.hpp"
 #include "tools/render/world/objects/seeds.hpp"
+#include "tools/render/world/objects/shape_variants.hpp"
 #include "tools/render/world/optics/light.hpp"
 #include "tools/render/world/rooms/attitudes.hpp"
 #include "tools/render/world/rooms/room.hpp"
@@ -16,9 +16,9 @@ namespace houghstream::world {
 namespace {
 
 constexpr std::uint64_t kFirstRoom = 1ULL << 44U;  // number of training worlds, far beyond those of other uses
-constexpr int kMostObjects = 7;
-constexpr int kMostDistractors = 12;
-constexpr int kMostLookAlikes = 3;
+constexpr int kMaxObjects = 7;
+constexpr int kMaxDistractors = 12;
+constexpr int kMaxLookAlikes = 3;
 constexpr double kTaughtColours = 0.3;  // share of the distractors' surfaces
 
 /// Of its box, in its own frame.
@@ -99,19 +99,19 @@ World CalibrationScenes::furnished(int room) const {
   const Eigen::AlignedBox2d middle = setter.region(-reach, reach, -reach, 0.8 * reach);
   const Eigen::AlignedBox2d all = setter.region(-0.95, 0.95, -0.95, 0.95);
   const int first = draw_practised(objects_, random);
-  const int count = std::min(static_cast<int>(objects_.size()), random.between(3, kMostObjects));
+  const int count = std::min(static_cast<int>(objects_.size()), random.between(3, kMaxObjects));
   for (int i = 0; i < count; ++i) {
     const CalibrationSceneObject& object = objects_[static_cast<std::size_t>(first + i) % objects_.size()];
     const ThingPtr painted = object.has_colour ? object.thing : plainly_painted(*object.thing, random);
     Random shape(aspect_seed(own, 50U + static_cast<std::uint64_t>(i)));
     setter.put(put_down(object, make_instance_variant(*painted, shape), object.id, random), middle);
   }
-  const int most_look_alikes = std::min(kMostLookAlikes, (count + 1) / 2);  // such as they are, they are the fewer ones
-  for (int i = random.between(0, most_look_alikes); i > 0; --i) {
+  const int max_look_alikes = std::min(kMaxLookAlikes, (count + 1) / 2);  // such as they are, they are the fewer ones
+  for (int i = random.between(0, max_look_alikes); i > 0; --i) {
     const CalibrationSceneObject& object = pick(random, objects_);
     setter.put(put_down(object, make_hard_negative(*object.thing, random), 0, random), all);
   }
-  for (int i = random.between(3, kMostDistractors); i > 0; --i) {
+  for (int i = random.between(3, kMaxDistractors); i > 0; --i) {
     const int kind = random.below(kDistractorKinds);
     setter.stand(make_distractor(kind, aspect_seed(own, 100U + static_cast<std::uint64_t>(i)), kTaughtColours), all,
                  M_PI, 0);

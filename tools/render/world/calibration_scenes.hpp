@@ -14,7 +14,7 @@ struct CalibrationSceneObject {
   ThingPtr thing;
   std::vector<Eigen::Vector3d> ups;  ///< object frame, see up_directions(); empty = any attitude
   bool has_colour = true;            ///< false: another plain colour in every room
-  bool is_calibrated = true;          ///< one of these stands in each room; others are company
+  bool is_calibrated = true;         ///< one of these stands in each room; others are company
 };
 
 /// Pictures in which taught objects are looked for before they count as taught: furnished rooms with the objects, all
@@ -26,10 +26,11 @@ class CalibrationScenes {
   static constexpr int kFramesPerRoom = 2;
 
   /// One of the `objects` at least is practised.
-  CalibrationScenes(std::vector<CalibrationSceneObject> objects, std::uint64_t seed) : objects_(std::move(objects)), seed_(seed) {}
+  CalibrationScenes(std::vector<CalibrationSceneObject> objects, std::uint64_t seed)
+      : objects_(std::move(objects)), seed_(seed) {}
 
-  /// Looks at room `room`, from 0, from different sides and distances. The truth names objects by CalibrationSceneObject::id.
-  /// Same arguments, same frames; thread-safe.
+  /// Looks at room `room`, from 0, from different sides and distances. The truth names objects by
+  /// CalibrationSceneObject::id. Same arguments, same frames; thread-safe.
   std::array<RenderedFrame, kFramesPerRoom> render(int room) const;
 
  private:

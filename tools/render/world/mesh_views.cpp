@@ -20,12 +20,12 @@
 namespace houghstream::world {
 namespace {
 
-constexpr int kMostAttitudes = 10;
+constexpr int kMaxAttitudes = 10;
 constexpr double kSameAttitudeDeg = 40.0;  // nearer ways of resting are one: views between them are jittered
 constexpr double kNearlyFlat_m = 0.001;    // the foot of a scan
 constexpr double kTiltDeviationDeg = 4.0;  // no table is level, no camera upright
-constexpr double kLeastLeanDeg = 10.0;
-constexpr double kMostLeanDeg = 45.0;
+constexpr double kMinLeanDeg = 10.0;
+constexpr double kMaxLeanDeg = 45.0;
 constexpr int kMargin_px = 12;
 
 double radians(double degrees) {
@@ -60,7 +60,7 @@ std::vector<Eigen::Vector3d> resting_ups(const Mesh& mesh) {
     const bool is_new = std::all_of(ups.begin(), ups.end(), [&](const Eigen::Vector3d& other) {
       return up.dot(other) < std::cos(radians(kSameAttitudeDeg));
     });
-    if (is_new && static_cast<int>(ups.size()) < kMostAttitudes) ups.push_back(up);
+    if (is_new && static_cast<int>(ups.size()) < kMaxAttitudes) ups.push_back(up);
   }
   return ups;
 }
@@ -162,7 +162,7 @@ MeshViews::MeshViews(Mesh mesh, const MeshViewSettings& settings, std::uint64_t 
 }
 
 void MeshViews::add_level_views() {
-  const int each = std::min(settings_.views_per_attitude, settings_.most_views / static_cast<int>(ups_.size()));
+  const int each = std::min(settings_.views_per_attitude, settings_.max_views / static_cast<int>(ups_.size()));
   for (std::size_t attitude = 0; attitude < ups_.size(); ++attitude) {
     const Eigen::Matrix3d R_level_object =
         Eigen::Quaterniond::FromTwoVectors(ups_[attitude], Eigen::Vector3d::UnitZ()).toRotationMatrix();
@@ -176,7 +176,7 @@ void MeshViews::add_level_views() {
       pose.pitch_rad = std::asin(low + (high - low) * (i + 0.5) / each);
       pose.roll_rad = radians(kTiltDeviationDeg) * random.normal();
       const bool leans = settings_.attitudes == MeshAttitudes::kResting && chance(random, settings_.leaning_share);
-      const double lean_deg = leans ? random.uniform(kLeastLeanDeg, kMostLeanDeg) : kTiltDeviationDeg * random.normal();
+      const double lean_deg = leans ? random.uniform(kMinLeanDeg, kMaxLeanDeg) : kTiltDeviationDeg * random.normal();
       pose.on_table = !leans;
       pose.R_level_object = tilt(radians(lean_deg), random) *
                             Eigen::AngleAxisd(azimuth, Eigen::Vector3d::UnitZ()).toRotationMatrix() * R_level_object;
@@ -186,7 +186,7 @@ void MeshViews::add_level_views() {
 }
 
 void MeshViews::add_any_views() {
-  for (int i = 0; i < settings_.most_views; ++i) {
+  for (int i = 0; i < settings_.max_views; ++i) {
     Random random(aspect_seed(seed_, 1000000U + static_cast<std::uint64_t>(i)));
     ViewPose pose;
     pose.R_level_object = random_rotation(random);

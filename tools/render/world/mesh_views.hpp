@@ -31,7 +31,7 @@ Eigen::Matrix3d random_rotation(Random& random);
 struct MeshViewSettings {
   MeshAttitudes attitudes = MeshAttitudes::kResting;
   int views_per_attitude = 400;  ///< of each way of resting, all round and from low to high; fewer where there are many
-  int most_views = 2200;         ///< of one object; so many are shown of kAny
+  int max_views = 2200;          ///< of one object; so many are shown of kAny
   double lowest_pitch_deg = 12.0;  ///< of the camera over the level
   double highest_pitch_deg = 80.0;
   double distance_m = 0.7;     ///< camera to object; more where it would not fit the picture

@@ -12,7 +12,7 @@
 namespace houghstream::world {
 namespace {
 
-constexpr int kLeastVisiblePx = 50;
+constexpr int kMinVisiblePx = 50;
 constexpr std::uint64_t kFirstFrameAspect = 100000;
 
 // Pixels of the whole silhouette, those beyond the image's border included.
@@ -37,7 +37,7 @@ void add_truth(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_worl
     if (placed.object_id == 0) continue;
     const cv::Mat mask = ids == static_cast<double>(i + 1);
     const int visible = cv::countNonZero(mask);
-    if (visible < kLeastVisiblePx) continue;
+    if (visible < kMinVisiblePx) continue;
     GroundTruthObject object;
     object.object_id = placed.object_id;
     object.T_camera_object = T_camera_world * placed.T_world_object;
@@ -58,13 +58,13 @@ SensorKind parse_sensor(const std::string& name) {
 }
 
 RenderedFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed,
-                        SensorKind sensor) {
+                           SensorKind sensor) {
   const ShadedView view = shade_view(lit_world, lit_world.world.camera, T_camera_world);
   return record_view(lit_world, T_camera_world, view, noise_seed, sensor);
 }
 
 RenderedFrame record_view(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, const ShadedView& view,
-                       std::uint64_t noise_seed, SensorKind sensor) {
+                          std::uint64_t noise_seed, SensorKind sensor) {
   RenderedFrame result;
   result.frame.camera = lit_world.world.camera;
   result.frame.colour = simulate_colour_camera(view.radiance, lit_world.world.photo, aspect_seed(noise_seed, 1));
@@ -80,7 +80,8 @@ RenderedFrame record_view(const LitWorld& lit_world, const Eigen::Isometry3d& T_
   return result;
 }
 
-RenderedFrame render_scene_frame(const Scene& scene, const LitWorld& lit_world, int index, int count, SensorKind sensor) {
+RenderedFrame render_scene_frame(const Scene& scene, const LitWorld& lit_world, int index, int count,
+                                 SensorKind sensor) {
   const double time = count > 1 ? static_cast<double>(index) / (count - 1) : 0.0;
   const std::uint64_t noise_seed = aspect_seed(scene.seed, kFirstFrameAspect + static_cast<std::uint64_t>(index));
   return render_frame(lit_world, camera_at(scene.trajectory, time), noise_seed, sensor);

@@ -13,8 +13,8 @@ namespace houghstream::world {
 /// A rendered frame with the truth about the taught objects in it.
 struct RenderedFrame {
   RgbdFrame frame;
-  std::vector<GroundTruthObject> objects;     ///< by id; those of which enough is seen
-  std::vector<cv::Mat> visible_masks;  ///< CV_8UC1 0/255, one per object
+  std::vector<GroundTruthObject> objects;  ///< by id; those of which enough is seen
+  std::vector<cv::Mat> visible_masks;      ///< CV_8UC1 0/255, one per object
 };
 
 /// What kind of camera looks. Everything that is taught is seen by the first: the second is there to find out how much
@@ -29,14 +29,14 @@ SensorKind parse_sensor(const std::string& name);
 
 /// Colour and measured depth seen from a camera. `noise_seed` names the frame's noise.
 RenderedFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed,
-                        SensorKind sensor = SensorKind::kStructuredLight);
+                           SensorKind sensor = SensorKind::kStructuredLight);
 
 /// What the sensors make of a view of the world, structured light unless the sensor says otherwise, and the truth.
 RenderedFrame record_view(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, const ShadedView& view,
-                       std::uint64_t noise_seed, SensorKind sensor = SensorKind::kStructuredLight);
+                          std::uint64_t noise_seed, SensorKind sensor = SensorKind::kStructuredLight);
 
 /// Frame `index` of `count` along the scene's camera path. The utime is left 0: sources stamp their frames.
 RenderedFrame render_scene_frame(const Scene& scene, const LitWorld& lit_world, int index, int count,
-                              SensorKind sensor = SensorKind::kStructuredLight);
+                                 SensorKind sensor = SensorKind::kStructuredLight);
 
 }  // namespace houghstream::world

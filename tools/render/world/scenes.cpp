@@ -26,7 +26,8 @@ void add_other_instances(TableSetter& setter, const Clutter& clutter, std::uint6
   for (int i = 0; i < clutter.other_instances; ++i) {
     const ThingPtr thing = make_other_instance(1 + (first + i) % kClassCount,
                                                aspect_seed(seed, kFirstInstance + static_cast<std::uint64_t>(i)));
-    const bool lies = clutter.handling == ObjectPlacement::kLying || (clutter.handling == ObjectPlacement::kTilted && i % 2 == 1);
+    const bool lies =
+        clutter.handling == ObjectPlacement::kLying || (clutter.handling == ObjectPlacement::kTilted && i % 2 == 1);
     if (lies)
       setter.put(put_lying(thing, 0, setter.random()), where);
     else

@@ -58,8 +58,8 @@ class PpfRival final : public SurfaceRival {
 
  private:
   std::vector<Eigen::Isometry3d> propose(const std::string& name, const SeenSurface& seen) const override {
-    constexpr std::size_t kLeastPoints = 12;  // twice the unknowns
-    if (seen.cloud->size() < kLeastPoints) return {};
+    constexpr std::size_t kMinPoints = 12;  // twice the unknowns
+    if (seen.cloud->size() < kMinPoints) return {};
     const cv::Mat measured = rows_of(*seen.cloud);
     std::vector<ppf::Pose3DPtr> found;
     const cv::Mat thin = rows_of(*thinned(*seen.cloud, spacing_m(models().at(name))));
@@ -86,7 +86,7 @@ class PpfRival final : public SurfaceRival {
 }  // namespace
 
 std::unique_ptr<BaselineEstimator> make_ppf_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
-                                          const PpfSettings& settings) {
+                                                  const PpfSettings& settings) {
   check_settings(settings);
   return std::make_unique<PpfRival>(models, pose, settings);
 }

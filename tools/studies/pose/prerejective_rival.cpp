@@ -124,8 +124,9 @@ class PrerejectiveRival final : public SurfaceRival {
 
 }  // namespace
 
-std::unique_ptr<BaselineEstimator> make_prerejective_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
-                                                   const PrerejectiveSettings& settings) {
+std::unique_ptr<BaselineEstimator> make_prerejective_rival(const std::map<std::string, Mesh>& models,
+                                                           const PoseSettings& pose,
+                                                           const PrerejectiveSettings& settings) {
   check_settings(settings);
   return std::make_unique<PrerejectiveRival>(models, pose, settings);
 }

@@ -60,8 +60,8 @@ std::vector<quality::Example> gather(const LearnOptions& options) {
 
 void run(const LearnOptions& options) {
   const int scenes = static_cast<int>(options.scenes.size());
-  require(scenes >= quality::kLeastScenes, "--scene: {} scene{}, expected at least {} to judge each part by the others",
-          scenes, scenes == 1 ? "" : "s", quality::kLeastScenes);
+  require(scenes >= quality::kMinScenes, "--scene: {} scene{}, expected at least {} to judge each part by the others",
+          scenes, scenes == 1 ? "" : "s", quality::kMinScenes);
   if (!options.out.empty()) require_writable(options.out);
   const quality::Learnt learnt = quality::learn_quality(gather(options));
   const quality::Published published = quality::published_from(learnt.checked, learnt.settings.least);

@@ -107,7 +107,7 @@ Published published_from(const std::vector<CheckedPose>& checked, float least) {
   return out;
 }
 
-std::optional<float> least_quality(const std::vector<CheckedPose>& checked, double right_share) {
+std::optional<float> min_quality(const std::vector<CheckedPose>& checked, double right_share) {
   for (int step = 1; step < kRoundSteps; ++step) {
     if (published_from(checked, round_quality(step)).right_share() >= right_share) return round_quality(step);
   }
@@ -120,8 +120,8 @@ Learnt learn_quality(const std::vector<Example>& examples) {
   learnt.examples = static_cast<int>(examples.size());
   learnt.right = count_right(examples);
   learnt.settings = fit_quality(examples);
-  learnt.checked = check_by_scene(examples, kLeastScenes);
-  const std::optional<float> least = least_quality(learnt.checked, kRightShare);
+  learnt.checked = check_by_scene(examples, kMinScenes);
+  const std::optional<float> least = min_quality(learnt.checked, kRightShare);
   require(least.has_value(), "{} poses: from no quality are {:.0f} % of those in unseen scenes right", examples.size(),
           100.0 * kRightShare);
   learnt.settings.least = *least;

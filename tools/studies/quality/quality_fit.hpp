@@ -37,7 +37,7 @@ struct Published {
 Published published_from(const std::vector<CheckedPose>& checked, float least);
 
 /// The smallest of 0.05, 0.1, ... 0.95 from which at least this share of the poses is right; nothing where none is.
-std::optional<float> least_quality(const std::vector<CheckedPose>& checked, double right_share);
+std::optional<float> min_quality(const std::vector<CheckedPose>& checked, double right_share);
 
 /// What hs-learn-quality learnt.
 struct Learnt {
@@ -50,7 +50,7 @@ struct Learnt {
 };
 
 /// Of so many at least learn_quality() needs poses.
-inline constexpr int kLeastScenes = 4;
+inline constexpr int kMinScenes = 4;
 
 /// fit_quality(), and its `least` by four parts of the scenes. Throws InputError as those, and where no quality is
 /// enough for 98 %.

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pipeline/base/checks.hpp"
-#include "pose/model/object_model.hpp"
 #include "pose/model/mesh_bvh.hpp"
+#include "pose/model/object_model.hpp"
 
 namespace houghstream {
 namespace {

@@ -17,12 +17,12 @@ const char* const kOneClass = "object";  // classes are told apart by our own li
 
 cv::Ptr<cv::linemod::Detector> new_linemod(const LinemodTemplateSettings& settings) {
   const auto features = static_cast<std::size_t>(settings.features);
-  const int farthest_mm = static_cast<int>(settings.max_distance * 1000.0F) + 500;
+  const int max_distance_mm = static_cast<int>(settings.max_distance * 1000.0F) + 500;
   // What is not set is as cv::linemod has it by default.
   constexpr float kStrongGradient = 55.0F;
   const std::vector<cv::Ptr<cv::linemod::Modality>> modalities = {
       cv::makePtr<cv::linemod::ColorGradient>(settings.weak_gradient, features, kStrongGradient),
-      cv::makePtr<cv::linemod::DepthNormal>(farthest_mm, 50, features, 2)};
+      cv::makePtr<cv::linemod::DepthNormal>(max_distance_mm, 50, features, 2)};
   return cv::makePtr<cv::linemod::Detector>(modalities, std::vector<int>(kLinemodSteps.begin(), kLinemodSteps.end()));
 }
 

@@ -43,7 +43,8 @@ void look_at(const BenchmarkedDetector& contender, const RgbdFrame& frame, Speed
 
 }  // namespace
 
-std::vector<SpeedResult> measure_speed(const std::vector<BenchmarkedDetector>& contenders, const std::vector<RgbdFrame>& frames) {
+std::vector<SpeedResult> measure_speed(const std::vector<BenchmarkedDetector>& contenders,
+                                       const std::vector<RgbdFrame>& frames) {
   require(!frames.empty(), "nothing to measure: the scene has no frames");
   std::vector<SpeedResult> results(contenders.size());
   for (std::size_t f = 0; f < frames.size(); ++f) {

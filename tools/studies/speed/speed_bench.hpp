@@ -19,7 +19,8 @@ struct SpeedResult {
 /// Every contender looks at a frame, then all at the next one: what disturbs the machine disturbs all alike. Who begins
 /// changes from frame to frame. Before that each that is to see more than a few frames looks at the first one once,
 /// which is not counted. In the order of the contenders. Throws InputError without frames.
-std::vector<SpeedResult> measure_speed(const std::vector<BenchmarkedDetector>& contenders, const std::vector<RgbdFrame>& frames);
+std::vector<SpeedResult> measure_speed(const std::vector<BenchmarkedDetector>& contenders,
+                                       const std::vector<RgbdFrame>& frames);
 
 /// {"NAME": {"ms": {"p10", "p50", "p90"}, "frames", "detections", "stage_ms": {"STAGE": median}}}
 nlohmann::json to_json(const std::vector<BenchmarkedDetector>& contenders, const std::vector<SpeedResult>& results);

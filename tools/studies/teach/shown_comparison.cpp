@@ -155,11 +155,11 @@ void compare_poses(const std::vector<Eigen::Isometry3d>& poses, const Eigen::Vec
 void compare_views(const TrueTakes& takes, const std::vector<KeptView>& views, const Eigen::Vector3d& middle,
                    ShownComparison& comparison) {
   comparison.views = static_cast<int>(views.size());
-  comparison.least_mask_iou = 1.0;
+  comparison.min_mask_iou = 1.0;
   std::vector<ShownPose> second;
   for (const KeptView& view : views) {
     comparison.mask_iou += view.mask_iou / static_cast<double>(views.size());
-    comparison.least_mask_iou = std::min(comparison.least_mask_iou, view.mask_iou);
+    comparison.min_mask_iou = std::min(comparison.min_mask_iou, view.mask_iou);
     if (view.pose.scene == 1) second.push_back(view.pose);
   }
   const std::vector<Eigen::Isometry3d> poses = true_from_taught(takes, second);
@@ -201,7 +201,7 @@ OrderedJson to_json(const ShownComparison& comparison) {
   json["second_mm"] = comparison.second ? OrderedJson(1e3 * comparison.second->shift_m) : OrderedJson();
   json["second_deg"] = comparison.second ? OrderedJson(kDegrees * comparison.second->turn_rad) : OrderedJson();
   json["mask_iou"] = comparison.mask_iou;
-  json["least_mask_iou"] = comparison.least_mask_iou;
+  json["least_mask_iou"] = comparison.min_mask_iou;
   json["views"] = comparison.views;
   OrderedJson rows = OrderedJson::array();
   for (int i = 0; i < 12; ++i) rows.push_back(comparison.T_true_taught.matrix()(i / 4, i % 4));

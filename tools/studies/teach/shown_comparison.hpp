@@ -34,7 +34,7 @@ struct ShownComparison {
   int tracked = 0;                 ///< frames of the first take
   std::optional<PoseGap> second;   ///< by which the second take's views disagree with the first's; without them none
   double mask_iou = 0.0;           ///< mean over the kept views
-  double least_mask_iou = 0.0;
+  double min_mask_iou = 0.0;
   int views = 0;
 };
 

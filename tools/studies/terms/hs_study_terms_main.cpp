@@ -52,7 +52,8 @@ std::vector<SceneGroup> parse_groups(const StudyOptions& options) {
   return groups;
 }
 
-std::vector<Candidate> candidates_in(const SearchContext& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
+std::vector<Candidate> candidates_in(const SearchContext& search, const RgbdFrame& frame,
+                                     DetectorWorkspace& workspace) {
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);
   find_posteriors(search, workspace);

@@ -38,7 +38,7 @@ CountedFrame counted(const std::vector<TrueInstance>& truth, const std::vector<P
   std::vector<bool> left_out(objects.size(), false);
   std::vector<std::size_t> required;
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    const bool is_required = truth[i].T_world_object && truth[i].visible >= settings.least_visible;
+    const bool is_required = truth[i].T_world_object && truth[i].visible >= settings.min_visible;
     if (is_required) required.push_back(i);
     if (!is_required && given[i] >= 0) left_out[static_cast<std::size_t>(given[i])] = true;
   }
@@ -288,7 +288,7 @@ class Comparison {
   void add_instance(const TrueInstance& truth, const PublishedObject* object, const PublishedFrame& frame) {
     constexpr double kSeen = 0.5;
     Life& life = lives_[truth.instance];
-    const bool required = truth.T_world_object && truth.visible >= settings_.least_visible;
+    const bool required = truth.T_world_object && truth.visible >= settings_.min_visible;
     required_ += required ? 1 : 0;
     found_ += required && object != nullptr ? 1 : 0;
     kept_ += !required && object != nullptr ? 1 : 0;

@@ -29,8 +29,8 @@ struct PublishedFrame {
 };
 
 struct TrackMetricsSettings {
-  double reach_m = 0.05;       ///< a published object is a true one of its class that is nearer
-  double least_visible = 0.1;  ///< true objects of which less is seen are neither required nor wrong
+  double reach_m = 0.05;     ///< a published object is a true one of its class that is nearer
+  double min_visible = 0.1;  ///< true objects of which less is seen are neither required nor wrong
 };
 
 /// Publications beside the truth, frame by frame; each true object is given at most one published one of its class, so

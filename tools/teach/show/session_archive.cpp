@@ -28,8 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using reconstruction::LostSpan;
-using reconstruction::PlacedFrame;
 using reconstruction::MaskedKeyframe;
+using reconstruction::PlacedFrame;
 using reconstruction::Take;
 
 void write_poses(const ShowResult& shown, const fs::path& file) {
@@ -110,8 +110,8 @@ cv::Mat outline_picture(const Mesh& mesh, const TrainingView& view) {
   std::vector<std::vector<cv::Point>> outlines;
   cv::findContours(view.mask.clone(), outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
   cv::drawContours(picture, outlines, -1, {0, 200, 255}, 1);
-  cv::findContours(reconstruction::render_visible_mask(mesh, nothing_hides, view.T_camera_object), outlines, cv::RETR_EXTERNAL,
-                   cv::CHAIN_APPROX_NONE);
+  cv::findContours(reconstruction::render_visible_mask(mesh, nothing_hides, view.T_camera_object), outlines,
+                   cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
   cv::drawContours(picture, outlines, -1, {0, 255, 0}, 1);
   return picture;
 }

@@ -13,11 +13,11 @@
 #include "pose/reconstruction/model/take_model.hpp"
 #include "pose/reconstruction/tracking/take_placer.hpp"
 #include "tools/teach/show/camera_take.hpp"
+#include "tools/teach/show/progress_reporter.hpp"
 #include "tools/teach/show/session_archive.hpp"
 #include "tools/teach/show/show_report.hpp"
 #include "tools/teach/show/show_sources.hpp"
 #include "tools/teach/show/show_teaching.hpp"
-#include "tools/teach/show/progress_reporter.hpp"
 #include "tools/teach/show/turntable_videos.hpp"
 #include "tools/teach/teach_jobs.hpp"
 
@@ -92,12 +92,12 @@ struct ModelledTake {
 };
 
 Take follow(const TakeSource& source, const ShowOptions& options, ProgressReporter& telling) {
-  constexpr std::size_t kFewest = 20;
+  constexpr std::size_t kMin = 20;
   constexpr int kAwake = 90;   // frames after which a camera has found its exposure
   constexpr int kAimed = 300;  // and in which somebody has pointed it at the object
   const bool live = is_live(source.name);
   reconstruction::TakePlacerSettings settings;
-  if (live && !source.at) settings.most_frames_to_choose = kAimed;
+  if (live && !source.at) settings.max_frames_to_choose = kAimed;
   settings.choice.box_px = source.box;
   settings.choice.at_px = source.at;
   settings.choice.seed = options.seed;
@@ -118,8 +118,7 @@ Take follow(const TakeSource& source, const ShowOptions& options, ProgressReport
   }
   telling.step(ShowState::kFusing, 0.0, "all keyframes are laid on one another");
   Take take = placer.finish();
-  require(take.frames.size() >= kFewest, "{} frames, expected at least {}, of a whole turn", take.frames.size(),
-          kFewest);
+  require(take.frames.size() >= kMin, "{} frames, expected at least {}, of a whole turn", take.frames.size(), kMin);
   return take;
 }
 
@@ -137,7 +136,8 @@ ModelledTake follow_and_model(const TakeSource& source, const ShowOptions& optio
 }
 
 /// Follows one or two takes and makes a model of them.
-ShowResult show_takes(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second, ProgressReporter& telling) {
+ShowResult show_takes(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second,
+                      ProgressReporter& telling) {
   const auto begin = std::chrono::steady_clock::now();
   ShowResult shown;
   shown.name = options.name;
@@ -213,7 +213,8 @@ int told(const ShowOptions& options, ShowObserver* observer, const std::function
 
 int show_object(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second,
                 ShowObserver* observer) {
-  return told(options, observer, [&](ProgressReporter& telling) { return show_takes(options, frames, second, telling); });
+  return told(options, observer,
+              [&](ProgressReporter& telling) { return show_takes(options, frames, second, telling); });
 }
 
 int show_sources(const ShowOptions& options, ShowObserver* observer) {

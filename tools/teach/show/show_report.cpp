@@ -35,9 +35,9 @@ std::string unused_frames(const Take& take) {
 void judge_take(const Take& take, std::vector<std::string>& reasons) {
   constexpr int kNearlyRound = 300;
   constexpr int kRound = 350;
-  constexpr double kMostLost = 0.15;
-  constexpr double kMostGap_m = 0.03;
-  constexpr double kMostGapTurn = 0.12;
+  constexpr double kMaxLost = 0.15;
+  constexpr double kMaxGap_m = 0.03;
+  constexpr double kMaxGapTurn = 0.12;
   if (take.motion == Motion::kUnknown)
     reasons.emplace_back(
         "neither the camera nor the object was seen to move, expected a turn about it (a plain round "
@@ -48,23 +48,23 @@ void judge_take(const Take& take, std::vector<std::string>& reasons) {
   else if (take.degrees_round >= kRound && !take.gap)
     reasons.emplace_back(
         "it came round, and did not find its beginning again: nothing tells how it turned, or the way was lost");
-  if (lost_frames(take) > kMostLost * static_cast<double>(take.frames.size())) {
+  if (lost_frames(take) > kMaxLost * static_cast<double>(take.frames.size())) {
     for (const LostSpan& span : take.lost) {
       if (reasons.size() < 8) reasons.push_back(span_text(take, span));
     }
   }
-  if (take.gap && (take.gap->shift_m > kMostGap_m || take.gap->turn > kMostGapTurn))
+  if (take.gap && (take.gap->shift_m > kMaxGap_m || take.gap->turn > kMaxGapTurn))
     reasons.push_back(fmt::format("the turn missed its beginning by {:.0f} mm and {:.1f} degrees",
                                   1e3 * take.gap->shift_m, degrees_of(*take.gap)));
 }
 
 /// What speaks against each of the takes.
 void judge_takes(const ShowResult& shown, std::vector<std::string>& reasons) {
-  constexpr std::size_t kFewestKeyframes = 8;
+  constexpr std::size_t kMinKeyframes = 8;
   for (std::size_t t = 0; t < shown.takes.size(); ++t) {
     std::vector<std::string> of_take;
     if (shown.takes[t].motion != Motion::kTurntable) judge_take(shown.takes[t], of_take);
-    if (shown.views[t].size() < kFewestKeyframes)
+    if (shown.views[t].size() < kMinKeyframes)
       of_take.push_back(fmt::format("only {} keyframes show it", shown.views[t].size()));
     for (const std::string& reason : of_take) reasons.push_back((t == 0 ? "" : "the second take: ") + reason);
   }
@@ -127,18 +127,18 @@ double share_of_seen(const std::vector<bool>& seen) {
 }
 
 Verdict judge(const ShowResult& shown) {
-  constexpr double kMostDisagreement_m = 0.003;
-  constexpr double kLeastSurface = 0.55;
-  constexpr double kLeastOverlap = 0.9;
+  constexpr double kMaxDisagreement_m = 0.003;
+  constexpr double kMinSurface = 0.55;
+  constexpr double kMinOverlap = 0.9;
   Verdict verdict;
   judge_takes(shown, verdict.reasons);
-  if (shown.agreement_m > kMostDisagreement_m)
+  if (shown.agreement_m > kMaxDisagreement_m)
     verdict.reasons.push_back(fmt::format("the views disagree by {:.1f} mm, expected less than {:.0f}",
-                                          1e3 * shown.agreement_m, 1e3 * kMostDisagreement_m));
-  if (shown.outline_overlap.value_or(1.0) < kLeastOverlap)
+                                          1e3 * shown.agreement_m, 1e3 * kMaxDisagreement_m));
+  if (shown.outline_overlap.value_or(1.0) < kMinOverlap)
     verdict.reasons.push_back(fmt::format("the model's outline overlaps with the masks by {:.2f}, expected at least {}",
-                                          *shown.outline_overlap, kLeastOverlap));
-  if (shown.seen_surface < kLeastSurface)
+                                          *shown.outline_overlap, kMinOverlap));
+  if (shown.seen_surface < kMinSurface)
     verdict.reasons.push_back(fmt::format("only {:.0f} % of its surface was seen", 100.0 * shown.seen_surface));
   if (shown.seen_through > reconstruction::kMaxFreeSpaceViolation)
     verdict.reasons.push_back(

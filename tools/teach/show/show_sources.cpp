@@ -24,11 +24,11 @@ bool starts_with(const std::string& text, const std::string& start) {
 /// waited for no longer than the take.
 class TakeTime {
  public:
-  explicit TakeTime(double longest_s) : longest_s_(longest_s) {}
+  explicit TakeTime(double max_duration_s) : max_s_(max_duration_s) {}
 
   /// The camera is open; its first frame may need longer than a short take.
-  void open() { end_ = after(std::max(longest_s_, kFirstFrameS)); }
-  void note_first_frame() { end_ = after(longest_s_ + kLateS); }
+  void open() { end_ = after(std::max(max_s_, kFirstFrameS)); }
+  void note_first_frame() { end_ = after(max_s_ + kLateS); }
   bool is_cancelled() const { return end_ && Clock::now() > *end_; }
 
  private:
@@ -40,7 +40,7 @@ class TakeTime {
     return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   }
 
-  double longest_s_;
+  double max_s_;
   std::optional<Clock::time_point> end_;
 };
 
@@ -48,7 +48,7 @@ class TakeTime {
 class LiveFrames {
  public:
   LiveFrames(const std::string& source, const ShowOptions& options)
-      : time_(options.longest_s), longest_us_(static_cast<std::int64_t>(1e6 * options.longest_s)) {
+      : time_(options.max_duration_s), max_us_(static_cast<std::int64_t>(1e6 * options.max_duration_s)) {
     capture::SourceOptions camera;
     camera.source = source;
     camera.camera = options.camera;
@@ -66,20 +66,20 @@ class LiveFrames {
     if (!frame) {
       if (!stop_requested())
         log_warning("the take ends by its time, {} s, while no frames come; it has {}",
-                    1e-6 * static_cast<double>(longest_us_), count_);
+                    1e-6 * static_cast<double>(max_us_), count_);
       return frame;
     }
     if (count_ == 0) time_.note_first_frame();
     ++count_;
     // A clock that is set back begins the take anew, instead of making it longer by so much.
     if (!first_ || frame->id.utime < *first_) first_ = frame->id.utime;
-    if (microseconds_between(*first_, frame->id.utime) > longest_us_) return std::nullopt;
+    if (microseconds_between(*first_, frame->id.utime) > max_us_) return std::nullopt;
     return frame;
   }
 
  private:
   TakeTime time_;
-  std::int64_t longest_us_;
+  std::int64_t max_us_;
   std::unique_ptr<FrameSource> source_;
   std::optional<std::int64_t> first_;
   std::int64_t count_ = 0;

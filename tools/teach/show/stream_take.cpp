@@ -14,8 +14,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::size_t kMostWaiting = 300;  // ten seconds at 30 Hz, some 60 MB
-constexpr std::size_t kMostBytes = std::size_t{256} << 20U;
+constexpr std::size_t kMaxWaiting = 300;  // ten seconds at 30 Hz, some 60 MB
+constexpr std::size_t kMaxBytes = std::size_t{256} << 20U;
 constexpr milliseconds kMoment(50);  // for which a stop signal may go unnoticed
 
 }  // namespace
@@ -69,7 +69,7 @@ void StreamTake::put(const ReceivedMessage& arrival) {
   }
   waiting_.push_back({{arrival.bytes.data, arrival.bytes.data + arrival.bytes.size}, arrival.time});
   waiting_bytes_ += arrival.bytes.size;
-  while (waiting_.size() > kMostWaiting || (waiting_.size() > 1 && waiting_bytes_ > kMostBytes)) {
+  while (waiting_.size() > kMaxWaiting || (waiting_.size() > 1 && waiting_bytes_ > kMaxBytes)) {
     drop_first();
     ++passed_over_;
   }

@@ -90,15 +90,15 @@ void TeachingPublisher::repeat() noexcept {
 }
 
 bool CoverageCriterion::operator()(const ShowProgress& now) {
-  constexpr std::int64_t kLeast_us = 6'000'000;
-  constexpr std::int64_t kLongestStep_us = 10'000'000;
+  constexpr std::int64_t kMin_us = 6'000'000;
+  constexpr std::int64_t kMaxStep_us = 10'000'000;
   const std::int64_t step_us = last_utime_ ? microseconds_between(*last_utime_, now.frame.utime) : 0;
   last_utime_ = now.frame.utime;
-  if (step_us > 0 && step_us <= kLongestStep_us) nothing_new_us_ += step_us;
+  if (step_us > 0 && step_us <= kMaxStep_us) nothing_new_us_ += step_us;
   const int seen = static_cast<int>(std::count(now.seen.begin(), now.seen.end(), true));
   if (seen != seen_) took_us_ += std::exchange(nothing_new_us_, 0);
   seen_ = seen;
-  return 2 * seen > ShowProgress::kDirections && nothing_new_us_ > std::max(kLeast_us, took_us_ / 2);
+  return 2 * seen > ShowProgress::kDirections && nothing_new_us_ > std::max(kMin_us, took_us_ / 2);
 }
 
 }  // namespace houghstream::teach

@@ -18,8 +18,8 @@ namespace houghstream::teach {
 namespace {
 
 namespace fs = std::filesystem;
-using reconstruction::ModelOfViews;
 using reconstruction::MaskedKeyframe;
+using reconstruction::ModelOfViews;
 using reconstruction::Take;
 
 constexpr const char* kNominalCamera = "640x480,525,525,319.5,239.5";
@@ -98,7 +98,7 @@ class Merging {
 
   /// Adds a video where the outlines of all views still fit.
   void add(const Video& video) {
-    constexpr double kMostLost = 0.02;
+    constexpr double kMaxLost = 0.02;
     const auto found = reconstruction::register_models({&first_.model.mesh, &first_.model.seen},
                                                        {&video.model.mesh, &video.model.seen}, true, options_.threads);
     double overlap = 0.0;
@@ -112,7 +112,7 @@ class Merging {
       reconstruction::append_mesh(video.model.mesh, found->T_a_b, outline);
       ModelOfViews model = fuse(all, outline);
       overlap = teach::outline_overlap(model.mesh, all);
-      if (overlap > overlap_ - kMostLost) {
+      if (overlap > overlap_ - kMaxLost) {
         std::tie(views_, outline_, model_, overlap_) =
             std::tuple(std::move(all), std::move(outline), std::move(model), overlap);
         return;

@@ -49,24 +49,24 @@ struct MapScale {
 };
 
 MapScale scale_of(const WorldState& world, const cv::Size& size) {
-  constexpr double kLeastM = 0.4;  // half of what is shown, at least
+  constexpr double kMinM = 0.4;  // half of what is shown, at least
   Eigen::AlignedBox2d extent;
   for (const TrackedObject& object : world.last.objects) extent.extend(object.T_world_object.translation().head<2>());
   for (const auto& [channel, T] : world.T_world_camera) extent.extend(T.translation().head<2>());
   if (extent.isEmpty()) extent.extend(Eigen::Vector2d::Zero());
-  const Eigen::Vector2d half = (0.6 * extent.sizes()).cwiseMax(kLeastM);
+  const Eigen::Vector2d half = (0.6 * extent.sizes()).cwiseMax(kMinM);
   return {extent.center(), std::min(0.5 * size.width / half.x(), 0.5 * size.height / half.y()), size};
 }
 
 void draw_grid(cv::Mat& picture, const MapScale& scale) {
   constexpr double kStepM = 0.1;
-  constexpr double kMostLines = 200.0;
+  constexpr double kMaxLines = 200.0;
   const Eigen::Vector2d half(0.5 * scale.size.width / scale.px_per_m, 0.5 * scale.size.height / scale.px_per_m);
   const cv::Scalar grey(52, 52, 52);
   for (int axis = 0; axis < 2; ++axis) {
     const double first = std::floor((scale.middle[axis] - half[axis]) / kStepM);
     const double last = std::ceil((scale.middle[axis] + half[axis]) / kStepM);
-    if (last - first >= kMostLines) continue;
+    if (last - first >= kMaxLines) continue;
     const int lines = static_cast<int>(last - first);
     for (int i = 0; i <= lines; ++i) {
       Eigen::Vector3d place = Eigen::Vector3d::Zero();

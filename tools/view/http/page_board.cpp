@@ -59,7 +59,7 @@ PageCommands PageBoard::take_orders() {
 
 bool PageBoard::join() {
   const std::lock_guard lock(mutex_);
-  if (viewers_ >= kMostViewers) return false;
+  if (viewers_ >= kMaxViewers) return false;
   ++viewers_;
   return true;
 }

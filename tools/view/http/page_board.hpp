@@ -40,7 +40,7 @@ struct PageUpdates {
 class PageBoard {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr int kMostViewers = 8;
+  static constexpr int kMaxViewers = 8;
   static constexpr std::chrono::seconds kViewTimeout{2};  ///< after a request its view is drawn for so long
 
   /// For the thread that draws. Somebody listens, or asked for a picture of late.
@@ -55,7 +55,7 @@ class PageBoard {
   void put_stream(std::string json);
   PageCommands take_orders();
 
-  /// For those that serve. False where kMostViewers listen already.
+  /// For those that serve. False where kMaxViewers listen already.
   bool join();
   void leave();
   /// Waits until there is more than `seen`, or for `timeout`; what is not new is empty. Nothing once it is closed.

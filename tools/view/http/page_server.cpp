@@ -19,10 +19,10 @@
 namespace houghstream::view {
 namespace {
 
-constexpr std::size_t kThreads = 4 * PageBoard::kMostViewers;  // a page has one for events, two or three for the rest
-constexpr std::chrono::milliseconds kPatience(1000);           // for an event
-constexpr std::chrono::milliseconds kPicturePatience(2000);    // for a picture of the frame that is shown
-constexpr std::size_t kLongestOrder = 4096;                    // bytes
+constexpr std::size_t kThreads = 4 * PageBoard::kMaxViewers;  // a page has one for events, two or three for the rest
+constexpr std::chrono::milliseconds kPatience(1000);          // for an event
+constexpr std::chrono::milliseconds kPicturePatience(2000);   // for a picture of the frame that is shown
+constexpr std::size_t kMaxOrderLength = 4096;                 // bytes
 constexpr const char* kTokenHeader = "X-Houghstream-Token";
 // Nothing from elsewhere is loaded or asked, and no other page shows this one.
 constexpr const char* kPolicy =
@@ -66,7 +66,7 @@ void refuse_unread(httplib::Response& response, int status, const std::string& w
 int status_of_content(const httplib::Request& request) {
   if (request.method == "GET" || request.method == "HEAD") return 0;
   if (request.has_header("Transfer-Encoding") || !request.has_header("Content-Length")) return 411;
-  return request.get_header_value<std::uint64_t>("Content-Length") > kLongestOrder ? 413 : 0;
+  return request.get_header_value<std::uint64_t>("Content-Length") > kMaxOrderLength ? 413 : 0;
 }
 
 PageCommands parse_orders(const std::string& body) {
@@ -134,7 +134,7 @@ struct PageServer::State {
 };
 
 void PageServer::State::set_limits() {
-  server.set_payload_max_length(kLongestOrder);
+  server.set_payload_max_length(kMaxOrderLength);
   server.set_tcp_nodelay(true);
   // The library's own choice lets two programs share a port, each with half of the viewers.
   server.set_socket_options([](socket_t opened) {
@@ -150,8 +150,9 @@ void PageServer::State::set_limits() {
     const int status = refusal.empty() ? status_of_content(request) : 403;
     if (status == 0) return httplib::Server::HandlerResponse::Unhandled;
     refuse_unread(response, status,
-                  refusal.empty() ? fmt::format("expected content of a stated length, at most {} bytes", kLongestOrder)
-                                  : refusal);
+                  refusal.empty()
+                      ? fmt::format("expected content of a stated length, at most {} bytes", kMaxOrderLength)
+                      : refusal);
     return httplib::Server::HandlerResponse::Handled;
   });
 }
@@ -188,7 +189,7 @@ void PageServer::State::serve_picture(const httplib::Request& request, httplib::
 }
 
 void PageServer::State::serve_events(httplib::Response& response) {
-  if (!board.join()) return answer(response, 503, fmt::format("{} viewers look already", PageBoard::kMostViewers));
+  if (!board.join()) return answer(response, 503, fmt::format("{} viewers look already", PageBoard::kMaxViewers));
   response.set_chunked_content_provider("text/event-stream", EventSender(board), [this](bool) { board.leave(); });
 }
 

@@ -195,7 +195,7 @@ TEST(CameraDepth, SmoothingTakesNoiseAndKeepsEdges) {
 
 TEST(CameraDepth, WhatSlantsOrIsDarkIsLost) {
   DepthVariation camera;
-  camera.least_cosine = 0.3;
+  camera.min_cosine = 0.3;
   cv::Mat slant = wall(1.0);
   for (int x = 80; x < 160; ++x) slant.col(x) = 1.0 + 5.0 / 500.0 * (x - 80);  // 79 degrees
   const cv::Mat steep = holes(measured(camera, slant));
@@ -203,7 +203,7 @@ TEST(CameraDepth, WhatSlantsOrIsDarkIsLost) {
   EXPECT_GT(cv::countNonZero(steep.colRange(84, 100)), 0.8 * 16 * kView.height);
 
   DepthVariation weak;
-  weak.least_signal = 0.03;
+  weak.min_signal = 0.03;
   cv::Mat colour(kView.height, kView.width, CV_8UC3, cv::Scalar::all(160));
   colour.colRange(80, 160).setTo(cv::Scalar::all(20));
   const cv::Mat dark = holes(measured(weak, wall(1.0), colour));

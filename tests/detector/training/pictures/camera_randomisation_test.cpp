@@ -53,8 +53,8 @@ TEST(CameraRandomisation, TheSameSeedIsTheSameCameraAndTakesTheSamePicture) {
 }
 
 TEST(CameraRandomisation, DrawnCamerasStayWithinTheirRangesAndReachThem) {
-  double least_red = 10.0;
-  double most_red = 0.0;
+  double min_red = 10.0;
+  double max_red = 0.0;
   std::set<int> offsets;
   std::set<int> growths;
   std::set<int> mosaics;
@@ -64,8 +64,8 @@ TEST(CameraRandomisation, DrawnCamerasStayWithinTheirRangesAndReachThem) {
     const CameraRandomisation drawn = camera(1.0, seed);
     const ColourVariation& colour = drawn.colour;
     const DepthVariation& depth = drawn.depth;
-    least_red = std::min(least_red, colour.white_balance_bgr[2]);
-    most_red = std::max(most_red, colour.white_balance_bgr[2]);
+    min_red = std::min(min_red, colour.white_balance_bgr[2]);
+    max_red = std::max(max_red, colour.white_balance_bgr[2]);
     EXPECT_NEAR(colour.white_balance_bgr[0] * colour.white_balance_bgr[2], 1.0, 1e-9) << "warm or cold";
     EXPECT_TRUE(colour.jpeg_quality == 0 || (colour.jpeg_quality >= 30 && colour.jpeg_quality <= 95));
     compressed += colour.jpeg_quality > 0 ? 1 : 0;
@@ -81,8 +81,8 @@ TEST(CameraRandomisation, DrawnCamerasStayWithinTheirRangesAndReachThem) {
     EXPECT_FALSE(is_time_of_flight && (depth.disparity_step_px > 0.0 || depth.shadow_m != 0.0 || depth.noise > 0.0));
     EXPECT_FALSE(!is_time_of_flight && (depth.wiggle > 0.0 || depth.noise_light > 0.0));
   }
-  EXPECT_LT(least_red, 0.78);
-  EXPECT_GT(most_red, 1.28);
+  EXPECT_LT(min_red, 0.78);
+  EXPECT_GT(max_red, 1.28);
   EXPECT_EQ(offsets, (std::set<int>{-3, -2, -1, 0, 1, 2, 3}));
   EXPECT_EQ(growths, (std::set<int>{0, 1, 2}));
   EXPECT_EQ(mosaics, (std::set<int>{-1, 0, 1, 2, 3}));

@@ -136,7 +136,7 @@ void expect_held(const TrainingPicture& picture, const PatchSettings& patch) {
   const cv::Rect held = picture.features.held();
   for (const auto* list : {&picture.samples, &picture.spare_background}) {
     for (const TrainingSample& sample : *list) {
-      const int reach = farthest_offset(patch, sample.scale);
+      const int reach = max_offset(patch, sample.scale);
       const cv::Rect seen(sample.x - reach, sample.y - reach, 2 * reach + 1, 2 * reach + 1);
       ASSERT_EQ(seen & held, seen) << sample.x << " " << sample.y;
     }

@@ -78,14 +78,14 @@ TEST(ValidationFrames, AsManyLookAlikesAndStrangersOfEachSortAsAskedForStandTher
 /// Width over height of what stands before the room, which is flat.
 std::vector<double> widths_of_things(const cv::Mat& depth, const cv::Mat& room) {
   constexpr float kBefore_m = 0.1F;
-  constexpr int kLeastPixels = 100;
+  constexpr int kMinPixels = 100;
   cv::Mat labels;
   cv::Mat stats;
   cv::Mat centroids;
   std::vector<double> widths;
   const int count = cv::connectedComponentsWithStats(depth < room - kBefore_m, labels, stats, centroids);
   for (int i = 1; i < count; ++i) {
-    if (stats.at<int>(i, cv::CC_STAT_AREA) < kLeastPixels) continue;
+    if (stats.at<int>(i, cv::CC_STAT_AREA) < kMinPixels) continue;
     widths.push_back(static_cast<double>(stats.at<int>(i, cv::CC_STAT_WIDTH)) / stats.at<int>(i, cv::CC_STAT_HEIGHT));
   }
   return widths;

@@ -56,7 +56,8 @@ TEST(Disagreement, IsTheMedianDistanceOverTheViewsOfAllTakes) {
     keyframe.T_camera_world = test_scene::camera_at(1.0 * i, 0.7, 0.6);
     keyframe.frame = test_scene::photograph(table, keyframe.T_camera_world, scene.camera, i + 1);
     const auto of = static_cast<std::size_t>(i % 2);
-    views[of].push_back({i / 2, keyframe.T_camera_world, render_visible_mask(box, keyframe.frame, keyframe.T_camera_world)});
+    views[of].push_back(
+        {i / 2, keyframe.T_camera_world, render_visible_mask(box, keyframe.frame, keyframe.T_camera_world)});
     takes[of].keyframes.push_back(std::move(keyframe));
   }
   const std::vector<ViewsOfTake> both = {{&takes[0], &views[0]}, {&takes[1], &views[1]}};

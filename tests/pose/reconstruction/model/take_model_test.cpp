@@ -55,8 +55,8 @@ ReconstructedModel true_model(const Take& take) {
   model.seen.assign(model.mesh.vertices.size(), true);
   for (std::size_t i = 0; i < take.keyframes.size(); ++i) {
     const Keyframe& keyframe = take.keyframes[i];
-    model.views.push_back(
-        {static_cast<int>(i), keyframe.T_camera_world, render_visible_mask(model.mesh, keyframe.frame, keyframe.T_camera_world)});
+    model.views.push_back({static_cast<int>(i), keyframe.T_camera_world,
+                           render_visible_mask(model.mesh, keyframe.frame, keyframe.T_camera_world)});
   }
   model.agreement_m = 1.0;
   return model;

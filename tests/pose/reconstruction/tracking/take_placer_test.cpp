@@ -163,10 +163,10 @@ void step_depth(RgbdFrame& frame) {
 }
 
 /// How far the placer believes to have gone round when it has gone 70 degrees.
-double degrees_gone(std::size_t fewest_corners) {
+double degrees_gone(std::size_t min_corners) {
   const Mesh mesh = plain_tin_among_boxes();
   TakePlacerSettings settings;
-  settings.map.fewest_corners = fewest_corners;
+  settings.map.min_corners = min_corners;
   TakePlacer placer(settings);
   for (int i = 0; i <= 35; ++i) {
     const Eigen::Isometry3d T = test_scene::camera_at(0.3 + kTurn * i / 180.0, 0.5, 0.7);

@@ -79,8 +79,8 @@ TEST(HandledScenes, HeldOnesHoldEachClassInAHandAndOnTheTable) {
       if (items[i].object_id == 0) continue;
       if (carrier(items, i) == "hand") {
         ++held[items[i].object_id];
-        EXPECT_GE(lowest(items[i]), kLeastHeldM - 1e-6);
-        EXPECT_LE(lowest(items[i]), kMostHeldM + 1e-6);
+        EXPECT_GE(lowest(items[i]), kMinHeldM - 1e-6);
+        EXPECT_LE(lowest(items[i]), kMaxHeldM + 1e-6);
       } else {
         ++put[items[i].object_id];
         EXPECT_NEAR(lowest(items[i]), 0.0, 1e-5);
@@ -118,8 +118,8 @@ TEST(HandledScenes, HandsHideATenthToAThirdOfWhatTheyHold) {
     for (std::size_t i = 1; i < scene.world.items.size(); ++i) {
       if (carrier(scene.world.items, i) != "hand") continue;
       const double hidden = hidden_by(scene, i, i - 1);
-      EXPECT_GT(hidden, kLeastGripped - 0.03) << scene.world.items[i].thing->name;
-      EXPECT_LT(hidden, kMostGripped + 0.03) << scene.world.items[i].thing->name;
+      EXPECT_GT(hidden, kMinGripped - 0.03) << scene.world.items[i].thing->name;
+      EXPECT_LT(hidden, kMaxGripped + 0.03) << scene.world.items[i].thing->name;
     }
   }
 }

@@ -38,7 +38,7 @@ MeshViewSettings few_views(MeshAttitudes attitudes = MeshAttitudes::kResting) {
   MeshViewSettings settings;
   settings.attitudes = attitudes;
   settings.views_per_attitude = 4;
-  settings.most_views = 60;
+  settings.max_views = 60;
   return settings;
 }
 
@@ -82,12 +82,12 @@ Mesh bulging_brick() {
   return mesh;
 }
 
-void expect_six_sides(const std::vector<Eigen::Vector3d>& ups, double least_cosine = 0.9999) {
+void expect_six_sides(const std::vector<Eigen::Vector3d>& ups, double min_cosine = 0.9999) {
   ASSERT_EQ(ups.size(), 6U);
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {-1.0, 1.0}) {
       const Eigen::Vector3d side = sign * Eigen::Vector3d::Unit(axis);
-      const auto is_side = [&](const Eigen::Vector3d& up) { return up.dot(side) > least_cosine; };
+      const auto is_side = [&](const Eigen::Vector3d& up) { return up.dot(side) > min_cosine; };
       EXPECT_EQ(std::count_if(ups.begin(), ups.end(), is_side), 1) << axis << ' ' << sign;
     }
   }
@@ -125,7 +125,7 @@ TEST(MeshViews, AreAsManyOfEachAttitudeAsAskedForButNotTooMany) {
   MeshViewSettings settings = few_views();
   EXPECT_EQ(MeshViews(brick(kRed), settings, 1).count(), 24);
   EXPECT_EQ(MeshViews(open_brick(1), settings, 1).count(), 24);
-  settings.most_views = 18;
+  settings.max_views = 18;
   EXPECT_EQ(MeshViews(brick(kRed), settings, 1).count(), 18);
   EXPECT_EQ(MeshViews(brick(kRed), few_views(MeshAttitudes::kUpright), 1).count(), 4);
   EXPECT_EQ(MeshViews(brick(kRed), few_views(MeshAttitudes::kAny), 1).count(), 60);

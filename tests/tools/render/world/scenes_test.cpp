@@ -45,9 +45,9 @@ std::vector<Footprint> standing(const World& world) {
   return footprints;
 }
 
-void expect_apart(const World& world, std::size_t least_count) {
+void expect_apart(const World& world, std::size_t min_count) {
   const std::vector<Footprint> footprints = standing(world);
-  EXPECT_GE(footprints.size(), least_count);
+  EXPECT_GE(footprints.size(), min_count);
   for (std::size_t i = 0; i < footprints.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(footprints_touch(footprints[i], footprints[j], 0.0));
   }

@@ -37,11 +37,13 @@ Table with_box() {
 
 using Make = std::unique_ptr<BaselineEstimator> (*)(const std::map<std::string, Mesh>&, const PoseSettings&);
 
-std::unique_ptr<BaselineEstimator> prerejective(const std::map<std::string, Mesh>& models, const PoseSettings& settings) {
+std::unique_ptr<BaselineEstimator> prerejective(const std::map<std::string, Mesh>& models,
+                                                const PoseSettings& settings) {
   return make_prerejective_rival(models, settings, PrerejectiveSettings());
 }
 
-std::unique_ptr<BaselineEstimator> point_pairs(const std::map<std::string, Mesh>& models, const PoseSettings& settings) {
+std::unique_ptr<BaselineEstimator> point_pairs(const std::map<std::string, Mesh>& models,
+                                               const PoseSettings& settings) {
   return make_ppf_rival(models, settings, PpfSettings());
 }
 

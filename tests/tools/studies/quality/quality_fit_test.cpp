@@ -84,12 +84,12 @@ TEST(QualityFit, TheLeastQualityIsTheFirstRoundOneFromWhichEnoughAreRight) {
   std::vector<CheckedPose> checked(98, {0.9F, true});
   checked.insert(checked.end(), 2, {0.7F, false});
   checked.insert(checked.end(), 10, {0.42F, false});
-  EXPECT_EQ(least_quality(checked, 0.98), 0.45F);
-  EXPECT_EQ(least_quality(checked, 0.99), 0.75F);
+  EXPECT_EQ(min_quality(checked, 0.98), 0.45F);
+  EXPECT_EQ(min_quality(checked, 0.99), 0.75F);
   EXPECT_EQ(published_from(checked, 0.7F).poses, 100);
   EXPECT_EQ(published_from(checked, 0.7F).right, 98);
   EXPECT_TRUE(std::isnan(published_from(checked, 0.95F).right_share()));
-  EXPECT_EQ(least_quality({{0.9F, false}}, 0.98), std::nullopt);
+  EXPECT_EQ(min_quality({{0.9F, false}}, 0.98), std::nullopt);
 }
 
 TEST(QualityFit, ExamplesAreJudgedByTheSettingsGiven) {

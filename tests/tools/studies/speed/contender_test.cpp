@@ -24,7 +24,9 @@ class ParseContender : public ::testing::Test {
     return (std::filesystem::temp_directory_path() / "contender_test.forest").string();
   }
 
-  static BenchmarkedDetector parse(const std::string& wishes) { return parse_contender("ours=" + forest_file() + wishes); }
+  static BenchmarkedDetector parse(const std::string& wishes) {
+    return parse_contender("ours=" + forest_file() + wishes);
+  }
 };
 
 TEST_F(ParseContender, WishesAreGranted) {

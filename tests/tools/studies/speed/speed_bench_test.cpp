@@ -33,7 +33,7 @@ BenchmarkedDetector scribe(const std::string& name, std::size_t frames, std::str
 TEST(MeasureSpeed, AllLookAtAFrameBeforeTheNextAndTakeTurnsToBegin) {
   std::string words;
   const std::vector<BenchmarkedDetector> contenders = {scribe("a", 100, words), scribe("b", 100, words),
-                                             scribe("slow", 1, words)};
+                                                       scribe("slow", 1, words)};
   const auto results = measure_speed(contenders, some_frames(3));
   EXPECT_EQ(words, "a0 a0 b0 b0 slow0 b1 a1 a2 b2 ");  // the first ones are for warming up
   EXPECT_EQ(results[0].ms.size(), 3U);

@@ -75,7 +75,7 @@ TEST(PageBoard, OrdersAreTakenOnceAndTheLastCounts) {
 
 TEST(PageBoard, NotMoreThanSoManyListen) {
   PageBoard board;
-  for (int i = 0; i < PageBoard::kMostViewers; ++i) EXPECT_TRUE(board.join());
+  for (int i = 0; i < PageBoard::kMaxViewers; ++i) EXPECT_TRUE(board.join());
   EXPECT_FALSE(board.join());
   board.leave();
   EXPECT_TRUE(board.join());

@@ -114,15 +114,15 @@ ThingPtr make_hard_negative(const Thing& thing, Random& random) {
 }
 
 ThingPtr make_instance_variant(const Thing& thing, Random& random) {
-  constexpr double kMostScale = 0.015;
-  constexpr double kMostBent_m = 0.003;
-  constexpr double kMostBent = 0.02;  // of what it measures across
+  constexpr double kMaxScale = 0.015;
+  constexpr double kMaxBent_m = 0.003;
+  constexpr double kMaxBent = 0.02;  // of what it measures across
   Mesh mesh = thing.mesh;
   const Eigen::AlignedBox3f bounds = mesh_bounds(mesh);
   const Eigen::Vector3d middle = bounds.center().cast<double>();
   const double across_m = bounds.diagonal().norm();
-  const double scale = 1.0 + random.uniform(-kMostScale, kMostScale);
-  const Bending bending(across_m, random.uniform() * std::min(kMostBent_m, kMostBent * across_m), random);
+  const double scale = 1.0 + random.uniform(-kMaxScale, kMaxScale);
+  const Bending bending(across_m, random.uniform() * std::min(kMaxBent_m, kMaxBent * across_m), random);
   for (Eigen::Vector3f& vertex : mesh.vertices) {
     const Eigen::Vector3d point = vertex.cast<double>() - middle;
     vertex = (middle + scale * point + bending.at(point)).cast<float>();

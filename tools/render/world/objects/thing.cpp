@@ -9,7 +9,7 @@
 namespace houghstream::world {
 namespace {
 
-constexpr int kSmallestMipPx = 4;
+constexpr int kMinMipPx = 4;
 
 float texel_density(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
   const auto& [a, b, c] = triangle;
@@ -35,7 +35,7 @@ std::shared_ptr<const Thing> make_asset(std::string name, Mesh mesh, float gloss
   thing->glow = glow;
   if (coloured) return thing;
   thing->mip_levels = {thing->mesh.texture};
-  while (std::min(thing->mip_levels.back().cols, thing->mip_levels.back().rows) >= 2 * kSmallestMipPx) {
+  while (std::min(thing->mip_levels.back().cols, thing->mip_levels.back().rows) >= 2 * kMinMipPx) {
     const cv::Mat& finer = thing->mip_levels.back();
     cv::Mat coarser;
     cv::resize(finer, coarser, {finer.cols / 2, finer.rows / 2}, 0, 0, cv::INTER_AREA);

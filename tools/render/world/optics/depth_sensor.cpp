@@ -11,7 +11,7 @@
 namespace houghstream::world {
 namespace {
 
-constexpr double kMostIncidence = 1.45;  // radians; the model's terms grow without bound towards pi/2
+constexpr double kMaxIncidence = 1.45;  // radians; the model's terms grow without bound towards pi/2
 
 // Normal noise, deviation 1, that neighbours share: the sensor matches windows, not pixels.
 cv::Mat window_noise(const cv::Size& size, std::uint64_t seed) {
@@ -37,7 +37,7 @@ cv::Mat depth_edges(const cv::Mat& depth, double relative_step) {
 }
 
 double incidence_rad(double cos_incidence) {
-  return std::min(std::acos(std::clamp(cos_incidence, 0.0, 1.0)), kMostIncidence);
+  return std::min(std::acos(std::clamp(cos_incidence, 0.0, 1.0)), kMaxIncidence);
 }
 
 class Sensor {
@@ -75,7 +75,7 @@ class Sensor {
     const double cosine = view_.cos_incidence.at<float>(y, x);
     const double gloss = view_.gloss.at<float>(y, x);
     const double signal = view_.reflectance.at<float>(y, x) * (1.0 - 0.6 * gloss) * cosine / (z * z);
-    if (cosine < settings_.least_cosine * wobble || signal < settings_.least_signal * wobble) return true;
+    if (cosine < settings_.min_cosine * wobble || signal < settings_.min_signal * wobble) return true;
     const double cosine_sq = cosine * cosine;
     const double cosine_8 = cosine_sq * cosine_sq * cosine_sq * cosine_sq;
     const double cosine_32 = cosine_8 * cosine_8 * cosine_8 * cosine_8;

@@ -25,8 +25,8 @@ struct DepthSensorSettings {
   double far_m = 4.5;                ///< farther is none
   double edge_loss = 0.4;            ///< share of pixels at depth steps that give nothing, 0 to 1
   double edge_step = 0.02;           ///< a depth step, relative to depth
-  double least_cosine = 0.14;        ///< surfaces seen flatter than this return too little
-  double least_signal = 0.004;       ///< least reflectance * cosine / z^2 (m^-2) that is seen
+  double min_cosine = 0.14;          ///< surfaces seen flatter than this return too little
+  double min_signal = 0.004;         ///< least reflectance * cosine / z^2 (m^-2) that is seen
   double glare = 0.27;               ///< mirror-like return above this blinds the camera
 };
 

@@ -19,7 +19,7 @@ class TimeOfFlight {
     const double z = depth(pixel);
     if (std::isnan(z)) return kNoValue;
     const double amplitude = returned_amplitude(view_, pixel);
-    if (amplitude < settings_.least_amplitude) return kNoValue;
+    if (amplitude < settings_.min_amplitude) return kNoValue;
     const auto index = static_cast<std::uint64_t>(pixel.y) * 4096U + static_cast<std::uint64_t>(pixel.x);
     const double noise = time_of_flight_sigma(amplitude, settings_) * pixel_normal(seed_ + 1, index);
     const double seen = mixed(pixel, index).value_or(z + multipath_bias(pixel, z)) + noise;

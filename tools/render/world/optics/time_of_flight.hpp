@@ -24,7 +24,7 @@ struct TimeOfFlightSettings {
   double far_m = 4.5;                ///< farther is none
   double floor_m = 0.001;            ///< deviation however much light returns
   double light_m = 0.0006;           ///< deviation at amplitude 1 m^-2, inverse to the amplitude
-  double least_amplitude = 0.0025;   ///< m^-2; less gives nothing
+  double min_amplitude = 0.0025;     ///< m^-2; less gives nothing
   double edge_step = 0.02;           ///< a depth edge, relative to depth
   double flying_share = 0.5;         ///< of the pixels at depth edges that see both surfaces, 0 to 1
   double multipath = 0.4;            ///< bias of a concave place, in depths by which it lies behind its surroundings

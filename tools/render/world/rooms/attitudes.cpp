@@ -31,7 +31,7 @@ Eigen::Matrix3d AttitudeChoice::R_table_object(Attitude attitude, int index, Ran
   if (attitude == Attitude::kLying) return lying(index, random);
   const bool upright = index % 2 == 0;
   const Eigen::Matrix3d R_level_object = upright ? Eigen::Matrix3d::Identity() : lying(index / 2, random);
-  const double slant_rad = random.uniform(kLeastTiltDeg, kMostTiltDeg) * M_PI / 180.0;
+  const double slant_rad = random.uniform(kMinTiltDeg, kMaxTiltDeg) * M_PI / 180.0;
   const double towards = random.uniform(0.0, 2.0 * M_PI);
   const Eigen::Vector3d axis(std::cos(towards), std::sin(towards), 0.0);
   return Eigen::AngleAxisd(slant_rad, axis) * R_level_object;

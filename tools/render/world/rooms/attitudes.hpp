@@ -19,8 +19,8 @@ enum class Attitude : std::uint8_t {
 Attitude parse_attitude(const std::string& name);
 
 /// How far tilted ones slant, degrees.
-inline constexpr double kLeastTiltDeg = 10.0;
-inline constexpr double kMostTiltDeg = 40.0;
+inline constexpr double kMinTiltDeg = 10.0;
+inline constexpr double kMaxTiltDeg = 40.0;
 
 /// The attitudes in which one object is shown.
 class AttitudeChoice {

@@ -143,8 +143,8 @@ double lowest_point(const Placed& placed) {
 
 /// `liberty`, 0 to 1: how far from the usual the arm may come.
 Grip draw_grip(double arm_azimuth_rad, double liberty, Random& random) {
-  const double most_aside = 0.3 + 0.6 * liberty;
-  const double azimuth = arm_azimuth_rad + random.uniform(-most_aside, most_aside);
+  const double max_aside = 0.3 + 0.6 * liberty;
+  const double azimuth = arm_azimuth_rad + random.uniform(-max_aside, max_aside);
   const double elevation = random.uniform(0.2, 0.9 + 0.4 * liberty);
   Grip grip;
   grip.axes.col(0) = Eigen::Vector3d(std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
@@ -183,9 +183,9 @@ Placed take_hold(const Placed& placed, const HeldPlace& place, Random& random) {
     hand.T_world_object.translation() = placed.T_world_object.translation();
     if (lowest_point(hand) < kOverTableM) continue;
     const double hidden = mean_hidden_share(hand, placed, place);
-    if (hidden >= kLeastGripped && hidden <= kMostGripped) return hand;
+    if (hidden >= kMinGripped && hidden <= kMaxGripped) return hand;
   }
-  fail("{}: no grip that hides {:.2f} to {:.2f} of it, after {} tries", placed.thing->name, kLeastGripped, kMostGripped,
+  fail("{}: no grip that hides {:.2f} to {:.2f} of it, after {} tries", placed.thing->name, kMinGripped, kMaxGripped,
        kTries);
 }
 
@@ -193,7 +193,7 @@ Group hold(const ThingPtr& thing, int object_id, const HeldPlace& place, Random&
   Placed placed{thing, Eigen::Isometry3d::Identity(), object_id, true};
   const Eigen::Matrix3d R_world_object = any_attitude(random);
   placed.T_world_object.linear() = R_world_object;
-  const double height_m = random.uniform(kLeastHeldM, kMostHeldM);
+  const double height_m = random.uniform(kMinHeldM, kMaxHeldM);
   placed.T_world_object.translation() << place.over, height_m + height_above_table(thing->mesh, R_world_object);
   const Placed hand = take_hold(placed, place, random);
   return {hand, placed};

@@ -12,12 +12,12 @@ struct HeldPlace {
 };
 
 /// How high things are held, from the table to their lowest point, metres.
-inline constexpr double kLeastHeldM = 0.05;
-inline constexpr double kMostHeldM = 0.30;
+inline constexpr double kMinHeldM = 0.05;
+inline constexpr double kMaxHeldM = 0.30;
 
 /// How much of a held thing the hand hides, over the views.
-inline constexpr double kLeastGripped = 0.10;
-inline constexpr double kMostGripped = 0.35;
+inline constexpr double kMinGripped = 0.10;
+inline constexpr double kMaxGripped = 0.35;
 
 /// A rotation, uniform over all (Shoemake, "Uniform Random Rotations", Graphics Gems III, 1992).
 Eigen::Matrix3d any_attitude(Random& random);

@@ -16,8 +16,8 @@ namespace houghstream::world {
 namespace {
 
 constexpr double kReserveM = 0.004;  // by which the centre of mass lies inside what carries the thing
-constexpr double kLeastHeightM = 0.008;
-constexpr double kMostHeightM = 0.22;
+constexpr double kMinHeightM = 0.008;
+constexpr double kMaxHeightM = 0.22;
 
 /// A tilted thing, its lowest point at z = 0, and the block that it leans on towards +x.
 struct Leaning {
@@ -45,7 +45,7 @@ std::optional<Leaning> lean(const Mesh& mesh, const std::vector<Eigen::Vector3d>
   const auto farthest =
       std::max_element(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); });
   const double height_m = random.uniform(0.4, 0.95) * farthest->z();
-  if (height_m < kLeastHeightM || height_m > kMostHeightM) return std::nullopt;
+  if (height_m < kMinHeightM || height_m > kMaxHeightM) return std::nullopt;
   const double edge_m = reach_below(mesh, points, height_m);
   if (centre.x() > edge_m - kReserveM) return std::nullopt;  // it would fall over the block
   return Leaning{edge_m, height_m};
@@ -89,7 +89,7 @@ Group put_leaning(const ThingPtr& thing, int object_id, Random& random) {
   for (int i = 0; i < kTries; ++i) {
     const Attitude attitude = upright ? Attitude::kUpright : Attitude::kLying;
     const Eigen::Matrix3d R_rest = choice.R_table_object(attitude, random.below(1 << 20), random);
-    const double slant_rad = random.uniform(kLeastLeanDeg, kMostLeanDeg) * M_PI / 180.0;
+    const double slant_rad = random.uniform(kMinLeanDeg, kMaxLeanDeg) * M_PI / 180.0;
     const double towards = random.uniform(-M_PI, M_PI);
     // Either over its lower edge towards the block, or back onto its base, one end of which lies on the block.
     const double sign = chance(random, 0.5) ? 1.0 : -1.0;

@@ -5,8 +5,8 @@
 namespace houghstream::world {
 
 /// How far things lean that lean on something, degrees from a resting attitude.
-inline constexpr double kLeastLeanDeg = 10.0;
-inline constexpr double kMostLeanDeg = 60.0;
+inline constexpr double kMinLeanDeg = 10.0;
+inline constexpr double kMaxLeanDeg = 60.0;
 
 /// Leaning on a block: tilted by 10 to 60 degrees from a resting attitude (upright in half of the cases), its lowest
 /// point on the table, the block's upper edge at its underside, its centre of mass between the two. The group's first

@@ -11,8 +11,8 @@
 namespace houghstream::world {
 namespace {
 
-constexpr double kLeastSlopeDeg = 12.0;
-constexpr double kMostSlopeDeg = 20.0;
+constexpr double kMinSlopeDeg = 12.0;
+constexpr double kMaxSlopeDeg = 20.0;
 constexpr double kReserveRad = 0.02;  // by which it stands safer than the slope asks for
 constexpr double kThinEndM = 0.004;
 constexpr double kBesideM = 0.015;  // of the wedge, on each side of what stands on it
@@ -57,7 +57,7 @@ Group put_lying(const ThingPtr& thing, int object_id, Random& random) {
 }
 
 Group put_on_wedge(const ThingPtr& thing, int object_id, Random& random) {
-  const double slope_rad = radians(random.uniform(kLeastSlopeDeg, kMostSlopeDeg));
+  const double slope_rad = radians(random.uniform(kMinSlopeDeg, kMaxSlopeDeg));
   const StablePose attitude = steady_attitude(*thing, slope_rad, random);
   const Eigen::AngleAxisd turn(random.uniform(-M_PI, M_PI), Eigen::Vector3d::UnitZ());
   Placed placed = on_plane(thing, object_id, turn * attitude.R_table_object);

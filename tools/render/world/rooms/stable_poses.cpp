@@ -11,7 +11,7 @@ namespace houghstream::world {
 namespace {
 
 constexpr int kDrops = 400;  // attitudes from which it is let go
-constexpr double kLeastSlopeRad = 1.0 * M_PI / 180.0;
+constexpr double kMinSlopeRad = 1.0 * M_PI / 180.0;
 constexpr double kSame = 0.9998;       // cosine between two directions that are one: 1.1 degrees
 constexpr double kSameHeightM = 5e-4;  // of the centre of mass, within a family
 constexpr double kSameUpright = 0.03;  // of the cosine between down and the object's z axis, within a family
@@ -59,9 +59,8 @@ void add_to_family(const StablePose& attitude, std::vector<RestingFamily>& famil
     families.push_back({attitude});
     return;
   }
-  const bool known = std::any_of(own->begin(), own->end(), [&](const StablePose& other) {
-    return up_of(other).dot(up_of(attitude)) > kSame;
-  });
+  const bool known = std::any_of(own->begin(), own->end(),
+                                 [&](const StablePose& other) { return up_of(other).dot(up_of(attitude)) > kSame; });
   if (!known) own->push_back(attitude);
 }
 
@@ -76,7 +75,7 @@ std::vector<RestingFamily> find_stable_poses(const Mesh& mesh, double nearly_m) 
   std::vector<RestingFamily> families;
   for (int i = 0; i < kDrops; ++i) {
     const StablePose attitude = attitude_of(body, body.settled(spread_direction(i, kDrops)), nearly_m);
-    if (attitude.steepest_slope_rad() >= kLeastSlopeRad) add_to_family(attitude, families);
+    if (attitude.steepest_slope_rad() >= kMinSlopeRad) add_to_family(attitude, families);
   }
   return families;
 }

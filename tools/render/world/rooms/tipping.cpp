@@ -14,7 +14,7 @@ namespace {
 constexpr double kTouchM = 2e-5;  // above the lowest point and yet on the plane: vertices are floats
 constexpr double kRollM = 3e-4;   // an edge that raises the centre of mass by less is part of a round surface
 constexpr double kLowerM = 5e-6;
-constexpr int kMostSteps = 2000;
+constexpr int kMaxSteps = 2000;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -124,13 +124,13 @@ Eigen::Vector3d TippingBody::tipped(const Eigen::Vector3d& down, const Support& 
 
 // Tips over as long as the centre of mass is not above what it stands on.
 Eigen::Vector3d TippingBody::fallen(Eigen::Vector3d down) const {
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const Support now = support(down);
     if (now.corners.size() >= 3 && now.margin_m() >= 0.0) return down;
     const Eigen::Vector2d pivot = nearest_on_border(now.corners);
     down = tipped(down, now, pivot, falls_towards(now.corners, pivot));
   }
-  fail("mesh does not come to rest in {} steps", kMostSteps);
+  fail("mesh does not come to rest in {} steps", kMaxSteps);
 }
 
 std::optional<Eigen::Vector3d> TippingBody::rolled(const Eigen::Vector3d& down, const Support& support) const {
@@ -148,12 +148,12 @@ std::optional<Eigen::Vector3d> TippingBody::rolled(const Eigen::Vector3d& down, 
 
 Eigen::Vector3d TippingBody::settled(Eigen::Vector3d down) const {
   down = fallen(down.normalized());
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const auto next = rolled(down, support(down));
     if (!next) return down;
     down = *next;
   }
-  fail("mesh rolls on after {} edges", kMostSteps);
+  fail("mesh rolls on after {} edges", kMaxSteps);
 }
 
 }  // namespace houghstream::world

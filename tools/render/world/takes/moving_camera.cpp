@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kBands = 16;
 constexpr double kStillPx = 0.25;  // less is not seen
-constexpr int kMostTaps = 12;      // on each side
+constexpr int kMaxTaps = 12;       // on each side
 
 /// Where each thing is seen: T_camera_object.
 std::vector<Eigen::Isometry3d> places(World& world, const Motion& motion, double seconds) {
@@ -42,7 +42,7 @@ cv::Mat half_ways(const ShadedView& view, const Camera& camera, int first,
 cv::Vec3f smeared(const cv::Mat& radiance, int x, int y, const cv::Vec2f& way) {
   const double length = std::hypot(way[0], way[1]);
   if (length < kStillPx) return radiance.at<cv::Vec3f>(y, x);
-  const int taps = std::min(kMostTaps, static_cast<int>(std::ceil(length)));
+  const int taps = std::min(kMaxTaps, static_cast<int>(std::ceil(length)));
   cv::Vec3f sum(0.0F, 0.0F, 0.0F);
   for (int i = -taps; i <= taps; ++i) {
     const float share = static_cast<float>(i) / static_cast<float>(taps);

@@ -15,8 +15,8 @@ constexpr double kMeterScale = 0.125;
 constexpr double kFollowPerS = 3.0;  // how fast automatic exposure follows
 constexpr double kReadoutS = 0.02;
 constexpr double kUsualExposureS = 0.010;  // at exposure 1; longer in the dark
-constexpr double kShortestS = 0.003;
-constexpr double kLongestS = 0.025;
+constexpr double kMinDurationS = 0.003;
+constexpr double kMaxDurationS = 0.025;
 constexpr std::uint64_t kNoiseAspect = 7;
 
 }  // namespace
@@ -60,7 +60,7 @@ RenderedFrame Take::render(int index) const {
   const double exposure = exposures_.at(static_cast<std::size_t>(index));
   LitWorld lit_world = lit_at(now);
   lit_world.world.photo.exposure = exposure;
-  const Shutter shutter{std::clamp(kUsualExposureS * exposure, kShortestS, kLongestS), kReadoutS};
+  const Shutter shutter{std::clamp(kUsualExposureS * exposure, kMinDurationS, kMaxDurationS), kReadoutS};
   const auto motion = [this](World& world, double seconds) { return stage_.move(world, seconds); };
   const ShadedView view = expose(lit_world, synthetic_camera(), motion, now, shutter);
   const Eigen::Isometry3d T_camera_world = stage_.move(lit_world.world, now);

@@ -53,8 +53,8 @@ TEST(Held, ThingsFloatBetween5And30CentimetresAboveTheirPlaceAndTheHandDoesNotTo
       EXPECT_EQ(group[0].thing->name, "hand");
       EXPECT_EQ(group[0].object_id, 0);
       EXPECT_EQ(group[1].object_id, id);
-      EXPECT_GE(lowest(group[1]), kLeastHeldM - 1e-6);
-      EXPECT_LE(lowest(group[1]), kMostHeldM + 1e-6);
+      EXPECT_GE(lowest(group[1]), kMinHeldM - 1e-6);
+      EXPECT_LE(lowest(group[1]), kMaxHeldM + 1e-6);
       EXPECT_GT(lowest(group[0]), 0.0);
       EXPECT_NEAR((group[1].T_world_object.translation().head<2>() - place().over).norm(), 0.0, 1e-9);
     }

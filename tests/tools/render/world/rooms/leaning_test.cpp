@@ -24,13 +24,13 @@ Group leaning(int id, std::uint64_t seed) {
 /// From the attitude nearest to which the thing would rest to that in which it leans, degrees.
 double least_lean_deg(const Placed& placed, const std::vector<RestingFamily>& families) {
   const Eigen::Vector3d up = placed.T_world_object.linear().row(2);
-  double most_cosine = -1.0;
+  double max_cosine = -1.0;
   for (const RestingFamily& family : families) {
     for (const StablePose& attitude : family) {
-      most_cosine = std::max(most_cosine, up.dot(attitude.R_table_object.row(2)));
+      max_cosine = std::max(max_cosine, up.dot(attitude.R_table_object.row(2)));
     }
   }
-  return std::acos(std::min(1.0, most_cosine)) * 180.0 / M_PI;
+  return std::acos(std::min(1.0, max_cosine)) * 180.0 / M_PI;
 }
 
 TEST(Leaning, ThingsTouchTheTableAndTheirBlockAndReachIntoNeither) {
@@ -84,7 +84,7 @@ TEST(Leaning, NothingLeansAsItWouldRestAndSlantsDiffer) {
     double most = 0.0;
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
       const double lean = least_lean_deg(leaning(id, seed)[1], families);
-      EXPECT_LE(lean, kMostLeanDeg + 1e-6);
+      EXPECT_LE(lean, kMaxLeanDeg + 1e-6);
       EXPECT_GT(lean, 2.0);
       least = std::min(least, lean);
       most = std::max(most, lean);
