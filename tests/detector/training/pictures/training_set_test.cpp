@@ -25,7 +25,7 @@ std::vector<TrainingView> flat_tile() {
 
 const auto kKeepAll = [](const TrainingView*) {};
 
-PictureInput input_of(const Profile& profile) {
+PictureInput set_input(const Profile& profile) {
   return {profile.features, profile.patch, profile.training, depth_normalised_scales()};
 }
 
@@ -37,7 +37,7 @@ TrainingSet teach(const std::vector<TrainingView>& views, float distance, int th
   std::vector<const TrainingView*> pointers;
   pointers.reserve(views.size());
   for (const TrainingView& view : views) pointers.push_back(&view);
-  return make_training_set(pointers, input_of(profile), kKeepAll);
+  return make_training_set(pointers, set_input(profile), kKeepAll);
 }
 
 TEST(TrainingSet, OffsetsPointFromTheSurfaceToTheCentre) {
@@ -134,7 +134,7 @@ TEST(TrainingSet, ViewsWithoutAPictureAreRememberedAllTheSame) {
   std::vector<const TrainingView*> pointers;
   pointers.reserve(views.size());
   for (const TrainingView& view : views) pointers.push_back(&view);
-  const TrainingSet set = make_training_set(pointers, input_of(profile), kKeepAll);
+  const TrainingSet set = make_training_set(pointers, set_input(profile), kKeepAll);
   EXPECT_EQ(set.views.size(), teach(views, 0.8F).views.size());
   std::set<std::uint32_t> with_patches;
   for (const TrainingSample& sample : set.samples) {
@@ -154,8 +154,8 @@ TEST(TrainingSet, ViewsThatAreDoneMayLetTheirPicturesGo) {
   std::vector<const TrainingView*> pointers;
   pointers.reserve(views.size());
   for (const TrainingView& view : views) pointers.push_back(&view);
-  const TrainingSet kept = make_training_set(pointers, input_of(profile), kKeepAll);
-  const TrainingSet let_go = make_training_set(pointers, input_of(profile), [&](const TrainingView* done) {
+  const TrainingSet kept = make_training_set(pointers, set_input(profile), kKeepAll);
+  const TrainingSet let_go = make_training_set(pointers, set_input(profile), [&](const TrainingView* done) {
     TrainingView& view = views[static_cast<std::size_t>(done - views.data())];
     EXPECT_GT(view.class_id, 0) << "a room, which other pictures want too";
     EXPECT_FALSE(view.mask.empty()) << "done twice";
