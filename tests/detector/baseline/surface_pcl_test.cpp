@@ -19,7 +19,7 @@ namespace {
 using Points = pcl::PointCloud<pcl::PointXYZ>;
 using Normals = pcl::PointCloud<pcl::Normal>;
 
-WorkingFrame noisy_ball() {
+WorkingFrame noisy_sphere() {
   WorkingFrame frame = scene::ball_on_table(120, 90);
   scene::add_noise(frame, 0.001, 2);
   return frame;
@@ -70,7 +70,7 @@ float median(std::vector<float> values) {
 }
 
 TEST(SurfacePcl, NormalsAgree) {
-  const WorkingFrame frame = noisy_ball();
+  const WorkingFrame frame = noisy_sphere();
   const Normals::Ptr expected = searched_normals(cloud_of(frame), 81);
   const cv::Mat found = surface_normals(frame, 81, 1);
   std::vector<float> degrees;
@@ -113,7 +113,7 @@ CurvatureDifference compare_curvatures(const WorkingFrame& frame) {
 }
 
 TEST(SurfacePcl, CurvaturesAgree) {
-  EXPECT_LT(compare_curvatures(noisy_ball()).spread, 0.005F);
+  EXPECT_LT(compare_curvatures(noisy_sphere()).spread, 0.005F);
   const scene::Round can{Eigen::Vector3d(0.0, 0.0, 1.1), 0.3, Eigen::Vector3d(0.6, 0.8, 0.0)};
   WorkingFrame frame = scene::see(80, 60, can);
   scene::add_noise(frame, 0.0003, 3);
