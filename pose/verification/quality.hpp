@@ -55,10 +55,9 @@ struct QualitySettings {
   /// Means of right poses: what is farthest below them is the reason for "no pose". Those of colour stand for a model
   /// without colours.
   QualityTerms typical = {1.95, 3.06, -0.17, 2.89, -0.23, 0.80, -5.29, -5.29};
-  float least = 0.75F;  ///< poses of lower quality are not published...
-  float min_candidate_quality =
-      0.75F;                  ///< ...nor are these of candidates (Detection::reported), most of which are false
-  PresenceSettings presence;  ///< what the quality says of whether the object is there at all
+  float least = 0.75F;                  ///< poses of lower quality are not published...
+  float min_candidate_quality = 0.75F;  ///< ...nor are these of candidates (Detection::reported): most are false
+  PresenceSettings presence;            ///< what the quality says of whether the object is there at all
 };
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings);

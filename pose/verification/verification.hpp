@@ -17,15 +17,14 @@ struct VerificationSettings {
 
 /// The rendered model against the measured depth, pixel by pixel.
 struct Verification {
-  int rendered = 0;   ///< pixels of the model inside the image
-  int agreeing = 0;   ///< measured within the tolerance
-  int violating = 0;  ///< measured behind the model: the camera saw through it
-  int occluded = 0;   ///< measured in front of the model; says nothing about the pose
-  int outline = 0;    ///< places where the model's outline was looked across
-  float boundary_continuations =
-      0.0F;                        ///< those where what is seen goes on as if there were no outline, see BoundarySample
-  float visible_fraction() const;  ///< agreeing of rendered, 0 if nothing is rendered
-  float free_space_violation() const;  ///< violating of rendered, 0 if nothing is rendered
+  int rendered = 0;                     ///< pixels of the model inside the image
+  int agreeing = 0;                     ///< measured within the tolerance
+  int violating = 0;                    ///< measured behind the model: the camera saw through it
+  int occluded = 0;                     ///< measured in front of the model; says nothing about the pose
+  int outline = 0;                      ///< places where the model's outline was looked across
+  float boundary_continuations = 0.0F;  ///< those where the scene continues across it, see BoundarySample
+  float visible_fraction() const;       ///< agreeing of rendered, 0 if nothing is rendered
+  float free_space_violation() const;   ///< violating of rendered, 0 if nothing is rendered
 };
 
 /// The same counts, without the outline's, at the points that were looked at instead of the rendered pixels: they are
