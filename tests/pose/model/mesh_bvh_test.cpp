@@ -11,7 +11,7 @@ namespace houghstream {
 namespace {
 
 /// A bumpy sheet of 2 x 20 x 20 triangles over the square from 0 to 1 m.
-Mesh sheet() {
+Mesh flat_sheet() {
   constexpr std::uint32_t kCells = 20;
   Mesh mesh;
   Random random(3);
@@ -47,7 +47,7 @@ TEST(MeshBvh, DistancesToOneTriangleAreThoseOfItsFaceEdgesAndCorners) {
 }
 
 TEST(MeshBvh, FindsWhatATryOfAllTrianglesFinds) {
-  const Mesh mesh = sheet();
+  const Mesh mesh = flat_sheet();
   const MeshBvh tree(mesh);
   Random random(5);
   for (int i = 0; i < 50; ++i) {

@@ -14,13 +14,13 @@ namespace {
 using namespace test_scene;
 
 const Eigen::Isometry3d kPose = standing(30.0, 30.0, 0.8);
-const DepthTolerance kTolerance{0.008, {}};
+const DepthTolerance kColourTolerance{0.008, {}};
 
 std::optional<ColourComparison> compare(const RgbdFrame& frame, const Mesh& mesh,
                                         const Eigen::Isometry3d& T_camera_object) {
   const ObjectModel model = make_object_model("box", mesh, {});
   const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480), {});
-  return compare_colours(colours, look_at_view(frame, model, T_camera_object, 400), kTolerance);
+  return compare_colours(colours, look_at_view(frame, model, T_camera_object, 400), kColourTolerance);
 }
 
 float agreement(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object) {
@@ -122,7 +122,7 @@ TEST(ColourScore, APrintIsJudgedWhereItAgreesBestWithinTwoPixels) {
     const cv::Mat move = (cv::Mat_<double>(2, 3) << 1.0, 0.0, moved_px, 0.0, 1.0, 0.0);
     cv::warpAffine(frame.colour, frame.colour, move, frame.colour.size());
     const ObjectObservation seen{frame, model, {}, {}, {}, lab_region(frame, cv::Rect(0, 0, 640, 480), {})};
-    return compare_texture(seen, look_at_view(frame, model, T_camera_object, 400), kTolerance)->agreement;
+    return compare_texture(seen, look_at_view(frame, model, T_camera_object, 400), kColourTolerance)->agreement;
   };
   EXPECT_GT(judged(kPose, 2.0), judged(kPose, 0.0) - 0.02F);
   EXPECT_LT(judged(kPose, 12.0), judged(kPose, 0.0) - 0.1F);
@@ -135,8 +135,8 @@ TEST(ColourScore, JudgingAPrintLeavesThePictureAsItIs) {
   const RgbdFrame frame = coloured_frame(box, kPose, 1);
   const ObjectObservation seen{frame, model, {}, {}, {}, lab_region(frame, cv::Rect(0, 0, 640, 480), {})};
   const ProjectedView look = look_at_view(frame, model, kPose, 400);
-  const float first = compare_texture(seen, look, kTolerance)->agreement;
-  EXPECT_EQ(compare_texture(seen, look, kTolerance)->agreement, first);
+  const float first = compare_texture(seen, look, kColourTolerance)->agreement;
+  EXPECT_EQ(compare_texture(seen, look, kColourTolerance)->agreement, first);
 }
 
 TEST(ColourScore, WithoutColoursOrMeasuredDepthThereIsNoAnswer) {
@@ -152,7 +152,7 @@ TEST(ColourScore, OnlyThePartThatIsGivenIsLookedAt) {
   const RgbdFrame frame = coloured_frame(box, kPose, 1);
   const ObjectModel model = make_object_model("box", box, {});
   const LabRegion corner = lab_region(frame, cv::Rect(0, 0, 20, 20), {});
-  EXPECT_FALSE(compare_colours(corner, look_at_view(frame, model, kPose, 400), kTolerance).has_value());
+  EXPECT_FALSE(compare_colours(corner, look_at_view(frame, model, kPose, 400), kColourTolerance).has_value());
 }
 
 TEST(ColourScore, ColourLowersOnlyWhatDepthSpeaksFor) {

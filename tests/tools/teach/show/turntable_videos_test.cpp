@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/test_files.hpp"
+#include "tools/teach/show/show_jobs.hpp"
 
 namespace houghstream::teach {
 namespace {
