@@ -43,7 +43,7 @@ MeshViewSettings few_views(MeshAttitudes attitudes = MeshAttitudes::kResting) {
 }
 
 // Equal bytes, NaN included.
-bool identical(const cv::Mat& a, const cv::Mat& b) {
+bool same_pixels(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && std::equal(a.datastart, a.dataend, b.datastart);
 }
 
@@ -136,11 +136,11 @@ TEST(MeshViews, TheSameSeedGivesTheSameViews) {
   const MeshViews views(brick(kRed), few_views(), 5);
   const TrainingView view = views.render(3);
   const TrainingView again = MeshViews(brick(kRed), few_views(), 5).render(3);
-  EXPECT_TRUE(identical(view.frame.colour, again.frame.colour));
-  EXPECT_TRUE(identical(view.frame.depth, again.frame.depth));
+  EXPECT_TRUE(same_pixels(view.frame.colour, again.frame.colour));
+  EXPECT_TRUE(same_pixels(view.frame.depth, again.frame.depth));
   EXPECT_TRUE(view.T_camera_object.matrix() == again.T_camera_object.matrix());
   const TrainingView other = MeshViews(brick(kRed), few_views(), 6).render(3);
-  EXPECT_FALSE(identical(view.frame.colour, other.frame.colour));
+  EXPECT_FALSE(same_pixels(view.frame.colour, other.frame.colour));
 }
 
 TEST(MeshViews, TheMaskAndTheDepthAreThoseOfTheMeshAtItsPose) {
@@ -223,8 +223,8 @@ TEST(MeshViews, AMeshWithoutColoursHasAnotherInEveryView) {
   EXPECT_GT(colourless, 1.5 * coloured);
   Mesh bare = brick(kRed);
   bare.colours.clear();
-  EXPECT_TRUE(identical(MeshViews(bare, settings, 1).render(2).frame.colour,
-                        MeshViews(brick(kRed), settings, 1).render(2).frame.colour))
+  EXPECT_TRUE(same_pixels(MeshViews(bare, settings, 1).render(2).frame.colour,
+                          MeshViews(brick(kRed), settings, 1).render(2).frame.colour))
       << "what colours it has do not count";
   EXPECT_THROW(MeshViews(bare, few_views(), 1), InputError);
 }
