@@ -21,7 +21,7 @@ import sys
 SEED, THREADS = 1, 2
 FRAMES = 30
 TREES = ("--trees", 3, "--composites", 1, "--patches", 40, "--tests", 400)
-TIME_KEY = re.compile(r"(_ms|_s|_us|ms|seconds|time|times|commit|machine|started|threads|stages)$")
+TIME_KEY = re.compile(r"(^|_)(ms|us)(_|$)|(_s|seconds|time|times|commit|machine|started|threads|stages)$")
 
 
 def hexadecimal(data):
@@ -148,13 +148,13 @@ class Results:
 
     def poses(self, name, *words):
         out = self.fresh(f"{name}.lcmlog")
-        self.call("hs-pose", "--models", self.work / "views/models", "--threads", THREADS, *words, "-l",
+        self.call("hs-pose", "--models", self.work / "views/models", "--threads", THREADS, "--keep-frames", *words, "-l",
                   f"file://{self.work}/detections.lcmlog", "--output-log", out)  # fmt: skip
         return digest_log(out)
 
     def objects(self):
         out = self.fresh("objects.lcmlog")
-        self.call("hs-track", "--models", self.work / "views/models", "--camera-pose", "0,0,0,1,0,0,0",
+        self.call("hs-track", "--models", self.work / "views/models", "--camera-pose", "OPENNI_FRAME=0,0,0,1,0,0,0",
                   "-l", f"file://{self.work}/poses.lcmlog", "--output-log", out)  # fmt: skip
         return digest_log(out)
 
