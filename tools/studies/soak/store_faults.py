@@ -239,7 +239,7 @@ class StoreFaults(Faults):
         """An object of the world is renamed, and then its class is removed, while hs-track runs."""
         folder = self.folder("changes_under_track")
         store = self.store(folder)
-        stream = self.stream(folder, "--objects", store)
+        stream = self.stream(folder, "--objects", store, scene=self.still_scene(folder))
         track = Process(folder, self.programs / "hs-track", "--objects", store, "-l", bus(HEARD))
         worlds = Worlds(folder / "worlds.lcmlog")
         try:
