@@ -1,17 +1,18 @@
 #include "pipeline/process/detection_throttle.hpp"
 
+#include "pipeline/types/frame_time.hpp"
+
 namespace houghstream {
 
 bool DetectionThrottle::is_due(const FrameId& frame) {
   constexpr double kHurry = 0.25;
-  constexpr double kSlack = 0.002;    // seconds, for times that tremble
-  constexpr double kOvertaken = 1.0;  // seconds by which a frame may come late
+  constexpr double kSlack = 0.002;  // seconds, for times that tremble
   if (!(looks_per_second_ > 0.0)) return true;
   if (cameras_.size() >= kCameras && cameras_.count(frame.channel) == 0) return true;
   Camera& camera = cameras_[frame.channel];
   const double passed_s = seconds_between(camera.last_utime, frame.utime);
   const double wait_s = (camera.hurried ? kHurry : 1.0) / looks_per_second_;
-  if (camera.looked && passed_s >= -kOvertaken && passed_s + kSlack < wait_s) return false;
+  if (camera.looked && passed_s >= -kMaxOvertakenS && passed_s + kSlack < wait_s) return false;
   camera = {true, false, frame.utime};
   return true;
 }

@@ -5,12 +5,11 @@
 #include "pipeline/base/log_odds.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/frame_results.hpp"
-#include "pipeline/types/shifted.hpp"
+#include "pipeline/types/frame_time.hpp"
 
 namespace houghstream {
 namespace {
 
-constexpr double kOvertakenS = 1.0;                 // by which a frame may come late
 constexpr std::int64_t kJumpUs = 10'000'000;        // to a later frame: a camera may be away for a moment
 constexpr std::int64_t kMaxIntervalUs = 1'000'000;  // between frames of which one follows the other
 
@@ -18,12 +17,12 @@ float probability(double odds) {
   return static_cast<float>(logistic(odds));
 }
 
-/// Whether newer frames have overtaken this one on its way. Where the one
-/// before it seemed so too, and was older, it is the clock that was set back.
+/// Whether newer frames have overtaken this one on its way. Where the one before it seemed so too, and was older, it is
+/// the clock that was set back.
 bool is_overtaken(std::int64_t utime, FollowedCamera& camera) {
   if (camera.shown.empty()) return false;
   const double passed_s = seconds_between(camera.shown.back().utime, utime);
-  const bool is_older = passed_s < 0.0 && passed_s >= -kOvertakenS;
+  const bool is_older = passed_s < 0.0 && passed_s >= -kMaxOvertakenS;
   const bool goes_on = camera.overtaken_utime && *camera.overtaken_utime < utime;
   camera.overtaken_utime.reset();
   if (is_older && !goes_on) camera.overtaken_utime = utime;
@@ -34,8 +33,7 @@ std::int64_t clock_of(std::int64_t utime, const FollowedCamera& camera) {
   return shifted(utime, camera.ahead_us);
 }
 
-/// Where utimes jump, the camera's clock advances as it did from the frame
-/// before to the last one.
+/// Where utimes jump, the camera's clock advances as it did from the frame before to the last one.
 void follow_clock(std::int64_t utime, FollowedCamera& camera) {
   if (camera.shown.empty()) return;
   const FollowedFrame& last = camera.shown.back();
@@ -50,10 +48,8 @@ void follow_clock(std::int64_t utime, FollowedCamera& camera) {
 /// A frame's detections beside what was followed in it.
 struct DetectionAssociation {
   FollowedFrame shown;
-  std::vector<int> matches;  ///< each detection's followed object: its place in
-                             ///< `shown`, or -1
-  int doubted = -1;          ///< the place in `shown` of what is looked for as if it
-                             ///< were not followed
+  std::vector<int> matches;  ///< each detection's followed object: its place in `shown`, or -1
+  int doubted = -1;          ///< the place in `shown` of what is looked for as if it were not followed
 
   bool needs_estimate(std::size_t detection) const { return matches[detection] < 0 || matches[detection] == doubted; }
 };
@@ -65,8 +61,8 @@ FollowedObject* find_followed(std::int64_t number, FollowedCamera& camera) {
   return found == camera.objects.end() ? nullptr : &*found;
 }
 
-/// Each detection's place in `shown`, or -1. The nearest ones first, each pose
-/// of one detection; withheld ones are nobody's.
+/// Each detection's place in `shown`, or -1. The nearest ones first, each pose of one detection; withheld ones are
+/// nobody's.
 std::vector<int> match_detections(const PoseEstimator& estimator, const Detections& detections,
                                   const FollowedFrame& shown, double reach_m) {
   struct Pair {
@@ -96,8 +92,7 @@ std::vector<int> match_detections(const PoseEstimator& estimator, const Detectio
   return matches;
 }
 
-/// What the look says of those that were there: found, with this score, or not
-/// found though in full view.
+/// What the look says of those that were there: found, with this score, or not found though in full view.
 void update_from_detections(const Detections& detections, const DetectionAssociation& look,
                             const FollowerSettings& settings, FollowedCamera& camera) {
   constexpr float kFullView = 0.7F;  // visible fraction
@@ -118,8 +113,7 @@ void update_from_detections(const Detections& detections, const DetectionAssocia
   }
 }
 
-/// The place in `shown` of the detected object whose last doubt lies farthest
-/// back, if it is time; else -1.
+/// The place in `shown` of the detected object whose last doubt lies farthest back, if it is time; else -1.
 int choose_recheck(const DetectionAssociation& look, const FollowerSettings& settings, FollowedCamera& camera) {
   const FollowedFrame& shown = look.shown;
   FollowedObject* chosen = nullptr;
@@ -137,9 +131,8 @@ int choose_recheck(const DetectionAssociation& look, const FollowerSettings& set
   return place;
 }
 
-/// What was followed in the frame of the detections, and which of them are of
-/// that. Notes in the camera's objects what the look says of them: found, with
-/// this score, or not found though in full view; and which one is doubted.
+/// What was followed in the frame of the detections, and which of them are of that. Notes in the camera's objects what
+/// the look says of them: found, with this score, or not found though in full view; and which one is doubted.
 DetectionAssociation associate_detections(const PoseEstimator& estimator, const Detections& detections,
                                           const FollowerSettings& settings, FollowedCamera& camera) {
   DetectionAssociation look{{}, std::vector<int>(detections.detections.size(), -1), -1};
@@ -153,9 +146,8 @@ DetectionAssociation associate_detections(const PoseEstimator& estimator, const 
   return look;
 }
 
-/// Where the pose of a detection is better than the followed one of that frame,
-/// the object goes on from it: what is between the two stays the same in the
-/// object's own frame.
+/// Where the pose of a detection is better than the followed one of that frame, the object goes on from it: what is
+/// between the two stays the same in the object's own frame.
 void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, const FollowerSettings& settings,
                        FollowedObject& object) {
   constexpr double kMargin = 1e-6;  // of two poses of one object small differences count
@@ -190,13 +182,11 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
   return result;
 }
 
-/// Each from where it is expected at constant speed; those that are not found
-/// there once more.
+/// Each from where it is expected at constant speed; those that are not found there once more.
 std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                                      FollowedCamera& camera) const {
   constexpr double kMaxLength = 0.25;  // seconds; no speed says anything about a later frame
-  constexpr std::int64_t kSettle = 4;  // settled and rendered in one frame of so
-                                       // many, not all objects in the same one
+  constexpr std::int64_t kSettle = 4;  // settled and rendered in one frame of so many, not all objects in the same one
   std::vector<ExpectedObject> expected;
   for (const FollowedObject& object : camera.objects) {
     const double dt = seconds_between(object.clock_us, clock_of(frame.id.utime, camera));
@@ -216,8 +206,7 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
   return poses;
 }
 
-/// Those without a valid pose from where they were last, and from where the
-/// camera's motion has brought them.
+/// Those without a valid pose from where they were last, and from where the camera's motion has brought them.
 void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
                                 std::vector<FollowedPose>& poses) const {
   std::vector<Eigen::Isometry3d> motions;
@@ -237,8 +226,7 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
     ExpectedObject again{object.class_id, object.class_name, score, {object.T_camera_object}, true, true, true, {}};
     const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(object.T_camera_object, motions);
     if (carried) again.starts.insert(again.starts.begin(), *carried);
-    // What stands was expected there the first time too, and it has been told
-    // whether it is hidden there.
+    // What stands was expected there the first time too, and it has been told whether it is hidden there.
     again.check_occlusion = carried || !object.velocity.is_zero();
     expected.push_back(std::move(again));
   }
@@ -256,8 +244,7 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
   }
 }
 
-/// Goes on from the result; without evidence it stays where it was, or where
-/// the camera's motion has brought it.
+/// Goes on from the result; without evidence it stays where it was, or where the camera's motion has brought it.
 void ObjectFollower::note_result(const FollowedPose& result, std::int64_t clock_us, FollowedObject& object) const {
   const bool valid = result.pose.status == PoseStatus::kValid;
   const bool kept = valid || result.pose.quality >= settings_.min_kept_quality;
@@ -335,8 +322,8 @@ ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFra
   return result;
 }
 
-/// Takes the place of one of its class that is withheld, or of one of another
-/// class that is less sure; is known where one of its class is followed there.
+/// Takes the place of one of its class that is withheld, or of one of another class that is less sure; is known where
+/// one of its class is followed there.
 void ObjectFollower::add_object(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose,
                                 FollowedCamera& camera) {
   FollowedObject found;
@@ -362,8 +349,7 @@ void ObjectFollower::add_object(const PoseEstimator& estimator, const FrameId& f
   camera.objects.push_back(std::move(found));
 }
 
-/// Moves what was found in an earlier frame as the camera has moved since, as
-/// far as that can be told.
+/// Moves what was found in an earlier frame as the camera has moved since, as far as that can be told.
 void ObjectFollower::propagate_to_latest(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found) {
   const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
                                  [&](const FollowedFrame& one) { return one.utime == utime; });

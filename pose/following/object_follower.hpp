@@ -17,26 +17,23 @@ namespace houghstream {
 
 /// When what is followed is given up, and which detection is of it.
 struct FollowerSettings {
-  FollowSettings follow;             ///< how one object is found again in one frame
-  int max_failures = 3;              ///< frames one after the other without evidence: it is lost
-  float min_kept_quality = 0.3F;     ///< a pose that is withheld is followed on from this quality on
-  double max_withheld_s = 1.0;       ///< but no longer without a valid pose
-  double max_hidden_s = 2.0;         ///< the same while it is hidden
-  double reach_m = 0.07;             ///< between a detection's centre and a followed pose
-                                     ///< of its class: it is of that one
-  double apart = 0.5;                ///< of the smaller radius: closer together two objects are one
-  double logit_gain = 0.3;           ///< how much one look moves the score's log odds
-  float miss_score = 0.3F;           ///< what a look is worth that does not find an
-                                     ///< object in full view...
-  double missed_after_s = 1.0;       ///< ...once none has found it for so long
-  double recheck_interval_s = 0.15;  ///< a detection's pose is looked for anew,
-                                     ///< beside the followed one...
+  FollowSettings follow;          ///< how one object is found again in one frame
+  int max_failures = 3;           ///< frames one after the other without evidence: it is lost
+  float min_kept_quality = 0.3F;  ///< a pose that is withheld is followed on from this quality on
+  double max_withheld_s = 1.0;    ///< but no longer without a valid pose
+  double max_hidden_s = 2.0;      ///< the same while it is hidden
+  double reach_m = 0.07;          ///< between a detection's centre and a followed pose of its class: it is of that one
+  double apart = 0.5;             ///< of the smaller radius: closer together two objects are one
+  double logit_gain = 0.3;        ///< how much one look moves the score's log odds
+  float miss_score = 0.3F;        ///< what a look is worth that does not find an object in full view...
+  double missed_after_s = 1.0;    ///< ...once none has found it for so long
+  double recheck_interval_s = 0.15;  ///< a detection's pose is looked for anew, beside the followed one...
   double better_log_odds = 0.3;      ///< ...and takes its place where its quality is so much better
   double speed_gain = 0.5;           ///< how much the last step moves the speed
 };
 
-/// An object that is followed from frame to frame of one camera. Its times are
-/// on the camera's clock (FollowedCamera::ahead_us).
+/// An object that is followed from frame to frame of one camera. Its times are on the camera's clock
+/// (FollowedCamera::ahead_us).
 struct FollowedObject {
   std::int64_t number = 0;  ///< in the order in which they were found
   int class_id = 0;
@@ -65,38 +62,32 @@ struct FollowedCamera {
   std::vector<FollowedObject> objects;
   std::deque<FollowedFrame> shown;  ///< the last ones
   std::int64_t frames = 0;
-  /// The camera's clock minus its frames' utimes, which jump where the host's
-  /// clock is set or a stamp is wrong. The camera's clock does not.
+  /// The camera's clock minus its frames' utimes, which jump where the host's clock is set or a stamp is wrong. The
+  /// camera's clock does not.
   std::int64_t ahead_us = 0;
   std::int64_t interval_us = 0;                 ///< from the frame before to the last one
-  std::optional<std::int64_t> overtaken_utime;  ///< of the last frame that came, where newer ones had
-                                                ///< overtaken it
+  std::optional<std::int64_t> overtaken_utime;  ///< of the last frame that came, where newer ones had overtaken it
 };
 
-/// What hs-pose --follow remembers: the objects of each camera that are
-/// followed from frame to frame by registration from where they are expected
-/// (constant velocity), each for as long as the evidence lasts. Detections,
-/// which come later and seldom, add objects, take the place of lost ones, and
-/// say how sure it is that those are there that are followed. Now and then one
-/// that is followed is looked for as if it were not, since registration from
-/// the last pose alone never leaves a wrong turn. Every function may be called
-/// from any thread; answer() keeps follow() waiting for short steps only.
+/// What hs-pose --follow remembers: the objects of each camera that are followed from frame to frame by registration
+/// from where they are expected (constant velocity), each for as long as the evidence lasts. Detections, which come
+/// later and seldom, add objects, take the place of lost ones, and say how sure it is that those are there that are
+/// followed. Now and then one that is followed is looked for as if it were not, since registration from the last pose
+/// alone never leaves a wrong turn. Every function may be called from any thread; answer() keeps follow() waiting for
+/// short steps only.
 class ObjectFollower {
  public:
   explicit ObjectFollower(FollowerSettings settings = {}) : settings_(settings) {}
 
-  /// The followed objects in the newest frame of a camera, in the order in
-  /// which they were found; each without a detection, and with the reason where
-  /// its pose is withheld. What is lost is told once more, with its reason, and
-  /// is gone from the next frame on. Nothing for a frame that newer ones have
-  /// overtaken on its way. Where stamps jump (a clock that is set, one wrong
-  /// stamp) the objects are followed on. The stage's time, pose.following, is
-  /// appended to `stages` of the frame.
+  /// The followed objects in the newest frame of a camera, in the order in which they were found; each without a
+  /// detection, and with the reason where its pose is withheld. What is lost is told once more, with its reason, and is
+  /// gone from the next frame on. Nothing for a frame that newer ones have overtaken on its way. Where stamps jump (a
+  /// clock that is set, one wrong stamp) the objects are followed on. The stage's time, pose.following, is appended to
+  /// `stages` of the frame.
   std::optional<ObjectPoses> follow(const PoseEstimator& estimator, const RgbdFrame& frame);
 
-  /// The poses of the detections of a frame that follow() has had: of followed
-  /// objects as they were then, of others as PoseEstimator::estimate finds
-  /// them. What is found is followed from the next frame on.
+  /// The poses of the detections of a frame that follow() has had: of followed objects as they were then, of others as
+  /// PoseEstimator::estimate finds them. What is found is followed from the next frame on.
   ObjectPoses answer(const PoseEstimator& estimator, const RgbdFrame& frame, const Detections& detections);
 
  private:

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pose/registration/registration.hpp"
+#include "pose/seen/depth_score.hpp"
 
 namespace houghstream {
 
@@ -24,7 +25,7 @@ struct ChoiceSettings {
   InitialSettings initial;
   RegistrationSettings registration;
   RotationSearchSettings turn;
-  double tolerance_m = 0.008;  ///< VerificationSettings::tolerance_m
+  double tolerance_m = kDepthTolerance_m;  ///< VerificationSettings::tolerance_m
 };
 
 /// Of the registered candidates the one for which depth, colour and votes speak most is registered finely and turned

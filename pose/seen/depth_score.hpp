@@ -10,6 +10,9 @@
 
 namespace houghstream {
 
+/// Metres within which measured and model depth agree, where settings say nothing else.
+constexpr double kDepthTolerance_m = 0.008;
+
 /// Where a model's point falls in a frame, and what was measured there.
 struct Look {
   /// Measured minus model depth along the ray, metres; NaN where nothing was measured or the image ends.

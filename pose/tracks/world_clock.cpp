@@ -5,12 +5,10 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/types/shifted.hpp"
+#include "pipeline/types/frame_time.hpp"
 
 namespace houghstream::tracks {
 namespace {
-
-constexpr double kBackS = 1.0;
 
 /// Whether the numbers say that the source was started again, or its log: they fall, or are of another run.
 bool is_started_again(const FrameNumber& before, const FrameNumber& after) {
@@ -26,7 +24,7 @@ bool goes_on(const FrameNumber& before, const FrameNumber& after) {
 
 TimeOrder WorldClock::order_of(const StampedFrame& frame) {
   constexpr int kGone = 30;
-  if (seconds_between(frame.newest_utime, frame.id.utime) > kBackS) return TimeOrder::kLate;
+  if (seconds_between(frame.newest_utime, frame.id.utime) > kMaxOvertakenS) return TimeOrder::kLate;
   const std::int64_t utime = shifted(frame.id.utime, ahead_us_);
   const auto known = cameras_.find(frame.id.channel);
   if (known != cameras_.end()) {
@@ -36,13 +34,13 @@ TimeOrder WorldClock::order_of(const StampedFrame& frame) {
     return TimeOrder::kLate;
   }
   const std::int64_t now = shifted(frame.id.utime, ahead_us_);
-  if (!newest_ || seconds_between(now, newest_->utime) <= kBackS) return TimeOrder::kNext;
+  if (!newest_ || seconds_between(now, newest_->utime) <= kMaxOvertakenS) return TimeOrder::kNext;
   ++behind_;
   require(
       behind_ >= kGone,
       "frame {} is {:.1f} s older than the last one of {}, expected cameras whose clocks, and results, are within {} "
       "s of one another",
-      to_string(frame.id), seconds_between(now, newest_->utime), newest_->channel, kBackS);
+      to_string(frame.id), seconds_between(now, newest_->utime), newest_->channel, kMaxOvertakenS);
   tell_new_world(frame.id, newest_->utime);
   return TimeOrder::kAnew;
 }
@@ -50,7 +48,7 @@ TimeOrder WorldClock::order_of(const StampedFrame& frame) {
 TimeOrder WorldClock::order_after(const Camera& camera, const StampedFrame& frame, std::int64_t utime) {
   constexpr double kIntervals = 3.0;  // results may come seldom
   const std::int64_t last_utime = camera.clock.utime;
-  if (seconds_between(shifted(frame.newest_utime, ahead_us_), last_utime) > kBackS)
+  if (seconds_between(shifted(frame.newest_utime, ahead_us_), last_utime) > kMaxOvertakenS)
     return order_behind(camera, frame, utime);
   const bool other_run = frame.number.run != camera.number.run && frame.number.run != 0 && camera.number.run != 0;
   if (utime <= last_utime && other_run) {
@@ -59,7 +57,7 @@ TimeOrder WorldClock::order_after(const Camera& camera, const StampedFrame& fram
   }
   if (utime < last_utime) return TimeOrder::kLate;
   const double passed_s = seconds_between(last_utime, utime);
-  if (passed_s <= std::max(kBackS, kIntervals * camera.interval_s)) return TimeOrder::kNext;
+  if (passed_s <= std::max(kMaxOvertakenS, kIntervals * camera.interval_s)) return TimeOrder::kNext;
   return order_ahead(last_utime, frame, utime);
 }
 
@@ -86,8 +84,8 @@ TimeOrder WorldClock::order_behind(const Camera& camera, const StampedFrame& fra
 
 TimeOrder WorldClock::order_ahead(std::int64_t last_utime, const StampedFrame& frame, std::int64_t utime) {
   constexpr std::int64_t kMaxDurationUs = 60'000'000;
-  if (seconds_between(last_utime, utime) <= kBackS) return TimeOrder::kNext;
-  const bool is_told_by_another = std::abs(seconds_between(newest_->utime, utime)) <= kBackS;
+  if (seconds_between(last_utime, utime) <= kMaxOvertakenS) return TimeOrder::kNext;
+  const bool is_told_by_another = std::abs(seconds_between(newest_->utime, utime)) <= kMaxOvertakenS;
   if (!is_told_by_another && !is_confirmed(last_utime, frame.id, utime)) return TimeOrder::kLate;
   if (microseconds_between(newest_->utime, utime) > kMaxDurationUs)
     move_to(shifted(newest_->utime, kMaxDurationUs), frame.id);

@@ -11,8 +11,8 @@ namespace houghstream {
 
 /// Comparison of the model with what is measured, at a pose.
 struct VerificationSettings {
-  double tolerance_m = 0.008;  ///< measured and model depth agree; 3 sigma is added
-  int points = 600;            ///< of a view whose colours are compared
+  double tolerance_m = kDepthTolerance_m;  ///< measured and model depth agree; 3 sigma is added
+  int points = 600;                        ///< of a view whose colours are compared
 };
 
 /// The rendered model against the measured depth, pixel by pixel.

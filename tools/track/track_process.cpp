@@ -14,7 +14,7 @@
 #include "pipeline/process/byte_budget.hpp"
 #include "pipeline/process/frame_synchroniser.hpp"
 #include "pipeline/process/process_loop.hpp"
-#include "pipeline/types/shifted.hpp"
+#include "pipeline/types/frame_time.hpp"
 #include "tools/track/heartbeat_monitor.hpp"
 #include "tools/track/recent_detections.hpp"
 #include "tools/track/world_frame.hpp"

@@ -5,6 +5,10 @@
 
 namespace houghstream {
 
+/// Seconds by which newer frames of a camera may overtake one on its way; what is older has come of a clock that was
+/// set back, or of a source that begins again.
+constexpr double kMaxOvertakenS = 1.0;
+
 /// `utime` + `by_us`, microseconds; at most what the type holds, as the times of a message or a damaged log may be any.
 inline std::int64_t shifted(std::int64_t utime, std::int64_t by_us) {
   std::int64_t sum = 0;
