@@ -79,7 +79,8 @@ ObjectPoses ClassNames::resolve(const FrameObservation& seen, const TrackModels&
   return poses;
 }
 
-Detections ClassNames::resolve(const Detections& detections) const {
+std::optional<Detections> ClassNames::resolve(const Detections& detections) const {
+  if (renamed_.empty()) return std::nullopt;
   Detections resolved = detections;
   for (Detection& detection : resolved.detections) {
     const auto renamed = renamed_.find(detection.class_name);

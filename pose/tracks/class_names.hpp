@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -32,8 +33,8 @@ class ClassNames {
   ObjectPoses resolve(const FrameObservation& seen, const TrackModels& models, const std::vector<Track>& tracks,
                       double same_rotation_rad) const;
 
-  /// Returns the detections by the names of today.
-  Detections resolve(const Detections& detections) const;
+  /// Returns the detections by the names of today; nothing where they have these already.
+  std::optional<Detections> resolve(const Detections& detections) const;
 
  private:
   std::map<std::string, std::string> renamed_;  // today's names by former ones

@@ -130,9 +130,10 @@ std::optional<WorldObjects> Tracker::update(const FrameObservation& seen) {
   for (Track& track : state.tracks) track.pose.predict(utime);
   ObjectPoses poses = state.names.resolve(seen, state.models, state.tracks, state.settings.pose.same_rotation_rad);
   poses.frame.utime = utime;
-  const Detections detections = seen.detections != nullptr ? state.names.resolve(*seen.detections) : Detections();
-  WorldObjects world = state.update(
-      {poses, seen.detections != nullptr ? &detections : nullptr, seen.T_world_camera, seen.image}, *camera);
+  std::optional<Detections> renamed;
+  if (seen.detections != nullptr) renamed = state.names.resolve(*seen.detections);
+  const Detections* detections = renamed ? &*renamed : seen.detections;
+  WorldObjects world = state.update({poses, detections, seen.T_world_camera, seen.image}, *camera);
   world.frame = seen.poses.frame;
   if (ahead_us == 0) return world;
   for (TrackedObject& object : world.objects) {
