@@ -6,7 +6,8 @@ pattern is not found are a fault too. Prints one line per fault; status 1 where 
 
 import pathlib
 import re
-import sys
+
+import rule_command
 
 QUALITY = "pose/verification/quality.hpp"
 STORED = "tools/common/stored_quality.hpp"
@@ -37,13 +38,5 @@ def find_faults(root, rows=ROWS):
             yield f"{document}: says {said:g}, but {source} has {meant:g}"
 
 
-def main():
-    if len(sys.argv) != 2 or not pathlib.Path(sys.argv[1], "pipeline").is_dir():
-        sys.exit("usage: documented_defaults.py REPOSITORY (the folder that holds pipeline/)")
-    faults = list(find_faults(pathlib.Path(sys.argv[1])))
-    print("\n".join(faults) if faults else "documents state the code's defaults")
-    sys.exit(1 if faults else 0)
-
-
 if __name__ == "__main__":
-    main()
+    rule_command.run(find_faults, "documents state the code's defaults")

@@ -8,7 +8,8 @@ import ast
 import pathlib
 import re
 import subprocess
-import sys
+
+import rule_command
 
 MOST_PARAMETERS = 5  # as readability-function-size in .clang-tidy
 FOLDERS_WITH_README = ("lcmtypes", "pipeline", "drivers", "detector", "pose", "tools", "tests", "tools/studies")
@@ -71,13 +72,5 @@ def find_faults(root):
     return [*folder_faults(files), *text_faults(root, files), *python_faults(root, files)]
 
 
-def main():
-    if len(sys.argv) != 2 or not pathlib.Path(sys.argv[1], "pipeline").is_dir():
-        sys.exit("usage: house_rules.py REPOSITORY (the folder that holds pipeline/)")
-    faults = find_faults(pathlib.Path(sys.argv[1]))
-    print("\n".join(faults) if faults else "the house is in order")
-    sys.exit(1 if faults else 0)
-
-
 if __name__ == "__main__":
-    main()
+    rule_command.run(find_faults, "the house is in order")

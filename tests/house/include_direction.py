@@ -5,7 +5,8 @@ Prints one line per fault and exits with 1 when there is any. Usage: include_dir
 
 import pathlib
 import re
-import sys
+
+import rule_command
 
 ALLOWED = {
     "lcmtypes": {"lcmtypes"},
@@ -67,13 +68,5 @@ def find_faults(root):
     return faults
 
 
-def main():
-    if len(sys.argv) != 2 or not pathlib.Path(sys.argv[1], "pipeline", "CMakeLists.txt").is_file():
-        sys.exit("usage: include_direction.py REPOSITORY (the folder that holds pipeline/)")
-    faults = find_faults(pathlib.Path(sys.argv[1]))
-    print("\n".join(faults) if faults else "all includes point the right way")
-    sys.exit(1 if faults else 0)
-
-
 if __name__ == "__main__":
-    main()
+    rule_command.run(find_faults, "all includes point the right way")

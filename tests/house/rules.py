@@ -5,7 +5,7 @@
 
 1. Folders have an order. A README's line `order: a < b < { c, d } < .` names folders below it, `.` being the files that lie beside the
    README; a folder may include those to its left. Those in braces may not include one another. A folder that is not named belongs to
-   the nearest folder above it that is; what stands in no order is a fault.
+   the nearest folder above it that is; what stands in no order is a fault. No folders include one another in a circle, at any depth.
 2. Files have an order. A unit is a header with its source; no unit includes itself by way of others.
 3. An idea has one owner: owners.txt names a pattern of text and the places where it may stand.
 4. A header is for others: one that only its own source and tests include belongs into the source, one that only tests include to tests/.
@@ -16,6 +16,8 @@ What broke a rule when the rules came stands in known.txt, which only shrinks.
 import pathlib
 import re
 import sys
+
+import rule_command
 
 TOP = ("pipeline", "drivers", "detector", "pose", "tools")
 ORDER = re.compile(r"^`?order: (.*?)`?$", re.MULTILINE)
@@ -66,21 +68,26 @@ def place_in(order, folder, file):
     return (ranks[parent], parent) if parent in ranks else None
 
 
-def order_faults(root, includes):
-    orders = read_orders(root)
+def includes_against_order(orders, includes):
+    """(file, what it includes, folder of the README, name of the file's part, name of the other's part)"""
     for folder, order in orders.items():
         inside = f"{folder}/"
         for file, included in includes.items():
-            if not file.startswith(inside):
-                continue
-            here = place_in(order, folder, file)
-            if here is None:
-                yield f"order: {file} lies in no folder that {folder}/README.md names"
-                continue
-            for target in (name for name in included if name.startswith(inside)):
+            here = place_in(order, folder, file) if file.startswith(inside) else None
+            for target in (name for name in included if here and name.startswith(inside)):
                 there = place_in(order, folder, target)
                 if there and there[1] != here[1] and there[0] >= here[0]:
-                    yield f"order: {file} includes {target}, but {folder}/README.md has {here[1]} not right of {there[1]}"
+                    yield file, target, folder, here[1], there[1]
+
+
+def order_faults(root, includes):
+    orders = read_orders(root)
+    for folder, order in orders.items():
+        for file in includes:
+            if file.startswith(f"{folder}/") and place_in(order, folder, file) is None:
+                yield f"order: {file} lies in no folder that {folder}/README.md names"
+    for file, target, folder, here, there in includes_against_order(orders, includes):
+        yield f"order: {file} includes {target}, but {folder}/README.md has {here} not right of {there}"
     for top in TOP:
         if top not in orders and any(file.startswith(f"{top}/") for file in includes):
             yield f"order: {top}/README.md states none"
@@ -125,13 +132,26 @@ def circles(edges):
     return found
 
 
-def circle_faults(includes):
+def folder_of(file):
+    return pathlib.PurePosixPath(file).parent.as_posix()
+
+
+def circles_among(part_of, includes):
     edges = {}
     for file, included in includes.items():
-        edges.setdefault(unit_of(file), set()).update(unit_of(name) for name in included)
-    ordered = {unit: sorted(targets - {unit}) for unit, targets in sorted(edges.items())}
-    for members in circles(ordered):
+        edges.setdefault(part_of(file), set()).update(part_of(name) for name in included)
+    return circles({part: sorted(targets - {part}) for part, targets in sorted(edges.items())})
+
+
+def circle_faults(root, includes):
+    """Of units, and of folders, each with its own files alone. Of folders, the includes that their order forbids are left out: they are
+    faults of their own."""
+    for members in circles_among(unit_of, includes):
         yield f"circle: {', '.join(members)}"
+    forbidden = {(file, target) for file, target, _, _, _ in includes_against_order(read_orders(root), includes)}
+    allowed = {file: [name for name in included if (file, name) not in forbidden] for file, included in includes.items()}
+    for members in circles_among(folder_of, allowed):
+        yield f"circle of folders: {', '.join(members)}"
 
 
 def header_faults(root, includes):
@@ -171,7 +191,7 @@ def find_faults(root):
     includes = includes_of(sources)
     return [
         *order_faults(root, includes),
-        *circle_faults(includes),
+        *circle_faults(root, includes),
         *header_faults(root, includes),
         *owner_faults(root, sources),
     ]
@@ -185,17 +205,8 @@ def news(root):
     return [*sorted(found - known), *(f"{HOUSE}/known.txt: no fault any more, take it out: {line}" for line in sorted(known - found))]
 
 
-def main():
-    if len(sys.argv) not in (2, 3) or not pathlib.Path(sys.argv[1], "pipeline").is_dir() or sys.argv[2:] not in ([], ["--known"]):
-        sys.exit("usage: rules.py REPOSITORY [--known] (the folder that holds pipeline/)")
-    root = pathlib.Path(sys.argv[1])
-    if sys.argv[2:]:
-        print("\n".join(sorted(set(find_faults(root)))))
-        return
-    faults = news(root)
-    print("\n".join(faults) if faults else "the rules of the house hold, but for what known.txt names")
-    sys.exit(1 if faults else 0)
-
-
 if __name__ == "__main__":
-    main()
+    if sys.argv[2:] == ["--known"]:
+        sys.argv.pop()
+        rule_command.run(lambda root: sorted(set(find_faults(root))), "")
+    rule_command.run(news, "the rules of the house hold, but for what known.txt names")

@@ -27,6 +27,12 @@ WRONG = {
         "pipeline/base/one.cpp": '#include "pipeline/base/one.hpp"\n#include "pipeline/base/two.hpp"\n',
         "pipeline/base/two.hpp": '#include "pipeline/base/one.hpp"\n',
     },
+    "a circle of a folder and one in it": {
+        "pipeline/geometry/shapes.hpp": '#include "pipeline/geometry/files/read.hpp"\n',
+        "pipeline/geometry/shapes.cpp": '#include "pipeline/geometry/shapes.hpp"\n',
+        "pipeline/geometry/files/read.hpp": '#include "pipeline/geometry/mesh.hpp"\n',
+        "pipeline/other.cpp": '#include "pipeline/geometry/shapes.hpp"\n',
+    },
     "a header for its own source alone": {
         "pipeline/base/own.hpp": "#pragma once\n",
         "pipeline/base/own.cpp": '#include "pipeline/base/own.hpp"\n',

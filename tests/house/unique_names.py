@@ -11,7 +11,8 @@ Prints one line per fault and exits with 1 when there is any. Usage: unique_name
 import collections
 import pathlib
 import re
-import sys
+
+import rule_command
 
 FOLDERS = ("pipeline", "drivers", "detector", "pose", "tools")
 # Comments, raw strings, strings, characters (not the ' within a number), preprocessor lines with their continuations.
@@ -59,13 +60,5 @@ def find_faults(root):
     return [f"{name} is defined in {' and in '.join(files)}" for name, files in sorted(places.items()) if len(files) > 1]
 
 
-def main():
-    if len(sys.argv) != 2 or not pathlib.Path(sys.argv[1], "pipeline", "CMakeLists.txt").is_file():
-        sys.exit("usage: unique_names.py REPOSITORY (the folder that holds pipeline/)")
-    faults = find_faults(pathlib.Path(sys.argv[1]))
-    print("\n".join(faults) if faults else "no name is defined twice in a namespace")
-    sys.exit(1 if faults else 0)
-
-
 if __name__ == "__main__":
-    main()
+    rule_command.run(find_faults, "no name is defined twice in a namespace")

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/evaluate/evaluated_frame.hpp"
+#include "tools/evaluate/metrics/evaluated_frame.hpp"
 
 namespace houghstream {
 

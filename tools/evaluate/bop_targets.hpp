@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "tools/evaluate/evaluated_frame.hpp"
+#include "tools/evaluate/metrics/evaluated_frame.hpp"
 
 namespace houghstream {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/evaluate/evaluated_frame.hpp"
+#include "tools/evaluate/metrics/evaluated_frame.hpp"
 
 // Results and truth are compared by the names of classes. Where two sides call nothing by the same name, each figure
 // would be that of no object: an error, not a result.

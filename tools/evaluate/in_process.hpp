@@ -10,7 +10,7 @@
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/geometry/mesh.hpp"
 #include "pose/pose_settings.hpp"
-#include "tools/evaluate/evaluated_frame.hpp"
+#include "tools/evaluate/metrics/evaluated_frame.hpp"
 
 namespace houghstream {
 

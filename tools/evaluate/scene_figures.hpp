@@ -7,9 +7,9 @@
 
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/geometry/mesh.hpp"
-#include "tools/evaluate/evaluated_frame.hpp"
 #include "tools/evaluate/evaluation.hpp"
 #include "tools/evaluate/metrics/bop_errors.hpp"
+#include "tools/evaluate/metrics/evaluated_frame.hpp"
 #include "tools/evaluate/metrics/pose_metrics.hpp"
 #include "tools/evaluate/report.hpp"
 

@@ -3,10 +3,10 @@
 
 #include "pipeline/base/checks.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/teach/mesh/store_rename.hpp"
+#include "tools/teach/mesh/teach_jobs.hpp"
 #include "tools/teach/show/show_jobs.hpp"
 #include "tools/teach/show/show_stream.hpp"
-#include "tools/teach/store_rename.hpp"
-#include "tools/teach/teach_jobs.hpp"
 
 // hs-teach: objects are taught from their meshes, or by showing them, into an object store.
 

@@ -6,8 +6,8 @@
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 #include "tests/test_files.hpp"
+#include "tools/evaluate/metrics/result_log.hpp"
 #include "tools/evaluate/report.hpp"
-#include "tools/evaluate/result_log.hpp"
 
 namespace houghstream {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "drivers/datasets/bop_dataset.hpp"
-#include "tools/evaluate/evaluated_frame.hpp"
 #include "tools/evaluate/metrics/bop_errors.hpp"
+#include "tools/evaluate/metrics/evaluated_frame.hpp"
 
 // Average recall as in the task of the BOP challenge since 2019, 6D localisation (Hodan et al. 2020): what is in each
 // image is known, and each thing is to be given its pose. Unlike the ADD-S of true detections, it counts what the

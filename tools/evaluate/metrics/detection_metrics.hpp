@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/evaluate/evaluated_frame.hpp"
 #include "tools/evaluate/metrics/calibration.hpp"
+#include "tools/evaluate/metrics/evaluated_frame.hpp"
 
 namespace houghstream {
 

@@ -15,7 +15,7 @@
 #include "tools/common/searched_objects.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
-#include "tools/evaluate/evaluated_frame.hpp"
+#include "tools/evaluate/metrics/evaluated_frame.hpp"
 #include "tools/studies/pose/bench_report.hpp"
 
 namespace {

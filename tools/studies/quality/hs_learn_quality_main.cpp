@@ -8,9 +8,9 @@
 #include "pipeline/base/log_line.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
-#include "tools/evaluate/evaluated_frame.hpp"
+#include "tools/evaluate/metrics/evaluated_frame.hpp"
 #include "tools/studies/quality/quality_fit.hpp"
-#include "tools/teach/quality_examples.hpp"
+#include "tools/teach/mesh/quality_examples.hpp"
 
 namespace {
 

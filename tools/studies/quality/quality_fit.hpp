@@ -6,7 +6,7 @@
 
 #include "drivers/files/json_file.hpp"
 #include "pose/verification/quality.hpp"
-#include "tools/teach/quality_examples.hpp"
+#include "tools/teach/mesh/quality_examples.hpp"
 
 namespace houghstream::quality {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pipeline/types/training_view.hpp"
-#include "tools/evaluate/evaluated_frame.hpp"
+#include "tools/evaluate/metrics/evaluated_frame.hpp"
 
 namespace houghstream {
 

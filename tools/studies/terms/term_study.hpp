@@ -7,7 +7,7 @@
 #include "detector/detection_settings.hpp"
 #include "detector/evidence/candidates.hpp"
 #include "drivers/files/json_file.hpp"
-#include "tools/evaluate/evaluated_frame.hpp"
+#include "tools/evaluate/metrics/evaluated_frame.hpp"
 
 // Which terms of the score push the scores of true objects down, and which those of others up: groups of scenes side by
 // side, for instance of rendered rooms, in whose like the weights were learnt, and of a camera.

@@ -21,7 +21,7 @@
 #include "pipeline/base/html_text.hpp"
 #include "pose/reconstruction/model/take_model.hpp"
 #include "tools/fuse/model_picture.hpp"
-#include "tools/teach/contact_sheet.hpp"
+#include "tools/teach/mesh/contact_sheet.hpp"
 
 namespace houghstream::teach {
 namespace {

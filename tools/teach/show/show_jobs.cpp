@@ -12,6 +12,7 @@
 #include "pose/fusion/surface_nets.hpp"
 #include "pose/reconstruction/model/take_model.hpp"
 #include "pose/reconstruction/tracking/take_placer.hpp"
+#include "tools/teach/mesh/teach_jobs.hpp"
 #include "tools/teach/show/camera_take.hpp"
 #include "tools/teach/show/progress_reporter.hpp"
 #include "tools/teach/show/session_archive.hpp"
@@ -19,7 +20,6 @@
 #include "tools/teach/show/show_sources.hpp"
 #include "tools/teach/show/show_teaching.hpp"
 #include "tools/teach/show/turntable_videos.hpp"
-#include "tools/teach/teach_jobs.hpp"
 
 namespace houghstream::teach {
 namespace {

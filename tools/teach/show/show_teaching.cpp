@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "pose/reconstruction/model/take_model.hpp"
-#include "tools/teach/mesh_checks.hpp"
+#include "tools/teach/mesh/mesh_checks.hpp"
 
 namespace houghstream::teach {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "tools/teach/mesh/teach_jobs.hpp"
 #include "tools/teach/show/show_options.hpp"
 #include "tools/teach/show/show_report.hpp"
-#include "tools/teach/teach_jobs.hpp"
 
 namespace houghstream::teach {
 

@@ -1,4 +1,4 @@
-#include "tools/teach/mesh_sources.hpp"
+#include "tools/teach/mesh/mesh_sources.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -10,7 +10,7 @@
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
-#include "tools/teach/mesh_checks.hpp"
+#include "tools/teach/mesh/mesh_checks.hpp"
 
 namespace houghstream::teach {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "detector/forest/forest.hpp"
 #include "pipeline/types/training_view.hpp"
-#include "tools/teach/teach_options.hpp"
+#include "tools/teach/mesh/teach_options.hpp"
 
 namespace houghstream::teach {
 

@@ -1,4 +1,4 @@
-#include "tools/teach/teach_jobs.hpp"
+#include "tools/teach/mesh/teach_jobs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "tests/test_files.hpp"
 #include "tests/tools/teach/shapes.hpp"
 #include "tools/common/stored_quality.hpp"
-#include "tools/teach/store_rename.hpp"
+#include "tools/teach/mesh/store_rename.hpp"
 
 namespace houghstream::teach {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/teach/mesh_checks.hpp"
+#include "tools/teach/mesh/mesh_checks.hpp"
 
 #include <algorithm>
 #include <cmath>

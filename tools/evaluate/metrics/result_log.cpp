@@ -1,4 +1,4 @@
-#include "tools/evaluate/result_log.hpp"
+#include "tools/evaluate/metrics/result_log.hpp"
 
 #include <fmt/ranges.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/teach/teach_options.hpp"
+#include "tools/teach/mesh/teach_options.hpp"
 
 namespace houghstream::teach {
 

@@ -1,4 +1,4 @@
-#include "tools/teach/store_rename.hpp"
+#include "tools/teach/mesh/store_rename.hpp"
 
 #include <algorithm>
 #include <map>
@@ -11,7 +11,7 @@
 #include "drivers/store/store_transaction.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/common/stored_forest.hpp"
-#include "tools/teach/contact_sheet.hpp"
+#include "tools/teach/mesh/contact_sheet.hpp"
 
 namespace houghstream::teach {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/teach/contact_sheet.hpp"
+#include "tools/teach/mesh/contact_sheet.hpp"
 
 #include <gtest/gtest.h>
 

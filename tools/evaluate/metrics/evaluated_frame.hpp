@@ -9,7 +9,7 @@
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/object_pose.hpp"
-#include "tools/evaluate/result_log.hpp"
+#include "tools/evaluate/metrics/result_log.hpp"
 
 namespace houghstream {
 

@@ -1,4 +1,4 @@
-#include "tools/teach/background_images.hpp"
+#include "tools/teach/mesh/background_images.hpp"
 
 #include <unistd.h>
 

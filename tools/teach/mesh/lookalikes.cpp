@@ -1,4 +1,4 @@
-#include "tools/teach/lookalikes.hpp"
+#include "tools/teach/mesh/lookalikes.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "tools/teach/quality_examples.hpp"
+#include "tools/teach/mesh/quality_examples.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tools/teach/store_forest.hpp"
+#include "tools/teach/mesh/store_forest.hpp"
 
 #include <algorithm>
 #include <map>

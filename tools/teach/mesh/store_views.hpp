@@ -7,7 +7,7 @@
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/store/object_store.hpp"
 #include "pipeline/types/training_view.hpp"
-#include "tools/teach/teach_options.hpp"
+#include "tools/teach/mesh/teach_options.hpp"
 
 namespace houghstream::teach {
 

@@ -1,4 +1,4 @@
-#include "tools/teach/score_calibration.hpp"
+#include "tools/teach/mesh/score_calibration.hpp"
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
@@ -14,7 +14,7 @@
 #include "pipeline/base/parallel.hpp"
 #include "pose/verification/quality_training.hpp"
 #include "tools/common/progress_line.hpp"
-#include "tools/teach/quality_examples.hpp"
+#include "tools/teach/mesh/quality_examples.hpp"
 
 namespace houghstream::teach {
 namespace {

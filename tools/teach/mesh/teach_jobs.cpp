@@ -1,4 +1,4 @@
-#include "tools/teach/teach_jobs.hpp"
+#include "tools/teach/mesh/teach_jobs.hpp"
 
 #include <fmt/format.h>
 
@@ -19,10 +19,10 @@
 #include "pipeline/base/parallel.hpp"
 #include "tools/common/stored_forest.hpp"
 #include "tools/common/stored_quality.hpp"
-#include "tools/teach/contact_sheet.hpp"
-#include "tools/teach/lookalikes.hpp"
-#include "tools/teach/store_forest.hpp"
-#include "tools/teach/store_views.hpp"
+#include "tools/teach/mesh/contact_sheet.hpp"
+#include "tools/teach/mesh/lookalikes.hpp"
+#include "tools/teach/mesh/store_forest.hpp"
+#include "tools/teach/mesh/store_views.hpp"
 
 namespace houghstream::teach {
 namespace {

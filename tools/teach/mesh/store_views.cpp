@@ -1,4 +1,4 @@
-#include "tools/teach/store_views.hpp"
+#include "tools/teach/mesh/store_views.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
 #include "tools/common/progress_line.hpp"
-#include "tools/teach/contact_sheet.hpp"
+#include "tools/teach/mesh/contact_sheet.hpp"
 
 namespace houghstream::teach {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/teach/mesh_sources.hpp"
+#include "tools/teach/mesh/mesh_sources.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "tests/expect_says.hpp"
 #include "tests/test_files.hpp"
 #include "tests/tools/teach/shapes.hpp"
-#include "tools/teach/mesh_checks.hpp"
+#include "tools/teach/mesh/mesh_checks.hpp"
 
 namespace houghstream::teach {
 namespace {

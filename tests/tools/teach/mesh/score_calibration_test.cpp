@@ -1,4 +1,4 @@
-#include "tools/teach/score_calibration.hpp"
+#include "tools/teach/mesh/score_calibration.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tools/evaluate/evaluated_frame.hpp"
+#include "tools/evaluate/metrics/evaluated_frame.hpp"
 
 #include <charconv>
 #include <set>
