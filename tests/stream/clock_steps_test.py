@@ -19,7 +19,7 @@ from studies.encoded import utime_of
 from studies.stream import Process, enter_private_network
 from end_to_end_test import THRESHOLD, VALID
 from live_stream import camera_option, wait_for_results, write_script
-from still_scene import make_still_scene
+from still_scene import make_fullest_scene
 
 HOUR_S = 3600
 STEPS = (0, -HOUR_S, 0)  # what the clock is ahead of the true one, part by part
@@ -78,7 +78,7 @@ def run(arguments):
     """Returns the recorded events, and when each part began on the true clock, microseconds."""
     recorded, begins = arguments.out / "recorded.log", []
     clock = Clock(arguments.out / "clock")
-    scene = make_still_scene(arguments.made, arguments.out / "scene")
+    scene = make_fullest_scene(arguments.made, arguments.out / "scene")
     logger = subprocess.Popen(["lcm-logger", "-f", "-q", "--flush-interval=1", "-c", "|".join(CHANNELS.values()), str(recorded)],
                               stderr=subprocess.DEVNULL)  # fmt: skip
     processes = []

@@ -13,7 +13,7 @@ from studies.soak.frames import FrameSender
 from studies.soak.wire import Listener
 from studies.stream import Process, enter_private_network
 from end_to_end_test import THRESHOLD, VALID
-from still_scene import make_still_scene
+from still_scene import make_fullest_scene
 
 PERIOD_US = 33_333
 YEAR = 8760 * 3600 * 30  # in frames
@@ -99,7 +99,7 @@ def main():
     enter_private_network()
     arguments = read_arguments(__doc__, made="folder of end_to_end_test.py")
     folder, made, tools = arguments.out, arguments.made, arguments.tools
-    scene, recording = make_still_scene(made, folder / "scene"), folder / "still.log"
+    scene, recording = make_fullest_scene(made, folder / "scene"), folder / "still.log"
     subprocess.run([tools / "hs-capture", "--source", f"bop:{scene}", "--log", recording], check=True)
     port = int(re.search(r":(\d+)\?", os.environ["LCM_DEFAULT_URL"]).group(1))
     listener = Listener(port, (POSES, DETECTIONS))

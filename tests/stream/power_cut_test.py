@@ -35,7 +35,7 @@ def check_store(arguments, name, words, exchange=True):
     make_store(arguments.made, store)
     put_notes(store)
     old = files_of(store)
-    disk, operations, synced = record(arguments.library, folder, [arguments.tools / "hs-teach", words[0], store, *words[1:]], exchange)
+    disk, operations, synced = record(arguments.recorder, folder, [arguments.tools / "hs-teach", words[0], store, *words[1:]], exchange)
     new = files_of(store)
     assert new != old and sorted(path.name for path in folder.iterdir()) == ["my.store"], operations
     states = seen_old = seen_new = 0
@@ -82,7 +82,7 @@ def check_file(arguments, name, make, command):
     file = folder / "output"
     make(file)
     old = file.read_bytes()
-    disk, operations, synced = record(arguments.library, folder, [*command, file])
+    disk, operations, synced = record(arguments.recorder, folder, [*command, file])
     new = file.read_bytes()
     assert new != old, name
     states = 0
@@ -95,7 +95,7 @@ def check_file(arguments, name, make, command):
 
 
 def main():
-    arguments = read_arguments(__doc__, made="what end_to_end_test.py has made", library="disk_recorder")
+    arguments = read_arguments(__doc__, made="what end_to_end_test.py has made", recorder="disk_recorder")
     check_store(arguments, "rename", ("rename", "bowl", "dish"))
     check_store(arguments, "remove", ("remove", "bowl"))
     check_store(arguments, "rename_without_exchange", ("rename", "bowl", "dish"), exchange=False)

@@ -18,10 +18,12 @@ from PIL import Image
 from folders import read_arguments
 from houghstream import detections_t, known_objects_t, objects_t, status_t, tracked_object_t
 from houghstream.event_log import read_log
+from studies.still_scene import make_still_scene
 from studies.stream import Process, enter_private_network
 from end_to_end_test import CLASSES, THRESHOLD
 
 RATE = 5  # frames a second
+STILL = 23  # picture in which each object is found once: before a camera that jumps, they might become others
 
 
 def make_store(made, store):
@@ -95,17 +97,6 @@ def check_killed(tools, store):
     assert [file.name for file in store.parent.glob(".*")] == [], "nothing is left beside it"
 
 
-def make_still_scene(scene, still):
-    """One frame of the scene, in which each object is found once: before a camera that jumps, they might become others."""
-    frame = 23
-    for part in ("rgb", "depth"):
-        (still / part).mkdir(parents=True)
-        shutil.copy(scene / part / f"{frame:06d}.png", still / part)
-    for name in ("scene_camera.json", "scene_gt.json", "scene_gt_info.json"):
-        (still / name).write_text(json.dumps({str(frame): json.loads((scene / name).read_text())[str(frame)]}))
-    return still
-
-
 class Log:
     """What the processes say."""
 
@@ -148,7 +139,7 @@ class Log:
 
 
 def check_stream(tools, made, folder, store):
-    scene = make_still_scene(made / "scene", folder / "still")
+    scene = make_still_scene(made / "scene", folder / "still", STILL)
     log = Log(folder / "results.log")
     processes = [Process(folder, tools / "hs-detect", "--objects", store, "--threshold", THRESHOLD),
                  Process(folder, tools / "hs-pose", "--objects", store),

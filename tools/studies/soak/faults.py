@@ -1,6 +1,5 @@
 """What all faults share: the processes, and their accounts."""
 
-import json
 import re
 import shutil
 import time
@@ -65,20 +64,6 @@ class Faults:
             process.kill()
             raise
         return process
-
-    def still_scene(self, folder):
-        """The first picture of the demo's scene as a scene of its own: what stands in it stays where it is, however long it is shown."""
-        still = folder / "still"
-        shutil.copytree(self.data / "scene", still, ignore=shutil.ignore_patterns("*.png", "*.jpg", "models"))
-        for file in still.glob("*.json"):
-            entries = json.loads(file.read_text())
-            first = min(entries, key=int)
-            file.write_text(json.dumps({first: entries[first]}))
-        for file in (self.data / "scene").rglob(f"{int(first):06d}*.*"):
-            target = still / file.relative_to(self.data / "scene")
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(file, target)
-        return still
 
     def stream(self, folder, *known, scene=None):
         """hs-stream with a camera; `known`: what it knows of objects, the demo's if nothing is said."""

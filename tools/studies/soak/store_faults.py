@@ -10,6 +10,7 @@ from houghstream import objects_t, tracked_object_t
 from houghstream.event_log import read_log
 from studies.soak.faults import HEARD, RESULTS, Faults, said
 from studies.soak.wire import Listener, bus
+from studies.still_scene import make_still_scene
 from studies.stream import Process, ProcessFailed
 
 # After which the one who writes it is killed; of the time that it takes undisturbed.
@@ -239,7 +240,7 @@ class StoreFaults(Faults):
         """An object of the world is renamed, and then its class is removed, while hs-track runs."""
         folder = self.folder("changes_under_track")
         store = self.store(folder)
-        stream = self.stream(folder, "--objects", store, scene=self.still_scene(folder))
+        stream = self.stream(folder, "--objects", store, scene=make_still_scene(self.data / "scene", folder / "still"))
         track = Process(folder, self.programs / "hs-track", "--objects", store, "-l", bus(HEARD))
         worlds = Worlds(folder / "worlds.lcmlog")
         try:
