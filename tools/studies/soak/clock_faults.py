@@ -7,8 +7,7 @@ from houghstream import object_pose_t, object_poses_t, objects_t
 from studies.soak.faults import HEARD, RESULTS, SENT, Faults, account, adds_up, said
 from studies.soak.frames import FrameSender
 from studies.soak.relay import Chances, Relay
-from studies.soak.wire import Listener, bus
-from studies.stream import Process
+from studies.soak.wire import Listener
 
 FRAME_US = 33_333
 HOUR_US = 3_600_000_000
@@ -34,8 +33,7 @@ class ClockFaults(Faults):
         try:
             processes.append(self.worker(folder, "hs-detect", "--looks-per-second", 5))
             processes.append(self.worker(folder, "hs-pose", "--follow"))
-            processes.append(Process(folder, self.programs / "hs-track", "--models", self.models, "-l", bus(HEARD)))
-            processes[-1].wait_until_ready(60)
+            processes.append(self.worker(folder, "hs-track"))
         except Exception:
             for process in processes:
                 process.kill()

@@ -54,10 +54,11 @@ class Faults:
         return Process(folder, self.programs / "hs-capture", "--source", f"bop:{self.data / 'scene'}", "--loop", "--frames",
                        self.frames, "--rate", 30, "-l", bus(port), *words, name=name)  # fmt: skip
 
-    def worker(self, folder, name, *words):
-        """hs-detect or hs-pose, ready."""
-        known = {"hs-detect": ("--forest", self.data / "forest"), "hs-pose": ("--models", self.models)}[name]
-        process = Process(folder, self.programs / name, *known, "-l", bus(HEARD), *words)
+    def worker(self, folder, program, *words, name=None):
+        """A program that hears the stream, ready; hs-detect, hs-pose and hs-track with what the demo knows. `name`: of its log."""
+        models = ("--models", self.models)
+        known = {"hs-detect": ("--forest", self.data / "forest"), "hs-pose": models, "hs-track": models}.get(program, ())
+        process = Process(folder, self.programs / program, *known, "-l", bus(HEARD), *words, name=name)
         try:
             process.wait_until_ready(60)
         except Exception:

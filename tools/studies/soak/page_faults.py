@@ -13,8 +13,7 @@ import time
 from houghstream import camera_t, image_metadata_t, image_t, images_t
 
 from studies.soak.faults import HEARD, Faults, account, said
-from studies.soak.wire import Sender, bus
-from studies.stream import Process
+from studies.soak.wire import Sender
 
 PORT = 8090
 CROWD = 40  # clients at a time, more than hs-view has threads for them
@@ -136,13 +135,7 @@ class PageFaults(Faults):
     """Each function is one fault; it returns what it saw, with "good". None needs the demo's data."""
 
     def view(self, folder, name, *words):
-        process = Process(folder, self.programs / "hs-view", *words, "-l", bus(HEARD), name=name)
-        try:
-            process.wait_until_ready(60)
-        except Exception:
-            process.kill()
-            raise
-        return process
+        return self.worker(folder, "hs-view", *words, name=name)
 
     @staticmethod
     def end(process, limit_s):
