@@ -55,7 +55,7 @@ class Reception {
     const ByteView& bytes = arrival.bytes;
     WaitingFrame frame{arrival.channel, {bytes.data, bytes.data + bytes.size}, arrival.time};
     return order == FrameOrder::kLate ? newest_.push_late(arrival.channel, std::move(frame), bytes.size)
-                                      : newest_.put(arrival.channel, std::move(frame), bytes.size);
+                                      : newest_.push(arrival.channel, std::move(frame), bytes.size);
   }
 
   bool is_log_;
@@ -94,7 +94,7 @@ void run_detect_process(LcmBus& bus, const DetectProcessOptions& options,
   }
   log_info("ready: frames from {} at {}", options.frame_channels, bus.url());
   run_process_loop(bus, status, [&](std::chrono::milliseconds timeout) {
-    const std::optional<WaitingFrame> encoded = newest.take(timeout);
+    const std::optional<WaitingFrame> encoded = newest.pop(timeout);
     if (!encoded) return false;
     try {
       const RgbdFrame frame = decode(*encoded, options.camera);

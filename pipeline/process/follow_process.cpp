@@ -98,11 +98,11 @@ class FollowProcess {
       const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
       if (order == FrameOrder::kDuplicate && !bus_.is_log()) return;
       EncodedFrame frame{{arrival.channel, header.utime}, shared_copy(arrival.bytes), arrival.time};
-      detections_.put_frame(frame.id, frame.bytes);  // refuses one camera too many
+      detections_.add_frame(frame.id, frame.bytes);  // refuses one camera too many
       status_.count_received();
       const std::size_t bytes = arrival.bytes.size;
       const bool passed_over = order == FrameOrder::kLate ? frames_.push_late(arrival.channel, std::move(frame), bytes)
-                                                          : frames_.put(arrival.channel, std::move(frame), bytes);
+                                                          : frames_.push(arrival.channel, std::move(frame), bytes);
       if (passed_over) status_.count_skipped(1);
     } catch (const InputError& error) {
       status_.count_received();
@@ -130,7 +130,7 @@ class FollowProcess {
   }
 
   bool follow_newest(milliseconds timeout) {
-    const std::optional<EncodedFrame> encoded = frames_.take(timeout);
+    const std::optional<EncodedFrame> encoded = frames_.pop(timeout);
     if (!encoded) return false;
     try {
       DecodedFrame decoded = decode_for_poses(*encoded->bytes, encoded->id.channel, options_.camera);
@@ -153,8 +153,8 @@ class FollowProcess {
   }
 
   bool answer_next(milliseconds timeout) {
-    const std::optional<SynchronisedMessages> pair = detections_.take(timeout);
-    const FrameSynchroniser::Dropped dropped = detections_.take_dropped();
+    const std::optional<SynchronisedMessages> pair = detections_.pop(timeout);
+    const FrameSynchroniser::Dropped dropped = detections_.pop_dropped();
     overtaken_ += dropped.skipped;
     for (const FrameId& frame : dropped.without_frame) {
       status_.note_bad_message(fmt::format("detections of frame {}: the frame itself has not come", to_string(frame)));

@@ -15,7 +15,7 @@ void FrameSynchroniser::require_size(std::size_t bytes) {
   require(bytes <= kWaitingBytes, "results of {} bytes, expected at most {}", bytes, kWaitingBytes);
 }
 
-void FrameSynchroniser::put_frame(const FrameId& id, SharedBytes bytes) {
+void FrameSynchroniser::add_frame(const FrameId& id, SharedBytes bytes) {
   bool is_awaited = false;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -85,7 +85,7 @@ void FrameSynchroniser::keep_waiting_within_bytes() {
   }
 }
 
-std::optional<SynchronisedMessages> FrameSynchroniser::take(std::chrono::milliseconds timeout) {
+std::optional<SynchronisedMessages> FrameSynchroniser::pop(std::chrono::milliseconds timeout) {
   std::unique_lock<std::mutex> lock(mutex_);
   Camera* next = nullptr;
   changed_.wait_for(lock, timeout, [&] {
@@ -113,7 +113,7 @@ std::optional<ArrivedFrame> FrameSynchroniser::pop_unmatched_frame() {
   return std::nullopt;
 }
 
-FrameSynchroniser::Dropped FrameSynchroniser::take_dropped() {
+FrameSynchroniser::Dropped FrameSynchroniser::pop_dropped() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return std::exchange(dropped_, {});
 }
@@ -181,8 +181,9 @@ void FrameSynchroniser::drop_stale(const std::string& channel, Camera& camera) {
 
 void FrameSynchroniser::drop_unmatchable(Camera& camera) {
   // The second condition bounds memory where detections come and frames do not.
-  while (!camera.waiting.empty() && camera.find_frame(camera.waiting.front().id) == nullptr &&
-         (camera.frames_seen - camera.waiting.front().frames_before > kWait || camera.waiting.size() > kHistory)) {
+  while (
+      !camera.waiting.empty() && camera.find_frame(camera.waiting.front().id) == nullptr &&
+      (camera.frames_seen - camera.waiting.front().frames_before > kMaxLagFrames || camera.waiting.size() > kHistory)) {
     give_up_first(camera);
   }
   while (camera.waiting.size() > kWaiting) give_up_first(camera);

@@ -56,9 +56,9 @@ class FrameSynchroniser {
   /// Frames on more channels are refused: a sender of rubbish may make up channels without end.
   static constexpr std::size_t kCameras = 64;
   /// Detections whose frame is not here wait for this many further frames of the camera, then are given up.
-  static constexpr std::int64_t kWait = 30;
+  static constexpr std::int64_t kMaxLagFrames = 30;
 
-  /// `newest_first`: take() serves the cameras in turn, and passes over older detections of a camera: of each of its
+  /// `newest_first`: pop() serves the cameras in turn, and passes over older detections of a camera: of each of its
   /// detectors one result stays. Otherwise everything is worked on in the order of arrival. `ahead`:
   /// pop_unmatched_frame() is used.
   explicit FrameSynchroniser(bool newest_first, bool ahead = true) : newest_first_(newest_first), ahead_(ahead) {}
@@ -67,14 +67,14 @@ class FrameSynchroniser {
   static void require_size(std::size_t bytes);
 
   /// Throws InputError for one camera too many.
-  void put_frame(const FrameId& id, SharedBytes bytes);
+  void add_frame(const FrameId& id, SharedBytes bytes);
   /// `id` is the frame that they were found in. Throws InputError for one camera too many, and for too many bytes.
   void add_detections(const FrameId& id, std::vector<std::uint8_t> bytes);
 
   /// The next pair, waiting for one up to `timeout`, or, with `newest_first`, until a frame comes.
-  std::optional<SynchronisedMessages> take(std::chrono::milliseconds timeout);
+  std::optional<SynchronisedMessages> pop(std::chrono::milliseconds timeout);
 
-  /// Ends the waiting of take(), now or of the next call: something else has come that its caller waits for.
+  /// Ends the waiting of pop(), now or of the next call: something else has come that its caller waits for.
   void wake();
 
   /// The newest frame of a camera, where `newest_first`, and where neither it nor its pair has been taken: there is
@@ -86,7 +86,7 @@ class FrameSynchroniser {
     std::int64_t skipped = 0;            ///< passed over for newer ones, or for too many
     std::vector<FrameId> without_frame;  ///< of detections whose frame never came
   };
-  Dropped take_dropped();
+  Dropped pop_dropped();
 
   /// Gives up all detections that still wait for their frame.
   void flush();

@@ -25,7 +25,7 @@ class LatestPerChannel {
   static constexpr std::size_t kBytes = std::size_t{192} << 20U;
 
   /// Returns whether an item that nobody has taken was passed over. The newer one of a channel takes its turn.
-  bool put(const std::string& channel, T item, std::size_t bytes = 0) {
+  bool push(const std::string& channel, T item, std::size_t bytes = 0) {
     bool is_first = false;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -50,7 +50,7 @@ class LatestPerChannel {
   }
 
   /// The item of the channel that has waited longest; waits up to `timeout` for one.
-  std::optional<T> take(std::chrono::milliseconds timeout) {
+  std::optional<T> pop(std::chrono::milliseconds timeout) {
     std::unique_lock<std::mutex> lock(mutex_);
     if (!filled_.wait_for(lock, timeout, [this] { return !turns_.empty(); })) return std::nullopt;
     Waiting taken = std::move(items_.extract(turns_.front()).mapped());

@@ -74,7 +74,7 @@ class PoseProcess {
       const FrameHeader header = read_frame_header(arrival.bytes);
       const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
       if (order == FrameOrder::kDuplicate && !bus_.is_log()) return;
-      inbox_.put_frame({arrival.channel, header.utime}, shared_copy(arrival.bytes));
+      inbox_.add_frame({arrival.channel, header.utime}, shared_copy(arrival.bytes));
     } catch (const InputError& error) {
       status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
     }
@@ -104,7 +104,7 @@ class PoseProcess {
   }
 
   bool step(std::chrono::milliseconds timeout) {
-    const std::optional<SynchronisedMessages> pair = inbox_.take(timeout);
+    const std::optional<SynchronisedMessages> pair = inbox_.pop(timeout);
     count_dropped();
     if (!pair) {
       decode_ahead();
@@ -191,7 +191,7 @@ class PoseProcess {
   }
 
   void count_dropped() {
-    const FrameSynchroniser::Dropped dropped = inbox_.take_dropped();
+    const FrameSynchroniser::Dropped dropped = inbox_.pop_dropped();
     status_.count_skipped(dropped.skipped);
     without_frame_ += static_cast<std::int64_t>(dropped.without_frame.size());
     for (const FrameId& frame : dropped.without_frame) {

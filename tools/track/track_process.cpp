@@ -100,7 +100,7 @@ class TrackProcess {
       const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
       if (order == FrameOrder::kDuplicate && !bus_.is_log()) return;
       detections_.forget({arrival.channel, header.utime});
-      inbox_.put_frame({arrival.channel, header.utime}, shared_copy(arrival.bytes));
+      inbox_.add_frame({arrival.channel, header.utime}, shared_copy(arrival.bytes));
       const std::lock_guard<std::mutex> lock(mutex_);
       newest_[arrival.channel] = header.utime;  // of as many cameras as the inbox takes
     } catch (const InputError& error) {
@@ -151,7 +151,7 @@ class TrackProcess {
 
   bool step(milliseconds timeout) {
     constexpr milliseconds kPatience(3);  // how long the end of a frame's waiting may go unnoticed
-    std::optional<SynchronisedMessages> pair = inbox_.take(waiting_.empty() ? timeout : std::min(timeout, kPatience));
+    std::optional<SynchronisedMessages> pair = inbox_.pop(waiting_.empty() ? timeout : std::min(timeout, kPatience));
     if (pair) keep_waiting(*std::move(pair));
     count_dropped();
     if (!bus_.is_log()) silence_->tell(now_us());
@@ -253,7 +253,7 @@ class TrackProcess {
   }
 
   void count_dropped() {
-    const FrameSynchroniser::Dropped dropped = inbox_.take_dropped();
+    const FrameSynchroniser::Dropped dropped = inbox_.pop_dropped();
     status_.count_skipped(dropped.skipped);
     without_frame_ += static_cast<std::int64_t>(dropped.without_frame.size());
     for (const FrameId& frame : dropped.without_frame) refuse(frame, "the frame itself has not come");

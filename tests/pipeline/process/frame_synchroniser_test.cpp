@@ -23,122 +23,122 @@ FrameId id(std::int64_t utime) {
 
 TEST(FrameSynchroniser, PairsWhicheverComesFirst) {
   FrameSynchroniser inbox(true);
-  inbox.put_frame(id(1), arrived_bytes(11));
-  EXPECT_FALSE(inbox.take(kNow).has_value());
+  inbox.add_frame(id(1), arrived_bytes(11));
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
   inbox.add_detections(id(1), bytes(21));
-  std::optional<SynchronisedMessages> pair = inbox.take(kNow);
+  std::optional<SynchronisedMessages> pair = inbox.pop(kNow);
   ASSERT_TRUE(pair.has_value());
   EXPECT_EQ(*pair->frame, bytes(11));
   EXPECT_EQ(pair->detections, bytes(21));
 
   inbox.add_detections(id(2), bytes(22));
-  EXPECT_FALSE(inbox.take(kNow).has_value());
-  inbox.put_frame(id(2), arrived_bytes(12));
-  pair = inbox.take(kNow);
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
+  inbox.add_frame(id(2), arrived_bytes(12));
+  pair = inbox.pop(kNow);
   ASSERT_TRUE(pair.has_value());
   EXPECT_EQ(*pair->frame, bytes(12));
-  EXPECT_FALSE(inbox.take(kNow).has_value());
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
 }
 
 TEST(FrameSynchroniser, NeverPairsAnotherFrame) {
   FrameSynchroniser inbox(true);
-  inbox.put_frame(id(1), arrived_bytes(11));
-  inbox.put_frame(id(3), arrived_bytes(13));
+  inbox.add_frame(id(1), arrived_bytes(11));
+  inbox.add_frame(id(3), arrived_bytes(13));
   inbox.add_detections(id(2), bytes(22));
-  EXPECT_FALSE(inbox.take(kNow).has_value());
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
 }
 
 TEST(FrameSynchroniser, NewestFirstPassesOverOlderOnes) {
   FrameSynchroniser inbox(true);
   for (int i = 1; i <= 3; ++i) {
-    inbox.put_frame(id(i), arrived_bytes(10 + i));
+    inbox.add_frame(id(i), arrived_bytes(10 + i));
     inbox.add_detections(id(i), bytes(20 + i));
   }
-  EXPECT_EQ(inbox.take(kNow)->detections, bytes(23));
-  EXPECT_FALSE(inbox.take(kNow).has_value());
-  EXPECT_EQ(inbox.take_dropped().skipped, 2);
-  EXPECT_EQ(inbox.take_dropped().skipped, 0);
+  EXPECT_EQ(inbox.pop(kNow)->detections, bytes(23));
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
+  EXPECT_EQ(inbox.pop_dropped().skipped, 2);
+  EXPECT_EQ(inbox.pop_dropped().skipped, 0);
 }
 
 TEST(FrameSynchroniser, TheNewestFrameMayBeTakenAheadOnce) {
   FrameSynchroniser inbox(true);
   EXPECT_FALSE(inbox.pop_unmatched_frame().has_value());
-  inbox.put_frame(id(1), arrived_bytes(11));
-  inbox.put_frame(id(2), arrived_bytes(12));
-  EXPECT_FALSE(inbox.take(std::chrono::minutes(1)).has_value()) << "does not wait: a frame has come";
+  inbox.add_frame(id(1), arrived_bytes(11));
+  inbox.add_frame(id(2), arrived_bytes(12));
+  EXPECT_FALSE(inbox.pop(std::chrono::minutes(1)).has_value()) << "does not wait: a frame has come";
   const std::optional<ArrivedFrame> fresh = inbox.pop_unmatched_frame();
   ASSERT_TRUE(fresh.has_value());
   EXPECT_EQ(fresh->id, id(2));
   EXPECT_EQ(*fresh->bytes, bytes(12));
   EXPECT_FALSE(inbox.pop_unmatched_frame().has_value());
   inbox.add_detections(id(2), bytes(22));
-  EXPECT_EQ(*inbox.take(kNow)->frame, bytes(12)) << "it stays for its detections";
+  EXPECT_EQ(*inbox.pop(kNow)->frame, bytes(12)) << "it stays for its detections";
 
-  inbox.put_frame(id(3), arrived_bytes(13));
+  inbox.add_frame(id(3), arrived_bytes(13));
   inbox.add_detections(id(3), bytes(23));
-  EXPECT_TRUE(inbox.take(kNow).has_value());
+  EXPECT_TRUE(inbox.pop(kNow).has_value());
   EXPECT_FALSE(inbox.pop_unmatched_frame().has_value()) << "its pair has been taken";
 }
 
 TEST(FrameSynchroniser, WhoTakesNothingAheadWaitsForPairsOnly) {
   FrameSynchroniser inbox(true, false);
-  inbox.put_frame(id(1), arrived_bytes(11));
+  inbox.add_frame(id(1), arrived_bytes(11));
   EXPECT_FALSE(inbox.pop_unmatched_frame().has_value());
-  EXPECT_FALSE(inbox.take(kNow).has_value());
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
   inbox.add_detections(id(1), bytes(21));
-  EXPECT_EQ(*inbox.take(kNow)->frame, bytes(11));
+  EXPECT_EQ(*inbox.pop(kNow)->frame, bytes(11));
 }
 
 TEST(FrameSynchroniser, WhoIsWokenWaitsNoLonger) {
   FrameSynchroniser inbox(false);
   inbox.wake();
-  EXPECT_FALSE(inbox.take(std::chrono::minutes(1)).has_value()) << "returns at once";
-  inbox.put_frame(id(1), arrived_bytes(11));
+  EXPECT_FALSE(inbox.pop(std::chrono::minutes(1)).has_value()) << "returns at once";
+  inbox.add_frame(id(1), arrived_bytes(11));
   inbox.wake();
   inbox.add_detections(id(1), bytes(21));
-  EXPECT_TRUE(inbox.take(std::chrono::minutes(1)).has_value()) << "a pair is there all the same";
+  EXPECT_TRUE(inbox.pop(std::chrono::minutes(1)).has_value()) << "a pair is there all the same";
 }
 
 TEST(FrameSynchroniser, ALogIsWorkedOnInTurn) {
   FrameSynchroniser inbox(false);
   for (int i = 1; i <= 3; ++i) {
-    inbox.put_frame(id(i), arrived_bytes(10 + i));
+    inbox.add_frame(id(i), arrived_bytes(10 + i));
     inbox.add_detections(id(i), bytes(20 + i));
   }
-  for (int i = 1; i <= 3; ++i) EXPECT_EQ(inbox.take(kNow)->detections, bytes(20 + i));
-  EXPECT_EQ(inbox.take_dropped().skipped, 0);
+  for (int i = 1; i <= 3; ++i) EXPECT_EQ(inbox.pop(kNow)->detections, bytes(20 + i));
+  EXPECT_EQ(inbox.pop_dropped().skipped, 0);
 }
 
 TEST(FrameSynchroniser, DetectionsWithoutAFrameAreGivenUpInTheEnd) {
   FrameSynchroniser inbox(true);
   inbox.add_detections(id(-5), bytes(1));
-  for (int i = 0; i < FrameSynchroniser::kWait; ++i) inbox.put_frame(id(i), arrived_bytes(i));
-  EXPECT_TRUE(inbox.take_dropped().without_frame.empty());
-  inbox.put_frame(id(100), arrived_bytes(0));
-  EXPECT_EQ(inbox.take_dropped().without_frame, std::vector<FrameId>{id(-5)});
+  for (int i = 0; i < FrameSynchroniser::kMaxLagFrames; ++i) inbox.add_frame(id(i), arrived_bytes(i));
+  EXPECT_TRUE(inbox.pop_dropped().without_frame.empty());
+  inbox.add_frame(id(100), arrived_bytes(0));
+  EXPECT_EQ(inbox.pop_dropped().without_frame, std::vector<FrameId>{id(-5)});
 
   inbox.add_detections(id(200), bytes(2));
   inbox.flush();
-  EXPECT_EQ(inbox.take_dropped().without_frame, std::vector<FrameId>{id(200)});
+  EXPECT_EQ(inbox.pop_dropped().without_frame, std::vector<FrameId>{id(200)});
 }
 
 TEST(FrameSynchroniser, MemoryIsBoundedWhereFramesNeverCome) {
   FrameSynchroniser inbox(true);
   const int count = 500;
   for (int i = 0; i < count; ++i) inbox.add_detections(id(i), bytes(0));
-  EXPECT_EQ(inbox.take_dropped().without_frame.size(), count - FrameSynchroniser::kHistory);
+  EXPECT_EQ(inbox.pop_dropped().without_frame.size(), count - FrameSynchroniser::kHistory);
 }
 
 TEST(FrameSynchroniser, MemoryIsBoundedWhereResultsOfOneFrameComeWithoutEnd) {
   for (const bool newest_first : {true, false}) {
     FrameSynchroniser inbox(newest_first);
-    inbox.put_frame(id(1), arrived_bytes(11));
+    inbox.add_frame(id(1), arrived_bytes(11));
     const int count = 500;
     for (int i = 0; i < count; ++i) inbox.add_detections(id(1), {1, static_cast<std::uint8_t>(i)});
     std::size_t taken = 0;
-    while (inbox.take(kNow)) ++taken;
+    while (inbox.pop(kNow)) ++taken;
     EXPECT_EQ(taken, FrameSynchroniser::kWaiting);
-    const FrameSynchroniser::Dropped dropped = inbox.take_dropped();
+    const FrameSynchroniser::Dropped dropped = inbox.pop_dropped();
     EXPECT_EQ(dropped.skipped, count - static_cast<std::int64_t>(FrameSynchroniser::kWaiting));
     EXPECT_TRUE(dropped.without_frame.empty());
   }
@@ -150,18 +150,18 @@ TEST(FrameSynchroniser, MemoryIsBoundedWhereResultsOfOneFrameComeWithoutEnd) {
 TEST(FrameSynchroniser, TwoCamerasOfEqualTimesKeepTheirFramesApart) {
   for (const bool newest_first : {true, false}) {
     FrameSynchroniser inbox(newest_first);
-    inbox.put_frame({"LEFT", 1}, arrived_bytes(11));
-    inbox.put_frame({"RIGHT", 1}, arrived_bytes(12));
+    inbox.add_frame({"LEFT", 1}, arrived_bytes(11));
+    inbox.add_frame({"RIGHT", 1}, arrived_bytes(12));
     inbox.add_detections({"RIGHT", 1}, bytes(22));
     inbox.add_detections({"LEFT", 1}, bytes(21));
     for (int i = 0; i < 2; ++i) {
-      const std::optional<SynchronisedMessages> pair = inbox.take(kNow);
+      const std::optional<SynchronisedMessages> pair = inbox.pop(kNow);
       ASSERT_TRUE(pair.has_value());
       const int camera = pair->id.channel == "LEFT" ? 1 : 2;
       EXPECT_EQ(*pair->frame, bytes(10 + camera));
       EXPECT_EQ(pair->detections, bytes(20 + camera));
     }
-    EXPECT_EQ(inbox.take_dropped().skipped, 0);
+    EXPECT_EQ(inbox.pop_dropped().skipped, 0);
   }
 }
 
@@ -170,12 +170,12 @@ TEST(FrameSynchroniser, AFastCameraDoesNotStarveASlowOne) {
   int slow = 0;
   for (int i = 0; i < 20; ++i) {
     for (int k = 0; k < 5; ++k) {
-      inbox.put_frame({"FAST", 5 * i + k}, arrived_bytes(0));
+      inbox.add_frame({"FAST", 5 * i + k}, arrived_bytes(0));
       inbox.add_detections({"FAST", 5 * i + k}, bytes(0));
     }
-    inbox.put_frame({"SLOW", i}, arrived_bytes(0));
+    inbox.add_frame({"SLOW", i}, arrived_bytes(0));
     inbox.add_detections({"SLOW", i}, bytes(0));
-    slow += inbox.take(kNow)->id.channel == "SLOW" ? 1 : 0;
+    slow += inbox.pop(kNow)->id.channel == "SLOW" ? 1 : 0;
   }
   EXPECT_EQ(slow, 10) << "each has its turn";
 }
@@ -183,45 +183,45 @@ TEST(FrameSynchroniser, AFastCameraDoesNotStarveASlowOne) {
 TEST(FrameSynchroniser, OfTwoDetectorsEachKeepsItsNewestResult) {
   FrameSynchroniser inbox(true);
   for (int i = 1; i <= 3; ++i) {
-    inbox.put_frame(id(i), arrived_bytes(10 + i));
+    inbox.add_frame(id(i), arrived_bytes(10 + i));
     inbox.add_detections(id(i), bytes(20 + i));
     inbox.add_detections(id(i), bytes(30 + i));
   }
-  EXPECT_EQ(inbox.take(kNow)->detections, bytes(23));
-  EXPECT_EQ(inbox.take(kNow)->detections, bytes(33));
-  EXPECT_FALSE(inbox.take(kNow).has_value());
-  EXPECT_EQ(inbox.take_dropped().skipped, 4);
+  EXPECT_EQ(inbox.pop(kNow)->detections, bytes(23));
+  EXPECT_EQ(inbox.pop(kNow)->detections, bytes(33));
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
+  EXPECT_EQ(inbox.pop_dropped().skipped, 4);
 }
 
 TEST(FrameSynchroniser, OtherCamerasFramesDoNotAgeWhatWaits) {
   FrameSynchroniser inbox(true);
   inbox.add_detections({"LEFT", 7}, bytes(1));
-  for (int i = 0; i < 5 * FrameSynchroniser::kWait; ++i) inbox.put_frame({"RIGHT", i}, arrived_bytes(0));
-  EXPECT_TRUE(inbox.take_dropped().without_frame.empty());
-  inbox.put_frame({"LEFT", 7}, arrived_bytes(2));
-  EXPECT_TRUE(inbox.take(kNow).has_value());
+  for (int i = 0; i < 5 * FrameSynchroniser::kMaxLagFrames; ++i) inbox.add_frame({"RIGHT", i}, arrived_bytes(0));
+  EXPECT_TRUE(inbox.pop_dropped().without_frame.empty());
+  inbox.add_frame({"LEFT", 7}, arrived_bytes(2));
+  EXPECT_TRUE(inbox.pop(kNow).has_value());
 }
 
 TEST(FrameSynchroniser, OldFramesAreForgotten) {
   FrameSynchroniser inbox(true);
-  for (int i = 0; i <= static_cast<int>(FrameSynchroniser::kHistory); ++i) inbox.put_frame(id(i), arrived_bytes(0));
+  for (int i = 0; i <= static_cast<int>(FrameSynchroniser::kHistory); ++i) inbox.add_frame(id(i), arrived_bytes(0));
   inbox.add_detections(id(0), bytes(0));
-  EXPECT_FALSE(inbox.take(kNow).has_value());
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
   inbox.add_detections(id(1), bytes(0));
-  EXPECT_TRUE(inbox.take(kNow).has_value());
+  EXPECT_TRUE(inbox.pop(kNow).has_value());
 }
 
 TEST(FrameSynchroniser, LargeFramesAreKeptWithinABoundInBytes) {
   FrameSynchroniser inbox(true);
   const auto large = std::make_shared<const std::vector<std::uint8_t>>(FrameSynchroniser::kHistoryBytes / 8);
-  for (int i = 0; i < 20; ++i) inbox.put_frame({"LEFT", i}, large);
-  inbox.put_frame({"RIGHT", 1}, large);
+  for (int i = 0; i < 20; ++i) inbox.add_frame({"LEFT", i}, large);
+  inbox.add_frame({"RIGHT", 1}, large);
   inbox.add_detections({"LEFT", 19}, {});
-  EXPECT_TRUE(inbox.take(kNow).has_value());
+  EXPECT_TRUE(inbox.pop(kNow).has_value());
   inbox.add_detections({"RIGHT", 1}, {});
-  EXPECT_TRUE(inbox.take(kNow).has_value());
+  EXPECT_TRUE(inbox.pop(kNow).has_value());
   inbox.add_detections({"LEFT", 5}, {});
-  EXPECT_FALSE(inbox.take(kNow).has_value()) << "the oldest ones are gone";
+  EXPECT_FALSE(inbox.pop(kNow).has_value()) << "the oldest ones are gone";
 }
 
 TEST(FrameSynchroniser, LargeFramesOfManyCamerasAreKeptWithinTheBoundToo) {
@@ -229,14 +229,14 @@ TEST(FrameSynchroniser, LargeFramesOfManyCamerasAreKeptWithinTheBoundToo) {
   const auto large = std::make_shared<const std::vector<std::uint8_t>>(FrameSynchroniser::kHistoryBytes / 3);
   const auto kept = [&] { return static_cast<std::size_t>(large.use_count() - 1) * large->size(); };
   for (std::size_t i = 0; i < FrameSynchroniser::kCameras; ++i) {
-    inbox.put_frame({std::to_string(i), 1}, large);
+    inbox.add_frame({std::to_string(i), 1}, large);
     EXPECT_LE(kept(), FrameSynchroniser::kHistoryBytes);
   }
   EXPECT_EQ(kept(), 3 * large->size());
   inbox.add_detections({"63", 1}, {});
-  EXPECT_TRUE(inbox.take(kNow).has_value()) << "the newest ones stay";
+  EXPECT_TRUE(inbox.pop(kNow).has_value()) << "the newest ones stay";
   inbox.add_detections({"0", 1}, {});
-  EXPECT_FALSE(inbox.take(kNow).has_value());
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
   std::size_t fresh = 0;
   while (inbox.pop_unmatched_frame()) ++fresh;
   EXPECT_EQ(fresh, 2U) << "what is gone is not taken ahead";
@@ -245,21 +245,21 @@ TEST(FrameSynchroniser, LargeFramesOfManyCamerasAreKeptWithinTheBoundToo) {
 TEST(FrameSynchroniser, TheLastFrameStaysHoweverLargeItIs) {
   FrameSynchroniser inbox(true);
   const auto large = std::make_shared<const std::vector<std::uint8_t>>(FrameSynchroniser::kHistoryBytes + 1);
-  inbox.put_frame({"LEFT", 1}, arrived_bytes(1));
-  inbox.put_frame({"RIGHT", 1}, large);
+  inbox.add_frame({"LEFT", 1}, arrived_bytes(1));
+  inbox.add_frame({"RIGHT", 1}, large);
   inbox.add_detections({"RIGHT", 1}, {});
-  EXPECT_TRUE(inbox.take(kNow).has_value());
+  EXPECT_TRUE(inbox.pop(kNow).has_value());
   inbox.add_detections({"LEFT", 1}, {});
-  EXPECT_FALSE(inbox.take(kNow).has_value());
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
 }
 
 TEST(FrameSynchroniser, ListensToAFewCamerasOnly) {
   FrameSynchroniser inbox(true);
   for (std::size_t i = 0; i < FrameSynchroniser::kCameras; ++i)
-    inbox.put_frame({std::to_string(i), 1}, arrived_bytes(1));
-  EXPECT_THROW(inbox.put_frame({"one more", 1}, arrived_bytes(1)), InputError);
+    inbox.add_frame({std::to_string(i), 1}, arrived_bytes(1));
+  EXPECT_THROW(inbox.add_frame({"one more", 1}, arrived_bytes(1)), InputError);
   EXPECT_THROW(inbox.add_detections({"one more", 1}, {1}), InputError);
-  EXPECT_NO_THROW(inbox.put_frame({"0", 2}, arrived_bytes(1)));
+  EXPECT_NO_THROW(inbox.add_frame({"0", 2}, arrived_bytes(1)));
 }
 
 TEST(FrameSynchroniser, LargeDetectionsOfManyCamerasAreKeptWithinABound) {
@@ -270,9 +270,9 @@ TEST(FrameSynchroniser, LargeDetectionsOfManyCamerasAreKeptWithinABound) {
       inbox.add_detections({std::to_string(camera), i}, std::vector<std::uint8_t>(FrameSynchroniser::kWaitingBytes));
   }
   constexpr std::size_t kMax = FrameSynchroniser::kAllWaitingBytes / FrameSynchroniser::kWaitingBytes;
-  EXPECT_EQ(inbox.take_dropped().without_frame.size(), kCameras * 60 - kMax);
-  for (int camera = 0; camera < kCameras; ++camera) inbox.put_frame({std::to_string(camera), 59}, arrived_bytes(1));
-  for (int camera = 0; camera < kCameras; ++camera) EXPECT_TRUE(inbox.take(kNow).has_value());
+  EXPECT_EQ(inbox.pop_dropped().without_frame.size(), kCameras * 60 - kMax);
+  for (int camera = 0; camera < kCameras; ++camera) inbox.add_frame({std::to_string(camera), 59}, arrived_bytes(1));
+  for (int camera = 0; camera < kCameras; ++camera) EXPECT_TRUE(inbox.pop(kNow).has_value());
 }
 
 }  // namespace
