@@ -86,22 +86,57 @@ void FrameSynchroniser::keep_waiting_within_bytes() {
 }
 
 std::optional<SynchronisedMessages> FrameSynchroniser::pop(std::chrono::milliseconds timeout) {
+  constexpr std::chrono::milliseconds kRecheck(3);  // how long it may go unnoticed that the gate waits no longer
   std::unique_lock<std::mutex> lock(mutex_);
-  Camera* next = nullptr;
-  changed_.wait_for(lock, timeout, [&] {
-    next = next_camera();
-    return next != nullptr || any_fresh() || woken_;
+  const bool none_waits = held_back_.empty();
+  std::optional<SynchronisedMessages> pair;
+  changed_.wait_for(lock, none_waits ? timeout : std::min(timeout, kRecheck), [&] {
+    pair = next_pair();
+    return pair || any_fresh() || none_waits != held_back_.empty();
   });
-  woken_ = false;
-  if (next == nullptr) return std::nullopt;
-  return take_pair(*next);
+  return pair;
 }
 
-void FrameSynchroniser::wake() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    woken_ = true;
+std::optional<SynchronisedMessages> FrameSynchroniser::next_pair() {
+  for (auto it = held_back_.begin(); it != held_back_.end();) {
+    const FrameGate::Answer answer = ask_gate(it->pair.id, it->since_us);
+    if (answer == FrameGate::Answer::kWait) {
+      ++it;
+      continue;
+    }
+    SynchronisedMessages pair = std::move(it->pair);
+    it = held_back_.erase(it);
+    if (answer == FrameGate::Answer::kGo) return pair;
   }
+  while (Camera* camera = next_camera()) {
+    SynchronisedMessages pair = take_pair(*camera);
+    const std::int64_t now_us = gate_.now_us ? gate_.now_us() : 0;
+    const FrameGate::Answer answer = ask_gate(pair.id, now_us);
+    if (answer == FrameGate::Answer::kGo) return pair;
+    if (answer == FrameGate::Answer::kWait) hold_back(std::move(pair), now_us);
+  }
+  return std::nullopt;
+}
+
+FrameGate::Answer FrameSynchroniser::ask_gate(const FrameId& id, std::int64_t since_us) {
+  if (!gate_.ask) return FrameGate::Answer::kGo;
+  const FrameGate::Decision decision = gate_.ask(id, static_cast<double>(gate_.now_us() - since_us) * 1e-6);
+  if (decision.answer == FrameGate::Answer::kRefuse) dropped_.refused.push_back({id, decision.reason});
+  return decision.answer;
+}
+
+// A frame goes with each pair, and detections of one frame may be sent without end.
+void FrameSynchroniser::hold_back(SynchronisedMessages pair, std::int64_t since_us) {
+  ByteBudget::Held held = held_back_bytes_.hold(pair.frame->size());
+  held_back_.push_back({std::move(pair), since_us, std::move(held)});
+  while (held_back_.size() > 1 && (held_back_.size() > kHeldBack || held_back_bytes_.total() > kHeldBackBytes)) {
+    dropped_.refused.push_back({held_back_.front().pair.id, "too many wait for " + gate_.awaited});
+    held_back_.pop_front();
+  }
+}
+
+void FrameSynchroniser::recheck_gate() {
+  { const std::lock_guard<std::mutex> lock(mutex_); }  // who pops has asked before this, or waits
   changed_.notify_one();
 }
 
@@ -123,6 +158,8 @@ void FrameSynchroniser::flush() {
   for (auto& [channel, camera] : cameras_) {
     while (!camera.waiting.empty()) give_up_first(camera);
   }
+  for (const HeldBack& held : held_back_) dropped_.refused.push_back({held.pair.id, "the stream has ended"});
+  held_back_.clear();
 }
 
 void FrameSynchroniser::give_up_first(Camera& camera) {

@@ -4,11 +4,13 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pipeline/messages/wire_reader.hpp"
@@ -37,6 +39,20 @@ struct SynchronisedMessages {
   std::chrono::steady_clock::time_point arrival;  ///< of the detections
 };
 
+/// Decides over each pair before it is handed out; without `ask` every pair goes at once. `ask` is called with the
+/// synchroniser locked, in the thread that pops, for the oldest pairs first and again for those that it told to wait.
+struct FrameGate {
+  enum class Answer { kGo, kWait, kRefuse };
+  struct Decision {
+    Answer answer = Answer::kGo;
+    std::string reason;  ///< of a refusal
+  };
+  /// The age, in seconds, is that of the pair since it was asked for first.
+  std::function<Decision(const FrameId&, double age_s)> ask;
+  std::function<std::int64_t()> now_us;  ///< the clock of the ages, microseconds; it may be a log's
+  std::string awaited;                   ///< names, in a sentence, what pairs wait for
+};
+
 /// Brings detections together with their own frame, whichever comes first, for any number of cameras and of detectors
 /// on each. Nothing is decoded. Ages are counted in frames of the camera, not in seconds, so that a log gives the same
 /// pairs at any speed. May be used from any thread.
@@ -55,13 +71,17 @@ class FrameSynchroniser {
   static constexpr std::size_t kAllWaitingBytes = std::size_t{128} << 20U;
   /// Frames on more channels are refused: a sender of rubbish may make up channels without end.
   static constexpr std::size_t kCameras = 64;
+  /// Pairs of all cameras that the gate tells to wait, and the bytes of their frames; the oldest are refused.
+  static constexpr std::size_t kHeldBack = 1024;
+  static constexpr std::size_t kHeldBackBytes = kHistoryBytes;
   /// Detections whose frame is not here wait for this many further frames of the camera, then are given up.
   static constexpr std::int64_t kMaxLagFrames = 30;
 
   /// `newest_first`: pop() serves the cameras in turn, and passes over older detections of a camera: of each of its
   /// detectors one result stays. Otherwise everything is worked on in the order of arrival. `ahead`:
   /// pop_unmatched_frame() is used.
-  explicit FrameSynchroniser(bool newest_first, bool ahead = true) : newest_first_(newest_first), ahead_(ahead) {}
+  explicit FrameSynchroniser(bool newest_first, bool ahead = true, FrameGate gate = {})
+      : newest_first_(newest_first), ahead_(ahead), gate_(std::move(gate)) {}
 
   /// Throws InputError where detections or poses of so many bytes are refused.
   static void require_size(std::size_t bytes);
@@ -71,24 +91,30 @@ class FrameSynchroniser {
   /// `id` is the frame that they were found in. Throws InputError for one camera too many, and for too many bytes.
   void add_detections(const FrameId& id, std::vector<std::uint8_t> bytes);
 
-  /// The next pair, waiting for one up to `timeout`, or, with `newest_first`, until a frame comes.
+  /// The next pair that the gate lets go, waiting for one up to `timeout`, or, with `newest_first`, until a frame
+  /// comes.
   std::optional<SynchronisedMessages> pop(std::chrono::milliseconds timeout);
 
-  /// Ends the waiting of pop(), now or of the next call: something else has come that its caller waits for.
-  void wake();
+  /// Has the gate asked at once: what it waits for may have come.
+  void recheck_gate();
 
   /// The newest frame of a camera, where `newest_first`, and where neither it nor its pair has been taken: there is
   /// time to decode it while its detections are on the way. It stays here for them.
   std::optional<ArrivedFrame> pop_unmatched_frame();
 
   /// What was dropped since the last call.
+  struct Refused {
+    FrameId id;
+    std::string reason;
+  };
   struct Dropped {
     std::int64_t skipped = 0;            ///< passed over for newer ones, or for too many
     std::vector<FrameId> without_frame;  ///< of detections whose frame never came
+    std::vector<Refused> refused;        ///< by the gate, or while they waited for it
   };
   Dropped pop_dropped();
 
-  /// Gives up all detections that still wait for their frame.
+  /// Gives up all detections that still wait, for their frame or for the gate.
   void flush();
 
  private:
@@ -104,6 +130,11 @@ class FrameSynchroniser {
     std::int64_t number = 0;         // in the order of arrival, of all cameras
     std::int64_t frames_before = 0;  // frames of the camera that had arrived when it did
     ByteBudget::Held held;
+  };
+  struct HeldBack {
+    SynchronisedMessages pair;
+    std::int64_t since_us = 0;  // on the gate's clock
+    ByteBudget::Held held;      // of the frame, which may have gone from those that are kept
   };
   struct Camera {
     std::deque<Kept> frames;      // the last ones
@@ -125,20 +156,25 @@ class FrameSynchroniser {
   void give_up_first(Camera& camera);
   void drop_unmatchable(Camera& camera);
   SynchronisedMessages take_pair(Camera& camera);
+  std::optional<SynchronisedMessages> next_pair();
+  FrameGate::Answer ask_gate(const FrameId& id, std::int64_t since_us);
+  void hold_back(SynchronisedMessages pair, std::int64_t since_us);
   bool any_fresh() const;
 
   bool newest_first_;
   bool ahead_;
+  FrameGate gate_;
   std::mutex mutex_;
   std::condition_variable changed_;
   ByteBudget frame_bytes_;                 // of all cameras
   ByteBudget waiting_bytes_;               // of their detections
+  ByteBudget held_back_bytes_;             // of the frames of those that the gate tells to wait
   std::map<std::string, Camera> cameras_;  // by channel
+  std::deque<HeldBack> held_back_;         // oldest first
   DetectorCount detectors_;
   std::int64_t arrivals_ = 0;  // of detections
   std::int64_t frames_ = 0;    // that have arrived
   std::int64_t turns_ = 0;
-  bool woken_ = false;
   Dropped dropped_;
 };
 

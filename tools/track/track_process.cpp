@@ -1,8 +1,6 @@
 #include "tools/track/track_process.hpp"
 
-#include <algorithm>
 #include <atomic>
-#include <deque>
 #include <mutex>
 
 #include "pipeline/base/log_line.hpp"
@@ -11,7 +9,6 @@
 #include "pipeline/bus/status_reporter.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
-#include "pipeline/process/byte_budget.hpp"
 #include "pipeline/process/frame_synchroniser.hpp"
 #include "pipeline/process/process_loop.hpp"
 #include "pipeline/types/frame_time.hpp"
@@ -32,13 +29,6 @@ ByteView view(const std::vector<std::uint8_t>& bytes) {
   return {bytes.data(), bytes.size()};
 }
 
-/// Poses with their frame, which wait until it is known where the camera was.
-struct Waiting {
-  SynchronisedMessages messages;
-  std::int64_t since_us = 0;  ///< on the clock of now_us()
-  ByteBudget::Held held;      ///< of the frame
-};
-
 class TrackProcess {
  public:
   TrackProcess(LcmBus& bus, const TrackProcessOptions& options, const CurrentModels& models)
@@ -47,7 +37,7 @@ class TrackProcess {
         models_(models),
         channels_(options.frame_channels),
         status_(options.process),
-        inbox_(false),
+        inbox_(false, false, place_gate()),
         used_models_(models()),
         tracker_(*used_models_, {}),
         output_(bus, options.output),
@@ -68,7 +58,6 @@ class TrackProcess {
     run_process_loop(bus_, status_, [this](milliseconds timeout) { return step(timeout); });
     inbox_.flush();
     count_dropped();
-    for (const Waiting& waiting : waiting_) refuse(waiting.messages.id, "the stream has ended");
     require(!bus_.is_log() || poses_ > 0,
             "{}: no poses of frames on {}, expected a log with frames, detections and poses", bus_.url(),
             options_.frame_channels);
@@ -143,62 +132,45 @@ class TrackProcess {
       const auto message = decode_message<rigid_transform_t>(arrival.bytes);
       const Eigen::Isometry3d T_world_camera = transform_from_message(message);
       world_.add(arrival.channel.substr(0, arrival.channel.size() - kSuffix), message.utime, T_world_camera);
-      if (frames_wait_) inbox_.wake();
+      inbox_.recheck_gate();
     } catch (const InputError& error) {
       status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
     }
   }
 
+  /// Poses go when it is known where their camera was, wait while that may come, and are refused otherwise: they are
+  /// never put at the origin.
+  FrameGate place_gate() {
+    FrameGate gate;
+    gate.ask = [this](const FrameId& frame, double age_s) -> FrameGate::Decision {
+      const tracks::CameraPose place = world_.place_of(frame, age_s < options_.wait_s);
+      if (!place.T_world_camera && place.may_come) return {FrameGate::Answer::kWait, ""};
+      if (!place.T_world_camera) return {FrameGate::Answer::kRefuse, place.reason};
+      T_world_camera_ = *place.T_world_camera;
+      return {FrameGate::Answer::kGo, ""};
+    };
+    gate.now_us = [this] { return now_us(); };
+    gate.awaited = "the transforms of their cameras";
+    return gate;
+  }
+
   bool step(milliseconds timeout) {
-    constexpr milliseconds kPatience(3);  // how long the end of a frame's waiting may go unnoticed
-    std::optional<SynchronisedMessages> pair = inbox_.pop(waiting_.empty() ? timeout : std::min(timeout, kPatience));
-    if (pair) keep_waiting(*std::move(pair));
+    const std::optional<SynchronisedMessages> pair = inbox_.pop(timeout);
     count_dropped();
     if (!bus_.is_log()) silence_->tell(now_us());
-    bool worked = false;
-    for (auto it = waiting_.begin(); it != waiting_.end();) {
-      const tracks::CameraPose place = world_.place_of(it->messages.id, is_patient(*it));
-      if (!place.T_world_camera && place.may_come) {
-        ++it;
-        continue;
-      }
-      const Waiting now = std::move(*it);
-      it = waiting_.erase(it);
-      worked = true;
-      if (!place.T_world_camera) {
-        refuse(now.messages.id, place.reason);
-      } else {
-        if (world_.consume_reset()) tracker_.begin_world();
-        work_on(now, *place.T_world_camera);
-      }
-    }
-    frames_wait_ = !waiting_.empty();
-    return worked;
+    if (!pair) return false;
+    if (world_.consume_reset()) tracker_.begin_world();
+    work_on(*pair);
+    return true;
   }
 
-  /// A copy of its frame goes with each pose, and poses may be sent without end.
-  void keep_waiting(SynchronisedMessages messages) {
-    constexpr std::size_t kMax = 1024;
-    ByteBudget::Held held = waiting_bytes_.hold(messages.frame->size());
-    waiting_.push_back({std::move(messages), now_us(), std::move(held)});
-    while (waiting_.size() > 1 &&
-           (waiting_.size() > kMax || waiting_bytes_.total() > FrameSynchroniser::kHistoryBytes)) {
-      refuse(waiting_.front().messages.id, "too many wait for the transforms of their cameras");
-      waiting_.pop_front();
-    }
-  }
-
-  bool is_patient(const Waiting& waiting) const {
-    return static_cast<double>(now_us() - waiting.since_us) * 1e-6 < options_.wait_s;
-  }
-
-  void work_on(const Waiting& waiting, const Eigen::Isometry3d& T_world_camera) {
+  void work_on(const SynchronisedMessages& pair) {
     try {
       StageClock clock;
-      const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(view(waiting.messages.detections)));
-      check_.add(poses, T_world_camera, *used_models_);
-      if (options_.check || publish_objects(waiting, poses, T_world_camera, clock))
-        status_.count_processed(std::chrono::steady_clock::now() - waiting.messages.arrival);
+      const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(view(pair.detections)));
+      check_.add(poses, T_world_camera_, *used_models_);
+      if (options_.check || publish_objects(*pair.frame, poses, clock))
+        status_.count_processed(std::chrono::steady_clock::now() - pair.arrival);
       tell_contradictions();
     } catch (const std::exception& error) {
       status_.count_refused(error.what(), "work");
@@ -206,8 +178,7 @@ class TrackProcess {
   }
 
   /// False for a frame that is too late.
-  bool publish_objects(const Waiting& waiting, const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
-                       StageClock& clock) {
+  bool publish_objects(const std::vector<std::uint8_t>& frame, const ObjectPoses& poses, StageClock& clock) {
     if (const auto models = models_(); models != used_models_) {
       used_models_ = models;
       tracker_.set_models(*models);
@@ -217,15 +188,14 @@ class TrackProcess {
     std::optional<RgbdFrame> image;
     const auto decode = [&]() -> const RgbdFrame* {
       if (!image) {
-        image = depth_frame_from_message(decode_message<images_t>(view(*waiting.messages.frame)), poses.frame.channel,
-                                         options_.camera);
+        image = depth_frame_from_message(decode_message<images_t>(view(frame)), poses.frame.channel, options_.camera);
         clock.mark("track.decode");
       }
       return &*image;
     };
-    const FrameHeader header = read_frame_header(view(*waiting.messages.frame));
+    const FrameHeader header = read_frame_header(view(frame));
     std::optional<WorldObjects> objects =
-        tracker_.update({poses, &detections, T_world_camera, decode, newest_of(poses.frame.channel),
+        tracker_.update({poses, &detections, T_world_camera_, decode, newest_of(poses.frame.channel),
                          FrameNumber{header.sequence, header.utime, header.run}});
     if (!objects) {
       status_.count_skipped(1);  // what a detector said late of a frame whose successors are known
@@ -257,6 +227,7 @@ class TrackProcess {
     status_.count_skipped(dropped.skipped);
     without_frame_ += static_cast<std::int64_t>(dropped.without_frame.size());
     for (const FrameId& frame : dropped.without_frame) refuse(frame, "the frame itself has not come");
+    for (const FrameSynchroniser::Refused& pair : dropped.refused) refuse(pair.id, pair.reason);
   }
 
   void tell_contradictions() {
@@ -281,11 +252,10 @@ class TrackProcess {
   tracks::Tracker tracker_;
   WorldOutput output_;
   WorldReference world_;
+  Eigen::Isometry3d T_world_camera_ = Eigen::Isometry3d::Identity();  // of the pair that the gate let go last
   tracks::ExtrinsicCheck check_;
   LogThrottle lines_;  // of contradictions
   std::shared_ptr<HeartbeatMonitor> silence_ = std::make_shared<HeartbeatMonitor>();
-  ByteBudget waiting_bytes_;  // of the frames of those that wait
-  std::deque<Waiting> waiting_;
   std::int64_t without_frame_ = 0;  // poses
   RecentDetections detections_;
   // What the receiving thread writes.
@@ -294,7 +264,6 @@ class TrackProcess {
   std::int64_t log_us_ = 0;
   std::map<std::string, std::int64_t> newest_;  // utimes of the frames that came last, by channel
   std::atomic<std::int64_t> poses_{0};
-  std::atomic<bool> frames_wait_{false};  // for transforms
 };
 
 }  // namespace

@@ -89,14 +89,89 @@ TEST(FrameSynchroniser, WhoTakesNothingAheadWaitsForPairsOnly) {
   EXPECT_EQ(*inbox.pop(kNow)->frame, bytes(11));
 }
 
-TEST(FrameSynchroniser, WhoIsWokenWaitsNoLonger) {
-  FrameSynchroniser inbox(false);
-  inbox.wake();
-  EXPECT_FALSE(inbox.pop(std::chrono::minutes(1)).has_value()) << "returns at once";
-  inbox.add_frame(id(1), arrived_bytes(11));
-  inbox.wake();
-  inbox.add_detections(id(1), bytes(21));
-  EXPECT_TRUE(inbox.pop(std::chrono::minutes(1)).has_value()) << "a pair is there all the same";
+/// A gate that says the same of each pair until it is told otherwise, by a clock that the test sets.
+struct TestGate {
+  FrameGate::Decision decision{FrameGate::Answer::kWait, ""};
+  std::int64_t now_us = 0;
+  std::vector<double> ages_s;
+
+  FrameGate gate() {
+    FrameGate made;
+    made.ask = [this](const FrameId&, double age_s) {
+      ages_s.push_back(age_s);
+      return decision;
+    };
+    made.now_us = [this] { return now_us; };
+    made.awaited = "the key";
+    return made;
+  }
+};
+
+void add_pair(FrameSynchroniser& inbox, std::int64_t utime, const SharedBytes& frame) {
+  inbox.add_frame(id(utime), frame);
+  inbox.add_detections(id(utime), bytes(static_cast<int>(utime)));
+}
+
+TEST(FrameSynchroniser, APairWaitsForTheGateWithItsFrameHoweverManyFramesCome) {
+  TestGate test;
+  FrameSynchroniser inbox(false, false, test.gate());
+  add_pair(inbox, 1, arrived_bytes(11));
+  EXPECT_FALSE(inbox.pop(std::chrono::minutes(1)).has_value()) << "returns at once: its age will pass";
+  for (int i = 0; i <= static_cast<int>(FrameSynchroniser::kHistory); ++i)
+    inbox.add_frame(id(100 + i), arrived_bytes(0));
+  test.now_us = 250000;
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
+  EXPECT_EQ(test.ages_s.front(), 0.0);
+  EXPECT_EQ(test.ages_s.back(), 0.25);
+  add_pair(inbox, 2, arrived_bytes(12));
+  test.decision.answer = FrameGate::Answer::kGo;
+  inbox.recheck_gate();
+  EXPECT_EQ(*inbox.pop(kNow)->frame, bytes(11)) << "the oldest first";
+  EXPECT_EQ(*inbox.pop(kNow)->frame, bytes(12));
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
+  EXPECT_TRUE(inbox.pop_dropped().refused.empty());
+}
+
+TEST(FrameSynchroniser, WhatTheGateRefusesIsToldWithItsReasonAndWhatStillWaitsInTheEnd) {
+  TestGate test;
+  FrameSynchroniser inbox(false, false, test.gate());
+  add_pair(inbox, 1, arrived_bytes(11));
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
+  test.decision = {FrameGate::Answer::kRefuse, "no key"};
+  add_pair(inbox, 2, arrived_bytes(12));
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
+  test.decision = {FrameGate::Answer::kWait, ""};
+  add_pair(inbox, 3, arrived_bytes(13));
+  EXPECT_FALSE(inbox.pop(kNow).has_value());
+  inbox.flush();
+  const std::vector<FrameSynchroniser::Refused> refused = inbox.pop_dropped().refused;
+  ASSERT_EQ(refused.size(), 3U);
+  for (std::size_t i = 0; i < refused.size(); ++i) {
+    EXPECT_EQ(refused[i].id, id(static_cast<std::int64_t>(i) + 1));
+    EXPECT_EQ(refused[i].reason, i < 2 ? "no key" : "the stream has ended");
+  }
+}
+
+TEST(FrameSynchroniser, PairsThatWaitForTheGateAreKeptWithinBounds) {
+  constexpr std::int64_t kMore = 5;
+  for (const bool large : {false, true}) {
+    TestGate test;
+    FrameSynchroniser inbox(false, false, test.gate());
+    constexpr std::int64_t kLargeKept = 4;
+    const std::int64_t kept = large ? kLargeKept : static_cast<std::int64_t>(FrameSynchroniser::kHeldBack);
+    for (std::int64_t i = 1; i <= kept + kMore; ++i) {
+      add_pair(inbox, i,
+               std::make_shared<const std::vector<std::uint8_t>>(
+                   large ? FrameSynchroniser::kHeldBackBytes / static_cast<std::size_t>(kLargeKept) : 1));
+      EXPECT_FALSE(inbox.pop(kNow).has_value());
+    }
+    const std::vector<FrameSynchroniser::Refused> refused = inbox.pop_dropped().refused;
+    ASSERT_EQ(static_cast<std::int64_t>(refused.size()), kMore);
+    EXPECT_EQ(refused[0].id, id(1));
+    EXPECT_EQ(refused[0].reason, "too many wait for the key");
+    test.decision.answer = FrameGate::Answer::kGo;
+    EXPECT_EQ(inbox.pop(kNow)->id, id(kMore + 1));
+  }
 }
 
 TEST(FrameSynchroniser, ALogIsWorkedOnInTurn) {
