@@ -2,113 +2,90 @@
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
-#include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
+#include "pipeline/process/decoded_frames.hpp"
 #include "pipeline/process/detection_throttle.hpp"
-#include "pipeline/process/frame_synchroniser.hpp"
 #include "pipeline/process/latest_per_channel.hpp"
 #include "pipeline/process/process_loop.hpp"
+#include "pipeline/process/reception.hpp"
 
 namespace houghstream {
 namespace {
 
-struct WaitingFrame {
-  std::string channel;
-  std::vector<std::uint8_t> bytes;
-  std::chrono::steady_clock::time_point arrival;
-};
-
-/// What the receiving thread does.
-class Reception {
+class DetectProcess {
  public:
-  Reception(const LcmBus& bus, StatusReporter& status, LatestPerChannel<WaitingFrame>& newest, double max_rate_hz)
-      : is_log_(bus.is_log()), status_(status), newest_(newest), budget_(max_rate_hz) {}
+  DetectProcess(LcmBus& bus, const DetectProcessOptions& options, const DetectObjects& detect)
+      : bus_(bus),
+        options_(options),
+        detect_(detect),
+        status_(options.process),
+        reception_(bus, status_, options.frame_channels, options.keep_frames),
+        throttle_(options.max_rate_hz) {}
 
-  void receive_frame(const ReceivedMessage& arrival) {
-    try {
-      const FrameHeader header = read_frame_header(arrival.bytes);
-      const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
-      // Every frame of a log is worked on, as often as it is there.
-      if (order == FrameOrder::kDuplicate && !is_log_) return;
-      status_.count_received();
-      const bool passed_over = !budget_.is_due({arrival.channel, header.utime}) || put(arrival, order);
-      if (passed_over) status_.count_skipped(1);
-    } catch (const InputError& error) {
-      status_.count_received();
-      status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), arrival.channel);
+  void run() {
+    status_.set_known_objects(options_.objects);
+    catch_stop_signals();
+    reception_.subscribe_to_frames(Account::kReceived, [this](const ReceivedFrame& frame) { add_frame(frame); });
+    if (options_.max_rate_hz > 0.0 && !bus_.is_log()) {
+      reception_.subscribe_to_results<object_poses_t>(channel::kPoses, Account::kOthers,
+                                                      [this](const ReceivedResult& poses) { note_losses(poses); });
     }
-  }
-
-  /// Of what is followed: where something is lost, the camera is looked at soon.
-  void receive_poses(const ReceivedMessage& arrival) {
-    FrameSynchroniser::require_size(arrival.bytes.size);
-    const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(arrival.bytes));
-    for (const ObjectPose& pose : poses.poses) {
-      const bool is_lost = pose.status != PoseStatus::kValid && pose.status != PoseStatus::kOccluded;
-      if (pose.detection_index < 0 && is_lost) budget_.hurry(poses.frame.channel);
-    }
+    log_info("ready: frames from {} at {}", options_.frame_channels, bus_.url());
+    run_process_loop(bus_, status_, [this](std::chrono::milliseconds timeout) { return step(timeout); });
+    status_.count_skipped(static_cast<std::int64_t>(newest_.waiting()));
+    end_process(bus_, status_);
   }
 
  private:
-  /// Whether another frame is passed over for it, or it for another.
-  bool put(const ReceivedMessage& arrival, FrameOrder order) {
-    const ByteView& bytes = arrival.bytes;
-    WaitingFrame frame{arrival.channel, {bytes.data, bytes.data + bytes.size}, arrival.time};
-    return order == FrameOrder::kLate ? newest_.push_late(arrival.channel, std::move(frame), bytes.size)
-                                      : newest_.push(arrival.channel, std::move(frame), bytes.size);
+  void add_frame(const ReceivedFrame& frame) {
+    if (!throttle_.is_due(frame.id) || push(frame)) status_.count_skipped(1);
   }
 
-  bool is_log_;
-  StatusReporter& status_;
-  LatestPerChannel<WaitingFrame>& newest_;
-  DetectionThrottle budget_;
-};
+  /// Whether another frame is passed over for it, or it for another.
+  bool push(const ReceivedFrame& frame) {
+    EncodedFrame waiting{frame.id, shared_copy(frame.bytes), frame.time};
+    return frame.order == FrameOrder::kLate ? newest_.push_late(frame.id.channel, std::move(waiting), frame.bytes.size)
+                                            : newest_.push(frame.id.channel, std::move(waiting), frame.bytes.size);
+  }
 
-RgbdFrame decode(const WaitingFrame& encoded, const std::optional<Camera>& camera) {
-  StageClock clock;
-  const auto message = decode_message<images_t>({encoded.bytes.data(), encoded.bytes.size()});
-  RgbdFrame frame = frame_from_message(message, encoded.channel, camera);
-  clock.mark("detect.decode");
-  frame.stages.push_back(clock.times().front());
-  return frame;
-}
+  /// Of what is followed: where something is lost, the camera is looked at soon.
+  void note_losses(const ReceivedResult& result) {
+    const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(result.bytes));
+    for (const ObjectPose& pose : poses.poses) {
+      const bool is_lost = pose.status != PoseStatus::kValid && pose.status != PoseStatus::kOccluded;
+      if (pose.detection_index < 0 && is_lost) throttle_.hurry(poses.frame.channel);
+    }
+  }
+
+  bool step(std::chrono::milliseconds timeout) {
+    const std::optional<EncodedFrame> encoded = newest_.pop(timeout);
+    if (!encoded) return false;
+    try {
+      const RgbdFrame frame = decode_frame({encoded->bytes->data(), encoded->bytes->size()}, encoded->id.channel,
+                                           options_.camera, "detect.decode");
+      Detections detections = detect_(frame);
+      detections.frame = frame.id;
+      bus_.publish(channel::kDetections, to_message(detections));
+      status_.count_processed(std::chrono::steady_clock::now() - encoded->arrival);
+    } catch (const std::exception& error) {
+      status_.count_refused(error.what(), encoded->id.channel + " work");
+    }
+    return true;
+  }
+
+  LcmBus& bus_;
+  const DetectProcessOptions& options_;
+  const DetectObjects& detect_;
+  StatusReporter status_;
+  Reception reception_;
+  LatestPerChannel<EncodedFrame> newest_;
+  DetectionThrottle throttle_;
+};
 
 }  // namespace
 
-void run_detect_process(LcmBus& bus, const DetectProcessOptions& options,
-                        const std::function<Detections(const RgbdFrame&)>& detect) {
-  require(!options.keep_frames || bus.is_log(), "frames are kept of a log (-l file://LOG), not of {}", bus.url());
-  const ChannelPattern channels(options.frame_channels);
-  StatusReporter status(options.process);
-  status.set_known_objects(options.objects);
-  LatestPerChannel<WaitingFrame> newest;
-  Reception reception(bus, status, newest, options.max_rate_hz);
-  catch_stop_signals();
-  bus.subscribe_to_frames(options.frame_channels, [&](const ReceivedMessage& arrival) {
-    if (!channels.is_name() && !is_frame_message(arrival.bytes)) return;
-    if (options.keep_frames) bus.publish(arrival.channel, arrival.bytes, arrival.event_us);
-    reception.receive_frame(arrival);
-  });
-  if (options.max_rate_hz > 0.0 && !bus.is_log()) {
-    bus.subscribe(channel::kPoses, [&](const ReceivedMessage& arrival) { reception.receive_poses(arrival); });
-  }
-  log_info("ready: frames from {} at {}", options.frame_channels, bus.url());
-  run_process_loop(bus, status, [&](std::chrono::milliseconds timeout) {
-    const std::optional<WaitingFrame> encoded = newest.pop(timeout);
-    if (!encoded) return false;
-    try {
-      const RgbdFrame frame = decode(*encoded, options.camera);
-      Detections detections = detect(frame);
-      detections.frame = frame.id;
-      bus.publish(channel::kDetections, to_message(detections));
-      status.count_processed(std::chrono::steady_clock::now() - encoded->arrival);
-    } catch (const std::exception& error) {
-      status.count_refused(error.what(), encoded->channel + " work");
-    }
-    return true;
-  });
-  status.count_skipped(static_cast<std::int64_t>(newest.waiting()));
-  end_process(bus, status);
+void run_detect_process(LcmBus& bus, const DetectProcessOptions& options, const DetectObjects& detect) {
+  DetectProcess(bus, options, detect).run();
 }
 
 }  // namespace houghstream

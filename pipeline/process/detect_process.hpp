@@ -21,13 +21,14 @@ struct DetectProcessOptions {
   std::function<KnownObjects()> objects;         ///< what its store holds, for the status; empty = no store
 };
 
+using DetectObjects = std::function<Detections(const RgbdFrame&)>;
+
 /// Receives frames and publishes `detect`'s result for each one that is worked on: on a network always the newest of
 /// each camera, the cameras in turn; from a log every one. Results bear the frame's name, whatever `detect` calls them.
 /// With `max_rate_hz` the frames between two looks are skipped, by their own times, so that a log gives the same
 /// looks; where hs-pose tells that it has lost what it followed, the next look at that camera comes sooner.
 /// A frame that cannot be understood is counted, reported and dropped; where the channels are a pattern, what is no
 /// images_t is none. Throws InputError where frames are to be kept without a log; returns as run_process_loop does.
-void run_detect_process(LcmBus& bus, const DetectProcessOptions& options,
-                        const std::function<Detections(const RgbdFrame&)>& detect);
+void run_detect_process(LcmBus& bus, const DetectProcessOptions& options, const DetectObjects& detect);
 
 }  // namespace houghstream

@@ -7,14 +7,6 @@
 
 namespace houghstream {
 
-SharedBytes shared_copy(ByteView bytes) {
-  return std::make_shared<const std::vector<std::uint8_t>>(bytes.data, bytes.data + bytes.size);
-}
-
-void FrameSynchroniser::require_size(std::size_t bytes) {
-  require(bytes <= kWaitingBytes, "results of {} bytes, expected at most {}", bytes, kWaitingBytes);
-}
-
 void FrameSynchroniser::add_frame(const FrameId& id, SharedBytes bytes) {
   bool is_awaited = false;
   {
@@ -34,7 +26,6 @@ void FrameSynchroniser::add_frame(const FrameId& id, SharedBytes bytes) {
 }
 
 void FrameSynchroniser::add_detections(const FrameId& id, std::vector<std::uint8_t> bytes) {
-  require_size(bytes.size());
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     Camera& camera = camera_of(id.channel);

@@ -13,16 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/messages/wire_reader.hpp"
 #include "pipeline/process/byte_budget.hpp"
 #include "pipeline/process/detector_count.hpp"
+#include "pipeline/process/reception.hpp"
 #include "pipeline/types/frame_id.hpp"
 
 namespace houghstream {
-
-/// An encoded frame's bytes, which are copied once, off the bus, however many keep them.
-using SharedBytes = std::shared_ptr<const std::vector<std::uint8_t>>;
-SharedBytes shared_copy(ByteView bytes);
 
 /// An encoded frame.
 struct ArrivedFrame {
@@ -63,10 +59,8 @@ class FrameSynchroniser {
   /// that has come first goes. The last frame that has come stays, however large it is.
   static constexpr std::size_t kHistory = 64;
   static constexpr std::size_t kHistoryBytes = std::size_t{192} << 20U;
-  /// Detections of each camera that wait, for their frame or their turn; the oldest go. Larger ones (two thousand
-  /// detections have so many bytes) are refused.
+  /// Detections of each camera that wait, for their frame or their turn; the oldest go.
   static constexpr std::size_t kWaiting = 128;
-  static constexpr std::size_t kWaitingBytes = std::size_t{1} << 20U;
   /// Of the detections of all cameras that wait; where there are more, the camera with the most gives up its oldest.
   static constexpr std::size_t kAllWaitingBytes = std::size_t{128} << 20U;
   /// Frames on more channels are refused: a sender of rubbish may make up channels without end.
@@ -83,12 +77,9 @@ class FrameSynchroniser {
   explicit FrameSynchroniser(bool newest_first, bool ahead = true, FrameGate gate = {})
       : newest_first_(newest_first), ahead_(ahead), gate_(std::move(gate)) {}
 
-  /// Throws InputError where detections or poses of so many bytes are refused.
-  static void require_size(std::size_t bytes);
-
   /// Throws InputError for one camera too many.
   void add_frame(const FrameId& id, SharedBytes bytes);
-  /// `id` is the frame that they were found in. Throws InputError for one camera too many, and for too many bytes.
+  /// `id` is the frame that they were found in. Throws InputError for one camera too many.
   void add_detections(const FrameId& id, std::vector<std::uint8_t> bytes);
 
   /// The next pair that the gate lets go, waiting for one up to `timeout`, or, with `newest_first`, until a frame

@@ -5,31 +5,60 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
-#include <memory>
 #include <set>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
-#include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
+#include "pipeline/process/decoded_frames.hpp"
 #include "pipeline/process/frame_synchroniser.hpp"
+#include "pipeline/process/latest_per_channel.hpp"
 #include "pipeline/process/model_check.hpp"
 #include "pipeline/process/pose_history.hpp"
-#include "pipeline/process/pose_output.hpp"
 #include "pipeline/process/process_loop.hpp"
-#include "pipeline/process/recent_frames.hpp"
+#include "pipeline/process/reception.hpp"
 
 namespace houghstream {
 namespace {
 
-std::vector<std::uint8_t> copy(ByteView bytes) {
-  return {bytes.data, bytes.data + bytes.size};
+using std::chrono::milliseconds;
+
+// More detections at once could not be worked on within Heartbeat::kPatience.
+void require_max_detections(const Detections& detections) {
+  constexpr std::size_t kMax = 512;
+  require(detections.detections.size() <= kMax, "frame {}: {} detections, expected at most {}",
+          to_string(detections.frame), detections.detections.size(), kMax);
 }
 
-ByteView view(const std::vector<std::uint8_t>& bytes) {
-  return {bytes.data(), bytes.size()};
-}
+/// Publishes the transforms of poses on the channels that pose_process.hpp says. Every function may be called from any
+/// thread.
+class TransformPublisher {
+ public:
+  TransformPublisher(LcmBus& bus, const std::string& frame_channels)
+      : bus_(bus), frame_channels_(frame_channels), several_cameras_(!ChannelPattern(frame_channels).is_name()) {}
+
+  /// Detections of a frame on this other channel have come.
+  void note_other_camera(const std::string& channel) {
+    if (several_cameras_.exchange(true)) return;
+    log_info("detections of frames on {} are heard too: transforms go to <OBJECT>_TO_{}", channel,
+             channel::camera_name(frame_channels_));
+  }
+
+  /// A rigid_transform_t for each valid pose.
+  void publish(const ObjectPoses& poses) {
+    const std::string camera = several_cameras_ ? poses.frame.channel : "";
+    for (const ObjectPose& pose : poses.poses) {
+      if (!pose.T_camera_object) continue;
+      bus_.publish(channel::to_camera(pose.class_name, camera), to_message(poses.frame.utime, *pose.T_camera_object));
+    }
+  }
+
+ private:
+  LcmBus& bus_;
+  std::string frame_channels_;
+  std::atomic<bool> several_cameras_;
+};
 
 /// What was found in a frame so far, by all its detectors.
 struct HeardClasses {
@@ -38,83 +67,116 @@ struct HeardClasses {
   std::set<std::string> names;
 };
 
+/// Answers detections with poses. Where it follows as well, frames are worked on first, and are what the status counts;
+/// detections are then answered in the background, and counted apart.
 class PoseProcess {
  public:
-  PoseProcess(LcmBus& bus, const PoseProcessOptions& options, const EstimatePoses& estimate)
+  /// Does not follow where `follow` is empty.
+  PoseProcess(LcmBus& bus, const PoseProcessOptions& options, const EstimatePoses& estimate, const FollowFrame& follow)
       : bus_(bus),
         options_(options),
         estimate_(estimate),
-        channels_(options.frame_channels),
+        follow_(follow),
         status_(options.process),
-        inbox_(!bus.is_log()),
+        reception_(bus, status_, options.frame_channels, options.keep_frames),
+        synchroniser_(!bus.is_log(), !follow),
+        decoded_(options.camera, "pose.decode"),
         models_(options.models),
         transforms_(bus, options.frame_channels) {}
 
   void run() {
     status_.set_known_objects(options_.objects);
     catch_stop_signals();
-    bus_.subscribe_to_frames(options_.frame_channels,
-                             [this](const ReceivedMessage& arrival) { receive_frame(arrival); });
-    bus_.subscribe(channel::kDetections, [this](const ReceivedMessage& arrival) { receive_detections(arrival); });
-    log_info("ready: frames from {}, detections from {} at {}", options_.frame_channels, channel::kDetections,
-             bus_.url());
-    run_process_loop(bus_, status_, [this](std::chrono::milliseconds timeout) { return step(timeout); });
-    inbox_.flush();
-    count_dropped();
+    reception_.subscribe_to_frames(follow_ ? Account::kReceived : Account::kOthers,
+                                   [this](const ReceivedFrame& frame) { add_frame(frame); });
+    reception_.subscribe_to_results<detections_t>(
+        channel::kDetections, follow_ ? Account::kOthers : Account::kReceived,
+        [this](const ReceivedResult& detections) { add_detections(detections); },
+        [this](const FrameId& frame) { note_other_camera(frame); });
+    log_info("ready: {}frames from {}, detections from {} at {}", follow_ ? "follows in " : "", options_.frame_channels,
+             channel::kDetections, bus_.url());
+    const WorkStep answer = [this](milliseconds timeout) { return answer_next(timeout); };
+    if (follow_) {
+      run_process_loop(
+          bus_, status_, [this](milliseconds timeout) { return follow_newest(timeout); }, answer);
+      status_.count_skipped(static_cast<std::int64_t>(newest_.waiting()));
+    } else {
+      run_process_loop(bus_, status_, answer);
+      synchroniser_.flush();
+      count_dropped();
+    }
     warn(models_.at_end());
-    tell_missing_frames();
+    if (!follow_) tell_missing_frames();
+    if (follow_ && detections_ > 0)
+      log_info("looks: {} came, {} answered, {} passed over for newer ones", detections_.load(), answered_, overtaken_);
     end_process(bus_, status_);
   }
 
  private:
-  void receive_frame(const ReceivedMessage& arrival) {
-    if (!channels_.is_name() && !is_frame_message(arrival.bytes)) return;
-    if (options_.keep_frames) bus_.publish(arrival.channel, arrival.bytes, arrival.event_us);
-    try {
-      const FrameHeader header = read_frame_header(arrival.bytes);
-      const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
-      if (order == FrameOrder::kDuplicate && !bus_.is_log()) return;
-      inbox_.add_frame({arrival.channel, header.utime}, shared_copy(arrival.bytes));
-    } catch (const InputError& error) {
-      status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
-    }
+  void add_frame(const ReceivedFrame& frame) {
+    const SharedBytes bytes = shared_copy(frame.bytes);
+    synchroniser_.add_frame(frame.id, bytes);  // refuses one camera too many
+    if (!follow_) return;
+    EncodedFrame encoded{frame.id, bytes, frame.time};
+    const bool passed_over = frame.order == FrameOrder::kLate
+                                 ? newest_.push_late(frame.id.channel, std::move(encoded), bytes->size())
+                                 : newest_.push(frame.id.channel, std::move(encoded), bytes->size());
+    if (passed_over) status_.count_skipped(1);
   }
 
-  void receive_detections(const ReceivedMessage& arrival) {
+  void add_detections(const ReceivedResult& detections) {
+    note_camera(detections.id);
+    ++detections_;
+    synchroniser_.add_detections(detections.id, {detections.bytes.data, detections.bytes.data + detections.bytes.size});
+  }
+
+  void note_other_camera(const FrameId& frame) {
+    note_camera(frame);
+    ++others_;
+    transforms_.note_other_camera(frame.channel);
+  }
+
+  void note_camera(const FrameId& frame) {
+    if (cameras_.size() < FrameSynchroniser::kCameras) cameras_.insert(frame.channel);
+  }
+
+  bool follow_newest(milliseconds timeout) {
+    const std::optional<EncodedFrame> encoded = newest_.pop(timeout);
+    if (!encoded) return false;
     try {
-      FrameSynchroniser::require_size(arrival.bytes.size);
-      check_wire(arrival.bytes, detections_t::getHash(), detections_t::getTypeName());
-      const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
-      if (!bus_.is_log() && repeats_.is_repeated(frame, arrival.bytes.data, arrival.bytes.size, arrival.time))
-        return status_.note_duplicate();
-      if (sources_.size() < FrameSynchroniser::kCameras) sources_.insert(frame.channel);
-      ++detections_;
-      if (!channels_.matches(frame.channel)) {
-        ++others_;
-        transforms_.note_other_camera(frame.channel);
-        return;
+      std::optional<ObjectPoses> poses = follow_(*decoded_.decode(encoded->bytes, encoded->id.channel));
+      if (!poses) {
+        status_.count_skipped(1);
+        return true;
       }
-      if (options_.keep_frames) bus_.publish(arrival.channel, arrival.bytes, arrival.event_us);
-      inbox_.add_detections(frame, copy(arrival.bytes));
-      status_.count_received();
-    } catch (const InputError& error) {
-      status_.count_received();
-      status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), "message");
+      poses->frame = encoded->id;
+      bus_.publish(channel::kPoses, to_message(*poses));
+      transforms_.publish(*poses);
+      status_.count_processed(std::chrono::steady_clock::now() - encoded->arrival);
+    } catch (const std::exception& error) {
+      status_.count_refused(error.what(), encoded->id.channel + " work");
     }
+    return true;
   }
 
-  bool step(std::chrono::milliseconds timeout) {
-    const std::optional<SynchronisedMessages> pair = inbox_.pop(timeout);
+  bool answer_next(milliseconds timeout) {
+    const std::optional<SynchronisedMessages> pair = synchroniser_.pop(timeout);
     count_dropped();
     if (!pair) {
       decode_ahead();
       return false;
     }
     try {
-      publish(poses_of(*pair));
-      status_.count_processed(std::chrono::steady_clock::now() - pair->arrival);
+      const ObjectPoses poses = poses_of(*pair);
+      bus_.publish(channel::kPoses, to_message(poses));
+      if (follow_) {
+        ++answered_;
+      } else {
+        transforms_.publish(poses);
+        status_.count_processed(std::chrono::steady_clock::now() - pair->arrival);
+      }
     } catch (const std::exception& error) {
-      status_.count_refused(error.what(), "work");
+      refuse(error.what(), "work");
     }
     return true;
   }
@@ -122,31 +184,27 @@ class PoseProcess {
   // A camera's newest frame is decoded while its detections are on the way. What cannot be understood is told when they
   // come.
   void decode_ahead() {
-    const std::optional<ArrivedFrame> fresh = inbox_.pop_unmatched_frame();
+    const std::optional<ArrivedFrame> fresh = synchroniser_.pop_unmatched_frame();
     if (!fresh) return;
     try {
-      ahead_.keep(decoded(fresh->id, *fresh->bytes));
+      decoded_.decode(fresh->bytes, fresh->id.channel);
     } catch (const InputError&) {
     }
   }
 
-  RecentFrames::Decoded decoded(const FrameId& id, const std::vector<std::uint8_t>& bytes) const {
-    return std::make_shared<const DecodedFrame>(decode_for_poses(bytes, id.channel, options_.camera));
-  }
-
   ObjectPoses poses_of(const SynchronisedMessages& pair) {
-    Detections detections = detections_from_message(decode_message<detections_t>(view(pair.detections)));
+    Detections detections =
+        detections_from_message(decode_message<detections_t>({pair.detections.data(), pair.detections.size()}));
     if (!bus_.is_log()) require_max_detections(detections);
-    if (detections.detections.empty()) return {detections.frame, {}, detections.stages};
-    const RecentFrames::Decoded ahead = ahead_.find(pair.id);
-    const RecentFrames::Decoded frame = ahead ? ahead : decoded(pair.id, *pair.frame);
-    detections.stages.push_back(frame->decoding);
-    note_shared_classes(detections, pair.frame_number);
+    if (!follow_ && detections.detections.empty()) return {detections.frame, {}, detections.stages};
+    const DecodedFrames::Decoded frame = decoded_.decode(pair.frame, pair.id.channel);
+    detections.stages.push_back(frame->stages.back());
+    if (!follow_) note_shared_classes(detections, pair.frame_number);
     note_models();
     warn(models_.note(detections));
-    ObjectPoses poses = estimate_(frame->frame, detections, memory_.before(detections));
+    ObjectPoses poses = estimate_(*frame, detections, follow_ ? ObjectPoses{} : history_.before(detections));
     poses.frame = pair.id;
-    memory_.keep(poses);
+    if (!follow_) history_.keep(poses);
     return poses;
   }
 
@@ -163,7 +221,7 @@ class PoseProcess {
       return;
     }
     if (heard->number != frame_number) {
-      memory_.note_again(detections.frame);
+      history_.note_again(detections.frame);
       *heard = {detections.frame, frame_number, std::move(names)};
       return;
     }
@@ -181,33 +239,38 @@ class PoseProcess {
     for (const KnownObject& object : options_.objects().objects) models_.add_model(object.name);
   }
 
-  void publish(const ObjectPoses& poses) {
-    bus_.publish(channel::kPoses, to_message(poses));
-    transforms_.publish(poses);
-  }
-
   static void warn(const std::optional<std::string>& words) {
     if (words) log_warning("{}", *words);
   }
 
   void count_dropped() {
-    const FrameSynchroniser::Dropped dropped = inbox_.pop_dropped();
-    status_.count_skipped(dropped.skipped);
+    const FrameSynchroniser::Dropped dropped = synchroniser_.pop_dropped();
+    if (follow_) {
+      overtaken_ += dropped.skipped;
+    } else {
+      status_.count_skipped(dropped.skipped);
+    }
     without_frame_ += static_cast<std::int64_t>(dropped.without_frame.size());
-    for (const FrameId& frame : dropped.without_frame) {
-      status_.count_refused(fmt::format("detections of frame {}: the frame itself has not come", to_string(frame)),
-                            "no frame");
+    for (const FrameId& frame : dropped.without_frame)
+      refuse(fmt::format("detections of frame {}: the frame itself has not come", to_string(frame)), "no frame");
+  }
+
+  void refuse(const std::string& reason, const std::string& kind) {
+    if (follow_) {
+      status_.note_bad_message(reason);
+    } else {
+      status_.count_refused(reason, kind);
     }
   }
 
   void tell_missing_frames() const {
     // On a network another process may work on other cameras' detections; of a log it is said.
-    const std::int64_t others = others_;
-    const std::int64_t all = detections_ - (bus_.is_log() ? 0 : others);
-    const std::int64_t missing = without_frame_ + (bus_.is_log() ? others : 0);
+    const std::int64_t others = bus_.is_log() ? others_.load() : 0;
+    const std::int64_t all = detections_ + others;
+    const std::int64_t missing = without_frame_ + others;
     if (missing == 0) return;
     const std::string words = fmt::format("{} of {} detections_t had no frame on {}; they name {}", missing, all,
-                                          options_.frame_channels, fmt::join(sources_, ", "));
+                                          options_.frame_channels, fmt::join(cameras_, ", "));
     require(!bus_.is_log() || missing < all, "{}: {}; hs-detect --keep-frames keeps them", bus_.url(), words);
     log_warning("{}", words);
   }
@@ -215,27 +278,36 @@ class PoseProcess {
   LcmBus& bus_;
   const PoseProcessOptions& options_;
   const EstimatePoses& estimate_;
-  ChannelPattern channels_;
+  const FollowFrame& follow_;
   StatusReporter status_;
-  FrameSynchroniser inbox_;
-  RecentFrames ahead_;  // decoded before their detections have come
-  PoseHistory memory_;
+  Reception reception_;
+  LatestPerChannel<EncodedFrame> newest_;  // of who follows
+  FrameSynchroniser synchroniser_;
+  DecodedFrames decoded_;
+  PoseHistory history_;
   std::deque<HeardClasses> heard_;
   ModelCheck models_;
   TransformPublisher transforms_;
+  std::int64_t without_frame_ = 0;  // detections
+  std::int64_t answered_ = 0;       // detections, by who follows
+  std::int64_t overtaken_ = 0;      // passed over for newer ones, before they were answered
   // What the receiving thread has seen.
-  std::set<std::string> sources_;
-  DuplicateFilter repeats_;
-  std::atomic<std::int64_t> detections_{0};
-  std::atomic<std::int64_t> others_{0};  // of them, of other cameras' frames
-  std::int64_t without_frame_ = 0;       // of the rest
+  std::set<std::string> cameras_;            // that detections name
+  std::atomic<std::int64_t> detections_{0};  // of frames on these channels
+  std::atomic<std::int64_t> others_{0};      // of other cameras' frames
 };
 
 }  // namespace
 
 void run_pose_process(LcmBus& bus, const PoseProcessOptions& options, const EstimatePoses& estimate) {
-  require(!options.keep_frames || bus.is_log(), "frames are kept of a log (-l file://LOG), not of {}", bus.url());
-  PoseProcess(bus, options, estimate).run();
+  PoseProcess(bus, options, estimate, {}).run();
+}
+
+void run_follow_process(LcmBus& bus, const PoseProcessOptions& options, const FollowPoses& poses) {
+  const EstimatePoses answer = [&](const RgbdFrame& frame, const Detections& detections, const ObjectPoses&) {
+    return poses.answer(frame, detections);
+  };
+  PoseProcess(bus, options, answer, poses.follow).run();
 }
 
 }  // namespace houghstream

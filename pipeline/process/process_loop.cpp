@@ -1,11 +1,14 @@
 #include "pipeline/process/process_loop.hpp"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <exception>
 #include <thread>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/parallel.hpp"
 #include "pipeline/base/service_notice.hpp"
 #include "pipeline/base/stop_signal.hpp"
 
@@ -17,9 +20,10 @@ using std::chrono::milliseconds;
 // How long a stop signal may go unnoticed.
 constexpr milliseconds kPatience(100);
 
-void play_log(LcmBus& bus, const WorkStep& work) {
+void play_log(LcmBus& bus, const WorkStep& work, const WorkStep& background) {
+  constexpr milliseconds kNow(0);
   while (!stop_requested() && bus.handle(kPatience)) {
-    while (work(milliseconds(0))) {
+    while (work(kNow) || (background && background(kNow))) {
     }
   }
   require(!stop_requested(), "{}: stopped before its end, no output is written", bus.url());
@@ -71,13 +75,42 @@ class Receiver {
   std::thread thread_;
 };
 
+/// Works in a thread of its own and of low priority while it lives.
+class BackgroundWorker {
+ public:
+  explicit BackgroundWorker(const WorkStep& work) : work_(work) {
+    if (!work_) return;
+    const BlockStopSignals block;
+    thread_ = std::thread([this] { run(); });
+  }
+  ~BackgroundWorker() {
+    running_ = false;
+    if (thread_.joinable()) thread_.join();
+  }
+  BackgroundWorker(const BackgroundWorker&) = delete;
+  BackgroundWorker& operator=(const BackgroundWorker&) = delete;
+
+ private:
+  void run() {
+    constexpr int kPolite = 2;
+    if (nice(kPolite) == -1) log_debug("the priority of the work in the background cannot be lowered");
+    const SerialScope alone;  // its helpers would be of its priority, and kept for the others
+    while (running_) work_(kPatience);
+  }
+
+  const WorkStep& work_;
+  std::atomic<bool> running_{true};
+  std::thread thread_;
+};
+
 }  // namespace
 
-void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work) {
+void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work, const WorkStep& background) {
   if (bus.is_log()) {
-    play_log(bus, work);
+    play_log(bus, work, background);
   } else {
     Heartbeat heart;
+    const BackgroundWorker worker(background);
     Receiver receiver(bus, status, heart);
     notify_service("READY=1");
     while (!stop_requested() && receiver.running()) {

@@ -16,7 +16,10 @@ using WorkStep = std::function<bool(std::chrono::milliseconds)>;
 /// longer than Heartbeat::kPatience, the reports end. A log is read by the calling thread, and every event is worked on
 /// before the next is read. A network that cannot be reached is waited for (LcmBus). Throws InputError where the log is
 /// damaged or was not read to its end.
-void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work);
+///
+/// `background` is work that the rest does not wait for: on a network a second thread, of low priority and without
+/// helpers, does it; of a log it has its turn where `work` has nothing left.
+void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work, const WorkStep& background = {});
 
 /// Says the last word: publishes the final status for whoever adds up, logs the account, and ends the output log.
 /// Throws InputError where that cannot be ended, or has nothing in it (LcmBus::close()).

@@ -5,7 +5,6 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/process/follow_process.hpp"
 #include "pipeline/process/pose_process.hpp"
 #include "pipeline/process/warm_up.hpp"
 #include "pose/following/object_follower.hpp"

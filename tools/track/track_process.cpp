@@ -5,13 +5,10 @@
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/log_throttle.hpp"
-#include "pipeline/bus/channel_pattern.hpp"
-#include "pipeline/bus/status_reporter.hpp"
 #include "pipeline/messages/messages.hpp"
-#include "pipeline/messages/wire_check.hpp"
 #include "pipeline/process/frame_synchroniser.hpp"
 #include "pipeline/process/process_loop.hpp"
-#include "pipeline/types/frame_time.hpp"
+#include "pipeline/process/reception.hpp"
 #include "tools/track/heartbeat_monitor.hpp"
 #include "tools/track/recent_detections.hpp"
 #include "tools/track/world_frame.hpp"
@@ -20,10 +17,6 @@ namespace houghstream::track {
 namespace {
 
 using std::chrono::milliseconds;
-
-std::vector<std::uint8_t> copy(ByteView bytes) {
-  return {bytes.data, bytes.data + bytes.size};
-}
 
 ByteView view(const std::vector<std::uint8_t>& bytes) {
   return {bytes.data(), bytes.size()};
@@ -35,9 +28,9 @@ class TrackProcess {
       : bus_(bus),
         options_(options),
         models_(models),
-        channels_(options.frame_channels),
         status_(options.process),
-        inbox_(false, false, place_gate()),
+        reception_(bus, status_, options.frame_channels),
+        synchroniser_(false, false, place_gate()),
         used_models_(models()),
         tracker_(*used_models_, {}),
         output_(bus, options.output),
@@ -47,16 +40,20 @@ class TrackProcess {
 
   tracks::ExtrinsicCheck run() {
     status_.set_known_objects(options_.objects);
-    bus_.subscribe_to_frames(options_.frame_channels,
-                             [this](const ReceivedMessage& arrival) { receive_frame(arrival); });
-    bus_.subscribe(channel::kDetections, [this](const ReceivedMessage& arrival) { receive_detections(arrival); });
-    bus_.subscribe(channel::kPoses, [this](const ReceivedMessage& arrival) { receive_poses(arrival); });
-    bus_.subscribe(".*_TO_WORLD", [this](const ReceivedMessage& arrival) { receive_transform(arrival); });
+    reception_.subscribe_to_frames(Account::kOthers, [this](const ReceivedFrame& frame) { add_frame(frame); });
+    reception_.subscribe_to_results<detections_t>(channel::kDetections, Account::kOthers,
+                                                  [this](const ReceivedResult& result) { add_detections(result); });
+    reception_.subscribe_to_results<object_poses_t>(channel::kPoses, Account::kReceived,
+                                                    [this](const ReceivedResult& result) { add_poses(result); });
+    reception_.subscribe_to_messages<rigid_transform_t>(
+        ".*_TO_WORLD", [this](const rigid_transform_t& message, const ReceivedMessage& arrival) {
+          add_transform(message, arrival.channel);
+        });
     // Its own last status may come when it has ended itself.
     bus_.subscribe(channel::kStatus, [silence = silence_](const ReceivedMessage& arrival) { silence->hear(arrival); });
     log_info("ready: frames from {}, poses from {} at {}", options_.frame_channels, channel::kPoses, bus_.url());
     run_process_loop(bus_, status_, [this](milliseconds timeout) { return step(timeout); });
-    inbox_.flush();
+    synchroniser_.flush();
     count_dropped();
     require(!bus_.is_log() || poses_ > 0,
             "{}: no poses of frames on {}, expected a log with frames, detections and poses", bus_.url(),
@@ -71,71 +68,26 @@ class TrackProcess {
   }
 
  private:
-  /// A clock that nobody sets: of a log, the sum of the steps from event to event that lead forward.
-  std::int64_t now_us() const { return bus_.is_log() ? log_us_ : steady_us(std::chrono::steady_clock::now()); }
-
-  void note_event(const ReceivedMessage& arrival) {
+  void add_frame(const ReceivedFrame& frame) {
+    detections_.forget(frame.id);
+    synchroniser_.add_frame(frame.id, shared_copy(frame.bytes));
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (event_us_ && arrival.event_us > *event_us_)
-      log_us_ = shifted(log_us_, microseconds_between(*event_us_, arrival.event_us));
-    event_us_ = arrival.event_us;
+    newest_[frame.id.channel] = frame.id.utime;  // of as many cameras as the synchroniser takes
   }
 
-  void receive_frame(const ReceivedMessage& arrival) {
-    if (!channels_.is_name() && !is_frame_message(arrival.bytes)) return;
-    note_event(arrival);
-    try {
-      const FrameHeader header = read_frame_header(arrival.bytes);
-      const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
-      if (order == FrameOrder::kDuplicate && !bus_.is_log()) return;
-      detections_.forget({arrival.channel, header.utime});
-      inbox_.add_frame({arrival.channel, header.utime}, shared_copy(arrival.bytes));
-      const std::lock_guard<std::mutex> lock(mutex_);
-      newest_[arrival.channel] = header.utime;  // of as many cameras as the inbox takes
-    } catch (const InputError& error) {
-      status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
-    }
+  void add_detections(const ReceivedResult& result) {
+    detections_.add(detections_from_message(decode_message<detections_t>(result.bytes)));
   }
 
-  void receive_detections(const ReceivedMessage& arrival) {
-    note_event(arrival);
-    try {
-      FrameSynchroniser::require_size(arrival.bytes.size);
-      Detections detections = detections_from_message(decode_message<detections_t>(arrival.bytes));
-      if (!channels_.matches(detections.frame.channel)) return;
-      detections_.add(std::move(detections));
-    } catch (const InputError& error) {
-      status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
-    }
+  void add_poses(const ReceivedResult& result) {
+    synchroniser_.add_detections(result.id, {result.bytes.data, result.bytes.data + result.bytes.size});
+    ++poses_;
   }
 
-  void receive_poses(const ReceivedMessage& arrival) {
-    note_event(arrival);
-    try {
-      FrameSynchroniser::require_size(arrival.bytes.size);
-      check_wire(arrival.bytes, object_poses_t::getHash(), object_poses_t::getTypeName());
-      const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
-      if (!channels_.matches(frame.channel)) return;
-      inbox_.add_detections(frame, copy(arrival.bytes));
-      status_.count_received();
-      ++poses_;
-    } catch (const InputError& error) {
-      status_.count_received();
-      status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), "message");
-    }
-  }
-
-  void receive_transform(const ReceivedMessage& arrival) {
+  void add_transform(const rigid_transform_t& message, const std::string& channel) {
     constexpr std::size_t kSuffix = 9;  // of "_TO_WORLD"
-    note_event(arrival);
-    try {
-      const auto message = decode_message<rigid_transform_t>(arrival.bytes);
-      const Eigen::Isometry3d T_world_camera = transform_from_message(message);
-      world_.add(arrival.channel.substr(0, arrival.channel.size() - kSuffix), message.utime, T_world_camera);
-      inbox_.recheck_gate();
-    } catch (const InputError& error) {
-      status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
-    }
+    world_.add(channel.substr(0, channel.size() - kSuffix), message.utime, transform_from_message(message));
+    synchroniser_.recheck_gate();
   }
 
   /// Poses go when it is known where their camera was, wait while that may come, and are refused otherwise: they are
@@ -149,15 +101,15 @@ class TrackProcess {
       T_world_camera_ = *place.T_world_camera;
       return {FrameGate::Answer::kGo, ""};
     };
-    gate.now_us = [this] { return now_us(); };
+    gate.now_us = [this] { return reception_.now_us(); };
     gate.awaited = "the transforms of their cameras";
     return gate;
   }
 
   bool step(milliseconds timeout) {
-    const std::optional<SynchronisedMessages> pair = inbox_.pop(timeout);
+    const std::optional<SynchronisedMessages> pair = synchroniser_.pop(timeout);
     count_dropped();
-    if (!bus_.is_log()) silence_->tell(now_us());
+    if (!bus_.is_log()) silence_->tell(reception_.now_us());
     if (!pair) return false;
     if (world_.consume_reset()) tracker_.begin_world();
     work_on(*pair);
@@ -223,7 +175,7 @@ class TrackProcess {
   }
 
   void count_dropped() {
-    const FrameSynchroniser::Dropped dropped = inbox_.pop_dropped();
+    const FrameSynchroniser::Dropped dropped = synchroniser_.pop_dropped();
     status_.count_skipped(dropped.skipped);
     without_frame_ += static_cast<std::int64_t>(dropped.without_frame.size());
     for (const FrameId& frame : dropped.without_frame) refuse(frame, "the frame itself has not come");
@@ -245,9 +197,9 @@ class TrackProcess {
   LcmBus& bus_;
   const TrackProcessOptions& options_;
   const CurrentModels& models_;
-  ChannelPattern channels_;
   StatusReporter status_;
-  FrameSynchroniser inbox_;  // of poses and their frames
+  Reception reception_;
+  FrameSynchroniser synchroniser_;  // of poses and their frames
   std::shared_ptr<const tracks::TrackModels> used_models_;
   tracks::Tracker tracker_;
   WorldOutput output_;
@@ -260,8 +212,6 @@ class TrackProcess {
   RecentDetections detections_;
   // What the receiving thread writes.
   mutable std::mutex mutex_;
-  std::optional<std::int64_t> event_us_;  // of the last one
-  std::int64_t log_us_ = 0;
   std::map<std::string, std::int64_t> newest_;  // utimes of the frames that came last, by channel
   std::atomic<std::int64_t> poses_{0};
 };

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "pipeline/messages/wire_reader.hpp"
+#include "pipeline/process/reception.hpp"
+#include "pipeline/types/frame.hpp"
+
+namespace houghstream {
+
+/// Decodes an images_t that came on this channel; how long it took is the last of the frame's stages, under this name.
+/// Throws InputError where it is none.
+RgbdFrame decode_frame(ByteView bytes, const std::string& channel, const std::optional<Camera>& camera,
+                       const std::string& stage);
+
+/// The last decoded frames of all cameras, so that a frame is decoded once, ahead or by the first who asks for it. May
+/// be used from any thread.
+class DecodedFrames {
+ public:
+  using Decoded = std::shared_ptr<const RgbdFrame>;
+
+  /// A decoded frame has some megabytes, and a sender of rubbish may make up channels without end.
+  static constexpr std::size_t kFrames = 12;
+  static constexpr std::size_t kBytes = std::size_t{192} << 20U;  ///< of their images; the newest stays in any case
+
+  /// `camera` and `stage` as decode_frame() takes them.
+  DecodedFrames(std::optional<Camera> camera, std::string stage)
+      : camera_(std::move(camera)), stage_(std::move(stage)) {}
+
+  /// The frame of these bytes, and not another one of the same name. Throws InputError where they are no images_t.
+  Decoded decode(const SharedBytes& bytes, const std::string& channel);
+
+ private:
+  struct Kept {
+    std::weak_ptr<const std::vector<std::uint8_t>> bytes;  // that it was decoded from
+    Decoded frame;
+  };
+
+  Decoded find(const SharedBytes& bytes) const;
+  void keep(const SharedBytes& bytes, const Decoded& frame);
+
+  std::optional<Camera> camera_;
+  std::string stage_;
+  mutable std::mutex mutex_;
+  std::deque<Kept> frames_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace houghstream
