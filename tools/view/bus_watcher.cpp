@@ -1,16 +1,13 @@
 #include "tools/view/bus_watcher.hpp"
 
 #include <utility>
-#include <vector>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/log_throttle.hpp"
 #include "pipeline/base/stop_signal.hpp"
-#include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
-#include "pipeline/process/frame_synchroniser.hpp"
 #include "tools/view/preview.hpp"
 
 namespace houghstream::view {
@@ -24,10 +21,10 @@ std::int64_t microseconds(std::chrono::steady_clock::time_point time) {
 
 BusWatcher::BusWatcher(LcmBus& bus, const std::string& frame_channels, const MatchSettings& match,
                        std::size_t waiting_frames)
-    : bus_(bus), matcher_(match), queue_(waiting_frames, match.kept_bytes) {
+    : bus_(bus), reception_(bus, status_, frame_channels), matcher_(match), queue_(waiting_frames, match.kept_bytes) {
   require(!bus_.is_log(), "{}: a log is watched by replaying it with lcm-logplayer, expected a network URL",
           bus_.url());
-  subscribe_to_frames(frame_channels);
+  reception_.subscribe_to_frames(Account::kReceived, [this](const ReceivedFrame& frame) { add_frame(frame); });
   subscribe_to_results();
   subscribe_to_status();
   subscribe_to_teaching();
@@ -45,80 +42,51 @@ void BusWatcher::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void BusWatcher::subscribe_to_frames(const std::string& frame_channels) {
-  const bool is_pattern = !ChannelPattern(frame_channels).is_name();
-  bus_.subscribe_to_frames(frame_channels, [this, is_pattern](const ReceivedMessage& arrival) {
-    if (is_pattern && !is_frame_message(arrival.bytes)) return;
-    try {
-      take_frame(arrival);
-    } catch (const InputError& error) {
-      status_.count_received();
-      status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), arrival.channel);
-    }
-  });
-}
-
-void BusWatcher::take_frame(const ReceivedMessage& arrival) {
-  const FrameHeader header = read_frame_header(arrival.bytes);
-  const FrameNumber number{header.sequence, header.utime, header.run};
-  if (status_.note_number(number, arrival.channel) == FrameOrder::kDuplicate) return;
-  status_.count_received();
-  cameras_.note(arrival.channel);
-  if (!cameras_.is_shown(arrival.channel)) {
+void BusWatcher::add_frame(const ReceivedFrame& frame) {
+  cameras_.note(frame.id.channel);
+  if (!cameras_.is_shown(frame.id.channel)) {
     status_.count_skipped(1);
     return;
   }
-  stream_.note_frame(microseconds(arrival.time));
-  std::vector<std::uint8_t> bytes(arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
-  matcher_.add_frame({arrival.channel, header.utime}, std::move(bytes), microseconds(arrival.time));
-}
-
-LcmBus::Handler BusWatcher::counting_bad(LcmBus::Handler handler) {
-  return [this, handler = std::move(handler)](const ReceivedMessage& arrival) {
-    try {
-      handler(arrival);
-    } catch (const InputError& error) {
-      status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
-    }
-  };
+  stream_.note_frame(microseconds(frame.time));
+  matcher_.add_frame(frame.id, {frame.bytes.data, frame.bytes.data + frame.bytes.size}, microseconds(frame.time));
 }
 
 void BusWatcher::subscribe_to_results() {
-  bus_.subscribe(channel::kDetections, counting_bad([this](const ReceivedMessage& arrival) {
-                   FrameSynchroniser::require_size(arrival.bytes.size);
-                   Detections detections =
-                       detections_from_message(decode_message<houghstream::detections_t>(arrival.bytes));
-                   if (!cameras_.is_shown(detections.frame.channel)) return;
-                   matcher_.add_detections(std::move(detections), microseconds(arrival.time), arrival.bytes.size);
-                 }));
-  bus_.subscribe(channel::kPoses, counting_bad([this](const ReceivedMessage& arrival) {
-                   FrameSynchroniser::require_size(arrival.bytes.size);
-                   ObjectPoses poses = poses_from_message(decode_message<houghstream::object_poses_t>(arrival.bytes));
-                   if (!cameras_.is_shown(poses.frame.channel)) return;
-                   matcher_.add_poses(std::move(poses), microseconds(arrival.time), arrival.bytes.size);
-                 }));
+  reception_.subscribe_to_results<detections_t>(
+      channel::kDetections, Account::kOthers, [this](const ReceivedResult& result) {
+        Detections detections = detections_from_message(decode_message<detections_t>(result.bytes));
+        if (!cameras_.is_shown(result.id.channel)) return;
+        matcher_.add_detections(std::move(detections), microseconds(result.time), result.bytes.size);
+      });
+  reception_.subscribe_to_results<object_poses_t>(
+      channel::kPoses, Account::kOthers, [this](const ReceivedResult& result) {
+        ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(result.bytes));
+        if (!cameras_.is_shown(result.id.channel)) return;
+        matcher_.add_poses(std::move(poses), microseconds(result.time), result.bytes.size);
+      });
 }
 
 void BusWatcher::subscribe_to_status() {
-  bus_.subscribe(channel::kStatus, counting_bad([this](const ReceivedMessage& arrival) {
-                   const auto message = decode_message<houghstream::status_t>(arrival.bytes);
-                   stream_.note_process({message.process, message.pid, message.rate_hz, message.frames_skipped,
-                                         message.frames_lost, message.frames_refused, microseconds(arrival.time)});
-                 }));
+  reception_.subscribe_to_messages<status_t>(
+      channel::kStatus, [this](const status_t& message, const ReceivedMessage& arrival) {
+        stream_.note_process({message.process, message.pid, message.rate_hz, message.frames_skipped,
+                              message.frames_lost, message.frames_refused, microseconds(arrival.time)});
+      });
 }
 
 void BusWatcher::subscribe_to_teaching() {
-  bus_.subscribe(channel::kTeaching, counting_bad([this](const ReceivedMessage& arrival) {
-                   Teaching teaching = teaching_from_message(decode_message<houghstream::teaching_t>(arrival.bytes));
-                   stream_.note_teaching(std::move(teaching), microseconds(arrival.time));
-                 }));
+  reception_.subscribe_to_messages<teaching_t>(
+      channel::kTeaching, [this](const teaching_t& message, const ReceivedMessage& arrival) {
+        stream_.note_teaching(teaching_from_message(message), microseconds(arrival.time));
+      });
 }
 
 void BusWatcher::subscribe_to_world() {
-  bus_.subscribe(channel::kObjects, counting_bad([this](const ReceivedMessage& arrival) {
-                   stream_.note_world(world_from_message(decode_message<houghstream::objects_t>(arrival.bytes)),
-                                      microseconds(arrival.time));
-                 }));
+  reception_.subscribe_to_messages<objects_t>(
+      channel::kObjects, [this](const objects_t& message, const ReceivedMessage& arrival) {
+        stream_.note_world(world_from_message(message), microseconds(arrival.time));
+      });
 }
 
 StreamState BusWatcher::stream_state() {

@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "pipeline/bus/lcm_bus.hpp"
-#include "pipeline/bus/status_reporter.hpp"
 #include "pipeline/process/process_loop.hpp"
+#include "pipeline/process/reception.hpp"
 #include "tools/view/drawing/stream_watch.hpp"
 #include "tools/view/match_queue.hpp"
 
@@ -53,18 +53,17 @@ class BusWatcher {
   void finish() { end_process(bus_, status_); }
 
  private:
-  void subscribe_to_frames(const std::string& frame_channels);
   void subscribe_to_results();
   void subscribe_to_status();
   void subscribe_to_teaching();
   void subscribe_to_world();
-  LcmBus::Handler counting_bad(LcmBus::Handler handler);
-  void take_frame(const ReceivedMessage& arrival);
+  void add_frame(const ReceivedFrame& frame);
   void listen();
   void hand_over();
 
   LcmBus& bus_;
   StatusReporter status_{"hs-view"};
+  Reception reception_;
   SelectedCamera cameras_;
   FrameMatcher matcher_;
   std::int64_t passed_over_told_ = 0;  // of the matcher's frames, in the status
