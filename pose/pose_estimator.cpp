@@ -10,6 +10,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
 #include "pose/verification/pose_decision.hpp"
+#include "pose/verification/print_comparison.hpp"
 
 namespace houghstream {
 namespace {
@@ -24,6 +25,10 @@ struct Estimation {
   std::vector<PoseCandidate> candidates;
   std::vector<RegistrationResult> registered;  ///< the candidates
   std::vector<RegistrationResult> chosen;      ///< the best first
+  struct {
+    RegistrationResult result;
+    PoseEvidence evidence;
+  } published;  ///< of those the one that is published, or that would be
 };
 
 ObjectPoses undecided_poses(const Detections& detections) {
@@ -62,7 +67,7 @@ std::vector<Estimation> begin_estimations(const Detections& detections,
     const auto model = models.find(detection.class_name);
     poses[i].status = reason_to_pass_over(detection, model != models.end(), settings);
     if (poses[i].status != PoseStatus::kInvalid) continue;
-    begun.push_back({detection, model->second, poses[i], {}, {}, {}, {}, {}});
+    begun.push_back({detection, model->second, poses[i], {}, {}, {}, {}, {}, {}});
   }
   return begun;
 }
@@ -87,18 +92,51 @@ void choose_one(const PoseSettings& settings, Estimation& it) {
   if (it.chosen.front().inliers == 0) it.pose.status = PoseStatus::kNotConverged;
 }
 
+/// The pose of a result, judged by its evidence.
+ObjectPose judged_pose(const Estimation& it, const RegistrationResult& result, const PoseEvidence& evidence,
+                       const PoseSettings& settings) {
+  ObjectPose judged = it.pose;
+  judged.T_camera_object.reset();
+  copy_registration_evidence(result, judged);
+  decide_status(evidence, result.T_camera_object, it.detection.reported, class_quality_of(settings, it.pose.class_name),
+                judged);
+  return judged;
+}
+
 /// Publishes the pose for which the evidence speaks most, or says why not.
 void verify_one(const PoseSettings& settings, Estimation& it) {
   std::optional<ObjectPose> best;
   for (const RegistrationResult& result : it.chosen) {
-    const Eigen::Isometry3d& T_camera_object = result.T_camera_object;
-    ObjectPose judged = it.pose;
-    copy_registration_evidence(result, judged);
-    decide_status(gather_evidence(*it.seen, T_camera_object, it.detection.score, settings.verification),
-                  T_camera_object, it.detection.reported, class_quality_of(settings, it.pose.class_name), judged);
-    if (!best || judged.quality > best->quality) best = std::move(judged);
+    const PoseEvidence evidence =
+        gather_evidence(*it.seen, result.T_camera_object, it.detection.score, settings.verification);
+    ObjectPose judged = judged_pose(it, result, evidence, settings);
+    if (best && !(judged.quality > best->quality)) continue;
+    best = std::move(judged);
+    it.published = {result, evidence};
   }
   it.pose = *std::move(best);
+}
+
+/// Of the poses that look alike by their shape publishes the one for which the print speaks, and says how surely.
+void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
+  if (!has_pose(it.pose.status)) return;
+  const DepthTolerance tolerance{settings.verification.tolerance_m, it.seen->noise};
+  const PrintSettings& learnt = class_quality_of(settings, it.pose.class_name).print;
+  const std::optional<PrintComparison> print =
+      compare_print(*it.seen, *it.pose.T_camera_object, tolerance, settings.registration);
+  if (!print) return;
+  it.published.evidence.print_probability = print_probability(print->margin, learnt);
+  ObjectPose judged = judged_pose(it, it.published.result, it.published.evidence, settings);
+  if (print->better) {
+    const RegistrationResult other = refine_pose(*it.seen, *print->better, it.rotations, choice_settings_of(settings));
+    const std::optional<PrintComparison> there =
+        compare_print(*it.seen, other.T_camera_object, tolerance, settings.registration);
+    PoseEvidence evidence = gather_evidence(*it.seen, other.T_camera_object, it.detection.score, settings.verification);
+    evidence.print_probability = there ? print_probability(there->margin, learnt) : 1.0F;
+    ObjectPose turned = judged_pose(it, other, evidence, settings);
+    if (other.inliers > 0 && turned.quality > judged.quality) judged = std::move(turned);
+  }
+  it.pose = std::move(judged);
 }
 
 }  // namespace
@@ -177,6 +215,9 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   clock.mark("pose.choice");
   for_each_undecided([&](Estimation& it) { verify_one(settings, it); });
   clock.mark("pose.verification");
+  parallel_for(settings.threads, static_cast<int>(estimations.size()),
+               [&](int i) { resolve_symmetry(settings, estimations[i]); });
+  clock.mark("pose.print");
 
   result.stages.insert(result.stages.end(), clock.times().begin(), clock.times().end());
   return result;

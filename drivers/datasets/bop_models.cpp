@@ -101,6 +101,14 @@ std::map<std::string, Mesh> load_class_models(const fs::path& models_folder, dou
   return meshes;
 }
 
+std::map<std::string, Symmetries> load_class_symmetries(const fs::path& models_folder) {
+  std::map<std::string, Symmetries> symmetries;
+  if (!fs::exists(models_folder / "models_info.json")) return symmetries;
+  const BopModels models = read_bop_models(models_folder);
+  for (const auto& [id, of_object] : models.symmetries) symmetries[models.names.at(id)] = of_object;
+  return symmetries;
+}
+
 std::optional<fs::path> find_bop_models(const fs::path& folder) {
   // A scene lies at most DATASET/SPLIT/SCENE deep.
   constexpr int kLevels = 3;

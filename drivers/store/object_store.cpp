@@ -162,6 +162,12 @@ std::map<std::string, Eigen::Vector3f> ObjectStore::vote_centres() const {
   return by_name;
 }
 
+std::map<std::string, Symmetries> ObjectStore::symmetries_by_name() const {
+  std::map<std::string, Symmetries> by_name;
+  for (const StoredObject& object : objects) by_name[object.name] = symmetries.at(object.id);
+  return by_name;
+}
+
 ObjectStore read_store(const fs::path& folder) {
   require(fs::is_directory(folder), "{}: no such folder, expected an object store of hs-teach", folder.string());
   const fs::path file = folder / kJsonFile;

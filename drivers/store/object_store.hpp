@@ -47,6 +47,7 @@ struct ObjectStore {
   std::filesystem::path contact_sheet() const;       ///< the pictures of all objects
   std::map<std::string, nlohmann::json> quality() const;        ///< by name, of those that have any
   std::map<std::string, Eigen::Vector3f> vote_centres() const;  ///< by name
+  std::map<std::string, Symmetries> symmetries_by_name() const;
 };
 
 /// Reads store.json and models_info.json, no mesh and no forest. Throws InputError with one line that names file, value

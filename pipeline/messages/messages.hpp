@@ -4,6 +4,7 @@
 #include <houghstream/images_t.hpp>
 #include <houghstream/known_objects_t.hpp>
 #include <houghstream/object_poses_t.hpp>
+#include <houghstream/pose_probabilities_t.hpp>
 #include <houghstream/objects_t.hpp>
 #include <houghstream/rigid_transform_t.hpp>
 #include <houghstream/teaching_t.hpp>
@@ -73,6 +74,13 @@ Detections detections_from_message(const houghstream::detections_t& message);
 
 houghstream::object_poses_t to_message(const ObjectPoses& poses);
 ObjectPoses poses_from_message(const houghstream::object_poses_t& message);
+
+/// The probabilities of the poses, which travel beside them. A pose that is read without them has `quality` as its
+/// `shape_quality`.
+houghstream::pose_probabilities_t probabilities_to_message(const ObjectPoses& poses);
+/// Sets ObjectPose::shape_quality where the message is about these poses: of their frame, with their qualities. Returns
+/// whether it is. Throws InputError where a probability is none.
+bool apply_probabilities(const houghstream::pose_probabilities_t& message, ObjectPoses& poses);
 
 houghstream::rigid_transform_t to_message(std::int64_t utime, const Eigen::Isometry3d& T_camera_object);
 

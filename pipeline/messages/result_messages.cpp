@@ -117,9 +117,9 @@ object_pose_t pose_to_message(const ObjectPose& pose) {
 }
 
 ObjectPose pose_from_message(const object_pose_t& message) {
-  require(message.status > object_pose_t::INVALID && message.status <= object_pose_t::REFUTED,
+  require(message.status > object_pose_t::INVALID && message.status <= object_pose_t::VALID_UP_TO_SYMMETRY,
           "{}: pose status {}, expected {} to {}", message.class_name, message.status, object_pose_t::VALID,
-          object_pose_t::REFUTED);
+          object_pose_t::VALID_UP_TO_SYMMETRY);
   const bool are_shares = is_share(message.inlier_fraction) && is_share(message.visible_fraction) &&
                           is_share(message.free_space_violation) && is_share(message.quality);
   require(are_shares, "{}: shares {}, {}, {} and {}, expected 0 to 1", message.class_name, message.inlier_fraction,
@@ -130,7 +130,7 @@ ObjectPose pose_from_message(const object_pose_t& message) {
   out.detection_score = message.detection_score;
   out.detection_index = message.detection_index;
   out.status = static_cast<PoseStatus>(message.status);
-  if (out.status == PoseStatus::kValid)
+  if (has_pose(out.status))
     out.T_camera_object = pose_from_wire(message.trans, message.quat, message.class_name + ": valid pose");
   out.converged = message.converged != 0;
   out.iterations = message.iterations;
@@ -140,6 +140,7 @@ ObjectPose pose_from_message(const object_pose_t& message) {
   out.visible_fraction = message.visible_fraction;
   out.free_space_violation = message.free_space_violation;
   out.quality = message.quality;
+  out.shape_quality = message.quality;
   return out;
 }
 
@@ -167,6 +168,34 @@ Detections detections_from_message(const detections_t& message) {
   } catch (const InputError& error) {
     fail("detections of frame {}: {}", to_string(FrameId{message.source_channel, message.utime}), error.what());
   }
+}
+
+pose_probabilities_t probabilities_to_message(const ObjectPoses& poses) {
+  pose_probabilities_t message{};
+  message.utime = poses.frame.utime;
+  message.source_channel = poses.frame.channel;
+  message.n_poses = static_cast<std::int32_t>(poses.poses.size());
+  for (const ObjectPose& pose : poses.poses) {
+    message.right.push_back(pose.quality);
+    message.right_up_to_symmetry.push_back(pose.shape_quality);
+  }
+  return message;
+}
+
+bool apply_probabilities(const pose_probabilities_t& message, ObjectPoses& poses) {
+  if (poses.frame != FrameId{message.source_channel, message.utime} || message.right.size() != poses.poses.size())
+    return false;
+  for (std::size_t i = 0; i < poses.poses.size(); ++i) {
+    if (message.right[i] != poses.poses[i].quality) return false;
+  }
+  for (std::size_t i = 0; i < poses.poses.size(); ++i) {
+    const float shape_quality = message.right_up_to_symmetry[i];
+    require(is_share(shape_quality) && shape_quality >= message.right[i],
+            "probabilities of the poses of frame {}: {} up to symmetry, expected {} to 1", to_string(poses.frame),
+            shape_quality, message.right[i]);
+    poses.poses[i].shape_quality = shape_quality;
+  }
+  return true;
 }
 
 object_poses_t to_message(const ObjectPoses& poses) {

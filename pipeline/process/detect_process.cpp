@@ -52,7 +52,7 @@ class DetectProcess {
   void note_losses(const ReceivedResult& result) {
     const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(result.bytes));
     for (const ObjectPose& pose : poses.poses) {
-      const bool is_lost = pose.status != PoseStatus::kValid && pose.status != PoseStatus::kOccluded;
+      const bool is_lost = !has_pose(pose.status) && pose.status != PoseStatus::kOccluded;
       if (pose.detection_index < 0 && is_lost) throttle_.hurry(poses.frame.channel);
     }
   }

@@ -140,6 +140,12 @@ class PoseProcess {
     if (cameras_.size() < FrameSynchroniser::kCameras) cameras_.insert(frame.channel);
   }
 
+  /// The probabilities first: who has the poses has these too.
+  void publish(const ObjectPoses& poses) {
+    bus_.publish(channel::kPoseProbabilities, probabilities_to_message(poses));
+    bus_.publish(channel::kPoses, to_message(poses));
+  }
+
   bool follow_newest(milliseconds timeout) {
     const std::optional<EncodedFrame> encoded = newest_.pop(timeout);
     if (!encoded) return false;
@@ -150,7 +156,7 @@ class PoseProcess {
         return true;
       }
       poses->frame = encoded->id;
-      bus_.publish(channel::kPoses, to_message(*poses));
+      publish(*poses);
       transforms_.publish(*poses);
       status_.count_processed(std::chrono::steady_clock::now() - encoded->arrival);
     } catch (const std::exception& error) {
@@ -168,7 +174,7 @@ class PoseProcess {
     }
     try {
       const ObjectPoses poses = poses_of(*pair);
-      bus_.publish(channel::kPoses, to_message(poses));
+      publish(poses);
       if (follow_) {
         ++answered_;
       } else {

@@ -17,6 +17,7 @@ const char* to_string(PoseStatus status) {
     case PoseStatus::kRejectedByColour: return "rejected by colour";
     case PoseStatus::kOccluded: return "occluded";
     case PoseStatus::kRefuted: return "refuted";
+    case PoseStatus::kValidUpToSymmetry: return "valid up to its shape's symmetry";
   }
   return "unknown";
 }
@@ -30,7 +31,7 @@ const ObjectPose* find_pose(const ObjectPoses& poses, std::size_t detection_inde
 
 bool is_reported(const Detection& detection, const ObjectPose* pose) {
   if (pose == nullptr) return detection.reported;
-  return pose->status == PoseStatus::kValid || (detection.reported && pose->status != PoseStatus::kRefuted);
+  return has_pose(pose->status) || (detection.reported && pose->status != PoseStatus::kRefuted);
 }
 
 }  // namespace houghstream

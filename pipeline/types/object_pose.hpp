@@ -26,7 +26,14 @@ enum class PoseStatus : std::int8_t {
   kRejectedByColour = 9,   ///< the model's colours do not explain those that are seen
   kOccluded = 10,          ///< followed, and mostly hidden by what was measured in front of it
   kRefuted = 11,           ///< the best pose makes it less probable that the object is there than that it is not
+  kValidUpToSymmetry =
+      12,  ///< a pose, of which the print does not tell that it is not one that looks alike by its shape
 };
+
+/// Whether a pose of this status is published.
+constexpr bool has_pose(PoseStatus status) {
+  return status == PoseStatus::kValid || status == PoseStatus::kValidUpToSymmetry;
+}
 
 /// One line per status for logs and reports.
 const char* to_string(PoseStatus status);
@@ -38,7 +45,7 @@ struct ObjectPose {
   float detection_score = 0.0F;
   int detection_index = -1;  ///< in the Detections that the poses answer; -1: followed without one
   PoseStatus status = PoseStatus::kInvalid;
-  std::optional<Eigen::Isometry3d> T_camera_object;  ///< present exactly when status is kValid
+  std::optional<Eigen::Isometry3d> T_camera_object;  ///< present exactly when has_pose(status)
   bool converged = false;
   int iterations = 0;
   int inliers = 0;
@@ -46,6 +53,7 @@ struct ObjectPose {
   float residual = 0.0F;              ///< root mean square distance of inliers to the model, metres; NaN if none
   float visible_fraction = 0.0F;      ///< rendered pixels that agree with the measured depth, 0 to 1
   float quality = 0.0F;               ///< probability that the pose is right, 0 to 1; 0 where none was found
+  float shape_quality = 0.0F;         ///< the same up to the symmetries of the shape: never below `quality`
   float free_space_violation = 0.0F;  ///< rendered pixels in front of what was measured, 0 to 1
 };
 

@@ -76,14 +76,14 @@ void judge_followed(const ObjectObservation& seen, const ExpectedObject& expecte
   const QualitySettings& quality = class_quality_of(settings, followed.pose.class_name);
   const Eigen::Isometry3d& T = followed.T_camera_object;
   const ProjectedView look = look_at_view(seen.frame, seen.model, T, settings.verification.points);
-  PoseEvidence evidence{expected.score, {}, compare_texture(seen, look, tolerance)};
+  PoseEvidence evidence{expected.score, {}, compare_texture(seen, look, tolerance), expected.print_probability};
   if (expected.verified) {
     evidence.depth = verify_projected_view(look, tolerance);
     evidence.depth.outline = expected.verified->outline;
     evidence.depth.boundary_continuations = expected.verified->boundary_continuations;
     followed.verified = expected.verified;
     decide_status(evidence, T, true, quality, followed.pose);
-    if (followed.pose.status == PoseStatus::kValid) return;
+    if (has_pose(followed.pose.status)) return;
   }
   evidence.depth = verify_pose(seen.frame, seen.model.mesh, T, tolerance, &seen.colours);
   followed.verified = evidence.depth;
@@ -141,8 +141,8 @@ FollowedPose follow_object(const FrameContext& frame, const ObjectModel& model, 
   FollowedPose best;
   for (std::size_t i = 0; i < expected.starts.size(); ++i) {
     FollowedPose here = follow_from(frame, model, expected, expected.starts[i], input);
-    if (i == 0 || here.pose.quality > best.pose.quality) best = std::move(here);
-    if (best.pose.status == PoseStatus::kValid) return best;
+    if (i == 0 || here.pose.shape_quality > best.pose.shape_quality) best = std::move(here);
+    if (has_pose(best.pose.status)) return best;
   }
   if (expected.check_occlusion && is_hidden(frame, model, expected.starts.front(), input))
     best.pose.status = PoseStatus::kOccluded;

@@ -146,6 +146,11 @@ DetectionAssociation associate_detections(const PoseEstimator& estimator, const 
   return look;
 }
 
+/// What its print said of a detection's pose: following looks at it no more.
+float print_probability_of(const ObjectPose& pose) {
+  return pose.shape_quality > 0.0F ? pose.quality / pose.shape_quality : 1.0F;
+}
+
 /// Where the pose of a detection is better than the followed one of that frame, the object goes on from it: what is
 /// between the two stays the same in the object's own frame.
 void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, const FollowerSettings& settings,
@@ -154,6 +159,7 @@ void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, con
   const double better = log_odds(pose.quality, kMargin) - log_odds(followed.pose.quality, kMargin);
   if (better < settings.better_log_odds) return;
   object.T_camera_object = object.T_camera_object * followed.T_camera_object.inverse() * *pose.T_camera_object;
+  object.print_probability = print_probability_of(pose);
 }
 
 }  // namespace
@@ -199,7 +205,8 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
                         settle,
                         false,
                         true,
-                        settle ? std::nullopt : object.verified});
+                        settle ? std::nullopt : object.verified,
+                        object.print_probability});
   }
   std::vector<FollowedPose> poses = follow_objects(estimator, settings_.follow, frame, expected);
   retry_lost(estimator, frame, camera, poses);
@@ -212,7 +219,7 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
   std::vector<Eigen::Isometry3d> motions;
   std::vector<std::size_t> failed;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (poses[i].pose.status != PoseStatus::kValid) {
+    if (!has_pose(poses[i].pose.status)) {
       failed.push_back(i);
     } else {
       motions.push_back(poses[i].T_camera_object * camera.objects[i].T_camera_object.inverse());
@@ -223,7 +230,9 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
   for (const std::size_t i : failed) {
     const FollowedObject& object = camera.objects[i];
     const float score = probability(object.remembered_score);
-    ExpectedObject again{object.class_id, object.class_name, score, {object.T_camera_object}, true, true, true, {}};
+    ExpectedObject again{
+        object.class_id,         object.class_name, score, {object.T_camera_object}, true, true, true, {},
+        object.print_probability};
     const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(object.T_camera_object, motions);
     if (carried) again.starts.insert(again.starts.begin(), *carried);
     // What stands was expected there the first time too, and it has been told whether it is hidden there.
@@ -234,20 +243,20 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
   for (std::size_t k = 0; k < failed.size(); ++k) {
     FollowedPose& pose = poses[failed[k]];
     const PoseStatus before = pose.pose.status;
-    const bool better = found[k].pose.quality > pose.pose.quality;
+    const bool better = found[k].pose.shape_quality > pose.pose.shape_quality;
     if (better) pose = std::move(found[k]);
-    if (pose.pose.status == PoseStatus::kValid) continue;
+    if (has_pose(pose.pose.status)) continue;
     if (before == PoseStatus::kOccluded || (!better && found[k].pose.status == PoseStatus::kOccluded)) {
       pose.pose.status = PoseStatus::kOccluded;
     }
-    if (pose.pose.quality < settings_.min_kept_quality) pose.T_camera_object = expected[k].starts.front();
+    if (pose.pose.shape_quality < settings_.min_kept_quality) pose.T_camera_object = expected[k].starts.front();
   }
 }
 
 /// Goes on from the result; without evidence it stays where it was, or where the camera's motion has brought it.
 void ObjectFollower::note_result(const FollowedPose& result, std::int64_t clock_us, FollowedObject& object) const {
-  const bool valid = result.pose.status == PoseStatus::kValid;
-  const bool kept = valid || result.pose.quality >= settings_.min_kept_quality;
+  const bool valid = has_pose(result.pose.status);
+  const bool kept = valid || result.pose.shape_quality >= settings_.min_kept_quality;
   const double dt = seconds_between(object.clock_us, clock_us);
   if (valid && dt > 0.0)
     object.velocity.update(object.T_camera_object, result.T_camera_object, dt, settings_.speed_gain);
@@ -277,7 +286,7 @@ void ObjectFollower::give_up(const PoseEstimator& estimator, FollowedCamera& cam
       if (lost[i] || lost[j] || !a.pose.T_camera_object || !b.pose.T_camera_object) continue;
       const PlacedObject here{a.pose.class_name, a.T_camera_object};
       if (!estimator.are_one(here, {b.pose.class_name, b.T_camera_object}, settings_.apart)) continue;
-      const std::size_t weaker = a.pose.quality < b.pose.quality ? i : j;
+      const std::size_t weaker = a.pose.shape_quality < b.pose.shape_quality ? i : j;
       lost[weaker] = true;
       shown.poses[weaker].pose.T_camera_object.reset();
       shown.poses[weaker].pose.status = PoseStatus::kLowScore;
@@ -331,6 +340,7 @@ void ObjectFollower::add_object(const PoseEstimator& estimator, const FrameId& f
   found.class_id = pose.class_id;
   found.class_name = pose.class_name;
   found.remembered_score = log_odds(pose.detection_score);
+  found.print_probability = print_probability_of(pose);
   found.T_camera_object = *pose.T_camera_object;
   const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
                                  [&](const FollowedFrame& shown) { return shown.utime == frame.utime; });

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
 #include "pipeline/base/random.hpp"
 #include "pipeline/geometry/renderer.hpp"
+#include "pose/model/symmetry.hpp"
+#include "pose/model/symmetry_search.hpp"
 
 namespace houghstream {
 namespace {
@@ -100,6 +103,11 @@ class ViewMaker {
   /// At most ModelSettings::points_per_view of the points that are seen, in random order.
   ModelView make(const Eigen::Vector3f& direction, std::uint64_t seed) const;
 
+  /// The colours of all that is seen from one direction.
+  void add_print(const Eigen::Vector3f& direction, SurfacePrintMaker& print) const;
+
+  bool has_colours() const { return colour_.known(); }
+
  private:
   std::vector<SeenPoint> seen_from(const Eigen::Vector3f& direction, float& area_px) const;
 
@@ -153,6 +161,22 @@ ModelView ViewMaker::make(const Eigen::Vector3f& direction, std::uint64_t seed) 
   return view;
 }
 
+void ViewMaker::add_print(const Eigen::Vector3f& direction, SurfacePrintMaker& print) const {
+  float area_px = 0.0F;
+  for (const SeenPoint& seen : seen_from(direction, area_px))
+    print.add(seen.point, seen.normal, colour_.at(seen.triangle, seen.bary));
+}
+
+/// Of fewer directions than the views have: all of the surface is seen from them, and all that is seen is kept.
+SurfacePrint make_print(const ObjectModel& model, const ModelSettings& settings) {
+  constexpr int kParts = 2;
+  const ViewMaker maker(model, settings);
+  if (!maker.has_colours()) return {};
+  SurfacePrintMaker print(2.0 * static_cast<double>(model.radius) / settings.pixels_per_diameter);
+  for (const Eigen::Vector3f& direction : sphere_directions(kParts)) maker.add_print(direction, print);
+  return print.make();
+}
+
 /// Of the directions from which something is seen.
 std::vector<ModelView> make_views(const ObjectModel& model, const ModelSettings& settings, int threads) {
   const ViewMaker maker(model, settings);
@@ -168,6 +192,74 @@ std::vector<ModelView> make_views(const ObjectModel& model, const ModelSettings&
     views.push_back(views.size() == i ? std::move(made[i]) : maker.make(directions[i], views.size()));
   }
   return views;
+}
+
+/// The farthest that a point of the surface is moved by a motion, over the motions that look the same.
+double moved_by(const Eigen::Isometry3d& motion, const std::vector<Eigen::Vector3f>& points,
+                const std::vector<Eigen::Isometry3d>& same) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Isometry3d& symmetry : same) {
+    double farthest = 0.0;
+    for (const Eigen::Vector3f& point : points) {
+      const Eigen::Vector3d at = point.cast<double>();
+      farthest = std::max(farthest, (motion * at - symmetry * at).norm());
+    }
+    least = std::min(least, farthest);
+  }
+  return least;
+}
+
+bool is_among(const Eigen::Isometry3d& motion, const std::vector<Eigen::Isometry3d>& motions) {
+  constexpr double kSame_rad = 0.17;
+  return std::any_of(motions.begin(), motions.end(), [&](const Eigen::Isometry3d& other) {
+    return Eigen::AngleAxisd(other.linear().transpose() * motion.linear()).angle() < kSame_rad;
+  });
+}
+
+/// Quarter and half turns about the principal axes after which the shape is nearly as before, and all that they combine
+/// to: a pose of a nearly square box that is a quarter turn wrong settles where depth speaks for it.
+std::vector<Eigen::Isometry3d> near_symmetries(const ObjectModel& model) {
+  SymmetrySearch search;
+  search.tolerance = 0.1;  // with which BOP finds candidates (Hodan et al. 2020)
+  const RotationSymmetryTest check(model.mesh, model.middle.cast<double>(), search);
+  std::vector<Eigen::Isometry3d> turns;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d axis = model.axes.col(i).cast<double>();
+    for (const double angle : {0.5 * M_PI, M_PI}) {
+      if (!check.fits(axis, angle)) continue;
+      turns.push_back(check.turn(axis, angle));
+      break;
+    }
+  }
+  constexpr std::size_t kMaxGroup = 24;  // the cube's
+  std::vector<Eigen::Isometry3d> group = {Eigen::Isometry3d::Identity()};
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    for (const Eigen::Isometry3d& turn : turns) {
+      const Eigen::Isometry3d product = turn * group[i];
+      if (group.size() < kMaxGroup && !is_among(product, group)) group.push_back(product);
+    }
+  }
+  return group;
+}
+
+void set_alternatives(const std::string& name, const ModelSettings& settings, ObjectModel& model) {
+  constexpr double kShapeStep = 0.13;  // diameters: turns of about 15 degrees
+  constexpr double kSameStep = 0.02;
+  constexpr int kPoints = 300;
+  SymmetrySearch shape;
+  shape.tolerance = 0.03;
+  const auto known = settings.symmetries.find(name);
+  const std::vector<Eigen::Isometry3d> same =
+      expand_symmetries(known != settings.symmetries.end() ? known->second : Symmetries(), kSameStep);
+  const std::vector<Eigen::Vector3f> points = sample_surface(model.mesh, kPoints, 1).points;
+  const double right_m = settings.right_within * mesh_diameter(model.mesh);
+  for (const Eigen::Isometry3d& motion : expand_symmetries(find_symmetries(model.mesh, shape), kShapeStep)) {
+    if (moved_by(motion, points, same) > right_m) model.alternatives.push_back(motion);
+  }
+  for (const Eigen::Isometry3d& motion : near_symmetries(model)) {
+    if (moved_by(motion, points, same) > right_m && !is_among(motion, model.alternatives))
+      model.near_alternatives.push_back(motion);
+  }
 }
 
 /// Of the surface's second moments: those of a triangle are A / 12 (aa' + bb' + cc' + (a+b+c)(a+b+c)').
@@ -229,6 +321,8 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
   float largest = 0.0F;
   for (const ModelView& view : model.views) largest = std::max(largest, view.area);
   for (ModelView& view : model.views) view.area /= largest;
+  model.print = make_print(model, settings);
+  set_alternatives(name, settings, model);
   return model;
 }
 

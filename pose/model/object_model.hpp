@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "pipeline/geometry/mesh.hpp"
+#include "pipeline/geometry/symmetry.hpp"
 #include "pose/model/surface_colour.hpp"
+#include "pose/model/surface_print.hpp"
 
 namespace houghstream {
 
@@ -18,6 +20,10 @@ struct ModelSettings {
   int pixels_per_diameter = 72;  ///< of the pictures from which visible points are drawn
   double min_facing = 0.15;      ///< cosine between normal and line of sight below which a point is too grazing
   std::map<std::string, Eigen::Vector3f> vote_centres;  ///< ObjectModel::vote_centre by name; of others the origin
+  /// By name, motions after which the object looks as before, its print too (models_info.json); of others none. A
+  /// symmetry that the print contradicts is taken as said.
+  std::map<std::string, Symmetries> symmetries;
+  double right_within = 0.1;  ///< ObjectModel::alternatives are farther from the pose than this, diameters (MSSD)
 };
 
 /// Surface points visible from one direction, in random order so that any first n of them cover the view evenly
@@ -41,6 +47,13 @@ struct ObjectModel {
   Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();  ///< columns: principal axes of the surface, object frame
   float radius = 0.0F;                                 ///< of the sphere about the centre that holds the mesh, metres
   std::vector<ModelView> views;
+  SurfacePrint print;  ///< empty where the mesh has no colours
+  /// Motions of the object frame, metres, after which the shape is as before and the pose is another one: only the
+  /// print can tell a pose from the poses after these. Turns about a continuous symmetry are a few of each round.
+  std::vector<Eigen::Isometry3d> alternatives;
+  /// Motions after which the shape is nearly as before: registered, the poses after these are for depth and print to
+  /// tell apart.
+  std::vector<Eigen::Isometry3d> near_alternatives;
 };
 
 /// The same for any number of threads. Throws InputError naming `name` when the mesh has no triangles, is flat to a

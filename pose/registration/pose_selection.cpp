@@ -95,7 +95,22 @@ class Choice {
   CorrespondenceDistances distances_;
 };
 
+/// The last steps of a choice: turned a little to where all speaks most for it, and registered.
+RegistrationResult settle(const Choice& choice, const ObjectObservation& seen, const RegistrationResult& result,
+                          const ChoiceSettings& settings) {
+  const RotationSearchSettings& turn = settings.turn;
+  return register_finely(seen, choice.best_turn(result, turn.fine_step_deg, turn.step_deg, 1), settings.registration);
+}
+
 }  // namespace
+
+RegistrationResult refine_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                               const std::vector<RotationCandidate>& votes, const ChoiceSettings& settings) {
+  RegistrationResult start;
+  start.T_camera_object = T_camera_object;
+  const RegistrationResult registered = register_finely(seen, start, settings.registration);
+  return settle(Choice(seen, votes, settings), seen, registered, settings);
+}
 
 std::vector<RegistrationResult> select_poses(const ObjectObservation& seen,
                                              const std::vector<RegistrationResult>& registered,
@@ -114,8 +129,7 @@ std::vector<RegistrationResult> select_poses(const ObjectObservation& seen,
     if (flips[i].score < turn.min_alternative_ratio * flips.front().score) break;
     fine.push_back(register_finely(seen, flips[i].result, registration));
   }
-  for (RegistrationResult& result : fine)
-    result = register_finely(seen, choice.best_turn(result, turn.fine_step_deg, turn.step_deg, 1), registration);
+  for (RegistrationResult& result : fine) result = settle(choice, seen, result, settings);
   return fine;
 }
 

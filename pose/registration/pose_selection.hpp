@@ -39,6 +39,11 @@ std::vector<RegistrationResult> select_poses(const ObjectObservation& seen,
                                              const std::vector<RotationCandidate>& votes,
                                              const ChoiceSettings& settings);
 
+/// A pose that was found otherwise, registered finely and turned a little about its z axis to where depth, colour and
+/// votes speak most for it, as select_poses() ends.
+RegistrationResult refine_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                               const std::vector<RotationCandidate>& votes, const ChoiceSettings& settings);
+
 // The names of before, for one release.
 using TurnSettings [[deprecated("is RotationSearchSettings now")]] = RotationSearchSettings;
 

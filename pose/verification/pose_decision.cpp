@@ -12,10 +12,12 @@ void decide_status(const PoseEvidence& evidence, const Eigen::Isometry3d& T_came
   const QualityTerms terms = quality_terms(evidence, quality);
   pose.visible_fraction = evidence.depth.visible_fraction();
   pose.free_space_violation = evidence.depth.free_space_violation();
-  pose.quality = pose_quality(terms, quality);
-  const float presence = presence_probability(evidence.detection_score, pose.quality, quality.presence);
-  if (pose.quality >= (reported ? quality.least : quality.min_candidate_quality)) {
-    pose.status = PoseStatus::kValid;
+  pose.shape_quality = shape_quality(terms, quality);
+  pose.quality = pose.shape_quality * evidence.print_probability;
+  const float presence = presence_probability(evidence.detection_score, pose.shape_quality, quality.presence);
+  const float least = reported ? quality.least : quality.min_candidate_quality;
+  if (pose.shape_quality >= least) {
+    pose.status = pose.quality >= least ? PoseStatus::kValid : PoseStatus::kValidUpToSymmetry;
     pose.T_camera_object = T_camera_object;
   } else if (reported && presence < kRefutedBelow) {
     pose.status = PoseStatus::kRefuted;

@@ -57,10 +57,15 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   return terms;
 }
 
-float pose_quality(const QualityTerms& terms, const QualitySettings& settings) {
+float shape_quality(const QualityTerms& terms, const QualitySettings& settings) {
   double sum = settings.bias;
   for (const auto term : kQualityTerms) sum += settings.weights.*term * terms.*term;
   return static_cast<float>(logistic(sum));
+}
+
+float print_probability(double margin, const PrintSettings& settings) {
+  constexpr double kMax = 8.0;  // log odds: what is surer has not been learnt from
+  return static_cast<float>(logistic(settings.bias + settings.margin_weight * std::clamp(margin, -kMax, kMax)));
 }
 
 PoseStatus find_rejection_reason(const QualityTerms& terms, const QualitySettings& settings, bool colours_known) {

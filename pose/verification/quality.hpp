@@ -16,6 +16,8 @@ struct PoseEvidence {
   float detection_score = 0.0F;
   Verification depth;
   std::optional<ColourComparison> colour;  ///< nothing where the model has no colours
+  /// That the pose is the right one of those that its shape cannot tell apart; 1 where there are no others.
+  float print_probability = 1.0F;
 };
 
 /// Renders the model at the pose and compares its depth and its colours with what is seen.
@@ -43,11 +45,22 @@ inline constexpr std::array<double QualityTerms::*, 8> kQualityTerms = {
 inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames = {
     "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "print", "left_over", "contrast"};
 
-/// The probability that a pose is right, by logistic regression on the evidence. hs-learn-quality
-/// (tools/studies/quality) learns these numbers, and tells how many poses are right from which `least` on in scenes
-/// that the fit has not seen (a quarter in turn). They are of 1279 poses of detections from score 0.1 on in 14 frames
-/// each of development_world_0 to 13, every other world seen by the time-of-flight camera; 678 were right. In scenes
-/// that the fit has not seen 642 of 653 are right from `least` on. That of `seen_through` is older: it is not
+/// The probability that of the poses that look alike by their shape one is right, by logistic regression on what its
+/// print says (PrintComparison::margin). The default takes that at its word. What hs-teach learns of an object takes
+/// its place.
+struct PrintSettings {
+  double bias = 0.0;
+  double margin_weight = 1.0;
+};
+
+/// In (0, 1).
+float print_probability(double margin, const PrintSettings& settings);
+
+/// The probability that a pose is right up to its shape's symmetries, by logistic regression on the evidence.
+/// hs-learn-quality (tools/studies/quality) learns these numbers, and tells how many poses are right from which `least`
+/// on in scenes that the fit has not seen (a quarter in turn). They are of 1279 poses of detections from score 0.1 on
+/// in 14 frames each of development_world_0 to 13, every other world seen by the time-of-flight camera; 678 were right.
+/// In scenes that the fit has not seen 642 of 653 are right from `least` on. That of `seen_through` is older: it is not
 /// learnt. What hs-teach learns of an object takes their place.
 struct QualitySettings {
   double bias = -5.54;
@@ -57,14 +70,15 @@ struct QualitySettings {
   QualityTerms typical = {1.95, 3.06, -0.17, 2.89, -0.23, 0.80, -5.29, -5.29};
   float least = 0.75F;                  ///< poses of lower quality are not published...
   float min_candidate_quality = 0.75F;  ///< ...nor are these of candidates (Detection::reported): most are false
-  PresenceSettings presence;            ///< what the quality says of whether the object is there at all
+  PresenceSettings presence;            ///< what this says of whether the object is there at all
+  PrintSettings print;                  ///< which of the poses that look alike by their shape is right
 };
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings);
 
-/// Probability in [0, 1] that the pose is right: the object is the one that was detected, and its ADD-S error is below
-/// a tenth of the diameter.
-float pose_quality(const QualityTerms& terms, const QualitySettings& settings);
+/// Probability in [0, 1] that the pose is right up to what its shape cannot tell: the object is the one that was
+/// detected, and its ADD-S error is below a tenth of the diameter.
+float shape_quality(const QualityTerms& terms, const QualitySettings& settings);
 
 /// The status that names the term which speaks most against the pose.
 PoseStatus find_rejection_reason(const QualityTerms& terms, const QualitySettings& settings, bool colours_known = true);

@@ -25,7 +25,7 @@ QualityTerms mean_of_right(const std::vector<QualityExample>& examples, const Qu
   QualityTerms sum;
   int count = 0;
   for (const QualityExample& example : examples) {
-    if (!example.is_right) continue;
+    if (!example.is_right_up_to_shape) continue;
     ++count;
     for (const auto term : kQualityTerms) sum.*term += example.terms.*term;
   }
@@ -65,7 +65,7 @@ std::map<std::string, std::vector<PresenceExample>> presence_examples(const Exam
     const std::map<std::string, QualitySettings> fitted = fit_each(of_half(1 - half, examples));
     for (const auto& [name, own] : of_half(half, examples)) {
       for (const QualityExample& example : own)
-        out[name].push_back({example.score, pose_quality(example.terms, fitted.at(name)), example.is_there});
+        out[name].push_back({example.score, shape_quality(example.terms, fitted.at(name)), example.is_there});
     }
   }
   return out;
@@ -73,12 +73,25 @@ std::map<std::string, std::vector<PresenceExample>> presence_examples(const Exam
 
 }  // namespace
 
+PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, const PrintSettings& prior,
+                                 double stiffness) {
+  // What is sure beyond this is sure: a few examples far out must not decide about those near to the border.
+  constexpr double kMax = 8.0;
+  std::vector<LogisticExample<2>> judged;
+  for (const QualityExample& example : examples) {
+    if (!example.is_right_up_to_shape || !example.print_margin) continue;
+    judged.push_back({{1.0, std::clamp(*example.print_margin, -kMax, kMax)}, example.is_right});
+  }
+  const Eigen::Vector2d weights = fit_logistic<2>(judged, {{prior.bias, prior.margin_weight}, stiffness});
+  return {weights[0], weights[1]};
+}
+
 QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples, const QualitySettings& prior,
                                      double stiffness) {
   std::vector<LogisticExample<kWeights>> judged;
   judged.reserve(examples.size());
   for (const QualityExample& example : examples) {
-    judged.push_back({to_vector(1.0, example.terms), example.is_right});
+    judged.push_back({to_vector(1.0, example.terms), example.is_right_up_to_shape});
     // Which of the two is right, not how likely that is: all else is the same, and drops out.
     if (example.with_swapped_texture)
       judged.push_back({to_vector(1.0, example.terms) - to_vector(1.0, *example.with_swapped_texture), true});
@@ -103,6 +116,10 @@ std::map<std::string, QualitySettings> learn_qualities(const ExamplesByName& exa
   for (const auto& [name, own] : presence) all.insert(all.end(), own.begin(), own.end());
   const PresenceSettings common = fit_presence(all, PresenceSettings{}, 1.0);
   for (const auto& [name, own] : presence) learnt.at(name).presence = fit_presence(own, common, kStiffness);
+  std::vector<QualityExample> posed;
+  for (const auto& [name, own] : examples) posed.insert(posed.end(), own.begin(), own.end());
+  const PrintSettings common_print = fit_print_settings(posed, PrintSettings{}, kCommonStiffness);
+  for (const auto& [name, own] : examples) learnt.at(name).print = fit_print_settings(own, common_print, kStiffness);
   return learnt;
 }
 

@@ -12,13 +12,20 @@ namespace houghstream {
 /// A judged pose.
 struct QualityExample {
   QualityTerms terms;
-  bool is_right = false;  ///< the object that was detected, ADD-S below a tenth of the diameter
+  bool is_right = false;              ///< the object that was detected, MSSD below a tenth of the diameter
+  bool is_right_up_to_shape = false;  ///< the same, ADD-S below a tenth of the diameter
   /// Of a right pose, what speaks for it if the object had another print: the fit tells the two apart.
   std::optional<QualityTerms> with_swapped_texture = std::nullopt;
-  float score = 0.0F;     ///< of the detection
+  std::optional<double> print_margin = std::nullopt;  ///< PrintComparison::margin, where the pose has alternatives
+  float score = 0.0F;                                 ///< of the detection
   bool is_there = false;  ///< the object that was detected, whether the pose is right or not
   int half = 0;           ///< 0 or 1: of which half of all that was practised
 };
+
+/// What the print's margins say of which of the poses that look alike by their shape is right: of the examples that are
+/// right up to the shape and have alternatives, by logistic regression with a prior as for fit_quality_settings().
+PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, const PrintSettings& prior,
+                                 double stiffness);
 
 /// Bias, weights and typical values that explain the examples best (maximum a posteriori, a Gaussian about each weight
 /// of `prior`, as strong as `stiffness` examples): few examples move them little from there. `least` is the prior's,

@@ -38,6 +38,15 @@ PresenceSettings presence_from(const nlohmann::json& entry, const PresenceSettin
           json_number(presence, "of_quality", where)};
 }
 
+/// Of a store that was written before it was learnt: what `otherwise` says.
+PrintSettings print_from(const nlohmann::json& entry, const PrintSettings& otherwise, const std::string& where) {
+  if (!entry.contains("print")) return otherwise;
+  const nlohmann::json& print = entry["print"];
+  require(print.is_object() && print.size() == 2, "{}: 'print' of the quality expected, with bias and of_margin",
+          where);
+  return {json_number(print, "bias", where), json_number(print, "of_margin", where)};
+}
+
 }  // namespace
 
 nlohmann::json quality_to_json(const QualitySettings& settings) {
@@ -46,7 +55,8 @@ nlohmann::json quality_to_json(const QualitySettings& settings) {
           {"weights", to_json(settings.weights)},
           {"typical", to_json(settings.typical)},
           {"presence",
-           {{"bias", presence.bias}, {"of_score", presence.score_weight}, {"of_quality", presence.quality_weight}}}};
+           {{"bias", presence.bias}, {"of_score", presence.score_weight}, {"of_quality", presence.quality_weight}}},
+          {"print", {{"bias", settings.print.bias}, {"of_margin", settings.print.margin_weight}}}};
 }
 
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects,
@@ -59,6 +69,7 @@ std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& 
     settings.weights = terms_from(entry, "weights", where);
     settings.typical = terms_from(entry, "typical", where);
     settings.presence = presence_from(entry, others.presence, where);
+    settings.print = print_from(entry, others.print, where);
     learnt[name] = settings;
   }
   return learnt;
@@ -69,6 +80,7 @@ void apply_store_settings(const store::ObjectStore& objects, std::optional<float
   settings.quality.min_candidate_quality = min_quality.value_or(kStoreCandidateQuality);
   settings.class_quality = stored_quality(objects, settings.quality);
   settings.model.vote_centres = objects.vote_centres();
+  settings.model.symmetries = objects.symmetries_by_name();
   settings.region.tone = objects.tone;
 }
 

@@ -101,6 +101,7 @@ float search_in_process(const EvaluateOptions& options, Forest forest, const std
   rules.score = options.rules.operating_score;
   if (!options.operating_score) rules.candidates_from = kCandidatesFrom;
   rules.pose = options.pose;
+  if (!options.known.models.empty()) rules.pose.model.symmetries = load_class_symmetries(options.known.models);
   const DetectionSettings settings = options.search.change(options.in_process.settings(forest));
   InProcess process(std::move(forest), settings, options.in_process.make, meshes, rules);
   for (OpenScene& it : scenes) process.run(it.scene, it.frames);

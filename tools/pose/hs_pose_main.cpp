@@ -87,6 +87,7 @@ void run_with_models(PoseOptions options) {
   if (!fault.empty()) log_warning("{}", fault);  // no frame will show such
   if (options.min_quality) publish_from(*options.min_quality, options.settings);
   for (const auto& [name, mesh] : meshes) options.process.models.insert(name);
+  if (!options.models.empty()) options.settings.model.symmetries = load_class_symmetries(options.models);
   auto estimator = warmed_up(PoseEstimator(std::move(meshes), options.settings, threads), made_up.get());
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   run(bus, options, [&] { return estimator; });

@@ -40,6 +40,12 @@ void archive_model(Archive& archive, ModelType& model) {
   archive(model.axes);
   archive(model.radius);
   archive(model.views);
+  archive(model.print.detail_m);
+  archive(model.print.cubes);
+  archive(model.print.normals);
+  archive(model.print.colours);
+  archive(model.alternatives);
+  archive(model.near_alternatives);
 }
 
 template <typename Archive, typename ViewType>
@@ -94,6 +100,8 @@ void check_model(const ObjectModel& model) {
     require(points > 0 && view.normals.size() == points && (view.colours.empty() || view.colours.size() == points),
             "lists of a view");
   }
+  const std::size_t sides = model.print.cubes.size();
+  require(model.print.normals.size() == sides && model.print.colours.size() == sides, "lists of a print");
 }
 
 int add_library(dl_phdr_info* info, std::size_t /*size*/, void* names) {

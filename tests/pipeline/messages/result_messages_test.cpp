@@ -47,6 +47,7 @@ ObjectPoses make_poses() {
   valid.visible_fraction = 0.9F;
   valid.free_space_violation = 0.05F;
   valid.quality = 0.93F;
+  valid.shape_quality = 0.97F;
   ObjectPose refused;
   refused.class_name = "bowl";
   refused.class_id = 1;
@@ -148,6 +149,49 @@ TEST(ResultMessages, PosesComeBack) {
   EXPECT_EQ(back.stages.size(), 1U);
 }
 
+TEST(ResultMessages, APoseThatIsValidUpToSymmetryComesBackWithItsPose) {
+  ObjectPoses sent = make_poses();
+  sent.poses[0].status = PoseStatus::kValidUpToSymmetry;
+  const ObjectPoses back = poses_from_message(over_the_wire(to_message(sent)));
+  EXPECT_EQ(back.poses[0].status, PoseStatus::kValidUpToSymmetry);
+  EXPECT_TRUE(back.poses[0].T_camera_object.has_value());
+}
+
+TEST(ResultMessages, ProbabilitiesComeBackToTheirPoses) {
+  const ObjectPoses sent = make_poses();
+  ObjectPoses back = poses_from_message(over_the_wire(to_message(sent)));
+  EXPECT_EQ(back.poses[0].shape_quality, back.poses[0].quality) << "without them the lower bound";
+  const pose_probabilities_t message = over_the_wire(probabilities_to_message(sent));
+  EXPECT_TRUE(apply_probabilities(message, back));
+  EXPECT_EQ(back.poses[0].shape_quality, 0.97F);
+  EXPECT_EQ(back.poses[0].quality, 0.93F);
+}
+
+TEST(ResultMessages, ProbabilitiesOfOtherPosesAreNotTheirs) {
+  const pose_probabilities_t message = probabilities_to_message(make_poses());
+  const auto applied = [&](const auto& change) {
+    ObjectPoses other = make_poses();
+    change(other);
+    const float before = other.poses[0].shape_quality = 0.94F;
+    const bool is = apply_probabilities(message, other);
+    EXPECT_EQ(other.poses[0].shape_quality, before);
+    return is;
+  };
+  EXPECT_FALSE(applied([](ObjectPoses& poses) { poses.frame.utime += 1; }));
+  EXPECT_FALSE(applied([](ObjectPoses& poses) { poses.frame.channel = "LEFT"; }));
+  EXPECT_FALSE(applied([](ObjectPoses& poses) { poses.poses.pop_back(); }));
+  EXPECT_FALSE(applied([](ObjectPoses& poses) { poses.poses[0].quality = 0.5F; }));
+}
+
+TEST(ResultMessages, AbsurdProbabilitiesAreRefused) {
+  for (const float bad : {kNan, 1.5F, 0.2F}) {  // 0.2: below that of the pose itself
+    pose_probabilities_t message = probabilities_to_message(make_poses());
+    message.right_up_to_symmetry[0] = bad;
+    ObjectPoses poses = make_poses();
+    EXPECT_THROW(apply_probabilities(message, poses), InputError) << bad;
+  }
+}
+
 TEST(ResultMessages, AbsurdPosesAreRefused) {
   const object_poses_t good = to_message(make_poses());
   const auto refused = [&](const auto& change) {
@@ -156,7 +200,7 @@ TEST(ResultMessages, AbsurdPosesAreRefused) {
     EXPECT_THROW(poses_from_message(bad), InputError);
   };
   refused([](object_pose_t& p) { p.status = 0; });
-  refused([](object_pose_t& p) { p.status = object_pose_t::REFUTED + 1; });
+  refused([](object_pose_t& p) { p.status = object_pose_t::VALID_UP_TO_SYMMETRY + 1; });
   refused([](object_pose_t& p) { p.trans[0] = kNan; });
   refused([](object_pose_t& p) { p.quat[0] = 2.0; });
   refused([](object_pose_t& p) { p.visible_fraction = 1.5F; });

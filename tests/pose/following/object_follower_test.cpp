@@ -71,8 +71,8 @@ const PoseEstimator& estimator() {
 
 int valid_ones(const ObjectPoses& poses) {
   return static_cast<int>(std::count_if(poses.poses.begin(), poses.poses.end(), [](const ObjectPose& pose) {
-    EXPECT_EQ(pose.T_camera_object.has_value(), pose.status == PoseStatus::kValid);
-    return pose.status == PoseStatus::kValid;
+    EXPECT_EQ(pose.T_camera_object.has_value(), has_pose(pose.status));
+    return has_pose(pose.status);
   }));
 }
 

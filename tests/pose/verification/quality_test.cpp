@@ -19,7 +19,7 @@ PoseEvidence good() {
 }
 
 float quality(const PoseEvidence& evidence) {
-  return pose_quality(quality_terms(evidence, {}), {});
+  return shape_quality(quality_terms(evidence, {}), {});
 }
 
 PoseStatus reason(const PoseEvidence& evidence) {
@@ -65,7 +65,7 @@ TEST(PoseQuality, AnotherPrintSpeaksAgainstAPose) {
   before.detection_log_odds = 0.0;  // a sure detection leaves little room below 1
   QualityTerms terms = before;
   terms.print = quality_terms(evidence, {}).print;
-  EXPECT_LT(pose_quality(terms, {}), pose_quality(before, {}) - 0.1F);
+  EXPECT_LT(shape_quality(terms, {}), shape_quality(before, {}) - 0.1F);
 }
 
 TEST(PoseQuality, AnotherColourSpeaksAgainstAPose) {
@@ -75,7 +75,7 @@ TEST(PoseQuality, AnotherColourSpeaksAgainstAPose) {
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByColour);
   QualityTerms terms = typical();
   terms.chroma_conflict = quality_terms(evidence, {}).chroma_conflict;
-  EXPECT_LT(pose_quality(terms, {}), pose_quality(typical(), {}) - 0.1F);
+  EXPECT_LT(shape_quality(terms, {}), shape_quality(typical(), {}) - 0.1F);
 }
 
 TEST(PoseQuality, ColoursThatContradictCountNoMoreThanAsMuch) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "pipeline/base/log_odds.hpp"
 #include "pipeline/base/random.hpp"
 
 namespace houghstream {
@@ -23,7 +24,7 @@ std::vector<QualityExample> drawn(int count) {
   std::vector<QualityExample> examples(static_cast<std::size_t>(count));
   for (QualityExample& example : examples) {
     for (const auto term : kQualityTerms) example.terms.*term = random.normal();
-    example.is_right = random.uniform() < static_cast<double>(pose_quality(example.terms, truth));
+    example.is_right_up_to_shape = random.uniform() < static_cast<double>(shape_quality(example.terms, truth));
   }
   return examples;
 }
@@ -56,7 +57,7 @@ TEST(QualityTraining, AnotherPrintMovesTheWeightsOfColourBeyondAllOthers) {
   std::vector<QualityExample> examples = drawn(2000);
   const QualitySettings alone = fit_quality_settings(examples, QualitySettings{}, 1.0);
   for (QualityExample& example : examples) {
-    if (!example.is_right) continue;
+    if (!example.is_right_up_to_shape) continue;
     example.with_swapped_texture = example.terms;
     example.with_swapped_texture->print = example.terms.print - 0.3;
   }
@@ -67,7 +68,7 @@ TEST(QualityTraining, AnotherPrintMovesTheWeightsOfColourBeyondAllOthers) {
 
 TEST(QualityTraining, WhatIsSeenThroughWeighsAsItDid) {
   std::vector<QualityExample> examples = drawn(2000);
-  for (QualityExample& example : examples) example.terms.seen_through = example.is_right ? -1.0 : 1.0;
+  for (QualityExample& example : examples) example.terms.seen_through = example.is_right_up_to_shape ? -1.0 : 1.0;
   QualitySettings prior;
   EXPECT_EQ(fit_quality_settings(examples, prior, 1.0).weights.seen_through, prior.weights.seen_through);
 }
@@ -88,9 +89,9 @@ TEST(QualityTraining, NoExamplesGiveThePrior) {
 TEST(QualityTraining, TypicalValuesAreTheMeansOfRightPosesAndTheLeastQualityIsThePriors) {
   std::vector<QualityExample> examples(3);
   examples[0].terms.outline = 2.0;
-  examples[0].is_right = true;
+  examples[0].is_right_up_to_shape = true;
   examples[1].terms.outline = 4.0;
-  examples[1].is_right = true;
+  examples[1].is_right_up_to_shape = true;
   examples[2].terms.outline = -2.0;
   QualitySettings prior;
   prior.least = 0.77F;
@@ -110,12 +111,62 @@ std::vector<QualityExample> practised(double there_anyway) {
   Random random(11);
   for (QualityExample& example : examples) {
     example.score = 0.5F;
-    example.is_there = example.is_right || random.uniform() < there_anyway;
+    example.is_there = example.is_right_up_to_shape || random.uniform() < there_anyway;
   }
   const std::vector<QualityExample> again = examples;
   examples.insert(examples.end(), again.begin(), again.end());
   for (std::size_t i = again.size(); i < examples.size(); ++i) examples[i].half = 1;
   return examples;
+}
+
+/// Poses that are right up to their shape, with margins drawn evenly; which is right is decided by `weight` and `bias`.
+std::vector<QualityExample> with_print(double bias, double weight) {
+  std::vector<QualityExample> examples(2000);
+  Random random(5);
+  for (QualityExample& example : examples) {
+    example.is_right_up_to_shape = example.is_there = true;
+    example.print_margin = -4.0 + 8.0 * random.uniform();
+    example.is_right = random.uniform() < logistic(bias + weight * *example.print_margin);
+  }
+  return examples;
+}
+
+TEST(FitPrintSettings, LearnsWhatAMarginIsWorth) {
+  const PrintSettings found = fit_print_settings(with_print(1.0, 0.5), PrintSettings{}, 1.0);
+  EXPECT_NEAR(found.bias, 1.0, 0.2);
+  EXPECT_NEAR(found.margin_weight, 0.5, 0.1);
+}
+
+TEST(FitPrintSettings, LooksOnlyAtPosesThatAreRightUpToTheirShapeAndHaveAlternatives) {
+  std::vector<QualityExample> examples = with_print(1.0, 0.5);
+  const PrintSettings found = fit_print_settings(examples, PrintSettings{}, 1.0);
+  QualityExample other;
+  other.print_margin = 3.0;
+  examples.insert(examples.end(), 500, other);  // wrong by its shape
+  other.is_right_up_to_shape = true;
+  other.print_margin.reset();
+  examples.insert(examples.end(), 500, other);
+  const PrintSettings again = fit_print_settings(examples, PrintSettings{}, 1.0);
+  EXPECT_EQ(again.bias, found.bias);
+  EXPECT_EQ(again.margin_weight, found.margin_weight);
+  const PrintSettings prior{0.3, 0.7};
+  EXPECT_EQ(fit_print_settings({other}, prior, 1.0).bias, prior.bias) << "of no example comes the prior";
+}
+
+TEST(PrintProbability, IsNeverCertain) {
+  for (const double margin : {-1e6, 0.0, 1e6}) {
+    const float probability = print_probability(margin, {});
+    EXPECT_GT(probability, 0.0F) << margin;
+    EXPECT_LT(probability, 1.0F) << margin;
+  }
+  EXPECT_EQ(print_probability(0.0, {}), 0.5F);
+}
+
+TEST(LearnQualities, WhatAMarginIsWorthIsEachObjectsOwn) {
+  const std::map<std::string, QualitySettings> learnt =
+      learn_qualities({{"printed", with_print(0.0, 2.0)}, {"plain", with_print(0.0, 0.1)}});
+  EXPECT_GT(learnt.at("printed").print.margin_weight, 1.5);
+  EXPECT_LT(learnt.at("plain").print.margin_weight, 0.3);
 }
 
 TEST(LearnQualities, WhatABadPoseSaysOfPresenceIsEachObjectsOwn) {
@@ -133,9 +184,9 @@ TEST(LearnQualities, PresenceIsLearntFromQualitiesThatDidNotKnowTheExamples) {
   for (std::size_t i = 0; i < examples.size(); ++i) {
     QualityExample& example = examples[i];
     example.half = i < examples.size() / 2 ? 0 : 1;
-    example.is_right = example.is_there = i % 2 == 0;
+    example.is_right_up_to_shape = example.is_there = i % 2 == 0;
     example.score = 0.5F;
-    example.terms.detection_log_odds = example.is_right == (example.half == 0) ? 1.0 : -1.0;
+    example.terms.detection_log_odds = example.is_right_up_to_shape == (example.half == 0) ? 1.0 : -1.0;
   }
   EXPECT_LT(learn_qualities({{"mug", examples}}).at("mug").presence.quality_weight, 0.0);
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/ranges.h>
 
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -26,12 +27,17 @@ PublishedResults read_result_log(const std::filesystem::path& log_file, const st
   const ChannelPattern cameras(frame_channels);
   PublishedResults results;
   LogReader log(log_file);
+  std::optional<pose_probabilities_t> probabilities;  // the last ones: those of poses come just before them
   while (const auto event = log.next()) {
     const ByteView bytes{event->data.data(), event->data.size()};
     if (event->channel == channel::kDetections) {
       keep(detections_from_message(decode_message<detections_t>(bytes)), cameras, results.detections);
+    } else if (event->channel == channel::kPoseProbabilities) {
+      probabilities = decode_message<pose_probabilities_t>(bytes);
     } else if (event->channel == channel::kPoses) {
-      keep(poses_from_message(decode_message<object_poses_t>(bytes)), cameras, results.poses);
+      ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(bytes));
+      if (probabilities) apply_probabilities(*probabilities, poses);
+      keep(std::move(poses), cameras, results.poses);
     }
   }
   require(!results.detections.empty(), "{}: no message on {} of frames on {}, expected results", log_file.string(),

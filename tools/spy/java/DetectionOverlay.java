@@ -77,7 +77,7 @@ final class DetectionOverlay implements PicturePane.Overlay {
   }
 
   private void paintAxes(Graphics2D graphics, object_pose_t pose, double scale) {
-    if (pose.status != object_pose_t.VALID) return;
+    if (!ObjectsTable.hasPose(pose)) return;
     double[] rotation = rotation(pose.quat);
     for (int axis = 0; axis < 3; ++axis) {
       double[] tip = new double[3];

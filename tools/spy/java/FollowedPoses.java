@@ -22,7 +22,7 @@ final class FollowedPoses {
     object_poses_t all = new object_poses_t();
     all.utime = followed.utime;
     all.source_channel = followed.source_channel;
-    all.poses = Arrays.stream(followed.poses).filter(pose -> pose.status == object_pose_t.VALID)
+    all.poses = Arrays.stream(followed.poses).filter(ObjectsTable::hasPose)
         .map(object_pose_t::copy).toArray(object_pose_t[]::new);
     all.n_poses = all.poses.length;
     for (int i = 0; i < all.n_poses; ++i) all.poses[i].detection_index = i;

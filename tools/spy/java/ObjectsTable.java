@@ -27,7 +27,11 @@ final class ObjectsTable extends DefaultTableModel {
    *  null. */
   static boolean isReported(detection_t detection, object_pose_t pose) {
     if (pose == null) return detection.reported;
-    return pose.status == object_pose_t.VALID || (detection.reported && pose.status != object_pose_t.REFUTED);
+    return hasPose(pose) || (detection.reported && pose.status != object_pose_t.REFUTED);
+  }
+
+  static boolean hasPose(object_pose_t pose) {
+    return pose.status == object_pose_t.VALID || pose.status == object_pose_t.VALID_UP_TO_SYMMETRY;
   }
 
   static object_pose_t poseOf(int detection, object_poses_t poses) {
@@ -39,7 +43,7 @@ final class ObjectsTable extends DefaultTableModel {
   }
 
   private static String[] row(detection_t detection, object_pose_t pose) {
-    boolean valid = pose != null && pose.status == object_pose_t.VALID;
+    boolean valid = pose != null && hasPose(pose);
     float[] centre = detection.centre_camera;
     String place = valid ? place(pose.trans[0], pose.trans[1], pose.trans[2]) : place(centre[0], centre[1], centre[2]);
     return new String[] {detection.class_name, String.format("%.2f", detection.score), place,
@@ -63,6 +67,7 @@ final class ObjectsTable extends DefaultTableModel {
       case object_pose_t.REJECTED_BY_COLOUR -> "rejected by colour";
       case object_pose_t.OCCLUDED -> "occluded";
       case object_pose_t.REFUTED -> "refuted";
+      case object_pose_t.VALID_UP_TO_SYMMETRY -> "valid up to its shape's symmetry";
       default -> "status " + status;
     };
   }

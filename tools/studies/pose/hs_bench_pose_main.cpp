@@ -34,13 +34,15 @@ struct BenchOptions {
   PoseSettings pose;  ///< what a store knows
 };
 
-BenchedMakers make_makers(const std::map<std::string, Mesh>& meshes, const BenchOptions& options) {
+BenchedMakers make_makers(const SceneModels& models, const BenchOptions& options) {
   BenchedMakers makers;
+  const std::map<std::string, Mesh>& meshes = models.meshes;
   PoseSettings settings = options.pose;
+  for (const auto& [name, model] : models.scored) settings.model.symmetries[name] = model.symmetries;
   makers.each_frame[kOurs] = estimator_maker(meshes, settings);
   settings.registration.engine = register_pcl;
   makers.each_frame[kPcl] = estimator_maker(meshes, settings);
-  settings = options.pose;
+  settings.registration.engine = options.pose.registration.engine;
   publish_from(0.0F, settings);
   makers.each_frame[kUnchecked] = estimator_maker(meshes, settings);
   if (options.no_rivals) return makers;
@@ -89,7 +91,7 @@ void run(const BenchOptions& options) {
       models_folder = wanted;
       models = load_scene_models(wanted, classes);
       meshes.insert(models.meshes.begin(), models.meshes.end());
-      makers = make_makers(models.meshes, options);
+      makers = make_makers(models, options);
     }
     const DetectedScene detected = detect_scene(name, scene, detector, options.every);
     bench_scene(detected, models, makers, {options.rivals_every, options.rivals_s, settings.threads}, bench);

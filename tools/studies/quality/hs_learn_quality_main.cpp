@@ -43,7 +43,7 @@ std::vector<quality::Example> gather(const LearnOptions& options) {
   for (const auto& [name, mesh] : meshes) judged_by[name] = make_pose_model(mesh, false);
   const DetectionSettings settings = options.search.settings_for(forest);
   const Detector detector(std::move(forest), settings);
-  const quality::UnfilteredPoseFinder finder({meshes, {}}, settings.threads);
+  const quality::UnfilteredPoseFinder finder({meshes, {}, load_class_symmetries(options.models)}, settings.threads);
   std::vector<quality::Example> examples;
   std::set<std::string> names;
   for (const std::string& folder : options.scenes) {

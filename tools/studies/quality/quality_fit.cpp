@@ -27,8 +27,8 @@ std::vector<std::string> scenes_of(const std::vector<Example>& examples) {
 }
 
 int count_right(const std::vector<Example>& examples) {
-  return static_cast<int>(
-      std::count_if(examples.begin(), examples.end(), [](const Example& example) { return example.is_right; }));
+  return static_cast<int>(std::count_if(examples.begin(), examples.end(),
+                                        [](const Example& example) { return example.is_right_up_to_shape; }));
 }
 
 std::string to_braces(const QualityTerms& terms) {
@@ -60,7 +60,11 @@ QualitySettings fit_quality(const std::vector<Example>& examples) {
           examples.size(), right);
   std::vector<QualityExample> judged;
   judged.reserve(examples.size());
-  for (const Example& example : examples) judged.push_back({example.terms, example.is_right});
+  for (const Example& example : examples) {
+    QualityExample& one = judged.emplace_back();
+    one.terms = example.terms;
+    one.is_right_up_to_shape = example.is_right_up_to_shape;
+  }
   return fit_quality_settings(judged, QualitySettings{}, kStiffness);
 }
 
@@ -68,7 +72,7 @@ std::vector<CheckedPose> check_by(const QualitySettings& settings, const std::ve
   std::vector<CheckedPose> checked;
   checked.reserve(examples.size());
   for (const Example& example : examples) {
-    checked.push_back({pose_quality(example.terms, settings), example.is_right});
+    checked.push_back({shape_quality(example.terms, settings), example.is_right_up_to_shape});
   }
   return checked;
 }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "pose/verification/print_comparison.hpp"
 #include "pose/verification/swapped_texture.hpp"
 
 namespace houghstream::quality {
@@ -14,6 +15,7 @@ PoseSettings withholding_none(const PosedModels& models, int threads) {
   PoseSettings settings;
   settings.threads = threads;
   settings.model.vote_centres = models.vote_centres;
+  settings.model.symmetries = models.symmetries;
   settings.region.tone = models.tone;
   publish_from(0.0F, settings);
   return settings;
@@ -32,6 +34,7 @@ std::vector<Example> label_examples(const FoundPoses& found, const std::map<std:
       example.frame = judged.frame;
       example.terms = terms->own;
       example.score = judged.score;
+      example.print_margin = terms->print_margin;
       if (judged.verdict == Verdict::kTrue) {
         const EvaluatedFrame& frame = found.frames[judged.frame];
         const GroundTruthObject& truth = frame.objects[judged.object].truth;
@@ -39,9 +42,11 @@ std::vector<Example> label_examples(const FoundPoses& found, const std::map<std:
         example.is_there = true;
         const Eigen::Isometry3d& T_camera_object = *frame.poses->poses[judged.index].T_camera_object;
         const double error = add_s_error(model.points, T_camera_object, truth.T_camera_object);
-        example.is_right = error < kRightBelow * model.diameter;
+        example.is_right_up_to_shape = error < kRightBelow * model.diameter;
+        example.is_right =
+            add_error(model.points, T_camera_object, truth.T_camera_object) < kRightBelow * model.diameter;
       }
-      if (example.is_right) example.with_swapped_texture = terms->with_swapped_texture;
+      if (example.is_right_up_to_shape) example.with_swapped_texture = terms->with_swapped_texture;
       examples.push_back(std::move(example));
     }
   }
@@ -83,9 +88,13 @@ std::vector<std::optional<PoseTerms>> UnfilteredPoseFinder::terms_of(const RgbdF
     const PoseEvidence own = gather_evidence(seen, *pose.T_camera_object, detection.score, settings_.verification);
     const std::optional<PoseEvidence> other =
         evidence_with_swapped_texture(seen, *pose.T_camera_object, own, settings_.verification);
-    terms = PoseTerms{quality_terms(own, settings_.quality), std::nullopt};
+    terms = PoseTerms{quality_terms(own, settings_.quality), std::nullopt, std::nullopt};
+    const DepthTolerance tolerance{settings_.verification.tolerance_m, seen.noise};
+    const std::optional<PrintComparison> print =
+        compare_print(seen, *pose.T_camera_object, tolerance, settings_.registration);
+    if (print) terms->print_margin = print->margin;
     if (other) terms->with_swapped_texture = quality_terms(*other, settings_.quality);
-    if (pose_quality(terms->own, settings_.quality) != pose.quality) {
+    if (shape_quality(terms->own, settings_.quality) != pose.shape_quality) {
       throw std::logic_error(
           fmt::format("pose of {}: not judged by the evidence that is learnt from", pose.class_name));
     }

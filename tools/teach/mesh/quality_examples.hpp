@@ -22,7 +22,9 @@ struct Example : QualityExample {
 /// What a pose that was found is judged by.
 struct PoseTerms {
   QualityTerms own;
-  std::optional<QualityTerms> with_swapped_texture;  ///< see evidence_with_swapped_texture()
+  std::optional<QualityTerms> with_swapped_texture = std::nullopt;  ///< see evidence_with_swapped_texture()
+  std::optional<double> print_margin =
+      std::nullopt;  ///< PrintComparison::margin; nothing where there are no alternatives
 };
 
 /// Frames of a scene with detections and poses, one pose for each detection in their order, and what each pose is
@@ -41,7 +43,8 @@ std::vector<Example> label_examples(const FoundPoses& found, const std::map<std:
 struct PosedModels {
   std::map<std::string, Mesh> meshes;
   std::map<std::string, Eigen::Vector3f> vote_centres;
-  BrightnessRange tone = {};  ///< see RegionSettings
+  std::map<std::string, Symmetries> symmetries = {};  ///< ModelSettings::symmetries
+  BrightnessRange tone = {};                          ///< see RegionSettings
 };
 
 /// Finds poses and withholds none, and says what each would be judged by.

@@ -94,6 +94,7 @@ void practise_all(const std::vector<NamedModel>& models, const std::set<int>& ne
     object.name = model.name;
     object.mesh = model.mesh;
     object.vote_centre = stored.vote_centre;
+    object.symmetries = model.symmetries;
     object.in_room = {model.object_id, world::make_taught_thing(model.mesh, stored.coloured),
                       world::up_directions(model.mesh, world::parse_mesh_attitudes(stored.attitudes)), stored.coloured,
                       new_ids.count(model.object_id) > 0};

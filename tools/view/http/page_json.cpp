@@ -99,6 +99,10 @@ std::string why_no_pose(const ObjectPose* pose) {
   if (pose == nullptr) return "No pose has come for this detection: hs-pose does not run, or was too late.";
   switch (pose->status) {
     case PoseStatus::kValid: return "";
+    case PoseStatus::kValidUpToSymmetry:
+      return "Its print does not tell this pose from others that look alike by the shape: a box turned over, a can "
+             "turned "
+             "about its axis.";
     case PoseStatus::kNoModel: return "hs-pose knows no 3-D model of this class: give it --models or --objects.";
     case PoseStatus::kTooFewPoints:
       return "Hardly any depth was measured inside the box: the object is too far, too small, shiny or transparent.";

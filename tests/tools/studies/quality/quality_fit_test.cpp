@@ -25,7 +25,7 @@ std::vector<Example> drawn(int count, int scenes, double certainty = 1.0) {
     Example& example = examples[i];
     example.scene = std::to_string(i % scenes);
     for (const auto term : kQualityTerms) example.terms.*term = random.normal();
-    example.is_right = random.uniform() < static_cast<double>(pose_quality(example.terms, truth));
+    example.is_right_up_to_shape = random.uniform() < static_cast<double>(shape_quality(example.terms, truth));
   }
   return examples;
 }
@@ -39,10 +39,10 @@ TEST(QualityFit, TheWeightsThatDrewTheExamplesComeBackUnderTheirNames) {
 TEST(QualityFit, TypicalValuesAreTheMeansOfRightPoses) {
   std::vector<Example> examples(3);
   examples[0].terms.outline = 2.0;
-  examples[0].is_right = true;
+  examples[0].is_right_up_to_shape = true;
   examples[1].terms.outline = 4.0;
   examples[1].terms.print = -1.0;
-  examples[1].is_right = true;
+  examples[1].is_right_up_to_shape = true;
   examples[2].terms.outline = -50.0;
   const QualityTerms typical = fit_quality(examples).typical;
   EXPECT_DOUBLE_EQ(typical.outline, 3.0);
@@ -53,7 +53,7 @@ TEST(QualityFit, TypicalValuesAreTheMeansOfRightPoses) {
 TEST(QualityFit, OneKindAloneIsRefused) {
   std::vector<Example> examples(3);
   EXPECT_THROW(fit_quality(examples), InputError);
-  for (Example& example : examples) example.is_right = true;
+  for (Example& example : examples) example.is_right_up_to_shape = true;
   EXPECT_THROW(fit_quality(examples), InputError);
   EXPECT_THROW(fit_quality({}), InputError);
 }
@@ -61,7 +61,8 @@ TEST(QualityFit, OneKindAloneIsRefused) {
 TEST(QualityFit, APoseIsCheckedByAFitThatHasNotSeenItsScene) {
   std::vector<Example> examples = drawn(4000, 4);
   for (Example& example : examples) {
-    if (example.scene == "2") example.is_right = example.terms.outline > 0.0;  // the others do not know that
+    if (example.scene == "2")
+      example.is_right_up_to_shape = example.terms.outline > 0.0;  // the others do not know that
   }
   const std::vector<CheckedPose> checked = check_by_scene(examples, 4);
   ASSERT_EQ(checked.size(), examples.size());
@@ -74,8 +75,8 @@ TEST(QualityFit, APoseIsCheckedByAFitThatHasNotSeenItsScene) {
   const auto first = checked.begin() + 2000;  // of the third part
   for (std::size_t i = 0, n = 0; i < examples.size(); ++i) {
     if (examples[i].scene != "2") continue;
-    EXPECT_EQ((first + static_cast<std::ptrdiff_t>(n))->quality, pose_quality(examples[i].terms, others));
-    EXPECT_EQ((first + static_cast<std::ptrdiff_t>(n++))->is_right, examples[i].is_right);
+    EXPECT_EQ((first + static_cast<std::ptrdiff_t>(n))->quality, shape_quality(examples[i].terms, others));
+    EXPECT_EQ((first + static_cast<std::ptrdiff_t>(n++))->is_right, examples[i].is_right_up_to_shape);
   }
   EXPECT_THROW(check_by_scene(drawn(300, 3), 4), InputError);
 }
@@ -95,7 +96,7 @@ TEST(QualityFit, TheLeastQualityIsTheFirstRoundOneFromWhichEnoughAreRight) {
 TEST(QualityFit, ExamplesAreJudgedByTheSettingsGiven) {
   std::vector<Example> examples(2);
   examples[1].terms.outline = 3.0;
-  examples[1].is_right = true;
+  examples[1].is_right_up_to_shape = true;
   QualitySettings settings;
   settings.bias = 0.0;
   settings.weights = {};

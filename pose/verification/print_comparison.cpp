@@ -1,0 +1,280 @@
+#include "pose/verification/print_comparison.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/geometry/renderer.hpp"
+#include "pose/registration/registration.hpp"
+#include "pose/seen/depth_score.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr int kCells = 64;     // along the longer side of the object in the image
+constexpr int kMinCells = 60;  // compared; fewer tell nothing
+constexpr int kFine = 5;       // sides of the means that part the bands, cells
+constexpr int kCoarse = 17;
+// Of what is compared, so many cells count as one observation: neighbours are alike. All of them are measured with one
+// picture, one mesh and one pose, so that even so they are no independent witnesses: kTemper is what is left of it.
+constexpr double kFineCells = 4.0;
+constexpr double kMiddleCells = 25.0;
+constexpr double kCoarseCells = 150.0;
+constexpr double kTemper = 0.3;
+constexpr double kNoise = 8.0;  // variance of a channel that neither print nor shading makes, 8-bit CIE L*a*b*
+constexpr double kMinGain = 0.3;
+constexpr double kMaxGain = 2.5;
+
+/// A band of one colour channel: one number for each compared cell, and how many cells count as one observation.
+struct Band {
+  Eigen::VectorXf values;
+  double sum_sq = 0.0;
+};
+
+constexpr std::size_t kBands = 8;  // fine L a b, middle L a b, coarse a b
+constexpr std::array<double, kBands> kCellsOfOne = {kFineCells,   kFineCells,   kFineCells,   kMiddleCells,
+                                                    kMiddleCells, kMiddleCells, kCoarseCells, kCoarseCells};
+
+/// The bands of a picture, and its mean chroma.
+struct Print {
+  std::array<Band, kBands> bands;
+  Eigen::Vector2d chroma = Eigen::Vector2d::Zero();  ///< mean a* and b*, about grey
+};
+
+/// Cells of the object's part of the image where its surface is seen.
+struct Face {
+  int cell_px = 1;
+  cv::Rect part_px;                               ///< of the frame, a whole number of cells
+  cv::Mat mask;                                   ///< CV_32FC1, 1 for the compared cells
+  std::vector<cv::Point> cells;                   ///< those, row by row
+  std::vector<Eigen::Vector3f> points;            ///< of the surface there, object frame, metres
+  Eigen::Vector3f eye = Eigen::Vector3f::Zero();  ///< the camera, object frame
+};
+
+cv::Mat box_sum(const cv::Mat& values, int side) {
+  cv::Mat sum;
+  cv::boxFilter(values, sum, -1, cv::Size(side, side), cv::Point(-1, -1), false, cv::BORDER_CONSTANT);
+  return sum;
+}
+
+/// The mean over the compared cells about each cell.
+cv::Mat local_mean(const cv::Mat& masked, const cv::Mat& mask, int side) {
+  cv::Mat weight;
+  cv::max(box_sum(mask, side), 1.0, weight);
+  std::array<cv::Mat, 3> weights = {weight, weight, weight};
+  cv::Mat weight3;
+  cv::merge(weights.data(), weights.size(), weight3);
+  return box_sum(masked, side) / weight3;
+}
+
+/// Of a grid of CIE L*a*b* colours, CV_32FC3, 0 where nothing is compared.
+Print print_of(const cv::Mat& lab, const Face& face) {
+  const cv::Mat fine = local_mean(lab, face.mask, kFine);
+  const cv::Mat coarse = local_mean(lab, face.mask, kCoarse);
+  const auto count = static_cast<Eigen::Index>(face.cells.size());
+  cv::Vec3d mean(0.0, 0.0, 0.0);
+  for (const cv::Point& cell : face.cells) mean += cv::Vec3d(lab.at<cv::Vec3f>(cell));
+  mean /= static_cast<double>(count);
+  Print print;
+  for (Band& band : print.bands) band.values.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const cv::Point& cell = face.cells[static_cast<std::size_t>(i)];
+    const cv::Vec3f own = lab.at<cv::Vec3f>(cell);
+    const cv::Vec3f near = fine.at<cv::Vec3f>(cell);
+    const cv::Vec3f wide = coarse.at<cv::Vec3f>(cell);
+    for (int c = 0; c < 3; ++c) {
+      print.bands[static_cast<std::size_t>(c)].values[i] = own[c] - near[c];
+      print.bands[static_cast<std::size_t>(3 + c)].values[i] = near[c] - wide[c];
+      if (c > 0) print.bands[static_cast<std::size_t>(5 + c)].values[i] = wide[c] - static_cast<float>(mean[c]);
+    }
+  }
+  for (Band& band : print.bands) band.sum_sq = static_cast<double>(band.values.squaredNorm());
+  constexpr double kGrey = 128.0;
+  print.chroma = {mean[1] - kGrey, mean[2] - kGrey};
+  return print;
+}
+
+/// How much likelier a camera makes what is seen of the model's print than of a plain surface, log of the ratio.
+double log_likelihood(const Print& model, const Print& seen) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kBands; ++i) {
+    const Band& own = model.bands[i];
+    const Band& there = seen.bands[i];
+    const auto count = static_cast<double>(there.values.size());
+    const auto product = static_cast<double>(own.values.dot(there.values));
+    const double gain = std::clamp(product / std::max(own.sum_sq, 1e-6), kMinGain, kMaxGain);
+    const double left = std::max(0.0, there.sum_sq - gain * (2.0 * product - gain * own.sum_sq));
+    sum -= 0.5 * count / kCellsOfOne[i] * std::log((left / count + kNoise) / (there.sum_sq / count + kNoise));
+  }
+  // A cast, and a camera's saturation, move the mean chroma; by much more than this they do not.
+  constexpr double kCast = 14.0;
+  constexpr double kMax = 4.0;  // deviations
+  const double strength =
+      std::clamp(model.chroma.dot(seen.chroma) / std::max(model.chroma.squaredNorm(), 1.0), 0.5, kMaxGain);
+  const double apart = std::min((seen.chroma - strength * model.chroma).norm() / kCast, kMax);
+  return kTemper * sum - 0.5 * apart * apart;
+}
+
+cv::Rect whole_cells(const cv::Rect& part, int cell_px) {
+  return {part.x, part.y, part.width / cell_px * cell_px, part.height / cell_px * cell_px};
+}
+
+/// Whether a pixel has lost its colour. One that is at the camera's limit in a channel or two has not: it is as red as
+/// the camera shows things.
+bool is_overexposed(const cv::Vec3b& bgr) {
+  constexpr std::uint8_t kLimit = 245;
+  return std::min({bgr[0], bgr[1], bgr[2]}) >= kLimit;
+}
+
+/// Where in the frame a cell's middle is.
+cv::Point middle_px(const cv::Point& cell, const Face& face) {
+  return face.part_px.tl() + face.cell_px * cell + cv::Point(face.cell_px / 2, face.cell_px / 2);
+}
+
+/// Cells where the model is seen, its outline's left out: colours are registered to depth within a few pixels.
+Face visible_face(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                  const DepthTolerance& tolerance) {
+  Face face;
+  const RenderedRegion rendered = render_depth_region(seen.model.mesh, T_camera_object, seen.frame.camera);
+  const cv::Rect colours(seen.colours.origin_px, seen.colours.lab.size());
+  const cv::Rect part = rendered.region_px & colours;
+  face.cell_px = std::max(1, (std::max(part.width, part.height) + kCells - 1) / kCells);
+  face.part_px = whole_cells(part, face.cell_px);
+  if (face.part_px.area() == 0) return face;
+  cv::Mat agrees(face.part_px.size() / face.cell_px, CV_8UC1, cv::Scalar(0));
+  for (int y = 0; y < agrees.rows; ++y) {
+    for (int x = 0; x < agrees.cols; ++x) {
+      const cv::Point at = middle_px({x, y}, face);
+      const float model = rendered.depth.at<float>(at - rendered.region_px.tl());
+      const float beyond = seen.frame.depth.at<float>(at) - model;  // NaN where nothing is rendered or measured
+      const bool agreeing = std::abs(beyond) <= tolerance.at(model);
+      agrees.at<std::uint8_t>(y, x) = agreeing && !is_overexposed(seen.frame.colour.at<cv::Vec3b>(at)) ? 1 : 0;
+    }
+  }
+  cv::erode(agrees, agrees, cv::Mat(), cv::Point(-1, -1), 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+  agrees.convertTo(face.mask, CV_32F);
+  cv::findNonZero(agrees, face.cells);
+  const Eigen::Isometry3d T_object_camera = T_camera_object.inverse();
+  for (const cv::Point& cell : face.cells) {
+    const cv::Point at = middle_px(cell, face);
+    const double z = rendered.depth.at<float>(at - rendered.region_px.tl());
+    face.points.push_back((T_object_camera * seen.frame.camera.backproject(at.x, at.y, z)).cast<float>());
+  }
+  face.eye = T_object_camera.translation().cast<float>();
+  return face;
+}
+
+/// What the camera shows of the face, read `shift_px` beside it.
+Print seen_print(const ObjectObservation& seen, const Face& face, const cv::Point& shift_px) {
+  const cv::Mat& lab = seen.colours.lab;
+  const cv::Point last(lab.cols - face.part_px.width, lab.rows - face.part_px.height);
+  cv::Point first = face.part_px.tl() + shift_px - seen.colours.origin_px;
+  first = {std::clamp(first.x, 0, last.x), std::clamp(first.y, 0, last.y)};
+  cv::Mat grid;
+  cv::resize(lab(cv::Rect(first, face.part_px.size())), grid, face.mask.size(), 0.0, 0.0, cv::INTER_AREA);
+  grid.convertTo(grid, CV_32F);
+  grid.setTo(cv::Scalar::all(0.0), face.mask == 0.0);
+  return print_of(grid, face);
+}
+
+/// What the model would show there if it were moved by `motion` first; nothing where much of it would not be there.
+std::optional<Print> model_print(const ObjectModel& model, const Face& face, const Eigen::Isometry3d& motion) {
+  constexpr double kMaxMissing = 0.2;
+  const Eigen::Isometry3f back = motion.inverse().cast<float>();
+  cv::Mat grid(face.mask.size(), CV_32FC3, cv::Scalar::all(0.0));
+  std::vector<cv::Point> missing;
+  cv::Vec3f sum(0.0F, 0.0F, 0.0F);
+  for (std::size_t i = 0; i < face.cells.size(); ++i) {
+    const Eigen::Vector3f point = back * face.points[i];
+    const std::optional<Eigen::Vector3f> colour = model.print.find(point, back * face.eye - point);
+    if (!colour) {
+      missing.push_back(face.cells[i]);
+      continue;
+    }
+    const cv::Vec3f lab(colour->x(), colour->y(), colour->z());
+    grid.at<cv::Vec3f>(face.cells[i]) = lab;
+    sum += lab;
+  }
+  if (static_cast<double>(missing.size()) > kMaxMissing * static_cast<double>(face.cells.size())) return std::nullopt;
+  const cv::Vec3f mean = sum / static_cast<float>(face.cells.size() - missing.size());
+  for (const cv::Point& cell : missing) grid.at<cv::Vec3f>(cell) = mean;
+  return print_of(grid, face);
+}
+
+/// The seen print as read at a few places about where it should be: colours are registered to depth no better.
+std::vector<Print> seen_prints(const ObjectObservation& seen, const Face& face) {
+  constexpr int kReach_px = 2;
+  std::vector<Print> prints;
+  for (const int dy : {0, -kReach_px, kReach_px}) {
+    for (const int dx : {0, -kReach_px, kReach_px}) prints.push_back(seen_print(seen, face, {dx, dy}));
+  }
+  return prints;
+}
+
+double best_log_likelihood(const Print& model, const std::vector<Print>& seen) {
+  double best = log_likelihood(model, seen.front());
+  for (std::size_t i = 1; i < seen.size(); ++i) best = std::max(best, log_likelihood(model, seen[i]));
+  return best;
+}
+
+/// The poses that only the print tells from this one: those whose depth agrees as well, nearly alike ones registered.
+std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& seen,
+                                                 const Eigen::Isometry3d& T_camera_object,
+                                                 const DepthTolerance& tolerance,
+                                                 const RegistrationSettings& registration) {
+  constexpr int kPoints = 150;
+  constexpr float kAsWell = 0.8F;
+  const float own = score_pose(seen.frame, seen.model, T_camera_object, kPoints, tolerance).value;
+  std::vector<Eigen::Isometry3d> poses;
+  for (const Eigen::Isometry3d& motion : seen.model.alternatives) poses.push_back(T_camera_object * motion);
+  const CorrespondenceDistances distances = correspondence_distances(seen, registration);
+  for (const Eigen::Isometry3d& motion : seen.model.near_alternatives) {
+    const RegistrationResult result =
+        register_coarsely(seen, T_camera_object * motion, 0.5 * (distances.start + distances.end), registration);
+    const float there = score_pose(seen.frame, seen.model, result.T_camera_object, kPoints, tolerance).value;
+    if (result.inliers > 0 && there >= kAsWell * own) poses.push_back(result.T_camera_object);
+  }
+  return poses;
+}
+
+/// Where the print cannot tell, the pose is one of as many.
+PrintComparison undecided(std::size_t alternatives) {
+  return {-std::log(static_cast<double>(alternatives)), std::nullopt};
+}
+
+}  // namespace
+
+std::optional<PrintComparison> compare_print(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                                             const DepthTolerance& tolerance,
+                                             const RegistrationSettings& registration) {
+  const std::vector<Eigen::Isometry3d> alternatives = alternative_poses(seen, T_camera_object, tolerance, registration);
+  if (alternatives.empty()) return std::nullopt;
+  if (seen.model.print.empty() || seen.colours.lab.empty()) return undecided(alternatives.size());
+  const Face face = visible_face(seen, T_camera_object, tolerance);
+  if (face.cells.size() < kMinCells) return undecided(alternatives.size());
+  const std::optional<Print> own = model_print(seen.model, face, Eigen::Isometry3d::Identity());
+  if (!own) return undecided(alternatives.size());
+  const std::vector<Print> seen_at = seen_prints(seen, face);
+  const double own_likelihood = best_log_likelihood(*own, seen_at);
+  PrintComparison comparison;
+  // The pose has been found by all else that speaks for it: another one must be clearly likelier.
+  constexpr double kClearly = 3.0;
+  double best = own_likelihood + kClearly;
+  double others = 0.0;  // sum of likelihoods over the pose's own
+  const Eigen::Isometry3d T_object_camera = T_camera_object.inverse();
+  for (const Eigen::Isometry3d& alternative : alternatives) {
+    const std::optional<Print> print = model_print(seen.model, face, T_object_camera * alternative);
+    if (!print) continue;
+    const double likelihood = best_log_likelihood(*print, seen_at);
+    others += std::exp(std::min(likelihood - own_likelihood, 50.0));
+    if (!(likelihood > best)) continue;
+    best = likelihood;
+    comparison.better = alternative;
+  }
+  if (others == 0.0) return std::nullopt;
+  comparison.margin = -std::log(others);
+  return comparison;
+}
+
+}  // namespace houghstream
