@@ -35,19 +35,6 @@ Eigen::Isometry3d parse_motion(const nlohmann::json& holder, const std::string& 
   return motion;
 }
 
-ContinuousSymmetry parse_axis(const nlohmann::json& entry, const std::string& where) {
-  const std::vector<double> axis = json_numbers(entry, "axis", 3, where);
-  const std::vector<double> offset_mm = json_numbers(entry, "offset", 3, where);
-  const Eigen::Vector3d direction(axis[0], axis[1], axis[2]);
-  constexpr double kMinDuration = 1e-6;
-  require(direction.norm() > kMinDuration && std::isfinite(direction.norm()),
-          "{}: 'axis' of '{}' has length {}, expected a direction", where, kContinuous, direction.norm());
-  for (const double offset : offset_mm)
-    require(std::abs(offset) < kMaxDistance_mm, "{}: 'offset' of '{}' is {} mm, expected less than {}", where,
-            kContinuous, offset, kMaxDistance_mm);
-  return {direction.normalized(), Eigen::Vector3d(offset_mm[0], offset_mm[1], offset_mm[2]) * 1e-3};
-}
-
 }  // namespace
 
 Symmetries symmetries_from_json(const nlohmann::json& entry, const std::string& where) {
@@ -58,7 +45,7 @@ Symmetries symmetries_from_json(const nlohmann::json& entry, const std::string& 
   }
   if (entry.contains(kContinuous)) {
     for (const nlohmann::json& axis : listed(entry, kContinuous, where))
-      symmetries.continuous.push_back(parse_axis(axis, where));
+      symmetries.continuous.push_back(axis_from_json(axis, kContinuous, where));
   }
   return symmetries;
 }
@@ -69,11 +56,26 @@ void add_symmetries(const Symmetries& symmetries, OrderedJson& entry) {
     m.topRightCorner<3, 1>() *= 1e3;
     entry[kDiscrete].push_back(std::vector<double>(m.data(), m.data() + m.size()));
   }
-  for (const auto& [axis, offset] : symmetries.continuous) {
-    const Eigen::Vector3d offset_mm = offset * 1e3;
-    entry[kContinuous].push_back(
-        {{"axis", {axis.x(), axis.y(), axis.z()}}, {"offset", {offset_mm.x(), offset_mm.y(), offset_mm.z()}}});
-  }
+  for (const ContinuousSymmetry& symmetry : symmetries.continuous) entry[kContinuous].push_back(axis_to_json(symmetry));
+}
+
+ContinuousSymmetry axis_from_json(const nlohmann::json& entry, const std::string& key, const std::string& where) {
+  const std::vector<double> axis = json_numbers(entry, "axis", 3, where);
+  const std::vector<double> offset_mm = json_numbers(entry, "offset", 3, where);
+  const Eigen::Vector3d direction(axis[0], axis[1], axis[2]);
+  constexpr double kMinDuration = 1e-6;
+  require(direction.norm() > kMinDuration && std::isfinite(direction.norm()),
+          "{}: 'axis' of '{}' has length {}, expected a direction", where, key, direction.norm());
+  for (const double offset : offset_mm)
+    require(std::abs(offset) < kMaxDistance_mm, "{}: 'offset' of '{}' is {} mm, expected less than {}", where, key,
+            offset, kMaxDistance_mm);
+  return {direction.normalized(), Eigen::Vector3d(offset_mm[0], offset_mm[1], offset_mm[2]) * 1e-3};
+}
+
+OrderedJson axis_to_json(const ContinuousSymmetry& symmetry) {
+  const Eigen::Vector3d& axis = symmetry.axis;
+  const Eigen::Vector3d offset_mm = symmetry.offset * 1e3;
+  return {{"axis", {axis.x(), axis.y(), axis.z()}}, {"offset", {offset_mm.x(), offset_mm.y(), offset_mm.z()}}};
 }
 
 }  // namespace houghstream

@@ -16,4 +16,8 @@ Symmetries symmetries_from_json(const nlohmann::json& entry, const std::string& 
 /// Adds the keys for those that there are.
 void add_symmetries(const Symmetries& symmetries, OrderedJson& entry);
 
+/// An axis as symmetries_continuous lists them. Throws InputError naming `where` and `key` where it is none.
+ContinuousSymmetry axis_from_json(const nlohmann::json& entry, const std::string& key, const std::string& where);
+OrderedJson axis_to_json(const ContinuousSymmetry& symmetry);
+
 }  // namespace houghstream

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "drivers/datasets/bop_dataset.hpp"
+#include "drivers/datasets/bop_symmetries.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/parallel.hpp"
@@ -41,6 +42,28 @@ Eigen::Vector3f vote_centre(const nlohmann::json& entry, const std::string& wher
   return centre;
 }
 
+constexpr const char* kShapeKey = "shape_symmetries";
+constexpr const char* kRoundKey = "nearly_round";
+
+std::optional<ShapeSymmetry> shape_symmetry(const nlohmann::json& object, const std::string& where) {
+  const auto found = object.find(kShapeKey);
+  if (found == object.end()) return std::nullopt;
+  require(found->is_object(), "{}: '{}' is {}, expected lists of symmetries", where, kShapeKey, json_text(*found));
+  const std::string place = fmt::format("{} '{}'", where, kShapeKey);
+  require_known_names(*found, {"symmetries_discrete", "symmetries_continuous", kRoundKey}, place);
+  ShapeSymmetry shape;
+  shape.symmetries = symmetries_from_json(*found, place);
+  if (found->contains(kRoundKey)) shape.nearly_round = axis_from_json(found->at(kRoundKey), kRoundKey, place);
+  return shape;
+}
+
+OrderedJson to_json(const ShapeSymmetry& shape) {
+  OrderedJson json = OrderedJson::object();
+  add_symmetries(shape.symmetries, json);
+  if (shape.nearly_round) json[kRoundKey] = axis_to_json(*shape.nearly_round);
+  return json;
+}
+
 /// That of a store that does not say it holds every picture.
 BrightnessRange parse_tone(const nlohmann::json& json, const std::string& file) {
   BrightnessRange tone;
@@ -60,8 +83,8 @@ StoredObject parse_object(const nlohmann::json& entry, const std::string& file) 
   StoredObject object;
   object.id = json_integer(entry, "id", file);
   const std::string where = fmt::format("{} object {}", file, object.id);
-  require_known_names(entry, {"id", "name", "mesh", "coloured", "views", "attitudes", "vote_centre_m", "quality"},
-                      where);
+  require_known_names(
+      entry, {"id", "name", "mesh", "coloured", "views", "attitudes", "vote_centre_m", kShapeKey, "quality"}, where);
   require(object.id >= 1, "{}: expected an id from 1 on", where);
   object.name = text(entry, "name", where);
   object.mesh = text(entry, "mesh", where);
@@ -69,6 +92,7 @@ StoredObject parse_object(const nlohmann::json& entry, const std::string& file) 
   object.views = json_integer(entry, "views", where);
   object.attitudes = text(entry, "attitudes", where);
   object.vote_centre = vote_centre(entry, where);
+  object.shape_symmetry = shape_symmetry(entry, where);
   if (entry.contains("quality")) object.quality = entry.at("quality");
   require(object.quality.is_null() || object.quality.is_object(), "{}: 'quality' is {}, expected numbers by name",
           where, json_text(object.quality));
@@ -168,6 +192,14 @@ std::map<std::string, Symmetries> ObjectStore::symmetries_by_name() const {
   return by_name;
 }
 
+std::map<std::string, ShapeSymmetry> ObjectStore::shape_symmetries() const {
+  std::map<std::string, ShapeSymmetry> by_name;
+  for (const StoredObject& object : objects) {
+    if (object.shape_symmetry) by_name[object.name] = *object.shape_symmetry;
+  }
+  return by_name;
+}
+
 ObjectStore read_store(const fs::path& folder) {
   require(fs::is_directory(folder), "{}: no such folder, expected an object store of hs-teach", folder.string());
   const fs::path file = folder / kJsonFile;
@@ -252,6 +284,7 @@ void write_store_json(const ObjectStore& store) {
     entry["views"] = object.views;
     entry["attitudes"] = object.attitudes;
     entry["vote_centre_m"] = {object.vote_centre.x(), object.vote_centre.y(), object.vote_centre.z()};
+    if (object.shape_symmetry) entry[kShapeKey] = to_json(*object.shape_symmetry);
     if (!object.quality.is_null()) entry["quality"] = object.quality;
     json["objects"].push_back(entry);
   }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct StoredObject {
   /// The point of its own frame for which it was taught to vote, metres: where detections' centres are.
   Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();
   nlohmann::json quality{};  ///< what was learnt of its poses' quality, an object; null where nothing was
+  std::optional<ShapeSymmetry> shape_symmetry{};  ///< unknown in a store that was taught before it was looked for
 };
 
 struct ObjectStore {
@@ -45,8 +47,9 @@ struct ObjectStore {
   std::filesystem::path models_folder() const;       ///< a BOP models folder
   std::filesystem::path view_picture(int id) const;  ///< some of its views, side by side
   std::filesystem::path contact_sheet() const;       ///< the pictures of all objects
-  std::map<std::string, nlohmann::json> quality() const;        ///< by name, of those that have any
-  std::map<std::string, Eigen::Vector3f> vote_centres() const;  ///< by name
+  std::map<std::string, nlohmann::json> quality() const;          ///< by name, of those that have any
+  std::map<std::string, Eigen::Vector3f> vote_centres() const;    ///< by name
+  std::map<std::string, ShapeSymmetry> shape_symmetries() const;  ///< by name, of those whose are known
   std::map<std::string, Symmetries> symmetries_by_name() const;
 };
 

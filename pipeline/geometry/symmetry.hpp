@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 namespace houghstream {
@@ -19,6 +20,12 @@ struct Symmetries {
   std::vector<ContinuousSymmetry> continuous;
 
   bool empty() const { return discrete.empty() && continuous.empty(); }
+};
+
+/// What of a shape looks the same within a depth camera's noise, whatever is printed on it.
+struct ShapeSymmetry {
+  Symmetries symmetries;
+  std::optional<ContinuousSymmetry> nearly_round;  ///< an axis about which all but a handle or the like looks the same
 };
 
 }  // namespace houghstream

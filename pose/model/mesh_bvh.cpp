@@ -103,9 +103,9 @@ void MeshBvh::search(std::uint32_t index, const Eigen::Vector3f& point, ClosestP
   search(right_first ? index + 1 : node.right, point, best);
 }
 
-ClosestPoint MeshBvh::nearest(const Eigen::Vector3f& point) const {
+ClosestPoint MeshBvh::nearest(const Eigen::Vector3f& point, float max_distance) const {
   ClosestPoint best;
-  best.distance = std::numeric_limits<float>::infinity();
+  best.distance = max_distance;
   search(0, point, best);
   return best;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "pipeline/geometry/mesh.hpp"
@@ -22,7 +23,8 @@ class MeshBvh {
   /// Keeps a reference to `mesh`. Throws InputError for a mesh without triangles.
   explicit MeshBvh(const Mesh& mesh);
 
-  ClosestPoint nearest(const Eigen::Vector3f& point) const;
+  /// Where no triangle is nearer than `max_distance`, metres, the result has this distance and no triangle.
+  ClosestPoint nearest(const Eigen::Vector3f& point, float max_distance = std::numeric_limits<float>::infinity()) const;
 
  private:
   struct Node {

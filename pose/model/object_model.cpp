@@ -242,24 +242,24 @@ std::vector<Eigen::Isometry3d> near_symmetries(const ObjectModel& model) {
   return group;
 }
 
-void set_alternatives(const std::string& name, const ModelSettings& settings, ObjectModel& model) {
+void set_alternatives(const Symmetries& same_print, double right_within, ObjectModel& model) {
   constexpr double kShapeStep = 0.13;  // diameters: turns of about 15 degrees
   constexpr double kSameStep = 0.02;
   constexpr int kPoints = 300;
-  SymmetrySearch shape;
-  shape.tolerance = 0.03;
-  const auto known = settings.symmetries.find(name);
-  const std::vector<Eigen::Isometry3d> same =
-      expand_symmetries(known != settings.symmetries.end() ? known->second : Symmetries(), kSameStep);
+  const std::vector<Eigen::Isometry3d> same = expand_symmetries(same_print, kSameStep);
   const std::vector<Eigen::Vector3f> points = sample_surface(model.mesh, kPoints, 1).points;
-  const double right_m = settings.right_within * mesh_diameter(model.mesh);
-  for (const Eigen::Isometry3d& motion : expand_symmetries(find_symmetries(model.mesh, shape), kShapeStep)) {
-    if (moved_by(motion, points, same) > right_m) model.alternatives.push_back(motion);
-  }
-  for (const Eigen::Isometry3d& motion : near_symmetries(model)) {
-    if (moved_by(motion, points, same) > right_m && !is_among(motion, model.alternatives))
-      model.near_alternatives.push_back(motion);
-  }
+  const double right_m = right_within * mesh_diameter(model.mesh);
+  const auto add_others = [&](const std::vector<Eigen::Isometry3d>& motions, std::vector<Eigen::Isometry3d>& list) {
+    for (const Eigen::Isometry3d& motion : motions) {
+      if (moved_by(motion, points, same) > right_m && !is_among(motion, model.alternatives)) list.push_back(motion);
+    }
+  };
+  std::vector<Eigen::Isometry3d> exact;
+  add_others(expand_symmetries(model.shape_symmetries, kShapeStep), exact);
+  model.alternatives = std::move(exact);
+  add_others(near_symmetries(model), model.near_alternatives);
+  if (model.nearly_round)
+    add_others(expand_symmetries({{}, {*model.nearly_round}}, kShapeStep), model.partial_alternatives);
 }
 
 /// Of the surface's second moments: those of a triangle are A / 12 (aa' + bb' + cc' + (a+b+c)(a+b+c)').
@@ -316,13 +316,20 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
     model.vote_centre = known->second;
   model.middle = surface_median(model.mesh);
   model.axes = principal_axes(model.mesh);
+  const auto shape = settings.shape_symmetries.find(name);
+  const ShapeSymmetry symmetry =
+      shape != settings.shape_symmetries.end() ? shape->second : find_shape_symmetry(model.mesh);
+  model.shape_symmetries = symmetry.symmetries;
+  model.nearly_round = symmetry.nearly_round;
   model.views = make_views(model, settings, threads);
   require(!model.views.empty(), "model {}: nothing visible from any side, expected a surface", name);
   float largest = 0.0F;
   for (const ModelView& view : model.views) largest = std::max(largest, view.area);
   for (ModelView& view : model.views) view.area /= largest;
   model.print = make_print(model, settings);
-  set_alternatives(name, settings, model);
+  const auto same_print = settings.symmetries.find(name);
+  set_alternatives(same_print != settings.symmetries.end() ? same_print->second : Symmetries(), settings.right_within,
+                   model);
   return model;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct ModelSettings {
   /// symmetry that the print contradicts is taken as said.
   std::map<std::string, Symmetries> symmetries;
   double right_within = 0.1;  ///< ObjectModel::alternatives are farther from the pose than this, diameters (MSSD)
+  std::map<std::string, ShapeSymmetry> shape_symmetries;  ///< by name; those of others are found in the mesh
 };
 
 /// Surface points visible from one direction, in random order so that any first n of them cover the view evenly
@@ -46,6 +48,9 @@ struct ObjectModel {
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
   Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();  ///< columns: principal axes of the surface, object frame
   float radius = 0.0F;                                 ///< of the sphere about the centre that holds the mesh, metres
+  Symmetries shape_symmetries;  ///< rotations after which a depth camera measures the same, object frame
+  /// Where none of these is continuous: an axis about which all but a handle or the like measures the same.
+  std::optional<ContinuousSymmetry> nearly_round;
   std::vector<ModelView> views;
   SurfacePrint print;  ///< empty where the mesh has no colours
   /// Motions of the object frame, metres, after which the shape is as before and the pose is another one: only the
@@ -54,6 +59,8 @@ struct ObjectModel {
   /// Motions after which the shape is nearly as before: registered, the poses after these are for depth and print to
   /// tell apart.
   std::vector<Eigen::Isometry3d> near_alternatives;
+  /// Turns about `nearly_round`: alternatives where what breaks the round is hidden before and after.
+  std::vector<Eigen::Isometry3d> partial_alternatives;
 };
 
 /// The same for any number of threads. Throws InputError naming `name` when the mesh has no triangles, is flat to a

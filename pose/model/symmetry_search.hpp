@@ -11,10 +11,14 @@ namespace houghstream {
 
 /// What counts as looking the same.
 struct SymmetrySearch {
-  /// A turn fits while no point of the surface ends up farther from the surface than this, in diameters: the Hausdorff
-  /// distance with which BOP finds candidates (Hodan et al. 2020), which allows 0.1 and leaves the choice to people.
-  /// Whatever deviates by less is no error that MSSD would see at its strictest threshold of 0.05.
+  /// A rotation fits while no point of the surface ends up farther from the surface than this, in diameters: the
+  /// Hausdorff distance with which BOP finds candidates (Hodan et al. 2020), which allows 0.1 and leaves the choice to
+  /// people. Whatever deviates by less is no error that MSSD would see at its strictest threshold of 0.05.
   double tolerance = 0.01;
+  double min_tolerance_m = 0.0;  ///< the tolerance is not smaller than this, metres, but for very small objects
+  /// Distance of a single point from the surface, in tolerances. Above 1 a rotation fits where the root mean square
+  /// over the surface is within the tolerance: a scanned carton bulges.
+  double max_deviation = 1.0;
   /// Shape only, or colours too: a printed box has a shape whose symmetries its print breaks. A mesh without colours
   /// has nothing to compare.
   bool compare_colours = false;
@@ -22,36 +26,58 @@ struct SymmetrySearch {
   double largest_differing = 0.05;  ///< share of the surface that may differ: sensor noise, grain, seams
 };
 
-/// The symmetries of a mesh, metres: turns about the principal axes and the box axes of its object frame, through its
-/// centroid, which every symmetry keeps in place. Continuous where any angle fits, with half a turn about one
+/// The symmetries of a mesh, metres: continuous where any angle about an axis fits, with half a turn about one
 /// perpendicular axis where that fits too; two continuous axes are a ball. Else n-fold turns, n from 2 to 6, and all
-/// that they combine to. Mirror images are no motions; symmetries about other axes (those of a tilted cube, whose
-/// principal axes are undefined) are not found. Throws InputError for a mesh without surface.
+/// that they combine to. Mirror images are no motions. A symmetry keeps the second moments of the surface: its axis is
+/// a principal one, or where two or three of these spread alike within the tolerance, any in their plane or any at all.
+/// Box axes and principal axes through the centroid come first; what does not fit as it is, is registered with the mesh
+/// itself. Throws InputError for a mesh without surface.
 Symmetries find_symmetries(const Mesh& mesh, const SymmetrySearch& settings = {});
 
-/// Says of a turn about an axis through a point of the object frame whether the object looks the same after it. Looks
-/// at 1000 evenly spread points of the surface, and at up to 2000 of its vertices: corners deviate most.
+/// The rotations after which a depth camera measures the same: those of the shape within its noise, print aside. Where
+/// no rotation by any angle fits, `nearly_round` is an axis about which most of the surface maps onto itself at any
+/// angle: a mug's, which its handle breaks. Throws InputError for a mesh without surface.
+ShapeSymmetry find_shape_symmetry(const Mesh& mesh);
+
+/// Says of a motion of the object frame, metres, whether the object looks the same after it. Inspects 1000 evenly
+/// spread points of the surface, and up to 2000 of its vertices: corners deviate most.
 class RotationSymmetryTest {
  public:
   /// Keeps a reference to `mesh`. Throws InputError for a mesh without surface.
   RotationSymmetryTest(const Mesh& mesh, const Eigen::Vector3d& centre, const SymmetrySearch& settings);
 
-  /// The motion of the object frame, metres.
+  /// The rotation about an axis through the centre.
   Eigen::Isometry3d turn(const Eigen::Vector3d& axis, double angle_rad) const;
-  bool fits(const Eigen::Vector3d& axis, double angle_rad) const;
+  /// The root mean square of the deviation may be as large as `rms` tolerances.
+  bool fits(const Eigen::Isometry3d& T, double rms = 1.0) const;
+  bool fits(const Eigen::Vector3d& axis, double angle_rad) const { return fits(turn(axis, angle_rad)); }
+  /// Mean distance, metres, of a hundred moved points from the surface.
+  double deviation(const Eigen::Isometry3d& T) const;
+  /// The motion near `T` that lays the moved surface on the surface (point-to-plane ICP, Chen and Medioni 1992, with
+  /// Geman and McClure's kernel).
+  Eigen::Isometry3d registered(const Eigen::Isometry3d& T) const;
+  /// Fraction of the surface that maps onto itself at any angle about the axis, what lies across the axis left out.
+  double round_fraction(const ContinuousSymmetry& axis) const;
+  double diameter_m() const { return diameter_m_; }
+  const SurfacePoints& surface() const { return surface_; }
+  const Eigen::Vector3d& centre() const { return centre_; }
+  double tolerance_m() const { return tolerance_m_; }
 
  private:
-  /// Share of the samples whose colour is another where the turn takes them.
+  /// Distance from the surface, metres; `limit_m` where it is not less.
+  float distance(const Eigen::Vector3f& point, float limit_m) const { return tree_.nearest(point, limit_m).distance; }
+  /// Share of the samples whose colour is another where the rotation takes them.
   double differing_fraction(const Eigen::Isometry3f& T) const;
 
   const Mesh& mesh_;
   SymmetrySearch settings_;
   MeshBvh tree_;
   Eigen::Vector3d centre_;
+  double diameter_m_;
   float tolerance_m_;
-  std::vector<Eigen::Vector3f> samples_;
+  SurfacePoints surface_;
   std::vector<Eigen::Vector3f> corners_;
-  std::vector<Eigen::Vector3f> colours_;  ///< of the samples; empty where they are not compared
+  std::vector<Eigen::Vector3f> colours_;  ///< of the surface's points; empty where they are not compared
 };
 
 }  // namespace houghstream

@@ -218,22 +218,31 @@ double best_log_likelihood(const Print& model, const std::vector<Print>& seen) {
   return best;
 }
 
-/// The poses that only the print tells from this one: those whose depth agrees as well, nearly alike ones registered.
+/// The poses that only the print tells from this one: those whose depth agrees as well, nearly alike ones
+/// registered.
 std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& seen,
                                                  const Eigen::Isometry3d& T_camera_object,
                                                  const DepthTolerance& tolerance,
                                                  const RegistrationSettings& registration) {
   constexpr int kPoints = 150;
   constexpr float kAsWell = 0.8F;
-  const float own = score_pose(seen.frame, seen.model, T_camera_object, kPoints, tolerance).value;
+  constexpr float kAsWellUnmoved = 0.95F;
+  const auto agreement_at = [&](const Eigen::Isometry3d& pose) {
+    return score_pose(seen.frame, seen.model, pose, kPoints, tolerance).value;
+  };
+  const float own = agreement_at(T_camera_object);
   std::vector<Eigen::Isometry3d> poses;
   for (const Eigen::Isometry3d& motion : seen.model.alternatives) poses.push_back(T_camera_object * motion);
   const CorrespondenceDistances distances = correspondence_distances(seen, registration);
   for (const Eigen::Isometry3d& motion : seen.model.near_alternatives) {
     const RegistrationResult result =
         register_coarsely(seen, T_camera_object * motion, 0.5 * (distances.start + distances.end), registration);
-    const float there = score_pose(seen.frame, seen.model, result.T_camera_object, kPoints, tolerance).value;
-    if (result.inliers > 0 && there >= kAsWell * own) poses.push_back(result.T_camera_object);
+    if (result.inliers > 0 && agreement_at(result.T_camera_object) >= kAsWell * own)
+      poses.push_back(result.T_camera_object);
+  }
+  for (const Eigen::Isometry3d& motion : seen.model.partial_alternatives) {
+    const Eigen::Isometry3d turned = T_camera_object * motion;
+    if (agreement_at(turned) >= kAsWellUnmoved * own) poses.push_back(turned);
   }
   return poses;
 }

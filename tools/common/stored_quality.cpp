@@ -81,6 +81,7 @@ void apply_store_settings(const store::ObjectStore& objects, std::optional<float
   settings.class_quality = stored_quality(objects, settings.quality);
   settings.model.vote_centres = objects.vote_centres();
   settings.model.symmetries = objects.symmetries_by_name();
+  settings.model.shape_symmetries = objects.shape_symmetries();
   settings.region.tone = objects.tone;
 }
 

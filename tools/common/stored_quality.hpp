@@ -25,8 +25,8 @@ nlohmann::json quality_to_json(const QualitySettings& settings);
 /// was taught before presence was learnt has that of `others`.
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects, const QualitySettings& others);
 
-/// What hs-pose needs to know of a store beside its meshes: qualities, and where detections' centres are. Poses are
-/// published from `min_quality` on, where it is given.
+/// What hs-pose needs to know of a store beside its meshes: qualities, where detections' centres are, and what looks
+/// alike. Poses are published from `min_quality` on, where it is given.
 void apply_store_settings(const store::ObjectStore& objects, std::optional<float> min_quality, PoseSettings& settings);
 
 }  // namespace houghstream

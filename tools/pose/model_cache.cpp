@@ -39,6 +39,9 @@ void archive_model(Archive& archive, ModelType& model) {
   archive(model.middle);
   archive(model.axes);
   archive(model.radius);
+  archive(model.shape_symmetries.discrete);
+  archive(model.shape_symmetries.continuous);
+  archive(model.nearly_round);
   archive(model.views);
   archive(model.print.detail_m);
   archive(model.print.cubes);
@@ -46,6 +49,7 @@ void archive_model(Archive& archive, ModelType& model) {
   archive(model.print.colours);
   archive(model.alternatives);
   archive(model.near_alternatives);
+  archive(model.partial_alternatives);
 }
 
 template <typename Archive, typename ViewType>
@@ -63,6 +67,9 @@ struct ModelWriter : ArchiveWriter {
     (*this)(std::uint64_t{views.size()});
     for (const ModelView& view : views) archive_view(*this, view);
   }
+  void operator()(const std::optional<ContinuousSymmetry>& axis) {
+    (*this)(axis ? std::vector<ContinuousSymmetry>{*axis} : std::vector<ContinuousSymmetry>{});
+  }
   void operator()(const cv::Mat& texture) {
     (*this)(static_cast<std::uint64_t>(texture.rows));
     (*this)(static_cast<std::uint64_t>(texture.cols));
@@ -76,6 +83,11 @@ struct ModelReader : ArchiveReader {
     views.resize(count(sizeof(float)));
     for (ModelView& view : views) archive_view(*this, view);
   }
+  void operator()(std::optional<ContinuousSymmetry>& axis) {
+    std::vector<ContinuousSymmetry> axes;
+    (*this)(axes);
+    if (!axes.empty()) axis = axes.front();
+  }
   void operator()(cv::Mat& texture) {
     constexpr std::size_t kMax = 1U << 15U;
     const std::size_t rows = count(1);
@@ -86,6 +98,21 @@ struct ModelReader : ArchiveReader {
     take(texture.data, 3 * rows * columns);
   }
 };
+
+std::string text_of(const ShapeSymmetry& shape) {
+  std::string text;
+  const auto add = [&](const ContinuousSymmetry& axis) {
+    for (const double value : axis.axis) text += fmt::format("{} ", value);
+    for (const double value : axis.offset) text += fmt::format("{} ", value);
+  };
+  for (const Eigen::Isometry3d& motion : shape.symmetries.discrete) {
+    for (const double value : motion.matrix().reshaped()) text += fmt::format("{} ", value);
+  }
+  for (const ContinuousSymmetry& axis : shape.symmetries.continuous) add(axis);
+  text += '|';
+  if (shape.nearly_round) add(*shape.nearly_round);
+  return text;
+}
 
 void check_model(const ObjectModel& model) {
   const Mesh& mesh = model.mesh;
@@ -152,6 +179,7 @@ std::string ModelCache::state_of(const store::ObjectStore& store, const ModelSet
                        settings.pixels_per_diameter, settings.min_facing);
   for (const auto& [name, centre] : settings.vote_centres)
     state += fmt::format("{} {} {} {}\n", name, centre.x(), centre.y(), centre.z());
+  for (const auto& [name, shape] : settings.shape_symmetries) state += fmt::format("{} {}\n", name, text_of(shape));
   return state;
 }
 

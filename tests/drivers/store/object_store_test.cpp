@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "tests/drivers/store/small_store.hpp"
 #include "tests/expect_says.hpp"
 
@@ -77,6 +79,66 @@ TEST(ObjectStore, AVoteCentreIsThreeNumbersOrTheOrigin) {
               {"store.json object 5", "'vote_centre_m' is [0.0,60.0,0.0]", "expected x, y, z"});
   replace_in_file(folder / "store.json", "60.0", "\"high\"");
   expect_says(error_of_reading(folder), {"'vote_centre_m' holds \"high\"", "expected finite numbers"});
+}
+
+ShapeSymmetry of_a_pot() {
+  ShapeSymmetry shape;
+  shape.symmetries.discrete.emplace_back(Eigen::Translation3d(0.01, 0.0, 0.0) *
+                                         Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
+  shape.nearly_round = ContinuousSymmetry{Eigen::Vector3d(0.6, 0.0, 0.8), Eigen::Vector3d(0.0, 0.002, 0.0)};
+  return shape;
+}
+
+TEST(ObjectStore, ShapeSymmetriesComeBackWhereTheyAreKnown) {
+  const fs::path folder = whole_store("store_shapes");
+  ObjectStore store = read_store(folder);
+  EXPECT_TRUE(store.shape_symmetries().empty()) << "of a store that was taught before they were looked for";
+  store.objects[0].shape_symmetry = of_a_pot();
+  store.objects[1].shape_symmetry = ShapeSymmetry{};
+  store.objects[1].shape_symmetry->symmetries.continuous.push_back({});
+  write_store_json(store);
+  const std::map<std::string, ShapeSymmetry> read = read_store(folder).shape_symmetries();
+  const ShapeSymmetry& pot = read.at("mug");
+  ASSERT_EQ(pot.symmetries.discrete.size(), 1U);
+  EXPECT_TRUE(pot.symmetries.discrete[0].isApprox(of_a_pot().symmetries.discrete[0], 1e-12));
+  EXPECT_TRUE(pot.symmetries.continuous.empty());
+  ASSERT_TRUE(pot.nearly_round.has_value());
+  EXPECT_TRUE(pot.nearly_round->axis.isApprox(of_a_pot().nearly_round->axis));
+  EXPECT_TRUE(pot.nearly_round->offset.isApprox(of_a_pot().nearly_round->offset));
+  EXPECT_EQ(read.at("brick").symmetries.continuous.size(), 1U);
+  EXPECT_FALSE(read.at("brick").nearly_round.has_value());
+  store.objects[0].shape_symmetry = ShapeSymmetry{};
+  write_store_json(store);
+  ASSERT_EQ(read_store(folder).shape_symmetries().count("mug"), 1U) << "none is known, too";
+  EXPECT_TRUE(read_store(folder).shape_symmetries().at("mug").symmetries.empty());
+}
+
+TEST(ObjectStore, BadShapeSymmetriesAreRefusedInOneLine) {
+  const fs::path folder = whole_store("store_bad_shapes");
+  ObjectStore store = read_store(folder);
+  store.objects[0].shape_symmetry = of_a_pot();
+  write_store_json(store);
+  const std::string good = read_text(folder / "store.json");
+  const nlohmann::json list = nlohmann::json::parse(good);
+  const auto expect_refused = [&](const std::function<void(nlohmann::json&)>& damage,
+                                  const std::vector<std::string>& said) {
+    nlohmann::json damaged = list;
+    damage(damaged["objects"][0]["shape_symmetries"]);
+    write_text(folder / "store.json", damaged.dump());
+    const std::string error = error_of_reading(folder);
+    expect_says(error, {"store.json object 2"});
+    expect_says(error, said);
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+  };
+  expect_refused([](nlohmann::json& shape) { shape = "round"; }, {"'shape_symmetries' is \"round\", expected lists"});
+  expect_refused([](nlohmann::json& shape) { shape["nearly_rounf"] = 1; }, {"'nearly_rounf'", "expected one of"});
+  expect_refused([](nlohmann::json& shape) { shape["symmetries_discrete"][0][0] = 2.0; }, {"expected rigid motions"});
+  expect_refused(
+      [](nlohmann::json& shape) {
+        shape["nearly_round"]["axis"] = {0, 0, 0};
+      },
+      {"'axis' of 'nearly_round' has length 0"});
+  expect_refused([](nlohmann::json& shape) { shape["nearly_round"] = 7; }, {"axis"});
 }
 
 TEST(ObjectStore, AToneIsARangeOfGreyValuesOrHoldsEveryPicture) {

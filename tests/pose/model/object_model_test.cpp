@@ -32,6 +32,20 @@ TEST(ObjectModel, BoundsAreThoseOfTheMesh) {
   EXPECT_EQ(model.views.size(), 162U);
 }
 
+TEST(ObjectModel, ShapeSymmetriesAreFoundInTheMeshOrThoseThatAreGiven) {
+  ModelSettings settings;
+  EXPECT_EQ(make_object_model("box", cereal_box(), settings).shape_symmetries.discrete.size(), 3U);
+  const ObjectModel of_mug = make_object_model("mug", mug(), settings);
+  EXPECT_TRUE(of_mug.shape_symmetries.empty());
+  ASSERT_TRUE(of_mug.nearly_round.has_value());
+  EXPECT_GT(std::abs(of_mug.nearly_round->axis.z()), 0.9994);
+  settings.shape_symmetries["box"].nearly_round = ContinuousSymmetry{Eigen::Vector3d::UnitX(), {0.0, 0.1, 0.0}};
+  const ObjectModel given = make_object_model("box", cereal_box(), settings);
+  EXPECT_TRUE(given.shape_symmetries.empty());
+  ASSERT_TRUE(given.nearly_round.has_value());
+  EXPECT_EQ(given.nearly_round->offset.y(), 0.1);
+}
+
 TEST(ObjectModel, ViewsHoldPointsOfTheNearSideOnly) {
   const ObjectModel model = make_object_model("box", cereal_box(), ModelSettings());
   for (const ModelView& view : model.views) {

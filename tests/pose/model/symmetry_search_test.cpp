@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/random.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
 #include "tools/render/world/objects/objects.hpp"
 
@@ -141,6 +143,125 @@ TEST(SymmetrySearch, VertexColoursCountWhereThereIsNoTexture) {
 
 TEST(SymmetrySearch, RefusesAMeshWithoutSurface) {
   EXPECT_THROW(find(Mesh()), InputError);
+}
+
+Eigen::Isometry3d anyhow() {
+  Eigen::Isometry3d T(Eigen::Quaterniond(0.4, 0.3, -0.5, 0.7).normalized());
+  T.pretranslate(Eigen::Vector3d(0.2, -0.1, 0.05));
+  return T;
+}
+
+Mesh tilted(const Mesh& mesh) {
+  return moved(mesh, anyhow());
+}
+
+/// Each triangle becomes four, so many times over.
+Mesh subdivided(const Mesh& mesh, int times) {
+  if (times == 0) return mesh;
+  Mesh fine;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const std::array<Eigen::Vector3f, 3> corners = {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+    const auto first = static_cast<std::uint32_t>(fine.vertices.size());
+    for (std::size_t i = 0; i < 3; ++i) fine.vertices.push_back(corners[i]);
+    for (std::size_t i = 0; i < 3; ++i) fine.vertices.emplace_back(0.5F * (corners[i] + corners[(i + 1) % 3]));
+    for (const std::array<std::uint32_t, 3>& t :
+         {std::array<std::uint32_t, 3>{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}})
+      fine.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return subdivided(fine, times - 1);
+}
+
+/// What of a tilted mesh looks the same, without what is round but for a handle.
+Symmetries of_shape(const Mesh& mesh) {
+  return find_shape_symmetry(tilted(mesh)).symmetries;
+}
+
+TEST(ShapeSymmetry, OfABoxAreThreeHalfTurnsHoweverItLies) {
+  const Symmetries found = of_shape(grey_box(0.085, 0.073, 0.028));
+  EXPECT_TRUE(found.continuous.empty());
+  EXPECT_EQ(angles(found), (std::multiset<int>{180, 180, 180}));
+}
+
+TEST(ShapeSymmetry, OfATiltedCubeAreFoundThoughAnyAxisIsAPrincipalOne) {
+  const Mesh mesh = grey_box(0.1, 0.1, 0.1);
+  EXPECT_EQ(find(tilted(mesh)).discrete.size(), 23U);
+  const std::multiset<int> turns = angles(of_shape(mesh));
+  EXPECT_EQ(turns.size(), 23U);
+  EXPECT_EQ(turns.count(90), 6U);
+  EXPECT_EQ(turns.count(120), 8U);
+  EXPECT_EQ(turns.count(180), 9U);
+}
+
+TEST(ShapeSymmetry, OfATiltedSquarePrismAreFoundThoughTwoMomentsAreEqual) {
+  for (const double height : {0.04, 0.3})
+    EXPECT_EQ(angles(of_shape(grey_box(0.1, 0.1, height))), (std::multiset<int>{90, 90, 180, 180, 180, 180, 180}));
+}
+
+TEST(ShapeSymmetry, OfATiltedCanAreASpinAndAHalfTurn) {
+  constexpr double kEqualMoments = 1.67;  // radii of height for which all three moments are equal
+  for (const double height : {0.1, 0.04 * kEqualMoments}) {
+    const Symmetries found = of_shape(solid_of_revolution(0.04, 0.04, height, 48));
+    ASSERT_EQ(found.continuous.size(), 1U) << height;
+    EXPECT_GT(std::abs(found.continuous[0].axis.dot(anyhow().linear().col(2))), 0.9998) << height;
+    const Eigen::Vector3d offset = anyhow().inverse() * found.continuous[0].offset;
+    EXPECT_LT(offset.head<2>().norm(), 0.0005) << height;
+    ASSERT_EQ(found.discrete.size(), 1U) << height;
+    const Eigen::Vector3d top = anyhow() * Eigen::Vector3d(0.0, 0.0, height);
+    EXPECT_LT((anyhow().inverse() * (found.discrete[0] * top)).norm(), 0.001) << "top to bottom";
+  }
+}
+
+TEST(ShapeSymmetry, ALipWithinTheNoiseOfDepthBreaksNone) {
+  const auto can = [](double lip) {
+    return lathe(
+        with_arc_length(
+            {{0, 0, 0}, {0.033, 0, 0}, {0.033, 0.1, 0}, {0.033 + lip, 0.1, 0}, {0.033 + lip, 0.102, 0}, {0, 0.102, 0}}),
+        kGrey, 64);
+  };
+  EXPECT_EQ(of_shape(can(0.0015)).continuous.size(), 1U);
+  EXPECT_EQ(of_shape(can(0.0015)).discrete.size(), 1U);
+  EXPECT_EQ(of_shape(can(0.01)).continuous.size(), 1U);
+  EXPECT_TRUE(of_shape(can(0.01)).discrete.empty()) << "a brim";
+}
+
+TEST(ShapeSymmetry, OfABoxThatIsScannedUnevenlyAreItsHalfTurns) {
+  Mesh mesh = subdivided(grey_box(0.16, 0.21, 0.07), 4);
+  Random random(3);
+  for (Eigen::Vector3f& vertex : mesh.vertices) {
+    for (int i = 0; i < 3; ++i) vertex[i] += static_cast<float>(random.uniform(-0.0004, 0.0004));
+  }
+  EXPECT_EQ(angles(of_shape(mesh)), (std::multiset<int>{180, 180, 180}));
+}
+
+TEST(ShapeSymmetry, OfATiltedBallAreAll) {
+  std::vector<ProfilePoint> profile;
+  for (int i = 0; i <= 24; ++i) profile.push_back({0.05 * std::sin(M_PI * i / 24), -0.05 * std::cos(M_PI * i / 24), 0});
+  profile.front().radius = profile.back().radius = 0.0;
+  EXPECT_EQ(of_shape(lathe(with_arc_length(profile), kGrey)).continuous.size(), 2U);
+}
+
+TEST(ShapeSymmetry, AMugIsRoundButForItsHandle) {
+  const ShapeSymmetry found = find_shape_symmetry(tilted(taught("coffee_mug")));
+  EXPECT_TRUE(found.symmetries.empty());
+  ASSERT_TRUE(found.nearly_round.has_value());
+  EXPECT_GT(std::abs(found.nearly_round->axis.dot(anyhow().linear().col(2))), 0.9994) << "2 degrees";
+  const Eigen::Vector3d offset = anyhow().inverse() * found.nearly_round->offset;
+  EXPECT_LT(offset.head<2>().norm(), 0.0015) << "the axis of its wall, not of its mass";
+}
+
+TEST(ShapeSymmetry, WhatIsRoundOrFarFromItIsNotNearlyRound) {
+  EXPECT_FALSE(find_shape_symmetry(solid_of_revolution(0.04, 0.03, 0.1, 48)).nearly_round.has_value());
+  EXPECT_FALSE(find_shape_symmetry(grey_box(0.1, 0.1, 0.1)).nearly_round.has_value());
+  EXPECT_FALSE(find_shape_symmetry(grey_box(0.3, 0.3, 0.004)).nearly_round.has_value())
+      << "most of a square sheet stays where it is when it spins";
+}
+
+TEST(ShapeSymmetry, ASheetWithoutThicknessHasSome) {
+  Mesh sheet;
+  sheet.vertices = {{-0.1F, -0.05F, 0.0F}, {0.1F, -0.05F, 0.0F}, {0.1F, 0.05F, 0.0F}, {-0.1F, 0.05F, 0.0F}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  EXPECT_EQ(angles(of_shape(sheet)), (std::multiset<int>{180, 180, 180}));
+  EXPECT_THROW(find_shape_symmetry(Mesh()), InputError);
 }
 
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();

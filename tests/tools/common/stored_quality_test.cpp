@@ -55,6 +55,16 @@ TEST(StoredQuality, AStoreThatKnowsNothingOfPresenceIsReadWithThatOfOthers) {
   EXPECT_EQ(stored_quality(store_with(json), others).at("mug").presence.quality_weight, 0.125);
 }
 
+TEST(StoredQuality, PosesAreMadeWithTheShapeSymmetriesThatTheStoreKnows) {
+  store::ObjectStore objects = store_with(quality_to_json(learnt()));
+  objects.objects[1].shape_symmetry = ShapeSymmetry{};
+  objects.objects[1].shape_symmetry->symmetries.continuous.push_back({});
+  PoseSettings settings;
+  apply_store_settings(objects, std::nullopt, settings);
+  EXPECT_EQ(settings.model.shape_symmetries.count("mug"), 0U);
+  EXPECT_EQ(settings.model.shape_symmetries.at("bowl").symmetries.continuous.size(), 1U);
+}
+
 TEST(StoredQuality, TermsAreHeldByTheirNames) {
   nlohmann::json json = quality_to_json(learnt());
   EXPECT_EQ(json["weights"]["outline"], learnt().weights.outline);

@@ -26,6 +26,15 @@ void expect_same(const ObjectModel& a, const ObjectModel& b) {
   EXPECT_EQ(a.middle, b.middle);
   EXPECT_EQ(a.axes, b.axes);
   EXPECT_EQ(a.radius, b.radius);
+  ASSERT_EQ(a.shape_symmetries.discrete.size(), b.shape_symmetries.discrete.size());
+  for (std::size_t i = 0; i < a.shape_symmetries.discrete.size(); ++i)
+    EXPECT_EQ(a.shape_symmetries.discrete[i].matrix(), b.shape_symmetries.discrete[i].matrix());
+  ASSERT_EQ(a.shape_symmetries.continuous.size(), b.shape_symmetries.continuous.size());
+  ASSERT_EQ(a.nearly_round.has_value(), b.nearly_round.has_value());
+  if (a.nearly_round) {
+    EXPECT_EQ(a.nearly_round->axis, b.nearly_round->axis);
+    EXPECT_EQ(a.nearly_round->offset, b.nearly_round->offset);
+  }
   ASSERT_EQ(a.views.size(), b.views.size());
   for (std::size_t i = 0; i < a.views.size(); ++i) {
     EXPECT_EQ(a.views[i].direction, b.views[i].direction);
@@ -70,6 +79,22 @@ TEST(ModelCache, ComeBackBitForBit) {
   ASSERT_EQ(found->size(), 2U);
   EXPECT_FALSE(found->at("mug").mesh.texture.empty());
   for (const auto& [name, model] : made.models) expect_same(found->at(name), model);
+}
+
+TEST(ModelCache, ShapeSymmetriesComeBackAndMakeAnotherState) {
+  const MadeOfStore made("kept_models_shape");
+  const ModelCache kept(fresh_folder("kept_models_shape_cache") / "models");
+  std::map<std::string, ObjectModel> models = made.models;
+  ObjectModel& mug = models.at("mug");
+  mug.shape_symmetries.discrete.assign(2, Eigen::Isometry3d(Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitX())));
+  mug.nearly_round = ContinuousSymmetry{Eigen::Vector3d::UnitX(), {0.1, 0.2, 0.3}};
+  kept.keep(made.list, made.state_for(kept), models);
+  const auto found = kept.find(made.list, made.state_for(kept));
+  ASSERT_TRUE(found.has_value());
+  for (const auto& [name, model] : models) expect_same(found->at(name), model);
+  ModelSettings other;
+  other.shape_symmetries["mug"].nearly_round = ContinuousSymmetry{};
+  EXPECT_FALSE(kept.find(made.list, kept.state_of(made.list, other)).has_value());
 }
 
 TEST(ModelCache, OfAnotherStateAreNone) {

@@ -1,6 +1,10 @@
 #include "tools/teach/mesh/contact_sheet.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -31,11 +35,36 @@ cv::Mat tile_of(const TrainingView& view) {
   return tile;
 }
 
+/// "3 half turns", "2 turns by 90 degrees", largest angle first.
+std::vector<std::string> turn_words(const std::vector<Eigen::Isometry3d>& turns) {
+  std::map<int, int, std::greater<>> count_by_deg;
+  for (const Eigen::Isometry3d& turn : turns)
+    ++count_by_deg[static_cast<int>(std::lround(Eigen::AngleAxisd(turn.linear()).angle() * 180.0 / M_PI))];
+  std::vector<std::string> words;
+  for (const auto& [angle_deg, count] : count_by_deg) {
+    const std::string number = count == 1 ? "a" : fmt::format("{}", count);
+    const std::string ending = count == 1 ? "" : "s";
+    words.push_back(angle_deg == 180 ? fmt::format("{} half turn{}", number, ending)
+                                     : fmt::format("{} turn{} by {} degrees", number, ending, angle_deg));
+  }
+  return words;
+}
+
 }  // namespace
 
+std::string symmetry_words(const ShapeSymmetry& shape) {
+  const std::size_t axes = shape.symmetries.continuous.size();
+  if (axes > 1) return "any turn";
+  std::vector<std::string> words = turn_words(shape.symmetries.discrete);
+  if (axes == 1) words.insert(words.begin(), "a spin");
+  if (shape.nearly_round) words.emplace_back("a spin but for its handle");
+  return words.empty() ? "none" : fmt::format("{}", fmt::join(words, " and "));
+}
+
 std::string title_of(const store::StoredObject& object) {
-  return fmt::format("{} (object {}): {} views, {}{}", object.name, object.id, object.views, object.attitudes,
-                     object.coloured ? "" : ", colour unknown");
+  return fmt::format("{} (object {}): {} views, {}{}{}", object.name, object.id, object.views, object.attitudes,
+                     object.coloured ? "" : ", colour unknown",
+                     object.shape_symmetry ? "; shape symmetries: " + symmetry_words(*object.shape_symmetry) : "");
 }
 
 void write_title(const std::string& title, cv::Mat& view_picture) {

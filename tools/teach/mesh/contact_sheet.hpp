@@ -10,6 +10,9 @@
 
 namespace houghstream::teach {
 
+/// What of a shape looks the same: "3 half turns", "a spin and a half turn", "a spin but for its handle", "none".
+std::string symmetry_words(const ShapeSymmetry& shape);
+
 /// What stands above an object's views.
 std::string title_of(const store::StoredObject& object);
 

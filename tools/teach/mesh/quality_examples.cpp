@@ -16,6 +16,7 @@ PoseSettings withholding_none(const PosedModels& models, int threads) {
   settings.threads = threads;
   settings.model.vote_centres = models.vote_centres;
   settings.model.symmetries = models.symmetries;
+  settings.model.shape_symmetries = models.shape_symmetries;
   settings.region.tone = models.tone;
   publish_from(0.0F, settings);
   return settings;

@@ -43,8 +43,10 @@ std::vector<Example> label_examples(const FoundPoses& found, const std::map<std:
 struct PosedModels {
   std::map<std::string, Mesh> meshes;
   std::map<std::string, Eigen::Vector3f> vote_centres;
-  std::map<std::string, Symmetries> symmetries = {};  ///< ModelSettings::symmetries
-  BrightnessRange tone = {};                          ///< see RegionSettings
+  std::map<std::string, Symmetries> symmetries = {};           ///< ModelSettings::symmetries
+  BrightnessRange tone = {};                                   ///< see RegionSettings
+  std::map<std::string, ShapeSymmetry> shape_symmetries = {};  ///< those of others are found in the meshes
+  BrightnessRange tone = {};                                   ///< see RegionSettings
 };
 
 /// Finds poses and withholds none, and says what each would be judged by.

@@ -20,6 +20,7 @@ struct CalibrationObject {
   Mesh mesh;                                              ///< as poses are compared with it, metres
   Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();  ///< see store::StoredObject
   Symmetries symmetries = {};                             ///< of models_info.json
+  ShapeSymmetry shape_symmetry;                           ///< see store::StoredObject
   world::CalibrationSceneObject in_room;                  ///< its id is the class's
 };
 

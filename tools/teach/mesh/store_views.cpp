@@ -11,6 +11,7 @@
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
+#include "pose/model/symmetry_search.hpp"
 #include "tools/common/progress_line.hpp"
 #include "tools/teach/mesh/contact_sheet.hpp"
 
@@ -105,6 +106,7 @@ std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, cons
     object.coloured = taught.coloured;
     object.views = static_cast<int>(views.size());
     object.attitudes = options.attitudes;
+    object.shape_symmetry = find_shape_symmetry(taught.mesh);
     report(title_of(object));
     write_png(view_picture(views, title_of(object)), made.view_picture(object.id));
     if (!options.dump_views.empty()) dump_views(views, options.dump_views / fmt::format("{:06d}", object.id));

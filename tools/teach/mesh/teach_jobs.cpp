@@ -17,6 +17,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/parallel.hpp"
+#include "pose/model/symmetry_search.hpp"
 #include "tools/common/stored_forest.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/teach/mesh/contact_sheet.hpp"
@@ -95,6 +96,7 @@ void practise_all(const std::vector<NamedModel>& models, const std::set<int>& ne
     object.mesh = model.mesh;
     object.vote_centre = stored.vote_centre;
     object.symmetries = model.symmetries;
+    object.shape_symmetry = *stored.shape_symmetry;
     object.in_room = {model.object_id, world::make_taught_thing(model.mesh, stored.coloured),
                       world::up_directions(model.mesh, world::parse_mesh_attitudes(stored.attitudes)), stored.coloured,
                       new_ids.count(model.object_id) > 0};
@@ -140,6 +142,8 @@ void keep(const Contents& old, const std::string& except, ObjectStore& made, std
   for (const StoredObject& object : old.list.objects) {
     if (object.name == except) continue;
     made.objects.push_back(object);
+    std::optional<ShapeSymmetry>& shape = made.objects.back().shape_symmetry;
+    if (!shape) shape = find_shape_symmetry(old.meshes.at(object.name));  // taught before it was looked for
     models.push_back({object.id, object.name, old.meshes.at(object.name), old.list.symmetries.at(object.id)});
     std::error_code error;
     fs::copy_file(old.list.view_picture(object.id), made.view_picture(object.id), error);
@@ -251,8 +255,10 @@ void teach_meshes(const TeachOptions& options) {
 
 void list_store(const fs::path& folder) {
   for (const StoredObject& object : store::read_store(folder).objects)
-    fmt::print("{:>6} {:<24} {:>5} views, {}, {}; {}\n", object.id, object.name, object.views, object.attitudes,
-               object.coloured ? "coloured" : "colour unknown", object.mesh);
+    fmt::print("{:>6} {:<24} {:>5} views, {}, {}; shape symmetries: {}; {}\n", object.id, object.name, object.views,
+               object.attitudes, object.coloured ? "coloured" : "colour unknown",
+               object.shape_symmetry ? symmetry_words(*object.shape_symmetry) : "unknown, hs-teach practise finds them",
+               object.mesh);
 }
 
 void remove_from_store(const fs::path& folder, const std::string& name) {

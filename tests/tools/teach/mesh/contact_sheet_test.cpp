@@ -20,5 +20,31 @@ TEST(ContactSheet, APictureOfAnotherWidthIsNamed) {
   EXPECT_NE(words.find("b.png: 40 pixels wide, expected 30"), std::string::npos) << words;
 }
 
+TEST(ContactSheet, ShapeSymmetriesAreSaidInWords) {
+  const auto turn = [](double angle_deg, const Eigen::Vector3d& axis) {
+    return Eigen::Isometry3d(Eigen::AngleAxisd(angle_deg * M_PI / 180.0, axis));
+  };
+  ShapeSymmetry shape;
+  EXPECT_EQ(symmetry_words(shape), "none");
+  shape.nearly_round = ContinuousSymmetry{};
+  EXPECT_EQ(symmetry_words(shape), "a spin but for its handle");
+  shape.symmetries.discrete = {turn(180, Eigen::Vector3d::UnitZ())};
+  EXPECT_EQ(symmetry_words(shape), "a half turn and a spin but for its handle");
+  shape.nearly_round.reset();
+  shape.symmetries.continuous.push_back({});
+  EXPECT_EQ(symmetry_words(shape), "a spin and a half turn");
+  shape.symmetries.continuous.push_back({Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero()});
+  EXPECT_EQ(symmetry_words(shape), "any turn");
+  shape.symmetries.continuous.clear();
+  shape.symmetries.discrete = {turn(90, Eigen::Vector3d::UnitZ()), turn(180, Eigen::Vector3d::UnitX()),
+                               turn(180, Eigen::Vector3d::UnitY()), turn(-90, Eigen::Vector3d::UnitZ())};
+  EXPECT_EQ(symmetry_words(shape), "2 half turns and 2 turns by 90 degrees");
+  store::StoredObject object;
+  object.name = "tin";
+  EXPECT_EQ(title_of(object).find("shape symmetries"), std::string::npos) << "not known";
+  object.shape_symmetry = shape;
+  EXPECT_NE(title_of(object).find("; shape symmetries: 2 half turns and"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace houghstream::teach

@@ -83,6 +83,7 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   EXPECT_EQ(first.tone.min_mean, kCalibrationBrightness.min_mean) << "hs-pose reads it here";
   EXPECT_EQ(load_forest(first.forest_file()).features.tone.max_deviation, kCalibrationBrightness.max_deviation);
 
+  EXPECT_EQ(first.shape_symmetries().count("bracket"), 1U);
   const nlohmann::json learnt = first.objects[0].quality;
   EXPECT_EQ(stored_quality(first, {}).count("bracket"), 1U);
 
@@ -100,6 +101,7 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   EXPECT_EQ(both.objects[1].id, 2);
   EXPECT_EQ(both.tone.max_mean, kCalibrationBrightness.max_mean);
   EXPECT_EQ(both.objects[0].quality, learnt) << "what was learnt of an older object stays";
+  EXPECT_EQ(both.shape_symmetries().size(), 2U);
   EXPECT_EQ(stored_quality(both, {}).count("grey"), 1U);
   EXPECT_EQ(forest_names(options.out), (std::vector<std::string>{"bracket", "grey"}));
   EXPECT_EQ(error_of([&] { teach_meshes(more); }).find((folder / "grey.ply").string()), 0U) << "known already";
@@ -141,7 +143,9 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   const fs::path folder = folder_of_meshes("teach_rename");
   const TeachOptions options = quick_options(folder, "bracket.ply");
   teach_meshes(options);
-  const store::ObjectStore before = store::read_store(options.out);
+  store::ObjectStore before = store::read_store(options.out);
+  before.objects[0].shape_symmetry->nearly_round = ContinuousSymmetry{};
+  store::write_store_json(before);
   const std::string forest = read_text(before.forest_file());
   const cv::Mat views = read_colour_image(before.view_picture(1));
   put_notes(options.out);
@@ -152,6 +156,7 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   EXPECT_EQ(after.objects[0].id, before.objects[0].id);
   EXPECT_EQ(after.objects[0].views, before.objects[0].views);
   EXPECT_EQ(after.objects[0].quality, before.objects[0].quality);
+  EXPECT_TRUE(after.shape_symmetries().at("shelf_support").nearly_round.has_value());
   EXPECT_EQ(after.settings, before.settings);
   EXPECT_EQ(after.tone.max_mean, before.tone.max_mean);
   EXPECT_TRUE(fs::exists(after.contact_sheet()));
@@ -224,7 +229,9 @@ TEST(TeachJobs, PractisingAnewKeepsTheObjects) {
   const TeachOptions options = quick_options(folder, "bracket.ply");
   fs::create_directory(options.out);  // an empty folder is no store
   teach_meshes(options);
-  const store::ObjectStore before = store::read_store(options.out);
+  store::ObjectStore before = store::read_store(options.out);
+  before.objects[0].shape_symmetry.reset();  // taught before they were looked for
+  store::write_store_json(before);
   CalibrationSettings other = options.practice;
   other.seed = 7;
   put_notes(options.out);
@@ -235,6 +242,7 @@ TEST(TeachJobs, PractisingAnewKeepsTheObjects) {
   EXPECT_EQ(after.objects[0].name, "bracket");
   EXPECT_EQ(after.objects[0].views, before.objects[0].views);
   EXPECT_EQ(stored_quality(after, {}).count("bracket"), 1U);
+  EXPECT_EQ(after.shape_symmetries().count("bracket"), 1U);
   EXPECT_NE(after.objects[0].quality, before.objects[0].quality) << "in other rooms";
   EXPECT_EQ(forest_names(options.out), std::vector<std::string>{"bracket"});
   EXPECT_NE(error_of([&] { practise_store(folder / "nowhere", other); }).find("expected an object store"),
