@@ -117,13 +117,15 @@ void verify_one(const PoseSettings& settings, Estimation& it) {
   it.pose = *std::move(best);
 }
 
-/// Of the poses that look alike by their shape publishes the one for which the print speaks, and says how surely.
+/// Of the poses that look alike by their shape takes the one for which the print speaks, and says how surely; also
+/// where it is withheld, since its quality is told too.
 void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
-  if (!has_pose(it.pose.status)) return;
+  constexpr float kWorthTelling = 0.1F;  // what is wrong already by its shape stays wrong
+  if (it.pose.shape_quality < kWorthTelling) return;
   const DepthTolerance tolerance{settings.verification.tolerance_m, it.seen->noise};
   const PrintSettings& learnt = class_quality_of(settings, it.pose.class_name).print;
   const std::optional<PrintComparison> print =
-      compare_print(*it.seen, *it.pose.T_camera_object, tolerance, settings.registration);
+      compare_print(*it.seen, it.published.result.T_camera_object, tolerance, settings.registration);
   if (!print) return;
   it.published.evidence.print_probability = print_probability(print->margin, learnt);
   ObjectPose judged = judged_pose(it, it.published.result, it.published.evidence, settings);

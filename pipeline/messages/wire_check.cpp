@@ -6,6 +6,7 @@
 #include <houghstream/known_objects_t.hpp>
 #include <houghstream/object_poses_t.hpp>
 #include <houghstream/objects_t.hpp>
+#include <houghstream/pose_probabilities_t.hpp>
 #include <houghstream/rigid_transform_t.hpp>
 #include <houghstream/status_t.hpp>
 #include <houghstream/teaching_t.hpp>
@@ -127,6 +128,13 @@ void walk_status(WireReader& reader) {
   reader.read_string();
 }
 
+void walk_probabilities(WireReader& reader) {
+  constexpr std::size_t kProbabilities = 4 + 4;
+  reader.skip(8);
+  read_channel(reader);
+  reader.skip(kProbabilities * reader.read_count(kProbabilities));
+}
+
 void walk_known_objects(WireReader& reader) {
   reader.skip(8);
   walk_name(reader);
@@ -219,6 +227,8 @@ void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& typ
     walk_detections(reader);
   } else if (fingerprint == object_poses_t::getHash()) {
     walk_poses(reader);
+  } else if (fingerprint == pose_probabilities_t::getHash()) {
+    walk_probabilities(reader);
   } else if (fingerprint == objects_t::getHash()) {
     walk_objects(reader);
   } else if (fingerprint == status_t::getHash()) {

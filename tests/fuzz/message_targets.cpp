@@ -25,11 +25,27 @@ std::vector<Bytes> frames() {
   return {encode_message(message), encode_message(to_message(frame, raw, 8))};
 }
 
+ObjectPoses posed() {
+  ObjectPose pose;
+  pose.class_id = 1;
+  pose.class_name = "mug";
+  pose.status = PoseStatus::kValid;
+  pose.T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.2, 0.7));
+  ObjectPoses poses;
+  poses.frame = {"LEFT", 5};
+  poses.poses = {pose};
+  return poses;
+}
+
 /// Every other message of ours, by its fingerprint.
 Taken read_result(ByteView input) {
   const std::int64_t fingerprint = log_tools::fingerprint_of(input);
   if (fingerprint == detections_t::getHash()) detections_from_message(decode_message<detections_t>(input));
   if (fingerprint == object_poses_t::getHash()) poses_from_message(decode_message<object_poses_t>(input));
+  if (fingerprint == pose_probabilities_t::getHash()) {
+    ObjectPoses poses = posed();
+    apply_probabilities(decode_message<pose_probabilities_t>(input), poses);
+  }
   if (fingerprint == teaching_t::getHash()) teaching_from_message(decode_message<teaching_t>(input));
   if (fingerprint == status_t::getHash()) decode_message<status_t>(input);
   if (fingerprint == known_objects_t::getHash()) decode_message<known_objects_t>(input);
@@ -66,14 +82,7 @@ std::vector<Bytes> results() {
   detection.rotations.push_back({Eigen::Quaternionf::Identity(), 1.0F});
   detections.detections = {detection};
   detections.stages = {{"detect.decode", 12}};
-  ObjectPoses poses;
-  poses.frame = detections.frame;
-  ObjectPose pose;
-  pose.class_id = 1;
-  pose.class_name = "mug";
-  pose.status = PoseStatus::kValid;
-  pose.T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.2, 0.7));
-  poses.poses = {pose};
+  const ObjectPoses poses = posed();
   Teaching teaching;
   teaching.frame = detections.frame;
   teaching.name = "mug";
@@ -86,6 +95,7 @@ std::vector<Bytes> results() {
   status.process = "hs-detect";
   return {encode_message(to_message(detections)),
           encode_message(to_message(poses)),
+          encode_message(probabilities_to_message(poses)),
           encode_message(to_message(teaching)),
           encode_message(to_message(known)),
           encode_message(status),

@@ -179,6 +179,8 @@ std::string ModelCache::state_of(const store::ObjectStore& store, const ModelSet
                        settings.pixels_per_diameter, settings.min_facing);
   for (const auto& [name, centre] : settings.vote_centres)
     state += fmt::format("{} {} {} {}\n", name, centre.x(), centre.y(), centre.z());
+  state += fmt::format("{}\n", settings.right_within);
+  for (const auto& [name, same] : settings.symmetries) state += fmt::format("{} {}\n", name, text_of({same, {}}));
   for (const auto& [name, shape] : settings.shape_symmetries) state += fmt::format("{} {}\n", name, text_of(shape));
   return state;
 }

@@ -44,7 +44,6 @@ struct PosedModels {
   std::map<std::string, Mesh> meshes;
   std::map<std::string, Eigen::Vector3f> vote_centres;
   std::map<std::string, Symmetries> symmetries = {};           ///< ModelSettings::symmetries
-  BrightnessRange tone = {};                                   ///< see RegionSettings
   std::map<std::string, ShapeSymmetry> shape_symmetries = {};  ///< those of others are found in the meshes
   BrightnessRange tone = {};                                   ///< see RegionSettings
 };
