@@ -6,6 +6,7 @@
 #include "detector/evidence/evidence_settings.hpp"
 #include "detector/forest/patch_settings.hpp"
 #include "detector/voting/voting_settings.hpp"
+#include "pipeline/base/settings_fields.hpp"
 
 namespace houghstream {
 
@@ -21,6 +22,17 @@ struct DetectionSettings {
   EvidenceSettings evidence;
   SuppressionSettings suppression;
 };
+
+template <typename Visit>
+void fields(const DetectionSettings& /*settings*/, const Visit& visit) {
+  using S = DetectionSettings;
+  visit(number("threads", &S::threads, 1, 256));
+  visit(group("spacing", &S::spacing));
+  visit(group("leaves", &S::leaves));
+  visit(group("voting", &S::voting));
+  visit(group("evidence", &S::evidence));
+  visit(group("suppression", &S::suppression));
+}
 
 constexpr const char* kPaperProfile = "paper";
 constexpr const char* kRealtimeProfile = "realtime";

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "detector/stages.hpp"
+#include "pipeline/base/check_settings.hpp"
 
 namespace houghstream {
 
@@ -17,6 +18,7 @@ struct Detector::State {
 Detector::Detector(Forest forest, DetectionSettings settings)
     : state_(std::make_unique<State>(std::move(forest), settings)) {
   require_searchable(state_->forest.features, "forest");
+  check_settings(settings, "detection settings");
 }
 Detector::~Detector() = default;
 Detector::Detector(Detector&&) noexcept = default;

@@ -150,6 +150,7 @@ struct PoseEstimator::State {
 
 PoseEstimator::PoseEstimator(std::map<std::string, Mesh> models, PoseSettings settings, int threads)
     : state_(std::make_unique<State>()) {
+  check_settings(settings, "pose settings");
   struct Making {
     const std::string& name;
     Mesh* mesh;

@@ -29,7 +29,8 @@ struct PlacedObject {
 class PoseEstimator {
  public:
   /// Models by class name, in metres, in the object frame of the training views. What registration needs of them is
-  /// made on `threads` threads, the same for any number. Throws InputError as make_object_model() does.
+  /// made on `threads` threads, the same for any number. Throws InputError as make_object_model() does, and for
+  /// settings out of their range.
   PoseEstimator(std::map<std::string, Mesh> models, PoseSettings settings, int threads = 1);
   /// Of models that were made before, with settings.model.
   static PoseEstimator of_models(std::map<std::string, ObjectModel> models, PoseSettings settings);

@@ -3,6 +3,8 @@
 #include <map>
 #include <string>
 
+#include "pipeline/base/check_settings.hpp"
+#include "pipeline/base/settings_fields.hpp"
 #include "pose/model/object_model.hpp"
 #include "pose/registration/candidates.hpp"
 #include "pose/registration/pose_selection.hpp"
@@ -29,6 +31,30 @@ struct PoseSettings {
   float min_score = 0.1F;                                ///< of a detection whose pose is looked for
   int threads = 1;                                       ///< any number gives the same poses
 };
+
+template <typename Visit>
+void fields(const PoseSettings& /*settings*/, const Visit& visit) {
+  using S = PoseSettings;
+  visit(group("model", &S::model));
+  visit(group("noise", &S::noise));
+  visit(group("region", &S::region));
+  visit(group("initial", &S::initial));
+  visit(group("search", &S::search));
+  visit(group("warm_start", &S::warm_start));
+  visit(group("registration", &S::registration));
+  visit(group("turn", &S::turn));
+  visit(group("verification", &S::verification));
+  visit(group("quality", &S::quality));
+  visit(number("min_score", &S::min_score, 0, 1));
+  visit(number("threads", &S::threads, 1, 256));
+}
+
+/// As pipeline/base/check_settings.hpp says, the qualities of single classes too.
+inline void check_settings(const PoseSettings& settings, const std::string& source) {
+  check_fields(settings, source);
+  for (const auto& [name, quality] : settings.class_quality)
+    check_settings(quality, fmt::format("{}: quality of '{}'", source, name));
+}
 
 /// The quality that a class' poses are judged by: the one learnt for it, or the common one.
 inline const QualitySettings& class_quality_of(const PoseSettings& settings, const std::string& class_name) {

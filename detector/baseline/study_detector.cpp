@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "detector/baseline/scale_space_search.hpp"
+#include "pipeline/base/check_settings.hpp"
 
 namespace houghstream::baseline {
 namespace {
@@ -28,7 +29,9 @@ std::vector<Candidate> search_normalised(const SearchContext& search, Way way, c
 }  // namespace
 
 StudyDetector::StudyDetector(Forest forest, const DetectionSettings& settings, Way way)
-    : forest_(std::move(forest)), index_(forest_), settings_(settings), way_(way) {}
+    : forest_(std::move(forest)), index_(forest_), settings_(settings), way_(way) {
+  check_settings(settings_, "detection settings");
+}
 
 Detections StudyDetector::detect(const RgbdFrame& frame, DetectorWorkspace& workspace) const {
   const SearchContext search{index_, settings_};

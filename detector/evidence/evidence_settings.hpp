@@ -1,5 +1,7 @@
 #pragma once
 
+#include "pipeline/base/settings_fields.hpp"
+
 namespace houghstream {
 
 /// What is reported.
@@ -11,5 +13,14 @@ struct EvidenceSettings {
   int max_candidates = 16;  ///< the strongest; a frame full of weak maxima must not hold up the poses of the others
   int max_rotations = 48;   ///< rotations handed to the pose process
 };
+
+template <typename Visit>
+void fields(const EvidenceSettings& /*settings*/, const Visit& visit) {
+  using S = EvidenceSettings;
+  visit(number("threshold", &S::threshold, 0, 1));
+  visit(number("candidates_from", &S::candidates_from, 0, 1));
+  visit(number("max_candidates", &S::max_candidates, 0, 1000000));
+  visit(number("max_rotations", &S::max_rotations, 0, 1000000));
+}
 
 }  // namespace houghstream

@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/checks.hpp"
 
 namespace houghstream {
@@ -73,6 +74,24 @@ const FeatureBlock& FeatureLayout::block(FeatureFamily family) const {
     if (block.family == family) return block;
   }
   fail("features: no '{}' in this layout, expected it among its families", family_names(family));
+}
+
+void check_settings(const FeatureSettings& settings, const std::string& source) {
+  check_fields(settings, source);
+  require(settings.families > 0 && settings.families <= kAllFamilies && FeatureLayout(settings).planes() < 256,
+          "{}: families {:#x}, expected some of {:#x}", source, settings.families, kAllFamilies);
+  const bool is_scale_space = settings.handling == ScaleHandling::kScaleSpace;
+  require(is_scale_space || settings.handling == ScaleHandling::kDepthNormalised,
+          "{}: handling {}, expected 0 for depth normalisation or 1 for a scale space", source,
+          static_cast<std::uint32_t>(settings.handling));
+  require(!is_scale_space || settings.scales[0] > 0.0F, "{}: a scale space without scales, expected at least one",
+          source);
+  for (const float scale : settings.scales) {
+    require(scale == 0.0F || (scale >= 0.05F && scale <= 8.0F), "{}: scales hold {}, expected 0.05 to 8", source,
+            scale);
+  }
+  require(settings.depth_sobel_px % 2 == 1, "{}: depth_sobel_px {}, expected an odd number of working pixels", source,
+          settings.depth_sobel_px);
 }
 
 }  // namespace houghstream

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pipeline/types/brightness.hpp"
 
 namespace houghstream {
@@ -34,5 +36,21 @@ struct FeatureSettings {
   float fill_distance = 0.06F;
   BrightnessRange tone;  ///< frames that are searched are brought into it; what is learnt from stays as it is
 };
+
+template <typename Visit>
+void fields(const FeatureSettings& /*settings*/, const Visit& visit) {
+  using S = FeatureSettings;
+  visit(number("image_scale", &S::image_scale, 0.05, 2));
+  visit(number("far_distance", &S::far_distance, 0, 1000, "m"));
+  visit(number("max_distance", &S::max_distance, 0, 1000, "m"));
+  visit(number("depth_sobel_px", &S::depth_sobel_px, 3, 31, "working pixels"));
+  visit(number("min_max_px", &S::min_max_px, 1, 31, "working pixels"));
+  visit(number("fill_distance_px", &S::fill_distance_px, 0, 1000, "working pixels"));
+  visit(number("fill_distance", &S::fill_distance, 0, 1, "m"));
+  visit(group("tone", &S::tone));
+}
+
+/// As pipeline/base/check_settings.hpp says, and families, handling, scales and kernels are such as there are.
+void check_settings(const FeatureSettings& settings, const std::string& source);
 
 }  // namespace houghstream

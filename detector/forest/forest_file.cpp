@@ -11,6 +11,7 @@
 
 #include "detector/features/feature_families.hpp"
 #include "pipeline/base/archive.hpp"
+#include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 
@@ -154,36 +155,11 @@ void check_numbers(const Forest& forest, const std::string& source) {
   }
 }
 
-void check_settings(const Forest& forest, const std::string& source) {
-  const FeatureSettings& f = forest.features;
-  require(f.image_scale > 0.05 && f.image_scale <= 2.0, "{}: image scale {}, expected 0.05 to 2", source,
-          f.image_scale);
-  require(f.families > 0 && f.families < 256 && FeatureLayout(f).planes() < 256,
-          "{}: feature families {:#x}, expected some of {:#x}", source, f.families, 255);
-  require(
-      f.handling == ScaleHandling::kDepthNormalised || (f.handling == ScaleHandling::kScaleSpace && f.scales[0] > 0),
-      "{}: scale handling {}, expected depth normalisation or some scales", source,
-      static_cast<std::uint32_t>(f.handling));
-  for (const float scale : f.scales) {
-    require(scale == 0.0F || (scale >= 0.05F && scale <= 8.0F), "{}: image searched at scale {}, expected 0.05 to 8",
-            source, scale);
-  }
+void check_head(const Forest& forest, const std::string& source) {
+  check_settings(forest.features, source + ": features");
+  check_settings(forest.patch, source + ": patch");
   require(forest.scoring == Scoring::kEvidence || forest.scoring == Scoring::kVotes, "{}: scoring {}, expected 0 or 1",
           source, static_cast<std::uint32_t>(forest.scoring));
-  require(f.depth_sobel_px >= 3 && f.depth_sobel_px <= 31 && f.depth_sobel_px % 2 == 1 && f.min_max_px >= 1 &&
-              f.min_max_px <= 31,
-          "{}: feature kernels {} and {}, expected up to 31 pixels, the first one odd", source, f.depth_sobel_px,
-          f.min_max_px);
-  require(
-      f.fill_distance_px >= 0.0F && f.fill_distance_px <= 1000.0F && f.fill_distance >= 0.0F && f.fill_distance <= 1.0F,
-      "{}: holes filled over {} pixels or {} m, expected up to 1000 pixels and 1 m", source, f.fill_distance_px,
-      f.fill_distance);
-  require(f.tone.is_sound(), "{}: a tone of means {} to {}, deviation up to {}, expected grey values of 0 to 255",
-          source, f.tone.min_mean, f.tone.max_mean, f.tone.max_deviation);
-  require(
-      forest.patch.radius >= 1 && forest.patch.radius <= 127 && forest.patch.unit > 0.0F && forest.patch.unit <= 1.0F,
-      "{}: patch of {} steps of {} m, expected 1 to 127 steps below 1 m", source, forest.patch.radius,
-      forest.patch.unit);
   require(!forest.classes.empty() && !forest.roots.empty(), "{}: {} classes and {} trees, expected at least one each",
           source, forest.classes.size(), forest.roots.size());
   for (const ObjectClass& c : forest.classes) {
@@ -250,7 +226,7 @@ Forest load_forest(const std::filesystem::path& file) {
   Reader reader{{payload, source + ": forest payload"}};
   archive_members(reader, forest);
   require(reader.bytes.empty(), "{}: {} bytes left over after the forest", source, reader.bytes.size());
-  check_settings(forest, source);
+  check_head(forest, source);
   check_indices(forest, source);
   check_leaves(forest, source);
   check_numbers(forest, source);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "pipeline/base/settings_fields.hpp"
+
 namespace houghstream {
 
 /// How patches are tested. Stored in the forest file.
@@ -10,6 +12,13 @@ struct PatchSettings {
   int radius = 10;  ///< test offsets reach from -radius to +radius steps
 };
 
+template <typename Visit>
+void fields(const PatchSettings& /*settings*/, const Visit& visit) {
+  using S = PatchSettings;
+  visit(number("unit", &S::unit, 1e-6, 1, "m or working pixels"));
+  visit(number("radius", &S::radius, 1, 127, "steps"));
+}
+
 /// How far apart the patches of a frame stand.
 struct PatchSpacing {
   int stride = 2;  ///< working pixels (paper, Section 5.1.3)
@@ -17,6 +26,13 @@ struct PatchSpacing {
   /// add_patches. 0 = none are. With depth normalisation only.
   float metres = 0.022F;
 };
+
+template <typename Visit>
+void fields(const PatchSpacing& /*settings*/, const Visit& visit) {
+  using S = PatchSpacing;
+  visit(number("stride", &S::stride, 1, 64, "working pixels"));
+  visit(number("metres", &S::metres, 0, 10, "m"));
+}
 
 /// How patches walk down the forest, and for what they vote.
 struct LeafSettings {
@@ -26,5 +42,13 @@ struct LeafSettings {
   float min_first_posterior = 0.1F;
   float min_class_share = 0.1F;  ///< posterior, p(class | patch), from which a patch votes for a class
 };
+
+template <typename Visit>
+void fields(const LeafSettings& /*settings*/, const Visit& visit) {
+  using S = LeafSettings;
+  visit(number("first_trees", &S::first_trees, 0, 1000));
+  visit(number("min_first_posterior", &S::min_first_posterior, 0, 1));
+  visit(number("min_class_share", &S::min_class_share, 0, 1));
+}
 
 }  // namespace houghstream

@@ -11,6 +11,7 @@
 #include "detector/training/score_training.hpp"
 #include "detector/training/tree_trainer.hpp"
 #include "detector/training/vote_mass.hpp"
+#include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
 
@@ -184,11 +185,19 @@ void number_after(const Forest& old, std::vector<TrainingView>& views) {
   }
 }
 
+void check_profile(const Profile& profile, const Scales& scales) {
+  const std::string source = fmt::format("profile '{}'", profile.name);
+  scales.require_teachable(profile.features, source);
+  check_settings(profile.features, source + ": features");
+  check_settings(profile.patch, source + ": patch");
+  check_settings(profile.training, source + ": training");
+}
+
 }  // namespace
 
 Forest train_forest(std::vector<TrainingView> views, const Profile& profile, const Progress& progress,
                     const Scales& scales) {
-  scales.require_teachable(profile.features, fmt::format("profile '{}'", profile.name));
+  check_profile(profile, scales);
   const TrainingSettings& settings = profile.training;
   const Rooms rooms = share_rooms(views, settings);
   TrainingSet set = make_set(rooms, profile, scales, views);
@@ -209,7 +218,7 @@ Forest train_forest(std::vector<TrainingView> views, const Profile& profile, con
 
 Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Profile& profile, const Progress& progress,
                    const Scales& scales) {
-  scales.require_teachable(profile.features, fmt::format("profile '{}'", profile.name));
+  check_profile(profile, scales);
   require(profile.training.trees == static_cast<int>(old.roots.size()),
           "adding objects: {} trees, expected the forest's {}", profile.training.trees, old.roots.size());
   number_after(old, views);

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <limits>
+
 #include "detector/forest/forest.hpp"
 #include "detector/training/pictures/picture_settings.hpp"
+#include "pipeline/base/settings_fields.hpp"
 
 namespace houghstream::training {
 
@@ -32,5 +35,26 @@ struct TrainingSettings : PictureSettings {
   Scoring scoring = Scoring::kEvidence;
   int validation_frames = 300;  ///< composed pictures on which the score learns what it is worth
 };
+
+template <typename Visit>
+void fields(const TrainingSettings& settings, const Visit& visit) {
+  using S = TrainingSettings;
+  fields(static_cast<const PictureSettings&>(settings), visit);
+  visit(number("trees", &S::trees, 1, 1000));
+  visit(number("max_depth", &S::max_depth, 1, 60, "levels"));
+  visit(number("min_samples", &S::min_samples, 1, 1000000));
+  visit(number("tests_per_node", &S::tests_per_node, 1, 100000));
+  visit(number("offset_share", &S::offset_share, 0, 1));
+  visit(number("alone_share", &S::alone_share, 0, 1));
+  visit(number("shape_alone_share", &S::shape_alone_share, 0, 1));
+  visit(number("histogram_share", &S::histogram_share, 0, 1));
+  visit(number("node_samples", &S::node_samples, 1, 1000000));
+  visit(number("max_background_weight", &S::max_background_weight, 0, std::numeric_limits<double>::infinity()));
+  visit(number("in_bag", &S::in_bag, 0, 1));
+  visit(number("max_leaf_votes", &S::max_leaf_votes, 1, 255));
+  visit(number("max_leaf_views", &S::max_leaf_views, 0, 255));
+  visit(number("merge_radius", &S::merge_radius, 0, 10, "m"));
+  visit(number("validation_frames", &S::validation_frames, 0, 100000));
+}
 
 }  // namespace houghstream::training

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "pipeline/base/settings_fields.hpp"
+
 namespace houghstream {
 
 /// How votes are cast and their maxima found.
@@ -12,11 +14,29 @@ struct VotingSettings {
   float vote_sigma = 0.016F;        ///< bandwidth of the 3-D maximum, metres
 };
 
+template <typename Visit>
+void fields(const VotingSettings& /*settings*/, const Visit& visit) {
+  using S = VotingSettings;
+  visit(number("min_mass_share", &S::min_mass_share, 0, 1));
+  visit(number("maxima_per_class", &S::maxima_per_class, 1, 1000000));
+  visit(number("candidates_per_class", &S::candidates_per_class, 1, 1000000));
+  visit(number("min_relative_peak", &S::min_relative_peak, 0, 1));
+  visit(number("hough_sigma_px", &S::hough_sigma_px, 0.01, 100, "working pixels"));
+  visit(number("vote_sigma", &S::vote_sigma, 1e-6, 10, "m"));
+}
+
 /// Which of two overlapping detections stays (non-maximum suppression).
 struct SuppressionSettings {
   float max_overlap = 0.5F;  ///< a weaker box of another object may overlap a stronger one by this IoU
   /// ... if that one is more likely than not and so many times as likely; of its own class always.
   float dominance = 2.0F;
 };
+
+template <typename Visit>
+void fields(const SuppressionSettings& /*settings*/, const Visit& visit) {
+  using S = SuppressionSettings;
+  visit(number("max_overlap", &S::max_overlap, 0, 1));
+  visit(number("dominance", &S::dominance, 0, 1e6));
+}
 
 }  // namespace houghstream

@@ -5,6 +5,7 @@
 
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/datasets/bop_symmetries.hpp"
+#include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/parallel.hpp"
@@ -71,10 +72,10 @@ BrightnessRange parse_tone(const nlohmann::json& json, const std::string& file) 
   if (found == json.end()) return tone;
   require(found->is_object(), "{}: 'tone' is {}, expected means and a deviation of grey values", file,
           json_text(*found));
-  tone.min_mean = static_cast<float>(json_number(*found, "least_mean", file));
-  tone.max_mean = static_cast<float>(json_number(*found, "most_mean", file));
-  tone.max_deviation = static_cast<float>(json_number(*found, "most_deviation", file));
-  require(tone.is_sound(), "{}: 'tone' is {}, expected grey values of 0 to 255", file, json_text(*found));
+  for_each_number(tone, [&](const auto& field, float& value) {
+    value = static_cast<float>(json_number(*found, field.name, file));
+  });
+  check_settings(tone, file + ": 'tone'");
   return tone;
 }
 
@@ -188,7 +189,9 @@ std::map<std::string, Eigen::Vector3f> ObjectStore::vote_centres() const {
 
 std::map<std::string, Symmetries> ObjectStore::symmetries_by_name() const {
   std::map<std::string, Symmetries> by_name;
-  for (const StoredObject& object : objects) by_name[object.name] = symmetries.at(object.id);
+  for (const StoredObject& object : objects) {
+    if (const auto known = symmetries.find(object.id); known != symmetries.end()) by_name[object.name] = known->second;
+  }
   return by_name;
 }
 
@@ -288,9 +291,7 @@ void write_store_json(const ObjectStore& store) {
     if (!object.quality.is_null()) entry["quality"] = object.quality;
     json["objects"].push_back(entry);
   }
-  json["tone"] = {{"least_mean", store.tone.min_mean},
-                  {"most_mean", store.tone.max_mean},
-                  {"most_deviation", store.tone.max_deviation}};
+  for_each_number(store.tone, [&](const auto& field, float value) { json["tone"][field.name] = value; });
   json["settings"] = store.settings;
   write_json(json, store.json_file());
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "pipeline/base/check_settings.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -33,6 +35,12 @@ GreyStatistics grey_statistics(const cv::Mat& colour) {
 }
 
 }  // namespace
+
+void check_settings(const BrightnessRange& range, const std::string& source) {
+  check_fields(range, source);
+  require(range.min_mean <= range.max_mean, "{}: least_mean {}, expected no more than the most_mean of {}", source,
+          range.min_mean, range.max_mean);
+}
 
 AffineBrightness fit_affine_brightness(const cv::Mat& colour, const BrightnessRange& range) {
   constexpr double kMinGain = 0.6;

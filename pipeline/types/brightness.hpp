@@ -1,6 +1,9 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <string>
+
+#include "pipeline/base/settings_fields.hpp"
 
 namespace houghstream {
 
@@ -10,12 +13,18 @@ struct BrightnessRange {
   float min_mean = 0.0F;
   float max_mean = 255.0F;
   float max_deviation = 255.0F;
-  /// Whether these are grey values that a picture can be brought to.
-  bool is_sound() const {
-    return min_mean >= 0.0F && min_mean <= max_mean && max_mean <= 255.0F && max_deviation >= 1.0F &&
-           max_deviation <= 255.0F;
-  }
 };
+
+template <typename Visit>
+void fields(const BrightnessRange& /*settings*/, const Visit& visit) {
+  using S = BrightnessRange;
+  visit(number("least_mean", &S::min_mean, 0, 255, "grey values"));
+  visit(number("most_mean", &S::max_mean, 0, 255, "grey values"));
+  visit(number("most_deviation", &S::max_deviation, 1, 255, "grey values"));
+}
+
+/// As pipeline/base/check_settings.hpp says; the means are in order too.
+void check_settings(const BrightnessRange& range, const std::string& source);
 
 /// What brings a picture into a range: the same for all coded values of all its channels, value * gain + offset.
 struct AffineBrightness {

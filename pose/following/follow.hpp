@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
 #include "pose/pose_estimator.hpp"
@@ -30,6 +31,23 @@ struct FollowSettings {
   float hidden_share = 0.5F;              ///< of the rendered pixels, behind something: it is hidden rather than gone
   float max_free_space_violation = 0.3F;  ///< of the others, seen through: it is gone even so
 };
+
+template <typename Visit>
+void fields(const FollowSettings& /*settings*/, const Visit& visit) {
+  using S = FollowSettings;
+  visit(number("coarse_iterations", &S::coarse_iterations, 0, 1000));
+  visit(number("coarse_points", &S::coarse_points, 1, 100000));
+  visit(number("max_correspondence_start_m", &S::max_correspondence_start_m, 0, 1, "m"));
+  visit(number("fine_iterations", &S::fine_iterations, 0, 1000));
+  visit(number("fine_points", &S::fine_points, 1, 100000));
+  visit(number("max_jump_m", &S::max_jump_m, 0, 10, "m"));
+  visit(number("settle_step_deg", &S::settle_step_deg, 0, 180, "degrees"));
+  visit(number("settle_step_m", &S::settle_step_m, 0, 1, "m"));
+  visit(number("settle_rounds", &S::settle_rounds, 0, 1000));
+  visit(number("settle_points", &S::settle_points, 1, 100000));
+  visit(number("hidden_share", &S::hidden_share, 0, 1));
+  visit(number("max_free_space_violation", &S::max_free_space_violation, 0, 1));
+}
 
 /// An object that was posed before, and where it may be in a frame.
 struct ExpectedObject {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/log_odds.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/frame_results.hpp"
@@ -163,6 +164,10 @@ void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, con
 }
 
 }  // namespace
+
+ObjectFollower::ObjectFollower(FollowerSettings settings) : settings_(settings) {
+  check_settings(settings_, "settings of a follower");
+}
 
 std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator, const RgbdFrame& frame) {
   constexpr std::size_t kShown = 32;  // frames; a detector's answer takes a few

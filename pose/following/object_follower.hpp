@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pose/following/follow.hpp"
 #include "pose/motion/smoothed_velocity.hpp"
 #include "pose/pose_estimator.hpp"
@@ -31,6 +32,24 @@ struct FollowerSettings {
   double better_log_odds = 0.3;      ///< ...and takes its place where its quality is so much better
   double speed_gain = 0.5;           ///< how much the last step moves the speed
 };
+
+template <typename Visit>
+void fields(const FollowerSettings& /*settings*/, const Visit& visit) {
+  using S = FollowerSettings;
+  visit(group("follow", &S::follow));
+  visit(number("max_failures", &S::max_failures, 0, 100000));
+  visit(number("min_kept_quality", &S::min_kept_quality, 0, 1));
+  visit(number("max_withheld_s", &S::max_withheld_s, 0, 3600, "s"));
+  visit(number("max_hidden_s", &S::max_hidden_s, 0, 3600, "s"));
+  visit(number("reach_m", &S::reach_m, 0, 10, "m"));
+  visit(number("apart", &S::apart, 0, 10));
+  visit(number("logit_gain", &S::logit_gain, 0, 1));
+  visit(number("miss_score", &S::miss_score, 0, 1));
+  visit(number("missed_after_s", &S::missed_after_s, 0, 3600, "s"));
+  visit(number("recheck_interval_s", &S::recheck_interval_s, 0, 3600, "s"));
+  visit(number("better_log_odds", &S::better_log_odds, 0, 100));
+  visit(number("speed_gain", &S::speed_gain, 0, 1));
+}
 
 /// An object that is followed from frame to frame of one camera. Its times are on the camera's clock
 /// (FollowedCamera::ahead_us).
@@ -78,7 +97,8 @@ struct FollowedCamera {
 /// short steps only.
 class ObjectFollower {
  public:
-  explicit ObjectFollower(FollowerSettings settings = {}) : settings_(settings) {}
+  /// Throws InputError for settings out of their range.
+  explicit ObjectFollower(FollowerSettings settings = {});
 
   /// The followed objects in the newest frame of a camera, in the order in which they were found; each without a
   /// detection, and with the reason where its pose is withheld. What is lost is told once more, with its reason, and is

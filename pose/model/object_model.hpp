@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/symmetry.hpp"
 #include "pose/model/surface_colour.hpp"
@@ -27,6 +28,17 @@ struct ModelSettings {
   double right_within = 0.1;  ///< ObjectModel::alternatives are farther from the pose than this, diameters (MSSD)
   std::map<std::string, ShapeSymmetry> shape_symmetries;  ///< by name; those of others are found in the mesh
 };
+
+template <typename Visit>
+void fields(const ModelSettings& /*settings*/, const Visit& visit) {
+  using S = ModelSettings;
+  visit(number("views_per_edge", &S::views_per_edge, 1, 32));
+  visit(number("points_per_view", &S::points_per_view, 1, 100000));
+  visit(number("view_distance_m", &S::view_distance_m, 0.01, 100, "m"));
+  visit(number("pixels_per_diameter", &S::pixels_per_diameter, 8, 4096, "pixels"));
+  visit(number("min_facing", &S::min_facing, 0, 1));
+  visit(number("right_within", &S::right_within, 0, 1, "diameters"));
+}
 
 /// Surface points visible from one direction, in random order so that any first n of them cover the view evenly
 /// (sparse viewpoint models: Stoiber et al. 2022, "Iterative Corresponding Geometry").

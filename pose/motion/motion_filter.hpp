@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pipeline/types/tracked_object.hpp"
 
 namespace houghstream {
@@ -25,6 +26,17 @@ struct MotionSettings {
   /// since objects differ; chosen so, not learnt.
   double common_variance_fraction = 0.1;
 };
+
+template <typename Visit>
+void fields(const MotionSettings& /*settings*/, const Visit& visit) {
+  using S = MotionSettings;
+  visit(number("drift_m", &S::drift_m, 0, 1, "m"));
+  visit(number("drift_rad", &S::drift_rad, 0, 3.2, "rad"));
+  visit(number("acceleration", &S::acceleration, 0, 1e6, "m^2/s^3"));
+  visit(number("angular_acceleration", &S::angular_acceleration, 0, 1e6, "rad^2/s^3"));
+  visit(number("coast_s", &S::coast_s, 0, 3600, "s"));
+  visit(number("common_variance_fraction", &S::common_variance_fraction, 0, 1));
+}
 
 /// The pose of one object over time: a Kalman filter on the group of motions (error state: twists
 /// about the world's axes, twist.hpp). What stands is

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/object_pose.hpp"
 #include "pose/seen/region.hpp"
@@ -18,6 +19,15 @@ struct InitialSettings {
   float vote_gain = 0.1F;    ///< how much a rotation that the votes agree on is preferred after registration
 };
 
+template <typename Visit>
+void fields(const InitialSettings& /*settings*/, const Visit& visit) {
+  using S = InitialSettings;
+  visit(number("cluster_radius_deg", &S::cluster_radius_deg, 0.1, 180, "degrees"));
+  visit(number("clusters", &S::clusters, 1, 1000));
+  visit(number("rotated_clusters", &S::rotated_clusters, 0, 1000));
+  visit(number("vote_gain", &S::vote_gain, 0, 100));
+}
+
 /// Coarse choice by depth score: each rotation at several places, the best go to registration.
 struct SearchSettings {
   double reach_m = 0.06;      ///< along the line of sight, to each side of the detected centre
@@ -28,11 +38,29 @@ struct SearchSettings {
   double tolerance_m = 0.02;  ///< measured and model depth agree; 3 sigma is added
 };
 
+template <typename Visit>
+void fields(const SearchSettings& /*settings*/, const Visit& visit) {
+  using S = SearchSettings;
+  visit(number("reach_m", &S::reach_m, 0, 10, "m"));
+  visit(number("step_m", &S::step_m, 0, 10, "m"));
+  visit(number("steps", &S::steps, 0, 100));
+  visit(number("points", &S::points, 1, 100000));
+  visit(number("keep", &S::keep, 1, 1000));
+  visit(number("tolerance_m", &S::tolerance_m, 0, 1, "m"));
+}
+
 /// Poses of an earlier frame as further candidates.
 struct WarmStartSettings {
   double max_age_s = 0.5;  ///< between the frames
   double reach_m = 0.1;    ///< from the detected centre; objects farther away are others
 };
+
+template <typename Visit>
+void fields(const WarmStartSettings& /*settings*/, const Visit& visit) {
+  using S = WarmStartSettings;
+  visit(number("max_age_s", &S::max_age_s, 0, 3600, "s"));
+  visit(number("reach_m", &S::reach_m, 0, 10, "m"));
+}
 
 /// A rotation on which votes agree.
 struct RotationCandidate {

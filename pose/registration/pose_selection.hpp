@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pose/registration/registration.hpp"
 #include "pose/seen/depth_score.hpp"
 
@@ -19,6 +20,19 @@ struct RotationSearchSettings {
   std::size_t rivals = 1;              ///< flips beside the best one that are chosen too,
   float min_alternative_ratio = 0.8F;  ///< where they score at least so much of it
 };
+
+template <typename Visit>
+void fields(const RotationSearchSettings& /*settings*/, const Visit& visit) {
+  using S = RotationSearchSettings;
+  visit(number("step_deg", &S::step_deg, 0.1, 360, "degrees"));
+  visit(number("fine_step_deg", &S::fine_step_deg, 0.1, 180, "degrees"));
+  visit(number("climb_step_m", &S::climb_step_m, 0, 1, "m"));
+  visit(number("hill_climb_rounds", &S::hill_climb_rounds, 0, 1000));
+  visit(number("points", &S::points, 1, 100000));
+  visit(number("registered", &S::registered, 0, 1000));
+  visit(number("rivals", &S::rivals, 0, 1000));
+  visit(number("min_alternative_ratio", &S::min_alternative_ratio, 0, 1));
+}
 
 /// The settings that the choice reads; each stands beside its stage.
 struct ChoiceSettings {

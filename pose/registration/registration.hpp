@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pose/registration/candidates.hpp"
 #include "pose/seen/region.hpp"
 
@@ -56,6 +57,20 @@ struct RegistrationSettings {
   double max_shift_m = 0.07;                  ///< from the detected centre; what ended farther away is something else
   double converged_m = 0.0005;                ///< last step moved the model's surface by less
 };
+
+template <typename Visit>
+void fields(const RegistrationSettings& /*settings*/, const Visit& visit) {
+  using S = RegistrationSettings;
+  visit(number("coarse_iterations", &S::coarse_iterations, 0, 1000));
+  visit(number("coarse_points", &S::coarse_points, 1, 100000));
+  visit(number("fine_iterations", &S::fine_iterations, 0, 1000));
+  visit(number("fine_points", &S::fine_points, 1, 100000));
+  visit(number("max_correspondence_start_m", &S::max_correspondence_start_m, 0, 1, "m"));
+  visit(number("max_correspondence_end_m", &S::max_correspondence_end_m, 0, 1, "m"));
+  visit(number("point_weight", &S::point_weight, 0, 1));
+  visit(number("max_shift_m", &S::max_shift_m, 0, 10, "m"));
+  visit(number("converged_m", &S::converged_m, 0, 1, "m"));
+}
 
 /// Correspondence distances at which coarse registration of an object begins and all registration of it ends, metres:
 /// the settings' and what depth's noise adds where the object is.

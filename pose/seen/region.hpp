@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pipeline/types/brightness.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
@@ -19,6 +20,13 @@ struct DepthNoise {
   double sigma(double z) const { return base_m + per_m * z * z; }
 };
 
+template <typename Visit>
+void fields(const DepthNoise& /*settings*/, const Visit& visit) {
+  using S = DepthNoise;
+  visit(number("base_m", &S::base_m, 0, 1, "m"));
+  visit(number("per_m", &S::per_m, 0, 1, "1/m"));
+}
+
 /// Measured and model depth agree when they differ by no more than this.
 struct DepthTolerance {
   double base_m = 0.0;
@@ -33,6 +41,15 @@ struct RegionSettings {
   int min_points = 60;          ///< pixels with depth inside the gate; with fewer there is no pose
   BrightnessRange tone;         ///< the frame's colours are brought into it
 };
+
+template <typename Visit>
+void fields(const RegionSettings& /*settings*/, const Visit& visit) {
+  using S = RegionSettings;
+  visit(number("enlarge", &S::enlarge, 0, 10));
+  visit(number("gate_margin_m", &S::gate_margin_m, 0, 10, "m"));
+  visit(number("min_points", &S::min_points, 0, 1000000));
+  visit(group("tone", &S::tone));
+}
 
 /// Where in the depth image a detected object can be: its box, a little enlarged, and a range of depth.
 struct DepthRegion {

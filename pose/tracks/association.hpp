@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pose/tracks/track.hpp"
 
 namespace houghstream::tracks {
@@ -15,6 +16,15 @@ struct AssociationSettings {
   double turn_cost = 0.5;        ///< of half a turn beside that of the whole reach
   double crowded = 0.6;          ///< radii within which no second object of a class can be
 };
+
+template <typename Visit>
+void fields(const AssociationSettings& /*settings*/, const Visit& visit) {
+  using S = AssociationSettings;
+  visit(number("reach_m", &S::reach_m, 0, 10, "m"));
+  visit(number("moving_reach_m", &S::moving_reach_m, 0, 10, "m"));
+  visit(number("turn_cost", &S::turn_cost, 0, 100));
+  visit(number("crowded", &S::crowded, 0, 10));
+}
 
 /// The objects of a class that are there, and the poses that a frame has of it.
 struct ClassGroup {

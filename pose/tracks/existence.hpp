@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pose/tracks/track.hpp"
 
 namespace houghstream::tracks {
@@ -23,6 +24,24 @@ struct ExistenceSettings {
   double lost = 14.0;            ///< a second, where it moved when it was seen last; hidden, a quarter of it
   double unconfirmed = 4.0;      ///< a second, of what is not yet published and not seen
 };
+
+template <typename Visit>
+void fields(const ExistenceSettings& /*settings*/, const Visit& visit) {
+  using S = ExistenceSettings;
+  visit(number("prior", &S::prior, -100, 100));
+  visit(number("gain", &S::gain, 0, 1000));
+  visit(number("most", &S::most, 0, 1000));
+  visit(number("confirmed", &S::confirmed, -100, 100));
+  visit(number("confirmed_frames", &S::confirmed_frames, 0, 100000));
+  visit(number("confirmed_s", &S::confirmed_s, 0, 3600, "s"));
+  visit(number("gone", &S::gone, -100, 100));
+  visit(number("seen_through", &S::seen_through, 0, 1e6, "1/s"));
+  visit(number("displaced_rate", &S::displaced_rate, 0, 1e6, "1/s"));
+  visit(number("goes_on", &S::goes_on, 0, 1e6, "1/s"));
+  visit(number("unrecognised", &S::unrecognised, 0, 1e6, "1/s"));
+  visit(number("lost", &S::lost, 0, 1e6, "1/s"));
+  visit(number("unconfirmed", &S::unconfirmed, 0, 1e6, "1/s"));
+}
 
 /// A result, beside which objects are laid of which it has no pose.
 struct UnobservedContext {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pipeline/bus/sequence_count.hpp"
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/symmetry.hpp"
@@ -90,6 +91,17 @@ struct PoseTrackSettings {
   double rest_threshold_m = 0.004;  ///< what moved stands when two fifths of a second differ by less
   double settles_rad = 0.09;
 };
+
+template <typename Visit>
+void fields(const PoseTrackSettings& /*settings*/, const Visit& visit) {
+  using S = PoseTrackSettings;
+  visit(group("motion", &S::motion));
+  visit(number("same_rotation_rad", &S::same_rotation_rad, 0, 3.2, "rad"));
+  visit(number("static_gate_m", &S::static_gate_m, 0, 10, "m"));
+  visit(number("stands_rad", &S::stands_rad, 0, 3.2, "rad"));
+  visit(number("rest_threshold_m", &S::rest_threshold_m, 0, 10, "m"));
+  visit(number("settles_rad", &S::settles_rad, 0, 3.2, "rad"));
+}
 
 /// The pose of one object over time: one or a few hypotheses of it, each with a filter of its own, so that no average
 /// of two is ever published (a can's two turns), and what is needed to tell moving from standing.

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <set>
 
+#include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/log_odds.hpp"
 #include "pose/tracks/class_names.hpp"
@@ -47,6 +48,7 @@ struct Tracker::State {
 };
 
 Tracker::Tracker(TrackModels models, ObjectTrackerSettings settings) : state_(std::make_unique<State>()) {
+  check_settings(settings, "settings of a tracker");
   state_->models = std::move(models);
   state_->settings = settings;
 }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pose/tracks/association.hpp"
 #include "pose/tracks/existence.hpp"
 #include "pose/tracks/track.hpp"
@@ -20,6 +21,18 @@ struct ObjectTrackerSettings {
   std::size_t max_objects = 500;      ///< and candidates; further ones are refused
 };
 
+template <typename Visit>
+void fields(const ObjectTrackerSettings& /*settings*/, const Visit& visit) {
+  using S = ObjectTrackerSettings;
+  visit(group("pose", &S::pose));
+  visit(group("association", &S::association));
+  visit(group("existence", &S::existence));
+  visit(number("gone_report_s", &S::gone_report_s, 0, 1e6, "s"));
+  visit(number("reidentification_s", &S::reidentification_s, 0, 1e6, "s"));
+  visit(number("hand_occlusion_s", &S::hand_occlusion_s, 0, 1e6, "s"));
+  visit(number("max_objects", &S::max_objects, 0, 1000000));
+}
+
 /// The objects of a world, over time and over all cameras: which measured pose is of which object (class, place,
 /// rotation but for symmetries), whether an object is there (Bayes, with the evidence of depth against it: seen through
 /// is gone, hidden and out of view is kept unless it moved), where it is (MotionFilter), and which number it has.
@@ -27,6 +40,7 @@ struct ObjectTrackerSettings {
 /// A frame's result follows from the frames before, in their order, and nothing else. Not thread-safe.
 class Tracker {
  public:
+  /// Throws InputError for settings out of their range.
   Tracker(TrackModels models, ObjectTrackerSettings settings);
   ~Tracker();
   Tracker(Tracker&&) noexcept;

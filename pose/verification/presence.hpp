@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "pipeline/base/settings_fields.hpp"
+
 namespace houghstream {
 
 /// The probability that an object is there, whether its pose is right or not, by logistic regression on the log odds of
@@ -13,6 +15,14 @@ struct PresenceSettings {
   double score_weight = 0.26;
   double quality_weight = 0.68;
 };
+
+template <typename Visit>
+void fields(const PresenceSettings& /*settings*/, const Visit& visit) {
+  using S = PresenceSettings;
+  visit(number("bias", &S::bias, -1e6, 1e6));
+  visit(number("of_score", &S::score_weight, -1e6, 1e6));
+  visit(number("of_quality", &S::quality_weight, -1e6, 1e6));
+}
 
 /// In (0, 1); `score` and `quality` are in [0, 1], and the ends of it are no certainty.
 float presence_probability(float score, float quality, const PresenceSettings& settings);

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pipeline/types/object_pose.hpp"
 #include "pose/seen/colour_score.hpp"
 #include "pose/seen/region.hpp"
@@ -45,6 +46,12 @@ inline constexpr std::array<double QualityTerms::*, 8> kQualityTerms = {
 inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames = {
     "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "print", "left_over", "contrast"};
 
+template <typename Visit>
+void fields(const QualityTerms& /*settings*/, const Visit& visit) {
+  for (std::size_t i = 0; i < kQualityTerms.size(); ++i)
+    visit(number(kQualityTermNames[i], kQualityTerms[i], -1e6, 1e6));
+}
+
 /// The probability that of the poses that look alike by their shape one is right, by logistic regression on what its
 /// print says (PrintComparison::margin). The default takes that at its word. What hs-teach learns of an object takes
 /// its place.
@@ -52,6 +59,13 @@ struct PrintSettings {
   double bias = 0.0;
   double margin_weight = 1.0;
 };
+
+template <typename Visit>
+void fields(const PrintSettings& /*settings*/, const Visit& visit) {
+  using S = PrintSettings;
+  visit(number("bias", &S::bias, -1e6, 1e6));
+  visit(number("of_margin", &S::margin_weight, -1e6, 1e6));
+}
 
 /// In (0, 1).
 float print_probability(double margin, const PrintSettings& settings);
@@ -73,6 +87,18 @@ struct QualitySettings {
   PresenceSettings presence;            ///< what this says of whether the object is there at all
   PrintSettings print;                  ///< which of the poses that look alike by their shape is right
 };
+
+template <typename Visit>
+void fields(const QualitySettings& /*settings*/, const Visit& visit) {
+  using S = QualitySettings;
+  visit(number("bias", &S::bias, -1e6, 1e6));
+  visit(group("weights", &S::weights));
+  visit(group("typical", &S::typical));
+  visit(number("least", &S::least, 0, 1));
+  visit(number("min_candidate_quality", &S::min_candidate_quality, 0, 1));
+  visit(group("presence", &S::presence));
+  visit(group("print", &S::print));
+}
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings);
 

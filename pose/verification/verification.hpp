@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include "pipeline/base/settings_fields.hpp"
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pose/seen/depth_score.hpp"
@@ -14,6 +15,13 @@ struct VerificationSettings {
   double tolerance_m = kDepthTolerance_m;  ///< measured and model depth agree; 3 sigma is added
   int points = 600;                        ///< of a view whose colours are compared
 };
+
+template <typename Visit>
+void fields(const VerificationSettings& /*settings*/, const Visit& visit) {
+  using S = VerificationSettings;
+  visit(number("tolerance_m", &S::tolerance_m, 0, 1, "m"));
+  visit(number("points", &S::points, 1, 100000));
+}
 
 /// The rendered model against the measured depth, pixel by pixel.
 struct Verification {

@@ -10,7 +10,7 @@ import re
 import rule_command
 
 QUALITY = "pose/verification/quality.hpp"
-STORED = "tools/common/stored_quality.hpp"
+STORED = "tools/finder/stored_quality.hpp"
 ROWS = (
     ("pose/README.md", r"A pose is published from quality ([\d.]+) on", QUALITY, r"float least = ([\d.]+)F"),
     ("pose/README.md", r"learnt per object: ([\d.]+)\)", STORED, r"kStoreQuality = ([\d.]+)F"),

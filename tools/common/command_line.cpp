@@ -140,6 +140,10 @@ CommandOption& CommandOption::range(double low, double high) {
   return *this;
 }
 
+CommandOption& CommandOption::range(const NumberRange& of_setting) {
+  return range(of_setting.min, of_setting.max);
+}
+
 CommandOption& CommandOption::positive() {
   check_number<double>(*option_, "a number above 0", [](double value) { return value > 0.0; });
   return *this;

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/base/settings_fields.hpp"
+
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
 class App;
 class Option;
@@ -25,6 +27,7 @@ class CommandOption {
   CommandOption& delimiter(char between);                ///< of several values in one word
   CommandOption& range(int low, int high);               ///< both are allowed
   CommandOption& range(double low, double high);         ///< both are allowed
+  CommandOption& range(const NumberRange& of_setting);   ///< that of the setting that the option changes
   CommandOption& positive();                             ///< above 0
   CommandOption& non_negative();                         ///< 0 or above
   CommandOption& one_of(const std::vector<int>& values);

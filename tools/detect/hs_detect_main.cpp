@@ -1,6 +1,5 @@
 #include <unistd.h>
 
-#include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
 #include "drivers/files/camera_info.hpp"
@@ -10,18 +9,17 @@
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/process/detect_process.hpp"
 #include "pipeline/process/warm_up.hpp"
-#include "tools/common/search_options.hpp"
-#include "tools/common/stored_forest.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/finder/search_arguments.hpp"
+#include "tools/finder/stored_forest.hpp"
 
 namespace {
 
 using namespace houghstream;
 
 Detector make_detector(Forest forest, const SearchOptions& search) {
-  const DetectionSettings settings = search.settings_for(forest);
   for (const ObjectClass& object : forest.classes) log_debug("class {}: {}", object.class_id, object.name);
-  return Detector(std::move(forest), settings);
+  return detector_of(std::move(forest), search);
 }
 
 /// A detector and the memory of its frames, which are looked at one after another. Its first frame takes no longer than
@@ -99,7 +97,7 @@ int main(int argc, char** argv) {
   app.add_option("--candidates", options.search.candidates_from,
                  "weaker detections from this score on are handed to hs-pose, which reports those whose pose is right; "
                  "1: none")
-      .range(0.0, 1.0)
+      .range(range_of(&EvidenceSettings::candidates_from))
       .capture_default_str();
   app.add_option("--looks-per-second", options.process.max_rate_hz,
                  "look at so many of each camera's frames a second, for hs-pose --follow; default: at each one")

@@ -8,9 +8,6 @@
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
-#include "tools/common/search_options.hpp"
-#include "tools/common/searched_objects.hpp"
-#include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/bop_results.hpp"
 #include "tools/evaluate/bop_targets.hpp"
@@ -18,6 +15,9 @@
 #include "tools/evaluate/metrics/search_times.hpp"
 #include "tools/evaluate/report.hpp"
 #include "tools/evaluate/scene_figures.hpp"
+#include "tools/finder/search_arguments.hpp"
+#include "tools/finder/searched_objects.hpp"
+#include "tools/finder/stored_quality.hpp"
 
 namespace houghstream {
 namespace {
@@ -204,16 +204,14 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
          "--operating-score", options.operating_score,
          "score from which precision and false detections count; in-process, weaker ones are no candidates either; "
          "default: as hs-detect reports them, and candidates that have a pose")
-      .range(0.0, 1.0);
-  app.add_option("--min-quality", options.min_quality,
-                 "in-process: poses of lower quality are withheld; default: as by hs-pose")
-      .range(0.0, 1.0);
+      .range(range_of(&EvidenceSettings::threshold));
+  add_min_quality_option(app, options.min_quality)
+      .description("in-process: poses of lower quality are withheld; default: as by hs-pose");
   app.add_flag("--processed-only", rules.processed_only, "skipped frames are left out, not missed");
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   add_search_options(app, options.search);
-  app.add_option("--min-mass", options.search.min_mass_share,
-                 "in-process: vote mass, over a whole object's, from which a maximum counts; default: the profile's")
-      .range(0.0, 1.0);
+  add_min_mass_option(app, options.search)
+      .description("in-process: vote mass, over a whole object's, from which a maximum counts; default: the profile's");
 }
 
 }  // namespace
@@ -221,9 +219,7 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
 /// A store's forest and models, where one is named, and what hs-detect publishes unless told otherwise.
 static EvaluateOptions with_store(EvaluateOptions options) {
   options.rules.operating_score = options.operating_score.value_or(EvidenceSettings{}.threshold);
-  if (options.min_quality) publish_from(*options.min_quality, options.pose);
-  if (const std::optional<store::ObjectStore> objects = resolve_store(options.known))
-    apply_store_settings(*objects, options.min_quality, options.pose);
+  options.pose = pose_settings_of(options.pose, resolve_store(options.known), options.min_quality);
   return options;
 }
 

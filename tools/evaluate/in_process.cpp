@@ -8,6 +8,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "pose/pose_estimator.hpp"
 #include "tools/common/progress_line.hpp"
+#include "tools/finder/stored_quality.hpp"
 
 namespace houghstream {
 namespace {
@@ -15,11 +16,6 @@ namespace {
 PoseEstimator make_estimator(const std::map<std::string, Mesh>& models, PoseSettings settings, int threads) {
   settings.threads = threads;
   return {models, std::move(settings)};
-}
-
-PoseSettings withholding_none(PoseSettings settings) {
-  publish_from(0.0F, settings);
-  return settings;
 }
 
 /// `settings`, but that all is found which would be sent.
@@ -63,7 +59,7 @@ struct InProcess::State {
   State(const std::map<std::string, Mesh>& models, const PublishingRules& published, int threads)
       : has_models(!models.empty()),
         estimator(make_estimator(models, published.pose, threads)),
-        withholding_none(make_estimator(models, houghstream::withholding_none(published.pose), threads)),
+        unfiltered(make_estimator(models, without_rejection(published.pose), threads)),
         rules(published) {}
 
   float ranked_from = 0.0F;
@@ -72,7 +68,7 @@ struct InProcess::State {
   FrameSearch publishing;  ///< where `search` finds more than is sent
   bool has_models;
   PoseEstimator estimator;
-  PoseEstimator withholding_none;
+  PoseEstimator unfiltered;
   PublishingRules rules;
 
   Detections detect(const RgbdFrame& frame) const {
@@ -93,7 +89,7 @@ struct InProcess::State {
       places.push_back(i);
     }
     ObjectPoses poses = published;
-    ObjectPoses found = withholding_none.estimate(frame, open);
+    ObjectPoses found = unfiltered.estimate(frame, open);
     for (std::size_t i = 0; i < places.size(); ++i) {
       found.poses[i].detection_index = static_cast<int>(places[i]);
       poses.poses[places[i]] = std::move(found.poses[i]);

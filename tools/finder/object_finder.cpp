@@ -1,31 +1,27 @@
 #include "tools/finder/object_finder.hpp"
 
-#include "detector/detector.hpp"
 #include "detector/stages.hpp"
 #include "drivers/store/object_store.hpp"
 #include "pose/pose_estimator.hpp"
-#include "tools/common/search_options.hpp"
-#include "tools/common/stored_forest.hpp"
-#include "tools/common/stored_quality.hpp"
+#include "tools/finder/search_options.hpp"
+#include "tools/finder/stored_forest.hpp"
+#include "tools/finder/stored_quality.hpp"
 
 namespace houghstream {
 namespace {
 
 Detector make_detector(const store::ObjectStore& store, const FinderOptions& options) {
-  Forest forest = load_store_forest(store);
   SearchOptions search;
   search.threads = options.threads;
   search.threshold = options.threshold;
   search.candidates_from = kCandidatesFrom;
-  const DetectionSettings settings = search.settings_for(forest);
-  return Detector(std::move(forest), settings);
+  return detector_of(load_store_forest(store), search);
 }
 
 PoseEstimator make_estimator(const store::ObjectStore& store, const FinderOptions& options) {
-  PoseSettings settings;
-  settings.threads = options.threads;
-  apply_store_settings(store, options.min_quality, settings);
-  return PoseEstimator(store::load_store_meshes(store), settings);
+  PoseSettings common;
+  common.threads = options.threads;
+  return PoseEstimator(store::load_store_meshes(store), pose_settings_of(common, store, options.min_quality));
 }
 
 }  // namespace

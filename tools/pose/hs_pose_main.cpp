@@ -10,8 +10,9 @@
 #include "pose/following/object_follower.hpp"
 #include "pose/pose_estimator.hpp"
 #include "tools/common/mesh_size.hpp"
-#include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/finder/search_arguments.hpp"
+#include "tools/finder/stored_quality.hpp"
 #include "tools/pose/model_cache.hpp"
 
 namespace {
@@ -85,10 +86,10 @@ void run_with_models(PoseOptions options) {
   std::map<std::string, Mesh> meshes = load_models(options, threads);
   const std::string fault = fault_of_sizes(meshes, options.model_unit_m, "--model-unit");
   if (!fault.empty()) log_warning("{}", fault);  // no frame will show such
-  if (options.min_quality) publish_from(*options.min_quality, options.settings);
+  PoseSettings settings = pose_settings_of(options.settings, std::nullopt, options.min_quality);
   for (const auto& [name, mesh] : meshes) options.process.models.insert(name);
-  if (!options.models.empty()) options.settings.model.symmetries = load_class_symmetries(options.models);
-  auto estimator = warmed_up(PoseEstimator(std::move(meshes), options.settings, threads), made_up.get());
+  if (!options.models.empty()) settings.model.symmetries = load_class_symmetries(options.models);
+  auto estimator = warmed_up(PoseEstimator(std::move(meshes), settings, threads), made_up.get());
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   run(bus, options, [&] { return estimator; });
 }
@@ -120,8 +121,7 @@ void run_with_store(PoseOptions options) {
   const std::shared_future<RgbdFrame> made_up = start_warm_up();
   const int threads = warm_up_threads(options.settings.threads);  // of the first store: later ones are loaded alone
   const auto load = [&](const store::ObjectStore& store) {
-    PoseSettings settings = options.settings;
-    apply_store_settings(store, options.min_quality, settings);
+    const PoseSettings settings = pose_settings_of(options.settings, store, options.min_quality);
     return warmed_up(estimator_of(store, settings, kept, threads), made_up.get());
   };
   store::StoreWatcher<PoseEstimator> watch(options.objects, load);
@@ -148,15 +148,15 @@ int main(int argc, char** argv) {
       "where what is made of a store's meshes is kept for the next start; default ~/.cache/houghstream/models");
   add_model_options(app, options.models, options.model_unit_m);
   app.add_option("--camera", camera, kCameraOptionHelp);
-  app.add_option("--threads", options.settings.threads, "threads").range(1, 64).capture_default_str();
+  add_threads_option(app, options.settings.threads);
   app.add_option("--min-score", options.settings.min_score, "poses are looked for from this score of the detection on")
-      .range(0.0, 1.0)
+      .range(range_of(&PoseSettings::min_score))
       .capture_default_str();
-  app.add_option("--min-quality", options.min_quality,
-                 fmt::format("poses that are right with a lower probability are withheld, and it is said why; default: "
-                             "{}, of a store's objects {}, of candidates of these {}",
-                             options.settings.quality.least, kStoreQuality, kStoreCandidateQuality))
-      .range(0.0, 1.0);
+  add_min_quality_option(app, options.min_quality)
+      .description(
+          fmt::format("poses that are right with a lower probability are withheld, and it is said why; default: {}, of "
+                      "a store's objects {}, of candidates of these {}",
+                      options.settings.quality.least, kStoreQuality, kStoreCandidateQuality));
   app.add_flag(
       "--follow", options.follow,
       "follow known objects from frame to frame: poses for each frame, at once, whether detections come or not");

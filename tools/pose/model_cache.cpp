@@ -12,6 +12,7 @@
 
 #include "drivers/store/store_stamp.hpp"
 #include "pipeline/base/archive.hpp"
+#include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/fnv.hpp"
@@ -175,11 +176,9 @@ ModelCache::ModelCache(fs::path folder) : folder_(std::move(folder)), program_(s
 
 std::string ModelCache::state_of(const store::ObjectStore& store, const ModelSettings& settings) const {
   std::string state = fmt::format("{}{}\n", program_, mesh_stamp(store));
-  state += fmt::format("{} {} {} {} {}\n", settings.views_per_edge, settings.points_per_view, settings.view_distance_m,
-                       settings.pixels_per_diameter, settings.min_facing);
+  for_each_number(settings, [&](const auto& field, auto value) { state += fmt::format("{} {}\n", field.name, value); });
   for (const auto& [name, centre] : settings.vote_centres)
     state += fmt::format("{} {} {} {}\n", name, centre.x(), centre.y(), centre.z());
-  state += fmt::format("{}\n", settings.right_within);
   for (const auto& [name, same] : settings.symmetries) state += fmt::format("{} {}\n", name, text_of({same, {}}));
   for (const auto& [name, shape] : settings.shape_symmetries) state += fmt::format("{} {}\n", name, text_of(shape));
   return state;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "detector/forest/forest_file.hpp"
+#include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "tools/common/tool_main.hpp"
@@ -37,6 +38,7 @@ struct Overrides {
 };
 
 void add_overrides(CommandLine& app, const TrainProgram& program, Overrides& overrides) {
+  using training::TrainingSettings;
   app.add_option("--profile", overrides.profile, fmt::format("to begin with: {}", fmt::join(program.profiles, ", ")))
       .capture_default_str();
   app.add_option("--features", overrides.features, "some of " + family_names(program.families));
@@ -47,20 +49,26 @@ void add_overrides(CommandLine& app, const TrainProgram& program, Overrides& ove
     app.add_option("--scale-handling", overrides.scale_handling, "five, single or normalised");
   app.add_option("--seed", overrides.seed, "same seed, same data: same forest").capture_default_str();
   app.add_option("--threads", overrides.threads, "any number gives the same forest")
-      .range(1, 256)
+      .range(range_of(&TrainingSettings::threads))
       .capture_default_str();
-  app.add_option("--trees", overrides.trees, "trees of the forest").range(1, 1000);
-  app.add_option("--max-depth", overrides.max_depth, "levels").range(1, 60);
-  app.add_option("--tests", overrides.tests, "random tests tried per node, at most").range(1, 100000);
+  app.add_option("--trees", overrides.trees, "trees of the forest").range(range_of(&TrainingSettings::trees));
+  app.add_option("--max-depth", overrides.max_depth, "levels").range(range_of(&TrainingSettings::max_depth));
+  app.add_option("--tests", overrides.tests, "random tests tried per node, at most")
+      .range(range_of(&TrainingSettings::tests_per_node));
   app.add_option("--offset-share", overrides.offset_share, "of the nodes are split by offsets, not by labels")
-      .range(0.0, 1.0);
-  app.add_option("--alone-share", overrides.alone_share, "of the tests look at one pixel, not at two").range(0.0, 1.0);
+      .range(range_of(&TrainingSettings::offset_share));
+  app.add_option("--alone-share", overrides.alone_share, "of the tests look at one pixel, not at two")
+      .range(range_of(&TrainingSettings::alone_share));
   app.add_option("--shape-alone-share", overrides.shape_alone_share, "at least so many of those on depth features")
-      .range(0.0, 1.0);
-  app.add_option("--patches", overrides.patches, "patches per training view").range(4, 100000);
-  app.add_option("--composites", overrides.composites, "pictures made of one view").range(1, 100);
-  app.add_option("--min-distance", overrides.min_distance, "nearest distance taught, metres").range(0.05, 20.0);
-  app.add_option("--max-distance", overrides.max_distance, "farthest distance taught, metres").range(0.05, 20.0);
+      .range(range_of(&TrainingSettings::shape_alone_share));
+  app.add_option("--patches", overrides.patches, "patches per training view")
+      .range(range_of(&TrainingSettings::patches_per_view));
+  app.add_option("--composites", overrides.composites, "pictures made of one view")
+      .range(range_of(&TrainingSettings::composites_per_view));
+  app.add_option("--min-distance", overrides.min_distance, "nearest distance taught, metres")
+      .range(range_of(&TrainingSettings::min_distance));
+  app.add_option("--max-distance", overrides.max_distance, "farthest distance taught, metres")
+      .range(range_of(&TrainingSettings::max_distance));
 }
 
 template <typename T>

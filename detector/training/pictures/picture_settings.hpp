@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "pipeline/base/settings_fields.hpp"
+
 namespace houghstream::training {
 
 /// How pictures are made to learn from.
@@ -27,5 +29,28 @@ struct PictureSettings {
   std::uint64_t seed = 1;
   int threads = 2;
 };
+
+template <typename Visit>
+void fields(const PictureSettings& /*settings*/, const Visit& visit) {
+  using S = PictureSettings;
+  visit(number("patches_per_view", &S::patches_per_view, 4, 100000));
+  visit(number("patches_per_background", &S::patches_per_background, 4, 100000));
+  visit(number("composites_per_view", &S::composites_per_view, 1, 100));
+  visit(number("views_per_picture", &S::views_per_picture, 1, 100000));
+  visit(number("spare_background", &S::spare_background, 0, 1000));
+  visit(number("min_distance", &S::min_distance, 0.05, 20, "m"));
+  visit(number("max_distance", &S::max_distance, 0.05, 20, "m"));
+  visit(number("occluded_share", &S::occluded_share, 0, 1));
+  visit(number("dehazed_fraction", &S::dehazed_fraction, 0, 1));
+  visit(number("sharpened_share", &S::sharpened_share, 0, 1));
+  visit(number("light_variation", &S::light_variation, 0, 10));
+  visit(number("tone_jitter_fraction", &S::tone_jitter_fraction, 0, 1));
+  visit(number("near_dropout_fraction", &S::near_dropout_fraction, 0, 1));
+  visit(number("depth_error", &S::depth_error, 0, 10));
+  visit(number("surface_variation", &S::surface_variation, 0, 10));
+  visit(number("camera_share", &S::camera_share, 0, 1));
+  visit(number("camera_variation", &S::camera_variation, 0, 10));
+  visit(number("threads", &S::threads, 1, 256));
+}
 
 }  // namespace houghstream::training

@@ -134,24 +134,30 @@ TEST_F(ForestFile, SettingsThatNoProfileHasAreRefused) {
     }
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  expect_refused("feature families 0x0", [](Forest& f) { f.features.families = 0; });
-  expect_refused("feature families 0x101", [](Forest& f) { f.features.families = 0x101; });
-  expect_refused("scale handling 2", [](Forest& f) { f.features.handling = static_cast<ScaleHandling>(2); });
-  expect_refused("some scales", [](Forest& f) { f.features.handling = ScaleHandling::kScaleSpace; });
+  expect_refused("features: families 0x0", [](Forest& f) { f.features.families = 0; });
+  expect_refused("features: families 0x101", [](Forest& f) { f.features.families = 0x101; });
+  expect_refused("features: handling 2", [](Forest& f) { f.features.handling = static_cast<ScaleHandling>(2); });
+  expect_refused("a scale space without scales", [](Forest& f) { f.features.handling = ScaleHandling::kScaleSpace; });
   expect_refused("scoring 7", [](Forest& f) { f.scoring = static_cast<Scoring>(7); });
   for (const float scale : {nan, -1.0F, 0.001F, 100.0F}) {
-    expect_refused("image searched at scale", [&](Forest& f) { f.features.scales[2] = scale; });
-    expect_refused("image scale", [&](Forest& f) { f.features.image_scale = scale; });
+    expect_refused("features: scales hold", [&](Forest& f) { f.features.scales[2] = scale; });
+    expect_refused("features: image_scale", [&](Forest& f) { f.features.image_scale = scale; });
   }
-  expect_refused("feature kernels 8 and 5", [](Forest& f) { f.features.depth_sobel_px = 8; });
-  expect_refused("feature kernels 7 and 0", [](Forest& f) { f.features.min_max_px = 0; });
-  expect_refused("holes filled over", [&](Forest& f) { f.features.fill_distance_px = nan; });
-  expect_refused("24 pixels or -1 m", [](Forest& f) { f.features.fill_distance = -1.0F; });
-  expect_refused("a tone of means 140 to 130", [](Forest& f) { f.features.tone = {140.0F, 130.0F, 50.0F}; });
-  expect_refused("deviation up to 0,", [](Forest& f) { f.features.tone.max_deviation = 0.0F; });
-  expect_refused("a tone of means", [&](Forest& f) { f.features.tone.min_mean = nan; });
-  expect_refused("patch of 0 steps", [](Forest& f) { f.patch.radius = 0; });
-  expect_refused("patch of", [&](Forest& f) { f.patch.unit = nan; });
+  expect_refused("features: depth_sobel_px 8, expected an odd number",
+                 [](Forest& f) { f.features.depth_sobel_px = 8; });
+  expect_refused("features: min_max_px 0, expected 1 to 31 working pixels",
+                 [](Forest& f) { f.features.min_max_px = 0; });
+  expect_refused("features: fill_distance_px nan, expected 0 to 1000",
+                 [&](Forest& f) { f.features.fill_distance_px = nan; });
+  expect_refused("features: fill_distance -1, expected 0 to 1 m", [](Forest& f) { f.features.fill_distance = -1.0F; });
+  expect_refused("features: tone: least_mean 140, expected no more than the most_mean of 130", [](Forest& f) {
+    f.features.tone = {140.0F, 130.0F, 50.0F};
+  });
+  expect_refused("features: tone: most_deviation 0, expected 1 to 255",
+                 [](Forest& f) { f.features.tone.max_deviation = 0.0F; });
+  expect_refused("features: tone: least_mean nan", [&](Forest& f) { f.features.tone.min_mean = nan; });
+  expect_refused("patch: radius 0, expected 1 to 127 steps", [](Forest& f) { f.patch.radius = 0; });
+  expect_refused("patch: unit nan, expected", [&](Forest& f) { f.patch.unit = nan; });
 }
 
 TEST_F(ForestFile, TestsOfPlanesThatTheFamiliesLackAreRefused) {

@@ -152,7 +152,8 @@ TEST(ObjectStore, AToneIsARangeOfGreyValuesOrHoldsEveryPicture) {
   EXPECT_EQ(read_store(folder).tone.max_deviation, 45.0F);
   store.tone.min_mean = 121.0F;
   write_store_json(store);
-  expect_says(error_of_reading(folder), {"store.json: 'tone' is {", "121.0", "expected grey values of 0 to 255"});
+  expect_says(error_of_reading(folder),
+              {"store.json: 'tone': least_mean 121, expected no more than the most_mean of 120"});
   replace_in_file(folder / "store.json", "121.0", "\"dark\"");
   expect_says(error_of_reading(folder), {"store.json", "least_mean"});
   nlohmann::json without = read_json_object(folder / "store.json");

@@ -1,4 +1,4 @@
-#include "tools/common/searched_objects.hpp"
+#include "tools/finder/searched_objects.hpp"
 
 #include <gtest/gtest.h>
 

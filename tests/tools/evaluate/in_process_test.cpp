@@ -111,7 +111,7 @@ TEST(InProcess, PosesOfLowQualityAreKnownButNotPublished) {
   rules.score = 0.5F;
   publish_from(0.0F, rules.pose);
   const std::vector<EvaluatedFrame> all = run(scene, 0.5F, rules);
-  publish_from(2.0F, rules.pose);
+  publish_from(1.0F, rules.pose);
   const std::vector<EvaluatedFrame> none = run(scene, 0.5F, rules);
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(count_poses(none[i].poses), 0);
@@ -127,7 +127,7 @@ TEST(InProcess, CandidatesHavePosesThatArePublishedByALimitOfTheirOwn) {
   rules.pose.min_score = 0.0F;
   publish_from(0.0F, rules.pose);
   const std::vector<EvaluatedFrame> all = run(scene, 0.5F, rules);
-  rules.pose.quality.min_candidate_quality = 2.0F;
+  rules.pose.quality.min_candidate_quality = 1.0F;
   const std::vector<EvaluatedFrame> none = run(scene, 0.5F, rules);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::vector<Detection>& found = all[i].detections->detections;

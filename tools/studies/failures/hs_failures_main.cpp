@@ -2,14 +2,13 @@
 
 #include <optional>
 
-#include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
-#include "tools/common/search_options.hpp"
-#include "tools/common/searched_objects.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/finder/search_arguments.hpp"
+#include "tools/finder/searched_objects.hpp"
 #include "tools/studies/failures/failures.hpp"
 
 namespace {
@@ -52,8 +51,7 @@ std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& dete
 
 void run(const FailureOptions& options) {
   Forest forest = load_forest(options.known.forest);
-  const DetectionSettings settings = options.search.settings_for(forest);
-  const Detector detector(std::move(forest), settings);
+  const Detector detector = detector_of(std::move(forest), options.search);
   std::vector<cv::Mat> tiles;
   for (const std::string& scene : options.scenes) {
     for (const cv::Mat& tile : failures_in(scene, detector, options)) tiles.push_back(tile);

@@ -5,17 +5,16 @@
 #include <set>
 #include <utility>
 
-#include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pose/baseline/register_pcl.hpp"
-#include "tools/common/search_options.hpp"
-#include "tools/common/searched_objects.hpp"
-#include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/metrics/evaluated_frame.hpp"
+#include "tools/finder/search_arguments.hpp"
+#include "tools/finder/searched_objects.hpp"
+#include "tools/finder/stored_quality.hpp"
 #include "tools/studies/pose/bench_report.hpp"
 
 namespace {
@@ -43,8 +42,7 @@ BenchedMakers make_makers(const SceneModels& models, const BenchOptions& options
   settings.registration.engine = register_pcl;
   makers.each_frame[kPcl] = estimator_maker(meshes, settings);
   settings.registration.engine = options.pose.registration.engine;
-  publish_from(0.0F, settings);
-  makers.each_frame[kUnchecked] = estimator_maker(meshes, settings);
+  makers.each_frame[kUnchecked] = estimator_maker(meshes, without_rejection(settings));
   if (options.no_rivals) return makers;
   makers.rivals[kPrerejective] = baseline_maker(make_prerejective_rival(meshes, options.pose, PrerejectiveSettings{}));
   makers.rivals[kPpf] = baseline_maker(make_ppf_rival(meshes, options.pose, PpfSettings{}));
@@ -74,8 +72,7 @@ void run(const BenchOptions& options) {
   Forest forest = load_forest(options.known.forest);
   std::set<std::string> classes;
   for (const ObjectClass& known : forest.classes) classes.insert(known.name);
-  const DetectionSettings settings = options.search.settings_for(forest);
-  const Detector detector(std::move(forest), settings);
+  const Detector detector = detector_of(std::move(forest), options.search);
   PoseBench bench;
   std::map<std::string, BopScene> scenes;
   std::map<std::string, Mesh> meshes;
@@ -94,7 +91,7 @@ void run(const BenchOptions& options) {
       makers = make_makers(models, options);
     }
     const DetectedScene detected = detect_scene(name, scene, detector, options.every);
-    bench_scene(detected, models, makers, {options.rivals_every, options.rivals_s, settings.threads}, bench);
+    bench_scene(detected, models, makers, {options.rivals_every, options.rivals_s, options.search.threads}, bench);
   }
   write_bench(bench, options.out);
   write_worst(bench.each_frame.at(kOurs).trials, scenes, meshes, options.out);
@@ -105,8 +102,7 @@ void run(const BenchOptions& options) {
 BenchOptions with_store(BenchOptions options) {
   require(options.known.store.empty() == !options.known.forest.empty(),
           "expected either --objects STORE or --forest FILE and --models FOLDER");
-  if (const std::optional<store::ObjectStore> objects = resolve_store(options.known))
-    apply_store_settings(*objects, std::nullopt, options.pose);
+  options.pose = pose_settings_of(options.pose, resolve_store(options.known), std::nullopt);
   return options;
 }
 
@@ -132,9 +128,7 @@ int main(int argc, char** argv) {
       .capture_default_str();
   app.add_flag("--no-rivals", options.no_rivals, "leave the rivals out");
   add_search_options(app, options.search);
-  app.add_option("--min-mass", options.search.min_mass_share,
-                 "vote mass, over a whole object's, from which a maximum counts; default: the profile's")
-      .range(0.0, 1.0);
+  add_min_mass_option(app, options.search);
   app.get_option("--threshold").description("smallest score of a detection that is tried; default: 0.1");
   app.add_example("hs-bench-pose --forest my.forest --scene SCENE --out OUT");
   return run_tool(app, argc, argv, [&] { run(with_store(options)); });

@@ -6,9 +6,9 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/metrics/evaluated_frame.hpp"
+#include "tools/finder/search_arguments.hpp"
 #include "tools/studies/quality/quality_fit.hpp"
 #include "tools/teach/mesh/quality_examples.hpp"
 
@@ -41,9 +41,9 @@ std::vector<quality::Example> gather(const LearnOptions& options) {
   const std::map<std::string, Mesh> meshes = models_of(options, forest);
   std::map<std::string, PoseModel> judged_by;
   for (const auto& [name, mesh] : meshes) judged_by[name] = make_pose_model(mesh, false);
-  const DetectionSettings settings = options.search.settings_for(forest);
-  const Detector detector(std::move(forest), settings);
-  const quality::UnfilteredPoseFinder finder({meshes, {}, load_class_symmetries(options.models)}, settings.threads);
+  const Detector detector = detector_of(std::move(forest), options.search);
+  const quality::UnfilteredPoseFinder finder({meshes, {}, load_class_symmetries(options.models)},
+                                             options.search.threads);
   std::vector<quality::Example> examples;
   std::set<std::string> names;
   for (const std::string& folder : options.scenes) {

@@ -5,8 +5,9 @@
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pose/model/symmetry_search.hpp"
-#include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/finder/search_arguments.hpp"
+#include "tools/finder/stored_quality.hpp"
 #include "tools/fuse/model_picture.hpp"
 #include "tools/studies/recorded/pose_sheets.hpp"
 #include "tools/studies/recorded/real_bench.hpp"
@@ -44,14 +45,12 @@ void run(const BenchOptions& options) {
   const ComparedObject object = read_object(options, models);
   models[options.object] = object.scan.mesh;
   Forest forest = load_forest(options.forest);
-  const DetectionSettings settings = options.search.settings_for(forest);
-  const Detector detector(std::move(forest), settings);
+  const Detector detector = detector_of(std::move(forest), options.search);
   PoseSettings pose_settings;
-  pose_settings.threads = settings.threads;
+  pose_settings.threads = options.search.threads;
   const PoseEstimator estimator(models, pose_settings);
   pose_settings.min_score = 0.0F;
-  publish_from(0.0F, pose_settings);
-  const PoseEstimator unchecked(models, pose_settings);
+  const PoseEstimator unchecked(models, without_rejection(pose_settings));
   const DrawnBoxes drawn = read_drawn_boxes(std::filesystem::path(options.scenes) / "boxes.json");
   const RealBench bench = run_real_bench(options.scenes, drawn, {detector, estimator, unchecked, models}, object);
   std::filesystem::create_directories(options.out);

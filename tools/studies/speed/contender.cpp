@@ -10,7 +10,7 @@
 #include "detector/baseline/gall_profile.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/base/checks.hpp"
-#include "tools/common/search_options.hpp"
+#include "tools/finder/search_options.hpp"
 #include "tools/studies/baseline/study_search.hpp"
 
 namespace houghstream {

@@ -7,8 +7,8 @@
 #include "detector/forest/forest_file.hpp"
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/base/checks.hpp"
-#include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/finder/search_options.hpp"
 #include "tools/studies/speed/kernels.hpp"
 
 namespace {

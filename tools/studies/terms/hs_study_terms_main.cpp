@@ -6,9 +6,9 @@
 #include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
 #include "pipeline/base/checks.hpp"
-#include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/class_names.hpp"
+#include "tools/finder/search_arguments.hpp"
 #include "tools/studies/terms/term_study.hpp"
 
 namespace {

@@ -7,19 +7,19 @@
 
 #include "pose/verification/print_comparison.hpp"
 #include "pose/verification/swapped_texture.hpp"
+#include "tools/finder/stored_quality.hpp"
 
 namespace houghstream::quality {
 namespace {
 
-PoseSettings withholding_none(const PosedModels& models, int threads) {
+PoseSettings unfiltered_settings(const PosedModels& models, int threads) {
   PoseSettings settings;
   settings.threads = threads;
   settings.model.vote_centres = models.vote_centres;
   settings.model.symmetries = models.symmetries;
   settings.model.shape_symmetries = models.shape_symmetries;
   settings.region.tone = models.tone;
-  publish_from(0.0F, settings);
-  return settings;
+  return without_rejection(settings);
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ std::vector<Example> label_examples(const FoundPoses& found, const std::map<std:
 }
 
 UnfilteredPoseFinder::UnfilteredPoseFinder(const PosedModels& models, int threads)
-    : settings_(withholding_none(models, threads)), estimator_(models.meshes, settings_) {
+    : settings_(unfiltered_settings(models, threads)), estimator_(models.meshes, settings_) {
   for (const auto& [name, mesh] : models.meshes) models_.emplace(name, make_object_model(name, mesh, settings_.model));
 }
 

@@ -10,7 +10,7 @@
 #include "drivers/store/object_store.hpp"
 #include "drivers/store/store_transaction.hpp"
 #include "pipeline/base/checks.hpp"
-#include "tools/common/stored_forest.hpp"
+#include "tools/finder/stored_forest.hpp"
 #include "tools/teach/mesh/contact_sheet.hpp"
 
 namespace houghstream::teach {

@@ -12,7 +12,7 @@
 #include "tests/expect_says.hpp"
 #include "tests/test_files.hpp"
 #include "tests/tools/teach/shapes.hpp"
-#include "tools/common/stored_quality.hpp"
+#include "tools/finder/stored_quality.hpp"
 #include "tools/teach/mesh/store_rename.hpp"
 
 namespace houghstream::teach {

@@ -1,8 +1,9 @@
-#include "tools/common/search_options.hpp"
+#include "tools/finder/search_options.hpp"
 
 #include <gtest/gtest.h>
 
 #include "detector/forest/forest.hpp"
+#include "tools/finder/search_arguments.hpp"
 
 namespace houghstream {
 namespace {

@@ -1,13 +1,16 @@
-#include "tools/common/stored_quality.hpp"
+#include "tools/finder/stored_quality.hpp"
 
-#include "pipeline/base/checks.hpp"
+#include <utility>
+
+#include "pipeline/base/check_settings.hpp"
 
 namespace houghstream {
 namespace {
 
-nlohmann::json to_json(const QualityTerms& terms) {
+template <typename Settings>
+nlohmann::json numbers_to_json(const Settings& settings) {
   nlohmann::json out = nlohmann::json::object();
-  for (std::size_t i = 0; i < kQualityTerms.size(); ++i) out[kQualityTermNames[i]] = terms.*kQualityTerms[i];
+  for_each_number(settings, [&](const auto& field, double value) { out[field.name] = value; });
   return out;
 }
 
@@ -15,12 +18,12 @@ QualityTerms terms_from(const nlohmann::json& entry, const std::string& name, co
   require(entry.contains(name) && entry[name].is_object(), "{}: '{}' of the quality expected, with {} terms", where,
           name, kQualityTerms.size());
   QualityTerms terms;
-  for (std::size_t i = 0; i < kQualityTerms.size(); ++i) {
-    require(entry[name].contains(kQualityTermNames[i]),
+  for_each_number(terms, [&](const auto& field, double& value) {
+    require(entry[name].contains(field.name),
             "{}: '{}' of the quality has no '{}': it was learnt from other terms; hs-teach practise learns it anew",
-            where, name, kQualityTermNames[i]);
-    terms.*kQualityTerms[i] = json_number(entry[name], kQualityTermNames[i], where);
-  }
+            where, name, field.name);
+    value = json_number(entry[name], field.name, where);
+  });
   require(entry[name].size() == kQualityTerms.size(),
           "{}: '{}' of the quality has {} terms, expected {}; hs-teach practise learns it anew", where, name,
           entry[name].size(), kQualityTerms.size());
@@ -31,32 +34,33 @@ QualityTerms terms_from(const nlohmann::json& entry, const std::string& name, co
 PresenceSettings presence_from(const nlohmann::json& entry, const PresenceSettings& otherwise,
                                const std::string& where) {
   if (!entry.contains("presence")) return otherwise;
-  const nlohmann::json& presence = entry["presence"];
-  require(presence.is_object() && presence.size() == 3,
+  const nlohmann::json& stored = entry["presence"];
+  require(stored.is_object() && stored.size() == 3,
           "{}: 'presence' of the quality expected, with bias, of_score and of_quality", where);
-  return {json_number(presence, "bias", where), json_number(presence, "of_score", where),
-          json_number(presence, "of_quality", where)};
+  PresenceSettings presence;
+  for_each_number(presence, [&](const auto& field, double& value) { value = json_number(stored, field.name, where); });
+  return presence;
 }
 
 /// Of a store that was written before it was learnt: what `otherwise` says.
 PrintSettings print_from(const nlohmann::json& entry, const PrintSettings& otherwise, const std::string& where) {
   if (!entry.contains("print")) return otherwise;
-  const nlohmann::json& print = entry["print"];
-  require(print.is_object() && print.size() == 2, "{}: 'print' of the quality expected, with bias and of_margin",
+  const nlohmann::json& stored = entry["print"];
+  require(stored.is_object() && stored.size() == 2, "{}: 'print' of the quality expected, with bias and of_margin",
           where);
-  return {json_number(print, "bias", where), json_number(print, "of_margin", where)};
+  PrintSettings print;
+  for_each_number(print, [&](const auto& field, double& value) { value = json_number(stored, field.name, where); });
+  return print;
 }
 
 }  // namespace
 
 nlohmann::json quality_to_json(const QualitySettings& settings) {
-  const PresenceSettings& presence = settings.presence;
   return {{"bias", settings.bias},
-          {"weights", to_json(settings.weights)},
-          {"typical", to_json(settings.typical)},
-          {"presence",
-           {{"bias", presence.bias}, {"of_score", presence.score_weight}, {"of_quality", presence.quality_weight}}},
-          {"print", {{"bias", settings.print.bias}, {"of_margin", settings.print.margin_weight}}}};
+          {"weights", numbers_to_json(settings.weights)},
+          {"typical", numbers_to_json(settings.typical)},
+          {"presence", numbers_to_json(settings.presence)},
+          {"print", numbers_to_json(settings.print)}};
 }
 
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects,
@@ -70,19 +74,26 @@ std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& 
     settings.typical = terms_from(entry, "typical", where);
     settings.presence = presence_from(entry, others.presence, where);
     settings.print = print_from(entry, others.print, where);
+    check_settings(settings, where + ": quality");
     learnt[name] = settings;
   }
   return learnt;
 }
 
-void apply_store_settings(const store::ObjectStore& objects, std::optional<float> min_quality, PoseSettings& settings) {
-  settings.quality.least = min_quality.value_or(kStoreQuality);
-  settings.quality.min_candidate_quality = min_quality.value_or(kStoreCandidateQuality);
-  settings.class_quality = stored_quality(objects, settings.quality);
-  settings.model.vote_centres = objects.vote_centres();
-  settings.model.symmetries = objects.symmetries_by_name();
-  settings.model.shape_symmetries = objects.shape_symmetries();
-  settings.region.tone = objects.tone;
+PoseSettings pose_settings_of(PoseSettings common, const std::optional<store::ObjectStore>& objects,
+                              std::optional<float> min_quality) {
+  PoseSettings settings = std::move(common);
+  if (objects) {
+    settings.quality.least = kStoreQuality;
+    settings.quality.min_candidate_quality = kStoreCandidateQuality;
+    settings.class_quality = stored_quality(*objects, settings.quality);
+    settings.model.vote_centres = objects->vote_centres();
+    settings.model.symmetries = objects->symmetries_by_name();
+    settings.model.shape_symmetries = objects->shape_symmetries();
+    settings.region.tone = objects->tone;
+  }
+  if (min_quality) publish_from(*min_quality, settings);
+  return settings;
 }
 
 }  // namespace houghstream

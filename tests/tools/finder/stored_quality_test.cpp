@@ -1,4 +1,4 @@
-#include "tools/common/stored_quality.hpp"
+#include "tools/finder/stored_quality.hpp"
 
 #include <gtest/gtest.h>
 
@@ -59,8 +59,7 @@ TEST(StoredQuality, PosesAreMadeWithTheShapeSymmetriesThatTheStoreKnows) {
   store::ObjectStore objects = store_with(quality_to_json(learnt()));
   objects.objects[1].shape_symmetry = ShapeSymmetry{};
   objects.objects[1].shape_symmetry->symmetries.continuous.push_back({});
-  PoseSettings settings;
-  apply_store_settings(objects, std::nullopt, settings);
+  const PoseSettings settings = pose_settings_of({}, objects, std::nullopt);
   EXPECT_EQ(settings.model.shape_symmetries.count("mug"), 0U);
   EXPECT_EQ(settings.model.shape_symmetries.at("bowl").symmetries.continuous.size(), 1U);
 }

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
-#include "detector/detection_settings.hpp"
-#include "tools/common/command_line.hpp"
+#include "detector/detector.hpp"
 
 namespace houghstream {
 
@@ -32,12 +32,10 @@ struct SearchOptions {
   }
 };
 
-inline void add_search_options(CommandLine& app, SearchOptions& options) {
-  app.add_option("--threads", options.threads, "threads").range(1, 64).capture_default_str();
-  app.add_option("--threshold", options.threshold, "smallest score reported; default: the profile's").range(0.0, 1.0);
-  app.add_option("--stride", options.stride,
-                 "patch offset, working pixels, whatever the distance; default: the profile's")
-      .range(1, 64);
+/// Searches as the forest's profile says and the options change it.
+inline Detector detector_of(Forest forest, const SearchOptions& options) {
+  const DetectionSettings settings = options.settings_for(forest);
+  return Detector(std::move(forest), settings);
 }
 
 }  // namespace houghstream

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "drivers/files/json_file.hpp"
+#include "drivers/store/object_store.hpp"
+#include "pose/pose_settings.hpp"
+
+namespace houghstream {
+
+/// Smallest quality of a published pose of a store's objects: in practice rooms that the fit has not seen 98 % of the
+/// poses from there on were right. Of a candidate's: the same share in the development rooms, where most candidates are
+/// false.
+constexpr float kStoreQuality = 0.6F;
+constexpr float kStoreCandidateQuality = 0.75F;
+
+/// As the object store holds it: {"bias", "weights": {TERM: }, "typical": {TERM: }, "presence": {"bias", "of_score",
+/// "of_quality"}, "print": {"bias", "of_margin"}}.
+nlohmann::json quality_to_json(const QualitySettings& settings);
+
+/// What the store has learnt of its objects' qualities, by name; the limits of each are those of `others`. Throws
+/// InputError naming the store for a missing or unknown number, and for one out of its range. A store that was taught
+/// before presence or print was learnt has that of `others`.
+std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects, const QualitySettings& others);
+
+/// How poses are looked for and published, put together in this order: `common`; of a store, where there is one, the
+/// qualities that it has learnt, what its poses are published from, where detections' centres are, what looks alike,
+/// and its tone; `min_quality` of a command line, from which all poses are published then.
+PoseSettings pose_settings_of(PoseSettings common, const std::optional<store::ObjectStore>& objects,
+                              std::optional<float> min_quality);
+
+/// The same, but that every pose is published: for who judges them all.
+inline PoseSettings without_rejection(PoseSettings settings) {
+  publish_from(0.0F, settings);
+  return settings;
+}
+
+}  // namespace houghstream
