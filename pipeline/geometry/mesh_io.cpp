@@ -16,7 +16,7 @@
 #include "pipeline/base/image_decoding.hpp"
 #include "pipeline/geometry/material_merge.hpp"
 #include "pipeline/geometry/mesh.hpp"
-#include "pipeline/geometry/mesh_validation.hpp"
+#include "pipeline/geometry/mesh_check.hpp"
 
 namespace houghstream {
 namespace {

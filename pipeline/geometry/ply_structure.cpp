@@ -3,7 +3,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/geometry/mesh_text.hpp"
-#include "pipeline/geometry/mesh_validation.hpp"
+#include "pipeline/geometry/mesh_check.hpp"
 
 namespace houghstream {
 namespace {

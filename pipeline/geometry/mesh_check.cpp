@@ -8,7 +8,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/json_names.hpp"
-#include "pipeline/geometry/mesh_validation.hpp"
+#include "pipeline/geometry/mesh_check.hpp"
 
 namespace houghstream {
 namespace {

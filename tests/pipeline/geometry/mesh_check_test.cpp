@@ -1,4 +1,4 @@
-#include "pipeline/geometry/mesh_validation.hpp"
+#include "pipeline/geometry/mesh_check.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
