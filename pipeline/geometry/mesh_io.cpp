@@ -47,12 +47,9 @@ bool is_gltf(const std::filesystem::path& file) {
 void require_whole(const std::filesystem::path& file) {
   const std::string bytes = read_file(file, "a PLY, OBJ or glTF mesh");
   if (lower_extension(file) == ".ply") return check_ply(bytes, file.string());
-  if (lower_extension(file) == ".obj") {
-    check_obj(bytes, file.string());
-    return check_materials(bytes, file);
-  }
+  if (lower_extension(file) == ".obj") return check_obj(bytes, file);
   require(is_gltf(file), "{}: expected a file .ply, .obj, .glb or .gltf", file.string());
-  check_gltf(bytes, file);
+  check_gltf(bytes, file.string());
 }
 
 /// What the steps behind the reading believe: corners may be wherever a buffer of its own says, and a polygon takes the
@@ -61,8 +58,8 @@ void check_faces(const aiMesh& part, const std::string& file) {
   constexpr unsigned kMaxCorners = 1024;
   for (unsigned i = 0; i < part.mNumFaces; ++i) {
     const aiFace& face = part.mFaces[i];
-    require(face.mNumIndices <= kMaxCorners, "{}: face {} with {} corners, expected at most {}", file, i,
-            face.mNumIndices, kMaxCorners);
+    require(face.mNumIndices >= 1 && face.mNumIndices <= kMaxCorners, "{}: face {} with {} corners, expected 1 to {}",
+            file, i, face.mNumIndices, kMaxCorners);
     for (unsigned k = 0; k < face.mNumIndices; ++k) {
       require(face.mIndices[k] < part.mNumVertices, "{}: face {} names vertex {} of {}", file, i, face.mIndices[k],
               part.mNumVertices);

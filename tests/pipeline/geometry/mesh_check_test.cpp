@@ -55,7 +55,7 @@ void append(Number number, std::string& bytes) {
 }
 
 std::string text_ply() {
-  const fs::path file = fs::temp_directory_path() / "mesh_structure_test_text.ply";
+  const fs::path file = fs::temp_directory_path() / "mesh_check_test_text.ply";
   save_ply(ball(), file);
   return read_file(file, "a mesh");
 }
@@ -125,7 +125,7 @@ std::vector<Kind> kinds() {
 
 /// Triangles that a file with these bytes gives; nothing where it is refused in one line.
 std::optional<std::size_t> triangles_of(const Kind& kind, const std::string& bytes) {
-  const fs::path file = fs::temp_directory_path() / (std::string("mesh_structure_test") + kind.ending);
+  const fs::path file = fs::temp_directory_path() / (std::string("mesh_check_test") + kind.ending);
   std::ofstream(file, std::ios::binary) << bytes;
   try {
     return load_mesh(file, 1e-3).triangles.size();
@@ -135,11 +135,11 @@ std::optional<std::size_t> triangles_of(const Kind& kind, const std::string& byt
   }
 }
 
-TEST(MeshStructure, WholeFilesAreRead) {
+TEST(MeshCheck, WholeFilesAreRead) {
   for (const Kind& kind : kinds()) EXPECT_EQ(triangles_of(kind, kind.bytes), ball().triangles.size()) << kind.ending;
 }
 
-TEST(MeshStructure, CutFilesAreRefused) {
+TEST(MeshCheck, CutFilesAreRefused) {
   for (const Kind& kind : kinds()) {
     for (int i = 0; i < 30; ++i) {
       const std::size_t length = kind.bytes.size() * static_cast<std::size_t>(i) / 30;
@@ -153,14 +153,14 @@ TEST(MeshStructure, CutFilesAreRefused) {
   }
 }
 
-TEST(MeshStructure, APlyThatEndsBehindAnyOfItsLinesIsRefused) {
+TEST(MeshCheck, APlyThatEndsBehindAnyOfItsLinesIsRefused) {
   const std::string whole = text_ply();
   for (std::size_t end = whole.find('\n') + 1; end < whole.size(); end = whole.find('\n', end) + 1)
     EXPECT_THROW(check_ply(whole.substr(0, end), "cut.ply"), InputError) << end << " of " << whole.size();
 }
 
 // An OBJ states no counts: behind a face, with every vertex in one, it may be whole.
-TEST(MeshStructure, AnObjThatEndsBehindALineIsRefusedUnlessEveryVertexHasAFace) {
+TEST(MeshCheck, AnObjThatEndsBehindALineIsRefusedUnlessEveryVertexHasAFace) {
   const std::string whole = obj();
   const std::size_t last_vertex_used = whole.find(" 42\n") + 4;
   for (std::size_t end = whole.find('\n') + 1; end < whole.size(); end = whole.find('\n', end) + 1) {
@@ -170,7 +170,7 @@ TEST(MeshStructure, AnObjThatEndsBehindALineIsRefusedUnlessEveryVertexHasAFace) 
   }
 }
 
-TEST(MeshStructure, DamagedFilesAreRefusedOrAsLarge) {
+TEST(MeshCheck, DamagedFilesAreRefusedOrAsLarge) {
   for (const Kind& kind : kinds()) {
     std::mt19937 random(7);
     int refused = 0;
@@ -188,7 +188,7 @@ TEST(MeshStructure, DamagedFilesAreRefusedOrAsLarge) {
   }
 }
 
-TEST(MeshStructure, WhatIsWrittenByOthersIsRead) {
+TEST(MeshCheck, WhatIsWrittenByOthersIsRead) {
   EXPECT_NO_THROW(
       check_obj("v 1 2 3\r\nv +1.5e-3 0 0\r\nv 0 1 0\r\nvt 0 1\r\ng top\r\nusemtl red\r\ns off\r\n"
                 "f -3/1 -2/1 -1/1\r\n",
@@ -205,7 +205,7 @@ TEST(MeshStructure, WhatIsWrittenByOthersIsRead) {
                 "of Windows"));
 }
 
-TEST(MeshStructure, NodesThatGoRoundAreRefused) {
+TEST(MeshCheck, NodesThatGoRoundAreRefused) {
   const std::string head = R"({"asset":{"version":"2.0"},"nodes":[)";
   EXPECT_THROW(check_gltf(head + R"({"children":[1]},{"children":[0]}]})", "round.gltf"), InputError);
   EXPECT_THROW(check_gltf(head + R"({"children":[0]}]})", "itself.gltf"), InputError);
@@ -214,7 +214,7 @@ TEST(MeshStructure, NodesThatGoRoundAreRefused) {
 }
 
 // One reader takes the first value, another the last.
-TEST(MeshStructure, NamesThatStandTwiceAreRefused) {
+TEST(MeshCheck, NamesThatStandTwiceAreRefused) {
   EXPECT_THROW(check_gltf(R"({"asset":{"version":"2.0"},"accessors":[],"accessors":[]})", "twice.gltf"), InputError);
   EXPECT_THROW(check_gltf(R"({"asset":{"version":"2.0","version":"2.0"}})", "within.gltf"), InputError);
   EXPECT_NO_THROW(check_gltf(R"({"asset":{"version":"2.0"},"nodes":[{"name":"a"},{"name":"b"}]})", "once.gltf"));
@@ -226,13 +226,28 @@ TEST(MeshStructure, NamesThatStandTwiceAreRefused) {
   EXPECT_THROW(check_gltf(bytes, "two_bodies.glb"), InputError);
 }
 
-TEST(MeshStructure, EntriesOfNoBytesAreRefused) {
+TEST(MeshCheck, EntriesOfNoBytesAreRefused) {
   std::string bytes = binary_ply();
   bytes.insert(bytes.find("end_header"), "element nothing 2147483647\n");
   EXPECT_THROW(check_ply(bytes, "nothing.ply"), InputError);
 }
 
-TEST(MeshStructure, APolygonOfThousandsOfCornersIsRefused) {
+TEST(MeshCheck, ListsOfLessThanNothingAreRefused) {
+  std::string bytes = binary_ply();
+  bytes.insert(bytes.find("end_header"), "element more 1\nproperty list char uchar values\n");
+  EXPECT_NO_THROW(check_ply(bytes + std::string("\1\0", 2), "one.ply"));
+  EXPECT_THROW(check_ply(bytes + "\xFF" + std::string(255, '\0'), "minus_one.ply"), InputError);
+}
+
+// The library takes a body that begins like a line's end for what is left of its header, and all numbers move by a
+// byte.
+TEST(MeshCheck, ABodyThatBeginsWithALinesEndIsRefused) {
+  std::string bytes = binary_ply();
+  bytes[bytes.find("end_header") + 11] = '\n';
+  EXPECT_THROW(check_ply(bytes, "line_end.ply"), InputError);
+}
+
+TEST(MeshCheck, APolygonOfThousandsOfCornersIsRefused) {
   std::string text;
   std::string face = "f";
   for (int i = 0; i < 2000; ++i) {
@@ -240,12 +255,12 @@ TEST(MeshStructure, APolygonOfThousandsOfCornersIsRefused) {
     text += fmt::format("v {:.6f} {:.6f} 0\n", 1e3 * std::cos(angle), 1e3 * std::sin(angle));
     face += fmt::format(" {}", i + 1);
   }
-  const fs::path file = fs::temp_directory_path() / "mesh_structure_test_round.obj";
+  const fs::path file = fs::temp_directory_path() / "mesh_check_test_round.obj";
   std::ofstream(file) << text << face << "\n";
   EXPECT_THROW(load_mesh(file), InputError);
 }
 
-TEST(MeshStructure, MaterialsAreWholeToo) {
+TEST(MeshCheck, MaterialsAreWholeToo) {
   EXPECT_NO_THROW(
       check_mtl("# made\r\nnewmtl red\r\nNs 250.0 # shiny\r\nKa 1 1 1\r\nKd 0.8 0 0\r\nd 1\r\nillum 2\r\n"
                 "map_Kd -s 1 1 1 -bm 1.0 red paint.png\r\nmap_Bump bump.png\r\nof_others 5\r\n",
@@ -261,16 +276,16 @@ TEST(MeshStructure, MaterialsAreWholeToo) {
   EXPECT_THROW(check_mtl(std::string("newmtl a\0", 9), "zero.mtl"), InputError);
 }
 
-TEST(MeshStructure, DamagedMaterialsOfAMeshAreRefused) {
+TEST(MeshCheck, DamagedMaterialsOfAMeshAreRefused) {
   const fs::path folder = fs::temp_directory_path();
-  const fs::path file = folder / "mesh_structure_test_painted.obj";
+  const fs::path file = folder / "mesh_check_test_painted.obj";
   const auto say = [&](const std::string& name, const std::string& materials) {
     std::ofstream(file) << name << "\n" << obj();
-    std::ofstream(folder / "mesh_structure_test_painted.mtl") << materials;
+    std::ofstream(folder / "mesh_check_test_painted.mtl") << materials;
   };
-  say("mtllib mesh_structure_test_painted.mtl", "newmtl red\nKd 1 0 0\n");
+  say("mtllib mesh_check_test_painted.mtl", "newmtl red\nKd 1 0 0\n");
   EXPECT_NO_THROW(load_mesh(file));
-  say("mtllib mesh_structure_test_painted.mtl", "Kd 1 0 0\n");
+  say("mtllib mesh_check_test_painted.mtl", "Kd 1 0 0\n");
   EXPECT_THROW(load_mesh(file), InputError);
   say("mtllib not_there.mtl", "Kd 1 0 0\n");
   EXPECT_THROW(load_mesh(file), InputError) << "the library takes the one of its own name";

@@ -119,6 +119,22 @@ TEST(MeshGltf, ATextureThatIsNoPictureIsRefused) {
   }
 }
 
+TEST(MeshGltf, WhatIsNotThereIsRefused) {
+  const std::string material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})";
+  const fs::path file = write_triangle("not_there", material);
+  const std::string whole = read_text(file);
+  EXPECT_NO_THROW(load_mesh(file, 1.0));
+  for (const char* wrong : {R"("scene":7)", R"("nodes":[7)", R"("mesh":7)", R"("material":7)", R"("index":7)",
+                            R"("source":7)", R"("bufferView":7)", R"("version":"1)"}) {
+    // All but the last character stands in the file, which is written again with the wrong one.
+    const std::string_view text(wrong);
+    std::string damaged = whole;
+    damaged[whole.rfind(text.substr(0, text.size() - 1)) + text.size() - 1] = text.back();
+    write_text(file, damaged);
+    EXPECT_THROW(load_mesh(file, 1.0), InputError) << wrong;
+  }
+}
+
 // Those of a GLB are looked at in its bytes; here they lie in another file.
 TEST(MeshGltf, CornersThatAreNoVerticesAreRefusedBeforeTheyAreUsed) {
   const fs::path folder = fresh_folder("far_corners");
