@@ -36,10 +36,11 @@ int direction_of(const Eigen::Vector3f& normal) {
 std::optional<Eigen::Vector3f> SurfacePrint::find(const Eigen::Vector3f& point, const Eigen::Vector3f& towards) const {
   const Eigen::Vector3i cube = cube_of(point, detail_m);
   for (const Eigen::Vector3i& offset : neighbours()) {
-    const auto [first, last] = std::equal_range(cubes.begin(), cubes.end(), number_of(cube + offset));
+    const std::int64_t number = number_of(cube + offset);
     std::optional<std::size_t> best;
     float best_facing = 0.0F;
-    for (auto side = first; side != last; ++side) {
+    for (auto side = std::lower_bound(cubes.begin(), cubes.end(), number); side != cubes.end() && *side == number;
+         ++side) {
       const auto index = static_cast<std::size_t>(side - cubes.begin());
       const float facing = normals[index].dot(towards);
       if (!(facing > best_facing)) continue;

@@ -12,15 +12,15 @@
 namespace houghstream {
 namespace {
 
-constexpr int kCells = 64;     // along the longer side of the object in the image
+constexpr int kCells = 48;     // along the longer side of the object in the image
 constexpr int kMinCells = 60;  // compared; fewer tell nothing
 constexpr int kFine = 5;       // sides of the means that part the bands, cells
-constexpr int kCoarse = 17;
+constexpr int kCoarse = 13;
 // Of what is compared, so many cells count as one observation: neighbours are alike. All of them are measured with one
 // picture, one mesh and one pose, so that even so they are no independent witnesses: kTemper is what is left of it.
 constexpr double kFineCells = 4.0;
 constexpr double kMiddleCells = 25.0;
-constexpr double kCoarseCells = 150.0;
+constexpr double kCoarseCells = 85.0;
 constexpr double kTemper = 0.3;
 constexpr double kNoise = 8.0;  // variance of a channel that neither print nor shading makes, 8-bit CIE L*a*b*
 constexpr double kMinGain = 0.3;
@@ -45,8 +45,10 @@ struct Print {
 /// Cells of the object's part of the image where its surface is seen.
 struct Face {
   int cell_px = 1;
-  cv::Rect part_px;                               ///< of the frame, a whole number of cells
-  cv::Mat mask;                                   ///< CV_32FC1, 1 for the compared cells
+  cv::Rect part_px;      ///< of the frame, a whole number of cells
+  cv::Mat mask;          ///< CV_32FC1, 1 for the compared cells
+  cv::Mat fine_weights;  ///< CV_32FC3, in each channel the compared cells about each cell
+  cv::Mat coarse_weights;
   std::vector<cv::Point> cells;                   ///< those, row by row
   std::vector<Eigen::Vector3f> points;            ///< of the surface there, object frame, metres
   Eigen::Vector3f eye = Eigen::Vector3f::Zero();  ///< the camera, object frame
@@ -58,20 +60,19 @@ cv::Mat box_sum(const cv::Mat& values, int side) {
   return sum;
 }
 
-/// The mean over the compared cells about each cell.
-cv::Mat local_mean(const cv::Mat& masked, const cv::Mat& mask, int side) {
+cv::Mat cells_about(const cv::Mat& mask, int side) {
   cv::Mat weight;
   cv::max(box_sum(mask, side), 1.0, weight);
-  std::array<cv::Mat, 3> weights = {weight, weight, weight};
-  cv::Mat weight3;
-  cv::merge(weights.data(), weights.size(), weight3);
-  return box_sum(masked, side) / weight3;
+  const std::array<cv::Mat, 3> channels = {weight, weight, weight};
+  cv::Mat weights;
+  cv::merge(channels.data(), channels.size(), weights);
+  return weights;
 }
 
 /// Of a grid of CIE L*a*b* colours, CV_32FC3, 0 where nothing is compared.
 Print print_of(const cv::Mat& lab, const Face& face) {
-  const cv::Mat fine = local_mean(lab, face.mask, kFine);
-  const cv::Mat coarse = local_mean(lab, face.mask, kCoarse);
+  const cv::Mat fine = box_sum(lab, kFine) / face.fine_weights;
+  const cv::Mat coarse = box_sum(lab, kCoarse) / face.coarse_weights;
   const auto count = static_cast<Eigen::Index>(face.cells.size());
   cv::Vec3d mean(0.0, 0.0, 0.0);
   for (const cv::Point& cell : face.cells) mean += cv::Vec3d(lab.at<cv::Vec3f>(cell));
@@ -154,6 +155,8 @@ Face visible_face(const ObjectObservation& seen, const Eigen::Isometry3d& T_came
   }
   cv::erode(agrees, agrees, cv::Mat(), cv::Point(-1, -1), 1, cv::BORDER_CONSTANT, cv::Scalar(0));
   agrees.convertTo(face.mask, CV_32F);
+  face.fine_weights = cells_about(face.mask, kFine);
+  face.coarse_weights = cells_about(face.mask, kCoarse);
   cv::findNonZero(agrees, face.cells);
   const Eigen::Isometry3d T_object_camera = T_camera_object.inverse();
   for (const cv::Point& cell : face.cells) {
@@ -247,6 +250,35 @@ std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& seen,
   return poses;
 }
 
+/// A pose that looks alike by its shape, and what the model shows at it.
+struct Alternative {
+  Eigen::Isometry3d T_camera_object;
+  Print print;
+  double likelihood = 0.0;  ///< log
+};
+
+/// Those at which the model's surface is where it is seen. Of many turns only the likeliest are compared a little
+/// beside.
+std::vector<Alternative> likely_alternatives(const ObjectObservation& seen, const Face& face,
+                                             const Eigen::Isometry3d& T_camera_object,
+                                             const std::vector<Eigen::Isometry3d>& poses,
+                                             const std::vector<Print>& seen_at) {
+  constexpr std::size_t kLikeliest = 3;
+  const Eigen::Isometry3d T_object_camera = T_camera_object.inverse();
+  std::vector<Alternative> shown;
+  for (const Eigen::Isometry3d& pose : poses) {
+    std::optional<Print> print = model_print(seen.model, face, T_object_camera * pose);
+    if (!print) continue;
+    const double likelihood = log_likelihood(*print, seen_at.front());
+    shown.push_back({pose, *std::move(print), likelihood});
+  }
+  std::stable_sort(shown.begin(), shown.end(),
+                   [](const Alternative& a, const Alternative& b) { return a.likelihood > b.likelihood; });
+  for (std::size_t i = 0; i < std::min(kLikeliest, shown.size()); ++i)
+    shown[i].likelihood = best_log_likelihood(shown[i].print, seen_at);
+  return shown;
+}
+
 /// Where the print cannot tell, the pose is one of as many.
 PrintComparison undecided(std::size_t alternatives) {
   return {-std::log(static_cast<double>(alternatives)), std::nullopt};
@@ -266,22 +298,19 @@ std::optional<PrintComparison> compare_print(const ObjectObservation& seen, cons
   if (!own) return undecided(alternatives.size());
   const std::vector<Print> seen_at = seen_prints(seen, face);
   const double own_likelihood = best_log_likelihood(*own, seen_at);
-  PrintComparison comparison;
+  const std::vector<Alternative> shown = likely_alternatives(seen, face, T_camera_object, alternatives, seen_at);
+  if (shown.empty()) return std::nullopt;
   // The pose has been found by all else that speaks for it: another one must be clearly likelier.
   constexpr double kClearly = 3.0;
+  PrintComparison comparison;
   double best = own_likelihood + kClearly;
   double others = 0.0;  // sum of likelihoods over the pose's own
-  const Eigen::Isometry3d T_object_camera = T_camera_object.inverse();
-  for (const Eigen::Isometry3d& alternative : alternatives) {
-    const std::optional<Print> print = model_print(seen.model, face, T_object_camera * alternative);
-    if (!print) continue;
-    const double likelihood = best_log_likelihood(*print, seen_at);
-    others += std::exp(std::min(likelihood - own_likelihood, 50.0));
-    if (!(likelihood > best)) continue;
-    best = likelihood;
-    comparison.better = alternative;
+  for (const Alternative& other : shown) {
+    others += std::exp(std::min(other.likelihood - own_likelihood, 50.0));
+    if (!(other.likelihood > best)) continue;
+    best = other.likelihood;
+    comparison.better = other.T_camera_object;
   }
-  if (others == 0.0) return std::nullopt;
   comparison.margin = -std::log(others);
   return comparison;
 }
