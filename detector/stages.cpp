@@ -56,8 +56,9 @@ void compute_features(const SearchContext& search, DetectorWorkspace& workspace)
 
 void find_posteriors(const SearchContext& search, DetectorWorkspace& workspace) {
   const DetectionSettings& settings = search.settings;
-  find_posteriors({search.index, workspace.features, workspace.patches, settings.leaves, settings.threads},
-                  workspace.leaf_memory, workspace.posteriors);
+  PosteriorInput input{search.index, workspace.features, workspace.patches, settings.leaves};
+  input.threads = settings.threads;
+  find_posteriors(input, workspace.leaf_memory, workspace.posteriors);
 }
 
 VotingInput voting_input(const SearchContext& search, const DetectorWorkspace& workspace) {

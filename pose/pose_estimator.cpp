@@ -20,15 +20,13 @@ struct Estimation {
   const Detection& detection;
   const ObjectModel& model;
   ObjectPose& pose;  ///< what is published; its status is kInvalid until it is decided
-  std::optional<ObjectObservation> seen;
-  std::vector<RotationCandidate> rotations;
-  std::vector<PoseCandidate> candidates;
-  std::vector<RegistrationResult> registered;  ///< the candidates
-  std::vector<RegistrationResult> chosen;      ///< the best first
-  struct {
-    RegistrationResult result;
-    PoseEvidence evidence;
-  } published;  ///< of those the one that is published, or that would be
+  std::optional<ObjectObservation> seen = std::nullopt;
+  std::vector<RotationCandidate> rotations = {};
+  std::vector<PoseCandidate> candidates = {};
+  std::vector<RegistrationResult> registered = {};  ///< the candidates
+  std::vector<RegistrationResult> chosen = {};      ///< the best first
+  RegistrationResult published = {};                ///< of those the one that is published, or that would be
+  PoseEvidence evidence = {};                       ///< for that
 };
 
 ObjectPoses undecided_poses(const Detections& detections) {
@@ -67,7 +65,7 @@ std::vector<Estimation> begin_estimations(const Detections& detections,
     const auto model = models.find(detection.class_name);
     poses[i].status = reason_to_pass_over(detection, model != models.end(), settings);
     if (poses[i].status != PoseStatus::kInvalid) continue;
-    begun.push_back({detection, model->second, poses[i], {}, {}, {}, {}, {}, {}});
+    begun.push_back({detection, model->second, poses[i]});
   }
   return begun;
 }
@@ -112,7 +110,8 @@ void verify_one(const PoseSettings& settings, Estimation& it) {
     ObjectPose judged = judged_pose(it, result, evidence, settings);
     if (best && !(judged.quality > best->quality)) continue;
     best = std::move(judged);
-    it.published = {result, evidence};
+    it.published = result;
+    it.evidence = evidence;
   }
   it.pose = *std::move(best);
 }
@@ -125,10 +124,10 @@ void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
   const DepthTolerance tolerance{settings.verification.tolerance_m, it.seen->noise};
   const PrintSettings& learnt = class_quality_of(settings, it.pose.class_name).print;
   const std::optional<PrintComparison> print =
-      compare_print(*it.seen, it.published.result.T_camera_object, tolerance, settings.registration);
+      compare_print(*it.seen, it.published.T_camera_object, tolerance, settings.registration);
   if (!print) return;
-  it.published.evidence.print_probability = print_probability(print->margin, learnt);
-  ObjectPose judged = judged_pose(it, it.published.result, it.published.evidence, settings);
+  it.evidence.print_probability = print_probability(print->margin, learnt);
+  ObjectPose judged = judged_pose(it, it.published, it.evidence, settings);
   if (print->better) {
     const RegistrationResult other = refine_pose(*it.seen, *print->better, it.rotations, choice_settings_of(settings));
     const std::optional<PrintComparison> there =

@@ -55,10 +55,10 @@ void compute_features_by(Way way, const SearchContext& search, DetectorWorkspace
 void find_posteriors_by(Way way, const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors) {
   if (way == Way::kFast) return find_posteriors(input, memory, posteriors);
   list_runs(input.patches, memory.runs);
-  const EarlyRejection early_end{input.settings.first_trees, input.settings.min_first_posterior};
+  LeafInput leaves{input.index, input.features, input.patches, memory.runs};
+  leaves.early_end = {input.settings.first_trees, input.settings.min_first_posterior};
   posteriors.reset(input.index, memory.runs.size(), input.settings.min_class_share, input.threads);
-  reference_leaves({input.index, input.features, input.patches, memory.runs, early_end}, input.threads,
-                   [&](const RunLeaves& seen) { posteriors.note(seen); });
+  reference_leaves(leaves, input.threads, [&](const RunLeaves& seen) { posteriors.note(seen); });
 }
 
 }  // namespace houghstream::baseline

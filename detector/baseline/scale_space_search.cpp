@@ -43,8 +43,9 @@ SeenLevel see_level(const SearchContext& search, Way way, const RgbdFrame& frame
   seen.px_per_offset = static_cast<float>(frame.camera.fx) * forest.features.image_scale;
   add_patches_everywhere(working, level, forest.patch, settings.spacing.stride, seen.grid);
   LeafMemory leaf_memory;
-  find_posteriors_by(way, {search.index, features, seen.grid, settings.leaves, settings.threads}, leaf_memory,
-                     seen.posteriors);
+  PosteriorInput input{search.index, features, seen.grid, settings.leaves};
+  input.threads = settings.threads;
+  find_posteriors_by(way, input, leaf_memory, seen.posteriors);
   clock.mark("detect.leaves");
   return seen;
 }

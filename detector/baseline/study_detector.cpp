@@ -16,8 +16,9 @@ std::vector<Candidate> search_normalised(const SearchContext& search, Way way, c
   clock.mark("detect.resize");
   compute_features_by(way, search, workspace);
   clock.mark("detect.features");
-  find_posteriors_by(way, {search.index, workspace.features, workspace.patches, settings.leaves, settings.threads},
-                     workspace.leaf_memory, workspace.posteriors);
+  PosteriorInput input{search.index, workspace.features, workspace.patches, settings.leaves};
+  input.threads = settings.threads;
+  find_posteriors_by(way, input, workspace.leaf_memory, workspace.posteriors);
   clock.mark("detect.leaves");
   const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);
   clock.mark("detect.votes");

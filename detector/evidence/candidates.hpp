@@ -23,7 +23,7 @@ struct Candidate {
 /// What hypotheses are weighed by.
 struct EvidenceInput {
   const ForestIndex& index;
-  LabFrame frame;
+  const LabFrame& frame;
   const PatchGrid& patches;
   const EvidenceSettings& settings;
   const std::vector<std::uint32_t>& excluded_views;  ///< into Forest::views: not compared with the frame

@@ -96,10 +96,10 @@ void PatchPosteriors::note(const RunLeaves& seen) {
 void find_posteriors(const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors) {
   std::vector<PatchRun>& runs = memory.runs;
   list_runs(input.patches, runs);
-  const EarlyRejection early_end{input.settings.first_trees, input.settings.min_first_posterior};
+  LeafInput leaves{input.index, input.features, input.patches, runs};
+  leaves.early_end = {input.settings.first_trees, input.settings.min_first_posterior};
   posteriors.reset(input.index, runs.size(), input.settings.min_class_share, input.threads);
-  find_leaves({input.index, input.features, input.patches, runs, early_end}, input.threads, memory,
-              [&](const RunLeaves& seen) { posteriors.note(seen); });
+  find_leaves(leaves, input.threads, memory, [&](const RunLeaves& seen) { posteriors.note(seen); });
 }
 
 }  // namespace houghstream

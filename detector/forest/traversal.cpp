@@ -46,7 +46,13 @@ PatchBatch gather_left(const FeatureImage& image, const PatchGrid& patches, Leaf
     own.y.push_back(patches.y[p]);
     own.scale.push_back(patches.scale[p]);
   }
-  return {&image, own.x.data(), own.y.data(), own.scale.data(), static_cast<int>(own.x.size())};
+  PatchBatch left;
+  left.image = &image;
+  left.x = own.x.data();
+  left.y = own.y.data();
+  left.scale = own.scale.data();
+  left.count = static_cast<int>(own.x.size());
+  return left;
 }
 
 /// Leaves of one run.
@@ -58,8 +64,12 @@ void walk_run(const LeafInput& input, const PatchRun& run, LeafMemory::Worker& o
   const bool may_end = input.early_end.is_enabled(index.forest());
   const std::size_t first = may_end ? static_cast<std::size_t>(input.early_end.trees) : trees;
   own.leaves.resize(run.count * trees);
-  const PatchBatch all{&image, patches.x.data() + run.first, patches.y.data() + run.first,
-                       patches.scale.data() + run.first, static_cast<int>(run.count)};
+  PatchBatch all;
+  all.image = &image;
+  all.x = patches.x.data() + run.first;
+  all.y = patches.y.data() + run.first;
+  all.scale = patches.scale.data() + run.first;
+  all.count = static_cast<int>(run.count);
   walk_trees(index, all, {0, first}, own.leaves.data());
   if (!may_end) {
     own.patches.resize(run.count);

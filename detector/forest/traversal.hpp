@@ -27,7 +27,7 @@ struct LeafInput {
   const std::vector<FeatureImage>& features;  ///< one image for each level
   const PatchGrid& patches;
   const std::vector<PatchRun>& runs;
-  EarlyRejection early_end;
+  EarlyRejection early_end = {};
 };
 
 /// The leaves of those patches of a run that were not given up.

@@ -70,8 +70,9 @@ ImageViews read_views(const BopScene& scene, std::size_t index, const std::map<i
   const std::vector<GroundTruthObject>& objects = scene.images()[index].objects;
   ImageViews out;
   if (objects.empty()) {
-    const std::string source = image_name(scene, index);
-    out.views.push_back({scene.read_frame(index), {}, 0, "", Eigen::Isometry3d::Identity(), source, ""});
+    TrainingView& background = out.views.emplace_back();
+    background.frame = scene.read_frame(index);
+    background.source = image_name(scene, index);
     return out;
   }
   std::optional<RgbdFrame> frame;

@@ -53,11 +53,14 @@ std::vector<CameraDescription> list_cameras(bool closely) {
   ::openni::OpenNI::enumerateDevices(&found);
   std::vector<CameraDescription> cameras;
   for (int i = 0; i < found.getSize(); ++i) {
-    cameras.push_back({found[i].getUri(), found[i].getVendor(), found[i].getName(), "", {}});
+    CameraDescription& camera = cameras.emplace_back();
+    camera.uri = found[i].getUri();
+    camera.vendor = found[i].getVendor();
+    camera.name = found[i].getName();
     ::openni::Device device;
     if (!closely || device.open(found[i].getUri()) != ::openni::STATUS_OK) continue;
-    cameras.back().serial = serial_of(device);
-    cameras.back().modes = common_modes(device);
+    camera.serial = serial_of(device);
+    camera.modes = common_modes(device);
   }
   return cameras;
 }

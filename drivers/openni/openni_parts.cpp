@@ -113,7 +113,13 @@ std::optional<Sensor> wait_for_image(::openni::VideoStream& depth, ::openni::Vid
 std::optional<SensorImage> read_image(::openni::VideoStream& stream, Sensor sensor) {
   ::openni::VideoFrameRef frame;
   if (stream.readFrame(&frame) != ::openni::STATUS_OK || !frame.isValid()) return std::nullopt;
-  return SensorImage{sensor, frame.getTimestamp(), utime_now(), frame.getFrameIndex(), picture_of(frame, sensor)};
+  SensorImage image;
+  image.sensor = sensor;
+  image.device_us = frame.getTimestamp();
+  image.host_us = utime_now();
+  image.number = frame.getFrameIndex();
+  image.image = picture_of(frame, sensor);
+  return image;
 }
 
 }  // namespace houghstream::openni

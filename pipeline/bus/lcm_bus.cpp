@@ -63,13 +63,11 @@ bool is_log_url(const std::string& url) {
   return url.rfind(kFileScheme, 0) == 0;
 }
 
-struct Subscription {
-  ChannelPattern channels;
-  LcmBus::Handler handler;
-  LogThrottle& complaints;
+/// LCM's queue of a subscription.
+struct MessageQueue {
   lcm_subscription_t* made = nullptr;  // LCM's, while there is one
-  int capacity = 0;                    // of its queue
-  std::size_t message_bytes = 1;       // of the largest message lately
+  int capacity = 0;
+  std::size_t message_bytes = 1;  // of the largest message lately
 
   void set_capacity(int messages) {
     if (messages == capacity) return;
@@ -78,11 +76,18 @@ struct Subscription {
   }
 
   /// LCM counts messages, not bytes. A large one is forgotten over some hundred smaller ones.
-  void bound_queue(std::size_t bytes) {
+  void bound(std::size_t bytes) {
     message_bytes = std::max({bytes, message_bytes - message_bytes / 64, std::size_t{1}});
     const auto fitting = static_cast<int>(std::min<std::size_t>(kQueueBytes / message_bytes, kQueueCapacity));
     set_capacity(std::max(fitting, 1));
   }
+};
+
+struct Subscription {
+  ChannelPattern channels;
+  LcmBus::Handler handler;
+  LogThrottle& complaints;
+  MessageQueue queue = {};
 };
 
 // Nothing thrown may cross LCM's callback, which is C.
@@ -98,7 +103,7 @@ void call_handler(const Subscription& subscription, const ReceivedMessage& arriv
 
 void on_message(const lcm_recv_buf_t* buffer, const char* channel, void* context) {
   auto& subscription = *static_cast<Subscription*>(context);
-  subscription.bound_queue(buffer->data_size);
+  subscription.queue.bound(buffer->data_size);
   const ByteView bytes{static_cast<const std::uint8_t*>(buffer->data), buffer->data_size};
   call_handler(subscription, {channel, bytes, std::chrono::steady_clock::now(), buffer->recv_utime});
 }
@@ -108,10 +113,10 @@ bool subscribe_at(lcm_t* lcm, Subscription& subscription) {
   // LCM puts ^ and $ around it, which would belong to the first and the last alternative only.
   const ChannelPattern& channels = subscription.channels;
   const std::string whole = channels.is_name() ? channels.text() : "(" + channels.text() + ")";
-  subscription.made = lcm_subscribe(lcm, whole.c_str(), on_message, &subscription);
-  if (subscription.made == nullptr) return false;
-  subscription.capacity = 0;
-  subscription.bound_queue(1);
+  subscription.queue.made = lcm_subscribe(lcm, whole.c_str(), on_message, &subscription);
+  if (subscription.queue.made == nullptr) return false;
+  subscription.queue.capacity = 0;
+  subscription.queue.bound(1);
   return true;
 }
 
@@ -231,12 +236,10 @@ void LcmBus::subscribe(const std::string& channels, Handler handler) {
 void LcmBus::subscribe_to_frames(const std::string& channels, Handler handler) {
   if (is_log()) return subscribe(channels, std::move(handler));
   state_->frame_silence.emplace(channels, std::chrono::steady_clock::now());
-  state_->everything.emplace(Subscription{ChannelPattern(".*"),
-                                          [this](const ReceivedMessage& arrival) {
-                                            if (is_frame_message(arrival.bytes))
-                                              state_->frame_silence->note_elsewhere(arrival.channel);
-                                          },
-                                          state_->complaints});
+  const auto note_frames = [this](const ReceivedMessage& arrival) {
+    if (is_frame_message(arrival.bytes)) state_->frame_silence->note_elsewhere(arrival.channel);
+  };
+  state_->everything.emplace(Subscription{ChannelPattern(".*"), note_frames, state_->complaints});
   subscribe(channels, [this, handler = std::move(handler)](const ReceivedMessage& arrival) {
     if (is_frame_message(arrival.bytes)) state_->frame_silence->note_wanted(arrival.time);
     handler(arrival);
@@ -250,10 +253,10 @@ void LcmBus::look_for_frames() {
   if (!is_reachable()) silence.note_wanted(now);  // nobody is silent who cannot be heard
   const bool looks = silence.wants_to_listen(now);
   Subscription& everything = *state_->everything;
-  if (looks && everything.made == nullptr) {
+  if (looks && everything.queue.made == nullptr) {
     subscribe_at(state_->lcm.get(), everything);
-  } else if (!looks && everything.made != nullptr) {
-    lcm_unsubscribe(state_->lcm.get(), std::exchange(everything.made, nullptr));
+  } else if (!looks && everything.queue.made != nullptr) {
+    lcm_unsubscribe(state_->lcm.get(), std::exchange(everything.queue.made, nullptr));
   }
   if (const std::optional<std::string> words = silence.words(now)) log_warning("{}: {}", state_->url, *words);
 }
@@ -307,7 +310,7 @@ void LcmBus::reconnect() {
   const BlockStopSignals block;
   state_->lcm.reset(lcm_create(state_->url.c_str()));
   require(state_->lcm != nullptr, "LCM cannot be opened at {}", state_->url);
-  if (state_->everything) state_->everything->made = nullptr;
+  if (state_->everything) state_->everything->queue.made = nullptr;
   for (Subscription& subscription : state_->subscriptions) subscribe_at(state_->lcm.get(), subscription);
 }
 

@@ -52,8 +52,11 @@ RegistrationResult register_near(const ObjectObservation& seen, const Eigen::Iso
   const CorrespondenceDistances distances = correspondence_distances(seen, settings.registration);
   const double end_m = distances.end;
   const double start_m = expected.is_lost ? distances.start : std::max(end_m, follow.max_correspondence_start_m);
-  const int iterations = expected.is_lost ? settings.registration.coarse_iterations : follow.coarse_iterations;
-  const RegistrationStage coarse{iterations, follow.coarse_points, start_m, end_m};
+  RegistrationStage coarse;
+  coarse.iterations = expected.is_lost ? settings.registration.coarse_iterations : follow.coarse_iterations;
+  coarse.points = follow.coarse_points;
+  coarse.max_correspondence_start_m = start_m;
+  coarse.max_correspondence_end_m = end_m;
   RegistrationResult result = settings.registration.engine(seen, start, coarse, settings.registration);
   if (expected.settle && result.inliers > 0) {
     const HillClimb climb{follow.settle_step_deg * kRadPerDeg, follow.settle_step_m, follow.settle_rounds,
@@ -61,7 +64,12 @@ RegistrationResult register_near(const ObjectObservation& seen, const Eigen::Iso
     const DepthTolerance tolerance{settings.verification.tolerance_m, seen.noise};
     result.T_camera_object = hill_climb_pose(seen, result.T_camera_object, climb, tolerance).T_camera_object;
   }
-  const RegistrationStage fine{follow.fine_iterations, follow.fine_points, end_m, end_m, 1};
+  RegistrationStage fine;
+  fine.iterations = follow.fine_iterations;
+  fine.points = follow.fine_points;
+  fine.max_correspondence_start_m = end_m;
+  fine.max_correspondence_end_m = end_m;
+  fine.search_steps = 1;
   RegistrationResult last = settings.registration.engine(seen, result.T_camera_object, fine, settings.registration);
   last.iterations += result.iterations;
   return last;

@@ -18,6 +18,16 @@ float probability(double odds) {
   return static_cast<float>(logistic(odds));
 }
 
+ExpectedObject expected_at(const Eigen::Isometry3d& T_camera_object, const FollowedObject& object) {
+  ExpectedObject expected;
+  expected.class_id = object.class_id;
+  expected.class_name = object.class_name;
+  expected.score = probability(object.remembered_score);
+  expected.starts = {T_camera_object};
+  expected.print_probability = object.print_probability;
+  return expected;
+}
+
 /// Whether newer frames have overtaken this one on its way. Where the one before it seemed so too, and was older, it is
 /// the clock that was set back.
 bool is_overtaken(std::int64_t utime, FollowedCamera& camera) {
@@ -203,15 +213,10 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
     const double dt = seconds_between(object.clock_us, clock_of(frame.id.utime, camera));
     const double used = dt <= kMaxLength ? dt : 0.0;
     const bool settle = (camera.frames + object.number) % kSettle == 0;
-    expected.push_back({object.class_id,
-                        object.class_name,
-                        probability(object.remembered_score),
-                        {object.velocity.predict(object.T_camera_object, used)},
-                        settle,
-                        false,
-                        true,
-                        settle ? std::nullopt : object.verified,
-                        object.print_probability});
+    ExpectedObject& it =
+        expected.emplace_back(expected_at(object.velocity.predict(object.T_camera_object, used), object));
+    it.settle = settle;
+    if (!settle) it.verified = object.verified;
   }
   std::vector<FollowedPose> poses = follow_objects(estimator, settings_.follow, frame, expected);
   retry_lost(estimator, frame, camera, poses);
@@ -234,10 +239,9 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
   std::vector<ExpectedObject> expected;
   for (const std::size_t i : failed) {
     const FollowedObject& object = camera.objects[i];
-    const float score = probability(object.remembered_score);
-    ExpectedObject again{
-        object.class_id,         object.class_name, score, {object.T_camera_object}, true, true, true, {},
-        object.print_probability};
+    ExpectedObject again = expected_at(object.T_camera_object, object);
+    again.settle = true;
+    again.is_lost = true;
     const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(object.T_camera_object, motions);
     if (carried) again.starts.insert(again.starts.begin(), *carried);
     // What stands was expected there the first time too, and it has been told whether it is hidden there.

@@ -11,16 +11,23 @@ CorrespondenceDistances correspondence_distances(const ObjectObservation& seen, 
 
 RegistrationResult register_coarsely(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
                                      double start_m, const RegistrationSettings& settings) {
-  const RegistrationStage stage{settings.coarse_iterations, settings.coarse_points, start_m,
-                                correspondence_distances(seen, settings).end};
+  RegistrationStage stage;
+  stage.iterations = settings.coarse_iterations;
+  stage.points = settings.coarse_points;
+  stage.max_correspondence_start_m = start_m;
+  stage.max_correspondence_end_m = correspondence_distances(seen, settings).end;
   return settings.engine(seen, T_camera_object, stage, settings);
 }
 
 RegistrationResult register_finely(const ObjectObservation& seen, const RegistrationResult& result,
                                    const RegistrationSettings& settings) {
-  constexpr int kSearchSteps = 1;
   const double end_m = correspondence_distances(seen, settings).end;
-  const RegistrationStage stage{settings.fine_iterations, settings.fine_points, end_m, end_m, kSearchSteps};
+  RegistrationStage stage;
+  stage.iterations = settings.fine_iterations;
+  stage.points = settings.fine_points;
+  stage.max_correspondence_start_m = end_m;
+  stage.max_correspondence_end_m = end_m;
+  stage.search_steps = 1;
   RegistrationResult fine = settings.engine(seen, result.T_camera_object, stage, settings);
   fine.iterations += result.iterations;
   return is_near_detection(seen, fine, settings) ? fine : result;

@@ -79,7 +79,10 @@ FrameContext make_frame_context(const RgbdFrame& frame, const RegionSettings& se
 ObjectObservation observe_object(const FrameContext& seen, const Detection& detection, const ObjectModel& model,
                                  const RegionSettings& settings) {
   const DepthRegion region = find_region(seen.frame, detection, model, settings);
-  ObjectObservation object{seen.frame, model, detection.centre_camera, seen.noise, region, {}};
+  ObjectObservation object{seen.frame, model};
+  object.centre_camera = detection.centre_camera;
+  object.noise = seen.noise;
+  object.region = region;
   if (region.points >= settings.min_points) object.colours = lab_region(seen.frame, region.box_px, seen.tone);
   return object;
 }

@@ -87,10 +87,11 @@ FrameContext make_frame_context(const RgbdFrame& frame, const RegionSettings& se
 struct ObjectObservation {
   const RgbdFrame& frame;
   const ObjectModel& model;
-  Eigen::Vector3f centre_camera;  ///< where ObjectModel::vote_centre was detected, metres, z > 0
-  DepthNoise noise;               ///< of the frame's depth
-  DepthRegion region;
-  LabRegion colours;  ///< of the region's box; empty where the region has too few points
+  /// Where ObjectModel::vote_centre was detected, metres, z > 0.
+  Eigen::Vector3f centre_camera = Eigen::Vector3f::Zero();
+  DepthNoise noise = {};  ///< of the frame's depth
+  DepthRegion region = {};
+  LabRegion colours = {};  ///< of the region's box; empty where the region has too few points
 };
 ObjectObservation observe_object(const FrameContext& seen, const Detection& detection, const ObjectModel& model,
                                  const RegionSettings& settings);

@@ -9,8 +9,9 @@ namespace houghstream::tracks {
 
 ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseObservation>& poses,
                           const TrackModels& models, std::vector<Track>& tracks) {
-  ClassGroup one{
-      {}, {}, symmetries_of(models, class_name), centre_of(models, class_name), radius_of(models, class_name)};
+  ClassGroup one{symmetries_of(models, class_name)};
+  one.centre = centre_of(models, class_name);
+  one.radius_m = radius_of(models, class_name);
   for (Track& track : tracks) {
     if (track.there() && track.class_name == class_name) one.objects.push_back(&track);
   }

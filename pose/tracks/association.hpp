@@ -28,9 +28,9 @@ void fields(const AssociationSettings& /*settings*/, const Visit& visit) {
 
 /// The objects of a class that are there, and the poses that a frame has of it.
 struct ClassGroup {
-  std::vector<Track*> objects;
-  std::vector<const PoseObservation*> measured;
   const Symmetries& symmetries;
+  std::vector<Track*> objects = {};
+  std::vector<const PoseObservation*> measured = {};
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< object frame, metres
   double radius_m = 0.0;
 };

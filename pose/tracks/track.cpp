@@ -82,13 +82,15 @@ std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen
   std::vector<PoseObservation> out;
   for (const ObjectPose& pose : poses.poses) {
     if (!pose.T_camera_object) continue;
-    out.push_back({poses.frame,
-                   pose.class_id,
-                   pose.class_name,
-                   static_cast<double>(pose.quality),
-                   {poses.frame.utime, T_world_camera * *pose.T_camera_object,
-                    covariance_of(pose, T_world_camera, centre_of(models, pose.class_name),
-                                  radius_of(models, pose.class_name))}});
+    PoseObservation& seen = out.emplace_back();
+    seen.frame = poses.frame;
+    seen.class_id = pose.class_id;
+    seen.class_name = pose.class_name;
+    seen.quality = static_cast<double>(pose.quality);
+    seen.measured.utime = poses.frame.utime;
+    seen.measured.T_world_object = T_world_camera * *pose.T_camera_object;
+    seen.measured.covariance =
+        covariance_of(pose, T_world_camera, centre_of(models, pose.class_name), radius_of(models, pose.class_name));
   }
   return out;
 }

@@ -144,16 +144,16 @@ class PoseTrack {
 
 /// An object, or what may become one.
 struct Track {
+  PoseTrack pose;
   std::int64_t id = 0;  ///< 0: not confirmed
   int class_id = 0;
-  std::string class_name;
-  PoseTrack pose;
+  std::string class_name = {};
   double log_odds = 0.0;  ///< that it is there
   int seen = 0;           ///< frames with a pose of it
   std::int64_t first_utime = 0;
-  FrameId last_seen;
+  FrameId last_seen = {};
   TrackState state = TrackState::kVisible;
-  std::string reason;
+  std::string reason = {};
   std::int64_t deleted_utime = 0;  ///< 0: it is there
   bool seen_now = false;
   double seen_through_s = 0.0;  ///< for how long it was seen through, since it was seen last

@@ -249,16 +249,13 @@ void Tracker::State::begin(const PoseObservation& pose) {
     ++refused;
     return;
   }
-  Track track{0,
-              pose.class_id,
-              pose.class_name,
-              PoseTrack(pose, settings.pose),
-              0.0,
-              1,
-              pose.frame.utime,
-              pose.frame,
-              TrackState::kVisible,
-              fmt::format("seen by {}", pose.frame.channel)};
+  Track track{PoseTrack(pose, settings.pose)};
+  track.class_id = pose.class_id;
+  track.class_name = pose.class_name;
+  track.seen = 1;
+  track.first_utime = pose.frame.utime;
+  track.last_seen = pose.frame;
+  track.reason = fmt::format("seen by {}", pose.frame.channel);
   track.log_odds = settings.existence.prior + settings.existence.gain * log_odds_of(pose.quality);
   track.seen_now = true;
   tracks.push_back(std::move(track));
@@ -268,7 +265,9 @@ void Tracker::State::begin(const PoseObservation& pose) {
 void Tracker::State::update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses,
                                               CameraClock& camera) {
   looked_for.note(seen.poses);
-  const UnobservedContext unseen{seen, poses, models, settings.association.reach_m, settings.pose.motion.coast_s};
+  UnobservedContext unseen{seen, poses, models};
+  unseen.reach_m = settings.association.reach_m;
+  unseen.coast_s = settings.pose.motion.coast_s;
   std::set<std::string> missed_now;
   for (Track& track : tracks) {
     if (!track.there() || track.seen_now) continue;

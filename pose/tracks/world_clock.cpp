@@ -119,7 +119,11 @@ CameraClock& WorldClock::set(const StampedFrame& frame) {
   const double passed_s = seconds_between(clock.utime, now.utime);
   const double seconds = clock.results == 0 ? kUsualS : std::min(kMaxS, passed_s);
   if (clock.results > 0 && passed_s > 0.0) camera.interval_s = passed_s;
-  if (clock.results == 0 || now.utime != clock.utime) clock = {now.utime, 0, seconds, {}, {}};
+  if (clock.results == 0 || now.utime != clock.utime) {
+    clock = CameraClock();
+    clock.utime = now.utime;
+    clock.seconds = seconds;
+  }
   camera.number = frame.number;
   ++clock.results;
   return clock;

@@ -46,6 +46,13 @@ inline constexpr std::array<double QualityTerms::*, 8> kQualityTerms = {
 inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames = {
     "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "print", "left_over", "contrast"};
 
+/// Of a value for each term, in their order.
+inline QualityTerms terms_of(const std::array<double, kQualityTerms.size()>& values) {
+  QualityTerms terms;
+  for (std::size_t i = 0; i < values.size(); ++i) terms.*kQualityTerms[i] = values[i];
+  return terms;
+}
+
 template <typename Visit>
 void fields(const QualityTerms& /*settings*/, const Visit& visit) {
   for (std::size_t i = 0; i < kQualityTerms.size(); ++i)
@@ -78,10 +85,10 @@ float print_probability(double margin, const PrintSettings& settings);
 /// learnt. What hs-teach learns of an object takes their place.
 struct QualitySettings {
   double bias = -5.54;
-  QualityTerms weights = {1.56, 0.45, 1.18, 2.87, 2.79, 7.25, 1.42, -0.27};
+  QualityTerms weights = terms_of({1.56, 0.45, 1.18, 2.87, 2.79, 7.25, 1.42, -0.27});
   /// Means of right poses: what is farthest below them is the reason for "no pose". Those of colour stand for a model
   /// without colours.
-  QualityTerms typical = {1.95, 3.06, -0.17, 2.89, -0.23, 0.80, -5.29, -5.29};
+  QualityTerms typical = terms_of({1.95, 3.06, -0.17, 2.89, -0.23, 0.80, -5.29, -5.29});
   float least = 0.75F;                  ///< poses of lower quality are not published...
   float min_candidate_quality = 0.75F;  ///< ...nor are these of candidates (Detection::reported): most are false
   PresenceSettings presence;            ///< what this says of whether the object is there at all

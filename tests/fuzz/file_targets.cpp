@@ -54,7 +54,10 @@ std::vector<Bytes> forests() {
   Forest forest;
   forest.profile = profile_names().front();
   forest.features.families = 1;
-  forest.classes = {{1, "mug", 0.1F, 1.0F, {}}};
+  ObjectClass& mug = forest.classes.emplace_back();
+  mug.class_id = 1;
+  mug.name = "mug";
+  mug.radius = 0.1F;
   forest.roots = {0};
   TreeNode node{};
   node.left = -1;

@@ -62,8 +62,11 @@ BopEstimate parse_line(const std::string& line, const std::string& where) {
   require((R * R.transpose()).isIdentity(kTolerance) && R.determinant() > 0.0, "{}: R is {}, expected a rotation",
           where, fields[4]);
   const std::vector<double> t_mm = parse_numbers(fields[5], 3, where);
-  BopEstimate estimate{parse_id(fields[0], where), parse_id(fields[1], where), parse_id(fields[2], where),
-                       parse_number(fields[3], where)};
+  BopEstimate estimate;
+  estimate.scene_id = parse_id(fields[0], where);
+  estimate.image_id = parse_id(fields[1], where);
+  estimate.object_id = parse_id(fields[2], where);
+  estimate.score = parse_number(fields[3], where);
   estimate.T_camera_object.linear() = R;
   estimate.T_camera_object.translation() = Eigen::Vector3d(t_mm[0], t_mm[1], t_mm[2]) * 1e-3;
   estimate.time_s = parse_number(fields[6], where);
@@ -102,9 +105,13 @@ std::vector<BopEstimate> bop_estimates(const std::vector<EvaluatedFrame>& frames
         unknown.insert(pose.class_name);
         continue;
       }
-      estimates.push_back({scene_number(frame.scene), frame.image_id, id->second,
-                           static_cast<double>(pose.detection_score), *pose.T_camera_object,
-                           seconds_of(frame.poses->stages)});
+      BopEstimate& estimate = estimates.emplace_back();
+      estimate.scene_id = scene_number(frame.scene);
+      estimate.image_id = frame.image_id;
+      estimate.object_id = id->second;
+      estimate.score = static_cast<double>(pose.detection_score);
+      estimate.T_camera_object = *pose.T_camera_object;
+      estimate.time_s = seconds_of(frame.poses->stages);
     }
   }
   for (const std::string& name : unknown)

@@ -34,7 +34,10 @@ std::vector<ObjectViews> group_views(std::vector<TrainingView> views) {
       return other.views.front().object_frame == view.object_frame;
     });
     if (frame == frames.end()) {
-      frame = frames.insert(frames.end(), {view.class_id, view.class_name, view.object_frame.empty(), {}, {}});
+      frame = frames.emplace(frames.end());
+      frame->class_id = view.class_id;
+      frame->class_name = view.class_name;
+      frame->exact_poses = view.object_frame.empty();
     }
     frame->views.push_back(std::move(view));
   }

@@ -68,11 +68,18 @@ void BusWatcher::subscribe_to_results() {
 }
 
 void BusWatcher::subscribe_to_status() {
-  reception_.subscribe_to_messages<status_t>(
-      channel::kStatus, [this](const status_t& message, const ReceivedMessage& arrival) {
-        stream_.note_process({message.process, message.pid, message.rate_hz, message.frames_skipped,
-                              message.frames_lost, message.frames_refused, microseconds(arrival.time)});
-      });
+  reception_.subscribe_to_messages<status_t>(channel::kStatus,
+                                             [this](const status_t& message, const ReceivedMessage& arrival) {
+                                               ProcessState state;
+                                               state.name = message.process;
+                                               state.pid = message.pid;
+                                               state.rate_hz = message.rate_hz;
+                                               state.skipped = message.frames_skipped;
+                                               state.lost = message.frames_lost;
+                                               state.refused = message.frames_refused;
+                                               state.heard_us = microseconds(arrival.time);
+                                               stream_.note_process(state);
+                                             });
 }
 
 void BusWatcher::subscribe_to_teaching() {

@@ -60,13 +60,16 @@ class Target {
   const std::vector<Eigen::Vector3f>& lab() const { return lab_; }
 
   struct Hit {
-    Eigen::Vector3f point, normal, colour;
+    Eigen::Vector3f point = Eigen::Vector3f::Zero();
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+    Eigen::Vector3f colour = Eigen::Vector3f::Zero();
     float distance = 0.0F;
-    bool seen = false;
+    bool seen = true;
   };
   Hit nearest(const Eigen::Vector3f& point) const {
     const ClosestPoint at = tree_.nearest(point);
-    Hit hit{Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), at.distance, true};
+    Hit hit;
+    hit.distance = at.distance;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = model_.mesh->triangles[at.triangle][k];
       hit.point += at.weights[k] * model_.mesh->vertices[v];

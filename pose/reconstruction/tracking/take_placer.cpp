@@ -139,14 +139,19 @@ void TakePlacer::accept(int number, const RgbdFrame& frame, FrameLevels levels, 
       nearest < 0 ? 1e9
                   : map_.difference(step_.T_last, map_.keyframes()[static_cast<std::size_t>(nearest)].T_camera_world);
   if (nearest < 0 || (fit && away > settings_.keyframe_turn) || away > 2.0 * settings_.keyframe_turn) {
-    Landmarks landmarks = detect_landmarks(frame, landmark_mask(frame, step_.T_last));
+    Keyframe made;
+    made.landmarks = detect_landmarks(frame, landmark_mask(frame, step_.T_last));
     Alignment held = alignment;
     if (nearest >= 0) map_.local_map(step_.T_last);  // the keyframes that the new one is tied to
     if (nearest >= 0 && map_.settings().use_landmarks) {
-      held = map_.constrain_by_landmarks(levels, landmarks, alignment);
+      held = map_.constrain_by_landmarks(levels, made.landmarks, alignment);
       step_.correct(held.T_camera_world);
     }
-    add_keyframe({frame, number, std::move(levels), {}, std::move(landmarks), step_.T_last}, held);
+    made.frame = frame;
+    made.number = number;
+    made.levels = std::move(levels);
+    made.T_camera_world = step_.T_last;
+    add_keyframe(std::move(made), held);
   }
   placed.tracked = true;
   placed.keyframe = map_.nearest(step_.T_last);
@@ -180,8 +185,13 @@ void TakePlacer::follow_object_only() {
   tie_to_first_keyframe();
   state_.seen = {};
   step_.restart(chosen_.T_camera_stand);
-  Landmarks landmarks = detect_landmarks(first, landmark_mask(first, step_.T_last));
-  add_keyframe({first, first_number_, make_levels(first, levels_), {}, std::move(landmarks), step_.T_last}, {});
+  Keyframe made;
+  made.frame = first;
+  made.number = first_number_;
+  made.levels = make_levels(first, levels_);
+  made.landmarks = detect_landmarks(first, landmark_mask(first, step_.T_last));
+  made.T_camera_world = step_.T_last;
+  add_keyframe(std::move(made), {});
 }
 
 /// The frames of before were tied to keyframes of the surroundings, and the map now holds the first frame alone: all of

@@ -178,7 +178,8 @@ std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
 
 TEST(Score, TheModelThatMadeTheExamplesComesBack) {
   ScoreModel truth;
-  truth.weights = {2.0F, 2.5F, -2.0F, -3.0F, 0.5F, -1.5F, 3.0F, -1.2F};
+  constexpr float kWeights[] = {2.0F, 2.5F, -2.0F, -3.0F, 0.5F, -1.5F, 3.0F, -1.2F};
+  for (std::size_t i = 0; i < std::size(kWeights); ++i) truth.weights.*kScoreTermList[i] = kWeights[i];
   const ScoreModel fitted = fit_score_model(drawn_from(truth, 40000), {ScoreTerms{}});
   for (std::size_t i = 0; i < kScoreTerms; ++i)
     EXPECT_NEAR(listed(fitted.weights)[i], listed(truth.weights)[i], 0.35F) << i;
@@ -197,7 +198,8 @@ TEST(Score, ExamplesThatAreToldApartWithoutErrorMoveTheWeightsOnlySoFar) {
 }
 
 TEST(Score, WithoutExamplesThePriorStays) {
-  const ScoreModel prior{{1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.0F, 8.0F}};
+  ScoreModel prior;
+  for (std::size_t i = 0; i < 8; ++i) prior.weights.*kScoreTermList[i] = static_cast<float>(i + 1);
   EXPECT_EQ(listed(fit_score_model({}, prior).weights), listed(prior.weights));
 }
 

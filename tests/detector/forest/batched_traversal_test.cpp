@@ -37,7 +37,12 @@ Patches random_patches(const FeatureImage& image, int count, Random& random) {
 bool walks_like_find_leaf(const Forest& forest, TreeRange trees, const FeatureImage& image, const Patches& patches) {
   const std::size_t count = patches.x.size();
   std::vector<std::int32_t> leaves((trees.last - trees.first) * count + 1, kNobody);
-  const PatchBatch walking{&image, patches.x.data(), patches.y.data(), patches.scale.data(), static_cast<int>(count)};
+  PatchBatch walking;
+  walking.image = &image;
+  walking.x = patches.x.data();
+  walking.y = patches.y.data();
+  walking.scale = patches.scale.data();
+  walking.count = static_cast<int>(count);
   const bool walked = traverse_batched(pack_trees(forest), trees, walking, leaves.data());
   std::vector<std::int32_t> expected(leaves.size(), kNobody);
   for (std::size_t i = 0; walked && i + 1 < expected.size(); ++i) {

@@ -32,7 +32,10 @@ TEST(PixelTest, ComparesOnePlaneAtTwoPlacesAndWrapsDepth) {
   image.at(12, 10)[3] = 30;
   image.at(8, 10)[32] = 250;
   image.at(12, 10)[32] = 4;
-  PixelTest test{-2, 0, 2, 0, 3, 0, 0};
+  PixelTest test;
+  test.dx1 = -2;
+  test.dx2 = 2;
+  test.plane = 3;
   EXPECT_EQ(test_value(test, image.patch(10, 10, 256)), 170);
   test.plane = 32;
   test.kind = PixelTest::kWrapping;
@@ -43,14 +46,21 @@ TEST(PixelTest, AloneItComparesOnePixelOnly) {
   FeatureImage image(20, 20, 64);
   image.at(8, 10)[3] = 200;
   image.at(12, 10)[3] = 30;
-  const PixelTest test{-2, 0, 2, 0, 3, PixelTest::kAlone, 0};
+  PixelTest test;
+  test.dx1 = -2;
+  test.dx2 = 2;
+  test.plane = 3;
+  test.kind = PixelTest::kAlone;
   EXPECT_EQ(test_value(test, image.patch(10, 10, 256)), 200);
 }
 
 TEST(FindLeaf, WalksRightFromTheThresholdOn) {
   Forest forest;
   forest.roots = {0};
-  forest.nodes = {{PixelTest{0, 0, 1, 0, 0, 0, 5}, -1, -2}};
+  PixelTest test;
+  test.dx2 = 1;
+  test.threshold = 5;
+  forest.nodes = {{test, -1, -2}};
   FeatureImage image(4, 4, 32);
   image.at(1, 1)[0] = 5;
   EXPECT_EQ(find_leaf(forest, 0, image.patch(1, 1, 256)), 1);

@@ -29,8 +29,11 @@ TEST(PackedTrees, HoldEveryNodeAndLeafOnce) {
 
 TEST(PackedTrees, StepsThatAreTooLongDoNotFit) {
   const auto is_packed = [](std::int8_t step) {
-    return !pack_trees(one_node({step, 0, 0, 0, 0, 0, 0})).nodes.empty() &&
-           !pack_trees(one_node({0, 0, 0, step, 0, 0, 0})).nodes.empty();
+    PixelTest first;
+    first.dx1 = step;
+    PixelTest last;
+    last.dy2 = step;
+    return !pack_trees(one_node(first)).nodes.empty() && !pack_trees(one_node(last)).nodes.empty();
   };
   EXPECT_TRUE(is_packed(15));
   EXPECT_TRUE(is_packed(-15));

@@ -23,7 +23,12 @@ inline PixelTest random_test(int planes, Random& random) {
   const auto step = [&] {
     return static_cast<std::int8_t>(random.between(-PatchSettings{}.radius, PatchSettings{}.radius));
   };
-  PixelTest test{step(), step(), step(), step(), 0, kKinds[random.below(3)], 0};
+  PixelTest test;
+  test.dx1 = step();
+  test.dy1 = step();
+  test.dx2 = step();
+  test.dy2 = step();
+  test.kind = kKinds[random.below(3)];
   test.plane = static_cast<std::uint8_t>(random.uniform() < 0.2 ? planes - 1 : random.below(planes));
   const int middle = test.kind == PixelTest::kAlone ? 128 : 0;
   const int spread = random.uniform() < 0.1 ? 400 : 60;  // some thresholds are out of every difference's reach

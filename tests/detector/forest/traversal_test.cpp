@@ -30,7 +30,8 @@ std::vector<std::int32_t> leaves_of(const ForestIndex& index, const std::vector<
       }
     }
   };
-  const LeafInput input{index, features, patches, runs, early_end};
+  LeafInput input{index, features, patches, runs};
+  input.early_end = early_end;
   LeafMemory memory;
   if (threads > 0) {
     find_leaves(input, threads, memory, visit);

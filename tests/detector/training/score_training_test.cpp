@@ -173,7 +173,10 @@ TEST(ScoreTraining, CalibratedScoresAreRightAsOftenAsTheySayAndKeepTheirOrder) {
 
 TEST(ScoreTraining, WithoutExamplesScoresStayAsTheyAre) {
   Forest forest;
-  forest.classes = {{1, "mug", 0.1F, 1.0F, {}}};
+  ObjectClass& mug = forest.classes.emplace_back();
+  mug.class_id = 1;
+  mug.name = "mug";
+  mug.radius = 0.1F;
   const ScoreTerms before = forest.classes[0].score_model.weights;
   calibrate_scores({}, {1}, forest);
   EXPECT_EQ(listed(forest.classes[0].score_model.weights), listed(before));

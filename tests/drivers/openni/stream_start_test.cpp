@@ -13,8 +13,11 @@ std::vector<ImageThumbnail> seen(int count) {
   cv::RNG random(7);
   std::vector<ImageThumbnail> images;
   for (int i = 0; i < count; ++i) {
-    SensorImage image{SensorImage::Sensor::kColour, static_cast<std::uint64_t>(kOpened + i * kPeriod), 0, i,
-                      cv::Mat(48, 64, CV_8UC3)};
+    SensorImage image;
+    image.sensor = SensorImage::Sensor::kColour;
+    image.device_us = static_cast<std::uint64_t>(kOpened + i * kPeriod);
+    image.number = i;
+    image.image = cv::Mat(48, 64, CV_8UC3);
     random.fill(image.image, cv::RNG::UNIFORM, 100, 130);
     images.push_back(remember(image));
   }

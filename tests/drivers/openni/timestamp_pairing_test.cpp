@@ -11,11 +11,17 @@ using Sensor = SensorImage::Sensor;
 
 constexpr std::int64_t kTolerance = 18'000;  // images come every 33 ms
 
+SensorImage taken_by(Sensor sensor, std::uint64_t time_ms) {
+  SensorImage image;
+  image.sensor = sensor;
+  image.device_us = 1000 * time_ms;
+  return image;
+}
 SensorImage depth(std::uint64_t time_ms) {
-  return {Sensor::kDepth, 1000 * time_ms, 0, 0, {}};
+  return taken_by(Sensor::kDepth, time_ms);
 }
 SensorImage colour(std::uint64_t time_ms) {
-  return {Sensor::kColour, 1000 * time_ms, 0, 0, {}};
+  return taken_by(Sensor::kColour, time_ms);
 }
 
 /// Times of the pairs in milliseconds that these images make, in this order of arrival.

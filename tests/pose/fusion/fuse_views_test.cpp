@@ -28,7 +28,8 @@ cv::Vec3b side_paint(const Eigen::Vector3d& p) {
 }
 
 FusedModel fused_box(bool background) {
-  TurntableScene scene{test_scene::cereal_box(), side_paint};
+  TurntableScene scene{test_scene::cereal_box()};
+  scene.paint = side_paint;
   scene.noise_m = 0.0015;
   scene.background = background;
   return fuse_views("box", turntable_views(scene), settings_for_tests());
@@ -108,7 +109,8 @@ TEST(FuseViews, AMugKeepsItsHandleItsHollowAndTheHoleBetweenThem) {
 }
 
 TEST(FuseViews, DoesNotDependOnThreads) {
-  TurntableScene scene{test_scene::cereal_box(), side_paint};
+  TurntableScene scene{test_scene::cereal_box()};
+  scene.paint = side_paint;
   scene.views = 8;
   FusionSettings settings = settings_for_tests();
   settings.grid.voxel = 0.005;

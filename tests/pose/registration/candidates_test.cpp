@@ -105,7 +105,8 @@ void expect_best_placed_first(const Eigen::Vector3f& vote_centre) {
     return Eigen::Quaternionf(standing(azimuth, 30.0, 1.0).linear().cast<float>());
   };
   const Eigen::Vector3f centre = truth.cast<float>() * vote_centre + Eigen::Vector3f(0.01F, -0.01F, 0.02F);
-  const ObjectObservation seen{frame, model, centre, {}, {}, {}};
+  ObjectObservation seen{frame, model};
+  seen.centre_camera = centre;
   const SearchSettings settings;
   const std::vector<PoseCandidate> found = place_candidates(
       seen, {{rotation(150.0), 3.0F}, {rotation(60.0), 1.0F}, {rotation(100.0), 1.0F}, {rotation(330.0), 1.0F}},
@@ -138,7 +139,8 @@ TEST(Candidates, TheOriginMayLieBesideTheLineOfSight) {
   of_model.vote_centres["box"] = offset;
   const ObjectModel model = make_object_model("box", object, of_model);
   const Eigen::Vector3f centre = box.translation().cast<float>() + Eigen::Vector3f(0.01F, -0.01F, 0.04F);
-  const ObjectObservation seen{frame, model, centre, {}, {}, {}};
+  ObjectObservation seen{frame, model};
+  seen.centre_camera = centre;
   const RotationCandidate rotation{Eigen::Quaternionf(truth.linear().cast<float>()), 1.0F};
   const std::vector<PoseCandidate> found = place_candidates(seen, {rotation}, {});
   ASSERT_FALSE(found.empty());
@@ -151,7 +153,8 @@ TEST(Candidates, OfEarlierPosesOnlyThoseOfTheClassNearInTimeAndPlaceCount) {
   frame.id.utime = 2000000;
   ObjectModel model;
   model.vote_centre = {0.5F, 0.0F, 0.0F};
-  const ObjectObservation seen{frame, model, truth.cast<float>() * model.vote_centre, {}, {}, {}};
+  ObjectObservation seen{frame, model};
+  seen.centre_camera = truth.cast<float>() * model.vote_centre;
   ObjectPose pose;
   pose.class_name = "box";
   pose.T_camera_object = truth;

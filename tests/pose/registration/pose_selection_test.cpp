@@ -20,7 +20,10 @@ struct Boxed {
 
   std::vector<RegistrationResult> choose_all(const std::vector<PoseCandidate>& candidates,
                                              const Eigen::Vector3f& centre) const {
-    const ObjectObservation seen{frame, model, centre, {}, region, lab_region(frame, region.box_px, {})};
+    ObjectObservation seen{frame, model};
+    seen.centre_camera = centre;
+    seen.region = region;
+    seen.colours = lab_region(frame, region.box_px, {});
     return select_poses(seen, register_candidates(seen, candidates, {}), {}, {});
   }
 

@@ -20,8 +20,12 @@ struct SeenBox {
   ObjectModel model = make_object_model("box", printed_box(), {});
   Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
   RgbdFrame frame = coloured_frame(model.mesh, truth, 3);
-  ObjectObservation seen{frame, model, truth.translation().cast<float>(),
-                         {},    {},    lab_region(frame, {0, 0, 640, 480}, {})};
+  ObjectObservation seen{frame, model};
+
+  SeenBox() {
+    seen.centre_camera = truth.translation().cast<float>();
+    seen.colours = lab_region(frame, {0, 0, 640, 480}, {});
+  }
 };
 
 TEST(TurnSearch, FindsTheWayBackFromEveryQuarter) {

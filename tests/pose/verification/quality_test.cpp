@@ -14,7 +14,13 @@ PoseEvidence good() {
   evidence.depth.violating = 20;
   evidence.depth.outline = 165;
   evidence.depth.boundary_continuations = 2.0F;
-  evidence.colour = ColourComparison{400, 0.6F, 14.0F, 0.5F, 0, 24.0F, 40.0F};
+  ColourComparison& colour = evidence.colour.emplace();
+  colour.points = 400;
+  colour.agreement = 0.6F;
+  colour.left_over = 14.0F;
+  colour.chroma_conflict = 0.5F;
+  colour.observed_contrast = 24.0F;
+  colour.model_contrast = 40.0F;
   return evidence;
 }
 

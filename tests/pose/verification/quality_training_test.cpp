@@ -12,7 +12,7 @@
 namespace houghstream {
 namespace {
 
-const QualityTerms kWeights = {1.5, 0.5, 1.0, -0.5, 2.0, 1.0};
+const QualityTerms kWeights = terms_of({1.5, 0.5, 1.0, -0.5, 2.0, 1.0});
 constexpr double kBias = -1.0;
 
 /// Right as often as kWeights and kBias say.

@@ -48,9 +48,18 @@ std::string refusal(const std::string& text) {
   return "accepted";
 }
 
+BopEstimate estimate_of_score(double score) {
+  BopEstimate estimate;
+  estimate.scene_id = 48;
+  estimate.image_id = 36;
+  estimate.object_id = 7;
+  estimate.score = score;
+  return estimate;
+}
+
 TEST(BopResults, AreWrittenAsBopToolkitReadsThem) {
   const fs::path file = fresh_folder("bop_results") / "results.csv";
-  BopEstimate estimate{48, 36, 7, 0.75};
+  BopEstimate estimate = estimate_of_score(0.75);
   estimate.T_camera_object.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   estimate.T_camera_object.translation() << 0.125, -0.25, 1.5;
   estimate.time_s = 0.5;
@@ -61,7 +70,7 @@ TEST(BopResults, AreWrittenAsBopToolkitReadsThem) {
 
 TEST(BopResults, WhatIsWrittenIsReadBack) {
   const fs::path file = fresh_folder("bop_results") / "results.csv";
-  BopEstimate estimate{48, 36, 7, 0.7531};
+  BopEstimate estimate = estimate_of_score(0.7531);
   estimate.T_camera_object = some_pose() * Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized());
   write_bop_results({estimate, BopEstimate{}}, file);
   const std::vector<BopEstimate> read = read_bop_results(file);

@@ -88,7 +88,12 @@ TEST(EvaluationReport, AverageRecallsStandInTheSummaryWhereTheyWereMeasured) {
   Evaluation evaluation = evaluate(two_frames(), {"mug"}, kModels, rules);
   EXPECT_FALSE(summary_json(evaluation, rules, std::nullopt).contains("bop19"));
   EXPECT_EQ(summary_json(evaluation, rules, std::nullopt)["pose_recall_add_or_add_s_10"]["mean"], 1.0);
-  evaluation.localisation = LocalisationScores{{{"mug", {2, 0.3, 0.5, 0.4, 0.4}}}, {2, 0.3, 0.5, 0.4, 0.4}};
+  AverageRecall recall;
+  recall.targets = 2;
+  recall.vsd = 0.3;
+  recall.mssd = 0.5;
+  recall.mspd = recall.mean = 0.4;
+  evaluation.localisation = LocalisationScores{{{"mug", recall}}, recall};
   const OrderedJson bop = summary_json(evaluation, rules, std::nullopt)["bop19"];
   EXPECT_EQ(bop["targets"]["mug"], 2);
   EXPECT_EQ(bop["ar_vsd"]["mug"], 0.3);

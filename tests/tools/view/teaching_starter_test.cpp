@@ -13,8 +13,17 @@ namespace {
 
 using Words = std::vector<std::string>;
 
+TeachingOrder order_at(const std::filesystem::path& executables) {
+  TeachingOrder order;
+  order.executables = executables;
+  order.channel = "LEFT";
+  return order;
+}
+
 TEST(TeachingStarter, TheCommandNamesStreamStoreAndObject) {
-  TeachingOrder order{"/bin", "my.store", true, "object_3", "LEFT", "", std::nullopt, std::nullopt};
+  TeachingOrder order = order_at("/bin");
+  order.store = "my.store";
+  order.name = "object_3";
   EXPECT_EQ(teaching_command(order), (Words{"/bin/hs-teach", "show", "--from-stream", "--name", "object_3", "--out",
                                             "my.store", "--channel", "LEFT", "--add"}));
   order.lcm_url = "udpm://x";
@@ -49,7 +58,9 @@ TEST(TeachingStarter, TheKeyStartsItAndEndsItsTakeOnce) {
              "while :; do sleep 0.05; done\n");
   std::filesystem::permissions(folder / "hs-teach", std::filesystem::perms::owner_all);
   const std::filesystem::path said = folder / "said";
-  const TeachingOrder order{folder, said.string(), true, "object_1", "LEFT", "", std::nullopt, std::nullopt};
+  TeachingOrder order = order_at(folder);
+  order.store = said.string();
+  order.name = "object_1";
   TeachingStarter starter;
   EXPECT_FALSE(starter.runs());
   starter.press(order);
@@ -63,7 +74,7 @@ TEST(TeachingStarter, TheKeyStartsItAndEndsItsTakeOnce) {
   starter.press(order);
   ASSERT_TRUE(comes_true([&] { return read_text(said) == "start\ntake\ntaught\nstart\n"; })) << "the next one";
   TeachingStarter without;
-  without.press({folder / "nowhere", "", false, "", "", "", std::nullopt, std::nullopt});
+  without.press(order_at(folder / "nowhere"));
   EXPECT_FALSE(without.runs());
 }
 

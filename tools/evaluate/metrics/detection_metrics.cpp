@@ -19,9 +19,13 @@ bool is_required(const NamedObject& object, const DetectionRules& rules) {
 MatchedDetection unjudged(const EvaluatedFrame& frame, std::size_t f, std::size_t index) {
   const Detection& detection = frame.detections->detections[index];
   const ObjectPose* pose = frame.poses ? find_pose(*frame.poses, index) : nullptr;
-  const bool posed = pose != nullptr && has_pose(pose->status);
-  const bool is_candidate = !detection.reported || (pose != nullptr && pose->status == PoseStatus::kRefuted);
-  return {f, index, detection.score, Verdict::kFalse, 0, is_candidate, posed};
+  MatchedDetection unjudged;
+  unjudged.frame = f;
+  unjudged.index = index;
+  unjudged.score = detection.score;
+  unjudged.is_candidate = !detection.reported || (pose != nullptr && pose->status == PoseStatus::kRefuted);
+  unjudged.has_pose = pose != nullptr && has_pose(pose->status);
+  return unjudged;
 }
 
 /// The class's detections over all frames, strongest first.

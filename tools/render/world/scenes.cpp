@@ -150,11 +150,11 @@ Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutte
 namespace {
 
 struct Plan {
-  const char* name;
-  DatasetSplit use;
-  std::uint64_t world;  ///< number for world_seed()
-  RoomStyle style;
-  TimeOfDay time;
+  const char* name = "";
+  DatasetSplit use = DatasetSplit::kTraining;
+  std::uint64_t world = 0;  ///< number for world_seed()
+  RoomStyle style = RoomStyle::kTable;
+  TimeOfDay time = TimeOfDay::kDay;
   Clutter clutter;
 };
 
@@ -233,10 +233,17 @@ std::optional<int> development_number(const std::string& name) {
 
 Plan development_plan(int number) {
   constexpr std::uint64_t kFirstWorld = 100;  // after those of kPlans
-  const TimeOfDay time = number % 3 == 2 ? kEvening : kDay;
-  const Clutter clutter{true, 1 + number % 2, 8, 8 + 2 * (number % 4), kNone, number % 2 == 0 ? kAlike : 0.0};
-  const std::uint64_t world = kDevelopment + kFirstWorld + static_cast<std::uint64_t>(number);
-  return {kDevelopmentWorld, kTraining, world, static_cast<RoomStyle>(number % kRoomStyles), time, clutter};
+  Plan plan;
+  plan.name = kDevelopmentWorld;
+  plan.world = kDevelopment + kFirstWorld + static_cast<std::uint64_t>(number);
+  plan.style = static_cast<RoomStyle>(number % kRoomStyles);
+  plan.time = number % 3 == 2 ? kEvening : kDay;
+  plan.clutter.taught_objects = true;
+  plan.clutter.look_alikes = 1 + number % 2;
+  plan.clutter.other_instances = 8;
+  plan.clutter.distractors = 8 + 2 * (number % 4);
+  plan.clutter.taught_colours = number % 2 == 0 ? kAlike : 0.0;
+  return plan;
 }
 
 Scene planned_scene(const std::string& name, const Plan& plan) {

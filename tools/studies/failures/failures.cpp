@@ -36,7 +36,11 @@ std::vector<Failure> false_ones(const std::vector<EvaluatedFrame>& frames, const
   for (const MatchedDetection& judged : result.judged) {
     if (judged.verdict != Verdict::kFalse || judged.score < least) continue;
     const Detection& detection = frames[judged.frame].detections->detections[judged.index];
-    out.push_back({Failure::Kind::kFalse, result.class_name, judged.frame, detection.box_px, judged.score});
+    Failure& failure = out.emplace_back();
+    failure.class_name = result.class_name;
+    failure.frame = judged.frame;
+    failure.box_px = detection.box_px;
+    failure.weight = judged.score;
   }
   return out;
 }
@@ -54,8 +58,12 @@ std::vector<Failure> missed_ones(const std::vector<EvaluatedFrame>& frames, cons
                judged.object == o;
       };
       if (std::any_of(result.judged.begin(), result.judged.end(), finds)) continue;
-      const cv::Rect2f box(object.truth.box_visible_px);
-      out.push_back({Failure::Kind::kMissed, result.class_name, f, box, object.truth.visible_fraction});
+      Failure& failure = out.emplace_back();
+      failure.kind = Failure::Kind::kMissed;
+      failure.class_name = result.class_name;
+      failure.frame = f;
+      failure.box_px = cv::Rect2f(object.truth.box_visible_px);
+      failure.weight = object.truth.visible_fraction;
     }
   }
   return out;

@@ -110,8 +110,11 @@ class PrerejectiveRival final : public SurfaceRival {
 
   std::optional<Eigen::Isometry3d> refine(const Eigen::Isometry3d& start, const ObjectModel& model,
                                           const std::vector<Eigen::Vector3f>& points_camera) const {
-    const RegistrationStage stage{settings_.icp_iterations, settings_.icp_points, settings_.icp_start_m,
-                                  settings_.icp_end_m};
+    RegistrationStage stage;
+    stage.iterations = settings_.icp_iterations;
+    stage.points = settings_.icp_points;
+    stage.max_correspondence_start_m = settings_.icp_start_m;
+    stage.max_correspondence_end_m = settings_.icp_end_m;
     const RegistrationResult result =
         register_points_pcl(points_camera, model, start, stage, pose_settings().registration);
     if (result.inliers == 0) return std::nullopt;

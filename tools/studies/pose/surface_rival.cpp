@@ -26,12 +26,10 @@ std::optional<Eigen::Isometry3d> SurfaceRival::estimate(const RgbdFrame& frame, 
   const DepthRegion region = find_region(frame, detection, model, pose_.region);
   if (region.points < pose_.region.min_points) return std::nullopt;
 
-  const SeenSurface seen{frame,
-                         model,
-                         region,
-                         measured_surface(frame, region, surface_),
-                         detection.centre_camera.cast<double>(),
-                         pose_.registration.max_shift_m};
+  SeenSurface seen{frame, model, region};
+  seen.cloud = measured_surface(frame, region, surface_);
+  seen.centre_camera = detection.centre_camera.cast<double>();
+  seen.max_shift_m = pose_.registration.max_shift_m;
   std::optional<Eigen::Isometry3d> best;
   float best_score = -std::numeric_limits<float>::infinity();
   for (const Eigen::Isometry3d& T_camera_object : propose(found->first, seen)) {

@@ -14,9 +14,9 @@ struct SeenSurface {
   const RgbdFrame& frame;
   const ObjectModel& model;
   const DepthRegion& region;
-  SurfaceCloud::Ptr cloud;        ///< measured_surface()
-  Eigen::Vector3d centre_camera;  ///< of the detection, metres
-  double max_shift_m = 0.0;       ///< a pose whose vote centre is farther from it will not be taken
+  SurfaceCloud::Ptr cloud = nullptr;                        ///< measured_surface()
+  Eigen::Vector3d centre_camera = Eigen::Vector3d::Zero();  ///< of the detection, metres
+  double max_shift_m = 0.0;  ///< a pose whose vote centre is farther from it will not be taken
 
   bool reaches(const Eigen::Isometry3d& T_camera_object) const {
     return (T_camera_object * model.vote_centre.cast<double>() - centre_camera).norm() <= max_shift_m;

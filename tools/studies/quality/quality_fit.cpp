@@ -61,9 +61,9 @@ QualitySettings fit_quality(const std::vector<Example>& examples) {
   std::vector<QualityExample> judged;
   judged.reserve(examples.size());
   for (const Example& example : examples) {
-    QualityExample& one = judged.emplace_back();
-    one.terms = example.terms;
-    one.is_right_up_to_shape = example.is_right_up_to_shape;
+    judged.emplace_back();
+    judged.back().terms = example.terms;
+    judged.back().is_right_up_to_shape = example.is_right_up_to_shape;
   }
   return fit_quality_settings(judged, QualitySettings{}, kStiffness);
 }

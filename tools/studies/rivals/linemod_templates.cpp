@@ -53,7 +53,11 @@ bool LinemodShare::add(const TrainingView& view, double distance, int rank) {
     return false;
   }
   ++training_.templates;
-  LinemodTemplate made{view.class_id, view.class_name, static_cast<float>(distance), {}, {}, {}, rank};
+  LinemodTemplate made;
+  made.class_id = view.class_id;
+  made.class_name = view.class_name;
+  made.distance = static_cast<float>(distance);
+  made.rank = rank;
   made.box_px = cv::boundingRect(scaled->mask) - features_px.tl();
   made.origin_px = cv::Point2f(scaled->origin_px - cv::Point2d(features_px.tl()));
   made.samples = spread_samples(*scaled, features_px.tl());

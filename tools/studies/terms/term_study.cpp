@@ -147,8 +147,12 @@ std::vector<TermFigures> term_figures(const std::vector<Sample>& samples) {
     const std::vector<double> terms = values_of(samples, [&](const Sample& sample) { return sample.terms.*term; });
     const std::vector<double> contributions =
         values_of(samples, [&](const Sample& sample) { return sample.contributions.*term; });
-    all.push_back({kScoreTermNames[i], percentile(terms, 50), mean_of(terms), mean_of(contributions),
-                   percentile(contributions, 50)});
+    TermFigures& figures = all.emplace_back();
+    figures.term = kScoreTermNames[i];
+    figures.median = percentile(terms, 50);
+    figures.mean = mean_of(terms);
+    figures.contribution = mean_of(contributions);
+    figures.contribution_median = percentile(contributions, 50);
   }
   return all;
 }

@@ -97,9 +97,11 @@ void practise_all(const std::vector<NamedModel>& models, const std::set<int>& ne
     object.vote_centre = stored.vote_centre;
     object.symmetries = model.symmetries;
     object.shape_symmetry = *stored.shape_symmetry;
-    object.in_room = {model.object_id, world::make_taught_thing(model.mesh, stored.coloured),
-                      world::up_directions(model.mesh, world::parse_mesh_attitudes(stored.attitudes)), stored.coloured,
-                      new_ids.count(model.object_id) > 0};
+    object.in_room.id = model.object_id;
+    object.in_room.thing = world::make_taught_thing(model.mesh, stored.coloured);
+    object.in_room.ups = world::up_directions(model.mesh, world::parse_mesh_attitudes(stored.attitudes));
+    object.in_room.has_colour = stored.coloured;
+    object.in_room.is_calibrated = new_ids.count(model.object_id) > 0;
   });
   const std::map<std::string, QualitySettings> learnt = practise(objects, new_ids, settings, forest);
   for (StoredObject& object : made.objects) {

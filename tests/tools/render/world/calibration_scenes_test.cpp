@@ -20,8 +20,11 @@ CalibrationSceneObject brick(int id, const Eigen::Vector3d& size, const cv::Vec3
   Mesh mesh = box(size, cv::Mat(8, 8, CV_8UC3, cv::Scalar::all(0)));
   mesh.texture.release();
   mesh.colours.assign(mesh.vertices.size(), colour);
-  const std::vector<Eigen::Vector3d> ups = up_directions(mesh, MeshAttitudes::kResting);
-  return {id, make_taught_thing(mesh, true), ups, true};
+  CalibrationSceneObject object;
+  object.id = id;
+  object.thing = make_taught_thing(mesh, true);
+  object.ups = up_directions(mesh, MeshAttitudes::kResting);
+  return object;
 }
 
 CalibrationScenes two_bricks(std::uint64_t seed) {

@@ -62,7 +62,12 @@ TEST(Failures, HardlyVisibleObjectsAreNotMissed) {
 TEST(Failures, APictureHasTheBoxInItEvenAtTheFramesEdge) {
   const cv::Mat grey(480, 640, CV_8UC3, cv::Scalar(90, 90, 90));
   for (const cv::Rect2f& box : {cv::Rect2f(0, 0, 30, 30), cv::Rect2f(600, 450, 40, 30), cv::Rect2f(0, 0, 640, 480)}) {
-    const cv::Mat tile = draw_failure({Failure::Kind::kMissed, "mug", 0, box, 0.4}, grey);
+    Failure missed;
+    missed.kind = Failure::Kind::kMissed;
+    missed.class_name = "mug";
+    missed.box_px = box;
+    missed.weight = 0.4;
+    const cv::Mat tile = draw_failure(missed, grey);
     cv::Mat yellow;
     cv::inRange(tile, cv::Scalar(60, 220, 255), cv::Scalar(60, 220, 255), yellow);
     EXPECT_GT(cv::countNonZero(yellow), 100);

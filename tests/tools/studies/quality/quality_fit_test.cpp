@@ -11,7 +11,7 @@
 namespace houghstream::quality {
 namespace {
 
-const QualityTerms kWeights = {1.5, 0.5, 1.0, -0.5, 2.0, 1.0};
+const QualityTerms kWeights = terms_of({1.5, 0.5, 1.0, -0.5, 2.0, 1.0});
 constexpr double kBias = -1.0;
 
 /// Right as often as kWeights and kBias say, times `certainty`; `scenes` of equal size.

@@ -83,7 +83,12 @@ TEST(PageJson, EveryReasonHasWordsOfItsOwn) {
 TEST(PageJson, TheStreamTellsRatesLossesAndWhatIsShown) {
   StreamView stream;
   stream.state.frames_hz = 30.0;
-  stream.state.processes = {{"hs-pose", 7, 9.5F, 3, -1, 0, 0}};
+  ProcessState& pose = stream.state.processes.emplace_back();
+  pose.name = "hs-pose";
+  pose.pid = 7;
+  pose.rate_hz = 9.5F;
+  pose.skipped = 3;
+  pose.lost = -1;
   stream.frames_lost = 4;
   stream.cameras = {"LEFT", "RIGHT"};
   FrameViewSettings settings;

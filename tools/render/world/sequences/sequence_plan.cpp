@@ -23,7 +23,11 @@ std::vector<Actor> standing() {
 }
 
 SequencePlan still(const std::string& name, double seconds) {
-  return {name, CameraWork::kStill, seconds, false, standing()};
+  SequencePlan plan;
+  plan.name = name;
+  plan.seconds = seconds;
+  plan.actors = standing();
+  return plan;
 }
 
 // Slowly, then quickly, then turned on the spot.

@@ -26,7 +26,13 @@ std::vector<NumberedTake> twelve_objects_takes(DatasetSplit use, int world, doub
   for (const auto& [name, kind] : kShown) {
     const std::uint64_t room = static_cast<std::uint64_t>(world) * kShown.size() + takes.size() / 2;
     for (const int take : {1, 2}) {
-      TakePlan plan{taught_object_id(name), kind, take == 2, use, room, seconds};
+      TakePlan plan;
+      plan.object_id = taught_object_id(name);
+      plan.kind = kind;
+      plan.laid_down = take == 2;
+      plan.use = use;
+      plan.number = room;
+      plan.seconds = seconds;
       takes.push_back({static_cast<int>(takes.size()) + 1, take, name, plan});
     }
   }
