@@ -17,21 +17,13 @@ Reception::Reception(LcmBus& bus, StatusReporter& status, const std::string& fra
 }
 
 void Reception::subscribe_to_frames(Account account, FrameHandler handler) {
-  bus_.subscribe_to_frames(pattern_.text(),
-                           [this, account, handler = std::move(handler)](const ReceivedMessage& message) {
-                             if (!pattern_.is_name() && !is_frame_message(message.bytes)) return;
-                             note_event(message);
-                             if (keep_) bus_.publish(message.channel, message.bytes, message.event_us);
-                             try {
-                               if (take_frame(message, handler) && account == Account::kReceived)
-                                 status_.count_received();
-                             } catch (const InputError& error) {
-                               refuse(message, account, error);
-                             }
-                           });
+  bus_.subscribe_to_frames(pattern_.text(), [=, handler = std::move(handler)](const ReceivedMessage& message) {
+    if (!pattern_.is_name() && !is_frame_message(message.bytes)) return;
+    if (keep_) bus_.publish(message.channel, message.bytes, message.event_us);
+    receive(message, account, [&] { return take_frame(message, handler); });
+  });
 }
 
-// Whether it counts.
 bool Reception::take_frame(const ReceivedMessage& message, const FrameHandler& handler) {
   const FrameHeader header = read_frame_header(message.bytes);
   const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, message.channel);
@@ -44,15 +36,12 @@ void Reception::subscribe_to_results(MessageType type, const std::string& channe
                                      ResultHandlers handlers) {
   const auto duplicates = std::make_shared<DuplicateFilter>();
   bus_.subscribe(channel, [=, type = std::move(type), handlers = std::move(handlers)](const ReceivedMessage& message) {
-    note_event(message);
-    try {
+    receive(message, account, [&] {
       require(message.bytes.size <= kMaxResultBytes, "results of {} bytes, expected at most {}", message.bytes.size,
               kMaxResultBytes);
       check_wire(message.bytes, type.fingerprint, type.name);
-      if (take_result(message, handlers, *duplicates) && account == Account::kReceived) status_.count_received();
-    } catch (const InputError& error) {
-      refuse(message, account, error);
-    }
+      return take_result(message, handlers, *duplicates);
+    });
   });
 }
 
@@ -72,14 +61,16 @@ bool Reception::take_result(const ReceivedMessage& message, const ResultHandlers
   return true;
 }
 
-void Reception::refuse(const ReceivedMessage& message, Account account, const InputError& error) {
-  const std::string reason = fmt::format("message on {}: {}", message.channel, error.what());
-  if (account == Account::kOthers) {
-    status_.note_bad_message(reason);
-    return;
+void Reception::receive(const ReceivedMessage& message, Account account, const std::function<bool()>& take) {
+  note_event(message);
+  try {
+    if (take() && account == Account::kReceived) status_.count_received();
+  } catch (const InputError& error) {
+    const std::string reason = fmt::format("message on {}: {}", message.channel, error.what());
+    if (account == Account::kOthers) return status_.note_bad_message(reason);
+    status_.count_received();
+    status_.count_refused(reason, message.channel);
   }
-  status_.count_received();
-  status_.count_refused(reason, message.channel);
 }
 
 std::int64_t Reception::now_us() const {

@@ -79,12 +79,10 @@ class Reception {
   void subscribe_to_messages(const std::string& channels,
                              std::function<void(const Message&, const ReceivedMessage&)> handler) {
     bus_.subscribe(channels, [this, handler = std::move(handler)](const ReceivedMessage& message) {
-      note_event(message);
-      try {
+      receive(message, Account::kOthers, [&] {
         handler(decode_message<Message>(message.bytes), message);
-      } catch (const InputError& error) {
-        refuse(message, Account::kOthers, error);
-      }
+        return true;
+      });
     });
   }
 
@@ -103,9 +101,10 @@ class Reception {
   };
 
   void subscribe_to_results(MessageType type, const std::string& channel, Account account, ResultHandlers handlers);
+  /// `take` says whether the message counts.
+  void receive(const ReceivedMessage& message, Account account, const std::function<bool()>& take);
   bool take_frame(const ReceivedMessage& message, const FrameHandler& handler);
   bool take_result(const ReceivedMessage& message, const ResultHandlers& handlers, DuplicateFilter& duplicates);
-  void refuse(const ReceivedMessage& message, Account account, const InputError& error);
   void note_event(const ReceivedMessage& message);
 
   LcmBus& bus_;
