@@ -30,9 +30,14 @@ void FrameSynchroniser::add_detections(const FrameId& id, std::vector<std::uint8
     const std::lock_guard<std::mutex> lock(mutex_);
     Camera& camera = camera_of(id.channel);
     detectors_.note_result(id);
-    ByteBudget::Held held = waiting_bytes_.hold(bytes.size());
-    camera.waiting.push_back(
-        {id, std::move(bytes), std::chrono::steady_clock::now(), ++arrivals_, camera.frames_seen, std::move(held)});
+    Waiting waiting;
+    waiting.id = id;
+    waiting.held = waiting_bytes_.hold(bytes.size());
+    waiting.bytes = std::move(bytes);
+    waiting.arrival = std::chrono::steady_clock::now();
+    waiting.number = ++arrivals_;
+    waiting.frames_before = camera.frames_seen;
+    camera.waiting.push_back(std::move(waiting));
     drop_unmatchable(camera);
     keep_waiting_within_bytes();
   }
@@ -221,7 +226,12 @@ SynchronisedMessages FrameSynchroniser::take_pair(Camera& camera) {
   const auto chosen = camera.waiting.begin() + static_cast<std::ptrdiff_t>(*camera.first_complete());
   if (chosen->id == camera.frames.back().frame.id) camera.fresh = false;
   const Kept& kept = *camera.find_frame(chosen->id);
-  SynchronisedMessages pair{chosen->id, kept.frame.bytes, kept.number, std::move(chosen->bytes), chosen->arrival};
+  SynchronisedMessages pair;
+  pair.id = chosen->id;
+  pair.frame = kept.frame.bytes;
+  pair.frame_number = kept.number;
+  pair.detections = std::move(chosen->bytes);
+  pair.arrival = chosen->arrival;
   camera.turn = ++turns_;
   camera.waiting.erase(chosen);
   return pair;

@@ -10,6 +10,7 @@
 #include "pipeline/base/parallel.hpp"
 #include "pipeline/base/random.hpp"
 #include "pipeline/geometry/renderer.hpp"
+#include "pose/model/mesh_bvh.hpp"
 #include "pose/model/symmetry.hpp"
 #include "pose/model/symmetry_search.hpp"
 
@@ -242,6 +243,26 @@ std::vector<Eigen::Isometry3d> near_symmetries(const ObjectModel& model) {
   return group;
 }
 
+/// Points of the surface that most turns about the axis take off it: a mug's handle.
+std::vector<Eigen::Vector3f> unround_points(const Mesh& mesh, const ContinuousSymmetry& axis) {
+  constexpr int kPoints = 1500;
+  constexpr int kTurns = 7;
+  constexpr float kOff = 0.04F;  // diameters
+  const MeshBvh tree(mesh);
+  const float off_m = kOff * static_cast<float>(mesh_diameter(mesh));
+  std::vector<Eigen::Vector3f> unround;
+  for (const Eigen::Vector3f& point : sample_surface(mesh, kPoints, 2).points) {
+    int off = 0;
+    for (int i = 1; i <= kTurns; ++i) {
+      const Eigen::AngleAxisd turn(2.0 * M_PI * i / (kTurns + 1), axis.axis);
+      const Eigen::Vector3d at = axis.offset + turn * (point.cast<double>() - axis.offset);
+      off += tree.nearest(at.cast<float>()).distance > off_m ? 1 : 0;
+    }
+    if (2 * off > kTurns) unround.push_back(point);
+  }
+  return unround;
+}
+
 void set_alternatives(const Symmetries& same_print, double right_within, ObjectModel& model) {
   constexpr double kShapeStep = 0.13;  // diameters: turns of about 15 degrees
   constexpr double kSameStep = 0.02;
@@ -258,8 +279,9 @@ void set_alternatives(const Symmetries& same_print, double right_within, ObjectM
   add_others(expand_symmetries(model.shape_symmetries, kShapeStep), exact);
   model.alternatives = std::move(exact);
   add_others(near_symmetries(model), model.near_alternatives);
-  if (model.nearly_round)
-    add_others(expand_symmetries({{}, {*model.nearly_round}}, kShapeStep), model.partial_alternatives);
+  if (!model.nearly_round) return;
+  add_others(expand_symmetries({{}, {*model.nearly_round}}, kShapeStep), model.partial_alternatives);
+  model.unround_points = unround_points(model.mesh, *model.nearly_round);
 }
 
 /// Of the surface's second moments: those of a triangle are A / 12 (aa' + bb' + cc' + (a+b+c)(a+b+c)').

@@ -71,8 +71,10 @@ struct ObjectModel {
   /// Motions after which the shape is nearly as before: registered, the poses after these are for depth and print to
   /// tell apart.
   std::vector<Eigen::Isometry3d> near_alternatives;
-  /// Turns about `nearly_round`: alternatives where what breaks the round is hidden before and after.
+  /// Turns about `nearly_round`: alternatives where what breaks the round is hidden before and after. Points of that,
+  /// object frame, metres.
   std::vector<Eigen::Isometry3d> partial_alternatives;
+  std::vector<Eigen::Vector3f> unround_points;
 };
 
 /// The same for any number of threads. Throws InputError naming `name` when the mesh has no triangles, is flat to a

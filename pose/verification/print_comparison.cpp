@@ -221,6 +221,48 @@ double best_log_likelihood(const Print& model, const std::vector<Print>& seen) {
   return best;
 }
 
+/// How what breaks a nearly round shape, a handle, is seen at a pose.
+struct HandleCounts {
+  int agreeing = 0;
+  int seen_through = 0;
+  int all = 0;
+};
+
+HandleCounts look_at_handle(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                            const DepthTolerance& tolerance) {
+  HandleCounts counts;
+  const cv::Rect image(cv::Point(), seen.frame.depth.size());
+  for (const Eigen::Vector3f& point : seen.model.unround_points) {
+    const Eigen::Vector3d at = T_camera_object * point.cast<double>();
+    ++counts.all;
+    if (!(at.z() > 0.0)) continue;
+    const Eigen::Vector2d pixel = seen.frame.camera.project(at);
+    const cv::Point2d place(std::clamp(pixel.x(), -1.0, 1.0 * image.width),
+                            std::clamp(pixel.y(), -1.0, 1.0 * image.height));
+    const cv::Point nearest(cvRound(place.x), cvRound(place.y));
+    if (!image.contains(nearest)) continue;
+    const double beyond = static_cast<double>(seen.frame.depth.at<float>(nearest)) - at.z();  // NaN where not measured
+    const double limit = tolerance.at(at.z());
+    counts.agreeing += std::abs(beyond) <= limit ? 1 : 0;
+    counts.seen_through += beyond > limit ? 1 : 0;
+  }
+  return counts;
+}
+
+bool is_handle_seen(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                    const DepthTolerance& tolerance) {
+  constexpr double kSome = 0.1;
+  const HandleCounts counts = look_at_handle(seen, T_camera_object, tolerance);
+  return counts.agreeing > kSome * counts.all;
+}
+
+bool may_handle_be_hidden(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+                          const DepthTolerance& tolerance) {
+  constexpr double kFew = 0.1;
+  const HandleCounts counts = look_at_handle(seen, T_camera_object, tolerance);
+  return counts.seen_through <= kFew * counts.all && counts.agreeing <= kFew * counts.all;
+}
+
 /// The poses that only the print tells from this one: those whose depth agrees as well, nearly alike ones
 /// registered.
 std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& seen,
@@ -229,7 +271,6 @@ std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& seen,
                                                  const RegistrationSettings& registration) {
   constexpr int kPoints = 150;
   constexpr float kAsWell = 0.8F;
-  constexpr float kAsWellUnmoved = 0.95F;
   const auto agreement_at = [&](const Eigen::Isometry3d& pose) {
     return score_pose(seen.frame, seen.model, pose, kPoints, tolerance).value;
   };
@@ -243,9 +284,10 @@ std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& seen,
     if (result.inliers > 0 && agreement_at(result.T_camera_object) >= kAsWell * own)
       poses.push_back(result.T_camera_object);
   }
+  if (is_handle_seen(seen, T_camera_object, tolerance)) return poses;
   for (const Eigen::Isometry3d& motion : seen.model.partial_alternatives) {
     const Eigen::Isometry3d turned = T_camera_object * motion;
-    if (agreement_at(turned) >= kAsWellUnmoved * own) poses.push_back(turned);
+    if (may_handle_be_hidden(seen, turned, tolerance)) poses.push_back(turned);
   }
   return poses;
 }

@@ -51,6 +51,7 @@ void archive_model(Archive& archive, ModelType& model) {
   archive(model.alternatives);
   archive(model.near_alternatives);
   archive(model.partial_alternatives);
+  archive(model.unround_points);
 }
 
 template <typename Archive, typename ViewType>
