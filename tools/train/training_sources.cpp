@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "drivers/datasets/bop_dataset.hpp"
-#include "drivers/datasets/uw_dataset.hpp"
 #include "pipeline/base/checks.hpp"
+#include "tools/train/uw_dataset.hpp"
 
 namespace houghstream {
 namespace {

@@ -6,13 +6,13 @@
 #include <map>
 #include <tuple>
 
-#include "drivers/datasets/uw_dataset.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pose/fusion/fuse_views.hpp"
 #include "pose/reconstruction/model/model_registration.hpp"
 #include "pose/reconstruction/model/silhouette_alignment.hpp"
 #include "pose/reconstruction/model/take_model.hpp"
+#include "tools/train/uw_dataset.hpp"
 
 namespace houghstream::teach {
 namespace {

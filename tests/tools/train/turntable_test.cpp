@@ -1,4 +1,4 @@
-#include "drivers/datasets/turntable.hpp"
+#include "tools/train/turntable.hpp"
 
 #include <gtest/gtest.h>
 

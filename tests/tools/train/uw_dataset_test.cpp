@@ -1,4 +1,4 @@
-#include "drivers/datasets/uw_dataset.hpp"
+#include "tools/train/uw_dataset.hpp"
 
 #include <gtest/gtest.h>
 

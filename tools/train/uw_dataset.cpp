@@ -1,4 +1,4 @@
-#include "drivers/datasets/uw_dataset.hpp"
+#include "tools/train/uw_dataset.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "drivers/datasets/bop_dataset.hpp"
-#include "drivers/datasets/turntable.hpp"
 #include "drivers/files/frame_folder.hpp"
 #include "drivers/files/image_file.hpp"
 #include "drivers/files/natural_order.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "tools/train/turntable.hpp"
 
 namespace houghstream {
 namespace {

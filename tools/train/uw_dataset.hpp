@@ -20,7 +20,7 @@ struct UwSelection {
 /// CATEGORY/INSTANCE/INSTANCE_V_N_{crop,depthcrop,maskcrop}.png and _loc.txt. Views are the crops. Classes are numbered
 /// from 1 in the order of their names. The dataset publishes no camera and no pose: `camera` is that of the whole
 /// image; each video V is taken as one full turn of a turntable, evenly spread over its frame numbers N, and
-/// T_camera_object comes from estimate_turntable() (drivers/datasets/turntable.hpp): origin on the axis at half the
+/// T_camera_object comes from estimate_turntable() (tools/train/turntable.hpp): origin on the axis at half the
 /// object's height, z up, one frame for all views of a video, `object_frame` INSTANCE_V. Views without mask pixels or
 /// without depth on them are left out with a warning. Throws InputError on missing or disagreeing files, and where no
 /// view of an instance is left.
