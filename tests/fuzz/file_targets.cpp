@@ -13,7 +13,6 @@
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/files/camera_info.hpp"
 #include "drivers/files/image_file.hpp"
-#include "drivers/files/mat_file.hpp"
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/codecs.hpp"
@@ -71,26 +70,6 @@ std::vector<Bytes> forests() {
   const std::string file = as_file({}, "seed_forest");
   save_forest(forest, file);
   return {content_of(file)};
-}
-
-Taken read_mat(ByteView input) {
-  return {read_mat_variable(as_file(input, "mat"), "bboxes").count};
-}
-
-/// An array of two numbers, "MAT-File Format", The MathWorks: header, data element, its flags, sizes, name and values.
-std::vector<Bytes> mats() {
-  Bytes bytes(124, ' ');
-  const auto put = [&](std::initializer_list<std::uint32_t> words) {
-    for (const std::uint32_t word : words) {
-      for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(word >> shift));
-    }
-  };
-  put({0x4D490100});
-  put({14, 72, 6, 8, 6, 0, 5, 8, 1, 2, 1, 6});
-  const std::string name("bboxes\0\0", 8);
-  bytes.insert(bytes.end(), name.begin(), name.end());
-  put({9, 16, 0, 0x3FF00000, 0, 0x40000000});
-  return {bytes};
 }
 
 /// Text files of a folder, divided by bytes 0.
@@ -224,7 +203,6 @@ Bytes content_of(const fs::path& file) {
 std::vector<FuzzTarget> file_targets() {
   const std::vector<std::string> png_words = {"IHDR", "IDAT", "PLTE", "tRNS", "IEND"};
   return {{"forest", read_forest, forests, repair_forest, {"realtime", "paper", "gall"}, 4096, kAnyDamage},
-          {"mat", read_mat, mats, nullptr, {"bboxes"}, 4096, {true, {}}},
           {"scene",
            read_scene,
            scenes,

@@ -46,21 +46,23 @@ DrawnBox parse_box(const json& entry, const Camera& camera, const std::string& w
 
 }  // namespace
 
+std::vector<DrawnFrame> parse_drawn_frames(const json& frames, const Camera& camera, const std::string& source) {
+  std::vector<DrawnFrame> drawn;
+  for (const json& frame : frames) {
+    DrawnFrame& out = drawn.emplace_back();
+    out.name = text_member(frame, "frame", source);
+    const std::string where = fmt::format("{} frame {}", source, out.name);
+    for (const json& entry : list_member(frame, "objects", where)) out.boxes.push_back(parse_box(entry, camera, where));
+  }
+  return drawn;
+}
+
 DrawnBoxes read_drawn_boxes(const std::filesystem::path& file) {
   const json content = read_json_object(file);
   const json& frames = list_member(content, "frames", file.string());
   require(!frames.empty(), "{}: no frames", file.string());
-  DrawnBoxes drawn;
-  drawn.camera = read_camera(content, file.string());
-  for (const json& frame : frames) {
-    DrawnFrame& out = drawn.frames.emplace_back();
-    out.name = text_member(frame, "frame", file.string());
-    const std::string where = fmt::format("{} frame {}", file.string(), out.name);
-    for (const json& entry : list_member(frame, "objects", where)) {
-      out.boxes.push_back(parse_box(entry, drawn.camera, where));
-    }
-  }
-  return drawn;
+  const Camera camera = read_camera(content, file.string());
+  return {camera, parse_drawn_frames(frames, camera, file.string())};
 }
 
 }  // namespace houghstream

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -28,5 +29,9 @@ struct DrawnBoxes {
 /// {"image_size": [w,h], "camera": {fx,fy,cx,cy}, "frames": [{"frame": NAME, "objects": [{"object": NAME, "bbox_xyxy":
 /// [x0,y0,x1,y1]}]}]}; pixels. Throws InputError, also for a box outside the image and where there are no frames.
 DrawnBoxes read_drawn_boxes(const std::filesystem::path& file);
+
+/// The list "frames" of such a file. Throws InputError, naming `source`.
+std::vector<DrawnFrame> parse_drawn_frames(const nlohmann::json& frames, const Camera& camera,
+                                           const std::string& source);
 
 }  // namespace houghstream

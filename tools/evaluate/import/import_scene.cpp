@@ -1,21 +1,27 @@
 #include "tools/evaluate/import/import_scene.hpp"
 
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "drivers/datasets/bop_writer.hpp"
-#include "drivers/datasets/uw_scenes.hpp"
 #include "drivers/files/frame_folder.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/base/json_names.hpp"
 #include "tools/evaluate/import/drawn_boxes.hpp"
+#include "tools/evaluate/import/uw_boxes.hpp"
 
 namespace houghstream {
 namespace {
 
 namespace fs = std::filesystem;
+
 /// Ids from 1 in the order of the names.
 std::map<std::string, int> number_names(const std::set<std::string>& names) {
   std::map<std::string, int> ids;
@@ -31,16 +37,6 @@ GroundTruthObject boxed_object(int object_id, const cv::Rect& box_px) {
   return object;
 }
 
-void write_names(const std::map<std::string, int>& ids, const fs::path& scene_folder) {
-  std::map<int, std::string> names;
-  for (const auto& [name, id] : ids) names[id] = name;
-  write_bop_names(names, scene_folder / "names.json");
-}
-
-FrameFiles named_pair(const fs::path& source, const std::string& name) {
-  return {name, source / (name + "_color.png"), source / (name + "_depth.png")};
-}
-
 /// Frames of another scene would be taken for this one's.
 void require_free(const fs::path& scene_folder, const fs::path& source) {
   require_other_file(scene_folder, source);
@@ -48,45 +44,82 @@ void require_free(const fs::path& scene_folder, const fs::path& source) {
           scene_folder.string());
 }
 
-}  // namespace
-
-int import_boxes(const fs::path& source, const fs::path& scene_folder) {
-  require_free(scene_folder, source);
-  const DrawnBoxes drawn = read_drawn_boxes(source / "boxes.json");
-  std::set<std::string> names;
+/// The scene of frames whose pictures are called NAME`colour_ending` and NAME_depth.png.
+int write_scene(const DrawnBoxes& drawn, const fs::path& source, const std::string& colour_ending,
+                const fs::path& scene_folder) {
+  std::set<std::string> objects_seen;
   for (const DrawnFrame& frame : drawn.frames) {
-    for (const DrawnBox& box : frame.boxes) names.insert(box.object);
+    for (const DrawnBox& box : frame.boxes) objects_seen.insert(box.object);
   }
-  const std::map<std::string, int> ids = number_names(names);
+  const std::map<std::string, int> ids = number_names(objects_seen);
   BopWriter writer(scene_folder);
   for (const DrawnFrame& frame : drawn.frames) {
     std::vector<GroundTruthObject> objects;
     for (const DrawnBox& box : frame.boxes) objects.push_back(boxed_object(ids.at(box.object), box.box_px));
-    writer.add(read_frame_pair(named_pair(source, frame.name), drawn.camera, 0), objects, {});
+    const FrameFiles files{frame.name, source / (frame.name + colour_ending), source / (frame.name + "_depth.png")};
+    writer.add(read_frame_pair(files, drawn.camera, 0), objects, {});
   }
   writer.finish();
-  write_names(ids, scene_folder);
+  std::map<int, std::string> names;
+  for (const auto& [name, id] : ids) names[id] = name;
+  write_bop_names(names, scene_folder / "names.json");
   return static_cast<int>(drawn.frames.size());
+}
+
+/// A word of a command line of the shell, whatever it holds.
+std::string quoted(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// What uw_boxes.py prints of SCENE_K.mat. Its refusal is ours. The library that it reads with dies of some damaged
+/// files, so that it runs in a process of its own.
+std::string run_uw_boxes(const fs::path& file, const Camera& camera) {
+  const std::string command = fmt::format("/usr/bin/python3 -I -c {} {} {} {} 2>&1", quoted(kUwBoxesScript),
+                                          quoted(file.string()), camera.width, camera.height);
+  std::FILE* pipe = popen(command.c_str(), "r");
+  require(pipe != nullptr, "{}: no process can be started to read it", file.string());
+  std::string text;
+  std::array<char, 4096> piece{};
+  while (const std::size_t size = std::fread(piece.data(), 1, piece.size(), pipe)) text.append(piece.data(), size);
+  const int ended = pclose(pipe);
+  const int status = WIFEXITED(ended) ? WEXITSTATUS(ended) : ended;
+  if (status == 0) return text;
+  const std::string last_line = text.substr(0, text.find_last_not_of('\n') + 1);
+  require(status != 1, "{}", last_line.substr(last_line.rfind('\n') + 1));
+  fail("{}: its reader ended with status {}, expected a whole MATLAB file", file.string(), status);
+}
+
+DrawnBoxes read_uw_scene(const fs::path& folder, const Camera& camera) {
+  const fs::path file = fs::path(folder).concat(".mat");
+  const nlohmann::json frames = parse_json(run_uw_boxes(file, camera), file.string());
+  const DrawnBoxes drawn{camera, parse_drawn_frames(frames, camera, file.string())};
+  const std::size_t frames_there = list_frame_pairs(folder).size();
+  require(drawn.frames.size() >= frames_there, "{} 'bboxes': {} cells for {} frames in {}, expected one each",
+          file.string(), drawn.frames.size(), frames_there, folder.string());
+  for (const DrawnFrame& frame : drawn.frames) {
+    for (const char* ending : {".png", "_depth.png"}) {
+      const fs::path picture = folder / (frame.name + ending);
+      require(fs::exists(picture), "{}: missing, expected as frame {} of the annotated video", picture.string(),
+              &frame - drawn.frames.data() + 1);
+    }
+  }
+  return drawn;
+}
+
+}  // namespace
+
+int import_boxes(const fs::path& source, const fs::path& scene_folder) {
+  require_free(scene_folder, source);
+  return write_scene(read_drawn_boxes(source / "boxes.json"), source, "_color.png", scene_folder);
 }
 
 int import_uw_scene(const fs::path& video, const Camera& camera, const fs::path& scene_folder) {
   check_camera(camera, "camera");
   require_free(scene_folder, video);
-  const std::vector<UwSceneFrame> frames = read_uw_scene(video, {camera.width, camera.height});
-  std::set<std::string> names;
-  for (const UwSceneFrame& frame : frames) {
-    for (const UwBox& box : frame.boxes) names.insert(box.name);
-  }
-  const std::map<std::string, int> ids = number_names(names);
-  BopWriter writer(scene_folder);
-  for (const UwSceneFrame& frame : frames) {
-    std::vector<GroundTruthObject> objects;
-    for (const UwBox& box : frame.boxes) objects.push_back(boxed_object(ids.at(box.name), box.box_px));
-    writer.add(read_frame_pair(frame.images, camera, 0), objects, {});
-  }
-  writer.finish();
-  write_names(ids, scene_folder);
-  return static_cast<int>(frames.size());
+  const fs::path folder = video.has_filename() ? video : video.parent_path();  // "a/desk_1/" names desk_1 too
+  return write_scene(read_uw_scene(folder, camera), folder, ".png", scene_folder);
 }
 
 }  // namespace houghstream

@@ -11,8 +11,9 @@ namespace houghstream {
 /// the order of the names. Returns the number of frames. Throws InputError.
 int import_boxes(const std::filesystem::path& source, const std::filesystem::path& scene_folder);
 
-/// Turns a video of the UW RGB-D Scenes Dataset (drivers/datasets/uw_scenes.hpp) into a BOP scene whose objects have
-/// boxes only, as import_boxes() writes them. Returns the number of frames. Throws InputError.
+/// Turns a video of the UW RGB-D Scenes Dataset into a BOP scene whose objects have boxes only, as import_boxes()
+/// writes them. `video` is SCENE/SCENE_K with SCENE_K_N.png and SCENE_K_N_depth.png (uint16 millimetres), N from 1;
+/// beside it lies SCENE_K.mat (uw_boxes.py says what of it is read). Returns the number of frames. Throws InputError.
 int import_uw_scene(const std::filesystem::path& video, const Camera& camera,
                     const std::filesystem::path& scene_folder);
 
