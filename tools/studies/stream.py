@@ -55,6 +55,10 @@ def enter_shared_network():
     return "shared"
 
 
+def enter_network(options):
+    return enter_shared_network() if options.shared_bus else enter_private_network()
+
+
 class Process:
     """A process in the background, what it says in FOLDER/NAME.txt."""
 

@@ -5,6 +5,7 @@ import dataclasses
 import fcntl
 import functools
 import hashlib
+import importlib
 import json
 import os
 import pathlib
@@ -15,7 +16,7 @@ import subprocess
 import sys
 import time
 
-from studies.command import die, step
+from studies.command import die, prepare, step
 from studies.measured import cpu_name, today, write_atomically
 from studies.stream import ProcessFailed
 
@@ -304,6 +305,16 @@ def command_in(out):
     except KeyboardInterrupt:
         die("interrupted; the same command goes on from here")
     step("done")
+
+
+def main(parse, targets, network, study):
+    """The command of a study: `parse` reads its words, `targets(options)` are built, `network(options)` enters the network that
+    is measured on, and run(options) of the module `study`, which needs what has been installed by then, does the work."""
+    options = parse(sys.argv[1:])
+    options.programs = pathlib.Path(prepare(options, targets(options)))
+    options.network = network(options)
+    with command_in(options.out):
+        importlib.import_module(study).run(options)
 
 
 def make(store, fresh=False):

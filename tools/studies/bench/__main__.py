@@ -2,11 +2,10 @@
 
 import argparse
 import pathlib
-import sys
 
-from studies.command import Options, positive, prepare, recorded_folder
-from studies.stream import enter_private_network, enter_shared_network
-from studies.work import command_in
+from studies.command import Options, positive, recorded_folder
+from studies.stream import enter_network
+from studies.work import main
 
 PARTS = ("speed", "stream", "growth", "pose", "attitudes")
 TARGETS = ("hs-render", "hs-train", "hs-study-train", "hs-capture", "hs-detect", "hs-pose", "hs-observe", "hs-evaluate",
@@ -53,15 +52,5 @@ def parse(words):
     return options
 
 
-def main():
-    options = parse(sys.argv[1:])
-    options.programs = pathlib.Path(prepare(options, TARGETS))
-    options.network = enter_shared_network() if options.shared_bus else enter_private_network()
-    from studies.bench import parts  # needs what has been installed
-
-    with command_in(options.out):
-        parts.run(options)
-
-
 if __name__ == "__main__":
-    main()
+    main(parse, lambda _: TARGETS, enter_network, "studies.bench.parts")

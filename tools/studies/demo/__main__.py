@@ -2,11 +2,10 @@
 
 import os
 import pathlib
-import sys
 
-from studies.command import Options, die, positive, prepare
-from studies.stream import enter_private_network, enter_shared_network
-from studies.work import command_in
+from studies.command import Options, die, positive
+from studies.stream import enter_network
+from studies.work import main
 
 TARGETS = ("hs-render", "hs-train", "hs-capture", "hs-import", "hs-log", "hs-detect", "hs-pose", "hs-view", "hs-observe",
            "hs-spy", "hs-evaluate")  # fmt: skip
@@ -53,15 +52,9 @@ def parse(words):
     return options
 
 
-def main():
-    options = parse(sys.argv[1:])
-    programs = prepare(options, TARGETS + LIVE_TARGETS if options.live or options.teach else TARGETS)
-    options.network = enter_shared_network() if options.shared_bus else enter_private_network()
-    from studies.demo import run  # needs what has been installed
-
-    with command_in(options.out):
-        run.run(options, pathlib.Path(programs))
+def targets(options):
+    return TARGETS + LIVE_TARGETS if options.live or options.teach else TARGETS
 
 
 if __name__ == "__main__":
-    main()
+    main(parse, targets, enter_network, "studies.demo.run")

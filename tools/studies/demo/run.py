@@ -139,10 +139,10 @@ def run_live(options, programs):
     print(f"{out}/summary.json, {out}/overlay.png, {out}/overlay.mp4")
 
 
-def run(options, programs):
+def run(options):
     if options.teach:
-        teach.run(options, programs)
+        teach.run(options, options.programs)
     elif options.live:
-        run_live(options, programs)
+        run_live(options, options.programs)
     else:
-        run_replay(options, programs)
+        run_replay(options, options.programs)

@@ -1,11 +1,10 @@
 """Options of tools/bench teach. What they ask for is in plan.py, what comes of it in report.py."""
 
 import pathlib
-import sys
 
-from studies.command import Options, positive, prepare, some_of
+from studies.command import Options, positive, some_of
 from studies.stream import enter_private_network
-from studies.work import command_in
+from studies.work import main
 
 # As hs-render takes orders them; those of the scenes objects_20_b, _d and _f.
 OBJECTS = ("bowl", "cereal_box", "coffee_mug", "soda_can", "teapot", "tumbler", "shampoo_bottle", "food_tin", "tea_box",
@@ -42,16 +41,9 @@ def parse(words):
     return options
 
 
-def main():
-    options = parse(sys.argv[1:])
-    options.programs = pathlib.Path(prepare(options, TARGETS))
-    if options.stream:
-        enter_private_network()
-    from studies.teach import report  # needs what has been installed
-
-    with command_in(options.out):
-        report.run(options)
+def network(options):
+    return enter_private_network() if options.stream else None
 
 
 if __name__ == "__main__":
-    main()
+    main(parse, lambda _: TARGETS, network, "studies.teach.report")

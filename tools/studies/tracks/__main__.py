@@ -1,11 +1,10 @@
 """Options of tools/bench tracks. What they ask for is in plan.py, what comes of it in report.py."""
 
 import pathlib
-import sys
 
-from studies.command import Options, die, positive, prepare, some_of
+from studies.command import Options, die, positive, some_of
 from studies.stream import enter_private_network
-from studies.work import command_in
+from studies.work import main
 
 # As hs-render takes orders them.
 SEQUENCES = ("walk", "pushed", "carried", "removed", "swapped", "cans", "arm", "jerk", "cameras")
@@ -37,17 +36,12 @@ def parse(words):
     return options
 
 
-def main():
-    options = parse(sys.argv[1:])
-    options.programs = pathlib.Path(prepare(options, TARGETS))
-    network = enter_private_network() if options.stream or options.hosts else None
-    if options.hosts and network != "private":
+def network(options):
+    entered = enter_private_network() if options.stream or options.hosts else None
+    if options.hosts and entered != "private":
         die("network namespaces are refused here, and hosts are made of them; --no-hosts leaves them out")
-    from studies.tracks import report  # needs what has been installed
-
-    with command_in(options.out):
-        report.run(options)
+    return entered
 
 
 if __name__ == "__main__":
-    main()
+    main(parse, lambda _: TARGETS, network, "studies.tracks.report")
