@@ -11,7 +11,7 @@ struct Printer {
 
   void print(const lcm::ReceiveBuffer*, const std::string&, const houghstream::object_poses_t* message) {
     for (const houghstream::object_pose_t& pose : message->poses) {
-      if (pose.status != houghstream::object_pose_t::VALID) continue;  // status says why there is none
+      if (pose.status != houghstream::object_pose_t::VALID) continue;  // why there is none, or not a sure one
       const Eigen::Vector3d p = T_base_camera * Eigen::Vector3d(pose.trans[0], pose.trans[1], pose.trans[2]);
       const Eigen::Quaterniond q = Eigen::Quaterniond(T_base_camera.linear()) *
                                    Eigen::Quaterniond(pose.quat[0], pose.quat[1], pose.quat[2], pose.quat[3]);
