@@ -14,7 +14,7 @@
 namespace houghstream {
 namespace {
 
-constexpr double kSameDirection = 0.985;  // cosine of 10 degrees
+constexpr double kSameDirection = 0.985;             // cosine of 10 degrees
 constexpr double kSameTurn_rad = 25.0 * kRadPerDeg;  // those of a group differ by 60 degrees and more
 constexpr int kMaxFold = 6;
 constexpr std::size_t kMaxGroup = 60;  // the icosahedron's
