@@ -12,9 +12,10 @@ namespace houghstream {
 /// A judged pose.
 struct QualityExample {
   QualityTerms terms;
-  bool is_right = false;              ///< the object that was detected, MSSD below a tenth of the diameter
-  bool is_right_up_to_shape = false;  ///< the same, ADD-S below a tenth of the diameter
-  /// Of a right pose, what speaks for it if the object had another print: the fit tells the two apart.
+  bool is_right = false;              ///< the object that was detected, MSSD (or ADD) below a tenth of the diameter
+  bool is_right_up_to_shape = false;  ///< the same by ADD-S: right but for what the shape cannot tell
+  /// Of a pose that is right up to its shape, what speaks for it if the object had another print: the fit tells the two
+  /// apart.
   std::optional<QualityTerms> with_swapped_texture = std::nullopt;
   std::optional<double> print_margin = std::nullopt;  ///< PrintComparison::margin, where the pose has alternatives
   float score = 0.0F;                                 ///< of the detection

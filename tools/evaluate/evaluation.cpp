@@ -15,6 +15,10 @@ int count_true(const std::vector<Prediction>& statements) {
       std::count_if(statements.begin(), statements.end(), [](const Prediction& it) { return it.is_true; }));
 }
 
+Calibration calibrate_all(const std::vector<Prediction>& statements) {
+  return calibrate(statements, count_true(statements));
+}
+
 std::set<std::string> detected_classes(const std::vector<EvaluatedFrame>& frames) {
   std::set<std::string> names;
   for (const EvaluatedFrame& frame : frames) {
@@ -54,18 +58,24 @@ std::vector<JudgedPose> counted_poses(std::vector<JudgedPose> judged, const std:
 void judge_qualities(const std::vector<EvaluatedFrame>& frames, const std::map<std::string, PoseModel>& models,
                      Evaluation& out) {
   const std::vector<EvaluatedFrame> all = with_unfiltered_poses(frames);
-  std::vector<Prediction> statements;
+  std::vector<Prediction> of_right;
+  std::vector<Prediction> of_shape;
   for (const ClassResult& result : out.classes) {
     const auto model = models.find(result.class_name);
     if (model == models.end()) continue;
-    const std::vector<Prediction> published = pose_predictions(frames, result, model->second);
     if (!out.published) out.published.emplace();
-    out.published->count += static_cast<int>(published.size());
-    out.published->right += count_true(published);
-    const std::vector<Prediction> known = pose_predictions(all, result, model->second);
-    statements.insert(statements.end(), known.begin(), known.end());
+    for (const PosePrediction& published : pose_predictions(frames, result, model->second)) {
+      ++out.published->count;
+      out.published->right += published.is_true ? 1 : 0;
+      out.published->right_up_to_shape += published.is_right_up_to_shape ? 1 : 0;
+    }
+    for (const PosePrediction& known : pose_predictions(all, result, model->second)) {
+      of_right.push_back(known);
+      of_shape.push_back({known.stated, known.is_right_up_to_shape});
+    }
   }
-  out.pose_calibration = calibrate(statements, count_true(statements));
+  out.pose_calibration = calibrate_all(of_right);
+  out.pose_calibration_up_to_shape = calibrate_all(of_shape);
 }
 
 void evaluate_poses(const std::vector<EvaluatedFrame>& frames, const std::map<std::string, PoseModel>& models,
@@ -77,6 +87,7 @@ void evaluate_poses(const std::vector<EvaluatedFrame>& frames, const std::map<st
     if (model == models.end()) continue;
     const std::vector<JudgedPose> judged = counted_poses(judge_poses(frames, result, model->second), frames, rules);
     if (judged.empty()) continue;
+    out.strict_recall[result.class_name] = strict_recall(judged, model->second.diameter, min_visible);
     out.add_s_recall[result.class_name] = add_s_recall(judged, model->second.diameter, min_visible);
     out.add_or_add_s_recall[result.class_name] = add_or_add_s_recall(judged, model->second, min_visible);
     out.poses.insert(out.poses.end(), judged.begin(), judged.end());

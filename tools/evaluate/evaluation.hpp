@@ -32,7 +32,8 @@ struct OperatingPoint {
 /// The poses that were published of listed classes with a model, but those of ignored detections.
 struct PublishedPoses {
   int count = 0;
-  int right = 0;  ///< of true detections, ADD-S below 10 % of the diameter
+  int right = 0;              ///< of true detections, by is_right()
+  int right_up_to_shape = 0;  ///< of true detections, ADD-S below 10 % of the diameter
 };
 
 /// The figures of one scene, or of several ones together. NaN where there is nothing to measure.
@@ -49,8 +50,10 @@ struct Evaluation {
   /// Of the quality of the poses of these detections (pose_predictions()), those that were withheld among them where
   /// they are known; its recall is over all that are right.
   Calibration pose_calibration;
-  std::optional<PublishedPoses> published;  ///< nothing unless a listed class has a model to judge poses with
-  std::vector<JudgedPose> poses;            ///< of true detections of listed classes that have a model
+  Calibration pose_calibration_up_to_shape;  ///< the same of ADD-S
+  std::optional<PublishedPoses> published;   ///< nothing unless a listed class has a model to judge poses with
+  std::vector<JudgedPose> poses;             ///< of true detections of listed classes that have a model
+  std::map<std::string, double> strict_recall;
   std::map<std::string, double> add_s_recall;
   std::map<std::string, double> add_or_add_s_recall;
   std::optional<LocalisationScores> localisation;  ///< nothing unless poses were measured against depth too

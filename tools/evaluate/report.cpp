@@ -137,11 +137,11 @@ std::string curves_csv(const Evaluation& evaluation) {
 
 std::string poses_csv(const Evaluation& evaluation) {
   const auto metres = [](double value) { return std::isfinite(value) ? fmt::format("{:.6f}", value) : std::string(); };
-  std::string text = "frame,object,add,add_s,visible,status,score,quality,scene,image\n";
+  std::string text = "frame,object,add,add_s,visible,status,score,quality,scene,image,strict\n";
   for (const JudgedPose& pose : evaluation.poses) {
-    text += fmt::format("{},{},{},{},{:.3f},{},{:.4f},{:.4f},{},{}\n", pose.frame, pose.class_name, metres(pose.add),
+    text += fmt::format("{},{},{},{},{:.3f},{},{:.4f},{:.4f},{},{},{}\n", pose.frame, pose.class_name, metres(pose.add),
                         metres(pose.add_s), pose.visible_fraction, to_string(pose.status), pose.score, pose.quality,
-                        pose.scene, pose.image_id);
+                        pose.scene, pose.image_id, metres(pose.strict));
   }
   return text;
 }
@@ -162,12 +162,16 @@ OrderedJson summary_json(const Evaluation& evaluation, const EvaluationRules& ru
   // Only a frame that was looked at can have a false detection.
   json["false_per_frame"] = ratio(evaluation.false_detections, evaluation.frames_processed);
   json["frames_counted"] = counted;
+  json["mssd_recall"] = recall_json(evaluation.strict_recall);
   json["pose_recall_add_s_10"] = recall_json(evaluation.add_s_recall);
   json["pose_recall_add_or_add_s_10"] = recall_json(evaluation.add_or_add_s_recall);
   json["pose_calibration"] = calibration_json(evaluation.pose_calibration);
+  json["pose_calibration_up_to_shape"] = calibration_json(evaluation.pose_calibration_up_to_shape);
   const std::optional<PublishedPoses>& published = evaluation.published;
   json["published"] = published ? OrderedJson(published->count) : OrderedJson(nullptr);
-  json["published_good_fraction"] = published ? ratio(published->right, published->count) : OrderedJson(nullptr);
+  json["published_right_fraction"] = published ? ratio(published->right, published->count) : OrderedJson(nullptr);
+  json["published_good_fraction"] =
+      published ? ratio(published->right_up_to_shape, published->count) : OrderedJson(nullptr);
   if (evaluation.localisation) json["bop19"] = localisation_json(*evaluation.localisation);
   if (evaluation.localisation_nothing_withheld)
     json["bop19_nothing_withheld"] = localisation_json(*evaluation.localisation_nothing_withheld);
@@ -198,16 +202,20 @@ std::string summary_table(const Evaluation& evaluation, const EvaluationRules& r
   std::string text = fmt::format("{} frames, {} processed, {} with poses; skipped frames {}\n", evaluation.frames,
                                  evaluation.frames_processed, evaluation.frames_with_poses,
                                  rules.processed_only ? "left out" : "count as missed");
-  text += fmt::format("{:<20}{:>8}{:>8}{:>8}{:>8}{:>12}\n", "object", "there", "AUC", "true", "false", "ADD-S<10%");
+  const auto show = [](const std::map<std::string, double>& recalls, const std::string& name) {
+    const auto recall = recalls.find(name);
+    return recall != recalls.end() ? fmt::format("{:.3f}", recall->second) : std::string("-");
+  };
+  text += fmt::format("{:<20}{:>8}{:>8}{:>8}{:>8}{:>12}{:>12}\n", "object", "there", "AUC", "true", "false", "right",
+                      "ADD-S<10%");
   for (const ClassResult& result : evaluation.classes) {
     const OperatingPoint& point = evaluation.operating.at(result.class_name);
-    const auto recall = evaluation.add_s_recall.find(result.class_name);
-    text += fmt::format("{:<20}{:>8}{:>8.3f}{:>8}{:>8}{:>12}\n", result.class_name, result.required, result.auc,
-                        point.right.all(), point.wrong.all(),
-                        recall != evaluation.add_s_recall.end() ? fmt::format("{:.3f}", recall->second) : "-");
+    text += fmt::format("{:<20}{:>8}{:>8.3f}{:>8}{:>8}{:>12}{:>12}\n", result.class_name, result.required, result.auc,
+                        point.right.all(), point.wrong.all(), show(evaluation.strict_recall, result.class_name),
+                        show(evaluation.add_s_recall, result.class_name));
   }
-  text +=
-      fmt::format("{:<28}{:>8.3f}{:>28.3f}\n", "mean", mean_auc(evaluation.classes), mean_of(evaluation.add_s_recall));
+  text += fmt::format("{:<28}{:>8.3f}{:>28.3f}{:>12.3f}\n", "mean", mean_auc(evaluation.classes),
+                      mean_of(evaluation.strict_recall), mean_of(evaluation.add_s_recall));
   text += fmt::format("{:<28}{:>8.3f}\n", "weighted by objects", weighted_auc(evaluation.classes));
   if (rules.ranked_from)
     text += fmt::format("AUC of detections from score {} on, what scores less is missed (--threshold)\n",
@@ -221,12 +229,15 @@ std::string summary_table(const Evaluation& evaluation, const EvaluationRules& r
     const AverageRecall& all = evaluation.localisation_nothing_withheld->all;
     text += fmt::format("{:<28}{:>8.3f}\n", "AR, nothing withheld", all.mean);
   }
-  text += fmt::format("{:<28}{:>8.3f} score, {:.3f} quality\n", "calibration error",
-                      evaluation.detection_calibration.ece, evaluation.pose_calibration.ece);
+  text += fmt::format("{:<28}{:>8.3f} score, {:.3f} quality, {:.3f} up to shape\n", "calibration error",
+                      evaluation.detection_calibration.ece, evaluation.pose_calibration.ece,
+                      evaluation.pose_calibration_up_to_shape.ece);
   if (evaluation.frames_with_poses > 0) {
-    text += evaluation.published ? fmt::format("poses published {}, right {}\n", evaluation.published->count,
-                                               evaluation.published->right)
-                                 : "poses not judged: no models of these objects (--models)\n";
+    text += evaluation.published
+                ? fmt::format("poses published {}, right {}, right up to what the shape cannot tell {}\n",
+                              evaluation.published->count, evaluation.published->right,
+                              evaluation.published->right_up_to_shape)
+                : "poses not judged: no models of these objects (--models)\n";
   }
   text += fmt::format("false detections {} from score {} on, or confirmed by a pose\n", evaluation.false_detections,
                       rules.operating_score);

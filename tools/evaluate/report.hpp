@@ -16,11 +16,12 @@ struct SceneEvaluation {
   Evaluation evaluation;
 };
 
-/// The summary: auc, pose_recall_add_s_10 and pose_recall_add_or_add_s_10 by object and as means, bop19 and
-/// bop19_nothing_withheld (average recalls) where they were measured, operating (precision and recall of all classes
-/// together), detection_calibration and pose_calibration (ece, bins, proposed thresholds, as Calibration names them),
-/// published (poses) and published_good_fraction, counts, latency percentiles, and the rules by which it was measured.
-/// What could not be measured is null.
+/// The summary: auc; mssd_recall (poses that are right), pose_recall_add_s_10 (right up to what the shape cannot tell)
+/// and pose_recall_add_or_add_s_10 by object and as means; bop19 and bop19_nothing_withheld (average recalls) where
+/// they were measured; operating (precision and recall of all classes together); detection_calibration,
+/// pose_calibration and pose_calibration_up_to_shape (ece, bins, proposed thresholds, as Calibration names them);
+/// published (poses), published_right_fraction and published_good_fraction (by ADD-S); counts, latency percentiles, and
+/// the rules by which it was measured. What could not be measured is null.
 OrderedJson summary_json(const Evaluation& evaluation, const EvaluationRules& rules,
                          const std::optional<Latencies>& latencies);
 
@@ -32,8 +33,8 @@ OrderedJson summary_json(const Evaluation& evaluation, const std::vector<SceneEv
 std::string summary_table(const Evaluation& evaluation, const EvaluationRules& rules);
 
 /// Writes FOLDER/summary.json, curves.csv (object,score,precision,recall), poses.csv
-/// (frame,object,add,add_s,visible,status,score,quality,scene,image; frame is the position among the evaluated ones;
-/// metres, empty without a published pose) and, where anything was judged, reliability.png. Throws InputError.
+/// (frame,object,add,add_s,visible,status,score,quality,scene,image,strict; frame is the position among the evaluated
+/// ones; metres, empty without a published pose) and, where anything was judged, reliability.png. Throws InputError.
 void write_report(const Evaluation& evaluation, const OrderedJson& summary, const std::filesystem::path& folder);
 
 }  // namespace houghstream

@@ -46,8 +46,12 @@ ScoredModels make_scored_models(const std::filesystem::path& folder, const std::
                                 const std::vector<std::string>& classes) {
   ScoredModels models;
   if (meshes.empty()) return models;
-  for (auto& [name, model] : make_bop_models(meshes, read_bop_models(folder))) {
-    models.scored[name] = make_pose_model(model.mesh, model.symmetries.size() > 1);
+  const BopModels listed = read_bop_models(folder);
+  for (const auto& [object_id, symmetries] : listed.symmetries) {
+    const std::string& name = listed.names.at(object_id);
+    models.scored[name] = make_pose_model(meshes.at(name), symmetries);
+  }
+  for (auto& [name, model] : make_bop_models(meshes, listed)) {
     if (std::find(classes.begin(), classes.end(), name) != classes.end()) models.bop[name] = model;
   }
   return models;

@@ -48,7 +48,7 @@ std::vector<EvaluatedFrame> two_frames() {
   return frames;
 }
 
-const std::map<std::string, PoseModel> kModels = {{"mug", {{{0.0F, 0.0F, 0.1F}}, 0.2, false}}};
+const std::map<std::string, PoseModel> kModels = {{"mug", {{{0.0F, 0.0F, 0.1F}}, 0.2}}};
 
 TEST(EvaluationReport, SummaryHoldsTheFigures) {
   const EvaluationRules rules;
@@ -141,7 +141,28 @@ TEST(EvaluationReport, CalibrationsHaveTheirErrorsBinsAndThresholds) {
   EXPECT_EQ(json["pose_calibration"]["ece"], 0.2);
   EXPECT_EQ(json["pose_calibration"]["proposed"][0]["recall"], 1.0) << "of the right ones";
   EXPECT_EQ(json["published"], 1);
+  EXPECT_EQ(json["published_right_fraction"], 1.0);
   EXPECT_EQ(json["published_good_fraction"], 1.0);
+}
+
+TEST(EvaluationReport, APoseThatIsRightUpToItsShapeOnlyIsToldFromARightOne) {
+  const EvaluationRules rules;
+  std::vector<EvaluatedFrame> frames = two_frames();
+  Eigen::Isometry3d& T_camera_object = *frames[0].poses->poses[0].T_camera_object;
+  T_camera_object = T_camera_object * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX());
+  const std::map<std::string, PoseModel> models = {{"mug", {{{0.0F, 0.0F, 0.1F}, {0.0F, 0.0F, -0.1F}}, 0.2}}};
+  const Evaluation evaluation = evaluate(frames, {"mug"}, models, rules);
+  const OrderedJson json = summary_json(evaluation, rules, {});
+  EXPECT_EQ(json["mssd_recall"]["mug"], 0.0);
+  EXPECT_EQ(json["mssd_recall"]["mean"], 0.0);
+  EXPECT_GT(json["pose_recall_add_s_10"]["mug"], 0.0);
+  EXPECT_EQ(json["published_right_fraction"], 0.0);
+  EXPECT_EQ(json["published_good_fraction"], 1.0);
+  EXPECT_EQ(json["pose_calibration"]["ece"], 0.8);
+  EXPECT_EQ(json["pose_calibration_up_to_shape"]["ece"], 0.2);
+  const std::string table = summary_table(evaluation, rules);
+  EXPECT_NE(table.find("poses published 1, right 0, right up to what the shape cannot tell 1"), std::string::npos);
+  EXPECT_LT(table.find("right"), table.find("ADD-S<10%")) << "the strict figure comes first";
 }
 
 TEST(EvaluationReport, SeveralScenesHaveTheirOwnFigures) {
@@ -174,8 +195,8 @@ TEST(EvaluationReport, FilesAreWrittenAsStated) {
   write_report(evaluation, summary_json(evaluation, rules, std::nullopt), folder);
   EXPECT_EQ(read_text(folder / "curves.csv"), "object,score,precision,recall\nmug,0.9,1.000000,0.500000\n");
   EXPECT_EQ(read_text(folder / "poses.csv"),
-            "frame,object,add,add_s,visible,status,score,quality,scene,image\n"
-            "0,mug,0.000000,0.000000,1.000,valid,0.9000,0.8000,desk,7\n");
+            "frame,object,add,add_s,visible,status,score,quality,scene,image,strict\n"
+            "0,mug,0.000000,0.000000,1.000,valid,0.9000,0.8000,desk,7,0.000000\n");
   EXPECT_TRUE(fs::exists(folder / "reliability.png"));
   EXPECT_EQ(read_json_object(folder / "summary.json")["auc"]["mug"], 0.5);
   write_text(folder / "file", "");

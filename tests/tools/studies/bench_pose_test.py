@@ -9,10 +9,10 @@ from studies.bench import pose
 
 
 def variant(ms, share, ar):
-    recall = {"detections": 4, "add_s": share, "add": share / 2}
+    recall = {"detections": 4, "mssd": share / 4, "add_s": share, "add": share / 2}
     return {
         "detections": 9, "published": 5, "ms_median": ms, "ms_p99": 2 * ms, "mm_median": 1.5, "mm_per_m_sq_median": 0.75,
-        "deg_median": None, "published_good_fraction": share, "recall": recall, "recall_from_0.5": recall,
+        "deg_median": None, "published_right_fraction": share / 4, "published_good_fraction": share, "recall": recall, "recall_from_0.5": recall,
         "bop_targets": 6, "bop_ar": ar,
     }  # fmt: skip
 
@@ -26,14 +26,15 @@ RESULTS = {
         "prerejective": variant(600.0, 0.5, 0.4),
         "ppf": variant(70.0, 0.4, 0.3),
     },
-    "withheld": {"rejected by <depth>": {"true": 1, "false": 7, "ignored": 0, "would_have_been_right": 1}},
+    "withheld": {"rejected by <depth>": {"true": 1, "false": 7, "ignored": 0, "would_have_been_right": 1,
+                                         "would_have_been_right_by_mssd": 0}},
 }
 
 REAL = {"within_5mm_5deg": 9, "frames": 10, "with_pose": 10, "median_mm": 1.25, "median_deg": 0.5, "per_frame": []}
 
 PROMISED = {
-    "ms_per_pose_median", "ms_per_pose_p99", "pcl_ms_median", "add_s_recall", "add_recall", "bop_ar", "bop_ar_prerejective",
-    "bop_ar_ppf", "published_good_fraction", "real",
+    "ms_per_pose_median", "ms_per_pose_p99", "pcl_ms_median", "mssd_recall", "add_s_recall", "add_recall", "bop_ar", "bop_ar_prerejective",
+    "bop_ar_ppf", "published_right_fraction", "published_good_fraction", "real",
 }  # fmt: skip
 
 
@@ -50,7 +51,9 @@ class Summary(unittest.TestCase):
         self.assertEqual(
             (summary["ms_per_pose_median"], summary["ms_per_pose_p99"], summary["pcl_ms_median"]), (3.0, 6.0, 40.0)
         )
+        self.assertEqual((summary["mssd_recall"], summary["pcl_mssd_recall"]), (0.225, 0.175))
         self.assertEqual((summary["add_s_recall"], summary["add_recall"]), (0.9, 0.45))
+        self.assertEqual((summary["published_right_fraction"], summary["published_good_fraction"]), (0.225, 0.9))
         self.assertEqual((summary["bop_ar"], summary["bop_ar_prerejective"], summary["bop_ar_ppf"]), (0.8, 0.4, 0.3))
         self.assertEqual(summary["bop_ar_on_rival_frames"], 0.75)
         self.assertEqual(summary["real"]["within_5mm_5deg"], 9)

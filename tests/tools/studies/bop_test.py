@@ -15,7 +15,8 @@ from studies.bop.dataset import open_dataset
 from studies.measured import read_csv
 
 PROMISED = {
-    "ar", "ar_nothing_withheld", "auc", "precision", "recall", "published_good_fraction", "ece_score", "ece_quality",
+    "ar", "ar_nothing_withheld", "auc", "precision", "recall", "published_right_fraction",
+    "published_good_fraction", "ece_score", "ece_quality", "ece_quality_up_to_shape",
     "ms_detect_median", "ms_pose_median", "targets", "linemod_auc", "ar_prerejective", "ar_ppf",
 }  # fmt: skip
 
@@ -90,6 +91,8 @@ class WholeRun(Case):
         self.assertAlmostEqual(
             figures["ece_score"], abs(0.8 - (0.3 + 4 * 0.9) / 5), places=3
         )  # not the mean of 0.5, 0.1
+        self.assertEqual((figures["published_right_fraction"], figures["published_good_fraction"]), (0.5, 1.0))
+        self.assertAlmostEqual(figures["ece_quality_up_to_shape"], 0.1, places=3)
         self.assertEqual((figures["ms_detect_median"], figures["ms_pose_median"]), (8.0, None))
         self.assertEqual(figures["linemod_auc"], 0.4)
         self.assertAlmostEqual(figures["ar_prerejective"], 0.29, places=4)

@@ -26,6 +26,7 @@ def demo(commit="abc1234"):
     figures = {
         "auc": {"bowl": 0.72, "mean": 0.72},
         "recall": {"bowl": 0.5},
+        "mssd_recall": {"bowl": 0.2, "mean": 0.2},
         "pose_recall_add_s_10": {"bowl": 0.25, "mean": 0.25},
     }
     counts = dict.fromkeys(
@@ -72,7 +73,9 @@ class ResultsOfACommit(unittest.TestCase):
         section = self.section(self.written(), "Demo: a rendered scene")
         self.assertIn("*`tools/demo`; a | processor; 2020-02-20*", section)
         self.assertIn("| AUC | 0.720 | 0.720 |", section)
-        self.assertIn("| ADD-S recall | 0.250 | 0.250 |", section)
+        self.assertIn("| poses right | 0.200 | 0.200 |", section)
+        self.assertIn("| ADD-S recall (right up to shape) | 0.250 | 0.250 |", section)
+        self.assertLess(section.index("poses right"), section.index("ADD-S recall"))
         self.assertIn("| BOP average recall | 0.600 | 0.600 |", section)
 
     def test_what_is_of_another_commit_is_not_measured(self):

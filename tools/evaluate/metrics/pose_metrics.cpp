@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "pose/model/symmetry.hpp"
+#include "tools/evaluate/metrics/bop_errors.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -47,10 +50,24 @@ double add_s_error(const Points& model, const Eigen::Isometry3d& T_estimated, co
   return sum / static_cast<double>(model.size());
 }
 
-PoseModel make_pose_model(const Mesh& mesh, bool symmetric) {
+PoseModel make_pose_model(const Mesh& mesh, const Symmetries& symmetries) {
   constexpr int kPoints = 1000;
   constexpr std::uint64_t kSeed = 1;
-  return {sample_surface(mesh, kPoints, kSeed).points, mesh_diameter(mesh), symmetric};
+  return {sample_surface(mesh, kPoints, kSeed).points, mesh_diameter(mesh), expand_symmetries(symmetries)};
+}
+
+double strict_error(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true) {
+  return model.is_symmetric() ? mssd_error(model.points, model.symmetries, T_estimated, T_true)
+                              : add_error(model.points, T_estimated, T_true);
+}
+
+bool is_right(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true) {
+  return strict_error(model, T_estimated, T_true) < kRightBelow * model.diameter;
+}
+
+bool is_right_up_to_shape(const PoseModel& model, const Eigen::Isometry3d& T_estimated,
+                          const Eigen::Isometry3d& T_true) {
+  return add_s_error(model.points, T_estimated, T_true) < kRightBelow * model.diameter;
 }
 
 std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
@@ -75,6 +92,7 @@ std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, c
       row.quality = pose->quality;
     }
     if (pose != nullptr && pose->T_camera_object) {
+      row.strict = strict_error(model, *pose->T_camera_object, truth.T_camera_object);
       row.add = add_error(model.points, *pose->T_camera_object, truth.T_camera_object);
       row.add_s = add_s_error(model.points, *pose->T_camera_object, truth.T_camera_object);
     }
@@ -85,23 +103,28 @@ std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, c
   return judged;
 }
 
-std::vector<Prediction> pose_predictions(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
-                                         const PoseModel& model) {
-  std::vector<Prediction> statements;
+std::vector<PosePrediction> pose_predictions(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
+                                             const PoseModel& model) {
+  std::vector<PosePrediction> statements;
   for (const MatchedDetection& detection : detections.judged) {
     const EvaluatedFrame& frame = frames[detection.frame];
     const ObjectPose* pose = frame.poses ? find_pose(*frame.poses, detection.index) : nullptr;
     if (detection.verdict == Verdict::kIgnored || pose == nullptr || !pose->T_camera_object) continue;
-    bool is_right = false;
+    PosePrediction statement;
+    statement.stated = static_cast<double>(pose->quality);
     if (detection.verdict == Verdict::kTrue) {
       const GroundTruthObject& truth = frame.objects[detection.object].truth;
       if (!truth.has_pose) continue;
-      is_right =
-          add_s_error(model.points, *pose->T_camera_object, truth.T_camera_object) < kRightBelow * model.diameter;
+      statement.is_true = is_right(model, *pose->T_camera_object, truth.T_camera_object);
+      statement.is_right_up_to_shape = is_right_up_to_shape(model, *pose->T_camera_object, truth.T_camera_object);
     }
-    statements.push_back({static_cast<double>(pose->quality), is_right});
+    statements.push_back(statement);
   }
   return statements;
+}
+
+double strict_recall(const std::vector<JudgedPose>& poses, double diameter, double min_visible) {
+  return recall(poses, &JudgedPose::strict, diameter, min_visible);
 }
 
 double add_s_recall(const std::vector<JudgedPose>& poses, double diameter, double min_visible) {
@@ -109,7 +132,7 @@ double add_s_recall(const std::vector<JudgedPose>& poses, double diameter, doubl
 }
 
 double add_or_add_s_recall(const std::vector<JudgedPose>& poses, const PoseModel& model, double min_visible) {
-  return recall(poses, model.symmetric ? &JudgedPose::add_s : &JudgedPose::add, model.diameter, min_visible);
+  return recall(poses, model.is_symmetric() ? &JudgedPose::add_s : &JudgedPose::add, model.diameter, min_visible);
 }
 
 }  // namespace houghstream

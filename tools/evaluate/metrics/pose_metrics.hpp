@@ -7,11 +7,15 @@
 #include <vector>
 
 #include "pipeline/geometry/mesh.hpp"
+#include "pipeline/geometry/symmetry.hpp"
 #include "tools/evaluate/metrics/detection_metrics.hpp"
 
 namespace houghstream {
 
 using Points = std::vector<Eigen::Vector3f>;
+
+// A pose is right where its strict error is below a tenth of the diameter: print counts. Where ADD-S alone is, the pose
+// is right up to what the shape cannot tell: a box turned front for back.
 
 constexpr double kRightBelow = 0.1;  ///< error of a right pose, diameters (Hinterstoisser et al. 2012)
 
@@ -24,13 +28,25 @@ double add_s_error(const Points& model, const Eigen::Isometry3d& T_estimated, co
 
 /// What poses of a class are measured with.
 struct PoseModel {
-  Points points;           ///< on the surface, object frame, metres
-  double diameter = 0.0;   ///< metres
-  bool symmetric = false;  ///< has poses that look the same
+  Points points;          ///< on the surface, object frame, metres
+  double diameter = 0.0;  ///< metres
+  /// The motions after which a pose is the same, as the dataset lists them, expanded; the identity is among them.
+  std::vector<Eigen::Isometry3d> symmetries = {Eigen::Isometry3d::Identity()};
+
+  bool is_symmetric() const { return symmetries.size() > 1; }
 };
 
-/// Evenly spread points instead of the mesh's vertices, which crowd where a mesh is finely cut.
-PoseModel make_pose_model(const Mesh& mesh, bool symmetric);
+/// Evenly spread points instead of the mesh's vertices, which crowd where a mesh is finely cut. `symmetries` are those
+/// of models_info.json, not those of the shape: what print tells apart is not the same.
+PoseModel make_pose_model(const Mesh& mesh, const Symmetries& symmetries);
+
+/// The error by which a pose is right or not, metres: MSSD (Hodan et al. 2020) over the model's points where the
+/// dataset lists symmetries of the object, else ADD.
+double strict_error(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
+bool is_right(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
+/// By ADD-S.
+bool is_right_up_to_shape(const PoseModel& model, const Eigen::Isometry3d& T_estimated,
+                          const Eigen::Isometry3d& T_true);
 
 /// A true detection and the pose that was published for it.
 struct JudgedPose {
@@ -38,11 +54,12 @@ struct JudgedPose {
   std::string class_name;
   double visible_fraction = 0.0;
   PoseStatus status = PoseStatus::kInvalid;
-  double add = std::numeric_limits<double>::quiet_NaN();    ///< metres; NaN without a pose
-  double add_s = std::numeric_limits<double>::quiet_NaN();  ///< metres; NaN without a pose
-  float score = 0.0F;                                       ///< of the detection
-  float quality = 0.0F;                                     ///< of the pose, also of one that was withheld
-  bool reported = true;                                     ///< false: a candidate without a published pose
+  double strict = std::numeric_limits<double>::quiet_NaN();  ///< strict_error(), metres; NaN without a pose
+  double add = std::numeric_limits<double>::quiet_NaN();     ///< metres; NaN without a pose
+  double add_s = std::numeric_limits<double>::quiet_NaN();   ///< metres; NaN without a pose
+  float score = 0.0F;                                        ///< of the detection
+  float quality = 0.0F;                                      ///< of the pose, also of one that was withheld
+  bool reported = true;                                      ///< false: a candidate without a published pose
   std::string scene;
   int image_id = 0;
 };
@@ -52,14 +69,21 @@ struct JudgedPose {
 std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
                                     const PoseModel& model);
 
-/// The poses of a class with their quality, those of true and of false detections: true where the detection is and
-/// ADD-S is below 10 % of the diameter. Those of ignored detections, and of objects whose truth has no pose, are left
-/// out.
-std::vector<Prediction> pose_predictions(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
-                                         const PoseModel& model);
+/// What is said of a pose: its quality that it is right.
+struct PosePrediction : Prediction {
+  bool is_right_up_to_shape = false;
+};
 
-/// Share of the true detections of objects at least `min_visible` visible whose ADD-S is below 10 % of the diameter; a
-/// detection without a pose has none. NaN where there is no such detection.
+/// The poses of a class with their quality, those of true and of false detections: true where the detection is and the
+/// pose is right. Those of ignored detections, and of objects whose truth has no pose, are left out.
+std::vector<PosePrediction> pose_predictions(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
+                                             const PoseModel& model);
+
+/// Share of the true detections of objects at least `min_visible` visible whose pose is right; a detection without a
+/// pose has none. NaN where there is no such detection.
+double strict_recall(const std::vector<JudgedPose>& poses, double diameter, double min_visible);
+
+/// The same by ADD-S: right up to what the shape cannot tell.
 double add_s_recall(const std::vector<JudgedPose>& poses, double diameter, double min_visible);
 
 /// The same by the error that Hinterstoisser et al. 2012 use for the object, called ADD(-S): ADD, but ADD-S for one

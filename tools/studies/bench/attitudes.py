@@ -10,8 +10,8 @@ from studies.report.page import show
 LYING = ("table_lying", "meeting_lying", "table_tilted", "meeting_held")
 GROUPS = {"lying": LYING, "standing": TEST_SCENES}
 TAUGHT = {"upright": "taught upright", "resting": "taught as they come to rest"}  # hs-teach mesh --attitudes
-FIGURES = ("auc", "ar", "precision", "recall", "published_good_fraction", "ece_score", "ece_quality",
-           "ms_detect_median", "ms_pose_median")  # fmt: skip
+FIGURES = ("auc", "ar", "precision", "recall", "published_right_fraction", "published_good_fraction", "ece_score",
+           "ece_quality", "ms_detect_median", "ms_pose_median")  # fmt: skip
 
 
 def scene_folders(out, taught, scene):
@@ -60,8 +60,8 @@ def rows(summary):
 
 def default_rows(summary):
     """What is reported and published at the defaults; the header first."""
-    header = ("at the defaults", "precision", "recall", "right, of published", "ECE score", "ECE quality", "ms detection",
-              "ms poses")  # fmt: skip
+    header = ("at the defaults", "precision", "recall", "right, of published", "up to shape", "ECE score", "ECE quality",
+              "ms detection", "ms poses")  # fmt: skip
     keys = FIGURES[2:]
     return [header] + [
         (f"{group}, {TAUGHT[name]}", *(show(found[key], "{:.1f}" if key.startswith("ms") else "{:.3f}") for key in keys))

@@ -33,10 +33,13 @@ def summarise(results, real):
         "pcl_ms_median": figure(variants, "pcl", "ms_median"),
         "prerejective_ms_median": figure(beside_rivals, "prerejective", "ms_median"),
         "ppf_ms_median": figure(beside_rivals, "ppf", "ms_median"),
+        "mssd_recall": figure(variants, "ours", "recall", "mssd"),
         "add_s_recall": figure(variants, "ours", "recall", "add_s"),
         "add_recall": figure(variants, "ours", "recall", "add"),
+        "mssd_recall_from_0.5": figure(variants, "ours", "recall_from_0.5", "mssd"),
         "add_s_recall_from_0.5": figure(variants, "ours", "recall_from_0.5", "add_s"),
         "add_recall_from_0.5": figure(variants, "ours", "recall_from_0.5", "add"),
+        "pcl_mssd_recall": figure(variants, "pcl", "recall", "mssd"),
         "pcl_add_s_recall": figure(variants, "pcl", "recall", "add_s"),
         "pcl_add_recall": figure(variants, "pcl", "recall", "add"),
         "bop_ar": figure(variants, "ours", "bop_ar"),
@@ -44,6 +47,7 @@ def summarise(results, real):
         "bop_ar_on_rival_frames": figure(beside_rivals, "ours", "bop_ar"),
         "bop_ar_prerejective": figure(beside_rivals, "prerejective", "bop_ar"),
         "bop_ar_ppf": figure(beside_rivals, "ppf", "bop_ar"),
+        "published_right_fraction": figure(variants, "ours", "published_right_fraction"),
         "published_good_fraction": figure(variants, "ours", "published_good_fraction"),
         "translation_mm_median": figure(variants, "ours", "mm_median"),
         "translation_mm_median_at_1m": figure(variants, "ours", "mm_per_m_sq_median"),
@@ -59,7 +63,10 @@ def variant_rows(group):
     def row(name):
         figures = group[name]
         recall, strong = figures["recall"], figures["recall_from_0.5"]
-        shares = [recall["add_s"], recall["add"], strong["add_s"], strong["add"], figures["published_good_fraction"]]
+        shares = [
+            figures["published_right_fraction"], recall["mssd"], strong["mssd"],
+            recall["add_s"], recall["add"], strong["add_s"], strong["add"], figures["published_good_fraction"],
+        ]  # fmt: skip
         errors = [figures["mm_median"], figures["mm_per_m_sq_median"], figures["deg_median"]]
         return (
             NAMES[name], figures["published"], show(figures["ms_median"], "{:.2f}"), show(figures["ms_p99"], "{:.2f}"),
@@ -70,7 +77,7 @@ def variant_rows(group):
 
 
 def withheld_rows(withheld):
-    keys = ("true", "false", "ignored", "would_have_been_right")
+    keys = ("true", "false", "ignored", "would_have_been_right_by_mssd", "would_have_been_right")
     return [(reason, *(counts[key] for key in keys)) for reason, counts in withheld.items()]
 
 

@@ -8,8 +8,8 @@ from studies.reproduce.results import verdicts
 from studies.work import UnitFailed
 
 FIGURES = (
-    "ar", "ar_nothing_withheld", "ar_vsd", "ar_mssd", "ar_mspd", "auc", "precision", "recall", "published_good_fraction",
-    "ece_score", "ece_quality", "ms_detect_median", "ms_pose_median", "linemod_auc", "ar_prerejective", "ar_ppf",
+    "ar", "ar_nothing_withheld", "ar_vsd", "ar_mssd", "ar_mspd", "auc", "precision", "recall", "published_right_fraction",
+    "published_good_fraction", "ece_score", "ece_quality", "ece_quality_up_to_shape", "ms_detect_median", "ms_pose_median", "linemod_auc", "ar_prerejective", "ar_ppf",
     "ar_on_rival_frames",
 )  # fmt: skip
 COUNTS = ("targets", "objects", "true", "false", "confirmed", "published", "frames", "linemod_frames", "rival_frames")
@@ -117,6 +117,7 @@ def of_scenes(folders):
     published, checked = recalls(ranked, "bop19"), recalls(ranked, "bop19_nothing_withheld")
     counts = counts_at_default(default)
     score, quality = calibration(ranked, "detection_calibration"), calibration(ranked, "pose_calibration")
+    up_to_shape = calibration(ranked, "pose_calibration_up_to_shape")
     times = [pair for one in default for pair in one.times()]
     out = {
         **published,
@@ -125,12 +126,14 @@ def of_scenes(folders):
         "auc": pooled_auc(ranked),
         "precision": share(counts["true"], counts["true"] + counts["false"]),
         "recall": share(counts["true"], counts["objects"]),
-        "published_good_fraction": weighted(
-            [(one.summary.get("published_good_fraction"), one.summary.get("published")) for one in default]
-        ),
+        **{
+            key: weighted([(one.summary.get(key), one.summary.get("published")) for one in default])
+            for key in ("published_right_fraction", "published_good_fraction")
+        },
         "published": sum(one.summary.get("published") or 0 for one in default),
         "ece_score": score["ece"] if score else None,
         "ece_quality": quality["ece"] if quality else None,
+        "ece_quality_up_to_shape": up_to_shape["ece"] if up_to_shape else None,
         "ms_detect_median": median(detect for detect, _ in times),
         "ms_pose_median": median(pose for _, pose in times),
         "frames": sum(one.summary["frames"] for one in default),

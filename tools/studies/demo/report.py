@@ -9,7 +9,8 @@ from studies.report.charts import Chart
 from studies.report.page import embedded, render, show
 
 FEW, SPREAD = 24, 8  # pictures of a stream: all of so few, else so many of them
-POSE_RECALL = "pose_recall_add_s_10"
+RIGHT_RECALL = "mssd_recall"
+POSE_RECALL = "pose_recall_add_s_10"  # right up to what the shape cannot tell
 
 
 def about_run(options):
@@ -42,7 +43,7 @@ def detection_figures(evaluation):
     """By object; "mean" is over the objects."""
     auc = {name: value for name, value in evaluation["auc"].items() if name != "weighted"}
     figures = {"auc": auc, "auc_weighted": evaluation["auc"]["weighted"]}
-    return figures | {key: evaluation[key] for key in ("precision", "recall", "required", POSE_RECALL)}
+    return figures | {key: evaluation[key] for key in ("precision", "recall", "required", RIGHT_RECALL, POSE_RECALL)}
 
 
 def clutter(folder):
@@ -103,10 +104,10 @@ def latency_chart(times):
 
 
 def object_rows(summary):
-    """The first three figures over all frames that were sent, then again over those that were looked at."""
+    """The first four figures over all frames that were sent, then again over those that were looked at."""
 
     def figures(found, name):
-        return [show(found[key].get(name)) for key in ("auc", "recall", POSE_RECALL)]
+        return [show(found[key].get(name)) for key in ("auc", "recall", RIGHT_RECALL, POSE_RECALL)]
 
     return [
         (name, summary["required"].get(name, ""), *figures(summary, name), show(summary["precision"].get(name)),
@@ -166,9 +167,10 @@ def page(out, summary):
 
 
 def print_table(summary):
-    print(f"\n{'object':<16}{'AUC':>8}{'ADD-S recall':>14}")
+    print(f"\n{'object':<16}{'AUC':>8}{'poses right':>14}{'ADD-S recall':>14}")
     for name, auc in summary["auc"].items():
-        print(f"{name:<16}{show(auc):>8}{show(summary[POSE_RECALL].get(name)):>14}")
+        recalls = (show(summary[key].get(name)) for key in (RIGHT_RECALL, POSE_RECALL))
+        print(f"{name:<16}{show(auc):>8}" + "".join(f"{recall:>14}" for recall in recalls))
     print(f"\n{'latency, ms':<16}{'p50':>8}{'p95':>8}{'p99':>8}")
     for stage, *latencies in latency_rows(summary):
         print(f"{stage:<16}" + "".join(f"{latency:>8}" for latency in latencies))

@@ -20,14 +20,17 @@ double ratio(int part, int whole) {
 
 PoseRecall pose_recall(const std::vector<PoseTrial>& trials, float min_score) {
   PoseRecall out;
+  int right = 0;
   int by_add_s = 0;
   int by_add = 0;
   for (const PoseTrial& trial : trials) {
     if (trial.verdict != Verdict::kTrue || trial.score < min_score || trial.visible_fraction < kMinVisible) continue;
     ++out.detections;
-    by_add_s += trial.is_right() ? 1 : 0;
+    right += trial.is_right() ? 1 : 0;
+    by_add_s += trial.is_right_up_to_shape() ? 1 : 0;
     by_add += (trial.symmetric ? trial.add_s : trial.add) < kRightBelow ? 1 : 0;  // false for NaN
   }
+  out.right = ratio(right, out.detections);
   out.add_s = ratio(by_add_s, out.detections);
   out.add = ratio(by_add, out.detections);
   return out;
@@ -37,12 +40,14 @@ PoseFigures pose_figures(const std::vector<PoseTrial>& trials) {
   std::vector<double> ms, mm, mm_per_m_sq, deg;
   int judged = 0;
   int right = 0;
+  int right_up_to_shape = 0;
   for (const PoseTrial& trial : trials) {
     if (!trial.T_camera_object) continue;
     ms.push_back(trial.ms);
     judged += trial.verdict == Verdict::kIgnored ? 0 : 1;
     if (trial.verdict != Verdict::kTrue) continue;
     right += trial.is_right() ? 1 : 0;
+    right_up_to_shape += trial.is_right_up_to_shape() ? 1 : 0;
     mm.push_back(1e3 * trial.shift_m);
     mm_per_m_sq.push_back(1e3 * trial.shift_m / (trial.distance_m * trial.distance_m));
     if (!trial.symmetric) deg.push_back(trial.turn_deg);
@@ -56,7 +61,8 @@ PoseFigures pose_figures(const std::vector<PoseTrial>& trials) {
   out.mm_median = percentiles(mm).p50;
   out.mm_per_m_sq_median = percentiles(mm_per_m_sq).p50;
   out.deg_median = percentiles(deg).p50;
-  out.good_fraction = ratio(right, judged);
+  out.right_fraction = ratio(right, judged);
+  out.good_fraction = ratio(right_up_to_shape, judged);
   out.recall = pose_recall(trials, 0.0F);
   out.recall_strong = pose_recall(trials, kStrong);
   return out;
@@ -75,14 +81,17 @@ std::map<std::string, WithheldPoses> count_withheld(const std::vector<PoseTrial>
       case Verdict::kIgnored: ++counts.of_ignored; break;
     }
     counts.right += unchecked[i].is_right() ? 1 : 0;
+    counts.right_up_to_shape += unchecked[i].is_right_up_to_shape() ? 1 : 0;
   }
   return out;
 }
 
 OrderedJson to_json(const PoseFigures& figures) {
   const auto recall = [](const PoseRecall& of) {
-    return OrderedJson{
-        {"detections", of.detections}, {"add_s", finite_or_null(of.add_s)}, {"add", finite_or_null(of.add)}};
+    return OrderedJson{{"detections", of.detections},
+                       {"mssd", finite_or_null(of.right)},
+                       {"add_s", finite_or_null(of.add_s)},
+                       {"add", finite_or_null(of.add)}};
   };
   return {{"detections", figures.detections},
           {"published", figures.published},
@@ -91,6 +100,7 @@ OrderedJson to_json(const PoseFigures& figures) {
           {"mm_median", finite_or_null(figures.mm_median)},
           {"mm_per_m_sq_median", finite_or_null(figures.mm_per_m_sq_median)},
           {"deg_median", finite_or_null(figures.deg_median)},
+          {"published_right_fraction", finite_or_null(figures.right_fraction)},
           {"published_good_fraction", finite_or_null(figures.good_fraction)},
           {"recall", recall(figures.recall)},
           {"recall_from_0.5", recall(figures.recall_strong)}};
@@ -102,7 +112,8 @@ OrderedJson to_json(const std::map<std::string, WithheldPoses>& withheld) {
     out[reason] = {{"true", counts.of_true},
                    {"false", counts.of_false},
                    {"ignored", counts.of_ignored},
-                   {"would_have_been_right", counts.right}};
+                   {"would_have_been_right", counts.right_up_to_shape},
+                   {"would_have_been_right_by_mssd", counts.right}};
   }
   return out;
 }

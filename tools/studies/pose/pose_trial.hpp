@@ -32,13 +32,15 @@ struct PoseTrial {
 
   // Errors of the pose, unknown without one and without an object to compare it with: that of a true detection, for
   // others the object of the class of smallest ADD-S.
-  double add = kUnknown;    ///< in diameters
-  double add_s = kUnknown;  ///< in diameters
+  double strict = kUnknown;  ///< strict_error(): MSSD, or ADD of an object without symmetries; in diameters
+  double add = kUnknown;     ///< in diameters
+  double add_s = kUnknown;   ///< in diameters
   double shift_m = kUnknown;
   double turn_deg = kUnknown;  ///< the smallest over the object's symmetries
 
-  /// The pose of a true detection, right by ADD-S.
-  bool is_right() const { return verdict == Verdict::kTrue && add_s < kRightBelow; }
+  /// The pose of a true detection.
+  bool is_right() const { return verdict == Verdict::kTrue && strict < kRightBelow; }
+  bool is_right_up_to_shape() const { return verdict == Verdict::kTrue && add_s < kRightBelow; }
 };
 
 }  // namespace houghstream

@@ -8,6 +8,7 @@ namespace {
 
 void measure_errors(const ScoredModel& model, const Eigen::Isometry3d& T_true, PoseTrial& trial) {
   const Eigen::Isometry3d& T_estimated = *trial.T_camera_object;
+  trial.strict = strict_error(model.surface, T_estimated, T_true) / model.surface.diameter;
   trial.add = add_error(model.surface.points, T_estimated, T_true) / model.surface.diameter;
   trial.add_s = add_s_error(model.surface.points, T_estimated, T_true) / model.surface.diameter;
   const PoseDifference difference = compare_poses(T_estimated, T_true, model.symmetries);
@@ -37,7 +38,7 @@ PoseTrial judge_one(const PoseRun& run, const MatchedDetection& judged, const Sc
   trial.score = detection.score;
   trial.box_px = detection.box_px;
   trial.verdict = judged.verdict;
-  trial.symmetric = model.surface.symmetric;
+  trial.symmetric = model.surface.is_symmetric();
   trial.ms = run.ms[judged.frame][judged.index];
   trial.status = pose.status;
   trial.quality = pose.quality;
@@ -68,7 +69,7 @@ SceneModels load_scene_models(const std::filesystem::path& models, const std::se
     const Symmetries& symmetries = listed.symmetries.at(object_id);
     out.meshes[name] = meshes.at(name);
     out.bop[name] = bop.at(name);
-    out.scored[name] = {make_pose_model(meshes.at(name), !symmetries.empty()), symmetries};
+    out.scored[name] = {make_pose_model(meshes.at(name), symmetries), symmetries};
   }
   require(!out.meshes.empty(), "{}: no model of a class of the forest", models.string());
   return out;

@@ -15,14 +15,15 @@ namespace {
 
 /// Worse ones compare less.
 std::tuple<bool, bool, double> order_of(const PoseTrial& trial) {
-  const bool is_known = std::isfinite(trial.add_s);
-  return {trial.verdict == Verdict::kTrue, is_known, is_known ? -trial.add_s : 0.0};
+  const bool is_known = std::isfinite(trial.strict);
+  return {trial.verdict == Verdict::kTrue, is_known, is_known ? -trial.strict : 0.0};
 }
 
 std::string error_words(const PoseTrial& trial) {
   if (!std::isfinite(trial.add_s)) return "false: none of its kind is there";
   if (trial.verdict != Verdict::kTrue) return fmt::format("false; the nearest: ADD-S {:.3f} diameters", trial.add_s);
-  return fmt::format("ADD-S {:.3f} diameters, {:.0f} mm, {:.0f} deg", trial.add_s, 1e3 * trial.shift_m, trial.turn_deg);
+  return fmt::format("{} {:.3f}, ADD-S {:.3f} diameters, {:.0f} mm, {:.0f} deg", trial.symmetric ? "MSSD" : "ADD",
+                     trial.strict, trial.add_s, 1e3 * trial.shift_m, trial.turn_deg);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "detector/forest/forest_file.hpp"
+#include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
@@ -40,7 +41,11 @@ std::vector<quality::Example> gather(const LearnOptions& options) {
   Forest forest = load_forest(options.forest);
   const std::map<std::string, Mesh> meshes = models_of(options, forest);
   std::map<std::string, PoseModel> judged_by;
-  for (const auto& [name, mesh] : meshes) judged_by[name] = make_pose_model(mesh, false);
+  const BopModels listed = read_bop_models(options.models);
+  for (const auto& [object_id, symmetries] : listed.symmetries) {
+    const auto mesh = meshes.find(listed.names.at(object_id));
+    if (mesh != meshes.end()) judged_by[mesh->first] = make_pose_model(mesh->second, symmetries);
+  }
   const Detector detector = detector_of(std::move(forest), options.search);
   const quality::UnfilteredPoseFinder finder({meshes, {}, load_class_symmetries(options.models)},
                                              options.search.threads);

@@ -18,7 +18,7 @@ QualitySettings fit_quality(const std::vector<Example>& examples);
 /// A pose with the quality that a fit gives it.
 struct CheckedPose {
   float quality = 0.0F;
-  bool is_right = false;
+  bool is_right = false;  ///< up to what the shape cannot tell, which is what the fit learns
 };
 
 /// The examples as these settings judge them, in their order.

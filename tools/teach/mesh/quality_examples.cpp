@@ -42,10 +42,8 @@ std::vector<Example> label_examples(const FoundPoses& found, const std::map<std:
         if (!truth.has_pose) continue;
         example.is_there = true;
         const Eigen::Isometry3d& T_camera_object = *frame.poses->poses[judged.index].T_camera_object;
-        const double error = add_s_error(model.points, T_camera_object, truth.T_camera_object);
-        example.is_right_up_to_shape = error < kRightBelow * model.diameter;
-        example.is_right =
-            add_error(model.points, T_camera_object, truth.T_camera_object) < kRightBelow * model.diameter;
+        example.is_right = is_right(model, T_camera_object, truth.T_camera_object);
+        example.is_right_up_to_shape = is_right_up_to_shape(model, T_camera_object, truth.T_camera_object);
       }
       if (example.is_right_up_to_shape) example.with_swapped_texture = terms->with_swapped_texture;
       examples.push_back(std::move(example));

@@ -193,7 +193,7 @@ std::map<std::string, QualitySettings> practise(const std::vector<CalibrationObj
     models.vote_centres[object.name] = object.vote_centre;
     models.symmetries[object.name] = object.symmetries;
     models.shape_symmetries[object.name] = object.shape_symmetry;
-    judged_by[object.name] = make_pose_model(object.mesh, false);
+    judged_by[object.name] = make_pose_model(object.mesh, object.symmetries);
   }
   const quality::FoundPoses found = find_poses({frames, examples, new_ids, settings.threads}, models, forest);
   training::fit_scores(examples, new_ids, forest);

@@ -24,12 +24,14 @@ PoseTrial withheld(Verdict verdict, double visible, PoseStatus status) {
   return trial;
 }
 
+/// Without symmetries: ADD says whether it is right.
 PoseTrial published(Verdict verdict, double ms, double add_s, double add) {
   PoseTrial trial = withheld(verdict, 1.0, PoseStatus::kValid);
   trial.T_camera_object = Eigen::Isometry3d::Identity();
   trial.ms = ms;
   trial.add_s = add_s;
   trial.add = add;
+  trial.strict = add;
   trial.shift_m = 0.001 * ms;
   trial.turn_deg = 2.0 * ms;
   return trial;
@@ -58,26 +60,31 @@ TEST(PoseFigures, WithheldPosesCountAsNotFound) {
   EXPECT_EQ(recall.detections, 3);
   EXPECT_NEAR(recall.add_s, 1.0 / 3.0, 1e-12);
   EXPECT_NEAR(recall.add, 0.0, 1e-12);
+  EXPECT_NEAR(recall.right, 0.0, 1e-12) << "right up to its shape only";
   trials[0].symmetric = true;  // ADD-S speaks for ADD
   trials[1].score = 0.3F;
   recall = pose_recall(trials, 0.5F);
   EXPECT_EQ(recall.detections, 2);
   EXPECT_NEAR(recall.add, 0.5, 1e-12);
+  EXPECT_NEAR(recall.right, 0.0, 1e-12) << "MSSD speaks for itself";
 }
 
 TEST(PoseFigures, GoodAreRightPosesOfTrueDetectionsAmongAllPublished) {
   const PoseFigures figures =
       pose_figures({published(Verdict::kTrue, 1.0, 0.05, 0.2), published(Verdict::kTrue, 1.0, 0.2, 0.2),
                     published(Verdict::kFalse, 1.0, 0.05, 0.2), published(Verdict::kIgnored, 1.0, 0.05, 0.2),
-                    withheld(Verdict::kTrue, 1.0, PoseStatus::kLowScore), published(Verdict::kTrue, 1.0, 0.01, 0.2)});
+                    withheld(Verdict::kTrue, 1.0, PoseStatus::kLowScore), published(Verdict::kTrue, 1.0, 0.01, 0.02)});
   EXPECT_NEAR(figures.good_fraction, 0.5, 1e-12);
+  EXPECT_NEAR(figures.right_fraction, 0.25, 1e-12);
 }
 
 TEST(PoseFigures, WhatWasNotThereIsNullAndNoNumber) {
   const OrderedJson json = to_json(pose_figures({withheld(Verdict::kFalse, 1.0, PoseStatus::kLowScore)}));
   EXPECT_EQ(json["detections"], 1);
-  for (const char* key : {"ms_median", "ms_p99", "mm_median", "deg_median", "published_good_fraction"})
+  for (const char* key :
+       {"ms_median", "ms_p99", "mm_median", "deg_median", "published_right_fraction", "published_good_fraction"})
     EXPECT_TRUE(json[key].is_null()) << key;
+  EXPECT_TRUE(json["recall"]["mssd"].is_null());
   EXPECT_TRUE(json["recall"]["add_s"].is_null());
 }
 
@@ -86,22 +93,26 @@ TEST(PoseFigures, WithheldPosesAreCountedByReasonAndByWhatTheyWouldHaveBeen) {
       withheld(Verdict::kTrue, 1.0, PoseStatus::kLowScore), withheld(Verdict::kTrue, 1.0, PoseStatus::kLowScore),
       withheld(Verdict::kFalse, 1.0, PoseStatus::kRejectedByDepth), published(Verdict::kTrue, 1.0, 0.02, 0.02)};
   const std::vector<PoseTrial> unchecked = {
-      published(Verdict::kTrue, 1.0, 0.02, 0.02), published(Verdict::kTrue, 1.0, 0.4, 0.4),
+      published(Verdict::kTrue, 1.0, 0.02, 0.5), published(Verdict::kTrue, 1.0, 0.4, 0.4),
       published(Verdict::kFalse, 1.0, 0.02, 0.02), published(Verdict::kTrue, 1.0, 0.02, 0.02)};
   const std::map<std::string, WithheldPoses> counts = count_withheld(trials, unchecked);
   ASSERT_EQ(counts.size(), 2U);
   EXPECT_EQ(counts.at("low score").of_true, 2);
-  EXPECT_EQ(counts.at("low score").right, 1);
+  EXPECT_EQ(counts.at("low score").right, 0);
+  EXPECT_EQ(counts.at("low score").right_up_to_shape, 1);
   EXPECT_EQ(counts.at("rejected by depth").of_false, 1);
-  EXPECT_EQ(counts.at("rejected by depth").right, 0);
+  EXPECT_EQ(counts.at("rejected by depth").right_up_to_shape, 0);
+  const OrderedJson json = to_json(counts);
+  EXPECT_EQ(json["low score"]["would_have_been_right"], 1) << "an older figure, by ADD-S";
+  EXPECT_EQ(json["low score"]["would_have_been_right_by_mssd"], 0);
   EXPECT_THROW(count_withheld(trials, {}), std::logic_error);
 }
 
 TEST(WorstPoses, FalseOnesComeFirstAndUnknownErrorsBeforeAll) {
   const double unknown = PoseTrial::kUnknown;
   const std::vector<PoseTrial> worst = worst_poses(
-      {published(Verdict::kTrue, 1.0, 0.02, 0.0), published(Verdict::kTrue, 2.0, 0.9, 0.0),
-       published(Verdict::kFalse, 3.0, 0.1, 0.0), published(Verdict::kIgnored, 4.0, 2.0, 0.0),
+      {published(Verdict::kTrue, 1.0, 0.02, 0.02), published(Verdict::kTrue, 2.0, 0.01, 0.9),
+       published(Verdict::kFalse, 3.0, 0.1, 0.1), published(Verdict::kIgnored, 4.0, 2.0, 2.0),
        published(Verdict::kFalse, 5.0, unknown, unknown), withheld(Verdict::kTrue, 1.0, PoseStatus::kLowScore)},
       3);
   ASSERT_EQ(worst.size(), 3U);
@@ -112,7 +123,7 @@ TEST(WorstPoses, FalseOnesComeFirstAndUnknownErrorsBeforeAll) {
 
 TEST(PoseTable, WhatIsUnknownIsEmpty) {
   EXPECT_EQ(pose_table_rows("ours", {withheld(Verdict::kFalse, PoseTrial::kUnknown, PoseStatus::kLowScore)}),
-            "ours,desk,0,mug,,false,0.9000,low score,0.0000,,,,,100.000\n");
+            "ours,desk,0,mug,,false,0.9000,low score,0.0000,,,,,100.000,\n");
 }
 
 }  // namespace

@@ -74,6 +74,20 @@ TEST(PoseTrials, ErrorsAreOfTheTrueObjectOrOfTheNearest) {
   EXPECT_FALSE(trials[1].is_right());
 }
 
+TEST(PoseTrials, ATurnedPoseIsRightUpToItsShapeOnly) {
+  const Eigen::Isometry3d turn(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
+  ScoredModel bar;
+  bar.surface = {{{0.1F, 0.0F, 0.0F}, {-0.1F, 0.0F, 0.0F}}, 0.2};
+  for (const bool is_listed : {false, true}) {
+    if (is_listed) bar.surface.symmetries.push_back(turn);
+    const std::vector<PoseTrial> trials =
+        judge_run(one_frame(baseline_maker(std::make_unique<FixedRival>(at(0.0, 2.0) * turn))), {{"corner", bar}});
+    EXPECT_EQ(trials.at(0).is_right(), is_listed);
+    EXPECT_TRUE(trials.at(0).is_right_up_to_shape());
+    EXPECT_NEAR(trials.at(0).strict, is_listed ? 0.0 : 1.0, 1e-6);
+  }
+}
+
 TEST(PoseTrials, WithoutAPoseNoErrorIsKnown) {
   const std::vector<PoseTrial> trials =
       judge_run(one_frame(baseline_maker(std::make_unique<FixedRival>(std::nullopt))), corner());
@@ -81,6 +95,7 @@ TEST(PoseTrials, WithoutAPoseNoErrorIsKnown) {
   EXPECT_EQ(trials[0].status, PoseStatus::kNotConverged);
   EXPECT_FALSE(trials[0].T_camera_object.has_value());
   EXPECT_TRUE(std::isnan(trials[0].add_s));
+  EXPECT_TRUE(std::isnan(trials[0].strict));
   EXPECT_FALSE(trials[0].is_right());
 }
 

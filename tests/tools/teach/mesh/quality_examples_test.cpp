@@ -12,7 +12,7 @@ const cv::Rect kElsewhere(300, 100, 80, 80);
 
 /// A corner of three points, 0.2 m in diameter.
 std::map<std::string, PoseModel> corner() {
-  return {{"corner", {{{0.1F, 0.0F, 0.0F}, {0.0F, 0.1F, 0.0F}, {0.0F, 0.0F, 0.1F}}, 0.2, false}}};
+  return {{"corner", {{{0.1F, 0.0F, 0.0F}, {0.0F, 0.1F, 0.0F}, {0.0F, 0.0F, 0.1F}}, 0.2}}};
 }
 
 Eigen::Isometry3d at(double x) {
@@ -63,7 +63,24 @@ TEST(QualityExamples, APoseIsRightWithinATenthOfTheDiameter) {
     EXPECT_EQ(examples[0].score, 0.9F);
     EXPECT_TRUE(examples[0].is_there) << "whether its pose is right or not";
     EXPECT_EQ(examples[0].is_right, x < 0.02) << x;
+    EXPECT_EQ(examples[0].is_right_up_to_shape, x < 0.02) << x;
     EXPECT_EQ(examples[0].with_swapped_texture.has_value(), x < 0.02) << "of a wrong pose another print says nothing";
+  }
+}
+
+TEST(QualityExamples, APoseThatIsTurnedByItsShapeIsRightUpToThatOnlyUnlessTheDatasetListsIt) {
+  const Eigen::Isometry3d turn(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
+  PoseModel bar{{{0.1F, 0.0F, 0.0F}, {-0.1F, 0.0F, 0.0F}}, 0.2};
+  for (const bool is_listed : {false, true}) {
+    FoundPoses found = one_frame();
+    add(found, "corner", kBox, 0.0);
+    found.frames[0].poses->poses[0].T_camera_object = at(0.0) * turn;
+    if (is_listed) bar.symmetries.push_back(turn);
+    const std::vector<Example> examples = label_examples(found, {{"corner", bar}});
+    ASSERT_EQ(examples.size(), 1U);
+    EXPECT_EQ(examples[0].is_right, is_listed);
+    EXPECT_TRUE(examples[0].is_right_up_to_shape);
+    EXPECT_TRUE(examples[0].with_swapped_texture.has_value()) << "which is what today's fit learns from";
   }
 }
 
@@ -76,6 +93,7 @@ TEST(QualityExamples, OfFalseDetectionsEveryPoseIsWrong) {
   ASSERT_EQ(examples.size(), 2U);
   EXPECT_TRUE(examples[0].is_right);
   EXPECT_FALSE(examples[1].is_right);
+  EXPECT_FALSE(examples[1].is_right_up_to_shape);
   EXPECT_FALSE(examples[1].is_there);
   EXPECT_EQ(examples[1].terms.visible, 1.0) << "with its own evidence";
 }
