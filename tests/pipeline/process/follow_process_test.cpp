@@ -89,6 +89,7 @@ TEST(FollowProcess, FramesDoNotWaitForAnAnswerAndAnOvertakenLookIsCounted) {
   test.bus.publish(channel::kFrame, frame_message(3));
   ASSERT_TRUE(test.wait_for(channel::kPoses, 3));
   test.bus.publish(channel::kDetections, to_message(one_bowl(3)));
+  test.bus.publish(channel::kDetections, to_message(one_bowl(3, "OTHER")));  // no look at this camera
   std::this_thread::sleep_for(milliseconds(50));
   may_answer = true;
   ASSERT_TRUE(test.wait_for(channel::kPoses, 5));
