@@ -51,9 +51,9 @@ TEST(PoseEstimator, KnownPosesComeBackFromVotesWithOutliers) {
       const StandingScene scene(is_box ? cereal_box() : mug(), is_box ? -0.13 : -0.05, pose, 10 + i);
       const Detection detection = detection_of(is_box ? "box" : "mug", scene.object, scene.truth, 100 + i);
       const ObjectPose found = estimator.estimate(scene.frame, only(detection)).poses.at(0);
-      // A box without colours looks the same turned over; the mug has a handle.
-      const PoseStatus expected = is_box ? PoseStatus::kValidUpToSymmetry : PoseStatus::kValid;
-      ASSERT_EQ(found.status, expected) << to_string(found.status) << " " << i << is_box;
+      // A box without colours looks the same turned over; so does the mug turned, where its handle is hidden.
+      ASSERT_TRUE(has_pose(found.status)) << to_string(found.status) << " " << i << is_box;
+      EXPECT_TRUE(!is_box || found.status == PoseStatus::kValidUpToSymmetry) << i;
       ASSERT_TRUE(found.T_camera_object.has_value());
       EXPECT_LT(error_of(scene, found), 0.003) << i << is_box;
       EXPECT_GT(found.visible_fraction, 0.8F);

@@ -178,6 +178,7 @@ std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
 
 TEST(Score, TheModelThatMadeTheExamplesComesBack) {
   ScoreModel truth;
+  truth.weights = {};
   constexpr float kWeights[] = {2.0F, 2.5F, -2.0F, -3.0F, 0.5F, -1.5F, 3.0F, -1.2F};
   for (std::size_t i = 0; i < std::size(kWeights); ++i) truth.weights.*kScoreTermList[i] = kWeights[i];
   const ScoreModel fitted = fit_score_model(drawn_from(truth, 40000), {ScoreTerms{}});
@@ -199,6 +200,7 @@ TEST(Score, ExamplesThatAreToldApartWithoutErrorMoveTheWeightsOnlySoFar) {
 
 TEST(Score, WithoutExamplesThePriorStays) {
   ScoreModel prior;
+  prior.weights = {};
   for (std::size_t i = 0; i < 8; ++i) prior.weights.*kScoreTermList[i] = static_cast<float>(i + 1);
   EXPECT_EQ(listed(fit_score_model({}, prior).weights), listed(prior.weights));
 }
