@@ -8,7 +8,7 @@ namespace {
 
 using Vector4 = Eigen::Matrix<double, 4, 1>;
 using Matrix4 = Eigen::Matrix<double, 4, 4>;
-using Plane = Eigen::Matrix<double, 3, 2>;  // two unit vectors across an axis, as columns
+using AcrossBasis = Eigen::Matrix<double, 3, 2>;  // two unit vectors across an axis, as columns
 
 /// A surface point relative to the centre, with its normal.
 struct OrientedPoint {
@@ -23,15 +23,15 @@ struct ScoredAxis {
   double score = 0.0;                                ///< weighted fraction of the surface that fits, 0 to 1
 };
 
-Plane plane_across(const Eigen::Vector3d& direction) {
-  Plane plane;
+AcrossBasis plane_across(const Eigen::Vector3d& direction) {
+  AcrossBasis plane;
   plane.col(0) = direction.unitOrthogonal();
   plane.col(1) = direction.cross(plane.col(0));
   return plane;
 }
 
 /// Metres by which the point's surface leaves itself per radian of rotation about the axis.
-double residual(const OrientedPoint& p, const ScoredAxis& axis) {
+double rotation_residual(const OrientedPoint& p, const ScoredAxis& axis) {
   return p.normal.dot(axis.direction.cross(p.point - axis.offset));
 }
 
@@ -55,11 +55,11 @@ class RevolutionFit {
   }
 
   void step(bool with_direction, ScoredAxis& axis) const {
-    const Plane plane = plane_across(axis.direction);
+    const AcrossBasis plane = plane_across(axis.direction);
     Matrix4 normal_matrix = Matrix4::Zero();
     Vector4 right_side = Vector4::Zero();
     for (const OrientedPoint& p : points_) {
-      const double r = residual(p, axis);
+      const double r = rotation_residual(p, axis);
       const double weight = kernel(r) * kernel(r);
       Vector4 jacobian;
       jacobian.head<2>() = -plane.transpose() * p.normal.cross(axis.direction);
@@ -84,7 +84,7 @@ class RevolutionFit {
     double total = 0.0;
     for (const OrientedPoint& p : points_) {
       const double weight = p.normal.cross(axis.direction).norm();
-      fitting += weight * kernel(residual(p, axis));
+      fitting += weight * kernel(rotation_residual(p, axis));
       total += weight;
     }
     return total > 0.0 ? fitting / total : 0.0;

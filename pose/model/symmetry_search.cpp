@@ -155,7 +155,6 @@ std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& tu
 /// A rotation by a whole fraction of a full one, from which registration starts.
 struct FoldedTurn {
   Eigen::Isometry3d T;
-  int fold = 2;
   double deviation_m = 0.0;
 };
 
@@ -164,7 +163,7 @@ struct FoldedTurn {
 std::vector<FoldedTurn> possible_turns(const RotationSymmetryTest& check, const Moments& moments) {
   std::vector<FoldedTurn> turns;
   const auto add = [&](const Eigen::Vector3d& axis, int max_fold) {
-    for (int fold = 2; fold <= max_fold; ++fold) turns.push_back({check.turn(axis, 2.0 * M_PI / fold), fold, 0.0});
+    for (int fold = 2; fold <= max_fold; ++fold) turns.push_back({check.turn(axis, 2.0 * M_PI / fold), 0.0});
   };
   const auto alike = [&](Eigen::Index i, Eigen::Index j) {
     return moments.spread[j] - moments.spread[i] <= check.tolerance_m();
@@ -189,28 +188,29 @@ std::vector<FoldedTurn> possible_turns(const RotationSymmetryTest& check, const 
   return turns;
 }
 
-/// The rotation by exactly a fold's angle that is nearest to a motion, about the motion's axis.
-Eigen::Isometry3d folded(const Eigen::Isometry3d& T, int fold, const Eigen::Vector3d& centre) {
+/// The rotation by a whole fraction of a full one that is nearest to a motion, about the motion's axis.
+Eigen::Isometry3d folded(const Eigen::Isometry3d& T, const Eigen::Vector3d& centre) {
   const Eigen::AngleAxisd rotation(T.linear());
   const Eigen::Vector3d moved = T * centre - centre;
   const Eigen::Vector3d across = moved - rotation.axis().dot(moved) * rotation.axis();
   const double cotangent = 1.0 / std::tan(0.5 * std::max(rotation.angle(), kSameTurn_rad));
   const Eigen::Vector3d offset = centre + 0.5 * (across + cotangent * rotation.axis().cross(across));
-  return rotation_about({rotation.axis(), offset}, 2.0 * M_PI / fold);
+  const int fold = static_cast<int>(std::lround(2.0 * M_PI / std::max(rotation.angle(), kSameTurn_rad)));
+  return rotation_about({rotation.axis(), offset}, 2.0 * M_PI / std::clamp(fold, 2, kMaxFold));
 }
 
 /// Turns that fit after registration, beside those that are known.
 std::vector<Eigen::Isometry3d> registered_turns(const RotationSymmetryTest& check, const Moments& moments,
                                                 std::vector<Eigen::Isometry3d> turns) {
   constexpr double kBasin_rad = 15.0 * kRadPerDeg;  // registration leads to the same from within
-  constexpr std::size_t kMaxTries = 16;
+  constexpr std::size_t kMaxTries = 24;
   std::vector<Eigen::Isometry3d> tried;
   std::vector<Eigen::Isometry3d> group = group_of(turns);
   for (const FoldedTurn& start : possible_turns(check, moments)) {
     if (tried.size() >= kMaxTries) break;
     if (is_near_any(start.T, group, kBasin_rad) || is_near_any(start.T, tried, kBasin_rad)) continue;
     tried.push_back(start.T);
-    const Eigen::Isometry3d turn = folded(check.registered(start.T), start.fold, check.centre());
+    const Eigen::Isometry3d turn = folded(check.registered(start.T), check.centre());
     if (is_near_any(turn, group, kSameTurn_rad) || !check.fits(turn)) continue;
     turns.push_back(turn);
     std::vector<Eigen::Isometry3d> larger = group_of(turns);
@@ -313,9 +313,9 @@ Eigen::Isometry3d RotationSymmetryTest::registered(const Eigen::Isometry3d& star
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   constexpr std::size_t kPoints = 200;
-  constexpr int kSteps = 12;
+  constexpr int kSteps = 40;
   constexpr double kDamping = 1e-4;
-  constexpr double kStill_m = 1e-6;
+  constexpr double kStill_m = 1e-5;
   const std::size_t count = std::min(kPoints, surface_.points.size());
   const double radius_m = std::max(1e-3, (surface_.points.front().cast<double>() - centre_).norm());
   Eigen::Isometry3d T = start;
