@@ -122,15 +122,17 @@ std::vector<ContinuousSymmetry> continuous_axes(const RotationSymmetryTest& chec
   return found;
 }
 
-/// One turn per axis: the smallest that fits, of which the others are multiples.
+/// One turn per axis: the smallest that fits as it is, of which the others are multiples. What fits less well is
+/// registered first: of rotations a few degrees off the products do not fit.
 std::vector<Eigen::Isometry3d> min_turns(const RotationSymmetryTest& check, const Moments& moments) {
+  constexpr double kExactRms = 0.2;  // tolerances
   std::vector<Eigen::Isometry3d> turns;
   std::vector<Eigen::Vector3d> known;
   for (const Eigen::Vector3d& axis : candidate_axes(moments)) {
     const auto same = [&](const Eigen::Vector3d& other) { return std::abs(other.dot(axis)) > kSameDirection; };
     if (std::any_of(known.begin(), known.end(), same)) continue;
     for (int fold = kMaxFold; fold >= 2; --fold) {
-      if (!check.fits(axis, 2.0 * M_PI / fold)) continue;
+      if (!check.fits(check.turn(axis, 2.0 * M_PI / fold), kExactRms)) continue;
       turns.push_back(check.turn(axis, 2.0 * M_PI / fold));
       known.push_back(axis);
       break;
