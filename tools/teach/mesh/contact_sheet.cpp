@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
@@ -37,9 +38,13 @@ cv::Mat tile_of(const TrainingView& view) {
 
 /// "3 half turns", "2 turns by 90 degrees", largest angle first.
 std::vector<std::string> turn_words(const std::vector<Eigen::Isometry3d>& turns) {
+  constexpr std::array<int, 6> kWhole_deg = {60, 72, 90, 120, 144, 180};  // a scan's products are a degree off
   std::map<int, int, std::greater<>> count_by_deg;
-  for (const Eigen::Isometry3d& turn : turns)
-    ++count_by_deg[static_cast<int>(std::lround(Eigen::AngleAxisd(turn.linear()).angle() * 180.0 / M_PI))];
+  for (const Eigen::Isometry3d& turn : turns) {
+    const double angle_deg = Eigen::AngleAxisd(turn.linear()).angle() * 180.0 / M_PI;
+    ++count_by_deg[*std::min_element(kWhole_deg.begin(), kWhole_deg.end(),
+                                     [&](int a, int b) { return std::abs(a - angle_deg) < std::abs(b - angle_deg); })];
+  }
   std::vector<std::string> words;
   for (const auto& [angle_deg, count] : count_by_deg) {
     const std::string number = count == 1 ? "a" : fmt::format("{}", count);
