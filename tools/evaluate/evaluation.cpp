@@ -71,7 +71,7 @@ void judge_qualities(const std::vector<EvaluatedFrame>& frames, const std::map<s
     }
     for (const PosePrediction& known : pose_predictions(all, result, model->second)) {
       of_right.push_back(known);
-      of_shape.push_back({known.stated, known.is_right_up_to_shape});
+      of_shape.push_back({known.stated_up_to_shape, known.is_right_up_to_shape});
     }
   }
   out.pose_calibration = calibrate_all(of_right);

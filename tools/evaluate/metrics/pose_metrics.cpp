@@ -112,6 +112,7 @@ std::vector<PosePrediction> pose_predictions(const std::vector<EvaluatedFrame>& 
     if (detection.verdict == Verdict::kIgnored || pose == nullptr || !pose->T_camera_object) continue;
     PosePrediction statement;
     statement.stated = static_cast<double>(pose->quality);
+    statement.stated_up_to_shape = static_cast<double>(pose->shape_quality);
     if (detection.verdict == Verdict::kTrue) {
       const GroundTruthObject& truth = frame.objects[detection.object].truth;
       if (!truth.has_pose) continue;

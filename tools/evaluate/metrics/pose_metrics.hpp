@@ -69,9 +69,10 @@ struct JudgedPose {
 std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
                                     const PoseModel& model);
 
-/// What is said of a pose: its quality that it is right.
+/// What is said of a pose: how probably it is right, and right up to its shape.
 struct PosePrediction : Prediction {
   bool is_right_up_to_shape = false;
+  double stated_up_to_shape = 0.0;  ///< ObjectPose::shape_quality
 };
 
 /// The poses of a class with their quality, those of true and of false detections: true where the detection is and the
