@@ -31,7 +31,7 @@ struct SymmetrySearch {
 /// that they combine to. Mirror images are no motions. A symmetry keeps the second moments of the surface: its axis is
 /// a principal one, or where two or three of these spread alike within the tolerance, any in their plane or any at all.
 /// Box axes and principal axes through the centroid come first; what does not fit as it is, is registered with the mesh
-/// itself. Throws InputError for a mesh without surface.
+/// itself; of the many of a cube that lies anyhow, some may be missed. Throws InputError for a mesh without surface.
 Symmetries find_symmetries(const Mesh& mesh, const SymmetrySearch& settings = {});
 
 /// The rotations after which a depth camera measures the same: those of the shape within its noise, print aside. Where

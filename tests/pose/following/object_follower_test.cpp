@@ -246,7 +246,7 @@ double handle_error_after_a_turn(FollowerSettings settings) {
 
 TEST(ObjectFollower, AWrongTurnIsNoticedByLookingAsIfItWereNotFollowed) {
   FollowerSettings trusting;
-  trusting.recheck_interval_s = 1e9;
+  trusting.recheck_interval_s = 3600.0;
   trusting.missed_after_s = 3600.0;
   EXPECT_GT(handle_error_after_a_turn(trusting), 1.0);
   EXPECT_LT(handle_error_after_a_turn({}), 0.45) << "as good as a single look at it";

@@ -42,7 +42,7 @@ std::vector<EvaluatedFrame> two_frames() {
   ObjectPose pose;
   pose.detection_index = 0;
   pose.status = PoseStatus::kValid;
-  pose.quality = 0.8F;
+  pose.quality = pose.shape_quality = 0.8F;
   pose.T_camera_object = Eigen::Isometry3d::Identity();
   frames[0].poses = ObjectPoses{{}, {pose}, {{"detect.leaves", 4000}, {"pose.icp", 2000}}};
   return frames;

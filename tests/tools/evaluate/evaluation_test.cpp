@@ -274,7 +274,7 @@ TEST(PoseMetrics, TheSymmetriesOfTheDatasetAreExpanded) {
 TEST(PoseMetrics, ATurnedPoseIsPublishedWrongAndRightUpToItsShape) {
   std::vector<EvaluatedFrame> frames = posed_frames(1.0);  // right, wrong, none
   frames[0].poses->poses[0].T_camera_object = turned(M_PI);
-  frames[0].poses->poses[0].quality = 0.95F;
+  frames[0].poses->poses[0].quality = frames[0].poses->poses[0].shape_quality = 0.95F;
   std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2}}};
   const Evaluation printed = evaluate(frames, {"mug"}, models, {});
   EXPECT_EQ(printed.published->right, 0);
