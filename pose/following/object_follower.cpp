@@ -167,8 +167,10 @@ float print_probability_of(const ObjectPose& pose) {
 void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, const FollowerSettings& settings,
                        FollowedObject& object) {
   constexpr double kMargin = 1e-6;  // of two poses of one object small differences count
-  const double better = log_odds(pose.quality, kMargin) - log_odds(followed.pose.quality, kMargin);
-  if (better < settings.better_log_odds) return;
+  // By its shape alone, or with its print, at which following does not look.
+  const double by_shape = log_odds(pose.shape_quality, kMargin) - log_odds(followed.pose.shape_quality, kMargin);
+  const double by_all = log_odds(pose.quality, kMargin) - log_odds(followed.pose.quality, kMargin);
+  if (std::max(by_shape, by_all) < settings.better_log_odds) return;
   object.T_camera_object = object.T_camera_object * followed.T_camera_object.inverse() * *pose.T_camera_object;
   object.print_probability = print_probability_of(pose);
 }
