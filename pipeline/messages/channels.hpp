@@ -9,12 +9,12 @@ namespace houghstream::channel {
 /// The longest name: LCM's reader of logs refuses longer ones, and on a network LCM itself those of more than 63.
 inline constexpr std::size_t kMaxBytes = 999;
 
-inline const std::string kFrame = "OPENNI_FRAME";                      ///< images_t
-inline const std::string kDetections = "HOUGHSTREAM_DETECTIONS";       ///< detections_t
-inline const std::string kPoses = "HOUGHSTREAM_POSES";                 ///< object_poses_t
+inline const std::string kFrame = "OPENNI_FRAME";                                ///< images_t
+inline const std::string kDetections = "HOUGHSTREAM_DETECTIONS";                 ///< detections_t
+inline const std::string kPoses = "HOUGHSTREAM_POSES";                           ///< object_poses_t
 inline const std::string kPoseProbabilities = "HOUGHSTREAM_POSE_PROBABILITIES";  ///< pose_probabilities_t
-inline const std::string kObjects = "HOUGHSTREAM_OBJECTS";             ///< objects_t
-inline const std::string kStatus = "HOUGHSTREAM_STATUS";               ///< status_t, 1 Hz, every process
+inline const std::string kObjects = "HOUGHSTREAM_OBJECTS";                       ///< objects_t
+inline const std::string kStatus = "HOUGHSTREAM_STATUS";                         ///< status_t, 1 Hz, every process
 inline const std::string kKnownObjects = "HOUGHSTREAM_KNOWN_OBJECTS";  ///< known_objects_t, 1 Hz, who has a store
 inline const std::string kTeaching = "HOUGHSTREAM_TEACHING";           ///< teaching_t, while an object is shown
 inline const std::string kPreview = "HOUGHSTREAM_PREVIEW";             ///< image_t, MJPEG below 100 kB
