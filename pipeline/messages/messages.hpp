@@ -4,8 +4,8 @@
 #include <houghstream/images_t.hpp>
 #include <houghstream/known_objects_t.hpp>
 #include <houghstream/object_poses_t.hpp>
-#include <houghstream/pose_probabilities_t.hpp>
 #include <houghstream/objects_t.hpp>
+#include <houghstream/pose_probabilities_t.hpp>
 #include <houghstream/rigid_transform_t.hpp>
 #include <houghstream/teaching_t.hpp>
 #include <optional>

@@ -12,6 +12,7 @@
 namespace houghstream {
 namespace {
 
+// The numbers below are chosen by what they mean, not fitted; what the result is worth is learnt (PrintSettings).
 constexpr int kCells = 48;     // along the longer side of the object in the image
 constexpr int kMinCells = 60;  // compared; fewer tell nothing
 constexpr int kFine = 5;       // sides of the means that part the bands, cells
@@ -342,8 +343,9 @@ std::optional<PrintComparison> compare_print(const ObjectObservation& seen, cons
   const double own_likelihood = best_log_likelihood(*own, seen_at);
   const std::vector<Alternative> shown = likely_alternatives(seen, face, T_camera_object, alternatives, seen_at);
   if (shown.empty()) return std::nullopt;
-  // The pose has been found by all else that speaks for it: another one must be clearly likelier.
-  constexpr double kClearly = 3.0;
+  // The pose has been found by all else that speaks for it. Another one takes its place on strong evidence only, a
+  // Bayes factor of 20 (Kass and Raftery 1995, "Bayes Factors").
+  constexpr double kClearly = 3.0;  // its logarithm
   PrintComparison comparison;
   double best = own_likelihood + kClearly;
   double others = 0.0;  // sum of likelihoods over the pose's own
