@@ -66,14 +66,15 @@ cv::Scalar stage_colour(std::size_t index) {
 }
 
 void draw_stage_list(cv::Mat& image, const cv::Rect& area, const std::vector<StageTime>& stages, int rows) {
-  constexpr int kWidth = 152;
+  constexpr int kWidth = 152;  // of most entries; the longest need a little more, which the last column has beside it
+  constexpr int kPitch = 159;
   constexpr int kSquare = 10;
   const int columns = std::max(1, (area.width + 1) / kWidth);
   const int needed = (static_cast<int>(stages.size()) + columns - 1) / columns;
   rows = std::max(rows, needed);  // closer together where there are more: none goes unsaid
   const int row_height = area.height / rows;
   for (std::size_t i = 0; i < stages.size(); ++i) {
-    const cv::Point corner(area.x + static_cast<int>(i) / rows * kWidth,
+    const cv::Point corner(area.x + static_cast<int>(i) / rows * kPitch,
                            area.y + static_cast<int>(i) % rows * row_height);
     const cv::Rect square(corner.x, corner.y + (row_height - kSquare) / 2, kSquare, kSquare);
     cv::rectangle(image, square, stage_colour(i), cv::FILLED);
