@@ -169,18 +169,16 @@ void ViewMaker::add_print(const Eigen::Vector3f& direction, SurfacePrintMaker& p
 }
 
 /// Of fewer directions than the views have: all of the surface is seen from them, and all that is seen is kept.
-SurfacePrint make_print(const ObjectModel& model, const ModelSettings& settings) {
+SurfacePrint make_print(const ViewMaker& maker, double detail_m) {
   constexpr int kParts = 2;
-  const ViewMaker maker(model, settings);
   if (!maker.has_colours()) return {};
-  SurfacePrintMaker print(2.0 * static_cast<double>(model.radius) / settings.pixels_per_diameter);
+  SurfacePrintMaker print(detail_m);
   for (const Eigen::Vector3f& direction : sphere_directions(kParts)) maker.add_print(direction, print);
   return print.make();
 }
 
 /// Of the directions from which something is seen.
-std::vector<ModelView> make_views(const ObjectModel& model, const ModelSettings& settings, int threads) {
-  const ViewMaker maker(model, settings);
+std::vector<ModelView> make_views(const ViewMaker& maker, const ModelSettings& settings, int threads) {
   const std::vector<Eigen::Vector3f> directions = sphere_directions(settings.views_per_edge);
   std::vector<ModelView> made(directions.size());
   parallel_for(threads, static_cast<int>(made.size()), [&](int i) {
@@ -210,13 +208,6 @@ double moved_by(const Eigen::Isometry3d& motion, const std::vector<Eigen::Vector
   return least;
 }
 
-bool is_among(const Eigen::Isometry3d& motion, const std::vector<Eigen::Isometry3d>& motions) {
-  constexpr double kSame_rad = 0.17;
-  return std::any_of(motions.begin(), motions.end(), [&](const Eigen::Isometry3d& other) {
-    return Eigen::AngleAxisd(other.linear().transpose() * motion.linear()).angle() < kSame_rad;
-  });
-}
-
 /// Quarter and half turns about the principal axes after which the shape is nearly as before, and all that they combine
 /// to: a pose of a nearly square box that is a quarter turn wrong settles where depth speaks for it.
 std::vector<Eigen::Isometry3d> near_symmetries(const ObjectModel& model) {
@@ -232,15 +223,7 @@ std::vector<Eigen::Isometry3d> near_symmetries(const ObjectModel& model) {
       break;
     }
   }
-  constexpr std::size_t kMaxGroup = 24;  // the cube's
-  std::vector<Eigen::Isometry3d> group = {Eigen::Isometry3d::Identity()};
-  for (std::size_t i = 0; i < group.size(); ++i) {
-    for (const Eigen::Isometry3d& turn : turns) {
-      const Eigen::Isometry3d product = turn * group[i];
-      if (group.size() < kMaxGroup && !is_among(product, group)) group.push_back(product);
-    }
-  }
-  return group;
+  return group_of(turns);
 }
 
 /// Points of the surface that most turns about the axis take off it: a mug's handle.
@@ -266,13 +249,15 @@ std::vector<Eigen::Vector3f> unround_points(const Mesh& mesh, const ContinuousSy
 void set_alternatives(const Symmetries& same_print, double right_within, ObjectModel& model) {
   constexpr double kShapeStep = 0.13;  // diameters: turns of about 15 degrees
   constexpr double kSameStep = 0.02;
+  constexpr double kSame_rad = 0.17;
   constexpr int kPoints = 300;
   const std::vector<Eigen::Isometry3d> same = expand_symmetries(same_print, kSameStep);
   const std::vector<Eigen::Vector3f> points = sample_surface(model.mesh, kPoints, 1).points;
   const double right_m = right_within * mesh_diameter(model.mesh);
   const auto add_others = [&](const std::vector<Eigen::Isometry3d>& motions, std::vector<Eigen::Isometry3d>& list) {
     for (const Eigen::Isometry3d& motion : motions) {
-      if (moved_by(motion, points, same) > right_m && !is_among(motion, model.alternatives)) list.push_back(motion);
+      if (moved_by(motion, points, same) > right_m && !is_near_any(motion, model.alternatives, kSame_rad))
+        list.push_back(motion);
     }
   };
   std::vector<Eigen::Isometry3d> exact;
@@ -343,12 +328,13 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
       shape != settings.shape_symmetries.end() ? shape->second : find_shape_symmetry(model.mesh);
   model.shape_symmetries = symmetry.symmetries;
   model.nearly_round = symmetry.nearly_round;
-  model.views = make_views(model, settings, threads);
+  const ViewMaker maker(model, settings);
+  model.views = make_views(maker, settings, threads);
   require(!model.views.empty(), "model {}: nothing visible from any side, expected a surface", name);
   float largest = 0.0F;
   for (const ModelView& view : model.views) largest = std::max(largest, view.area);
   for (ModelView& view : model.views) view.area /= largest;
-  model.print = make_print(model, settings);
+  model.print = make_print(maker, 2.0 * static_cast<double>(model.radius) / settings.pixels_per_diameter);
   const auto same_print = settings.symmetries.find(name);
   set_alternatives(same_print != settings.symmetries.end() ? same_print->second : Symmetries(), settings.right_within,
                    model);

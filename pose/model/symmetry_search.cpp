@@ -85,11 +85,6 @@ double angle_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
 }
 
-bool is_near_any(const Eigen::Isometry3d& T, const std::vector<Eigen::Isometry3d>& known, double angle_rad) {
-  return std::any_of(known.begin(), known.end(),
-                     [&](const Eigen::Isometry3d& other) { return angle_between(T, other) < angle_rad; });
-}
-
 /// Box axes first: where a principal axis is nearly one of them, the mesh was drawn along it.
 std::vector<Eigen::Vector3d> candidate_axes(const Moments& moments) {
   std::vector<Eigen::Vector3d> axes = {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX()};
@@ -139,19 +134,6 @@ std::vector<Eigen::Isometry3d> min_turns(const RotationSymmetryTest& check, cons
     }
   }
   return turns;
-}
-
-/// All that the turns combine to, without the identity.
-std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& turns) {
-  std::vector<Eigen::Isometry3d> group = {Eigen::Isometry3d::Identity()};
-  for (std::size_t i = 0; i < group.size(); ++i) {
-    for (const Eigen::Isometry3d& turn : turns) {
-      const Eigen::Isometry3d product = turn * group[i];
-      if (!is_near_any(product, group, kSameTurn_rad) && group.size() < kMaxGroup) group.push_back(product);
-    }
-  }
-  group.erase(group.begin());
-  return group;
 }
 
 /// A rotation by a whole fraction of a full one, from which registration starts.
@@ -263,6 +245,23 @@ std::vector<ContinuousSymmetry> revolution_axes(const RotationSymmetryTest& chec
 }
 
 }  // namespace
+
+bool is_near_any(const Eigen::Isometry3d& T, const std::vector<Eigen::Isometry3d>& known, double angle_rad) {
+  return std::any_of(known.begin(), known.end(),
+                     [&](const Eigen::Isometry3d& other) { return angle_between(T, other) < angle_rad; });
+}
+
+std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& turns) {
+  std::vector<Eigen::Isometry3d> group = {Eigen::Isometry3d::Identity()};
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    for (const Eigen::Isometry3d& turn : turns) {
+      const Eigen::Isometry3d product = turn * group[i];
+      if (!is_near_any(product, group, kSameTurn_rad) && group.size() < kMaxGroup) group.push_back(product);
+    }
+  }
+  group.erase(group.begin());
+  return group;
+}
 
 RotationSymmetryTest::RotationSymmetryTest(const Mesh& mesh, const Eigen::Vector3d& centre,
                                            const SymmetrySearch& settings)

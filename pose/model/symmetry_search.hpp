@@ -39,6 +39,12 @@ Symmetries find_symmetries(const Mesh& mesh, const SymmetrySearch& settings = {}
 /// angle: a mug's, which its handle breaks. Throws InputError for a mesh without surface.
 ShapeSymmetry find_shape_symmetry(const Mesh& mesh);
 
+/// Whether a motion's rotation is less than an angle from that of a known one.
+bool is_near_any(const Eigen::Isometry3d& T, const std::vector<Eigen::Isometry3d>& known, double angle_rad);
+
+/// All that turns combine to, without the identity; at most 59, and none within 25 degrees of another.
+std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& turns);
+
 /// Says of a motion of the object frame, metres, whether the object looks the same after it. Inspects 1000 evenly
 /// spread points of the surface, and up to 2000 of its vertices: corners deviate most.
 class RotationSymmetryTest {
