@@ -17,7 +17,7 @@ struct DetectorWorkspace;
 class Detector {
  public:
   /// Throws InputError for a forest of another ScaleHandling than depth normalisation and for one with surface
-  /// features: such are searched by hs-study-evaluate and hs-hough; and for settings out of their range.
+  /// features: such are searched by hs-study evaluate and hs-study hough; and for settings out of their range.
   Detector(Forest forest, DetectionSettings settings);
   ~Detector();
   Detector(Detector&&) noexcept;

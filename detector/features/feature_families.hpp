@@ -22,7 +22,7 @@ enum FeatureFamily : std::uint32_t {
 };
 
 /// The programs that search a scale space and compute surface families, for refusals.
-constexpr const char* kStudyPrograms = "detector/baseline (hs-study-train, hs-study-evaluate, hs-hough)";
+constexpr const char* kStudyPrograms = "detector/baseline (hs-study train, hs-study evaluate, hs-study hough)";
 
 /// Those that the product computes, and all.
 constexpr std::uint32_t kTileFamilies = kIntensity | kDepthValue | kDepthDerivatives | kDepthHog;

@@ -11,7 +11,7 @@ import sys
 ON_THE_ROBOT = ("hs-capture", "hs-detect", "hs-pose", "hs-track", "hs-view", "hs-stream", "hs-log", "hs-doctor")
 TEACHING = ("hs-train", "hs-evaluate", "hs-fuse", "hs-import", "hs-observe")
 RENDERING = ("hs-teach",)  # which holds the rendered world, and no other study
-COMPARING = ("hs-study-evaluate",)  # whose names are found, else none would be found anywhere
+COMPARING = ("hs-study",)  # whose names are found, else none would be found anywhere
 STUDIES = re.compile(r"houghstream::(\w+::)*(baseline|world|studies)::|scale_space|honv|curvature_planes|pfh_planes|register_pcl"
                      r"|houghstream::(\w+::)*(\w*([Gg]all|ScaleSpace|StudyDetector)\w*|reference_\w+)|make_named_scene|light_world")
 WORLD = re.compile(r"houghstream::(\w+::)*world::|make_named_scene|light_world")

@@ -247,11 +247,11 @@ def check_refusals(tools, folder):
         (("hs-observe", "--csv", scene), f"{scene}: is a folder"),
         (("hs-view", "--snapshot", folder / "none.nosuch"), f"{folder / 'none.nosuch'}: not a picture format"),
         (("hs-view", "--video", folder / "none"), f"{folder / 'none'}: no name of a video"),
-        (("hs-hough", "--forest", forest, *of_scene, "--frame", 0, "--out", scene / "rgb/000000.png"), f"lies in {scene}"),
+        (("hs-study", "hough", "--forest", forest, *of_scene, "--frame", 0, "--out", scene / "rgb/000000.png"), f"lies in {scene}"),
         (("hs-evaluate", "--log", folder / "results.log", *of_scene, "--out", scene), f"{scene}: is the source itself"),
         (("hs-evaluate", "--log", folder / "results.log", *of_scene, "--out", log), f"{log}: cannot be a folder"),
         (("hs-evaluate", "--forest", forest, *of_scene, "--latency", folder / "none.csv"), f"{folder / 'none.csv'}: missing"),
-        (("hs-learn-quality", "--forest", forest, "--models", models, *of_scene), "1 scene, expected at least 4"),
+        (("hs-study", "quality", "--forest", forest, "--models", models, *of_scene), "1 scene, expected at least 4"),
     ):
         command = [str(word) for word in (tools / words[0], *words[1:])]
         result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)

@@ -5,7 +5,7 @@
 
 It digests (SHA-256): what is rendered; forests of the profiles gall, paper and realtime and one with surface features; a store
 taught from a mesh and one from a take; detections, poses, followed poses and objects of a log; a fused model; the figures of
-hs-evaluate and hs-bench-pose. Times are left out of all of them, as are the names of folders. With --only WORD, only the parts
+hs-evaluate and hs-study pose. Times are left out of all of them, as are the names of folders. With --only WORD, only the parts
 whose names hold the word. Ends with status 1 and names the parts where a digest differs.
 """
 
@@ -100,10 +100,10 @@ class Results:
         yield "rendered background", lambda: self.render("background", "background", "--count", 30)
         yield "rendered scene", lambda: self.render("scene", "scene", "table_small_1", "--frames", FRAMES)
         yield "rendered take", lambda: self.render("takes", "takes", "--development", "--objects", "tea_box", "--take", 1, "--frames", 120)
-        yield "forest gall", lambda: self.forest("gall", "hs-study-train", "--profile", "gall")
-        yield "forest paper", lambda: self.forest("paper", "hs-train", "--profile", "paper")
-        yield "forest realtime", lambda: self.forest("realtime", "hs-train", "--profile", "realtime")
-        yield "forest surface", lambda: self.forest("surface", "hs-study-train", "--profile", "realtime", "--features", "intensity,depth_derivatives,honv")
+        yield "forest gall", lambda: self.forest("gall", ("hs-study", "train"), "--profile", "gall")
+        yield "forest paper", lambda: self.forest("paper", ("hs-train",), "--profile", "paper")
+        yield "forest realtime", lambda: self.forest("realtime", ("hs-train",), "--profile", "realtime")
+        yield "forest surface", lambda: self.forest("surface", ("hs-study", "train"), "--profile", "realtime", "--features", "intensity,depth_derivatives,honv")
         yield "store from a mesh", self.mesh_store
         yield "store from a take", self.take_store
         yield "detections", self.detections
@@ -111,10 +111,10 @@ class Results:
         yield "followed poses", lambda: self.poses("followed", "--follow")
         yield "objects", self.objects
         yield "fused model", self.fused
-        yield "figures of hs-evaluate", lambda: self.evaluated("hs-evaluate", "realtime")
-        yield "figures of hs-study-evaluate, gall", lambda: self.evaluated("hs-study-evaluate", "gall", "--every", 10)
-        yield "figures of hs-study-evaluate, surface", lambda: self.evaluated("hs-study-evaluate", "surface", "--every", 10)
-        yield "figures of hs-bench-pose", self.benched
+        yield "figures of hs-evaluate", lambda: self.evaluated(("hs-evaluate",), "realtime")
+        yield "figures of hs-study evaluate, gall", lambda: self.evaluated(("hs-study", "evaluate"), "gall", "--every", 10)
+        yield "figures of hs-study evaluate, surface", lambda: self.evaluated(("hs-study", "evaluate"), "surface", "--every", 10)
+        yield "figures of hs-study pose", self.benched
 
     def render(self, name, *words):
         out = self.fresh(name)
@@ -123,7 +123,7 @@ class Results:
 
     def forest(self, name, program, *words):
         out = self.fresh(f"{name}.forest")
-        self.call(program, *words, *TREES, "--seed", SEED, "--threads", THREADS, "--views", f"bop:{self.work}/views",
+        self.call(*program, *words, *TREES, "--seed", SEED, "--threads", THREADS, "--views", f"bop:{self.work}/views",
                   "--background", f"bop:{self.work}/background", "--out", out)  # fmt: skip
         return digest_file(out, self.work)
 
@@ -165,13 +165,13 @@ class Results:
 
     def evaluated(self, program, forest, *words):
         out = self.fresh(f"evaluated_{forest}")
-        self.call(program, "--scene", self.work / "scene", "--forest", self.work / f"{forest}.forest", "--models",
+        self.call(*program, "--scene", self.work / "scene", "--forest", self.work / f"{forest}.forest", "--models",
                   self.work / "views/models", "--threads", THREADS, "--threshold", 0, *words, "--out", out)  # fmt: skip
         return digest_folder(out, self.work, {".json", ".csv"})
 
     def benched(self):
         out = self.fresh("benched")
-        self.call("hs-bench-pose", "--forest", self.work / "realtime.forest", "--models", self.work / "views/models", "--scene",
+        self.call("hs-study", "pose", "--forest", self.work / "realtime.forest", "--models", self.work / "views/models", "--scene",
                   self.work / "scene", "--every", 3, "--no-rivals", "--threads", THREADS, "--out", out)  # fmt: skip
         return digest_folder(out, self.work, {".json", ".csv"})
 

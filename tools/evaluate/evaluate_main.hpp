@@ -16,7 +16,7 @@ struct EvaluateSearch {
   std::function<void(CommandLine& app)> add_options = [](CommandLine&) {};  ///< its own, beside those of all searches
 };
 
-/// hs-evaluate, and under another name, with a search of its own, hs-study-evaluate.
+/// hs-evaluate, and under another name, with a search of its own, hs-study evaluate.
 int evaluate_main(int argc, char** argv, const std::string& name, const EvaluateSearch& search = {});
 
 }  // namespace houghstream

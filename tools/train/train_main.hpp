@@ -24,7 +24,7 @@ struct TrainProgram {
   std::function<void(Profile&, const std::string&)> set_scale_handling;  ///< none where it has one handling only
 };
 
-/// hs-train, and hs-study-train, which trains by detector/baseline too.
+/// hs-train, and hs-study train, which trains by detector/baseline too.
 int train_main(int argc, char** argv, const TrainProgram& program = {});
 
 }  // namespace houghstream

@@ -25,7 +25,7 @@ TEST(Profiles, UnknownNamesAreRefusedWithTheKnownOnesAndThoseWhoKnowMore) {
     } catch (const InputError& error) {
       const std::string words = error.what();
       EXPECT_NE(words.find(std::string("'") + name + "', expected one of paper, realtime"), std::string::npos) << words;
-      EXPECT_NE(words.find("hs-study-train"), std::string::npos) << words;
+      EXPECT_NE(words.find("hs-study train"), std::string::npos) << words;
     }
   }
 }

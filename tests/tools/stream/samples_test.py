@@ -71,10 +71,21 @@ class Help(unittest.TestCase):
     def test_the_product_offers_no_settings_that_studies_alone_have(self):
         for word in ("gall", "pfh", "--scale-handling"):
             self.assertNotRegex(help_of("hs-train"), rf"(?<![\w-]){word}\b")
-            self.assertRegex(help_of("hs-study-train"), rf"(?<![\w-]){word}\b")
+            self.assertRegex(help_of("hs-study", "train"), rf"(?<![\w-]){word}\b")
 
     def test_a_benchmark_names_its_own_options(self):
-        self.assertIn("--scene", help_of("hs-bench-kernels"))
+        self.assertIn("--scene", help_of("hs-study", "kernels"))
+
+    def test_what_names_no_study_is_refused_in_one_line(self):
+        for words, refusal in (
+            ((), "hs-study: without a command, expected train, evaluate,"),
+            (("nosuch",), "hs-study: unknown command 'nosuch', expected train, evaluate,"),
+            (("-v", "pose"), "hs-study: the name of the study stands first: hs-study NAME --help"),
+            (("pose", "--nosuch"), "hs-study pose: unknown option --nosuch"),
+        ):
+            done = subprocess.run([EXECUTABLES / "hs-study", *words], capture_output=True, text=True, check=False)
+            self.assertEqual((done.returncode != 0, done.stdout, done.stderr.count("\n")), (True, "", 1), words)
+            self.assertTrue(done.stderr.startswith(refusal), done.stderr)
 
 
 class Configuration(unittest.TestCase):
@@ -108,6 +119,7 @@ class Completion(unittest.TestCase):
         self.assertIn("objects-json", self.completed("hs-log", "export", ""))
         self.assertEqual(self.completed("hs-log", "info", ""), [])
         self.assertEqual(self.completed("hs-stream", "--objects", "in"), [], "that is a file")
+        self.assertEqual(self.completed("hs-study", "li"), ["linemod"])
 
     def test_options_of_the_job_that_help_lists(self):
         self.assertEqual(self.completed("hs-view", "--3"), ["--3d"])
@@ -116,6 +128,7 @@ class Completion(unittest.TestCase):
         self.assertNotIn("--invert", self.completed("hs-log", "--"))
         self.assertEqual(self.completed("hs-stream", "--loo"), [])
         self.assertEqual(self.completed("hs-spy", "--he"), ["--help", "--heap"])
+        self.assertEqual(self.completed("hs-study", "linemod", "--tu"), ["--tune"])
 
 
 class Samples(unittest.TestCase):

@@ -140,7 +140,7 @@ class WholeRun(Case):
         self.assertEqual(json.loads((scene / "scene_gt.json").read_text()), {"1": [entry(2)]})
         self.assertEqual(json.loads((scene / "names.json").read_text()), {"2": "object_2"})
         self.assertTrue((scene / "rgb" / "000001.png").is_file())
-        self.assertEqual(self.calls("hs-linemod"), [])
+        self.assertEqual(self.calls("hs-study linemod"), [])
         self.assertIsNone(self.summary()["datasets"]["mine"]["ar_ppf"])
 
     def test_seeds_give_means_and_their_spread(self):
@@ -168,7 +168,7 @@ class StoreTaughtBefore(Case):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(self.calls("hs-teach"), [])
         # Forest and models alone would leave out where votes point, the tone and what the qualities are learnt from.
-        for name in ("hs-evaluate", "hs-bench-pose", "hs-failures"):
+        for name in ("hs-evaluate", "hs-study pose", "hs-study failures"):
             for call in self.calls(name):
                 self.assertIn(f"--objects {self.folder / 'store'}", call)
                 self.assertNotIn("--forest", call)

@@ -13,19 +13,7 @@ import stat
 import sys
 import time
 
-NAMES = (
-    *(
-        "hs-render",
-        "hs-import",
-        "hs-log",
-        "hs-train",
-        "hs-study-train",
-        "hs-evaluate",
-        "hs-study-evaluate",
-        "hs-linemod",
-    ),
-    *("hs-hough", "hs-failures", "hs-bench-speed"),
-)
+NAMES = ("hs-render", "hs-import", "hs-log", "hs-train", "hs-evaluate", "hs-study")
 OBJECTS = ("bowl", "cereal_box", "coffee_mug", "soda_can")
 PICTURE = base64.b64decode(
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
@@ -119,18 +107,20 @@ def bench_speed(words, out):
 
 
 def run(name, words):
+    if name == "hs-study":
+        name, *words = words
     out = pathlib.Path(option(words, "--out", words[-1]))
     chance = random.Random(" ".join(words[1:-1]))
-    if name in ("hs-train", "hs-study-train"):
+    if name in ("hs-train", "train"):
         out.write_text(" ".join(words) + os.environ.get("REPRODUCE_FAKE_DIFFERS", ""))
         print("train_seconds 101.5")
-    elif name in ("hs-evaluate", "hs-study-evaluate"):
+    elif name in ("hs-evaluate", "evaluate"):
         evaluate(words, out, chance)
-    elif name == "hs-linemod":
+    elif name == "linemod":
         linemod(words, out, chance)
-    elif name == "hs-bench-speed":
+    elif name == "speed":
         bench_speed(words, out)
-    elif name in ("hs-hough", "hs-failures"):
+    elif name in ("hough", "failures"):
         out.write_bytes(PICTURE)
     else:
         out.mkdir(parents=True)

@@ -223,10 +223,10 @@ class Choosing(Case):
         self.assertIsNotNone(self.summary()["real"]["auc_linemod_mean"])
 
     def test_a_program_that_is_not_built_is_named(self):
-        (self.folder / "bin" / "hs-hough").unlink()
+        (self.folder / "bin" / "hs-study").unlink()
         failed = self.run_it("--quick")
         self.assertEqual(failed.returncode, 1)
-        self.assertIn("hs-hough: not there", failed.stderr)
+        self.assertIn("hs-study: not there", failed.stderr)
 
 
 if __name__ == "__main__":

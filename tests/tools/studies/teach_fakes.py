@@ -9,7 +9,7 @@ import pathlib
 import stat
 import sys
 
-NAMES = ("hs-render", "hs-teach", "hs-compare-shown", "hs-evaluate", "hs-capture")
+NAMES = ("hs-render", "hs-teach", "hs-evaluate", "hs-capture", "hs-study")
 IDS = {"bowl": 1, "cereal_box": 2, "coffee_mug": 3}
 PICTURE = bytes.fromhex(
     "89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c4890000000d49444154789c6360f8cf500f0003860180"
@@ -98,10 +98,12 @@ def evaluate(words, out):
 
 
 def stand_in(name, words):
+    if name == "hs-study":
+        name, words = f"hs-study {words[0]}", words[1:]
     with open(os.environ["TEACH_FAKE_LOG"], "a") as log:
         log.write(" ".join([name, *words]) + "\n")
     out = pathlib.Path(value_of(words, "--out"))
-    {"hs-render": render, "hs-teach": teach, "hs-compare-shown": compare, "hs-evaluate": evaluate}[name](words, out)
+    {"hs-render": render, "hs-teach": teach, "hs-study shown": compare, "hs-evaluate": evaluate}[name](words, out)
 
 
 def install(folder):

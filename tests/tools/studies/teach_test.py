@@ -86,7 +86,7 @@ class WholeRun(unittest.TestCase):
         box = self.summary()["objects"]["cereal_box"]
         self.assertEqual(box["reasons"], ["hs-teach: bop:x: no plane, expected a table"])
         self.assertEqual((box["verdict"], box["mesh_mm_median"]), ("poor", None))
-        self.assertEqual(len(self.calls("hs-compare-shown")), 1)
+        self.assertEqual(len(self.calls("hs-study shown")), 1)
 
     def test_a_crash_is_no_answer(self):
         done = self.run_it(TEACH_FAKE_CRASHES="coffee_mug")

@@ -1,11 +1,11 @@
 #include "detector/baseline/baseline_scales.hpp"
 #include "detector/baseline/gall_profile.hpp"
+#include "tools/studies/commands.hpp"
 #include "tools/train/train_main.hpp"
 
-int main(int argc, char** argv) {
-  using namespace houghstream;
+int houghstream::studies::train_command(CommandLine& app, int argc, char** argv) {
   TrainProgram program;
-  program.name = "hs-study-train";
+  program.name = app.name();
   program.profiles = baseline::profile_names();
   program.families = kAllFamilies;
   program.make_profile = [](const std::string& name) { return baseline::make_profile(name); };

@@ -8,9 +8,8 @@ from studies.stream import enter_network
 from studies.work import main
 
 PARTS = ("speed", "stream", "growth", "pose", "attitudes")
-TARGETS = ("hs-render", "hs-train", "hs-study-train", "hs-capture", "hs-detect", "hs-pose", "hs-observe", "hs-evaluate",
-           "hs-study-evaluate", "hs-linemod", "hs-bench-speed", "hs-bench-kernels", "hs-bench-pose", "hs-fuse",
-           "hs-bench-real", "hs-teach")  # fmt: skip
+TARGETS = ("hs-render", "hs-train", "hs-capture", "hs-detect", "hs-pose", "hs-observe", "hs-evaluate", "hs-fuse", "hs-teach",
+           "hs-study")  # fmt: skip
 
 
 def part(text):

@@ -39,10 +39,10 @@ class Bench:
     def views(self):
         return self.units.add("training", "", "hs-render", "training", "--out", "{out}")
 
-    def train(self, name, *options, views=None, program="hs-train"):
+    def train(self, name, *options, views=None, program=("hs-train",)):
         rooms = self.units.add("background", "", "hs-render", "background", "--count", 215, "--out", "{out}")
         views = views or self.views()
-        return self.units.add(name, "", program, *options, "--threads", threads(), "--out", "{out}", "--views",
+        return self.units.add(name, "", *program, *options, "--threads", threads(), "--out", "{out}", "--views",
                               f"bop:{{{views}}}", "--background", f"bop:{{{rooms}}}")  # fmt: skip
 
     def make_store(self):
@@ -73,13 +73,13 @@ class Bench:
 
 def side_by_side(bench, scene, out, detectors, *more):
     listed = [word for detector in detectors for word in ("--detector", detector)]
-    call(bench.programs / "hs-bench-speed", "--scene", scene, "--every", bench.options.every, "--out", out, *listed, *more,
+    call(bench.programs / "hs-study", "speed", "--scene", scene, "--every", bench.options.every, "--out", out, *listed, *more,
          into=out.with_suffix(".txt"))  # fmt: skip
 
 
 def instruction_sets(bench):
     listed = subprocess.run(
-        [bench.programs / "hs-bench-speed", "--instruction-sets"], capture_output=True, text=True, check=True
+        [bench.programs / "hs-study", "speed", "--instruction-sets"], capture_output=True, text=True, check=True
     )
     return [name for name in listed.stdout.split() if name in SETS]
 
@@ -112,19 +112,19 @@ def measure_accuracy(bench, path, out):
     accuracy(bench, out, "realtime", "hs-evaluate", *scene, *ours, *RANKED, *all_threads)
     accuracy(bench, out, "default", "hs-evaluate", *scene, *ours, *all_threads)
     accuracy(bench, out, "paper", "hs-evaluate", *scene, "--forest", path["paper_forest"], *RANKED, *all_threads)
-    accuracy(bench, out, "gall", "hs-study-evaluate", *scene, "--forest", path["gall_forest"], *GALL, *all_threads)
+    accuracy(bench, out, "gall", "hs-study", "evaluate", *scene, "--forest", path["gall_forest"], *GALL, *all_threads)
     few = ("--every", FEW)
     accuracy(bench, out, "realtime_few", "hs-evaluate", *scene, *ours, *RANKED, *few, *all_threads)
-    accuracy(bench, out, "serial_few", "hs-study-evaluate", *scene, *ours, *RANKED, *few, "--reference", "--threads", 1)
+    accuracy(bench, out, "serial_few", "hs-study", "evaluate", *scene, *ours, *RANKED, *few, "--reference", "--threads", 1)
     views = ("--views", f"bop:{path['training']}")
-    accuracy(bench, out, "linemod", "hs-linemod", *views, *DISTANCES, *scene, *all_threads)
+    accuracy(bench, out, "linemod", "hs-study", "linemod", *views, *DISTANCES, *scene, *all_threads)
 
 
 def bench_speed(bench):
     bench.scene(SPEED_SCENE)
     bench.train("forest")
     bench.train("paper_forest", "--profile", "paper")
-    bench.train("gall_forest", "--profile", "gall", program="hs-study-train")
+    bench.train("gall_forest", "--profile", "gall", program=("hs-study", "train"))
     path, out = bench.make(), bench.fresh_folder("speed")
     scene = path[f"scene/{SPEED_SCENE}"]
     measure_accuracy(bench, path, out)
@@ -132,7 +132,7 @@ def bench_speed(bench):
     linemod = ("--linemod-views", f"bop:{path['training']}", *DISTANCES, "--linemod-threads", threads())
     side_by_side(bench, scene, out / "times.json", speed_contenders(bench, path), *linemod)
     step("speed: kernels")
-    call(bench.programs / "hs-bench-kernels", "--scene", scene, "--forest", path["forest"], "--benchmark_repetitions=5",
+    call(bench.programs / "hs-study", "kernels", "--scene", scene, "--forest", path["forest"], "--benchmark_repetitions=5",
          "--benchmark_report_aggregates_only=true", f"--benchmark_out={out / 'kernels.json'}",
          "--benchmark_out_format=json", into=out / "kernels.txt")  # fmt: skip
     bench.finish("speed", out)
@@ -198,7 +198,7 @@ def bench_rendered_poses(bench, path):
     scenes = [word for scene in TEST_SCENES for word in ("--scene", path[f"scene/{scene}"])]
     step("poses: ours, PCL's, and of two other methods")
     out, options = bench.fresh_folder("pose"), bench.options
-    call(bench.programs / "hs-bench-pose", "--forest", path["forest"], "--models", path["training"] / "models", *scenes,
+    call(bench.programs / "hs-study", "pose", "--forest", path["forest"], "--models", path["training"] / "models", *scenes,
          "--every", options.every, "--rivals-every", options.rivals_every, "--threads", threads(), "--out", out,
          into=bench.out / "pose.txt")  # fmt: skip
     bench.finish("pose", out)
@@ -208,7 +208,7 @@ def bench_recorded_poses(bench, path):
     """Models are fused of the training views; the compared object's is replaced by its scanned mesh."""
     step("poses: recorded frames")
     real = bench.options.real
-    call(bench.programs / "hs-bench-real", "--scenes", f"{real}/scenes", "--forest", path["real_forest"], "--models",
+    call(bench.programs / "hs-study", "recorded", "--scenes", f"{real}/scenes", "--forest", path["real_forest"], "--models",
          path["real_models"], "--scan", f"{real}/model/ornament_3.obj", "--references",
          f"{real}/scenes/pseudo_poses_ornament_3.json", "--threshold", "0.01", "--threads", threads(), "--out",
          bench.out / "real", into=bench.out / "real.txt")  # fmt: skip

@@ -25,7 +25,7 @@ def figure(group, variant, *keys):
 
 
 def summarise(results, real):
-    """The figures by which runs are compared; `real` is poses.json of hs-bench-real, or None."""
+    """The figures by which runs are compared; `real` is poses.json of hs-study recorded, or None."""
     variants, beside_rivals = results["variants"], results["on_rival_frames"]
     return {
         "ms_per_pose_median": figure(variants, "ours", "ms_median"),

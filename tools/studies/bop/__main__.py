@@ -7,7 +7,7 @@ import sys
 from studies.command import Options, die, positive, prepare
 from studies.work import command_in
 
-TARGETS = ("hs-teach", "hs-evaluate", "hs-bench-pose", "hs-failures", "hs-linemod")
+TARGETS = ("hs-teach", "hs-evaluate", "hs-study")
 
 
 def seconds(text):

@@ -33,7 +33,7 @@ class SceneFolders:
     name: str
     ranked: pathlib.Path  # every detection, ranked
     default: pathlib.Path  # from the default score on
-    poses: pathlib.Path | None = None  # hs-bench-pose: ours unchecked, rivals, the worst
+    poses: pathlib.Path | None = None  # hs-study pose: ours unchecked, rivals, the worst
     linemod: pathlib.Path | None = None
     failures: pathlib.Path | None = None
 
@@ -131,9 +131,9 @@ class Plan:
             if self.options.rivals
             else ("--no-rivals",)
         )
-        units.add(self.place(one, "poses", scene), "", "hs-bench-pose", *store, *of_scene, "--min-mass", "0.05",
+        units.add(self.place(one, "poses", scene), "", "hs-study", "pose", *store, *of_scene, "--min-mass", "0.05",
                   *limit, of=known, **facts)  # fmt: skip
-        units.add(self.place(one, "failures", scene) + ".png", "", "hs-failures", *store, *of_scene, of=known, **facts)
+        units.add(self.place(one, "failures", scene) + ".png", "", "hs-study", "failures", *store, *of_scene, of=known, **facts)
 
     def add_linemod(self, units, one):
         """One training for all scenes of a dataset."""
@@ -153,7 +153,7 @@ class Plan:
             for scene in dataset.scenes
             for word in ("--scene", f"{{{dataset.name}/seed_{one.seed}/scenes/{scene.name}}}")
         ]
-        units.add(f"{dataset.name}/seed_{one.seed}/linemod", "", "hs-linemod", "--views", f"bop:{one.views}", "--check-depth",
+        units.add(f"{dataset.name}/seed_{one.seed}/linemod", "", "hs-study", "linemod", "--views", f"bop:{one.views}", "--check-depth",
                   "--min-distance", f"{min(depths) * (1 - MARGIN):.3f}", "--max-distance",
                   f"{max(depths) * (1 + MARGIN):.3f}", "--seconds", self.seconds_a_scene(dataset), "--threads", threads(),
                   "--out", "{out}", *scenes, what=dataset.name, of=folder_digest(one.store))  # fmt: skip

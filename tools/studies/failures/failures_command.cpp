@@ -9,6 +9,7 @@
 #include "tools/common/tool_main.hpp"
 #include "tools/finder/search_arguments.hpp"
 #include "tools/finder/searched_objects.hpp"
+#include "tools/studies/commands.hpp"
 #include "tools/studies/failures/failures.hpp"
 
 namespace {
@@ -71,9 +72,7 @@ FailureOptions with_store(FailureOptions options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CommandLine app("Shows the gravest failures of a forest in scenes: false detections and missed objects",
-                  "hs-failures");
+int houghstream::studies::failures_command(CommandLine& app, int argc, char** argv) {
   FailureOptions options;
   app.add_option("--objects", options.known.store, "object store of hs-teach, instead of --forest");
   app.add_option("--forest", options.known.forest, "forest file");
@@ -86,6 +85,6 @@ int main(int argc, char** argv) {
                  "score from which a detection counts; default: what hs-detect publishes")
       .range(0.0, 1.0);
   add_search_options(app, options.search);
-  app.add_example("hs-failures --forest my.forest --scene SCENE --out failures.png");
-  return houghstream::run_tool(app, argc, argv, [&] { run(with_store(options)); });
+  app.add_example("hs-study failures --forest my.forest --scene SCENE --out failures.png");
+  return run_tool(app, argc, argv, [&] { run(with_store(options)); });
 }

@@ -10,6 +10,7 @@
 #include "tools/evaluate/metrics/detection_metrics.hpp"
 #include "tools/finder/search_arguments.hpp"
 #include "tools/studies/baseline/study_search.hpp"
+#include "tools/studies/commands.hpp"
 #include "tools/studies/hough/hough_panels.hpp"
 #include "tools/view/drawing/overlay.hpp"
 
@@ -80,9 +81,7 @@ void run(const HoughOptions& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CommandLine app("Draws the votes for each class over a frame of a scene, with what was found and what is true",
-                  "hs-hough");
+int houghstream::studies::hough_command(CommandLine& app, int argc, char** argv) {
   HoughOptions options;
   app.add_option("--forest", options.forest, "forest file").required();
   app.add_option("--scene", options.scene, "BOP scene folder with the truth").required();
@@ -90,6 +89,6 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.out, "picture to write, PNG").required();
   add_search_options(app, options.search);
   add_reference_option(app, options.reference);
-  app.add_example("hs-hough --forest my.forest --scene SCENE --frame 0 --out votes.png");
-  return houghstream::run_tool(app, argc, argv, [&] { run(options); });
+  app.add_example("hs-study hough --forest my.forest --scene SCENE --frame 0 --out votes.png");
+  return run_tool(app, argc, argv, [&] { run(options); });
 }

@@ -15,6 +15,7 @@
 #include "tools/finder/search_arguments.hpp"
 #include "tools/finder/searched_objects.hpp"
 #include "tools/finder/stored_quality.hpp"
+#include "tools/studies/commands.hpp"
 #include "tools/studies/pose/bench_report.hpp"
 
 namespace {
@@ -108,9 +109,7 @@ BenchOptions with_store(BenchOptions options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CommandLine app("Measures poses on rendered scenes: ours, PCL's ICP from the same starts, and two other methods",
-                  "hs-bench-pose");
+int houghstream::studies::pose_command(CommandLine& app, int argc, char** argv) {
   BenchOptions options;
   options.search.threshold = PoseSettings{}.min_score;
   app.add_option("--objects", options.known.store, "object store of hs-teach, instead of --forest and --models");
@@ -130,6 +129,6 @@ int main(int argc, char** argv) {
   add_search_options(app, options.search);
   add_min_mass_option(app, options.search);
   app.get_option("--threshold").description("smallest score of a detection that is tried; default: 0.1");
-  app.add_example("hs-bench-pose --forest my.forest --scene SCENE --out OUT");
+  app.add_example("hs-study pose --forest my.forest --scene SCENE --out OUT");
   return run_tool(app, argc, argv, [&] { run(with_store(options)); });
 }

@@ -10,6 +10,7 @@
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/metrics/evaluated_frame.hpp"
 #include "tools/finder/search_arguments.hpp"
+#include "tools/studies/commands.hpp"
 #include "tools/studies/quality/quality_fit.hpp"
 #include "tools/teach/mesh/quality_examples.hpp"
 
@@ -80,9 +81,7 @@ void run(const LearnOptions& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CommandLine app("Learns QualitySettings, by which a pose's evidence becomes the probability that it is right",
-                  "hs-learn-quality");
+int houghstream::studies::quality_command(CommandLine& app, int argc, char** argv) {
   LearnOptions options;
   options.search.threshold = PoseSettings{}.min_score;
   app.add_option("--forest", options.forest, "forest file").required();
@@ -94,6 +93,6 @@ int main(int argc, char** argv) {
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   add_search_options(app, options.search);
   app.get_option("--threshold").description("smallest score of a detection that is tried; default: 0.1");
-  app.add_example("hs-learn-quality --forest my.forest --scene A B C D --models VIEWS/models");
+  app.add_example("hs-study quality --forest my.forest --scene A B C D --models VIEWS/models");
   return run_tool(app, argc, argv, [&] { run(options); });
 }

@@ -39,7 +39,7 @@ Published published_from(const std::vector<CheckedPose>& checked, float least);
 /// The smallest of 0.05, 0.1, ... 0.95 from which at least this share of the poses is right; nothing where none is.
 std::optional<float> min_quality(const std::vector<CheckedPose>& checked, double right_share);
 
-/// What hs-learn-quality learnt.
+/// What hs-study quality learnt.
 struct Learnt {
   int scenes = 0;
   int examples = 0;

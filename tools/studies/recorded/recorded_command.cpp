@@ -9,6 +9,7 @@
 #include "tools/finder/search_arguments.hpp"
 #include "tools/finder/stored_quality.hpp"
 #include "tools/fuse/model_picture.hpp"
+#include "tools/studies/commands.hpp"
 #include "tools/studies/recorded/pose_sheets.hpp"
 #include "tools/studies/recorded/real_bench.hpp"
 
@@ -67,9 +68,7 @@ void run(const BenchOptions& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CommandLine app("Estimates poses in recorded frames, compares one object's with reference poses and draws all",
-                  "hs-bench-real");
+int houghstream::studies::recorded_command(CommandLine& app, int argc, char** argv) {
   BenchOptions options;
   app.add_option("--scenes", options.scenes, "folder of FRAME_color.png with FRAME_depth.png, and boxes.json")
       .required();
@@ -86,7 +85,8 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.out, "folder for poses.json, sheet_N.png and a picture of the scan").required();
   add_search_options(app, options.search);
   app.add_example(
-      "hs-bench-real --scenes SCENES --forest my.forest --models MODELS --scan scan.ply --references poses.json --out "
+      "hs-study recorded --scenes SCENES --forest my.forest --models MODELS --scan scan.ply --references poses.json "
+      "--out "
       "OUT");
   return run_tool(app, argc, argv, [&] { run(options); });
 }

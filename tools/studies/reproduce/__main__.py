@@ -9,8 +9,7 @@ from studies.command import Options, die, positive, prepare, recorded_folder
 from studies.measured import threads
 from studies.work import UnitFailed, locked
 
-TARGETS = ("hs-render", "hs-train", "hs-study-train", "hs-import", "hs-log", "hs-evaluate", "hs-study-evaluate",
-           "hs-linemod", "hs-hough", "hs-failures", "hs-bench-speed")  # fmt: skip
+TARGETS = ("hs-render", "hs-train", "hs-import", "hs-log", "hs-evaluate", "hs-study")
 
 
 def parse(words):

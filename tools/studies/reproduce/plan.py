@@ -71,7 +71,7 @@ class Planner:
         name = f"train/{prefix}{forest}/seed{seed}"
         options = (*variants.TRAINING[forest], "--seed", seed, *self.threads, *source.training)
         facts = {"what": prefix + forest, "seed": seed}
-        return self.units.add(name, figure, variants.trainer(forest), *options, "--out", "{out}", **facts)
+        return self.units.add(name, figure, *variants.trainer(forest), *options, "--out", "{out}", **facts)
 
     def evaluate(self, what, frames, seed, prefix=""):
         """Trains the forest where no other figure has, and measures it; nothing where the protocol leaves it out."""
@@ -90,7 +90,7 @@ class Planner:
         """`name`: in the report; `what`: the kind of detector; `forest`: the unit that trains it."""
         seed = self.units.by_name[forest].seed
         every = frames.every or self.protocol.every
-        command = (variants.evaluator(what), *self._files(forest, frames.source, frames.scene, every))
+        command = (*variants.evaluator(what), *self._files(forest, frames.source, frames.scene, every))
         options = (*variants.detection_options(what, stride), *self.threads)
         unit = f"{every_nth('evaluate', every)}/{name}/{frames.scene}/seed{seed}"
         self.units.add(unit, frames.figure, *command, *options, what=name, scene=frames.scene, seed=seed)
@@ -106,7 +106,7 @@ class Planner:
             what = prefix + name
             if what in self.protocol.left_out:
                 continue
-            command = ("hs-linemod", *source.training, *source.distances, *listed, "--every", every, *check, *self.threads)
+            command = ("hs-study", "linemod", *source.training, *source.distances, *listed, "--every", every, *check, *self.threads)
             self.units.add(f"{every_nth('linemod', every)}/{what}", figure, *command, "--out", "{out}", what=what)
 
     def timings(self, source):
@@ -115,7 +115,7 @@ class Planner:
             every = self.protocol.timing_every if timing.reference else FAST_TIMING_EVERY
             forest = self.train(timing.forest, source, 1, "time")
             command = (
-                variants.evaluator(timing.forest, timing.reference),
+                *variants.evaluator(timing.forest, timing.reference),
                 *self._files(forest, source, FEATURE_SCENE, every),
             )
             facts = {"what": name, "scene": FEATURE_SCENE, "seed": 1}
@@ -129,13 +129,13 @@ class Planner:
         detectors = [
             word for name, forest in forests.items() for word in ("--detector", f"{name}={{{forest}}},{wishes}")
         ]
-        command = ("hs-bench-speed", "--scene", source.scenes[scene], *detectors, "--out", "{out}")
+        command = ("hs-study", "speed", "--scene", source.scenes[scene], *detectors, "--out", "{out}")
         self.units.add(f"side_by_side/{scene}.json", figure, *command, scene=scene, seed=1)
 
     def hough_pictures(self, source):
         for name, what in (("before", "gall"), ("after", "final")):
             forest = self.train(what, source, 1, "3")
-            command = ("hs-hough", "--forest", f"{{{forest}}}", "--scene", source.scenes[FEATURE_SCENE])
+            command = ("hs-study", "hough", "--forest", f"{{{forest}}}", "--scene", source.scenes[FEATURE_SCENE])
             self.units.add(
                 f"hough/{name}.png", "3", *command, "--frame", HOUGH_FRAME, "--out", "{out}", what=what, seed=1
             )
@@ -143,7 +143,7 @@ class Planner:
     def failure_pictures(self, source, scenes):
         forest = self.train("realtime", source, 1, "failures")
         listed = [word for scene in scenes for word in ("--scene", source.scenes[scene])]
-        command = ("hs-failures", "--forest", f"{{{forest}}}", *listed, "--count", 2, "--every", 2)
+        command = ("hs-study", "failures", "--forest", f"{{{forest}}}", *listed, "--count", 2, "--every", 2)
         self.units.add("failures/realtime.png", "failures", *command, "--out", "{out}", what="realtime", seed=1)
 
 

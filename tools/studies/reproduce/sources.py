@@ -15,8 +15,8 @@ WAY, FRAMES = 300, 60  # frames along the camera's way, and those that are looke
 
 @dataclasses.dataclass(frozen=True)
 class Source:
-    training: tuple  # options of hs-train and hs-linemod
-    distances: tuple  # at which objects stand in the scenes, options of hs-linemod
+    training: tuple  # options of hs-train and hs-study linemod
+    distances: tuple  # at which objects stand in the scenes, options of hs-study linemod
     scenes: dict  # "{NAME}" of the unit that makes it, by scene
 
 

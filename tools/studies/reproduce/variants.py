@@ -63,11 +63,12 @@ def is_gall(what):
 
 
 def trainer(what):
-    return "hs-study-train" if is_gall(what) else "hs-train"
+    """The words that start it."""
+    return ("hs-study", "train") if is_gall(what) else ("hs-train",)
 
 
 def evaluator(what, reference=False):
-    return "hs-study-evaluate" if is_gall(what) or reference else "hs-evaluate"
+    return ("hs-study", "evaluate") if is_gall(what) or reference else ("hs-evaluate",)
 
 
 def detection_options(what, stride=None):
@@ -79,7 +80,7 @@ def detection_options(what, stride=None):
     return ("--min-mass", "0.05", "--threshold", "0", *(("--stride", str(stride)) if stride else ()))
 
 
-RANKED_WISHES = "min-mass=0.05,threshold=0"  # the same for hs-bench-speed
+RANKED_WISHES = "min-mass=0.05,threshold=0"  # the same for hs-study speed
 
 
 @dataclasses.dataclass(frozen=True)

@@ -7,6 +7,7 @@
 #include "tools/common/rounded.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/report.hpp"
+#include "tools/studies/commands.hpp"
 #include "tools/studies/rivals/frame_budget.hpp"
 #include "tools/studies/rivals/linemod_detector.hpp"
 #include "tools/studies/rivals/linemod_tuning.hpp"
@@ -152,10 +153,9 @@ void add_options(CommandLine& app, LinemodOptions& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CommandLine app("Teaches objects to OpenCV's LINEMOD and measures it in scenes of known truth", "hs-linemod");
+int houghstream::studies::linemod_command(CommandLine& app, int argc, char** argv) {
   LinemodOptions options;
   add_options(app, options);
-  app.add_example("hs-linemod --views bop:VIEWS --scene SCENE --out OUT");
-  return houghstream::run_tool(app, argc, argv, [&] { options.tune ? tune(options) : evaluate_scenes(options); });
+  app.add_example("hs-study linemod --views bop:VIEWS --scene SCENE --out OUT");
+  return run_tool(app, argc, argv, [&] { options.tune ? tune(options) : evaluate_scenes(options); });
 }

@@ -9,6 +9,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/finder/search_options.hpp"
+#include "tools/studies/commands.hpp"
 #include "tools/studies/speed/kernels.hpp"
 
 namespace {
@@ -33,18 +34,13 @@ std::vector<char*> without_benchmark_options(std::vector<char*> words) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  using namespace houghstream;
+int houghstream::studies::kernels_command(CommandLine& app, int argc, char** argv) {
   std::vector<char*> words = without_benchmark_options({argv, argv + argc});
-  CommandLine app(
-      "Google Benchmarks of what a frame goes through, on one thread; takes Google Benchmark's own options, "
-      "--benchmark_filter=REGEX and others, too",
-      "hs-bench-kernels");
   std::string scene_folder;
   std::string forest_file;
   app.add_option("--scene", scene_folder, "BOP scene folder, whose first frame is looked at").required();
   app.add_option("--forest", forest_file, "depth-normalised forest").required();
-  app.add_example("hs-bench-kernels --scene SCENE --forest my.forest --benchmark_filter=vote");
+  app.add_example("hs-study kernels --scene SCENE --forest my.forest --benchmark_filter=vote");
   return run_tool(app, static_cast<int>(words.size()), words.data(), [&] {
     const Forest forest = load_forest(forest_file);
     require(forest.features.handling == ScaleHandling::kDepthNormalised,

@@ -8,6 +8,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/studies/commands.hpp"
 #include "tools/studies/rivals/linemod_detector.hpp"
 #include "tools/studies/speed/speed_bench.hpp"
 #include "tools/train/training_sources.hpp"
@@ -61,8 +62,7 @@ void run(const SpeedOptions& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CommandLine app("Measures what detectors take for the frames of a scene, side by side", "hs-bench-speed");
+int houghstream::studies::speed_command(CommandLine& app, int argc, char** argv) {
   SpeedOptions options;
   app.add_option("--scene", options.scene, "BOP scene folder");
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
@@ -76,6 +76,6 @@ int main(int argc, char** argv) {
   app.add_option("--linemod-threads", options.linemod.threads).capture_default_str();
   app.add_option("--out", options.out, "JSON file to write");
   app.add_flag("--instruction-sets", options.list_sets, "list those that this processor has, and end");
-  app.add_example("hs-bench-speed --scene SCENE --detector ours=my.forest --detector one=my.forest,threads=1");
+  app.add_example("hs-study speed --scene SCENE --detector ours=my.forest --detector one=my.forest,threads=1");
   return run_tool(app, argc, argv, [&] { options.list_sets ? list_instruction_sets() : run(options); });
 }

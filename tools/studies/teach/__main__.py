@@ -10,7 +10,7 @@ from studies.work import main
 OBJECTS = ("bowl", "cereal_box", "coffee_mug", "soda_can", "teapot", "tumbler", "shampoo_bottle", "food_tin", "tea_box",
            "office_stapler", "toy_truck", "flashlight")  # fmt: skip
 QUICK = ("cereal_box", "coffee_mug")
-TARGETS = ("hs-render", "hs-teach", "hs-evaluate", "hs-compare-shown", "hs-capture", "hs-detect", "hs-pose",
+TARGETS = ("hs-render", "hs-teach", "hs-evaluate", "hs-study", "hs-capture", "hs-detect", "hs-pose",
            "hs-observe")  # fmt: skip
 
 

@@ -25,7 +25,7 @@ class ObjectFolders:
     answer: dict  # of hs-teach show: status, seconds, said
     kept: object  # folder of hs-teach show --keep
     report: dict | None  # its report.json
-    compared: object  # folder of hs-compare-shown
+    compared: object  # folder of hs-study shown
 
 
 class Plan:
@@ -88,7 +88,7 @@ class Plan:
         units = Units()
         for name in self.options.objects:
             if (store.path(f"shown/{name}") / "kept" / "model.ply").is_file():
-                units.add(f"compared/{name}", "", "hs-compare-shown", "--takes", store.path(f"takes/{name}"), "--object",
+                units.add(f"compared/{name}", "", "hs-study", "shown", "--takes", store.path(f"takes/{name}"), "--object",
                           name, "--kept", store.path(f"shown/{name}") / "kept", "--out", "{out}",
                           of=store.record(store.units[f"shown/{name}"])["made"])  # fmt: skip
         return units

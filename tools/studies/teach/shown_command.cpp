@@ -6,6 +6,7 @@
 #include "drivers/files/image_file.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/fuse/model_picture.hpp"
+#include "tools/studies/commands.hpp"
 #include "tools/studies/teach/shown_comparison.hpp"
 
 namespace {
@@ -71,13 +72,12 @@ void run(const CompareOptions& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CommandLine app("Compares what hs-teach show made of rendered takes with the truth", "hs-compare-shown");
+int houghstream::studies::shown_command(CommandLine& app, int argc, char** argv) {
   CompareOptions options;
   app.add_option("--takes", options.takes, "folder of hs-render takes").required();
   app.add_option("--object", options.object, "its name there").required();
   app.add_option("--kept", options.kept, "folder of hs-teach show --keep").required();
   app.add_option("--out", options.out, "folder for compared.json, taught.png and true.png").required();
-  app.add_example("hs-compare-shown --takes TAKES --object mug --kept KEPT --out OUT");
+  app.add_example("hs-study shown --takes TAKES --object mug --kept KEPT --out OUT");
   return run_tool(app, argc, argv, [&] { run(options); });
 }

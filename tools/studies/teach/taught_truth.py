@@ -1,7 +1,7 @@
 """Writes a scene whose truth is that of taught models, which have frames of their own; pictures are links.
 
 Usage: taught_truth.py --scene FOLDER --out FOLDER [--compared NAME=FILE ...]
-FILE is compared.json of hs-compare-shown: its T_true_taught maps the taught frame into that of the true mesh. Objects
+FILE is compared.json of hs-study shown: its T_true_taught maps the taught frame into that of the true mesh. Objects
 without one stay as they are, and are nobody's whose store does not know them."""
 
 import argparse

@@ -9,6 +9,7 @@
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/class_names.hpp"
 #include "tools/finder/search_arguments.hpp"
+#include "tools/studies/commands.hpp"
 #include "tools/studies/terms/term_study.hpp"
 
 namespace {
@@ -113,9 +114,7 @@ void run(const StudyOptions& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CommandLine app("Shows which terms push the scores of true objects down, groups of scenes side by side",
-                  "hs-study-terms");
+int houghstream::studies::terms_command(CommandLine& app, int argc, char** argv) {
   StudyOptions options;
   app.add_option("--forest", options.forests, "forest file; one, or one for each group in their order").required();
   app.add_option("--group", options.groups,
@@ -135,6 +134,6 @@ int main(int argc, char** argv) {
       .range(0.0, 1.0)
       .capture_default_str();
   add_search_options(app, options.search);
-  app.add_example("hs-study-terms --forest my.forest --group rendered=SCENE_1,SCENE_2 --group recorded=SCENE_3");
+  app.add_example("hs-study terms --forest my.forest --group rendered=SCENE_1,SCENE_2 --group recorded=SCENE_3");
   return run_tool(app, argc, argv, [&] { run(options); });
 }

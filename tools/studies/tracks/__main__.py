@@ -8,7 +8,7 @@ from studies.work import main
 
 # As hs-render takes orders them.
 SEQUENCES = ("walk", "pushed", "carried", "removed", "swapped", "cans", "arm", "jerk", "cameras")
-TARGETS = ("hs-render", "hs-train", "hs-capture", "hs-detect", "hs-pose", "hs-track", "hs-observe", "hs-study-tracks")
+TARGETS = ("hs-render", "hs-train", "hs-capture", "hs-detect", "hs-pose", "hs-track", "hs-observe", "hs-study")
 
 
 def parse(words):

@@ -38,30 +38,30 @@ class Plan:
         found = self.found(name, folder)
         channels = "|".join(CAMERAS) if name == "cameras" else CAMERAS[0]
         self.tracked(name, folder, found, channels)
-        self.add(f"single/{name}.json", "hs-study-tracks", "compare", "--single-frames", folder, f"{{{found}}}", "--models",
+        self.add(f"single/{name}.json", "hs-study", "tracks", "compare", "--single-frames", folder, f"{{{found}}}", "--models",
                  self.models, "--out", "{out}")  # fmt: skip
         if name == "cameras":
             for camera in CAMERAS:
                 self.tracked(camera, folder, found, camera)
-            self.add("wrong.lcmlog", "hs-study-tracks", "log", folder, "{out}", "--wrong", f"CAMERA_2={WRONG},0,0")
-            self.add("wrong_found.lcmlog", "hs-study-tracks", "join", "{wrong.lcmlog}", f"{{{found}}}", "--out", "{out}")
+            self.add("wrong.lcmlog", "hs-study", "tracks", "log", folder, "{out}", "--wrong", f"CAMERA_2={WRONG},0,0")
+            self.add("wrong_found.lcmlog", "hs-study", "tracks", "join", "{wrong.lcmlog}", f"{{{found}}}", "--out", "{out}")
 
     def found(self, name, folder):
         """The sequence's log with detections and poses."""
-        frames = self.add(f"frames/{name}.lcmlog", "hs-study-tracks", "log", folder, "{out}")
+        frames = self.add(f"frames/{name}.lcmlog", "hs-study", "tracks", "log", folder, "{out}")
         search = ("-c", "CAMERA_.*", "--threads", threads())
         detected = self.add(f"detected/{name}.lcmlog", "hs-detect", "-l", f"file://{{{frames}}}", "--output-log", "{out}",
                             "--keep-frames", "--forest", self.forest, *search)  # fmt: skip
         follow = ("--follow",) if self.options.follow else ()
         posed = self.add(f"posed/{name}.lcmlog", "hs-pose", "-l", f"file://{{{detected}}}", "--output-log", "{out}", "--models",
                          self.models, *search, *follow)  # fmt: skip
-        return self.add(f"found/{name}.lcmlog", "hs-study-tracks", "join", f"{{{frames}}}", f"{{{detected}}}", f"{{{posed}}}",
+        return self.add(f"found/{name}.lcmlog", "hs-study", "tracks", "join", f"{{{frames}}}", f"{{{detected}}}", f"{{{posed}}}",
                         "--out", "{out}")  # fmt: skip
 
     def tracked(self, name, folder, found, channels):
         tracks = [self.add(f"tracks/{name}{again}.lcmlog", "hs-track", "-l", f"file://{{{found}}}", "--output-log", "{out}",
                            "--models", self.models, "-c", channels) for again in ("", "_again")]  # fmt: skip
-        self.add(f"tracked/{name}.json", "hs-study-tracks", "compare", folder, f"{{{tracks[0]}}}", "--models", self.models, "--out",
+        self.add(f"tracked/{name}.json", "hs-study", "tracks", "compare", folder, f"{{{tracks[0]}}}", "--models", self.models, "--out",
                  "{out}")  # fmt: skip
 
     def make(self):

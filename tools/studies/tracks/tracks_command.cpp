@@ -8,11 +8,12 @@
 #include "pipeline/messages/wire_check.hpp"
 #include "pose/tracks/camera_extrinsics.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/studies/commands.hpp"
 #include "tools/studies/tracks/sequence_log.hpp"
 #include "tools/studies/tracks/track_metrics.hpp"
 #include "tools/track/track_models.hpp"
 
-// hs-study-tracks: what tools/bench tracks does with rendered sequences.
+// hs-study tracks: what tools/bench tracks does with rendered sequences.
 
 using namespace houghstream;
 using namespace houghstream::studies;
@@ -92,28 +93,27 @@ void compare(const Arguments& arguments) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int houghstream::studies::tracks_command(CommandLine& app, int argc, char** argv) {
   Arguments arguments;
-  CommandLine app("Logs of rendered sequences, and objects over time beside their truth", "hs-study-tracks");
   app.require_subcommand();
-  app.add_example("hs-study-tracks log SEQUENCES/walk frames.lcmlog");
+  app.add_example("hs-study tracks log SEQUENCES/walk frames.lcmlog");
   CommandLine log = app.add_subcommand("log", "a sequence as a log of frames and places of cameras");
   log.add_option("sequence", arguments.sequence, "folder of hs-render sequences").required();
   log.add_option("out", arguments.out, "log to write").required();
   log.add_option("--wrong", arguments.wrong, "CHANNEL=x,y,z: metres by which a camera is said to be elsewhere");
-  log.add_example("hs-study-tracks log SEQUENCES/walk frames.lcmlog");
+  log.add_example("hs-study tracks log SEQUENCES/walk frames.lcmlog");
   CommandLine join = app.add_subcommand("join", "results of logs behind the frames of another");
   join.add_option("frames", arguments.frames, "log of frames").required();
   join.add_option("results", arguments.results, "logs of detections and poses").required();
   join.add_option("--out", arguments.out, "log to write").required();
-  join.add_example("hs-study-tracks join frames.lcmlog poses.lcmlog --out joined.lcmlog");
+  join.add_example("hs-study tracks join frames.lcmlog poses.lcmlog --out joined.lcmlog");
   CommandLine comparison = app.add_subcommand("compare", "what a log holds of a sequence, beside the truth, as JSON");
   comparison.add_option("sequence", arguments.sequence, "folder of hs-render sequences").required();
   comparison.add_option("log", arguments.log, "with objects_t").required();
   comparison.add_option("--models", arguments.models, "folder of the objects' models").required();
   comparison.add_option("--out", arguments.out, "JSON file to write").required();
   comparison.add_flag("--single-frames", arguments.single_frames, "judge the poses of each frame by itself");
-  comparison.add_example("hs-study-tracks compare SEQUENCES/walk objects.lcmlog --models MODELS --out compared.json");
+  comparison.add_example("hs-study tracks compare SEQUENCES/walk objects.lcmlog --models MODELS --out compared.json");
   return run_tool(app, argc, argv, [&] {
     if (log.given()) {
       write_sequence_log(read_sequence(arguments.sequence), arguments.out, wrong_places(arguments.wrong));
