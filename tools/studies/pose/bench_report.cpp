@@ -7,7 +7,6 @@
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/studies/pose/pose_figures.hpp"
-#include "tools/studies/pose/pose_table.hpp"
 #include "tools/studies/pose/worst_poses.hpp"
 
 namespace houghstream {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "drivers/files/json_file.hpp"
-#include "tools/studies/pose/pose_trial.hpp"
+#include "tools/studies/pose/pose_trials.hpp"
 
 namespace houghstream {
 
@@ -52,5 +52,11 @@ std::map<std::string, WithheldPoses> count_withheld(const std::vector<PoseTrial>
 /// What is not finite becomes null (finite_or_null).
 OrderedJson to_json(const PoseFigures& figures);
 OrderedJson to_json(const std::map<std::string, WithheldPoses>& withheld);
+
+/// The first line of poses.csv.
+std::string pose_table_header();
+
+/// A line for each trial; `variant` says who made the poses. What is not known is left empty.
+std::string pose_table_rows(const std::string& variant, const std::vector<PoseTrial>& trials);
 
 }  // namespace houghstream

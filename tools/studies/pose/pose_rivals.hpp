@@ -10,9 +10,65 @@
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pose/pose_settings.hpp"
-#include "tools/studies/pose/rival_settings.hpp"
 
 namespace houghstream {
+
+// Shares are of the model's diameter, that of the sphere about its box's centre.
+//
+// The defaults were chosen on the three development scenes of hs-render (20 frames each, 106 objects in every second,
+// 41 in every fifth), with detections made of the truth: the visible box moved by 5 % of its size, the centre by 12 mm
+// along each axis (standard deviations). Right poses (ADD-S below 10 % of the diameter) of objects at least 40 %
+// visible, and the median CPU time of one.
+// FPFH, 106 objects: as below 100, 0.78 s | inlier share falling from 0.4 to 0.1 over the runs: 91, 0.53 s
+// FPFH, 41 objects: as below 39 | 6 runs: 36 | 2 runs of 30000 iterations, 5 or 20 similar features: 24
+//   inlier share 0.2, 20 runs of 5000: 37 | 6 runs, feature radius 0.15: 34
+//   4 runs, inlier share 0.2, 5 similar features: feature radius 0.3: 27; spacing 0.04: 30, with share 0.1: 33
+//   inlier share 0.4 to 0.1: 40 runs: 37; 12 runs: 38; 20 similar features: 38; 5: 36; normal radius 0.02 m: 35;
+//   spacing 0.07, inlier distance 0.045: 38
+// PPF, 106 objects: as below 106, 0.09 s | 1 level of ICP: 106, 0.09 s | spacing and step 0.1, share 0.2: 106, 0.07 s
+// PPF, 41 objects, reference share 0.2: 40 | step 0.05: 41, several times the training | 10 poses: 41
+//   reference share 0.5: 41, twice the time | spacing and step 0.05: over a minute of training a model
+
+/// How a point cloud is made of a region.
+struct SurfaceSettings {
+  double spacing_m = 0.004;        ///< of the points that are kept
+  double normal_radius_m = 0.015;  ///< of the neighbours whose plane gives a measured normal
+  int measured_points = 8000;      ///< of a region, about, before thinning
+};
+
+/// FPFH, pcl::SampleConsensusPrerejective, ICP.
+struct PrerejectiveSettings {
+  SurfaceSettings surface;
+  double spacing = 0.06;        ///< of the points of model and region, a share
+  double feature_radius = 0.2;  ///< of a histogram's neighbours, a share
+  int runs = 20;                ///< each with its own draw and its own ICP
+  int iterations = 10000;       ///< of a run
+  int samples = 3;              ///< pairs that make a pose
+  int similar_features = 10;    ///< a sample's partner is drawn among so many
+  float similarity = 0.9F;      ///< of the samples' mutual distances, 0 to 1
+  float inlier_share = 0.1F;    ///< of the model's points; of poses with so many, PCL takes the one that they fit best
+  double inlier_distance = 0.04;  ///< an inlier has a measured point so near, a share
+  int icp_iterations = 30;        ///< at each of two distances
+  int icp_points = 400;           ///< of the region, about
+  double icp_start_m = 0.02;      ///< pairs farther apart do not count
+  double icp_end_m = 0.01;
+};
+
+/// cv::ppf_match_3d.
+struct PpfSettings {
+  SurfaceSettings surface;
+  double spacing = 0.08;         ///< of the points of model and region, a share
+  double distance_step = 0.08;   ///< of the model's table, a share
+  int angles = 30;               ///< steps in a full turn
+  double reference_share = 0.1;  ///< of the region's points that vote
+  double cluster_m = 0.01;       ///< poses nearer than both limits are one
+  double cluster_rad = 0.2;
+  int kept = 5;  ///< poses that ICP refines
+  int icp_iterations = 100;
+  float icp_tolerance = 0.005F;  ///< relative change of the residual that ends a level
+  float icp_rejection = 2.5F;    ///< pairs farther apart than so many standard deviations do not count
+  int icp_levels = 4;            ///< of the pyramid, each of half as many points
+};
 
 /// What others' libraries offer in place of our PoseEstimator, given the same detections. They look at depth only, and
 /// at what ours looks at: the pixels with depth inside find_region(). Of several poses the one is given for which the

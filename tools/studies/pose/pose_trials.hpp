@@ -1,17 +1,53 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <opencv2/core.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "pipeline/geometry/symmetry.hpp"
+#include "pipeline/types/object_pose.hpp"
 #include "tools/evaluate/metrics/average_recall.hpp"
 #include "tools/evaluate/metrics/pose_metrics.hpp"
-#include "tools/studies/pose/pose_trial.hpp"
 
 namespace houghstream {
+
+/// What came of one detection's pose, beside the truth. Where a number cannot be known it is NaN.
+struct PoseTrial {
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+  std::string scene;
+  std::size_t image = 0;  ///< position in the scene's images
+  std::string class_name;
+  int class_id = 0;
+  float score = 0.0F;  ///< of the detection
+  cv::Rect2f box_px;   ///< of the detection
+  Verdict verdict = Verdict::kFalse;
+  bool symmetric = false;              ///< the object looks the same in other poses
+  double visible_fraction = kUnknown;  ///< of the object; known for true detections
+  double distance_m = kUnknown;        ///< of the object along the optical axis; known for true detections
+  double ms = kUnknown;                ///< CPU time of the pose, or of finding none
+  PoseStatus status = PoseStatus::kInvalid;
+  float quality = 0.0F;                              ///< ObjectPose::quality; 0 for the rivals
+  std::optional<Eigen::Isometry3d> T_camera_object;  ///< metres; present exactly when status is kValid
+
+  // Errors of the pose, unknown without one and without an object to compare it with: that of a true detection, for
+  // others the object of the class of smallest ADD-S.
+  double strict = kUnknown;  ///< strict_error(): MSSD, or ADD of an object without symmetries; in diameters
+  double add = kUnknown;     ///< in diameters
+  double add_s = kUnknown;   ///< in diameters
+  double shift_m = kUnknown;
+  double turn_deg = kUnknown;  ///< the smallest over the object's symmetries
+
+  /// The pose of a true detection.
+  bool is_right() const { return verdict == Verdict::kTrue && strict < kRightBelow; }
+  bool is_right_up_to_shape() const { return verdict == Verdict::kTrue && add_s < kRightBelow; }
+};
 
 /// What the poses of a class are compared with the truth by.
 struct ScoredModel {

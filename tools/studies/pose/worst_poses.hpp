@@ -5,7 +5,7 @@
 
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/types/frame.hpp"
-#include "tools/studies/pose/pose_trial.hpp"
+#include "tools/studies/pose/pose_trials.hpp"
 
 namespace houghstream {
 

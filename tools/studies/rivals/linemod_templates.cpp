@@ -7,7 +7,6 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
-#include "tools/studies/rivals/linemod_image.hpp"
 #include "tools/studies/rivals/scaled_view.hpp"
 
 namespace houghstream {

@@ -9,7 +9,7 @@
 #include "pose/tracks/camera_extrinsics.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/studies/commands.hpp"
-#include "tools/studies/tracks/sequence_log.hpp"
+#include "tools/studies/tracks/sequence_file.hpp"
 #include "tools/studies/tracks/track_metrics.hpp"
 #include "tools/track/track_models.hpp"
 

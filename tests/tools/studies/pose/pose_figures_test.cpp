@@ -5,7 +5,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tools/studies/pose/pose_table.hpp"
 #include "tools/studies/pose/worst_poses.hpp"
 
 namespace houghstream {

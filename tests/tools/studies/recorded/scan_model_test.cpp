@@ -4,7 +4,6 @@
 
 #include "pipeline/base/checks.hpp"
 #include "tests/pose/test_scene.hpp"
-#include "tools/studies/recorded/mesh_crop.hpp"
 
 namespace houghstream {
 namespace {

@@ -9,8 +9,6 @@
 
 #include "pipeline/base/checks.hpp"
 #include "tests/detector/toy_data.hpp"
-#include "tools/studies/rivals/composed_examples.hpp"
-#include "tools/studies/rivals/linemod_image.hpp"
 #include "tools/studies/rivals/linemod_tuning.hpp"
 #include "tools/studies/rivals/scaled_view.hpp"
 
