@@ -23,7 +23,7 @@
 #include "tools/teach/mesh/contact_sheet.hpp"
 #include "tools/teach/mesh/lookalikes.hpp"
 #include "tools/teach/mesh/store_forest.hpp"
-#include "tools/teach/mesh/store_views.hpp"
+#include "tools/teach/mesh/store_training.hpp"
 
 namespace houghstream::teach {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/teach/mesh/mesh_sources.hpp"
+#include "tools/teach/mesh/teach_sources.hpp"
 
 #include <gtest/gtest.h>
 

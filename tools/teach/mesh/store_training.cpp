@@ -1,4 +1,4 @@
-#include "tools/teach/mesh/store_views.hpp"
+#include "tools/teach/mesh/store_training.hpp"
 
 #include <fmt/format.h>
 
