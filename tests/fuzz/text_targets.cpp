@@ -10,7 +10,7 @@
 #include "pose/tracks/camera_extrinsics.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
 #include "tools/common/key_values.hpp"
-#include "tools/stream/shell_words.hpp"
+#include "tools/stream/stream_plan.hpp"
 
 // What people write: options, configurations, lists.
 

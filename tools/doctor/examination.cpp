@@ -7,7 +7,6 @@
 #include "tools/doctor/camera_checks.hpp"
 #include "tools/doctor/installation_checks.hpp"
 #include "tools/doctor/network_checks.hpp"
-#include "tools/doctor/tool_checks.hpp"
 
 namespace houghstream::doctor {
 namespace {

@@ -13,8 +13,8 @@
 #include "tools/log/export_objects.hpp"
 #include "tools/log/export_results.hpp"
 #include "tools/log/filter_log.hpp"
-#include "tools/log/import_log.hpp"
 #include "tools/log/log_info.hpp"
+#include "tools/log/recording.hpp"
 
 namespace houghstream::log_tools {
 namespace {

@@ -5,7 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/messages/codecs.hpp"
-#include "tools/log/image_parts.hpp"
+#include "tools/log/third_party_frames.hpp"
 
 namespace houghstream::log_tools {
 namespace {

@@ -15,6 +15,7 @@
 #include "drivers/openni/camera_source.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 #include "tools/common/progress_line.hpp"
@@ -209,6 +210,24 @@ NextFrame open_recording(const RecordingSettings& settings, LossReport& losses) 
   }
   refuse_other_kinds(settings.source);
   return reading(std::make_shared<LogRecording>(settings, losses));
+}
+
+std::int64_t import_log(const RecordingSettings& settings, const std::string& channel,
+                        const std::filesystem::path& log_file, LossReport& losses) {
+  channel::require_name(channel);
+  require_outside_source(log_file, settings.source);
+  const NextFrame next = open_recording(settings, losses);
+  std::optional<LogWriter> log;  // not before there is something to write
+  std::int64_t frames = 0;
+  while (const std::optional<RecordedFrame> frame = next()) {
+    const std::vector<std::uint8_t> bytes = encode_message(frame->message);
+    if (!log) log.emplace(log_file);
+    log->write(frame->timestamp, channel, {bytes.data(), bytes.size()});
+    ++frames;
+  }
+  require(log.has_value(), "{}: no frame could be imported: {}", settings.source, losses.line());
+  log->close();
+  return frames;
 }
 
 }  // namespace houghstream::log_tools

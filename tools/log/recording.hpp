@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <houghstream/images_t.hpp>
 #include <optional>
@@ -33,5 +34,10 @@ struct RecordingSettings {
 /// where the recording cannot be opened; its function throws where a log holds no event at all, or a file of a folder
 /// cannot be read.
 NextFrame open_recording(const RecordingSettings& settings, LossReport& losses);
+
+/// Writes a recording's frames as images_t to an LCM log that the stream replays, each at the time of its event or of
+/// its capture. Returns the number of frames. Throws InputError where nothing can be imported or written.
+std::int64_t import_log(const RecordingSettings& settings, const std::string& channel,
+                        const std::filesystem::path& log_file, LossReport& losses);
 
 }  // namespace houghstream::log_tools

@@ -1,13 +1,46 @@
 #pragma once
 
+#include <cstdint>
 #include <houghstream/images_t.hpp>
+#include <utility>
+#include <vector>
 
+#include "pipeline/base/checks.hpp"
 #include "pipeline/messages/wire_reader.hpp"
 
 // Other people's RGB-D messages as images_t. What travels compressed stays as it is, bit for bit. Throws InputError
 // where a message is damaged, or its images are of a kind that images_t cannot carry.
 
 namespace houghstream::log_tools {
+
+inline std::vector<std::uint8_t> bytes_of(ByteView view) {
+  return {view.data, view.data + view.size};
+}
+
+/// An image_t without its metadata; row_stride 0 where `data` is compressed.
+inline image_t make_image(std::int32_t width, std::int32_t height, std::int32_t pixelformat, std::int32_t row_stride,
+                          std::vector<std::uint8_t> data) {
+  image_t image{};
+  image.width = width;
+  image.height = height;
+  image.pixelformat = pixelformat;
+  image.row_stride = row_stride;
+  image.size = static_cast<std::int32_t>(data.size());
+  image.data = std::move(data);
+  return image;
+}
+
+/// {LEFT, depth}; the images take the frame's time.
+inline images_t make_images(std::int64_t utime, image_t colour, std::int16_t depth_type, image_t depth) {
+  images_t message{};
+  message.utime = utime;
+  message.n_images = 2;
+  message.image_types = {images_t::LEFT, depth_type};
+  colour.utime = utime;
+  depth.utime = utime;
+  message.images = {std::move(colour), std::move(depth)};
+  return message;
+}
 
 /// A kinect.frame_msg_t (openhumanoids/kinect): colour RGB or JPEG, depth in millimetres, raw or zlib. Depth that is
 /// not registered to colour (DEPTH_MM of libfreenect) is taken as it is.

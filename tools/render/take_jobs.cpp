@@ -7,7 +7,6 @@
 #include "pipeline/base/checks.hpp"
 #include "tools/render/ordered_frames.hpp"
 #include "tools/render/world/takes/take.hpp"
-#include "tools/render/world/takes/take_plans.hpp"
 
 namespace houghstream::render {
 

@@ -19,7 +19,7 @@ struct TakesJob {
 };
 
 /// OUT/test/00000N/ for each take, a BOP scene with truth for every frame, OUT/models/ and OUT/takes.json, which names
-/// scene, object, id, kind, take, frames and fps of each. See world/takes/take_plans.hpp. Throws InputError for an
+/// scene, object, id, kind, take, frames and fps of each. See world/takes/take.hpp. Throws InputError for an
 /// object that is not shown.
 void render_takes(const RenderOptions& options, const TakesJob& job);
 

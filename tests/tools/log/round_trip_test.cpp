@@ -8,7 +8,7 @@
 #include "tests/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 #include "tools/log/export_frames.hpp"
-#include "tools/log/import_log.hpp"
+#include "tools/log/recording.hpp"
 
 // Whatever is imported and exported again is what it was: depth always, colour where nothing compressed it with loss.
 

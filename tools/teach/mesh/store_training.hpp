@@ -1,9 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "detector/forest/forest.hpp"
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/store/object_store.hpp"
 #include "pipeline/types/training_view.hpp"
@@ -19,5 +21,10 @@ std::vector<NamedModel> models_of(const std::vector<TaughtMesh>& meshes);
 /// `report` gets a line for each object. Throws InputError for a mesh of which no view shows any depth.
 std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, const TeachOptions& options,
                                      store::ObjectStore& made, const std::function<void(const std::string&)>& report);
+
+/// The forest of a teaching, from the views of its objects and of rooms. With an `old` one, that with these objects
+/// added, and of the profile of `options` only what is for training. `report` gets a line for each step.
+Forest train_store_forest(std::vector<TrainingView> views, const std::optional<Forest>& old,
+                          const TeachOptions& options, const std::function<void(const std::string&)>& report);
 
 }  // namespace houghstream::teach

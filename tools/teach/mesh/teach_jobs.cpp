@@ -22,7 +22,6 @@
 #include "tools/finder/stored_quality.hpp"
 #include "tools/teach/mesh/contact_sheet.hpp"
 #include "tools/teach/mesh/lookalikes.hpp"
-#include "tools/teach/mesh/store_forest.hpp"
 #include "tools/teach/mesh/store_training.hpp"
 
 namespace houghstream::teach {

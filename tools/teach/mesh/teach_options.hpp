@@ -7,9 +7,8 @@
 
 #include "detector/training/profiles.hpp"
 #include "tools/render/world/mesh_views.hpp"
-#include "tools/teach/mesh/background_images.hpp"
-#include "tools/teach/mesh/teach_sources.hpp"
 #include "tools/teach/mesh/score_calibration.hpp"
+#include "tools/teach/mesh/teach_sources.hpp"
 
 namespace houghstream::teach {
 

@@ -8,7 +8,7 @@
 #include "pipeline/geometry/renderer.hpp"
 #include "tools/render/world/objects/objects.hpp"
 #include "tools/render/world/rooms/held.hpp"
-#include "tools/render/world/rooms/table_layout.hpp"
+#include "tools/render/world/rooms/table_setter.hpp"
 #include "tools/render/world/scene_frames.hpp"
 
 namespace houghstream::world {

@@ -6,7 +6,7 @@
 
 #include "tools/render/world/objects/mesh_parts.hpp"
 #include "tools/render/world/objects/objects.hpp"
-#include "tools/render/world/rooms/table_layout.hpp"
+#include "tools/render/world/rooms/table_setter.hpp"
 #include "tools/render/world/scenes.hpp"
 
 namespace houghstream::world {

@@ -9,7 +9,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
 #include "tools/render/world/objects/objects.hpp"
-#include "tools/render/world/rooms/table_layout.hpp"
+#include "tools/render/world/rooms/table_setter.hpp"
 
 namespace houghstream::world {
 namespace {

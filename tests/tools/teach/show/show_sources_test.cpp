@@ -1,4 +1,4 @@
-#include "tools/teach/show/camera_take.hpp"
+#include "tools/teach/show/show_sources.hpp"
 
 #include <gtest/gtest.h>
 

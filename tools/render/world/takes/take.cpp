@@ -1,7 +1,9 @@
 #include "tools/render/world/takes/take.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
@@ -18,6 +20,19 @@ constexpr double kUsualExposureS = 0.010;  // at exposure 1; longer in the dark
 constexpr double kMinDurationS = 0.003;
 constexpr double kMaxDurationS = 0.025;
 constexpr std::uint64_t kNoiseAspect = 7;
+
+constexpr std::array<std::pair<const char*, TakeKind>, 12> kShown = {{{"bowl", TakeKind::kHandHeld},
+                                                                      {"cereal_box", TakeKind::kHandHeld},
+                                                                      {"coffee_mug", TakeKind::kHandHeld},
+                                                                      {"soda_can", TakeKind::kHandHeld},
+                                                                      {"teapot", TakeKind::kTurntable},
+                                                                      {"tumbler", TakeKind::kHandHeld},
+                                                                      {"shampoo_bottle", TakeKind::kHandHeld},
+                                                                      {"food_tin", TakeKind::kHandTurns},
+                                                                      {"tea_box", TakeKind::kHandTurns},
+                                                                      {"office_stapler", TakeKind::kHandHeld},
+                                                                      {"toy_truck", TakeKind::kTurntable},
+                                                                      {"flashlight", TakeKind::kHandHeld}}};
 
 }  // namespace
 
@@ -66,6 +81,24 @@ RenderedFrame Take::render(int index) const {
   const Eigen::Isometry3d T_camera_world = stage_.move(lit_world.world, now);
   const std::uint64_t noise = aspect_seed(stage_.seed(), kNoiseAspect);
   return record_view(lit_world, T_camera_world, view, aspect_seed(noise, static_cast<std::uint64_t>(index)));
+}
+
+std::vector<NumberedTake> twelve_objects_takes(DatasetSplit use, int world, double seconds) {
+  std::vector<NumberedTake> takes;
+  for (const auto& [name, kind] : kShown) {
+    const std::uint64_t room = static_cast<std::uint64_t>(world) * kShown.size() + takes.size() / 2;
+    for (const int take : {1, 2}) {
+      TakePlan plan;
+      plan.object_id = taught_object_id(name);
+      plan.kind = kind;
+      plan.laid_down = take == 2;
+      plan.use = use;
+      plan.number = room;
+      plan.seconds = seconds;
+      takes.push_back({static_cast<int>(takes.size()) + 1, take, name, plan});
+    }
+  }
+  return takes;
 }
 
 }  // namespace houghstream::world

@@ -1,8 +1,7 @@
-#include "tools/render/world/rooms/table_layout.hpp"
-
 #include <gtest/gtest.h>
 
 #include "tools/render/world/objects/objects.hpp"
+#include "tools/render/world/rooms/table_setter.hpp"
 
 namespace houghstream::world {
 namespace {

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "tools/render/world/takes/take_plans.hpp"
-
 namespace houghstream::world {
 namespace {
 
