@@ -134,13 +134,13 @@ final class PluginsTest {
     Check.equal(newest.detections(), null);
     matcher.addDetections(Samples.detections(5));
     Check.equal(newest.detections(), null); // as it was
-    object_poses_t valid = FollowedPoses.valid(followed);
+    object_poses_t valid = ResultMatcher.valid(followed);
     Check.equal(valid.poses[0].detection_index, 0);
     Check.equal(followed.poses[0].detection_index, -1);
-    detections_t boxed = FollowedPoses.boxed(valid, RgbdFrame.decode(newest.frame()).camera);
+    detections_t boxed = ResultMatcher.boxed(valid, RgbdFrame.decode(newest.frame()).camera);
     Check.equal(boxed.detections[0].class_name, "soda_can");
     Check.that(Math.abs(boxed.detections[0].box_width - 12) < 1e-3, "ten centimetres half a metre away");
-    Check.equal(FollowedPoses.valid(Samples.poses(5, object_pose_t.OCCLUDED)).n_poses, 0);
+    Check.equal(ResultMatcher.valid(Samples.poses(5, object_pose_t.OCCLUDED)).n_poses, 0);
     object_poses_t none = Samples.poses(6, object_pose_t.VALID);
     none.poses = new object_pose_t[0];
     none.n_poses = 0;

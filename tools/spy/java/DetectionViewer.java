@@ -123,8 +123,8 @@ final class DetectionViewer implements Viewer {
     if (newest.followed() == null) {
       return new DetectionPanel.Shown(picture, newest.detections(), newest.poses(), camera);
     }
-    object_poses_t poses = FollowedPoses.valid(newest.followed());
-    return new DetectionPanel.Shown(picture, FollowedPoses.boxed(poses, camera), poses, camera);
+    object_poses_t poses = ResultMatcher.valid(newest.followed());
+    return new DetectionPanel.Shown(picture, ResultMatcher.boxed(poses, camera), poses, camera);
   }
 
   private RgbdFrame frameOf(ResultMatcher.Snapshot newest) {
