@@ -46,4 +46,8 @@ std::shared_ptr<const Thing> make_asset(std::string name, Mesh mesh, float gloss
   return thing;
 }
 
+double thing_height(const Thing& thing) {
+  return mesh_bounds(thing.mesh).sizes().z();
+}
+
 }  // namespace houghstream::world

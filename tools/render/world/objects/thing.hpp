@@ -25,4 +25,7 @@ std::shared_ptr<const Thing> make_asset(std::string name, Mesh mesh, float gloss
 
 using ThingPtr = std::shared_ptr<const Thing>;
 
+/// Of its mesh along z, metres.
+double thing_height(const Thing& thing);
+
 }  // namespace houghstream::world

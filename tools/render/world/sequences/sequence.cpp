@@ -25,10 +25,6 @@ double eased(double share) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-double height(const Thing& thing) {
-  return mesh_bounds(thing.mesh).sizes().z();
-}
-
 Eigen::Isometry3d at_stop(const Eigen::Vector3d& place, double turn_rad, double height_m) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translate(place + Eigen::Vector3d(0.0, 0.0, 0.5 * height_m));
@@ -95,7 +91,7 @@ void Sequence::furnish() {
     const ThingPtr thing =
         i < 3 ? make_other_instance(1 + i, own) : make_distractor(setter.random().below(kDistractorKinds), own);
     const bool behind = i % 3 == 0;
-    if (height(*thing) > (behind ? 0.3 : kTallestBesideM)) continue;
+    if (thing_height(*thing) > (behind ? 0.3 : kTallestBesideM)) continue;
     const double side = i % 3 == 1 ? -1.0 : 1.0;
     const Eigen::AlignedBox2d where =
         behind ? setter.region(-0.9, 0.9, 0.62, 0.95)
@@ -121,7 +117,7 @@ void Sequence::add_hands() {
       const bool comes_back = is_away(stops[k - 1].place);
       const Stop& on_table = comes_back ? stops[k] : stops[k - 1];
       Placed object = lit_.world.items[items_[i]];
-      object.T_world_object = at_stop(on_table.place, on_table.turn_rad, height(*object.thing));
+      object.T_world_object = at_stop(on_table.place, on_table.turn_rad, thing_height(*object.thing));
       HeldPlace place;
       for (int camera = 0; camera < cameras(); ++camera) place.views.push_back(T_camera_world(camera, on_table.at_s));
       place.over = on_table.place.head<2>();
@@ -172,7 +168,7 @@ Eigen::Isometry3d Sequence::T_camera_world(int camera, double seconds) const {
 
 Eigen::Isometry3d Sequence::T_world_actor(std::size_t actor, double seconds) const {
   const std::vector<Stop>& stops = plan_.actors[actor].stops;
-  const double height_m = height(*lit_.world.items[items_[actor]].thing);
+  const double height_m = thing_height(*lit_.world.items[items_[actor]].thing);
   const auto next = std::find_if(stops.begin(), stops.end(), [&](const Stop& stop) { return stop.at_s > seconds; });
   if (next == stops.begin()) return at_stop(next->place, next->turn_rad, height_m);
   if (next == stops.end()) return at_stop(stops.back().place, stops.back().turn_rad, height_m);

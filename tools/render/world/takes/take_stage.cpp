@@ -15,32 +15,30 @@ namespace houghstream::world {
 namespace {
 
 // Aspects of a take's world, each with a seed of its own (aspect_seed). Those of the room are the same in both takes.
-enum Aspect : std::uint64_t { kRoom = 1, kLight, kTable, kFirstThing, kTakeAspects = 1000, kPath, kPlace, kTurning };
+namespace take_aspect {
+enum : std::uint64_t { kRoom = 1, kLight, kTable, kFirstThing, kTakeAspects = 1000, kPath, kPlace, kTurning };
+}  // namespace take_aspect
 
-constexpr std::uint64_t kFirstWorld = 1ULL << 42U;  // far beyond the numbers of other uses
+constexpr std::uint64_t kFirstTakeWorld = 1ULL << 42U;  // far beyond the numbers of other uses
 constexpr double kShadowRadiusM = 0.5;
 constexpr double kDiscM = 0.02;  // height of the turntable
 constexpr double kTurnRad = 2.0 * M_PI + 0.25;
 constexpr int kStrokes = 6;
-constexpr double kTallestBesideM = 0.13;  // what stands about must not hide the object
+constexpr double kTallestBesideShownM = 0.13;  // what stands about must not hide the object
 
 // Parts of a stroke: the hand comes, turns the object, goes, and is away.
 constexpr double kComeShare = 0.15;
 constexpr double kTurnShare = 0.6;
 constexpr double kGoShare = 0.15;
-constexpr double kAwayM = 0.5;
+constexpr double kHandAwayM = 0.5;
 
-double eased(double share) {
+double eased_stroke(double share) {
   const double t = std::clamp(share, 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
 }
 
 Eigen::Isometry3d turned_about_z(double angle_rad) {
   return Eigen::Isometry3d(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()));
-}
-
-double height(const Thing& thing) {
-  return mesh_bounds(thing.mesh).sizes().z();
 }
 
 }  // namespace
@@ -55,8 +53,8 @@ std::string take_kind_name(TakeKind kind) {
 
 TakeStage::TakeStage(const TakePlan& plan)
     : kind_(plan.kind),
-      seed_(
-          aspect_seed(world_seed(plan.use, kFirstWorld + plan.number), kTakeAspects + (plan.laid_down ? 200U : 100U))),
+      seed_(aspect_seed(world_seed(plan.use, kFirstTakeWorld + plan.number),
+                        take_aspect::kTakeAspects + (plan.laid_down ? 200U : 100U))),
       seconds_(plan.seconds) {
   furnish(plan);
   put_object(plan);
@@ -67,16 +65,19 @@ TakeStage::TakeStage(const TakePlan& plan)
 
 // A table that one can walk round.
 void TakeStage::furnish(const TakePlan& plan) {
-  const std::uint64_t own = world_seed(plan.use, kFirstWorld + plan.number);
-  Random random(aspect_seed(own, kTable));
-  Room room = make_room(chance(random, 0.5) ? RoomStyle::kTable : RoomStyle::kMeeting, aspect_seed(own, kRoom));
+  const std::uint64_t own = world_seed(plan.use, kFirstTakeWorld + plan.number);
+  Random random(aspect_seed(own, take_aspect::kTable));
+  Room room =
+      make_room(chance(random, 0.5) ? RoomStyle::kTable : RoomStyle::kMeeting, aspect_seed(own, take_aspect::kRoom));
   world_.items = std::move(room.items);
-  set_lighting(world_, plan.number % 4 == 3 ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, kLight));
+  set_lighting(world_, plan.number % 4 == 3 ? TimeOfDay::kEvening : TimeOfDay::kDay,
+               aspect_seed(own, take_aspect::kLight));
   world_.focus_radius_m = kShadowRadiusM;
-  TableSetter setter(world_, room.table_half, aspect_seed(own, kTable));
+  TableSetter setter(world_, room.table_half, aspect_seed(own, take_aspect::kTable));
   for (int i = 0; i < 5; ++i) {
-    const ThingPtr thing = make_distractor(random.below(kDistractorKinds), aspect_seed(own, kFirstThing + i));
-    if (height(*thing) > kTallestBesideM) continue;
+    const ThingPtr thing =
+        make_distractor(random.below(kDistractorKinds), aspect_seed(own, take_aspect::kFirstThing + i));
+    if (thing_height(*thing) > kTallestBesideShownM) continue;
     const double side = i % 2 == 0 ? 1.0 : -1.0;
     const double near = std::min(side * 0.6, side * 0.98);
     setter.stand(thing, setter.region(near, near + 0.38, -0.9, 0.9), M_PI, 0);
@@ -85,12 +86,12 @@ void TakeStage::furnish(const TakePlan& plan) {
 
 void TakeStage::put_object(const TakePlan& plan) {
   const TaughtObject object = make_taught_object(plan.object_id);
-  Random random(aspect_seed(seed_, kPlace));
+  Random random(aspect_seed(seed_, take_aspect::kPlace));
   Placed placed{object.thing, Eigen::Isometry3d::Identity(), object.id, true};
   if (plan.laid_down) {
     placed = put_lying(object.thing, object.id, random).front();
   } else {
-    placed.T_world_object.translate(Eigen::Vector3d(0.0, 0.0, 0.5 * height(*object.thing)));
+    placed.T_world_object.translate(Eigen::Vector3d(0.0, 0.0, 0.5 * thing_height(*object.thing)));
   }
   if (kind_ == TakeKind::kTurntable) add_turntable(plan);
   const double aside = kind_ == TakeKind::kTurntable ? 0.01 : 0.03;
@@ -104,7 +105,7 @@ void TakeStage::put_object(const TakePlan& plan) {
 }
 
 void TakeStage::add_turntable(const TakePlan& plan) {
-  Random random(aspect_seed(world_seed(plan.use, kFirstWorld + plan.number), kTurning));
+  Random random(aspect_seed(world_seed(plan.use, kFirstTakeWorld + plan.number), take_aspect::kTurning));
   const cv::Mat cover = plain({256, 256}, hsv(random.uniform(0, 360), 0.1, random.uniform(0.3, 0.8)), 0.05, random);
   const ThingPtr disc = make_asset("turntable", turned_mesh({{0.16, 0.0}, {0.16, kDiscM}}, cover), 0.08F);
   turntable_ = world_.items.size();
@@ -120,12 +121,12 @@ void TakeStage::choose_camera(const TakePlan& plan) {
   settings.target_world = object.T_world_object.translation();
   settings.distance_m = std::clamp(0.43 + 0.9 * mesh_diameter(object.thing->mesh), 0.5, 0.85);
   if (kind_ == TakeKind::kHandHeld) {
-    path_.emplace(settings, aspect_seed(seed_, kPath));
+    path_.emplace(settings, aspect_seed(seed_, take_aspect::kPath));
     return;
   }
   settings.turn_rad = 0.0;
-  T_still_world_ = HandPath(settings, aspect_seed(seed_, kPath)).T_camera_world(0.0);
-  if (kind_ == TakeKind::kTurntable) turning_.emplace(plan.seconds, aspect_seed(seed_, kTurning));
+  T_still_world_ = HandPath(settings, aspect_seed(seed_, take_aspect::kPath)).T_camera_world(0.0);
+  if (kind_ == TakeKind::kTurntable) turning_.emplace(plan.seconds, aspect_seed(seed_, take_aspect::kTurning));
 }
 
 // About where it stands; a turntable turns about its own middle.
@@ -149,7 +150,7 @@ void TakeStage::add_hands() {
     object.T_world_object = object_at(stroke.start_rad);
     // From the camera's right, or its left.
     place.arm_azimuth_rad = std::atan2(eye.y(), eye.x()) + (i % 2 == 0 ? 1.2 : -1.2);
-    Random random(aspect_seed(seed_, kTurning));  // the same skin and sleeve each time
+    Random random(aspect_seed(seed_, take_aspect::kTurning));  // the same skin and sleeve each time
     const Placed hand = take_hold(object, place, random);
     stroke.T_object_hand = object.T_world_object.inverse() * hand.T_world_object;
     stroke.hand = world_.items.size();
@@ -162,16 +163,18 @@ double TakeStage::turned_rad(double seconds) const {
   if (turning_) return kTurnRad * turning_->at(seconds);
   double turned = 0.0;
   for (const Stroke& stroke : strokes_)
-    turned += eased(((seconds - stroke.start_s) / stroke.seconds - kComeShare) / kTurnShare) * kTurnRad / kStrokes;
+    turned +=
+        eased_stroke(((seconds - stroke.start_s) / stroke.seconds - kComeShare) / kTurnShare) * kTurnRad / kStrokes;
   return turned;
 }
 
 void TakeStage::move_hand(const Stroke& stroke, double seconds, World& world) const {
   const double share = (seconds - stroke.start_s) / stroke.seconds;
-  const double away = std::max(eased(1.0 - share / kComeShare), eased((share - kComeShare - kTurnShare) / kGoShare));
+  const double away =
+      std::max(eased_stroke(1.0 - share / kComeShare), eased_stroke((share - kComeShare - kTurnShare) / kGoShare));
   const Eigen::Isometry3d T_world_hand = world.items[object_].T_world_object * stroke.T_object_hand;
   Eigen::Isometry3d& placed = world.items[stroke.hand].T_world_object;
-  placed = Eigen::Translation3d(kAwayM * away * (T_world_hand.linear().col(0) + Eigen::Vector3d(0.0, 0.0, 0.3))) *
+  placed = Eigen::Translation3d(kHandAwayM * away * (T_world_hand.linear().col(0) + Eigen::Vector3d(0.0, 0.0, 0.3))) *
            T_world_hand;
   // Out of everybody's sight when it is away.
   if (away >= 1.0) placed.translation() = Eigen::Vector3d(0.0, 0.0, -50.0);
