@@ -6,6 +6,9 @@
 #include <optional>
 #include <random>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "pipeline/base/checks.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
@@ -86,6 +89,28 @@ TEST(FuzzReplay, DamagedInputsAreRefusedInOneLineOrNotReadInPartWithoutAWord) {
         taken_of(target, damaged, what + ", repaired");
       }
     }
+  }
+}
+
+std::string repeated(const std::string& text) {
+  constexpr int kTimes = 3000;
+  std::string out;
+  for (int i = 0; i < kTimes; ++i) out += text;
+  return out;
+}
+
+// Long ones of one word, by target.
+TEST(FuzzReplay, NestingWithoutEndThatOnceFailedDoesNotFailAgain) {
+  const std::vector<std::pair<std::string, std::string>> inputs = {
+      {"places", "cameras:\n  A:" + repeated(" [\n") + " "},
+      {"calibration", "image_width: 640\na: " + repeated("[\n")},
+      {"calibration", "image_width: 640\na:\n  " + repeated("- ") + "1\n"}};
+  for (const auto& [name, text] : inputs) {
+    const std::vector<FuzzTarget> targets = fuzz_targets();
+    const auto target =
+        std::find_if(targets.begin(), targets.end(), [&](const FuzzTarget& it) { return it.name == name; });
+    ASSERT_NE(target, targets.end()) << name;
+    EXPECT_FALSE(taken_of(*target, bytes_of_text(text), text.substr(0, 24)).has_value());
   }
 }
 
