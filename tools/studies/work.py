@@ -23,6 +23,7 @@ from studies.stream import ProcessFailed
 INPUT = re.compile(r"\{([^{}]+)\}")
 MODULES = pathlib.Path(__file__).resolve().parent.parent  # where the package lies
 LOG_TAIL = 10
+INTERRUPTED = "interrupted; the same command goes on from here"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -303,18 +304,23 @@ def command_in(out):
     except (UnitFailed, ProcessFailed) as error:
         die(error)
     except KeyboardInterrupt:
-        die("interrupted; the same command goes on from here")
+        die(INTERRUPTED)
     step("done")
 
 
 def main(parse, targets, network, study):
     """The command of a study: `parse` reads its words, `targets(options)` are built, `network(options)` enters the network that
     is measured on, and run(options) of the module `study`, which needs what has been installed by then, does the work."""
-    options = parse(sys.argv[1:])
-    options.programs = pathlib.Path(prepare(options, targets(options)))
-    options.network = network(options)
-    with command_in(options.out):
-        importlib.import_module(study).run(options)
+    try:
+        options = parse(sys.argv[1:])
+        options.programs = pathlib.Path(prepare(options, targets(options)))
+        options.network = network(options)
+        with command_in(options.out):
+            importlib.import_module(study).run(options)
+    except UnitFailed as error:  # of what the words name
+        die(error)
+    except KeyboardInterrupt:  # while that is read, or programs are built
+        die(INTERRUPTED)
 
 
 def make(store, fresh=False):

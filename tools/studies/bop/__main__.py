@@ -2,10 +2,10 @@
 
 import argparse
 import pathlib
-import sys
 
-from studies.command import Options, die, positive, prepare
-from studies.work import command_in
+from studies import work
+from studies.bop.dataset import BadSet, open_dataset, read_store
+from studies.command import Options, positive
 
 TARGETS = ("hs-teach", "hs-evaluate", "hs-study")
 
@@ -51,12 +51,11 @@ def parse(words):
         parser.error("--seeds with --objects: a store is of one teaching")
     options.out = options.out.resolve()
     options.objects = options.objects and options.objects.resolve()
+    options.datasets = open_all(options)  # what is wrong with them is told before anything is built
     return options
 
 
 def open_all(options):
-    from studies.bop.dataset import BadSet, open_dataset, read_store
-
     if options.objects:
         read_store(options.objects)
     datasets = [open_dataset(text, options.split, options.every, not options.objects) for text in options.dataset]
@@ -69,20 +68,7 @@ def open_all(options):
 
 
 def main():
-    options = parse(sys.argv[1:])
-    from studies.bop.choose import BadSet
-
-    try:
-        datasets = open_all(options)  # what is wrong with them is told before anything is built
-        options.programs = pathlib.Path(prepare(options, TARGETS))
-        from studies.bop import report  # needs what has been installed
-
-        with command_in(options.out):
-            report.run(options, datasets)
-    except BadSet as error:
-        die(error)
-    except KeyboardInterrupt:  # while sets are read or programs built
-        die("interrupted; the same command goes on from here")
+    work.main(parse, lambda _: TARGETS, lambda _: None, "studies.bop.report")
 
 
 if __name__ == "__main__":

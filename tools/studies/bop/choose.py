@@ -6,12 +6,14 @@ import argparse
 import json
 import pathlib
 
+from studies.work import UnitFailed
+
 PICTURES = ("rgb", "depth", "mask_visib")
 FILES = ("scene_camera.json", "scene_gt.json", "scene_gt_info.json")
 IGNORED = 0.0  # visible fraction of what is there but is no target: neither missed nor false
 
 
-class BadSet(Exception):
+class BadSet(UnitFailed):
     """One line that names the file, what it says, and what was expected."""
 
 

@@ -173,8 +173,8 @@ def summarise(options, datasets, folders, seconds, plan):
     return {"datasets": rounded(out), **about("tools/bench bop"), "settings": settings(options, datasets)}
 
 
-def run(options, datasets):
-    plan = Plan(options)
+def run(options):
+    plan, datasets = Plan(options), options.datasets
     step("teach")
     taught, seconds = plan.teach(datasets)
     step("find and measure")
