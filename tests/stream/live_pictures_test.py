@@ -14,12 +14,11 @@ import sys
 import time
 
 from studies.stream import Process, enter_private_network
-from virtual_display import VirtualDisplay
+from studies.virtual_display import AWAY, VirtualDisplay, open_viewer, row_of_table
 
 BOX_COLOURS = {"bowl": (0xE6, 0x9F, 0x00), "soda_can": (0xF0, 0xE4, 0x42)}
 AXES = ((255, 60, 60), (60, 220, 60), (60, 120, 255))  # x, y, z
 COLOUR_SIZE = (640, 480)  # of the scene's frames
-AWAY = 3000  # where windows are put that are done with
 
 
 def wait_until(condition, complaint, seconds=60):
@@ -49,11 +48,6 @@ def await_overlay(display, window, size=None, seconds=120):
     raise AssertionError(f"no overlay after {seconds} s: {boxes} box pixels, {axis} axis pixels")
 
 
-def row_of_table(row):
-    """The middle of a row of spy's table, from 1, in pixels."""
-    return 16 * row + 12
-
-
 def written(picture, row):
     """Whether there is text in the first column of a row."""
     return picture.cut(2, row_of_table(row) - 6, 120, 12).count((51, 51, 51)) > 20  # the colour of its text
@@ -62,33 +56,6 @@ def written(picture, row):
 def rows_of(picture):
     """How many rows of spy's table are written."""
     return sum(written(picture, row) for row in range(1, 20))
-
-
-def open_viewer(display, spy, channel):
-    """Double-clicks through the rows of spy's table until the window of a channel opens."""
-    for row in range(1, 12):
-        display.do("mousemove", 100, row_of_table(row), "click", "--repeat", 2, "--delay", 80, 1)
-        try:
-            title, window = channel_window(display)
-        except AssertionError:
-            continue  # a row without a channel
-        if title == channel:
-            return window
-        display.do("windowmove", window, AWAY, AWAY)
-    raise AssertionError(f"{channel} is not in spy's table: {spy.log.read_text()}")
-
-
-def channel_window(display, seconds=4):
-    """Title and id of a window that is named after a channel and in sight."""
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        found = subprocess.run(["xdotool", "search", "--onlyvisible", "--name", "^[A-Z]+_[A-Z_]+$"],
-                               capture_output=True, text=True, check=False).stdout.split()
-        for window in found:
-            if display.geometry(window)[0] < AWAY:
-                return display.do("getwindowname", window).strip(), window
-        time.sleep(0.1)
-    raise AssertionError("no window of a channel")
 
 
 def check_spy(tools, logs, display, out):

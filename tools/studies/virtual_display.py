@@ -1,4 +1,5 @@
-"""A display without a screen (Xvfb) that can be clicked on and photographed: its pixels lie in a file."""
+"""A display without a screen (Xvfb) that can be clicked on and photographed: its pixels lie in a file; and how lcm-spy's
+viewers are opened on it. Used by the tests too."""
 
 import os
 import pathlib
@@ -6,6 +7,8 @@ import struct
 import subprocess
 import time
 import zlib
+
+AWAY = 3000  # where windows are put that are done with
 
 
 class VirtualDisplay:
@@ -107,3 +110,35 @@ class Picture:
             size = struct.pack(">IIBBBBB", self.width, self.height, 8, 2, 0, 0, 0)
             for kind, body in ((b"IHDR", size), (b"IDAT", zlib.compress(raw)), (b"IEND", b"")):
                 png.write(struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body)))
+
+
+def row_of_table(row):
+    """The middle of a row of spy's table, from 1, in pixels."""
+    return 16 * row + 12
+
+
+def open_viewer(display, spy, channel):
+    """Double-clicks through the rows of spy's table until the window of a channel opens."""
+    for row in range(1, 12):
+        display.do("mousemove", 100, row_of_table(row), "click", "--repeat", 2, "--delay", 80, 1)
+        try:
+            title, window = channel_window(display)
+        except AssertionError:
+            continue  # a row without a channel
+        if title == channel:
+            return window
+        display.do("windowmove", window, AWAY, AWAY)
+    raise AssertionError(f"{channel} is not in spy's table: {spy.log.read_text()}")
+
+
+def channel_window(display, seconds=4):
+    """Title and id of a window that is named after a channel and in sight."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        found = subprocess.run(["xdotool", "search", "--onlyvisible", "--name", "^[A-Z]+_[A-Z_]+$"],
+                               capture_output=True, text=True, check=False).stdout.split()
+        for window in found:
+            if display.geometry(window)[0] < AWAY:
+                return display.do("getwindowname", window).strip(), window
+        time.sleep(0.1)
+    raise AssertionError("no window of a channel")

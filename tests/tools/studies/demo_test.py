@@ -11,12 +11,20 @@ from unittest import mock
 from houghstream import status_t, teaching_t
 from studies import command
 from studies.demo import live, pose_scatter, report, teach
+from studies.demo.__main__ import parse
 from studies.measured import write_json
 
 
 def observed(received, processed, skipped, on_bus):
     detector = {"received": received, "processed": processed, "skipped": skipped}
     return {"processes": {"hs-detect": detector}, "frames_detected": on_bus, "frames_with_poses": on_bus}
+
+
+class Words(unittest.TestCase):
+    def test_pictures_are_of_the_rendered_scene_alone(self):
+        for other in (("--live",), ("--teach",)):
+            with self.assertRaisesRegex(SystemExit, "--pictures are of the rendered scene"):
+                parse(["--pictures", "somewhere", *other])
 
 
 class Messages(unittest.TestCase):

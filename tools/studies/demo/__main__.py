@@ -25,6 +25,8 @@ def parse(words):
                                               "again")  # fmt: skip
     add("--real", metavar="DIR", help="camera-recorded data (DIR/objects, background, scenes, clutter) instead of "
                                       "rendered data")  # fmt: skip
+    add("--pictures", type=pathlib.Path, metavar="DIR", help="instead of a report writes the front page's pictures of the "
+                                                             "rendered scene, hs_view.jpg and lcm_spy.jpg")  # fmt: skip
     add("--shared-bus", action="store_true", help="use this machine's own network, so that lcm-spy sees the stream; "
                                                   "default: a private network")  # fmt: skip
     add("--scene", default="table_small_1", metavar="NAME", help="rendered test scene (default table_small_1)")
@@ -43,8 +45,11 @@ def parse(words):
         die("--live plays a rendered scene; it does not go with --real")
     if options.teach and (options.live or options.real):
         die("--teach is a demo of its own; it goes neither with --live nor with --real")
+    if options.pictures and (options.live or options.real or options.teach):
+        die("--pictures are of the rendered scene; it goes with none of --live, --real and --teach")
     if options.unplug and not options.live:
         die("--unplug goes with --live")
+    options.pictures = options.pictures and options.pictures.resolve()
     paths = {options.real, options.bin, str(options.out)}
     options.command = " ".join([parser.prog, *("DIR" if word in paths else word for word in words)])
     kind = "teach_demo" if options.teach else "live" if options.live else "real" if options.real else "demo"

@@ -139,8 +139,16 @@ def run_live(options, programs):
     print(f"{out}/summary.json, {out}/overlay.png, {out}/overlay.mp4")
 
 
+def run_pictures(options):
+    from studies.demo import pictures  # which alone needs PIL
+
+    pictures.take(options, Demo(options, options.programs, rendered_units(options)))
+
+
 def run(options):
-    if options.teach:
+    if options.pictures:
+        run_pictures(options)
+    elif options.teach:
         teach.run(options, options.programs)
     elif options.live:
         run_live(options, options.programs)
