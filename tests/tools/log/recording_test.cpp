@@ -136,25 +136,25 @@ TEST(Recording, WhatCannotBeOpenedOrMakesNoSenseIsRefused) {
 
 namespace fs = std::filesystem;
 
-constexpr int kFrames = 3;
-const Camera kCamera = make_test_frame(0).camera;
+constexpr int kImported = 3;
+const Camera kImportedCamera = make_test_frame(0).camera;
 
 TEST(ImportLog, KeepsTimesAndAddsWhatIsMissing) {
   const fs::path folder = fresh_folder("import_keeps");
   LossReport losses;
   RecordingSettings settings;
-  settings.source = log_of(folder, kFrames, "OPENNI_FRAME", foreign_images);
-  settings.camera = kCamera;
+  settings.source = log_of(folder, kImported, "OPENNI_FRAME", foreign_images);
+  settings.camera = kImportedCamera;
   import_log(settings, "MINE", folder / "out", losses);
   LogReader log(folder / "out");
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kImported; ++i) {
     const auto event = log.next();
     ASSERT_TRUE(event.has_value());
     EXPECT_EQ(event->channel, "MINE");
     EXPECT_EQ(event->timestamp, 1'500'000'000'000'000 + 33'000 * 2 * i);
     const auto message = decode_message<images_t>({event->data.data(), event->data.size()});
     EXPECT_EQ(message.utime, numbered_frame(i).id.utime);
-    EXPECT_EQ(camera_of(message), kCamera);
+    EXPECT_EQ(camera_of(message), kImportedCamera);
     EXPECT_EQ(sequence_of(message), i);
   }
 }
@@ -182,7 +182,7 @@ TEST(ImportLog, RefusesWhatMakesNoSense) {
   const fs::path folder = fresh_folder("import_refused");
   LossReport losses;
   RecordingSettings settings;
-  settings.source = log_of(folder, kFrames, "OPENNI_FRAME", foreign_images);
+  settings.source = log_of(folder, kImported, "OPENNI_FRAME", foreign_images);
   EXPECT_THROW(import_log(settings, "FRAMES", settings.source, losses), InputError) << "the log itself";
   for (const std::string& channel : {std::string(), std::string(64, 'x')})
     EXPECT_THROW(import_log(settings, channel, folder / "out", losses), InputError) << "LCM cannot send on it";
