@@ -130,26 +130,28 @@ void PoseTrack::predict(std::int64_t utime) {
   for (Hypothesis& hypothesis : hypotheses_) hypothesis.filter.predict(utime);
 }
 
-double PoseTrack::distance(const PoseMeasurement& measured, const Symmetries& symmetries,
-                           const Eigen::Vector3d& centre) const {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Hypothesis& hypothesis : hypotheses_) {
-    const Eigen::Isometry3d& T = hypothesis.filter.T_world_object();
-    nearest =
-        std::min(nearest, (nearest_equivalent(measured.T_world_object, T, symmetries) * centre - T * centre).norm());
+void PoseTrack::take(const PoseObservation& pose, const Symmetries& symmetries, bool doubted) {
+  constexpr double kLead = 1.0;  // by which another hypothesis has to be ahead
+  const double passed = std::max(0.0, seconds_between(weighed_utime_, pose.frame.utime));
+  weighed_utime_ = std::max(weighed_utime_, pose.frame.utime);
+  for (Hypothesis& hypothesis : hypotheses_) hypothesis.weight *= std::exp(-passed / kForgetS);
+  const std::size_t index = hypothesis_for(pose.measured, symmetries);
+  Hypothesis& hypothesis = hypotheses_[index];
+  hypothesis.weight = std::min(kMaxWeight, hypothesis.weight + std::max(0.1, log_odds_of(pose.quality)));
+  PoseObservation turned = pose;
+  turned.measured.T_world_object =
+      nearest_equivalent(pose.measured.T_world_object, hypothesis.filter.T_world_object(), symmetries);
+  hypothesis.filter.predict(pose.frame.utime);
+  if (hypothesis.filter.moving()) {
+    update_moving(turned.measured, hypothesis);
+  } else {
+    update_standing(turned, doubted, hypothesis);
   }
-  return nearest;
-}
-
-double PoseTrack::angle(const PoseMeasurement& measured, const Symmetries& symmetries) const {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Hypothesis& hypothesis : hypotheses_) {
-    const Eigen::Isometry3d& T = hypothesis.filter.T_world_object();
-    nearest = std::min(
-        nearest,
-        local_coordinates_about_world(nearest_equivalent(measured.T_world_object, T, symmetries), T).tail<3>().norm());
+  if (hypothesis.weight > hypotheses_[best_].weight + kLead) best_ = index;
+  if (hypothesis.filter.moving() && index == best_ && hypotheses_.size() > 1) {
+    hypotheses_ = {hypothesis};  // what was thought of where it stood is over
+    best_ = 0;
   }
-  return nearest;
 }
 
 // The hypothesis that the measured rotation belongs to: rather the best, else the nearest, else a new one, which takes
@@ -177,40 +179,6 @@ std::size_t PoseTrack::hypothesis_for(const PoseMeasurement& measured, const Sym
   }
   hypotheses_[weakest] = {MotionFilter(measured, settings_.motion), 0.0};
   return weakest;
-}
-
-void PoseTrack::take(const PoseObservation& pose, const Symmetries& symmetries, bool doubted) {
-  constexpr double kLead = 1.0;  // by which another hypothesis has to be ahead
-  const double passed = std::max(0.0, seconds_between(weighed_utime_, pose.frame.utime));
-  weighed_utime_ = std::max(weighed_utime_, pose.frame.utime);
-  for (Hypothesis& hypothesis : hypotheses_) hypothesis.weight *= std::exp(-passed / kForgetS);
-  const std::size_t index = hypothesis_for(pose.measured, symmetries);
-  Hypothesis& hypothesis = hypotheses_[index];
-  hypothesis.weight = std::min(kMaxWeight, hypothesis.weight + std::max(0.1, log_odds_of(pose.quality)));
-  PoseObservation turned = pose;
-  turned.measured.T_world_object =
-      nearest_equivalent(pose.measured.T_world_object, hypothesis.filter.T_world_object(), symmetries);
-  hypothesis.filter.predict(pose.frame.utime);
-  if (hypothesis.filter.moving()) {
-    update_moving(turned.measured, hypothesis);
-  } else {
-    update_standing(turned, doubted, hypothesis);
-  }
-  if (hypothesis.weight > hypotheses_[best_].weight + kLead) best_ = index;
-  if (hypothesis.filter.moving() && index == best_ && hypotheses_.size() > 1) {
-    hypotheses_ = {hypothesis};  // what was thought of where it stood is over
-    best_ = 0;
-  }
-}
-
-// A camera whose place is a little wrong sees the object beside where the others do, always. So only one that has seen
-// it where it is, or that is the only one to see it, can tell that it has moved.
-bool PoseTrack::can_trigger_motion(const std::string& channel, std::int64_t utime) const {
-  constexpr double kOfLateS = 0.5;
-  if (witnesses_.at(channel).agreed_utime != 0) return true;
-  return std::none_of(witnesses_.begin(), witnesses_.end(), [&](const auto& entry) {
-    return entry.first != channel && seconds_between(entry.second.agreed_utime, utime) < kOfLateS;
-  });
 }
 
 void PoseTrack::update_standing(const PoseObservation& pose, bool doubted, Hypothesis& hypothesis) {
@@ -245,6 +213,16 @@ void PoseTrack::update_standing(const PoseObservation& pose, bool doubted, Hypot
   witnesses_[pose.frame.channel].agreed_utime = pose.frame.utime;
 }
 
+// A camera whose place is a little wrong sees the object beside where the others do, always. So only one that has seen
+// it where it is, or that is the only one to see it, can tell that it has moved.
+bool PoseTrack::can_trigger_motion(const std::string& channel, std::int64_t utime) const {
+  constexpr double kOfLateS = 0.5;
+  if (witnesses_.at(channel).agreed_utime != 0) return true;
+  return std::none_of(witnesses_.begin(), witnesses_.end(), [&](const auto& entry) {
+    return entry.first != channel && seconds_between(entry.second.agreed_utime, utime) < kOfLateS;
+  });
+}
+
 void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypothesis) {
   constexpr double kWithinS = 0.4;
   constexpr double kMinS = 0.28;
@@ -269,6 +247,28 @@ void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypot
     hypothesis.filter.stop();
     recent_.clear();
   }
+}
+
+double PoseTrack::distance(const PoseMeasurement& measured, const Symmetries& symmetries,
+                           const Eigen::Vector3d& centre) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Hypothesis& hypothesis : hypotheses_) {
+    const Eigen::Isometry3d& T = hypothesis.filter.T_world_object();
+    nearest =
+        std::min(nearest, (nearest_equivalent(measured.T_world_object, T, symmetries) * centre - T * centre).norm());
+  }
+  return nearest;
+}
+
+double PoseTrack::angle(const PoseMeasurement& measured, const Symmetries& symmetries) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Hypothesis& hypothesis : hypotheses_) {
+    const Eigen::Isometry3d& T = hypothesis.filter.T_world_object();
+    nearest = std::min(
+        nearest,
+        local_coordinates_about_world(nearest_equivalent(measured.T_world_object, T, symmetries), T).tail<3>().norm());
+  }
+  return nearest;
 }
 
 }  // namespace houghstream::tracks

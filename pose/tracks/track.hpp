@@ -51,7 +51,8 @@ struct FrameObservation {
   const ObjectPoses& poses;                ///< names the frame
   const Detections* detections = nullptr;  ///< of the frame, where they are known
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  std::function<const RgbdFrame*()> image;  ///< its depth, asked only where that is needed; null where there is none
+  std::function<const RgbdFrame*()> image =
+      nullptr;  ///< its depth, asked only where it is needed; null where there is none
   /// Of the frame of this camera that has come last: without it, the frame of the poses.
   std::optional<std::int64_t> newest_utime = std::nullopt;
   FrameNumber number = {};  ///< of its source, as far as that says one
@@ -131,8 +132,8 @@ class PoseTrack {
 
   std::size_t hypothesis_for(const PoseMeasurement& measured, const Symmetries& symmetries);
   void update_standing(const PoseObservation& pose, bool doubted, Hypothesis& hypothesis);
-  void update_moving(const PoseMeasurement& measured, Hypothesis& hypothesis);
   bool can_trigger_motion(const std::string& channel, std::int64_t utime) const;
+  void update_moving(const PoseMeasurement& measured, Hypothesis& hypothesis);
 
   PoseTrackSettings settings_;
   std::vector<Hypothesis> hypotheses_;

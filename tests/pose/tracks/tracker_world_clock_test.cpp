@@ -1,4 +1,4 @@
-#include "pose/tracks/world_clock.hpp"
+#include "pose/tracks/tracker.hpp"
 
 #include <gtest/gtest.h>
 

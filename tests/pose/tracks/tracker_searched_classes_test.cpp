@@ -1,4 +1,4 @@
-#include "pose/tracks/searched_classes.hpp"
+#include "pose/tracks/tracker.hpp"
 
 #include <gtest/gtest.h>
 
