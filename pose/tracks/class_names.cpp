@@ -26,7 +26,7 @@ const Track* find_namesake(const ObjectPose& pose, const Eigen::Isometry3d& T_wo
   const PoseMeasurement measured{0, T_world_camera * *pose.T_camera_object, Covariance6::Identity()};
   const auto found = std::find_if(tracks.begin(), tracks.end(), [&](const Track& track) {
     const auto model = models.find(track.class_name);
-    if (!track.there() || model == models.end() || model->second.object_id != pose.class_id) return false;
+    if (!track.is_present() || model == models.end() || model->second.object_id != pose.class_id) return false;
     return track.pose.distance(measured, model->second.symmetries, model->second.centre) <
                0.5 * model->second.box_radius_m &&
            track.pose.angle(measured, model->second.symmetries) < same_rotation_rad;
@@ -37,7 +37,7 @@ const Track* find_namesake(const ObjectPose& pose, const Eigen::Isometry3d& T_wo
 /// Marks what was begun in the place of a renamed object while only its new name came, for being forgotten.
 void mark_doubles(std::size_t renamed_index, const TrackModels& models, std::vector<Track>& tracks) {
   const Track& kept = tracks[renamed_index];
-  if (kept.id <= 0 || !kept.there()) return;
+  if (kept.id <= 0 || !kept.is_present()) return;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     Track& other = tracks[i];
     if (i == renamed_index || other.class_name != kept.class_name || (other.id > 0 && other.id < kept.id)) continue;
@@ -69,7 +69,7 @@ void retire_tracks(const std::set<std::string>& removed, double gone_log_odds, s
                               [&](const Track& track) { return track.id == 0 && is_removed(track); }),
                tracks.end());
   for (Track& track : tracks) {
-    if (!track.there() || !is_removed(track)) continue;
+    if (!track.is_present() || !is_removed(track)) continue;
     track.deleted_utime = track.pose.filter().utime();
     track.log_odds = std::min(track.log_odds, gone_log_odds);
     track.state = TrackState::kGone;
@@ -85,7 +85,8 @@ void rename_tracks(const std::map<std::string, std::string>& renamed, const Trac
     Track& track = tracks[i];
     const auto found = renamed.find(track.class_name);
     if (found == renamed.end()) continue;
-    if (track.id != 0 && track.there()) log_info("{} #{} is called {} now", track.class_name, track.id, found->second);
+    if (track.id != 0 && track.is_present())
+      log_info("{} #{} is called {} now", track.class_name, track.id, found->second);
     track.class_name = found->second;
     changed.push_back(i);
   }

@@ -21,7 +21,7 @@ struct ModelChange {
 ModelChange find_model_change(const TrackModels& before, const TrackModels& after);
 
 /// Ends the objects of removed classes: they are gone from here on, and candidates are forgotten.
-/// `gone_log_odds`: ExistenceSettings::gone.
+/// `gone_log_odds`: ExistenceSettings::delete_log_odds.
 void retire_tracks(const std::set<std::string>& removed, double gone_log_odds, std::vector<Track>& tracks);
 
 /// Gives objects the new names of their classes. What was begun in the place of one of them, while only its new name

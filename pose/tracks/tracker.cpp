@@ -45,24 +45,24 @@ std::optional<WorldObjects> Tracker::update(const FrameObservation& received) {
   return report(received, frame.utime);
 }
 
-/// The camera's clock, which the frame has set; null where the frame is passed over.
+/// Sets the camera's clock to the frame; returns null where the frame is passed over.
 CameraClock* Tracker::begin_frame(const FrameObservation& received) {
   const FrameId& id = received.poses.frame;
   const StampedFrame frame{id, received.number, received.newest_utime.value_or(id.utime)};
   const TimeOrder order = clock_.order_of(frame);
   if (order == TimeOrder::kLate) return nullptr;
-  if (order == TimeOrder::kAnew) begin_world();
+  if (order == TimeOrder::kReset) begin_world();
   return &clock_.set(frame);
 }
 
-/// The poses of classes that this frame was not told of yet: another detector's, or all.
+/// Returns the poses of classes that no earlier result of this frame has had.
 std::vector<PoseObservation> Tracker::observe_new_poses(const FrameObservation& seen, CameraClock& camera) const {
   std::vector<PoseObservation> poses = observe_poses(seen.poses, seen.T_world_camera, models_);
-  std::set<std::string>& told = camera.classes;
+  std::set<std::string>& known = camera.classes;
   poses.erase(std::remove_if(poses.begin(), poses.end(),
-                             [&](const PoseObservation& pose) { return told.count(pose.class_name) > 0; }),
+                             [&](const PoseObservation& pose) { return known.count(pose.class_name) > 0; }),
               poses.end());
-  for (const PoseObservation& pose : poses) told.insert(pose.class_name);
+  for (const PoseObservation& pose : poses) known.insert(pose.class_name);
   return poses;
 }
 
@@ -97,9 +97,9 @@ void Tracker::update_track(Track& track, const PoseObservation& pose, double sec
   constexpr double kRateHz = 30.0;
   constexpr double kMax = 4.0;
   const double share = std::clamp(seconds * kRateHz, 0.5, 1.5);
-  track.pose.take(pose, symmetries_of(models_, track.class_name), track.seen_through_s > 0.0);
+  track.pose.update(pose, symmetries_of(models_, track.class_name), track.seen_through_s > 0.0);
   track.log_odds =
-      std::min(settings_.existence.most,
+      std::min(settings_.existence.max_log_odds,
                track.log_odds + share * settings_.existence.gain * std::clamp(log_odds_of(pose.quality), 0.3, kMax));
   ++track.seen;
   track.seen_now = true;
@@ -109,7 +109,7 @@ void Tracker::update_track(Track& track, const PoseObservation& pose, double sec
   track.reason = fmt::format("seen by {}", pose.frame.channel);
 }
 
-/// What is not seen is missed once a frame, however many results that has.
+/// A track without a pose is missed once a frame, however many results the frame has.
 void Tracker::update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses,
                                        CameraClock& camera) {
   searched_classes_.note(seen.poses);
@@ -118,7 +118,7 @@ void Tracker::update_unobserved_tracks(const FrameObservation& seen, const std::
   unseen.coast_s = settings_.pose.motion.coast_s;
   std::set<std::string> missed_now;
   for (Track& track : tracks_) {
-    if (!track.there() || track.seen_now) continue;
+    if (!track.is_present() || track.seen_now) continue;
     const MissedDetection missed{
         camera.seconds, camera.results == 1,
         camera.missed.count(track.class_name) == 0 && searched_classes_.has_searched(seen.poses, track.class_name)};
@@ -150,27 +150,27 @@ bool Tracker::make_room() {
   if (tracks_.size() < settings_.max_objects) return true;
   auto oldest = tracks_.end();
   for (auto it = tracks_.begin(); it != tracks_.end(); ++it) {
-    if (!it->there() && (oldest == tracks_.end() || it->deleted_utime < oldest->deleted_utime)) oldest = it;
+    if (!it->is_present() && (oldest == tracks_.end() || it->deleted_utime < oldest->deleted_utime)) oldest = it;
   }
   if (oldest == tracks_.end()) return false;
   tracks_.erase(oldest);
   return true;
 }
 
-/// Candidates that have been seen enough become objects, or are the ones that were lost.
+/// Candidates that have been observed enough become objects, or are found to be earlier ones.
 void Tracker::confirm_tracks(std::int64_t utime) {
   const ExistenceSettings& how = settings_.existence;
   for (Track& candidate : tracks_) {
     const double spread_s = seconds_between(candidate.first_utime, candidate.last_seen.utime);
-    if (candidate.id != 0 || !candidate.there() || candidate.log_odds < how.confirmed ||
-        candidate.seen < how.confirmed_frames || spread_s < how.confirmed_s)
+    if (candidate.id != 0 || !candidate.is_present() || candidate.log_odds < how.confirm_log_odds ||
+        candidate.seen < how.min_frames || spread_s < how.min_duration_s)
       continue;
     if (Track* earlier = find_reidentified(candidate, utime)) {
       const std::int64_t id = earlier->id;
       candidate.id = id;
       candidate.first_utime = earlier->first_utime;
       candidate.seen += earlier->seen;
-      earlier->id = -1;  // forgotten below
+      earlier->id = -1;  // for forget_tracks()
       log_info("{} #{} is in another place", candidate.class_name, id);
     } else {
       candidate.id = next_id_++;
@@ -179,8 +179,8 @@ void Tracker::confirm_tracks(std::int64_t utime) {
   }
 }
 
-/// The object that a candidate was before it was carried or taken away: one of its class that is gone, that is not
-/// where it was, or that a hand hides while no more of its class have ever been seen together.
+/// Returns the object that a candidate was before it was carried or taken away: one of its class that is gone, that is
+/// not in its place, or that a hand occludes while no more of its class have ever been seen together.
 Track* Tracker::find_reidentified(const Track& candidate, std::int64_t utime) {
   int visible = 1;
   for (const Track& track : tracks_) {
@@ -189,15 +189,15 @@ Track* Tracker::find_reidentified(const Track& candidate, std::int64_t utime) {
   Track* best = nullptr;
   double best_rank = 0.0;
   for (Track& track : tracks_) {
-    // One that this frame has given its number to another candidate is nobody's any more.
+    // A track whose number another candidate has got in this frame is no object any more.
     if (track.id <= 0 || track.class_name != candidate.class_name || track.seen_now) continue;
     const double unseen_s = seconds_between(track.last_seen.utime, utime);
     const bool handled = track.state == TrackState::kHidden && unseen_s < settings_.hand_occlusion_s;
     const bool lost = track.pose.filter().moving() || track.seen_through_s > 0.0;
-    const bool free = !track.there() || lost || (handled && visible <= max_instances_[candidate.class_name]);
+    const bool free = !track.is_present() || lost || (handled && visible <= max_instances_[candidate.class_name]);
     if (!free || track.last_seen.utime > candidate.last_seen.utime) continue;
     const double rank =
-        unseen_s + (track.there() ? 0.0 : 5.0) +
+        unseen_s + (track.is_present() ? 0.0 : 5.0) +
         track.pose.distance({utime, candidate.pose.filter().T_world_object(), Covariance6::Identity()},
                             symmetries_of(models_, track.class_name), centre_of(models_, track.class_name));
     if (best != nullptr && rank >= best_rank) continue;
@@ -210,11 +210,11 @@ Track* Tracker::find_reidentified(const Track& candidate, std::int64_t utime) {
 void Tracker::forget_tracks(std::int64_t utime) {
   const auto over = [&](const Track& track) {
     if (track.id < 0) return true;
-    if (track.there()) return false;
+    if (track.is_present()) return false;
     return track.id == 0 || seconds_between(track.deleted_utime, utime) > settings_.reidentification_s;
   };
   tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(), over), tracks_.end());
-  // Other classes' names a sender of rubbish may make up without end.
+  // An untrusted sender may make up names of classes without end.
   std::set<std::string> known;
   for (const Track& track : tracks_) known.insert(track.class_name);
   for (auto it = max_instances_.begin(); it != max_instances_.end();)
@@ -222,7 +222,7 @@ void Tracker::forget_tracks(std::int64_t utime) {
   searched_classes_.keep_only(known);
 }
 
-/// The objects that are published; their times are those of the frames again.
+/// Returns the objects that are published, with times of the frames' own clocks.
 WorldObjects Tracker::report(const FrameObservation& received, std::int64_t utime) const {
   WorldObjects out;
   out.frame = received.poses.frame;
@@ -231,7 +231,7 @@ WorldObjects Tracker::report(const FrameObservation& received, std::int64_t utim
   out.stages = received.poses.stages;
   for (const Track& track : tracks_) {
     if (track.id == 0) continue;
-    if (!track.there() && seconds_between(track.deleted_utime, utime) > settings_.gone_report_s) continue;
+    if (!track.is_present() && seconds_between(track.deleted_utime, utime) > settings_.gone_report_s) continue;
     const MotionFilter& filter = track.pose.filter();
     TrackedObject object;
     object.track_id = track.id;
@@ -268,20 +268,20 @@ void Tracker::set_models(TrackModels models) {
   const ModelChange change = find_model_change(models_, models);
   models_ = std::move(models);
   names_.update(change, models_);
-  retire_tracks(change.removed, settings_.existence.gone, tracks_);
+  retire_tracks(change.removed, settings_.existence.delete_log_odds, tracks_);
   rename_tracks(change.renamed, models_, tracks_);
   rename_counts(change.renamed, max_instances_);
 }
 
 namespace {
 
-/// Whether the numbers say that the source was started again, or its log: they fall, or are of another run.
+/// Returns whether the numbers show that the source, or its log, was restarted: they fall, or are of another run.
 bool is_started_again(const FrameNumber& before, const FrameNumber& after) {
   if (before.run != 0 && after.run != 0 && before.run != after.run) return true;
   return before.sequence && after.sequence && *after.sequence < *before.sequence;
 }
 
-bool goes_on(const FrameNumber& before, const FrameNumber& after) {
+bool has_risen(const FrameNumber& before, const FrameNumber& after) {
   return before.run == after.run && before.sequence && after.sequence && *after.sequence > *before.sequence;
 }
 
@@ -307,7 +307,7 @@ TimeOrder WorldClock::order_of(const StampedFrame& frame) {
       "s of one another",
       to_string(frame.id), seconds_between(now, newest_->utime), newest_->channel, kMaxOvertakenS);
   tell_new_world(frame.id, newest_->utime);
-  return TimeOrder::kAnew;
+  return TimeOrder::kReset;
 }
 
 TimeOrder WorldClock::order_after(const Camera& camera, const StampedFrame& frame, std::int64_t utime) {
@@ -318,7 +318,7 @@ TimeOrder WorldClock::order_after(const Camera& camera, const StampedFrame& fram
   const bool other_run = frame.number.run != camera.number.run && frame.number.run != 0 && camera.number.run != 0;
   if (utime <= last_utime && other_run) {
     tell_new_world(frame.id, last_utime);
-    return TimeOrder::kAnew;
+    return TimeOrder::kReset;
   }
   if (utime < last_utime) return TimeOrder::kLate;
   const double passed_s = seconds_between(last_utime, utime);
@@ -326,14 +326,14 @@ TimeOrder WorldClock::order_after(const Camera& camera, const StampedFrame& fram
   return order_ahead(last_utime, frame, utime);
 }
 
-/// Of a camera whose frames have gone back.
+/// Decides on a result of a camera whose frames have gone back in time.
 TimeOrder WorldClock::order_behind(const Camera& camera, const StampedFrame& frame, std::int64_t utime) {
   const std::int64_t last_utime = camera.clock.utime;
   if (!is_started_again(camera.number, frame.number)) {
     const auto doubted = doubted_.find(frame.id.channel);
     const std::int64_t first = doubted == doubted_.end() ? utime : doubted->second;
     if (!is_confirmed(last_utime, frame.id, utime)) return TimeOrder::kLate;
-    if (goes_on(camera.number, frame.number)) {
+    if (has_risen(camera.number, frame.number)) {
       warn(
           fmt::format("frame {} is {:.1f} s older than the last one, though its number is higher: the camera's clock "
                       "was set back, and the world goes on",
@@ -344,7 +344,7 @@ TimeOrder WorldClock::order_behind(const Camera& camera, const StampedFrame& fra
     }
   }
   tell_new_world(frame.id, last_utime);
-  return TimeOrder::kAnew;
+  return TimeOrder::kReset;
 }
 
 TimeOrder WorldClock::order_ahead(std::int64_t last_utime, const StampedFrame& frame, std::int64_t utime) {
@@ -357,8 +357,8 @@ TimeOrder WorldClock::order_ahead(std::int64_t last_utime, const StampedFrame& f
   return TimeOrder::kNext;
 }
 
-/// Whether the camera's frame before lay beside this one, far from its last one. Another result of the same frame says
-/// nothing.
+/// Returns whether the camera's previous doubted frame lay beside this one, far from its last one. Another result of
+/// the same frame confirms nothing.
 bool WorldClock::is_confirmed(std::int64_t last_utime, const FrameId& frame, std::int64_t utime) {
   const auto [doubted, is_first] = doubted_.emplace(frame.channel, utime);
   if (is_first || doubted->second == utime) return false;
@@ -437,33 +437,33 @@ void SearchedClasses::note(const ObjectPoses& poses) {
   if (!names.empty() && !camera.classes.empty() && !have_common(names, camera.classes)) camera.has_several = true;
   camera.classes.insert(names.begin(), names.end());
   for (const std::string& name : names) {
-    Coverage& company = companies_[name];
-    if (company.classes.size() < kMax) company.classes.insert(names.begin(), names.end());
-    company.utime = std::max(company.utime, poses.frame.utime);
+    Coverage& coverage = coverage_[name];
+    if (coverage.classes.size() < kMax) coverage.classes.insert(names.begin(), names.end());
+    coverage.utime = std::max(coverage.utime, poses.frame.utime);
   }
 }
 
 bool SearchedClasses::has_searched(const ObjectPoses& poses, const std::string& class_name) const {
   const auto camera = cameras_.find(poses.frame.channel);
   if (camera == cameras_.end() || !camera->second.has_several) return true;
-  const auto company = companies_.find(class_name);
-  if (company == companies_.end()) return true;
-  return have_common(reported_classes(poses), company->second.classes) || !is_reporting(class_name, poses.frame.utime);
+  const auto coverage = coverage_.find(class_name);
+  if (coverage == coverage_.end()) return true;
+  return have_common(reported_classes(poses), coverage->second.classes) || !is_reporting(class_name, poses.frame.utime);
 }
 
-/// Whether its detector has told of anything within the last second.
+/// Returns whether its detector has reported anything within the last second.
 bool SearchedClasses::is_reporting(const std::string& class_name, std::int64_t utime) const {
   constexpr double kSilentS = 1.0;
-  const std::set<std::string>& together = companies_.at(class_name).classes;
+  const std::set<std::string>& together = coverage_.at(class_name).classes;
   return std::any_of(together.begin(), together.end(), [&](const std::string& name) {
-    const auto told = companies_.find(name);
-    return told != companies_.end() && seconds_between(told->second.utime, utime) <= kSilentS;
+    const auto reported = coverage_.find(name);
+    return reported != coverage_.end() && seconds_between(reported->second.utime, utime) <= kSilentS;
   });
 }
 
 void SearchedClasses::keep_only(const std::set<std::string>& classes) {
-  for (auto it = companies_.begin(); it != companies_.end();)
-    it = classes.count(it->first) > 0 ? std::next(it) : companies_.erase(it);
+  for (auto it = coverage_.begin(); it != coverage_.end();)
+    it = classes.count(it->first) > 0 ? std::next(it) : coverage_.erase(it);
 }
 
 }  // namespace houghstream::tracks
