@@ -4,9 +4,9 @@
 
 namespace houghstream {
 
-/// What is reported.
+/// Limits of what is reported, or handed on as a candidate.
 struct EvidenceSettings {
-  /// Smallest score that is reported: in development_world_20 to 67 95 % of the detections from 0.60 on are true.
+  /// Smallest score that is reported. In development_world_20 to 67 95 % of the detections from 0.60 on are true.
   float threshold = 0.65F;
   /// Weaker ones from here on are found as candidates (Detection::reported), for a pose to confirm; 1: none are.
   float candidates_from = 1.0F;
