@@ -4,11 +4,11 @@
 #include <utility>
 #include <vector>
 
+#include "detector/evidence/boxes.hpp"
 #include "detector/evidence/evidence_settings.hpp"
 #include "detector/evidence/score.hpp"
 #include "detector/evidence/template_alignment.hpp"
 #include "detector/forest/forest_index.hpp"
-#include "detector/voting/boxes.hpp"
 #include "detector/voting/hypotheses.hpp"
 #include "pipeline/types/detection.hpp"
 

@@ -23,4 +23,18 @@ void fields(const EvidenceSettings& /*settings*/, const Visit& visit) {
   visit(number("max_rotations", &S::max_rotations, 0, 1000000));
 }
 
+/// Which of two overlapping detections stays (non-maximum suppression).
+struct SuppressionSettings {
+  float max_overlap = 0.5F;  ///< a weaker box of another object may overlap a stronger one by this IoU
+  /// ... if that one is more likely than not and so many times as likely; of its own class always.
+  float dominance = 2.0F;
+};
+
+template <typename Visit>
+void fields(const SuppressionSettings& /*settings*/, const Visit& visit) {
+  using S = SuppressionSettings;
+  visit(number("max_overlap", &S::max_overlap, 0, 1));
+  visit(number("dominance", &S::dominance, 0, 1e6));
+}
+
 }  // namespace houghstream
