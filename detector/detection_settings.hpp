@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "detector/evidence/evidence_settings.hpp"
-#include "detector/forest/patch_settings.hpp"
+#include "detector/features/patch_settings.hpp"
+#include "detector/forest/leaf_settings.hpp"
 #include "detector/voting/voting_settings.hpp"
 #include "pipeline/base/settings_fields.hpp"
 

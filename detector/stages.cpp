@@ -1,43 +1,9 @@
 #include "detector/stages.hpp"
 
-#include <algorithm>
-#include <utility>
-
+#include "detector/evidence/suppression.hpp"
 #include "pipeline/base/checks.hpp"
 
 namespace houghstream {
-namespace {
-
-/// Those that are likely enough; of overlapping ones the stronger (Section 2). Weaker ones that a pose may confirm
-/// stand behind, and never suppress any of them.
-std::vector<Detection> suppress(std::vector<Candidate>& candidates, const DetectionSettings& settings) {
-  const EvidenceSettings& evidence = settings.evidence;
-  std::vector<Detection> likely;
-  for (Candidate& candidate : candidates) {
-    Detection& detection = candidate.detection;
-    detection.reported = detection.score >= evidence.threshold;
-    if (detection.reported || detection.score >= evidence.candidates_from) likely.push_back(std::move(detection));
-  }
-  std::vector<Detection> kept = suppress_overlaps(std::move(likely), settings.suppression);
-  const auto reported = std::count_if(kept.begin(), kept.end(), [](const Detection& it) { return it.reported; });
-  const auto most = static_cast<std::size_t>(reported + evidence.max_candidates);
-  if (kept.size() > most) kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(most), kept.end());
-  return kept;
-}
-
-}  // namespace
-
-void require_searchable(const FeatureSettings& settings, const std::string& source) {
-  require(settings.handling == ScaleHandling::kDepthNormalised,
-          "{}: searches several sizes of the image, which this program cannot, expected one with {}", source,
-          kStudyPrograms);
-  std::uint32_t surfaces = 0;
-  for (const FamilyName& known : kFamilyNames) {
-    if (is_surface_family(known.family)) surfaces |= settings.families & known.family;
-  }
-  require(surfaces == 0, "{}: has the features '{}', which this program cannot compute, expected one with {}", source,
-          family_names(surfaces), kStudyPrograms);
-}
 
 void make_working_images(const SearchContext& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
   make_working_images(frame, search.forest().features, search.settings.threads, workspace.images);
@@ -61,13 +27,13 @@ void find_posteriors(const SearchContext& search, DetectorWorkspace& workspace) 
   find_posteriors(input, workspace.leaf_memory, workspace.posteriors);
 }
 
+std::vector<Hypothesis> find_hypotheses(const SearchContext& search, DetectorWorkspace& workspace) {
+  return find_hypotheses(voting_input(search, workspace), search.settings.threads, workspace.voting_memory);
+}
+
 VotingInput voting_input(const SearchContext& search, const DetectorWorkspace& workspace) {
   return {search.forest(), workspace.patches, workspace.posteriors, workspace.images.frames.at(0).camera,
           search.settings.voting};
-}
-
-std::vector<Hypothesis> find_hypotheses(const SearchContext& search, DetectorWorkspace& workspace) {
-  return find_hypotheses(voting_input(search, workspace), search.settings.threads, workspace.voting_memory);
 }
 
 std::vector<Candidate> weigh_evidence(const SearchContext& search, const RgbdFrame& frame,
@@ -81,11 +47,23 @@ Detections report_detections(const SearchContext& search, const RgbdFrame& frame
                              StageClock& clock) {
   Detections out;
   out.frame = frame.id;
-  out.detections = suppress(candidates, search.settings);
+  out.detections = suppress(candidates, search.settings.evidence, search.settings.suppression);
   clock.mark("detect.suppression");
   out.stages = frame.stages;
   out.stages.insert(out.stages.end(), clock.times().begin(), clock.times().end());
   return out;
+}
+
+void require_searchable(const FeatureSettings& settings, const std::string& source) {
+  require(settings.handling == ScaleHandling::kDepthNormalised,
+          "{}: searches several sizes of the image, which this program cannot, expected one with {}", source,
+          kStudyPrograms);
+  std::uint32_t surfaces = 0;
+  for (const FamilyName& known : kFamilyNames) {
+    if (is_surface_family(known.family)) surfaces |= settings.families & known.family;
+  }
+  require(surfaces == 0, "{}: has the features '{}', which this program cannot compute, expected one with {}", source,
+          family_names(surfaces), kStudyPrograms);
 }
 
 }  // namespace houghstream

@@ -18,7 +18,7 @@ namespace houghstream {
 /// The stages of a search by a depth-normalised forest, as Detector::detect calls them one after another; the trainer
 /// and the studies call some of them too. Each reads what those before it have left in the workspace.
 
-/// What frames are searched with.
+/// Everything that frames are searched with.
 struct SearchContext {
   const ForestIndex& index;
   const DetectionSettings& settings;
@@ -43,32 +43,35 @@ struct DetectorWorkspace {
   EvidenceMemory evidence_memory;
 };
 
-/// Throws InputError in one line that names `source`, for instance a forest file, what it needs and who has it, unless
-/// the stages below can search by these settings: depth-normalised, without surface features.
-void require_searchable(const FeatureSettings& settings, const std::string& source);
-
-/// The frame at the sizes that are looked at (paper, Section 5.1.1).
+/// Resizes the frame to the sizes at which it is searched (paper, Section 5.1.1): features/working_frame.
 void make_working_images(const SearchContext& search, const RgbdFrame& frame, DetectorWorkspace& workspace);
 
-/// Where patches stand (Section 5.1.3), and the features around them (Section 3).
+/// Places the patches (Section 5.1.3) and computes the features around them (Section 3): features/patch_grid, features.
 void compute_features(const SearchContext& search, DetectorWorkspace& workspace);
 
-/// The leaves that each patch reaches (Section 5.1.2), and for which classes it votes by them.
+/// Finds the leaves that each patch reaches (Section 5.1.2), and the classes that it votes for by them:
+/// forest/traversal, posteriors.
 void find_posteriors(const SearchContext& search, DetectorWorkspace& workspace);
 
-/// Votes for the objects' centres and their maxima (Section 2), class by class.
+/// Casts the votes for the objects' centres and finds their maxima (Section 2), class by class: voting/hough_space,
+/// hypotheses.
 std::vector<Hypothesis> find_hypotheses(const SearchContext& search, DetectorWorkspace& workspace);
 
-/// What speaks for each hypothesis, and its score.
+/// Compares view templates with the frame at each hypothesis and scores it: evidence/candidates.
 std::vector<Candidate> weigh_evidence(const SearchContext& search, const RgbdFrame& frame,
                                       const std::vector<Hypothesis>& hypotheses, DetectorWorkspace& workspace);
 
-/// What is likely enough, and weaker candidates for a pose to confirm; of overlapping boxes the stronger (Section 2).
-/// It closes the stage "detect.suppression"; the clock's times follow those of the frame.
+/// Returns what is likely enough, and weaker candidates for a pose to confirm; of overlapping boxes the stronger
+/// (Section 2): evidence/suppression. It closes the stage "detect.suppression"; the clock's times follow those of the
+/// frame.
 Detections report_detections(const SearchContext& search, const RgbdFrame& frame, std::vector<Candidate>& candidates,
                              StageClock& clock);
 
-/// What votes of the workspace are cast of.
+/// Returns the inputs of the votes in the workspace.
 VotingInput voting_input(const SearchContext& search, const DetectorWorkspace& workspace);
+
+/// Throws InputError in one line that names `source`, for instance a forest file, what it needs and who has it, unless
+/// the stages can search by these settings: depth-normalised, without surface features.
+void require_searchable(const FeatureSettings& settings, const std::string& source);
 
 }  // namespace houghstream

@@ -8,7 +8,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/voting/boxes.hpp"
+#include "detector/evidence/boxes.hpp"
 #include "pipeline/base/parallel.hpp"
 
 namespace houghstream::baseline {

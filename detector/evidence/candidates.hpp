@@ -4,23 +4,23 @@
 #include <utility>
 #include <vector>
 
+#include "detector/evidence/boxes.hpp"
 #include "detector/evidence/evidence_settings.hpp"
 #include "detector/evidence/score.hpp"
 #include "detector/evidence/template_alignment.hpp"
 #include "detector/forest/forest_index.hpp"
-#include "detector/voting/boxes.hpp"
 #include "detector/voting/hypotheses.hpp"
 #include "pipeline/types/detection.hpp"
 
 namespace houghstream {
 
-/// A hypothesis that the Hough space offers, weighed but not yet decided on.
+/// A hypothesis of the Hough space with its score, before suppression.
 struct Candidate {
-  Detection detection;  ///< complete, with its score; without rotations where it is too weak for a candidate
+  Detection detection;  ///< complete; without rotations where its score is too low for a candidate
   Evidence evidence;
 };
 
-/// What hypotheses are weighed by.
+/// Inputs of weigh_evidence().
 struct EvidenceInput {
   const ForestIndex& index;
   const LabFrame& frame;
@@ -29,24 +29,24 @@ struct EvidenceInput {
   const std::vector<std::uint32_t>& excluded_views;  ///< into Forest::views: not compared with the frame
 };
 
-/// What weigh_evidence needs for itself, to be kept from frame to frame.
+/// Workspace of weigh_evidence(), used again from frame to frame.
 struct EvidenceMemory {
   struct Worker {
-    std::vector<PlacedTemplate> compared;
-    std::vector<PlacedTemplate> way;                       ///< what was looked at from one view to a better one
-    std::vector<PlacedTemplate> best_way;                  ///< the same to the best
-    std::vector<std::pair<std::uint32_t, float>> weighed;  ///< views, and how much they speak for their rotation
+    std::vector<PlacedTemplate> compared;  ///< templates of a hypothesis, compared with the frame
+    std::vector<PlacedTemplate> way;       ///< the same, compared while a template was refined
+    std::vector<PlacedTemplate> best_way;  ///< the same of the refinement that led to the best
+    std::vector<std::pair<std::uint32_t, float>> weighted_views;  ///< views with the weight of their rotation
     BoxMemory box;
   };
   PerWorker<Worker> workers;
 };
 
-/// A candidate for each hypothesis, in their order: its box, what the remembered views say to it where they are put at
-/// its centre, and its score. The same for any number of threads.
+/// Returns a candidate for each hypothesis, in their order: its box, how the templates match the frame at its centre,
+/// and the score that follows. The result is the same for any number of threads.
 std::vector<Candidate> weigh_evidence(const EvidenceInput& input, const std::vector<Hypothesis>& hypotheses,
                                       int threads, EvidenceMemory& memory);
 
-/// Over how many times as many views a class is spread as one that was taught in one attitude: 1 to 3.
+/// Returns how many times as many views a class has as one that was taught in one attitude, 1 to 3.
 float attitude_spread(const Forest& forest, std::uint32_t class_index);
 
 }  // namespace houghstream

@@ -4,9 +4,9 @@
 
 namespace houghstream {
 
-/// What is reported.
+/// Limits of what is reported, or handed on as a candidate.
 struct EvidenceSettings {
-  /// Smallest score that is reported: in development_world_20 to 67 95 % of the detections from 0.60 on are true.
+  /// Smallest score that is reported. In development_world_20 to 67 95 % of the detections from 0.60 on are true.
   float threshold = 0.65F;
   /// Weaker ones from here on are found as candidates (Detection::reported), for a pose to confirm; 1: none are.
   float candidates_from = 1.0F;
@@ -21,6 +21,20 @@ void fields(const EvidenceSettings& /*settings*/, const Visit& visit) {
   visit(number("candidates_from", &S::candidates_from, 0, 1));
   visit(number("max_candidates", &S::max_candidates, 0, 1000000));
   visit(number("max_rotations", &S::max_rotations, 0, 1000000));
+}
+
+/// Which of two overlapping detections stays (non-maximum suppression).
+struct SuppressionSettings {
+  float max_overlap = 0.5F;  ///< a weaker box of another object may overlap a stronger one by this IoU
+  /// ... if that one is more likely than not and so many times as likely; of its own class always.
+  float dominance = 2.0F;
+};
+
+template <typename Visit>
+void fields(const SuppressionSettings& /*settings*/, const Visit& visit) {
+  using S = SuppressionSettings;
+  visit(number("max_overlap", &S::max_overlap, 0, 1));
+  visit(number("dominance", &S::dominance, 0, 1e6));
 }
 
 }  // namespace houghstream

@@ -5,40 +5,41 @@
 
 namespace houghstream {
 
-/// What speaks for and against a hypothesis.
+/// Evidence for and against a hypothesis, from votes, depth and colour.
 struct Evidence {
   float relative_vote_mass = 0.0F;  ///< vote mass over the class's nominal_vote_mass
   float certainty = 1.0F;           ///< weight of the votes over the number of patches that cast them
-  float distance = 1.0F;            ///< of the centre from the camera, metres
-  float radius_px = 40.0F;  ///< of the object at that distance, at about the usual focal length: see focal_octave_scale
-  TemplateMatch fit;        ///< of the remembered view that fits best
-  BoundaryContinuation outline;  ///< of the same
-  float other_size = -0.4F;      ///< see alternative_scale_gain; about what objects have, where it was not looked for
+  float distance = 1.0F;            ///< distance of the centre from the camera, metres
+  float radius_px =
+      40.0F;  ///< radius of the object at that distance, at about the usual focal length: see focal_octave_scale
+  TemplateMatch fit;             ///< match of the best template
+  BoundaryContinuation outline;  ///< continuation across its outline
+  float other_size = -0.4F;      ///< alternative_scale_gain; where it is not computed, about that of objects
 };
 
-/// The evidence as the terms that ScoreModel::weights multiply.
+/// Returns the evidence as the terms that ScoreModel::weights multiply.
 ScoreTerms score_terms(const Evidence& evidence);
 
-/// The model's weighted sum of the terms: the logarithm of the odds that it is an object.
+/// Returns the model's weighted sum of the terms: the log odds that the hypothesis is an object.
 double log_odds(const ScoreModel& model, const ScoreTerms& terms);
 
-/// Probability that the hypothesis is an object of its class (logistic regression, Platt 1999).
+/// Returns the probability that the hypothesis is an object of its class (logistic regression, Platt 1999).
 float score(const ScoreModel& model, const Evidence& evidence);
 
-/// Confidence from votes alone: it rises with their mass and is 0.1 at a twentieth of the expected mass: of
-/// an object visible by a tenth, the least that counts as truth, seen half as well as in training.
+/// Returns a score from votes alone. It rises with their mass and is 0.1 at a twentieth of the nominal mass: that of an
+/// object of which a tenth is visible, the least that counts as ground truth, seen half as well as in training.
 inline float vote_score(float relative_vote_mass) {
   return relative_vote_mass / (relative_vote_mass + 0.45F);
 }
 
-/// A judged hypothesis.
+/// A hypothesis with its label.
 struct ScoreExample {
   ScoreTerms terms{};
   bool is_object = false;
 };
 
-/// The weights that explain the examples best (maximum a posteriori, a Gaussian of variance 1 about each weight of
-/// `prior`): few examples move them little from there.
+/// Returns the weights that explain the examples best (maximum a posteriori, a Gaussian of variance 1 about each weight
+/// of `prior`): few examples move them little from there.
 ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior);
 
 }  // namespace houghstream

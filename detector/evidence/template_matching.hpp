@@ -2,46 +2,74 @@
 
 #include <Eigen/Core>
 
-#include "detector/evidence/boundary_continuation.hpp"
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/forest.hpp"
+#include "pipeline/geometry/boundary_sample.hpp"
 #include "pipeline/types/frame.hpp"
 
 namespace houghstream {
 
-/// A frame with its colours as views remember them.
+/// A frame with its colours as templates hold them.
 struct LabFrame {
   const RgbdFrame& frame;
   LabLevels lab;       ///< see make_smoothed_lab
   float scale = 1.0F;  ///< size of the first level over the frame's
 };
 
-/// How a remembered training view, put at a hypothesis' centre, agrees with the depth image: shares of the view's
-/// surface, the first four of which sum to 1.
+/// How a view template at a hypothesis' centre matches the frame. The first four are fractions of the template's
+/// surface and sum to 1.
 struct TemplateMatch {
-  float visible = 0.0F;         ///< depth as remembered
-  float hidden = 0.0F;          ///< something is in front of it
-  float seen_through = 0.0F;    ///< what is there lies behind: the object cannot be there
-  float unknown = 0.0F;         ///< no depth
+  float visible = 0.0F;         ///< depth is that of the template
+  float hidden = 0.0F;          ///< a nearer surface occludes it
+  float seen_through = 0.0F;    ///< a farther surface is measured there: the object cannot be there
+  float unknown = 0.0F;         ///< no depth is measured
   float unevenness = 0.0F;      ///< mean error of the visible depth over the tolerance, 0 to 1
-  float continued = 0.0F;       ///< of the rim beside the outline: the surface goes on, or comes nearer
-  float likeness = 0.0F;        ///< of the colours of what is visible or unknown with the remembered ones, -1 to 1
+  float continued = 0.0F;       ///< fraction of the rim beside the outline to which the surface continues
+  float likeness = 0.0F;        ///< correlation of the visible or unknown colours with the template's, -1 to 1
   float foreign_colour = 0.0F;  ///< see Likeness
   float hue_conflict = 0.0F;    ///< see Likeness
   float paleness = 0.0F;        ///< see Likeness
   float contrast = 0.0F;        ///< see Likeness
-  cv::Rect2f visible_box_px;    ///< of what is visible or unknown, frame pixels; empty where nothing is
+  cv::Rect2f visible_box_px;    ///< box of what is visible or unknown, frame pixels; may be empty
 };
 
-/// The view's relief compared with the frame, pixel by pixel of the relief, after moving it along the ray by at most
-/// a few centimetres to where most of it agrees: a vote's depth is less exact than a surface's.
-/// The likeness is blind to brightness, contrast and colour cast, which the light decides. With a `size` other than 1
-/// the view is taken for one of an object so many times as large.
+/// Continuation of surface and colour across the outline of a template, each as a fraction of the outline, 0 to 1; 0
+/// where nothing of it is seen. A part of a larger or longer thing looks like the object within the outline only. Depth
+/// cannot tell where the object touches what it stands on; that its colour, or the slope of its surface, continues
+/// there can. (Alexe, Deselaers and Ferrari 2010 tell objects by the contrast of a window with its surroundings.)
+class BoundaryContinuation {
+ public:
+  /// `tolerance`: of depth, metres.
+  void add(const BoundarySample& seen, float tolerance) {
+    const float surface = houghstream::surface_goes_on(seen, tolerance);
+    ++count_;
+    surface_ += surface;
+    colour_ += is_background_step(seen, tolerance) ? 0.0F : uniform_colour_continuation(seen);
+    both_ += surface * houghstream::colour_goes_on(seen);
+  }
+
+  float surface_goes_on() const { return share(surface_); }  ///< straight on from within
+  float colour_goes_on() const { return share(colour_); }    ///< the same colour, with no step back in depth
+  float goes_on() const { return share(both_); }             ///< the surface, in the same colour
+
+ private:
+  float share(float sum) const { return count_ > 0 ? sum / static_cast<float>(count_) : 0.0F; }
+
+  int count_ = 0;
+  float surface_ = 0.0F;
+  float colour_ = 0.0F;
+  float both_ = 0.0F;
+};
+
+/// Compares a template with the frame, cell by cell, after moving it along the ray by at most a few centimetres to
+/// where most of it agrees: the depth of a vote is less exact than that of a surface. Brightness, contrast and colour
+/// cast, which the light decides, do not change the likeness. With a `size` other than 1 the template counts as that of
+/// an object so many times as large.
 TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame,
                              float size = 1.0F);
 
-/// Whether what is seen ends where the view's outline is. What lies in front of the object, within or beyond, has no
-/// say.
+/// Measures whether surface and colour end where the template's outline is. Places where something lies in front of the
+/// object, within or beyond the outline, are left out.
 BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, const Eigen::Vector3f& centre_camera,
                                                    const LabFrame& frame);
 

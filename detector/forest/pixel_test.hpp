@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "detector/features/feature_image.hpp"
-#include "detector/forest/patch_settings.hpp"
+#include "detector/features/patch_settings.hpp"
 
 namespace houghstream {
 
@@ -25,23 +25,6 @@ struct PixelTest {
   std::uint8_t kind = kDifference;
   std::int16_t threshold = 0;
 };
-
-/// Working pixels per step of a test offset in 1/256 pixel, for steps of `step_px`; limited so that a patch stays
-/// inside the border of a FeatureImage.
-inline std::int32_t limited_scale(const PatchSettings& patch, double step_px) {
-  const double limit = static_cast<double>(FeatureImage::kPad) / patch.radius;
-  return static_cast<std::int32_t>(std::lround(256.0 * std::min(step_px, limit)));
-}
-
-/// The same at depth z (depth normalisation).
-inline std::int32_t patch_scale(const PatchSettings& patch, double focal_px, float z) {
-  return limited_scale(patch, patch.unit * focal_px / z);
-}
-
-/// How far the tests of a patch look, pixels.
-inline int max_offset(const PatchSettings& patch, std::int32_t scale) {
-  return (patch.radius * scale + 128) >> 8;
-}
 
 /// Bytes from a patch's centre to the pixel `dx`, `dy` steps away.
 inline std::ptrdiff_t patch_offset(const PatchView& patch, int dx, int dy) {

@@ -5,6 +5,7 @@
 
 #include "detector/features/feature_image.hpp"
 #include "detector/forest/forest_index.hpp"
+#include "detector/forest/leaf_settings.hpp"
 #include "detector/forest/traversal.hpp"
 
 namespace houghstream {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "detector/features/feature_image.hpp"
+#include "detector/features/patch_grid.hpp"
 #include "detector/forest/forest_index.hpp"
-#include "detector/forest/patch_grid.hpp"
 #include "pipeline/base/parallel.hpp"
 
 namespace houghstream {

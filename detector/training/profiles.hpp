@@ -4,7 +4,7 @@
 
 #include "detector/detection_settings.hpp"
 #include "detector/features/feature_settings.hpp"
-#include "detector/forest/patch_settings.hpp"
+#include "detector/features/patch_settings.hpp"
 #include "detector/training/training_settings.hpp"
 
 namespace houghstream {

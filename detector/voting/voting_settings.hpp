@@ -25,18 +25,4 @@ void fields(const VotingSettings& /*settings*/, const Visit& visit) {
   visit(number("vote_sigma", &S::vote_sigma, 1e-6, 10, "m"));
 }
 
-/// Which of two overlapping detections stays (non-maximum suppression).
-struct SuppressionSettings {
-  float max_overlap = 0.5F;  ///< a weaker box of another object may overlap a stronger one by this IoU
-  /// ... if that one is more likely than not and so many times as likely; of its own class always.
-  float dominance = 2.0F;
-};
-
-template <typename Visit>
-void fields(const SuppressionSettings& /*settings*/, const Visit& visit) {
-  using S = SuppressionSettings;
-  visit(number("max_overlap", &S::max_overlap, 0, 1));
-  visit(number("dominance", &S::dominance, 0, 1e6));
-}
-
 }  // namespace houghstream

@@ -2,9 +2,7 @@
 
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <atomic>
-#include <deque>
 #include <set>
 
 #include "pipeline/base/checks.hpp"
@@ -58,13 +56,6 @@ class TransformPublisher {
   LcmBus& bus_;
   std::string frame_channels_;
   std::atomic<bool> several_cameras_;
-};
-
-/// What was found in a frame so far, by all its detectors.
-struct HeardClasses {
-  FrameId frame;
-  std::int64_t number = 0;  // SynchronisedMessages::frame_number
-  std::set<std::string> names;
 };
 
 /// Answers detections with poses. Where it follows as well, frames are worked on first, and are what the status counts;
@@ -205,34 +196,17 @@ class PoseProcess {
     if (!follow_ && detections.detections.empty()) return {detections.frame, {}, detections.stages};
     const DecodedFrames::Decoded frame = decoded_.decode(pair.frame, pair.id.channel);
     detections.stages.push_back(frame->stages.back());
-    if (!follow_) note_shared_classes(detections, pair.frame_number);
+    if (!follow_) warn_of_shared_classes(detections, pair.frame_number);
     note_models();
     warn(models_.note(detections));
-    ObjectPoses poses = estimate_(*frame, detections, follow_ ? ObjectPoses{} : history_.before(detections));
+    ObjectPoses poses = estimate_(*frame, detections, follow_ ? ObjectPoses{} : history_.find_warm_start(detections));
     poses.frame = pair.id;
-    if (!follow_) history_.keep(poses);
+    if (!follow_) history_.add(poses);
     return poses;
   }
 
-  // Two detectors that know the same object give it two poses.
-  void note_shared_classes(const Detections& detections, std::int64_t frame_number) {
-    constexpr std::size_t kFrames = 16;
-    const auto heard = std::find_if(heard_.begin(), heard_.end(),
-                                    [&](const HeardClasses& classes) { return classes.frame == detections.frame; });
-    std::set<std::string> names;
-    for (const Detection& detection : detections.detections) names.insert(detection.class_name);
-    if (heard == heard_.end()) {
-      heard_.push_back({detections.frame, frame_number, std::move(names)});
-      if (heard_.size() > kFrames) heard_.pop_front();
-      return;
-    }
-    if (heard->number != frame_number) {
-      history_.note_again(detections.frame);
-      *heard = {detections.frame, frame_number, std::move(names)};
-      return;
-    }
-    for (const std::string& name : names) {
-      if (heard->names.insert(name).second) continue;
+  void warn_of_shared_classes(const Detections& detections, std::int64_t frame_number) {
+    for (const std::string& name : history_.note_classes(detections, frame_number)) {
       status_.note_bad_message(fmt::format(
           "frame {}: two detectors find '{}', which gets two poses; expected detectors of different objects",
           to_string(detections.frame), name));
@@ -291,7 +265,6 @@ class PoseProcess {
   FrameSynchroniser synchroniser_;
   DecodedFrames decoded_;
   PoseHistory history_;
-  std::deque<HeardClasses> heard_;
   ModelCheck models_;
   TransformPublisher transforms_;
   std::int64_t without_frame_ = 0;  // detections

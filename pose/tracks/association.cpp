@@ -9,39 +9,39 @@ namespace houghstream::tracks {
 
 ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseObservation>& poses,
                           const TrackModels& models, std::vector<Track>& tracks) {
-  ClassGroup one{symmetries_of(models, class_name)};
-  one.centre = centre_of(models, class_name);
-  one.radius_m = radius_of(models, class_name);
+  ClassGroup group{symmetries_of(models, class_name)};
+  group.centre = centre_of(models, class_name);
+  group.radius_m = radius_of(models, class_name);
   for (Track& track : tracks) {
-    if (track.there() && track.class_name == class_name) one.objects.push_back(&track);
+    if (track.is_present() && track.class_name == class_name) group.objects.push_back(&track);
   }
   for (const PoseObservation& pose : poses) {
-    if (pose.class_name == class_name) one.measured.push_back(&pose);
+    if (pose.class_name == class_name) group.measured.push_back(&pose);
   }
-  return one;
+  return group;
 }
 
-std::vector<int> assign_poses(const ClassGroup& one, const AssociationSettings& how) {
+std::vector<int> assign_poses(const ClassGroup& group, const AssociationSettings& settings) {
   constexpr double kUnconfirmed = 0.3;  // rather one that is known
-  Eigen::MatrixXd costs(one.objects.size(), one.measured.size());
-  for (std::size_t i = 0; i < one.objects.size(); ++i) {
-    const Track& track = *one.objects[i];
-    const double reach = track.pose.filter().moving() ? how.moving_reach_m : how.reach_m;
-    for (std::size_t j = 0; j < one.measured.size(); ++j) {
-      const double distance = track.pose.distance(one.measured[j]->measured, one.symmetries, one.centre);
-      const double angle = track.pose.angle(one.measured[j]->measured, one.symmetries);
+  Eigen::MatrixXd costs(group.objects.size(), group.measured.size());
+  for (std::size_t i = 0; i < group.objects.size(); ++i) {
+    const Track& track = *group.objects[i];
+    const double reach = track.pose.filter().moving() ? settings.moving_reach_m : settings.reach_m;
+    for (std::size_t j = 0; j < group.measured.size(); ++j) {
+      const double distance = track.pose.distance(group.measured[j]->measured, group.symmetries, group.centre);
+      const double angle = track.pose.angle(group.measured[j]->measured, group.symmetries);
       costs(i, j) = distance > reach
                         ? 10.0
-                        : distance / reach + how.turn_cost * angle / M_PI + (track.id == 0 ? kUnconfirmed : 0.0);
+                        : distance / reach + settings.turn_cost * angle / M_PI + (track.id == 0 ? kUnconfirmed : 0.0);
     }
   }
   constexpr double kLimit = 2.0;
   return solve_assignment(costs, kLimit);
 }
 
-bool is_space_occupied(const PoseMeasurement& measured, const ClassGroup& one, const AssociationSettings& how) {
-  return std::any_of(one.objects.begin(), one.objects.end(), [&](const Track* track) {
-    return track->pose.distance(measured, one.symmetries, one.centre) < how.crowded * one.radius_m;
+bool is_space_occupied(const PoseMeasurement& measured, const ClassGroup& group, const AssociationSettings& settings) {
+  return std::any_of(group.objects.begin(), group.objects.end(), [&](const Track* track) {
+    return track->pose.distance(measured, group.symmetries, group.centre) < settings.exclusion_ratio * group.radius_m;
   });
 }
 

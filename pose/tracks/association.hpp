@@ -9,12 +9,12 @@
 
 namespace houghstream::tracks {
 
-/// Which measured pose is of which object.
+/// Assignment of measured poses to objects.
 struct AssociationSettings {
-  double reach_m = 0.06;         ///< of what stands
-  double moving_reach_m = 0.12;  ///< of what moves
-  double turn_cost = 0.5;        ///< of half a turn beside that of the whole reach
-  double crowded = 0.6;          ///< radii within which no second object of a class can be
+  double reach_m = 0.06;         ///< distance up to which a pose is of an object that stands, metres
+  double moving_reach_m = 0.12;  ///< the same of one that moves
+  double turn_cost = 0.5;        ///< cost of a rotation by half a turn; that of the whole reach is 1
+  double exclusion_ratio = 0.6;  ///< radii within which there is no second object of a class
 };
 
 template <typename Visit>
@@ -23,7 +23,7 @@ void fields(const AssociationSettings& /*settings*/, const Visit& visit) {
   visit(number("reach_m", &S::reach_m, 0, 10, "m"));
   visit(number("moving_reach_m", &S::moving_reach_m, 0, 10, "m"));
   visit(number("turn_cost", &S::turn_cost, 0, 100));
-  visit(number("crowded", &S::crowded, 0, 10));
+  visit(number("exclusion_ratio", &S::exclusion_ratio, 0, 10));
 }
 
 /// The objects of a class that are there, and the poses that a frame has of it.
@@ -35,15 +35,16 @@ struct ClassGroup {
   double radius_m = 0.0;
 };
 
-/// In their orders. Points into the tracks, the poses and the models.
+/// Collects the present objects and the poses of a class, in their orders. The group points into the tracks, the poses
+/// and the models.
 ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseObservation>& poses,
                           const TrackModels& models, std::vector<Track>& tracks);
 
-/// For each object which measured pose is its, -1 for none: they are near each other and turned alike, and what is
-/// confirmed comes before a candidate.
-std::vector<int> assign_poses(const ClassGroup& one, const AssociationSettings& how);
+/// Returns for each object the index of its measured pose, -1 for none: the assignment of least cost (distance and
+/// rotation), in which confirmed objects come before candidates.
+std::vector<int> assign_poses(const ClassGroup& group, const AssociationSettings& settings);
 
-/// Whether an object stands so near to a measured pose that it leaves no room for a second one.
-bool is_space_occupied(const PoseMeasurement& measured, const ClassGroup& one, const AssociationSettings& how);
+/// Returns whether an object stands so near to a measured pose that there is no room for a second one.
+bool is_space_occupied(const PoseMeasurement& measured, const ClassGroup& group, const AssociationSettings& settings);
 
 }  // namespace houghstream::tracks

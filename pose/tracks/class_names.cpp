@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "pipeline/base/log_line.hpp"
+
 namespace houghstream::tracks {
 namespace {
 
@@ -24,12 +26,26 @@ const Track* find_namesake(const ObjectPose& pose, const Eigen::Isometry3d& T_wo
   const PoseMeasurement measured{0, T_world_camera * *pose.T_camera_object, Covariance6::Identity()};
   const auto found = std::find_if(tracks.begin(), tracks.end(), [&](const Track& track) {
     const auto model = models.find(track.class_name);
-    if (!track.there() || model == models.end() || model->second.object_id != pose.class_id) return false;
+    if (!track.is_present() || model == models.end() || model->second.object_id != pose.class_id) return false;
     return track.pose.distance(measured, model->second.symmetries, model->second.centre) <
                0.5 * model->second.box_radius_m &&
            track.pose.angle(measured, model->second.symmetries) < same_rotation_rad;
   });
   return found == tracks.end() ? nullptr : &*found;
+}
+
+/// Marks what was begun in the place of a renamed object while only its new name came, for being forgotten.
+void mark_doubles(std::size_t renamed_index, const TrackModels& models, std::vector<Track>& tracks) {
+  const Track& kept = tracks[renamed_index];
+  if (kept.id <= 0 || !kept.is_present()) return;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    Track& other = tracks[i];
+    if (i == renamed_index || other.class_name != kept.class_name || (other.id > 0 && other.id < kept.id)) continue;
+    const double apart_m =
+        kept.pose.distance({kept.pose.filter().utime(), other.pose.filter().T_world_object(), Covariance6::Identity()},
+                           symmetries_of(models, kept.class_name), centre_of(models, kept.class_name));
+    if (apart_m < 0.5 * radius_of(models, kept.class_name)) other.id = -1;
+  }
 }
 
 }  // namespace
@@ -45,6 +61,48 @@ ModelChange find_model_change(const TrackModels& before, const TrackModels& afte
     }
   }
   return change;
+}
+
+void retire_tracks(const std::set<std::string>& removed, double gone_log_odds, std::vector<Track>& tracks) {
+  const auto is_removed = [&](const Track& track) { return removed.count(track.class_name) > 0; };
+  tracks.erase(std::remove_if(tracks.begin(), tracks.end(),
+                              [&](const Track& track) { return track.id == 0 && is_removed(track); }),
+               tracks.end());
+  for (Track& track : tracks) {
+    if (!track.is_present() || !is_removed(track)) continue;
+    track.deleted_utime = track.pose.filter().utime();
+    track.log_odds = std::min(track.log_odds, gone_log_odds);
+    track.state = TrackState::kGone;
+    track.reason = "its class has left the object store";
+    log_info("{} #{} is gone: {}", track.class_name, track.id, track.reason);
+  }
+}
+
+void rename_tracks(const std::map<std::string, std::string>& renamed, const TrackModels& models,
+                   std::vector<Track>& tracks) {
+  std::vector<std::size_t> changed;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    Track& track = tracks[i];
+    const auto found = renamed.find(track.class_name);
+    if (found == renamed.end()) continue;
+    if (track.id != 0 && track.is_present())
+      log_info("{} #{} is called {} now", track.class_name, track.id, found->second);
+    track.class_name = found->second;
+    changed.push_back(i);
+  }
+  for (const std::size_t i : changed) mark_doubles(i, models, tracks);
+  tracks.erase(std::remove_if(tracks.begin(), tracks.end(), [](const Track& track) { return track.id < 0; }),
+               tracks.end());
+}
+
+void rename_counts(const std::map<std::string, std::string>& renamed, std::map<std::string, int>& counts) {
+  std::map<std::string, int> moved;
+  for (const auto& [name, count] : counts) {
+    const auto found = renamed.find(name);
+    int& most = moved[found == renamed.end() ? name : found->second];
+    most = std::max(most, count);
+  }
+  counts = std::move(moved);
 }
 
 void ClassNames::update(const ModelChange& change, const TrackModels& models) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "pose/tracks/track.hpp"
 
@@ -18,6 +19,18 @@ struct ModelChange {
 /// Compares the models before and after a change. A class is renamed where the object of its number in the store has
 /// the same mesh under another name; one without a number is never renamed, only removed.
 ModelChange find_model_change(const TrackModels& before, const TrackModels& after);
+
+/// Ends the objects of removed classes: they are gone from here on, and candidates are forgotten.
+/// `gone_log_odds`: ExistenceSettings::delete_log_odds.
+void retire_tracks(const std::set<std::string>& removed, double gone_log_odds, std::vector<Track>& tracks);
+
+/// Gives objects the new names of their classes. What was begun in the place of one of them, while only its new name
+/// came, is forgotten.
+void rename_tracks(const std::map<std::string, std::string>& renamed, const TrackModels& models,
+                   std::vector<Track>& tracks);
+
+/// Moves counts by class to the new names; of two that become one the larger stays.
+void rename_counts(const std::map<std::string, std::string>& renamed, std::map<std::string, int>& counts);
 
 /// Names of classes across changes of the object store. Detector and pose estimator take a change over a moment before
 /// or after the tracker does, so that results still name a class as it was called, or already as it will be. Not

@@ -32,14 +32,14 @@ bool is_detected(const UnobservedContext& frame, const std::string& class_name, 
 
 }  // namespace
 
-void update_unobserved(const UnobservedContext& frame, const MissedDetection& missed, const ExistenceSettings& how,
+void update_unobserved(const UnobservedContext& frame, const MissedDetection& missed, const ExistenceSettings& settings,
                        Track& track) {
   const FrameObservation& seen = frame.seen;
   const auto known = frame.models.find(track.class_name);
   const TrackModel* model = known == frame.models.end() ? nullptr : &known->second;
   const RgbdFrame* image = model != nullptr && seen.image ? seen.image() : nullptr;
   const Eigen::Isometry3d T_camera_object = seen.T_world_camera.inverse() * track.pose.filter().T_world_object();
-  const Look look = image != nullptr ? look_at(*image, *model, T_camera_object) : Look{};
+  const VisibilityCheck look = image != nullptr ? check_visibility(*image, *model, T_camera_object) : VisibilityCheck{};
   const double unseen_s = seconds_between(track.last_seen.utime, seen.poses.frame.utime);
   const bool crowded = is_crowded_out(frame, track);
   const Eigen::Vector3d here = T_camera_object * (model != nullptr ? model->vote_centre : Eigen::Vector3d::Zero());
@@ -49,7 +49,7 @@ void update_unobserved(const UnobservedContext& frame, const MissedDetection& mi
   switch (look.state) {
     case TrackState::kGone:
       if (missed.by_depth) {
-        rate = how.seen_through * look.seen_through;
+        rate = settings.free_space_rate * look.seen_through;
         track.seen_through_s += missed.seconds;
       }
       why =
@@ -60,27 +60,29 @@ void update_unobserved(const UnobservedContext& frame, const MissedDetection& mi
       why = fmt::format("not in view of {}, or without depth", seen.poses.frame.channel);
       break;
     default:
-      if (missed.by_recognition) rate = look.goes_on ? how.goes_on : detected ? 0.0 : how.unrecognised;
+      if (missed.by_recognition)
+        rate = look.is_boundary_continued ? settings.continuation_rate : detected ? 0.0 : settings.missed_rate;
       why = fmt::format("not recognised by {}, whose depth agrees", seen.poses.frame.channel);
   }
   if (crowded && look.state != TrackState::kOutOfView) {
-    if (missed.by_depth) rate += how.displaced_rate;
+    if (missed.by_depth) rate += settings.displaced_rate;
     why += ", where something else is";
   }
   if (track.pose.filter().moving() && unseen_s > frame.coast_s) {
-    if (missed.by_recognition) rate += look.state == TrackState::kHidden ? 0.25 * how.lost : how.lost;
+    if (missed.by_recognition)
+      rate += look.state == TrackState::kHidden ? 0.25 * settings.moving_missed_rate : settings.moving_missed_rate;
     why += "; it moved when it was seen last";
   }
-  if (track.id == 0 && missed.by_recognition) rate += how.unconfirmed;
+  if (track.id == 0 && missed.by_recognition) rate += settings.tentative_rate;
   track.log_odds -= missed.seconds * rate;
-  // Of several cameras the one that saw it last has the word, as long as that is not long ago.
+  // Of several cameras the one that observed it last decides, as long as that is not long ago.
   constexpr double kLastObserverHold_s = 0.1;
   const bool says_anything = missed.by_recognition || look.state != TrackState::kUnrecognised;
   if (says_anything && (track.last_seen.channel == seen.poses.frame.channel || unseen_s > kLastObserverHold_s)) {
     track.state = look.state == TrackState::kGone ? TrackState::kUnrecognised : look.state;
     track.reason = why;
   }
-  if (track.log_odds < how.gone) {
+  if (track.log_odds < settings.delete_log_odds) {
     track.deleted_utime = seen.poses.frame.utime;
     track.state = TrackState::kGone;
     track.reason = why;

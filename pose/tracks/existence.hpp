@@ -7,22 +7,22 @@
 
 namespace houghstream::tracks {
 
-/// Whether an object is there: log odds that grow and fall with what is seen. Rates are per second of a camera's
-/// frames: frames that follow one another closely show the same errors and say little new.
+/// Existence of an object as log odds, which grow and fall with what is observed. Rates are per second of a camera's
+/// frames: frames that follow one another closely show the same errors and add little information.
 struct ExistenceSettings {
-  double prior = -1.5;           ///< of what was never seen before
-  double gain = 0.5;             ///< of a pose's own log odds, at 30 Hz
-  double most = 6.0;             ///< however often it was seen
-  double confirmed = 2.2;        ///< published from here on,
-  int confirmed_frames = 3;      ///< seen in so many frames,
-  double confirmed_s = 0.08;     ///< so long apart
-  double gone = -1.0;            ///< below it is gone
-  double seen_through = 30.0;    ///< a second, where the camera sees through it
-  double displaced_rate = 12.0;  ///< a second, where another class is recognised in its place
-  double goes_on = 3.0;          ///< a second, where depth agrees but the surface is larger
-  double unrecognised = 0.6;     ///< a second, where depth agrees but nothing is recognised
-  double lost = 14.0;            ///< a second, where it moved when it was seen last; hidden, a quarter of it
-  double unconfirmed = 4.0;      ///< a second, of what is not yet published and not seen
+  double prior = -1.5;               ///< log odds of an object at its first pose, before that pose counts
+  double gain = 0.5;                 ///< factor of a pose's own log odds, at 30 Hz
+  double max_log_odds = 6.0;         ///< limit, however often an object was observed
+  double confirm_log_odds = 2.2;     ///< log odds from which a candidate is published,
+  int min_frames = 3;                ///< if it was observed in at least so many frames
+  double min_duration_s = 0.08;      ///< over at least this time
+  double delete_log_odds = -1.0;     ///< log odds below which an object is gone
+  double free_space_rate = 30.0;     ///< 1/s, where the camera sees through it
+  double displaced_rate = 12.0;      ///< 1/s, where another class is recognised in its place
+  double continuation_rate = 3.0;    ///< 1/s, where depth agrees, but the surface is larger than the object
+  double missed_rate = 0.6;          ///< 1/s, where depth agrees, but nothing is recognised
+  double moving_missed_rate = 14.0;  ///< 1/s, where it moved when it was observed last; a quarter of it while occluded
+  double tentative_rate = 4.0;       ///< 1/s, of a candidate that is not published yet and not observed
 };
 
 template <typename Visit>
@@ -30,38 +30,39 @@ void fields(const ExistenceSettings& /*settings*/, const Visit& visit) {
   using S = ExistenceSettings;
   visit(number("prior", &S::prior, -100, 100));
   visit(number("gain", &S::gain, 0, 1000));
-  visit(number("most", &S::most, 0, 1000));
-  visit(number("confirmed", &S::confirmed, -100, 100));
-  visit(number("confirmed_frames", &S::confirmed_frames, 0, 100000));
-  visit(number("confirmed_s", &S::confirmed_s, 0, 3600, "s"));
-  visit(number("gone", &S::gone, -100, 100));
-  visit(number("seen_through", &S::seen_through, 0, 1e6, "1/s"));
+  visit(number("max_log_odds", &S::max_log_odds, 0, 1000));
+  visit(number("confirm_log_odds", &S::confirm_log_odds, -100, 100));
+  visit(number("min_frames", &S::min_frames, 0, 100000));
+  visit(number("min_duration_s", &S::min_duration_s, 0, 3600, "s"));
+  visit(number("delete_log_odds", &S::delete_log_odds, -100, 100));
+  visit(number("free_space_rate", &S::free_space_rate, 0, 1e6, "1/s"));
   visit(number("displaced_rate", &S::displaced_rate, 0, 1e6, "1/s"));
-  visit(number("goes_on", &S::goes_on, 0, 1e6, "1/s"));
-  visit(number("unrecognised", &S::unrecognised, 0, 1e6, "1/s"));
-  visit(number("lost", &S::lost, 0, 1e6, "1/s"));
-  visit(number("unconfirmed", &S::unconfirmed, 0, 1e6, "1/s"));
+  visit(number("continuation_rate", &S::continuation_rate, 0, 1e6, "1/s"));
+  visit(number("missed_rate", &S::missed_rate, 0, 1e6, "1/s"));
+  visit(number("moving_missed_rate", &S::moving_missed_rate, 0, 1e6, "1/s"));
+  visit(number("tentative_rate", &S::tentative_rate, 0, 1e6, "1/s"));
 }
 
-/// A result, beside which objects are laid of which it has no pose.
+/// A result of a frame, as the tracks see it that it has no pose of.
 struct UnobservedContext {
   const FrameObservation& seen;
-  const std::vector<PoseObservation>& poses;  ///< that are new in it
+  const std::vector<PoseObservation>& poses;  ///< those that are new in this result
   const TrackModels& models;
-  double reach_m = 0.0;  ///< so near to where its class's detections have their centre, one is of the object
+  double reach_m = 0.0;  ///< distance below which a detection of the class is one of the object, metres
   double coast_s = 0.0;  ///< MotionSettings::coast_s
 };
 
-/// What a result counts for an object of which it has no pose.
+/// Weight of a result for a track that it has no pose of.
 struct MissedDetection {
   double seconds = 0.0;         ///< since the camera's frame before
   bool by_depth = false;        ///< it is the first one of its frame
   bool by_recognition = false;  ///< it is the first one of its frame that speaks of the class
 };
 
-/// What the frame says of an object that it shows no pose of: its log odds fall, it may be gone, and where the camera
-/// has the word, its state and the reason are told.
-void update_unobserved(const UnobservedContext& frame, const MissedDetection& missed, const ExistenceSettings& how,
+/// Updates a track that received no measurement in this frame: lowers the log odds of its existence and deletes it
+/// below the threshold. State and reason change only if this camera observed the object last, or no camera has for 0.1
+/// s.
+void update_unobserved(const UnobservedContext& frame, const MissedDetection& missed, const ExistenceSettings& settings,
                        Track& track);
 
 }  // namespace houghstream::tracks

@@ -95,7 +95,8 @@ std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen
   return out;
 }
 
-Look look_at(const RgbdFrame& frame, const TrackModel& model, const Eigen::Isometry3d& T_camera_object) {
+VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model,
+                                 const Eigen::Isometry3d& T_camera_object) {
   constexpr double kToleranceM = 0.012;
   constexpr double kNearestM = 0.05;
   constexpr int kMinPx = 30;
@@ -110,9 +111,9 @@ Look look_at(const RgbdFrame& frame, const TrackModel& model, const Eigen::Isome
   const Verification seen = verify_pose(frame, model.mesh, T_camera_object, {kToleranceM, DepthNoise{}});
   const int judged = seen.agreeing + seen.violating + seen.occluded;
   if (seen.rendered < kMinPx || judged < kMeasured * seen.rendered) return {};
-  Look look;
+  VisibilityCheck look;
   look.seen_through = static_cast<double>(seen.violating) / std::max(1, seen.agreeing + seen.violating);
-  look.goes_on = seen.boundary_continuations > 0.5F * static_cast<float>(seen.outline);
+  look.is_boundary_continued = seen.boundary_continuations > 0.5F * static_cast<float>(seen.outline);
   look.state = TrackState::kUnrecognised;
   if (look.seen_through > kThrough) look.state = TrackState::kGone;
   if (seen.occluded > kHidden * judged) look.state = TrackState::kHidden;
@@ -123,37 +124,39 @@ PoseTrack::PoseTrack(const PoseObservation& first, const PoseTrackSettings& sett
     : settings_(settings),
       hypotheses_{{MotionFilter(first.measured, settings.motion), log_odds_of(first.quality)}},
       weighed_utime_(first.frame.utime) {
-  witnesses_[first.frame.channel].agreed_utime = first.frame.utime;
+  observers_[first.frame.channel].agreed_utime = first.frame.utime;
 }
 
 void PoseTrack::predict(std::int64_t utime) {
   for (Hypothesis& hypothesis : hypotheses_) hypothesis.filter.predict(utime);
 }
 
-double PoseTrack::distance(const PoseMeasurement& measured, const Symmetries& symmetries,
-                           const Eigen::Vector3d& centre) const {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Hypothesis& hypothesis : hypotheses_) {
-    const Eigen::Isometry3d& T = hypothesis.filter.T_world_object();
-    nearest =
-        std::min(nearest, (nearest_equivalent(measured.T_world_object, T, symmetries) * centre - T * centre).norm());
+void PoseTrack::update(const PoseObservation& pose, const Symmetries& symmetries, bool has_contrary_depth) {
+  constexpr double kLead = 1.0;  // by which another hypothesis has to be ahead
+  const double passed = std::max(0.0, seconds_between(weighed_utime_, pose.frame.utime));
+  weighed_utime_ = std::max(weighed_utime_, pose.frame.utime);
+  for (Hypothesis& hypothesis : hypotheses_) hypothesis.weight *= std::exp(-passed / kForgetS);
+  const std::size_t index = hypothesis_for(pose.measured, symmetries);
+  Hypothesis& hypothesis = hypotheses_[index];
+  hypothesis.weight = std::min(kMaxWeight, hypothesis.weight + std::max(0.1, log_odds_of(pose.quality)));
+  PoseObservation turned = pose;
+  turned.measured.T_world_object =
+      nearest_equivalent(pose.measured.T_world_object, hypothesis.filter.T_world_object(), symmetries);
+  hypothesis.filter.predict(pose.frame.utime);
+  if (hypothesis.filter.moving()) {
+    update_moving(turned.measured, hypothesis);
+  } else {
+    update_standing(turned, has_contrary_depth, hypothesis);
   }
-  return nearest;
+  if (hypothesis.weight > hypotheses_[best_].weight + kLead) best_ = index;
+  if (hypothesis.filter.moving() && index == best_ && hypotheses_.size() > 1) {
+    hypotheses_ = {hypothesis};  // what was thought of where it stood is over
+    best_ = 0;
+  }
 }
 
-double PoseTrack::angle(const PoseMeasurement& measured, const Symmetries& symmetries) const {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Hypothesis& hypothesis : hypotheses_) {
-    const Eigen::Isometry3d& T = hypothesis.filter.T_world_object();
-    nearest = std::min(
-        nearest,
-        local_coordinates_about_world(nearest_equivalent(measured.T_world_object, T, symmetries), T).tail<3>().norm());
-  }
-  return nearest;
-}
-
-// The hypothesis that the measured rotation belongs to: rather the best, else the nearest, else a new one, which takes
-// the place of the weakest.
+// Returns the hypothesis that the measured rotation belongs to: the best where it fits, else the nearest, else a new
+// one, which replaces the weakest.
 std::size_t PoseTrack::hypothesis_for(const PoseMeasurement& measured, const Symmetries& symmetries) {
   std::optional<std::size_t> found;
   double nearest = settings_.same_rotation_rad;
@@ -179,41 +182,7 @@ std::size_t PoseTrack::hypothesis_for(const PoseMeasurement& measured, const Sym
   return weakest;
 }
 
-void PoseTrack::take(const PoseObservation& pose, const Symmetries& symmetries, bool doubted) {
-  constexpr double kLead = 1.0;  // by which another hypothesis has to be ahead
-  const double passed = std::max(0.0, seconds_between(weighed_utime_, pose.frame.utime));
-  weighed_utime_ = std::max(weighed_utime_, pose.frame.utime);
-  for (Hypothesis& hypothesis : hypotheses_) hypothesis.weight *= std::exp(-passed / kForgetS);
-  const std::size_t index = hypothesis_for(pose.measured, symmetries);
-  Hypothesis& hypothesis = hypotheses_[index];
-  hypothesis.weight = std::min(kMaxWeight, hypothesis.weight + std::max(0.1, log_odds_of(pose.quality)));
-  PoseObservation turned = pose;
-  turned.measured.T_world_object =
-      nearest_equivalent(pose.measured.T_world_object, hypothesis.filter.T_world_object(), symmetries);
-  hypothesis.filter.predict(pose.frame.utime);
-  if (hypothesis.filter.moving()) {
-    update_moving(turned.measured, hypothesis);
-  } else {
-    update_standing(turned, doubted, hypothesis);
-  }
-  if (hypothesis.weight > hypotheses_[best_].weight + kLead) best_ = index;
-  if (hypothesis.filter.moving() && index == best_ && hypotheses_.size() > 1) {
-    hypotheses_ = {hypothesis};  // what was thought of where it stood is over
-    best_ = 0;
-  }
-}
-
-// A camera whose place is a little wrong sees the object beside where the others do, always. So only one that has seen
-// it where it is, or that is the only one to see it, can tell that it has moved.
-bool PoseTrack::can_trigger_motion(const std::string& channel, std::int64_t utime) const {
-  constexpr double kOfLateS = 0.5;
-  if (witnesses_.at(channel).agreed_utime != 0) return true;
-  return std::none_of(witnesses_.begin(), witnesses_.end(), [&](const auto& entry) {
-    return entry.first != channel && seconds_between(entry.second.agreed_utime, utime) < kOfLateS;
-  });
-}
-
-void PoseTrack::update_standing(const PoseObservation& pose, bool doubted, Hypothesis& hypothesis) {
+void PoseTrack::update_standing(const PoseObservation& pose, bool has_contrary_depth, Hypothesis& hypothesis) {
   constexpr double kWithinS = 0.4;
   constexpr std::size_t kPlaces = 3;  // measured apart from where it stands
   constexpr std::size_t kTurns = 8;   // measured turned only
@@ -223,26 +192,36 @@ void PoseTrack::update_standing(const PoseObservation& pose, bool doubted, Hypot
       std::max(settings_.static_gate_m, 4.0 * std::sqrt(noise.topLeftCorner<3, 3>().trace() / 3.0));
   const double turn_gate = std::max(settings_.stands_rad, 4.0 * std::sqrt(noise(5, 5)));
   const bool in_place = apart.head<3>().norm() < place_gate;
-  ObserverHistory& witness = witnesses_[pose.frame.channel];
+  ObserverHistory& observer = observers_[pose.frame.channel];
   if (in_place && apart.tail<3>().norm() < turn_gate) {
     hypothesis.filter.update(pose.measured);
-    witness.apart.clear();
-    witness.agreed_utime = pose.frame.utime;
+    observer.apart.clear();
+    observer.agreed_utime = pose.frame.utime;
     return;
   }
-  witness.apart.push_back(pose.measured);
-  while (seconds_between(witness.apart.front().utime, pose.frame.utime) > kWithinS) witness.apart.pop_front();
-  const std::size_t needed = in_place ? kTurns : doubted ? 1 : kPlaces;
-  if (witness.apart.size() < needed || !can_trigger_motion(pose.frame.channel, pose.frame.utime)) return;
-  const PoseMeasurement& first = witness.apart.front();
+  observer.apart.push_back(pose.measured);
+  while (seconds_between(observer.apart.front().utime, pose.frame.utime) > kWithinS) observer.apart.pop_front();
+  const std::size_t needed = in_place ? kTurns : has_contrary_depth ? 1 : kPlaces;
+  if (observer.apart.size() < needed || !can_trigger_motion(pose.frame.channel, pose.frame.utime)) return;
+  const PoseMeasurement& first = observer.apart.front();
   const double seconds = std::max(0.02, seconds_between(first.utime, pose.frame.utime));
   Vector6 way = local_coordinates_about_world(pose.measured.T_world_object, first.T_world_object);
   // The first may have been measured in the turn of another hypothesis: from one to the other nothing has turned.
   if (way.tail<3>().norm() > settings_.same_rotation_rad) way.tail<3>().setZero();
   hypothesis.filter.start_moving(pose.measured, way / seconds);
   recent_ = {pose.measured};
-  witnesses_.clear();
-  witnesses_[pose.frame.channel].agreed_utime = pose.frame.utime;
+  observers_.clear();
+  observers_[pose.frame.channel].agreed_utime = pose.frame.utime;
+}
+
+// A camera whose extrinsics are a little wrong always sees the object beside where the others do. So only a camera that
+// has seen it in its place, or that is the only one to see it, can report that it has moved.
+bool PoseTrack::can_trigger_motion(const std::string& channel, std::int64_t utime) const {
+  constexpr double kOfLateS = 0.5;
+  if (observers_.at(channel).agreed_utime != 0) return true;
+  return std::none_of(observers_.begin(), observers_.end(), [&](const auto& entry) {
+    return entry.first != channel && seconds_between(entry.second.agreed_utime, utime) < kOfLateS;
+  });
 }
 
 void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypothesis) {
@@ -269,6 +248,28 @@ void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypot
     hypothesis.filter.stop();
     recent_.clear();
   }
+}
+
+double PoseTrack::distance(const PoseMeasurement& measured, const Symmetries& symmetries,
+                           const Eigen::Vector3d& centre) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Hypothesis& hypothesis : hypotheses_) {
+    const Eigen::Isometry3d& T = hypothesis.filter.T_world_object();
+    nearest =
+        std::min(nearest, (nearest_equivalent(measured.T_world_object, T, symmetries) * centre - T * centre).norm());
+  }
+  return nearest;
+}
+
+double PoseTrack::angle(const PoseMeasurement& measured, const Symmetries& symmetries) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Hypothesis& hypothesis : hypotheses_) {
+    const Eigen::Isometry3d& T = hypothesis.filter.T_world_object();
+    nearest = std::min(
+        nearest,
+        local_coordinates_about_world(nearest_equivalent(measured.T_world_object, T, symmetries), T).tail<3>().norm());
+  }
+  return nearest;
 }
 
 }  // namespace houghstream::tracks

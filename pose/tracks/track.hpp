@@ -22,7 +22,7 @@
 
 namespace houghstream::tracks {
 
-/// What is known of a class of objects.
+/// Model of a class of objects.
 struct TrackModel {
   Mesh mesh;
   Symmetries symmetries;
@@ -46,13 +46,14 @@ const Symmetries& symmetries_of(const TrackModels& models, const std::string& na
 /// Models by class name; those without known symmetries have none. Throws InputError naming a mesh without triangles.
 TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map<std::string, Symmetries>& symmetries);
 
-/// What is known of a frame of a camera.
+/// A frame of a camera with everything that the tracker gets of it.
 struct FrameObservation {
   const ObjectPoses& poses;                ///< names the frame
   const Detections* detections = nullptr;  ///< of the frame, where they are known
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  std::function<const RgbdFrame*()> image;  ///< its depth, asked only where that is needed; null where there is none
-  /// Of the frame of this camera that has come last: without it, the frame of the poses.
+  /// Decodes the frame's depth, only where it is needed; returns null, or is empty, where there is none.
+  std::function<const RgbdFrame*()> image = nullptr;
+  /// Time of the frame of this camera that has arrived last; without it, that of the frame of the poses.
   std::optional<std::int64_t> newest_utime = std::nullopt;
   FrameNumber number = {};  ///< of its source, as far as that says one
 };
@@ -66,30 +67,34 @@ struct PoseObservation {
   PoseMeasurement measured;
 };
 
-/// The valid poses of a frame in the world. Their covariance grows with the distance, more along the line of sight than
-/// across it, and where little of an object is seen.
+/// Returns the valid poses of a frame in the world. Their covariance grows with the distance, more along the line of
+/// sight than across it, and where little of an object is seen.
 std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
                                            const TrackModels& models);
 
 /// Log odds of a pose's quality, which is cut to 0.02 and 0.98.
 double log_odds_of(double quality);
 
-/// How the depth of a frame speaks for an object at a pose.
-struct Look {
+/// Result of check_visibility().
+struct VisibilityCheck {
   TrackState state = TrackState::kOutOfView;  ///< kUnrecognised: it agrees; kGone: it was seen through
-  double seen_through = 0.0;                  ///< share of what is not hidden, 0 to 1
-  bool goes_on = false;                       ///< the measured surface goes on where the object's outline is
+  double seen_through = 0.0;                  ///< fraction of what is not occluded, 0 to 1
+  bool is_boundary_continued = false;         ///< the measured surface goes on where the object's outline is
 };
-Look look_at(const RgbdFrame& frame, const TrackModel& model, const Eigen::Isometry3d& T_camera_object);
 
-/// When a measured pose belongs to a pose that is known, and when that moves.
+/// Renders the model at a pose and compares it with the depth of a frame.
+VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model,
+                                 const Eigen::Isometry3d& T_camera_object);
+
+/// Gates of a pose track: which hypothesis a measured pose belongs to, and when the object begins to move or comes to
+/// rest.
 struct PoseTrackSettings {
   MotionSettings motion;
-  double same_rotation_rad = 0.44;  ///< poses turned farther apart are two hypotheses
+  double same_rotation_rad = 0.44;  ///< poses rotated farther apart are two hypotheses
   double static_gate_m = 0.008;     ///< what stands is not measured farther away than this, nor than 4 sigma
-  double stands_rad = 0.21;
+  double stands_rad = 0.21;         ///< the same of its rotation
   double rest_threshold_m = 0.004;  ///< what moved stands when two fifths of a second differ by less
-  double settles_rad = 0.09;
+  double settles_rad = 0.09;        ///< and by less than this
 };
 
 template <typename Visit>
@@ -109,9 +114,12 @@ class PoseTrack {
  public:
   PoseTrack(const PoseObservation& first, const PoseTrackSettings& settings);
 
+  /// Moves all hypotheses to a time.
   void predict(std::int64_t utime);
-  /// `doubted`: depth has spoken against where it was since it was measured last; then one measurement elsewhere tells.
-  void take(const PoseObservation& pose, const Symmetries& symmetries, bool doubted);
+  /// Updates the hypothesis that the measured rotation belongs to, and decides whether the object stands or moves.
+  /// `has_contrary_depth`: depth has contradicted its place since it was measured last; then one measurement elsewhere
+  /// suffices for a motion.
+  void update(const PoseObservation& pose, const Symmetries& symmetries, bool has_contrary_depth);
 
   const MotionFilter& filter() const { return hypotheses_[best_].filter; }
   /// Metres from the nearest hypothesis to where the measured pose has the object's `centre` (object frame, metres),
@@ -122,43 +130,44 @@ class PoseTrack {
  private:
   struct Hypothesis {
     MotionFilter filter;
-    double weight = 0.0;  ///< log odds of what spoke for it of late
+    double weight = 0.0;  ///< accumulated log odds of its measurements, which decay over seconds
   };
   struct ObserverHistory {
-    std::deque<PoseMeasurement> apart;  ///< of late, where the object is not thought to be
-    std::int64_t agreed_utime = 0;      ///< when it last saw it where it is
+    std::deque<PoseMeasurement> apart;  ///< recent measurements that lie outside the gates
+    std::int64_t agreed_utime = 0;      ///< time of its last measurement within the gates; 0 for none
   };
 
+  // The steps of update() in the order of their calls.
   std::size_t hypothesis_for(const PoseMeasurement& measured, const Symmetries& symmetries);
-  void update_standing(const PoseObservation& pose, bool doubted, Hypothesis& hypothesis);
-  void update_moving(const PoseMeasurement& measured, Hypothesis& hypothesis);
+  void update_standing(const PoseObservation& pose, bool has_contrary_depth, Hypothesis& hypothesis);
   bool can_trigger_motion(const std::string& channel, std::int64_t utime) const;
+  void update_moving(const PoseMeasurement& measured, Hypothesis& hypothesis);
 
   PoseTrackSettings settings_;
   std::vector<Hypothesis> hypotheses_;
   std::size_t best_ = 0;
   std::int64_t weighed_utime_ = 0;
-  std::map<std::string, ObserverHistory> witnesses_;  // by camera
+  std::map<std::string, ObserverHistory> observers_;  // by camera
   std::deque<PoseMeasurement> recent_;                // while it moves
 };
 
-/// An object, or what may become one.
+/// An object, or a candidate for one.
 struct Track {
   PoseTrack pose;
   std::int64_t id = 0;  ///< 0: not confirmed
   int class_id = 0;
   std::string class_name = {};
-  double log_odds = 0.0;  ///< that it is there
+  double log_odds = 0.0;  ///< of its existence
   int seen = 0;           ///< frames with a pose of it
   std::int64_t first_utime = 0;
   FrameId last_seen = {};
   TrackState state = TrackState::kVisible;
   std::string reason = {};
-  std::int64_t deleted_utime = 0;  ///< 0: it is there
-  bool seen_now = false;
-  double seen_through_s = 0.0;  ///< for how long it was seen through, since it was seen last
+  std::int64_t deleted_utime = 0;  ///< 0 while it is present
+  bool seen_now = false;           ///< a result of the current frame has a pose of it
+  double seen_through_s = 0.0;     ///< time for which it was seen through since its last pose
 
-  bool there() const { return deleted_utime == 0; }
+  bool is_present() const { return deleted_utime == 0; }
 };
 
 }  // namespace houghstream::tracks

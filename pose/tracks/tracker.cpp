@@ -3,227 +3,104 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
-#include <set>
 
 #include "pipeline/base/check_settings.hpp"
+#include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/log_odds.hpp"
-#include "pose/tracks/class_names.hpp"
-#include "pose/tracks/searched_classes.hpp"
-#include "pose/tracks/world_clock.hpp"
+#include "pipeline/types/frame_time.hpp"
 
 namespace houghstream::tracks {
 
-struct Tracker::State {
-  TrackModels models;
-  ObjectTrackerSettings settings;
-  std::vector<Track> tracks;  // by when they were begun; numbers follow in the order of confirmation
-  WorldClock clock;
-  SearchedClasses looked_for;
-  ClassNames names;
-  std::map<std::string, int> max_instances;  // by class: instances that were seen in one frame
-  std::int64_t next_id = 1;
-  int world_number = 1;
-  std::size_t refused = 0;  // poses of the last frame, for which there was no room
-
-  void begin_world();
-  void rename_tracks(const std::map<std::string, std::string>& renamed);
-  void drop_doubles(std::size_t renamed_index);
-  void retire_tracks(const std::set<std::string>& removed);
-  WorldObjects update(const FrameObservation& seen, CameraClock& camera);
-  CameraClock* begin_frame(const FrameObservation& seen);
-  std::vector<PoseObservation> new_poses(const FrameObservation& seen, CameraClock& camera) const;
-  std::vector<PoseObservation> associate(const std::vector<PoseObservation>& poses, const std::string& class_name,
-                                         double seconds);
-  void take(Track& track, const PoseObservation& pose, double seconds);
-  bool has_room();
-  void begin(const PoseObservation& pose);
-  void update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses,
-                                CameraClock& camera);
-  void confirm(std::int64_t utime);
-  Track* find_reidentified(const Track& candidate, std::int64_t utime);
-  void forget(std::int64_t utime);
-  WorldObjects report(const FrameObservation& seen) const;
-};
-
-Tracker::Tracker(TrackModels models, ObjectTrackerSettings settings) : state_(std::make_unique<State>()) {
+Tracker::Tracker(TrackModels models, ObjectTrackerSettings settings) : models_(std::move(models)), settings_(settings) {
   check_settings(settings, "settings of a tracker");
-  state_->models = std::move(models);
-  state_->settings = settings;
-}
-Tracker::~Tracker() = default;
-Tracker::Tracker(Tracker&&) noexcept = default;
-
-void Tracker::set_models(TrackModels models) {
-  const ModelChange change = find_model_change(state_->models, models);
-  state_->models = std::move(models);
-  state_->names.update(change, state_->models);
-  state_->retire_tracks(change.removed);
-  state_->rename_tracks(change.renamed);
 }
 
-void Tracker::State::retire_tracks(const std::set<std::string>& removed) {
-  const auto is_removed = [&](const Track& track) { return removed.count(track.class_name) > 0; };
-  tracks.erase(std::remove_if(tracks.begin(), tracks.end(),
-                              [&](const Track& track) { return track.id == 0 && is_removed(track); }),
-               tracks.end());
-  for (Track& track : tracks) {
-    if (!track.there() || !is_removed(track)) continue;
-    track.deleted_utime = track.pose.filter().utime();
-    track.log_odds = std::min(track.log_odds, settings.existence.gone);
-    track.state = TrackState::kGone;
-    track.reason = "its class has left the object store";
-    log_info("{} #{} is gone: {}", track.class_name, track.id, track.reason);
-  }
-}
-
-void Tracker::State::rename_tracks(const std::map<std::string, std::string>& renamed) {
-  std::vector<std::size_t> changed;
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
-    Track& track = tracks[i];
-    const auto found = renamed.find(track.class_name);
-    if (found == renamed.end()) continue;
-    if (track.id != 0 && track.there()) log_info("{} #{} is called {} now", track.class_name, track.id, found->second);
-    track.class_name = found->second;
-    changed.push_back(i);
-  }
-  for (const std::size_t i : changed) drop_doubles(i);
-  tracks.erase(std::remove_if(tracks.begin(), tracks.end(), [](const Track& track) { return track.id < 0; }),
-               tracks.end());
-  std::map<std::string, int> counts;
-  for (const auto& [name, count] : max_instances) {
-    const auto found = renamed.find(name);
-    int& most = counts[found == renamed.end() ? name : found->second];
-    most = std::max(most, count);
-  }
-  max_instances = std::move(counts);
-}
-
-/// Marks what was begun in the place of a renamed object while only its new name came, for being forgotten.
-void Tracker::State::drop_doubles(std::size_t renamed_index) {
-  const Track& kept = tracks[renamed_index];
-  if (kept.id <= 0 || !kept.there()) return;
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
-    Track& other = tracks[i];
-    if (i == renamed_index || other.class_name != kept.class_name || (other.id > 0 && other.id < kept.id)) continue;
-    const double apart_m =
-        kept.pose.distance({kept.pose.filter().utime(), other.pose.filter().T_world_object(), Covariance6::Identity()},
-                           symmetries_of(models, kept.class_name), centre_of(models, kept.class_name));
-    if (apart_m < 0.5 * radius_of(models, kept.class_name)) other.id = -1;
-  }
-}
-
-void Tracker::begin_world() {
-  state_->begin_world();
-}
-
-std::size_t Tracker::refused() const {
-  return state_->refused;
-}
-
-std::optional<WorldObjects> Tracker::update(const FrameObservation& seen) {
-  State& state = *state_;
-  state.refused = 0;
-  CameraClock* camera = state.begin_frame(seen);
+// The method on one page; its steps stand below in the order of their calls.
+std::optional<WorldObjects> Tracker::update(const FrameObservation& received) {
+  refused_ = 0;
+  CameraClock* camera = begin_frame(received);
   if (camera == nullptr) return std::nullopt;
-  const std::int64_t ahead_us = state.clock.ahead_us();
-  const std::int64_t utime = ahead_us == 0 ? seen.poses.frame.utime : camera->utime;
-  for (Track& track : state.tracks) track.pose.predict(utime);
-  ObjectPoses poses = state.names.resolve(seen, state.models, state.tracks, state.settings.pose.same_rotation_rad);
-  poses.frame.utime = utime;
+  const FrameId frame{received.poses.frame.channel, camera->utime};  // on the world's clock
+  for (Track& track : tracks_) {
+    track.pose.predict(frame.utime);
+    track.seen_now = track.last_seen == frame;  // by another result of the same frame
+  }
+  ObjectPoses poses = names_.resolve(received, models_, tracks_, settings_.pose.same_rotation_rad);
+  poses.frame = frame;
   std::optional<Detections> renamed;
-  if (seen.detections != nullptr) renamed = state.names.resolve(*seen.detections);
-  const Detections* detections = renamed ? &*renamed : seen.detections;
-  WorldObjects world = state.update({poses, detections, seen.T_world_camera, seen.image}, *camera);
-  world.frame = seen.poses.frame;
-  if (ahead_us == 0) return world;
-  for (TrackedObject& object : world.objects) {
-    object.first_utime = microseconds_between(ahead_us, object.first_utime);
-    object.last_seen.utime = microseconds_between(ahead_us, object.last_seen.utime);
-  }
-  return world;
+  if (received.detections != nullptr) renamed = names_.resolve(*received.detections);
+  FrameObservation seen{poses};
+  seen.detections = renamed ? &*renamed : received.detections;
+  seen.T_world_camera = received.T_world_camera;
+  seen.image = received.image;
+  const std::vector<PoseObservation> observed = observe_new_poses(seen, *camera);
+  const std::vector<PoseObservation> unassigned = associate(observed, camera->seconds);
+  update_unobserved_tracks(seen, observed, *camera);
+  for (const PoseObservation& pose : unassigned) begin_track(pose);
+  confirm_tracks(frame.utime);
+  forget_tracks(frame.utime);
+  return report(received, frame.utime);
 }
 
-/// The world after a frame whose time is on the world's clock, and whose classes are called as they are today.
-WorldObjects Tracker::State::update(const FrameObservation& seen, CameraClock& camera) {
-  const FrameId& frame = seen.poses.frame;
-  const std::vector<PoseObservation> poses = new_poses(seen, camera);
-  for (Track& track : tracks) track.seen_now = track.last_seen == frame;  // by another result of the same frame
-  std::set<std::string> classes;
-  for (const PoseObservation& pose : poses) classes.insert(pose.class_name);
-  std::vector<PoseObservation> unknown;
-  for (const std::string& class_name : classes) {
-    const std::vector<PoseObservation> left = associate(poses, class_name, camera.seconds);
-    unknown.insert(unknown.end(), left.begin(), left.end());
-  }
-  update_unobserved_tracks(seen, poses, camera);
-  for (const PoseObservation& pose : unknown) begin(pose);
-  confirm(frame.utime);
-  forget(frame.utime);
-  return report(seen);
-}
-
-void Tracker::State::begin_world() {
-  tracks.clear();
-  clock.begin_world();
-  looked_for = {};
-  max_instances.clear();
-  next_id = 1;
-  ++world_number;
-}
-
-/// The camera's clock, which the frame has set; null where the frame is passed over.
-CameraClock* Tracker::State::begin_frame(const FrameObservation& seen) {
-  const FrameId& id = seen.poses.frame;
-  const StampedFrame frame{id, seen.number, seen.newest_utime.value_or(id.utime)};
-  const TimeOrder order = clock.order_of(frame);
+/// Sets the camera's clock to the frame; returns null where the frame is passed over.
+CameraClock* Tracker::begin_frame(const FrameObservation& received) {
+  const FrameId& id = received.poses.frame;
+  const StampedFrame frame{id, received.number, received.newest_utime.value_or(id.utime)};
+  const TimeOrder order = clock_.order_of(frame);
   if (order == TimeOrder::kLate) return nullptr;
-  if (order == TimeOrder::kAnew) begin_world();
-  return &clock.set(frame);
+  if (order == TimeOrder::kReset) begin_world();
+  return &clock_.set(frame);
 }
 
-/// The poses of classes that this frame was not told of yet: another detector's, or all.
-std::vector<PoseObservation> Tracker::State::new_poses(const FrameObservation& seen, CameraClock& camera) const {
-  std::vector<PoseObservation> poses = observe_poses(seen.poses, seen.T_world_camera, models);
-  std::set<std::string>& told = camera.classes;
+/// Returns the poses of classes that no earlier result of this frame has had.
+std::vector<PoseObservation> Tracker::observe_new_poses(const FrameObservation& seen, CameraClock& camera) const {
+  std::vector<PoseObservation> poses = observe_poses(seen.poses, seen.T_world_camera, models_);
+  std::set<std::string>& known = camera.classes;
   poses.erase(std::remove_if(poses.begin(), poses.end(),
-                             [&](const PoseObservation& pose) { return told.count(pose.class_name) > 0; }),
+                             [&](const PoseObservation& pose) { return known.count(pose.class_name) > 0; }),
               poses.end());
-  for (const PoseObservation& pose : poses) told.insert(pose.class_name);
+  for (const PoseObservation& pose : poses) known.insert(pose.class_name);
   return poses;
 }
 
-/// Gives the poses of a class to its objects; those that no object is near are left.
-std::vector<PoseObservation> Tracker::State::associate(const std::vector<PoseObservation>& poses,
-                                                       const std::string& class_name, double seconds) {
-  const ClassGroup one = group_by_class(class_name, poses, models, tracks);
-  const std::vector<int> given = assign_poses(one, settings.association);
-  std::vector<bool> taken(one.measured.size(), false);
-  for (std::size_t i = 0; i < one.objects.size(); ++i) {
-    if (given[i] < 0) continue;
-    taken[given[i]] = true;
-    take(*one.objects[i], *one.measured[given[i]], seconds);
+/// Gives each class' poses to its objects; returns those that no object is near.
+std::vector<PoseObservation> Tracker::associate(const std::vector<PoseObservation>& poses, double seconds) {
+  std::set<std::string> classes;
+  for (const PoseObservation& pose : poses) classes.insert(pose.class_name);
+  std::vector<PoseObservation> unassigned;
+  for (const std::string& class_name : classes) {
+    const ClassGroup group = group_by_class(class_name, poses, models_, tracks_);
+    const std::vector<int> assigned = assign_poses(group, settings_.association);
+    std::vector<bool> is_assigned(group.measured.size(), false);
+    for (std::size_t i = 0; i < group.objects.size(); ++i) {
+      if (assigned[i] < 0) continue;
+      is_assigned[assigned[i]] = true;
+      update_track(*group.objects[i], *group.measured[assigned[i]], seconds);
+    }
+    const int together =
+        static_cast<int>(std::count_if(group.objects.begin(), group.objects.end(),
+                                       [](const Track* track) { return track->id != 0 && track->seen_now; }));
+    max_instances_[class_name] = std::max(max_instances_[class_name], together);
+    for (std::size_t j = 0; j < group.measured.size(); ++j) {
+      const PoseObservation& pose = *group.measured[j];
+      if (!is_assigned[j] && !is_space_occupied(pose.measured, group, settings_.association))
+        unassigned.push_back(pose);
+    }
   }
-  const int together = static_cast<int>(std::count_if(
-      one.objects.begin(), one.objects.end(), [](const Track* track) { return track->id != 0 && track->seen_now; }));
-  max_instances[class_name] = std::max(max_instances[class_name], together);
-  std::vector<PoseObservation> left;
-  for (std::size_t j = 0; j < one.measured.size(); ++j) {
-    const PoseObservation& pose = *one.measured[j];
-    if (!taken[j] && !is_space_occupied(pose.measured, one, settings.association)) left.push_back(pose);
-  }
-  return left;
+  return unassigned;
 }
 
-void Tracker::State::take(Track& track, const PoseObservation& pose, double seconds) {
+void Tracker::update_track(Track& track, const PoseObservation& pose, double seconds) {
   constexpr double kRateHz = 30.0;
   constexpr double kMax = 4.0;
   const double share = std::clamp(seconds * kRateHz, 0.5, 1.5);
-  track.pose.take(pose, symmetries_of(models, track.class_name), track.seen_through_s > 0.0);
+  track.pose.update(pose, symmetries_of(models_, track.class_name), track.seen_through_s > 0.0);
   track.log_odds =
-      std::min(settings.existence.most,
-               track.log_odds + share * settings.existence.gain * std::clamp(log_odds_of(pose.quality), 0.3, kMax));
+      std::min(settings_.existence.max_log_odds,
+               track.log_odds + share * settings_.existence.gain * std::clamp(log_odds_of(pose.quality), 0.3, kMax));
   ++track.seen;
   track.seen_now = true;
   track.seen_through_s = 0.0;
@@ -232,75 +109,97 @@ void Tracker::State::take(Track& track, const PoseObservation& pose, double seco
   track.reason = fmt::format("seen by {}", pose.frame.channel);
 }
 
-/// For one object more: what has been gone longest makes room.
-bool Tracker::State::has_room() {
-  if (tracks.size() < settings.max_objects) return true;
-  auto oldest = tracks.end();
-  for (auto it = tracks.begin(); it != tracks.end(); ++it) {
-    if (!it->there() && (oldest == tracks.end() || it->deleted_utime < oldest->deleted_utime)) oldest = it;
+/// A track without a pose is missed once a frame, however many results the frame has.
+void Tracker::update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses,
+                                       CameraClock& camera) {
+  searched_classes_.note(seen.poses);
+  UnobservedContext unseen{seen, poses, models_};
+  unseen.reach_m = settings_.association.reach_m;
+  unseen.coast_s = settings_.pose.motion.coast_s;
+  std::set<std::string> missed_now;
+  for (Track& track : tracks_) {
+    if (!track.is_present() || track.seen_now) continue;
+    const MissedDetection missed{
+        camera.seconds, camera.results == 1,
+        camera.missed.count(track.class_name) == 0 && searched_classes_.has_searched(seen.poses, track.class_name)};
+    if (missed.by_recognition) missed_now.insert(track.class_name);
+    if (missed.by_depth || missed.by_recognition) update_unobserved(unseen, missed, settings_.existence, track);
   }
-  if (oldest == tracks.end()) return false;
-  tracks.erase(oldest);
-  return true;
+  camera.missed.insert(missed_now.begin(), missed_now.end());
 }
 
-void Tracker::State::begin(const PoseObservation& pose) {
-  if (!has_room()) {
-    ++refused;
+void Tracker::begin_track(const PoseObservation& pose) {
+  if (!make_room()) {
+    ++refused_;
     return;
   }
-  Track track{PoseTrack(pose, settings.pose)};
+  Track track{PoseTrack(pose, settings_.pose)};
   track.class_id = pose.class_id;
   track.class_name = pose.class_name;
   track.seen = 1;
   track.first_utime = pose.frame.utime;
   track.last_seen = pose.frame;
   track.reason = fmt::format("seen by {}", pose.frame.channel);
-  track.log_odds = settings.existence.prior + settings.existence.gain * log_odds_of(pose.quality);
+  track.log_odds = settings_.existence.prior + settings_.existence.gain * log_odds_of(pose.quality);
   track.seen_now = true;
-  tracks.push_back(std::move(track));
+  tracks_.push_back(std::move(track));
 }
 
-/// What is not seen is missed once a frame, however many results that has.
-void Tracker::State::update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses,
-                                              CameraClock& camera) {
-  looked_for.note(seen.poses);
-  UnobservedContext unseen{seen, poses, models};
-  unseen.reach_m = settings.association.reach_m;
-  unseen.coast_s = settings.pose.motion.coast_s;
-  std::set<std::string> missed_now;
-  for (Track& track : tracks) {
-    if (!track.there() || track.seen_now) continue;
-    const MissedDetection missed{
-        camera.seconds, camera.results == 1,
-        camera.missed.count(track.class_name) == 0 && looked_for.has_searched(seen.poses, track.class_name)};
-    if (missed.by_recognition) missed_now.insert(track.class_name);
-    if (missed.by_depth || missed.by_recognition) update_unobserved(unseen, missed, settings.existence, track);
+/// Makes room for one object more by what has been gone longest; false where nothing is gone.
+bool Tracker::make_room() {
+  if (tracks_.size() < settings_.max_objects) return true;
+  auto oldest = tracks_.end();
+  for (auto it = tracks_.begin(); it != tracks_.end(); ++it) {
+    if (!it->is_present() && (oldest == tracks_.end() || it->deleted_utime < oldest->deleted_utime)) oldest = it;
   }
-  camera.missed.insert(missed_now.begin(), missed_now.end());
+  if (oldest == tracks_.end()) return false;
+  tracks_.erase(oldest);
+  return true;
 }
 
-/// The object that a candidate was before it was carried or taken away: one of its class that is gone, that is not
-/// where it was, or that a hand hides while no more of its class have ever been seen together.
-Track* Tracker::State::find_reidentified(const Track& candidate, std::int64_t utime) {
+/// Candidates that have been observed enough become objects, or are found to be earlier ones.
+void Tracker::confirm_tracks(std::int64_t utime) {
+  const ExistenceSettings& how = settings_.existence;
+  for (Track& candidate : tracks_) {
+    const double spread_s = seconds_between(candidate.first_utime, candidate.last_seen.utime);
+    if (candidate.id != 0 || !candidate.is_present() || candidate.log_odds < how.confirm_log_odds ||
+        candidate.seen < how.min_frames || spread_s < how.min_duration_s)
+      continue;
+    if (Track* earlier = find_reidentified(candidate, utime)) {
+      const std::int64_t id = earlier->id;
+      candidate.id = id;
+      candidate.first_utime = earlier->first_utime;
+      candidate.seen += earlier->seen;
+      earlier->id = -1;  // for forget_tracks()
+      log_info("{} #{} is in another place", candidate.class_name, id);
+    } else {
+      candidate.id = next_id_++;
+      log_info("{} #{} is there, seen by {}", candidate.class_name, candidate.id, candidate.last_seen.channel);
+    }
+  }
+}
+
+/// Returns the object that a candidate was before it was carried or taken away: one of its class that is gone, that is
+/// not in its place, or that a hand occludes while no more of its class have ever been seen together.
+Track* Tracker::find_reidentified(const Track& candidate, std::int64_t utime) {
   int visible = 1;
-  for (const Track& track : tracks) {
+  for (const Track& track : tracks_) {
     if (track.id != 0 && track.class_name == candidate.class_name && track.seen_now) ++visible;
   }
   Track* best = nullptr;
   double best_rank = 0.0;
-  for (Track& track : tracks) {
-    // One that this frame has given its number to another candidate is nobody's any more.
+  for (Track& track : tracks_) {
+    // A track whose number another candidate has got in this frame is no object any more.
     if (track.id <= 0 || track.class_name != candidate.class_name || track.seen_now) continue;
     const double unseen_s = seconds_between(track.last_seen.utime, utime);
-    const bool handled = track.state == TrackState::kHidden && unseen_s < settings.hand_occlusion_s;
+    const bool handled = track.state == TrackState::kHidden && unseen_s < settings_.hand_occlusion_s;
     const bool lost = track.pose.filter().moving() || track.seen_through_s > 0.0;
-    const bool free = !track.there() || lost || (handled && visible <= max_instances[candidate.class_name]);
+    const bool free = !track.is_present() || lost || (handled && visible <= max_instances_[candidate.class_name]);
     if (!free || track.last_seen.utime > candidate.last_seen.utime) continue;
     const double rank =
-        unseen_s + (track.there() ? 0.0 : 5.0) +
+        unseen_s + (track.is_present() ? 0.0 : 5.0) +
         track.pose.distance({utime, candidate.pose.filter().T_world_object(), Covariance6::Identity()},
-                            symmetries_of(models, track.class_name), centre_of(models, track.class_name));
+                            symmetries_of(models_, track.class_name), centre_of(models_, track.class_name));
     if (best != nullptr && rank >= best_rank) continue;
     best = &track;
     best_rank = rank;
@@ -308,52 +207,31 @@ Track* Tracker::State::find_reidentified(const Track& candidate, std::int64_t ut
   return best;
 }
 
-/// Candidates that have been seen enough become objects, or are the ones that were lost.
-void Tracker::State::confirm(std::int64_t utime) {
-  const ExistenceSettings& how = settings.existence;
-  for (Track& candidate : tracks) {
-    const double spread_s = seconds_between(candidate.first_utime, candidate.last_seen.utime);
-    if (candidate.id != 0 || !candidate.there() || candidate.log_odds < how.confirmed ||
-        candidate.seen < how.confirmed_frames || spread_s < how.confirmed_s)
-      continue;
-    if (Track* earlier = find_reidentified(candidate, utime)) {
-      const std::int64_t id = earlier->id;
-      candidate.id = id;
-      candidate.first_utime = earlier->first_utime;
-      candidate.seen += earlier->seen;
-      earlier->id = -1;  // forgotten below
-      log_info("{} #{} is in another place", candidate.class_name, id);
-    } else {
-      candidate.id = next_id++;
-      log_info("{} #{} is there, seen by {}", candidate.class_name, candidate.id, candidate.last_seen.channel);
-    }
-  }
-}
-
-void Tracker::State::forget(std::int64_t utime) {
+void Tracker::forget_tracks(std::int64_t utime) {
   const auto over = [&](const Track& track) {
     if (track.id < 0) return true;
-    if (track.there()) return false;
-    return track.id == 0 || seconds_between(track.deleted_utime, utime) > settings.reidentification_s;
+    if (track.is_present()) return false;
+    return track.id == 0 || seconds_between(track.deleted_utime, utime) > settings_.reidentification_s;
   };
-  tracks.erase(std::remove_if(tracks.begin(), tracks.end(), over), tracks.end());
-  // Other classes' names a sender of rubbish may make up without end.
+  tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(), over), tracks_.end());
+  // An untrusted sender may make up names of classes without end.
   std::set<std::string> known;
-  for (const Track& track : tracks) known.insert(track.class_name);
-  for (auto it = max_instances.begin(); it != max_instances.end();)
-    it = known.count(it->first) > 0 ? std::next(it) : max_instances.erase(it);
-  looked_for.keep_only(known);
+  for (const Track& track : tracks_) known.insert(track.class_name);
+  for (auto it = max_instances_.begin(); it != max_instances_.end();)
+    it = known.count(it->first) > 0 ? std::next(it) : max_instances_.erase(it);
+  searched_classes_.keep_only(known);
 }
 
-WorldObjects Tracker::State::report(const FrameObservation& seen) const {
+/// Returns the objects that are published, with times of the frames' own clocks.
+WorldObjects Tracker::report(const FrameObservation& received, std::int64_t utime) const {
   WorldObjects out;
-  out.frame = seen.poses.frame;
-  out.world_number = world_number;
-  out.T_world_camera = seen.T_world_camera;
-  out.stages = seen.poses.stages;
-  for (const Track& track : tracks) {
+  out.frame = received.poses.frame;
+  out.world_number = world_number_;
+  out.T_world_camera = received.T_world_camera;
+  out.stages = received.poses.stages;
+  for (const Track& track : tracks_) {
     if (track.id == 0) continue;
-    if (!track.there() && seconds_between(track.deleted_utime, out.frame.utime) > settings.gone_report_s) continue;
+    if (!track.is_present() && seconds_between(track.deleted_utime, utime) > settings_.gone_report_s) continue;
     const MotionFilter& filter = track.pose.filter();
     TrackedObject object;
     object.track_id = track.id;
@@ -366,14 +244,226 @@ WorldObjects Tracker::State::report(const FrameObservation& seen) const {
     object.covariance = filter.covariance();
     object.velocity = filter.velocity();
     object.seen = track.seen;
-    object.first_utime = track.first_utime;
+    object.first_utime = microseconds_between(clock_.ahead_us(), track.first_utime);
     object.last_seen = track.last_seen;
+    object.last_seen.utime = microseconds_between(clock_.ahead_us(), track.last_seen.utime);
     object.reason = track.reason;
     out.objects.push_back(std::move(object));
   }
   std::sort(out.objects.begin(), out.objects.end(),
             [](const TrackedObject& a, const TrackedObject& b) { return a.track_id < b.track_id; });
   return out;
+}
+
+void Tracker::begin_world() {
+  tracks_.clear();
+  clock_.begin_world();
+  searched_classes_ = {};
+  max_instances_.clear();
+  next_id_ = 1;
+  ++world_number_;
+}
+
+void Tracker::set_models(TrackModels models) {
+  const ModelChange change = find_model_change(models_, models);
+  models_ = std::move(models);
+  names_.update(change, models_);
+  retire_tracks(change.removed, settings_.existence.delete_log_odds, tracks_);
+  rename_tracks(change.renamed, models_, tracks_);
+  rename_counts(change.renamed, max_instances_);
+}
+
+namespace {
+
+/// Returns whether the numbers show that the source, or its log, was restarted: they fall, or are of another run.
+bool is_started_again(const FrameNumber& before, const FrameNumber& after) {
+  if (before.run != 0 && after.run != 0 && before.run != after.run) return true;
+  return before.sequence && after.sequence && *after.sequence < *before.sequence;
+}
+
+bool has_risen(const FrameNumber& before, const FrameNumber& after) {
+  return before.run == after.run && before.sequence && after.sequence && *after.sequence > *before.sequence;
+}
+
+}  // namespace
+
+TimeOrder WorldClock::order_of(const StampedFrame& frame) {
+  constexpr int kGone = 30;
+  if (seconds_between(frame.newest_utime, frame.id.utime) > kMaxOvertakenS) return TimeOrder::kLate;
+  const std::int64_t utime = shifted(frame.id.utime, ahead_us_);
+  const auto known = cameras_.find(frame.id.channel);
+  if (known != cameras_.end()) {
+    const TimeOrder order = order_after(known->second, frame, utime);
+    if (order != TimeOrder::kNext) return order;
+  } else if (newest_ && order_ahead(newest_->utime, frame, utime) == TimeOrder::kLate) {
+    return TimeOrder::kLate;
+  }
+  const std::int64_t now = shifted(frame.id.utime, ahead_us_);
+  if (!newest_ || seconds_between(now, newest_->utime) <= kMaxOvertakenS) return TimeOrder::kNext;
+  ++behind_;
+  require(
+      behind_ >= kGone,
+      "frame {} is {:.1f} s older than the last one of {}, expected cameras whose clocks, and results, are within {} "
+      "s of one another",
+      to_string(frame.id), seconds_between(now, newest_->utime), newest_->channel, kMaxOvertakenS);
+  tell_new_world(frame.id, newest_->utime);
+  return TimeOrder::kReset;
+}
+
+TimeOrder WorldClock::order_after(const Camera& camera, const StampedFrame& frame, std::int64_t utime) {
+  constexpr double kIntervals = 3.0;  // results may come seldom
+  const std::int64_t last_utime = camera.clock.utime;
+  if (seconds_between(shifted(frame.newest_utime, ahead_us_), last_utime) > kMaxOvertakenS)
+    return order_behind(camera, frame, utime);
+  const bool other_run = frame.number.run != camera.number.run && frame.number.run != 0 && camera.number.run != 0;
+  if (utime <= last_utime && other_run) {
+    tell_new_world(frame.id, last_utime);
+    return TimeOrder::kReset;
+  }
+  if (utime < last_utime) return TimeOrder::kLate;
+  const double passed_s = seconds_between(last_utime, utime);
+  if (passed_s <= std::max(kMaxOvertakenS, kIntervals * camera.interval_s)) return TimeOrder::kNext;
+  return order_ahead(last_utime, frame, utime);
+}
+
+/// Decides on a result of a camera whose frames have gone back in time.
+TimeOrder WorldClock::order_behind(const Camera& camera, const StampedFrame& frame, std::int64_t utime) {
+  const std::int64_t last_utime = camera.clock.utime;
+  if (!is_started_again(camera.number, frame.number)) {
+    const auto doubted = doubted_.find(frame.id.channel);
+    const std::int64_t first = doubted == doubted_.end() ? utime : doubted->second;
+    if (!is_confirmed(last_utime, frame.id, utime)) return TimeOrder::kLate;
+    if (has_risen(camera.number, frame.number)) {
+      warn(
+          fmt::format("frame {} is {:.1f} s older than the last one, though its number is higher: the camera's clock "
+                      "was set back, and the world goes on",
+                      to_string(frame.id), seconds_between(utime, last_utime)));
+      const std::int64_t apart_us = microseconds_between(std::min(first, utime), std::max(first, utime));
+      move_to(shifted(last_utime, 2 * std::min<std::int64_t>(apart_us, 1'000'000)), frame.id);
+      return TimeOrder::kNext;
+    }
+  }
+  tell_new_world(frame.id, last_utime);
+  return TimeOrder::kReset;
+}
+
+TimeOrder WorldClock::order_ahead(std::int64_t last_utime, const StampedFrame& frame, std::int64_t utime) {
+  constexpr std::int64_t kMaxDurationUs = 60'000'000;
+  if (seconds_between(last_utime, utime) <= kMaxOvertakenS) return TimeOrder::kNext;
+  const bool is_told_by_another = std::abs(seconds_between(newest_->utime, utime)) <= kMaxOvertakenS;
+  if (!is_told_by_another && !is_confirmed(last_utime, frame.id, utime)) return TimeOrder::kLate;
+  if (microseconds_between(newest_->utime, utime) > kMaxDurationUs)
+    move_to(shifted(newest_->utime, kMaxDurationUs), frame.id);
+  return TimeOrder::kNext;
+}
+
+/// Returns whether the camera's previous doubted frame lay beside this one, far from its last one. Another result of
+/// the same frame confirms nothing.
+bool WorldClock::is_confirmed(std::int64_t last_utime, const FrameId& frame, std::int64_t utime) {
+  const auto [doubted, is_first] = doubted_.emplace(frame.channel, utime);
+  if (is_first || doubted->second == utime) return false;
+  const double beside_s = std::abs(seconds_between(doubted->second, utime));
+  const bool confirmed = beside_s < std::abs(seconds_between(last_utime, utime));
+  doubted->second = utime;
+  return confirmed;
+}
+
+void WorldClock::move_to(std::int64_t world_utime, const FrameId& frame) {
+  ahead_us_ = microseconds_between(frame.utime, world_utime);
+}
+
+CameraClock& WorldClock::set(const StampedFrame& frame) {
+  constexpr double kUsualS = 1.0 / 30.0;
+  constexpr double kMaxS = 0.1;
+  behind_ = 0;
+  const FrameId now{frame.id.channel, shifted(frame.id.utime, ahead_us_)};
+  doubted_.erase(now.channel);
+  if (!newest_ || now.utime > newest_->utime) newest_ = now;
+  Camera& camera = cameras_[now.channel];
+  CameraClock& clock = camera.clock;
+  const double passed_s = seconds_between(clock.utime, now.utime);
+  const double seconds = clock.results == 0 ? kUsualS : std::min(kMaxS, passed_s);
+  if (clock.results > 0 && passed_s > 0.0) camera.interval_s = passed_s;
+  if (clock.results == 0 || now.utime != clock.utime) {
+    clock = CameraClock();
+    clock.utime = now.utime;
+    clock.seconds = seconds;
+  }
+  camera.number = frame.number;
+  ++clock.results;
+  return clock;
+}
+
+void WorldClock::begin_world() {
+  cameras_.clear();
+  doubted_.clear();
+  newest_.reset();
+  behind_ = 0;
+  ahead_us_ = 0;
+}
+
+void WorldClock::tell_new_world(const FrameId& frame, std::int64_t last_utime) {
+  warn(fmt::format("frame {} is {:.1f} s older than the last one: a new world begins", to_string(frame),
+                   seconds_between(shifted(frame.utime, ahead_us_), last_utime)));
+}
+
+void WorldClock::warn(const std::string& line) {
+  const auto admitted = lines_.admit("world", line, LogThrottle::Clock::now());
+  if (admitted) log_warning("{}", *admitted);
+}
+
+namespace {
+
+std::set<std::string> reported_classes(const ObjectPoses& poses) {
+  std::set<std::string> names;
+  for (const ObjectPose& pose : poses.poses) {
+    if (pose.status != PoseStatus::kNoModel) names.insert(pose.class_name);
+  }
+  return names;
+}
+
+bool have_common(const std::set<std::string>& a, const std::set<std::string>& b) {
+  return std::any_of(a.begin(), a.end(), [&](const std::string& name) { return b.count(name) > 0; });
+}
+
+}  // namespace
+
+void SearchedClasses::note(const ObjectPoses& poses) {
+  constexpr std::size_t kMax = 500;  // classes of one detector
+  const std::set<std::string> names = reported_classes(poses);
+  Camera& camera = cameras_[poses.frame.channel];
+  if (camera.utime != poses.frame.utime) camera.classes.clear();
+  camera.utime = poses.frame.utime;
+  if (!names.empty() && !camera.classes.empty() && !have_common(names, camera.classes)) camera.has_several = true;
+  camera.classes.insert(names.begin(), names.end());
+  for (const std::string& name : names) {
+    Coverage& coverage = coverage_[name];
+    if (coverage.classes.size() < kMax) coverage.classes.insert(names.begin(), names.end());
+    coverage.utime = std::max(coverage.utime, poses.frame.utime);
+  }
+}
+
+bool SearchedClasses::has_searched(const ObjectPoses& poses, const std::string& class_name) const {
+  const auto camera = cameras_.find(poses.frame.channel);
+  if (camera == cameras_.end() || !camera->second.has_several) return true;
+  const auto coverage = coverage_.find(class_name);
+  if (coverage == coverage_.end()) return true;
+  return have_common(reported_classes(poses), coverage->second.classes) || !is_reporting(class_name, poses.frame.utime);
+}
+
+/// Returns whether its detector has reported anything within the last second.
+bool SearchedClasses::is_reporting(const std::string& class_name, std::int64_t utime) const {
+  constexpr double kSilentS = 1.0;
+  const std::set<std::string>& together = coverage_.at(class_name).classes;
+  return std::any_of(together.begin(), together.end(), [&](const std::string& name) {
+    const auto reported = coverage_.find(name);
+    return reported != coverage_.end() && seconds_between(reported->second.utime, utime) <= kSilentS;
+  });
+}
+
+void SearchedClasses::keep_only(const std::set<std::string>& classes) {
+  for (auto it = coverage_.begin(); it != coverage_.end();)
+    it = classes.count(it->first) > 0 ? std::next(it) : coverage_.erase(it);
 }
 
 }  // namespace houghstream::tracks

@@ -1,24 +1,33 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
+#include <cstdint>
+#include <map>
 #include <optional>
+#include <set>
+#include <string>
+#include <vector>
 
+#include "pipeline/base/log_throttle.hpp"
 #include "pipeline/base/settings_fields.hpp"
+#include "pipeline/bus/sequence_count.hpp"
+#include "pipeline/types/frame_id.hpp"
 #include "pose/tracks/association.hpp"
+#include "pose/tracks/class_names.hpp"
 #include "pose/tracks/existence.hpp"
 #include "pose/tracks/track.hpp"
 
 namespace houghstream::tracks {
 
+/// Settings of the tracker and of its stages.
 struct ObjectTrackerSettings {
   PoseTrackSettings pose;
   AssociationSettings association;
   ExistenceSettings existence;
-  double gone_report_s = 2.0;         ///< what is gone is published for so long
-  double reidentification_s = 600.0;  ///< what comes back within this time keeps its number
-  double hand_occlusion_s = 3.0;      ///< what a hand hides for so long may be in the hand
-  std::size_t max_objects = 500;      ///< and candidates; further ones are refused
+  double gone_report_s = 2.0;         ///< time for which an object that is gone is still published
+  double reidentification_s = 600.0;  ///< time within which an object that comes back keeps its number
+  double hand_occlusion_s = 3.0;      ///< time for which an occluded object may be in a hand
+  std::size_t max_objects = 500;      ///< limit of objects and candidates; further ones are refused
 };
 
 template <typename Visit>
@@ -33,27 +42,129 @@ void fields(const ObjectTrackerSettings& /*settings*/, const Visit& visit) {
   visit(number("max_objects", &S::max_objects, 0, 1000000));
 }
 
-/// The objects of a world, over time and over all cameras: which measured pose is of which object (class, place,
-/// rotation but for symmetries), whether an object is there (Bayes, with the evidence of depth against it: seen through
-/// is gone, hidden and out of view is kept unless it moved), where it is (MotionFilter), and which number it has.
+/// State of a camera at its last frame.
+struct CameraClock {
+  std::int64_t utime = 0;         ///< time of the frame on the world's clock
+  std::int64_t results = 0;       ///< number of results of this frame; 0 before the first frame
+  double seconds = 0.0;           ///< time since the frame before, as far as it counts
+  std::set<std::string> classes;  ///< classes that the results of this frame have had
+  std::set<std::string> missed;   ///< classes that were searched in it, and of which a track was missed
+};
+
+/// Order of a result in time.
+enum class TimeOrder {
+  kNext,  ///< it is of a frame as new as its camera's last one, or newer
+  kLate,  ///< it is passed over: its camera's later frames are known, or it is of an earlier run, or its time is wrong
+  kReset  ///< time goes back: a new world begins with it
+};
+
+/// Frame of a result that has arrived.
+struct StampedFrame {
+  FrameId id;
+  FrameNumber number;             ///< number that its source gave it, where there is one
+  std::int64_t newest_utime = 0;  ///< time of the frame of this camera that has arrived last
+};
+
+/// The clocks of a world's cameras, and the world's own clock, which continues where a camera's clock is set. Not
+/// thread-safe.
+class WorldClock {
+ public:
+  /// Decides whether a result is used, passed over, or begins a new world.
+  /// - Its time lies more than a second from its camera's last one: it is passed over until the next result, or one of
+  ///   another camera, lies beside it, since a single stamp may be wrong. A time that is ahead has then passed (at most
+  ///   a minute). Where it is behind and the frames' numbers rise, the camera's clock was set back and the world
+  ///   continues; else a new world begins, at once where the numbers show that the source was restarted.
+  /// - It is of an older frame of a camera that continues: it has only taken long, and is passed over.
+  /// - It is more than a second older than another camera's last one, as with clocks that disagree: throws InputError.
+  ///   After thirty of them in a row the other camera has ended, and the thirtieth begins a new world.
+  /// Logs set clocks and new worlds, at most once a second.
+  TimeOrder order_of(const StampedFrame& frame);
+
+  /// Sets the camera's clock to this frame and returns it.
+  CameraClock& set(const StampedFrame& frame);
+
+  /// Forgets all cameras and times.
+  void begin_world();
+
+  /// The world's clock minus the frames' utimes: 0 as long as no clock was set.
+  std::int64_t ahead_us() const { return ahead_us_; }
+
+ private:
+  struct Camera {
+    CameraClock clock;
+    FrameNumber number;       // of the last frame
+    double interval_s = 0.0;  // from the frame before to the last one; 0 before the second
+  };
+
+  TimeOrder order_after(const Camera& camera, const StampedFrame& frame, std::int64_t utime);
+  TimeOrder order_behind(const Camera& camera, const StampedFrame& frame, std::int64_t utime);
+  TimeOrder order_ahead(std::int64_t last_utime, const StampedFrame& frame, std::int64_t utime);
+  bool is_confirmed(std::int64_t last_utime, const FrameId& frame, std::int64_t utime);
+  void move_to(std::int64_t world_utime, const FrameId& frame);
+  void tell_new_world(const FrameId& frame, std::int64_t last_utime);
+  void warn(const std::string& line);
+
+  std::map<std::string, Camera> cameras_;        // by channel
+  std::map<std::string, std::int64_t> doubted_;  // by channel, the time that lies far from the camera's last one
+  std::optional<FrameId> newest_;                // of all cameras, on the world's clock
+  std::int64_t ahead_us_ = 0;
+  int behind_ = 0;  // frames one after the other that were refused as too old
+  LogThrottle lines_;
+};
+
+/// Finds out which classes were searched for a result, so that a class without a pose in it was missed. A result does
+/// not say so itself. One detector searches all classes. Where several work on a camera's frames (two results of one
+/// frame have had no class in common), a result counts for its own classes, for those that have been reported together
+/// with them, and for a class whose own detector has reported nothing for a second. Poses without a model belong to
+/// another host's stage and count for nothing. Not thread-safe.
+class SearchedClasses {
+ public:
+  /// Notes a result; called for each one before has_searched().
+  void note(const ObjectPoses& poses);
+
+  /// Returns whether the class was searched for this result.
+  bool has_searched(const ObjectPoses& poses, const std::string& class_name) const;
+
+  /// Forgets all other classes: an untrusted sender may make up names without end.
+  void keep_only(const std::set<std::string>& classes);
+
+ private:
+  struct Coverage {
+    std::set<std::string> classes;  // reported in one result with it
+    std::int64_t utime = 0;         // of the last result that reports it
+  };
+  struct Camera {
+    std::int64_t utime = 0;         // of the last frame
+    std::set<std::string> classes;  // of its results
+    bool has_several = false;       // detectors work on its frames
+  };
+
+  bool is_reporting(const std::string& class_name, std::int64_t utime) const;
+
+  std::map<std::string, Coverage> coverage_;  // by class
+  std::map<std::string, Camera> cameras_;     // by channel
+};
+
+/// Tracks the objects of a world over time and over all cameras. It assigns measured poses to objects (by class, place
+/// and rotation up to symmetries), estimates whether an object exists (Bayes; free space seen at its place counts
+/// against it, occluded and out of view does not unless it moved), estimates where it is (MotionFilter), and gives it a
+/// number.
 ///
-/// A frame's result follows from the frames before, in their order, and nothing else. Not thread-safe.
+/// The result of a frame follows from the frames before, in their order, and from nothing else. Not thread-safe.
 class Tracker {
  public:
   /// Throws InputError for settings out of their range.
   Tracker(TrackModels models, ObjectTrackerSettings settings);
-  ~Tracker();
-  Tracker(Tracker&&) noexcept;
 
-  /// The world after a frame. One that is older than its camera's last one is late, is passed over, and gives nothing;
-  /// so does one wrong stamp. A camera's clock that is set leaves the objects what they are, and their times move with
-  /// it; where a source, or its log, begins again in the past, a new world begins (WorldClock). A class that the same
-  /// frame was told of before is not told again. Throws InputError for a frame that is more than a second older than
-  /// another camera's, as long as that goes on.
-  std::optional<WorldObjects> update(const FrameObservation& seen);
+  /// Returns the world after a frame; nothing for a frame that is passed over, because it is older than its camera's
+  /// last one or its stamp is wrong. A camera's clock that is set leaves the objects what they are, and their times
+  /// move with it; where a source, or its log, begins again in the past, a new world begins (WorldClock). A class that
+  /// an earlier result of the frame has had is not used again. Throws InputError for a frame that is more than a second
+  /// older than another camera's, as long as that goes on.
+  std::optional<WorldObjects> update(const FrameObservation& received);
 
   /// Poses of the last frame of objects for which there was no room (ObjectTrackerSettings::max_objects).
-  std::size_t refused() const;
+  std::size_t refused() const { return refused_; }
 
   /// Forgets all objects: they were in another coordinate frame.
   void begin_world();
@@ -63,8 +174,30 @@ class Tracker {
   void set_models(TrackModels models);
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  // The steps of update() in the order of their calls.
+  CameraClock* begin_frame(const FrameObservation& received);
+  std::vector<PoseObservation> observe_new_poses(const FrameObservation& seen, CameraClock& camera) const;
+  std::vector<PoseObservation> associate(const std::vector<PoseObservation>& poses, double seconds);
+  void update_track(Track& track, const PoseObservation& pose, double seconds);
+  void update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses,
+                                CameraClock& camera);
+  void begin_track(const PoseObservation& pose);
+  bool make_room();
+  void confirm_tracks(std::int64_t utime);
+  Track* find_reidentified(const Track& candidate, std::int64_t utime);
+  void forget_tracks(std::int64_t utime);
+  WorldObjects report(const FrameObservation& received, std::int64_t utime) const;
+
+  TrackModels models_;
+  ObjectTrackerSettings settings_;
+  std::vector<Track> tracks_;  // by when they were begun; numbers follow in the order of confirmation
+  WorldClock clock_;
+  SearchedClasses searched_classes_;
+  ClassNames names_;
+  std::map<std::string, int> max_instances_;  // by class: instances that were seen in one frame
+  std::int64_t next_id_ = 1;
+  int world_number_ = 1;
+  std::size_t refused_ = 0;  // poses of the last frame, for which there was no room
 };
 
 }  // namespace houghstream::tracks

@@ -7,7 +7,7 @@
 #include "pipeline/base/stop_signal.hpp"
 #include "pose/tracks/camera_extrinsics.hpp"
 #include "tools/common/tool_main.hpp"
-#include "tools/track/track_models.hpp"
+#include "tools/finder/track_models.hpp"
 #include "tools/track/track_process.hpp"
 
 namespace {
@@ -51,7 +51,7 @@ void run(LcmBus& bus, const TrackOptions& options, const track::CurrentModels& m
 
 void run_with_models(const TrackOptions& options) {
   auto models = std::make_shared<const tracks::TrackModels>(
-      options.models.empty() ? tracks::TrackModels() : track::load_track_models(options.models, options.model_unit_m));
+      options.models.empty() ? tracks::TrackModels() : load_track_models(options.models, options.model_unit_m));
   if (models->empty()) log_warning("neither --objects nor --models: what is hidden or gone cannot be told");
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   run(bus, options, [&] { return models; });
@@ -60,7 +60,7 @@ void run_with_models(const TrackOptions& options) {
 /// A store may change while frames go by.
 void run_with_store(TrackOptions options) {
   store::StoreWatcher<tracks::TrackModels> watch(options.objects, [](const store::ObjectStore& store) {
-    return std::make_shared<const tracks::TrackModels>(track::stored_track_models(store));
+    return std::make_shared<const tracks::TrackModels>(stored_track_models(store));
   });
   const auto none = std::make_shared<const tracks::TrackModels>();
   options.process.objects = [&] { return watch.known(); };

@@ -27,13 +27,13 @@ TrackModels stored(const std::map<int, std::string>& names) {
 }
 
 /// A scene with a can and a mug that have been seen for two seconds, as objects 1 and 2.
-TrackedScene known_scene() {
-  TrackedScene scene;
-  scene.tracker.set_models(stored({{1, "can"}, {2, "mug"}}));
-  scene.show({{"can", on_table(-0.2, 0)}, {"mug", on_table(0.25, 0.1)}});
-  scene.frames(60);
-  return scene;
-}
+struct KnownScene : TrackedScene {
+  KnownScene() {
+    tracker.set_models(stored({{1, "can"}, {2, "mug"}}));
+    show({{"can", on_table(-0.2, 0)}, {"mug", on_table(0.25, 0.1)}});
+    frames(60);
+  }
+};
 
 TEST(ClassNames, AnObjectIsRenamedWhereNumberAndMeshAreTheSame) {
   const TrackModels before = stored({{1, "can"}, {2, "mug"}});
@@ -53,7 +53,7 @@ TEST(ClassNames, AnObjectIsRenamedWhereNumberAndMeshAreTheSame) {
 }
 
 TEST(ClassNames, WhatLeavesTheStoreIsGoneInTheNextFrame) {
-  TrackedScene scene = known_scene();
+  KnownScene scene;
   scene.tracker.set_models(stored({{2, "mug"}}));
   WorldObjects world = scene.frame();  // detector and poses have not taken over the store yet
   ASSERT_EQ(world.objects.size(), 2U);
@@ -85,7 +85,7 @@ void expect_renamed(const WorldObjects& world, const std::string& name, int fram
 }
 
 TEST(ClassNames, WhatIsRenamedKeepsNumberAndPoseWhoeverTakesOverFirst) {
-  TrackedScene scene = known_scene();
+  KnownScene scene;
   scene.class_ids["tin"] = 1;
   for (int i = 0; i < 60; ++i) {  // the poses have the new name before the tracker does
     scene.show({{"tin", on_table(-0.2, 0)}, {"mug", on_table(0.25, 0.1)}});
@@ -102,7 +102,7 @@ TEST(ClassNames, WhatIsRenamedKeepsNumberAndPoseWhoeverTakesOverFirst) {
 }
 
 TEST(ClassNames, TwoObjectsMayChangeTheirNames) {
-  TrackedScene scene = known_scene();
+  KnownScene scene;
   scene.tracker.set_models(stored({{1, "mug"}, {2, "can"}}));
   const WorldObjects world = scene.look_if_any().value_or(WorldObjects{});
   ASSERT_EQ(world.objects.size(), 2U);
@@ -111,7 +111,7 @@ TEST(ClassNames, TwoObjectsMayChangeTheirNames) {
 }
 
 TEST(ClassNames, AFormerNameThatIsTaughtAgainIsAnotherObject) {
-  TrackedScene scene = known_scene();
+  KnownScene scene;
   scene.class_ids["tin"] = 1;
   scene.class_ids["can"] = 3;
   scene.tracker.set_models(stored({{1, "tin"}, {2, "mug"}}));
@@ -125,7 +125,7 @@ TEST(ClassNames, AFormerNameThatIsTaughtAgainIsAnotherObject) {
 }
 
 TEST(ClassNames, WhatAnotherStoreKnowsIsAnObjectOfItsOwn) {
-  TrackedScene scene = known_scene();
+  KnownScene scene;
   scene.class_ids["plate"] = 1;  // as the can has in this store
   scene.posed.emplace_back("plate", on_table(0, 0.2));
   scene.standing.emplace_back("plate", on_table(0, 0.2));

@@ -8,7 +8,7 @@
 #include <functional>
 #include <numeric>
 
-#include "detector/voting/boxes.hpp"
+#include "detector/evidence/suppression.hpp"
 #include "pipeline/bus/percentiles.hpp"
 #include "tools/common/rounded.hpp"
 #include "tools/evaluate/metrics/detection_metrics.hpp"

@@ -8,10 +8,10 @@
 #include "pipeline/messages/wire_check.hpp"
 #include "pose/tracks/camera_extrinsics.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/finder/track_models.hpp"
 #include "tools/studies/commands.hpp"
 #include "tools/studies/tracks/sequence_file.hpp"
 #include "tools/studies/tracks/track_metrics.hpp"
-#include "tools/track/track_models.hpp"
 
 // hs-study tracks: what tools/bench tracks does with rendered sequences.
 
@@ -84,8 +84,7 @@ std::vector<PublishedFrame> published_in(const Arguments& arguments, const Seque
 void compare(const Arguments& arguments) {
   const SequenceFile sequence = read_sequence(arguments.sequence);
   std::map<std::string, Symmetries> symmetries;
-  for (const auto& [name, model] : track::load_track_models(arguments.models, 1e-3))
-    symmetries[name] = model.symmetries;
+  for (const auto& [name, model] : load_track_models(arguments.models, 1e-3)) symmetries[name] = model.symmetries;
   OrderedJson json = track_metrics(sequence, published_in(arguments, sequence), symmetries, {});
   json["name"] = sequence.name;
   write_json(json, arguments.out);

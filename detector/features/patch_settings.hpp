@@ -1,10 +1,15 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "detector/features/feature_image.hpp"
 #include "pipeline/base/settings_fields.hpp"
 
 namespace houghstream {
 
-/// How patches are tested. Stored in the forest file.
+/// Scale of the tests of a patch. Stored in the forest file.
 struct PatchSettings {
   /// Metres per step of a test offset on the object (depth normalisation, Section 5.1.2); in a scale space, working
   /// pixels per step.
@@ -19,7 +24,7 @@ void fields(const PatchSettings& /*settings*/, const Visit& visit) {
   visit(number("radius", &S::radius, 1, 127, "steps"));
 }
 
-/// How far apart the patches of a frame stand.
+/// Distance of the patches of a frame.
 struct PatchSpacing {
   int stride = 2;  ///< working pixels (paper, Section 5.1.3)
   /// On a surface that faces the camera: where the stride puts patches nearer to each other, some are left out, see
@@ -34,21 +39,21 @@ void fields(const PatchSpacing& /*settings*/, const Visit& visit) {
   visit(number("metres", &S::metres, 0, 10, "m"));
 }
 
-/// How patches walk down the forest, and for what they vote.
-struct LeafSettings {
-  /// A patch walks down so many trees first, and down the rest only if the mean of what their leaves are most certain
-  /// of reaches min_first_posterior; 0 = every patch walks down all trees.
-  int first_trees = 3;
-  float min_first_posterior = 0.1F;
-  float min_class_share = 0.1F;  ///< posterior, p(class | patch), from which a patch votes for a class
-};
+/// Returns the working pixels per step of a test offset in 1/256 pixel, for steps of `step_px`; limited so that a patch
+/// stays inside the border of a FeatureImage.
+inline std::int32_t limited_scale(const PatchSettings& patch, double step_px) {
+  const double limit = static_cast<double>(FeatureImage::kPad) / patch.radius;
+  return static_cast<std::int32_t>(std::lround(256.0 * std::min(step_px, limit)));
+}
 
-template <typename Visit>
-void fields(const LeafSettings& /*settings*/, const Visit& visit) {
-  using S = LeafSettings;
-  visit(number("first_trees", &S::first_trees, 0, 1000));
-  visit(number("min_first_posterior", &S::min_first_posterior, 0, 1));
-  visit(number("min_class_share", &S::min_class_share, 0, 1));
+/// Returns the same at depth z (depth normalisation).
+inline std::int32_t patch_scale(const PatchSettings& patch, double focal_px, float z) {
+  return limited_scale(patch, patch.unit * focal_px / z);
+}
+
+/// Returns how far the tests of a patch reach, pixels.
+inline int max_offset(const PatchSettings& patch, std::int32_t scale) {
+  return (patch.radius * scale + 128) >> 8;
 }
 
 }  // namespace houghstream

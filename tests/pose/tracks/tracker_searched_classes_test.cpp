@@ -1,8 +1,8 @@
-#include "pose/tracks/searched_classes.hpp"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "pose/tracks/tracker.hpp"
 
 namespace houghstream::tracks {
 namespace {

@@ -1,4 +1,4 @@
-#include "detector/forest/patch_grid.hpp"
+#include "detector/features/patch_grid.hpp"
 
 #include <gtest/gtest.h>
 

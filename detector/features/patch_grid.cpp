@@ -1,10 +1,9 @@
-#include "detector/forest/patch_grid.hpp"
+#include "detector/features/patch_grid.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "detector/forest/pixel_test.hpp"
 
 namespace houghstream {
 namespace {

@@ -1,8 +1,8 @@
-#include "tools/track/track_models.hpp"
+#include "tools/finder/track_models.hpp"
 
 #include "drivers/datasets/bop_dataset.hpp"
 
-namespace houghstream::track {
+namespace houghstream {
 
 tracks::TrackModels load_track_models(const std::string& folder, double unit_m) {
   return tracks::make_track_models(load_class_models(folder, unit_m), load_class_symmetries(folder));
@@ -18,4 +18,4 @@ tracks::TrackModels stored_track_models(const store::ObjectStore& store) {
   return models;
 }
 
-}  // namespace houghstream::track
+}  // namespace houghstream

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "detector/features/feature_tiles.hpp"
+#include "detector/features/patch_settings.hpp"
 #include "detector/features/working_frame.hpp"
-#include "detector/forest/patch_settings.hpp"
 
 namespace houghstream {
 

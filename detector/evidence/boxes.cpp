@@ -1,4 +1,4 @@
-#include "detector/voting/boxes.hpp"
+#include "detector/evidence/boxes.hpp"
 
 #include <algorithm>
 
@@ -73,21 +73,6 @@ cv::Rect2f backproject_box(const Forest& forest, const Hypothesis& hypothesis, c
   }
   const cv::Rect2f box(sides[0], sides[1], sides[2] - sides[0], sides[3] - sides[1]);
   return box & cv::Rect2f(0.0F, 0.0F, static_cast<float>(camera.width), static_cast<float>(camera.height));
-}
-
-std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, const SuppressionSettings& settings) {
-  std::stable_sort(detections.begin(), detections.end(),
-                   [](const Detection& a, const Detection& b) { return a.score > b.score; });
-  std::vector<Detection> kept;
-  for (Detection& detection : detections) {
-    const auto overlaps = [&](const Detection& other) {
-      const bool dominates = other.class_id == detection.class_id ||
-                             (other.score > 0.5F && other.score > settings.dominance * detection.score);
-      return dominates && box_iou(other.box_px, detection.box_px) > settings.max_overlap;
-    };
-    if (std::none_of(kept.begin(), kept.end(), overlaps)) kept.push_back(std::move(detection));
-  }
-  return kept;
 }
 
 }  // namespace houghstream

@@ -1,10 +1,9 @@
-#include "pose/tracks/world_clock.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "pipeline/base/checks.hpp"
+#include "pose/tracks/tracker.hpp"
 
 namespace houghstream::tracks {
 namespace {
@@ -14,7 +13,7 @@ constexpr std::int64_t kSecondUs = 1000000;
 /// Told of a frame that came last.
 TimeOrder tell(WorldClock& clock, const FrameId& frame, const FrameNumber& number = {}) {
   const TimeOrder order = clock.order_of({frame, number, frame.utime});
-  if (order == TimeOrder::kAnew) clock.begin_world();
+  if (order == TimeOrder::kReset) clock.begin_world();
   if (order != TimeOrder::kLate) clock.set({frame, number, frame.utime});
   return order;
 }
@@ -45,7 +44,7 @@ TEST(WorldClock, TimeGoesBackWhereACamerasFramesDo) {
       << "its result took long";
   EXPECT_EQ(tell(clock, {"LEFT", 10 * kSecondUs}), TimeOrder::kLate) << "one stamp may be wrong";
   EXPECT_EQ(tell(clock, {"LEFT", 10 * kSecondUs}), TimeOrder::kLate) << "another result of the same frame";
-  EXPECT_EQ(tell(clock, {"LEFT", 10 * kSecondUs + 33333}), TimeOrder::kAnew);
+  EXPECT_EQ(tell(clock, {"LEFT", 10 * kSecondUs + 33333}), TimeOrder::kReset);
   EXPECT_EQ(tell(clock, {"RIGHT", 10 * kSecondUs}), TimeOrder::kNext) << "of the same new world";
   EXPECT_EQ(clock.order_of({{"LEFT", 100 * kSecondUs}, {}, 10 * kSecondUs}), TimeOrder::kLate) << "of the earlier run";
 }
@@ -57,7 +56,7 @@ TEST(WorldClock, ALogOrSourceThatBeginsAgainIsANewWorldAtOnce) {
     for (int i = 0; i < 90; ++i) source.tell_next(clock);
     Source again;
     again.run += other_run;
-    EXPECT_EQ(again.tell_next(clock), TimeOrder::kAnew) << other_run;
+    EXPECT_EQ(again.tell_next(clock), TimeOrder::kReset) << other_run;
     EXPECT_EQ(again.tell_next(clock), TimeOrder::kNext);
   }
 }
@@ -68,7 +67,7 @@ TEST(WorldClock, AShortSourceThatIsStartedAgainWithTheSameStampsIsANewWorld) {
     Source source;
     source.run = run;
     for (int i = 0; i < 4; ++i)
-      EXPECT_EQ(source.tell_next(clock), run > 1 && i == 0 ? TimeOrder::kAnew : TimeOrder::kNext) << run << " " << i;
+      EXPECT_EQ(source.tell_next(clock), run > 1 && i == 0 ? TimeOrder::kReset : TimeOrder::kNext) << run << " " << i;
   }
 }
 
@@ -150,7 +149,7 @@ TEST(WorldClock, ACameraThatIsBehindIsRefusedAsLongAsTheOtherGoesOn) {
     EXPECT_THROW(tell(clock, {"BEHIND", 50 * kSecondUs + 33333 * i}), InputError) << i;
   }
   for (int i = 1; i < 29; ++i) EXPECT_THROW(tell(clock, {"BEHIND", 60 * kSecondUs + 33333 * i}), InputError) << i;
-  EXPECT_EQ(tell(clock, {"BEHIND", 62 * kSecondUs}), TimeOrder::kAnew) << "the other is no more";
+  EXPECT_EQ(tell(clock, {"BEHIND", 62 * kSecondUs}), TimeOrder::kReset) << "the other is no more";
   EXPECT_EQ(tell(clock, {"BEHIND", 62 * kSecondUs + 33333}), TimeOrder::kNext);
 }
 

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <opencv2/core.hpp>
+#include <utility>
+#include <vector>
+
+#include "detector/voting/hypotheses.hpp"
+
+namespace houghstream {
+
+/// Workspace of backproject_box(), used again from box to box.
+struct BoxMemory {
+  std::vector<float> weights;
+  std::array<std::vector<float>, 4> sides;          ///< of the supporting patches
+  std::vector<std::pair<float, float>> remembered;  ///< a side of the remembered views, and their weights
+};
+
+/// Returns the box of a hypothesis by back-projection of all supporting patches (paper, Section 2), frame pixels.
+/// Patches at an object's rim see little of it and support it weakly, so each side moves out to where the training
+/// views that the votes remember have theirs, unless the patches end so far from it that the object must be occluded
+/// there.
+cv::Rect2f backproject_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
+                           const Camera& camera, BoxMemory& memory);
+
+}  // namespace houghstream

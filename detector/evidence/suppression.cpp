@@ -1,0 +1,38 @@
+#include "detector/evidence/suppression.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace houghstream {
+
+std::vector<Detection> suppress(std::vector<Candidate>& candidates, const EvidenceSettings& evidence,
+                                const SuppressionSettings& suppression) {
+  std::vector<Detection> likely;
+  for (Candidate& candidate : candidates) {
+    Detection& detection = candidate.detection;
+    detection.reported = detection.score >= evidence.threshold;
+    if (detection.reported || detection.score >= evidence.candidates_from) likely.push_back(std::move(detection));
+  }
+  std::vector<Detection> kept = suppress_overlaps(std::move(likely), suppression);
+  const auto reported = std::count_if(kept.begin(), kept.end(), [](const Detection& it) { return it.reported; });
+  const auto max_count = static_cast<std::size_t>(reported + evidence.max_candidates);
+  if (kept.size() > max_count) kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(max_count), kept.end());
+  return kept;
+}
+
+std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, const SuppressionSettings& settings) {
+  std::stable_sort(detections.begin(), detections.end(),
+                   [](const Detection& a, const Detection& b) { return a.score > b.score; });
+  std::vector<Detection> kept;
+  for (Detection& detection : detections) {
+    const auto overlaps = [&](const Detection& other) {
+      const bool dominates = other.class_id == detection.class_id ||
+                             (other.score > 0.5F && other.score > settings.dominance * detection.score);
+      return dominates && box_iou(other.box_px, detection.box_px) > settings.max_overlap;
+    };
+    if (std::none_of(kept.begin(), kept.end(), overlaps)) kept.push_back(std::move(detection));
+  }
+  return kept;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,34 @@
+#include "detector/evidence/suppression.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+Detection boxed(float score, float x) {
+  Detection detection;
+  detection.score = score;
+  detection.box_px = {x, 0, 100, 100};
+  return detection;
+}
+
+TEST(Suppression, OfOverlappingBoxesTheStrongerStays) {
+  // 0 and 20 overlap by IoU 0.67, 20 and 40 too, 0 and 40 by 0.43.
+  const std::vector<Detection> kept =
+      suppress_overlaps({boxed(0.5F, 20), boxed(0.4F, 40), boxed(0.9F, 0)}, SuppressionSettings{});
+  ASSERT_EQ(kept.size(), 2U);
+  EXPECT_EQ(kept[0].score, 0.9F);
+  EXPECT_EQ(kept[1].score, 0.4F);  // only the dropped one overlapped it
+}
+
+TEST(Suppression, AnotherClassMustBeSignificantlyStrongerToSuppress) {
+  Detection other = boxed(0.3F, 10);
+  other.class_id = 2;
+  EXPECT_EQ(suppress_overlaps({boxed(0.55F, 0), other}, SuppressionSettings{}).size(), 2U);
+  EXPECT_EQ(suppress_overlaps({boxed(0.7F, 0), other}, SuppressionSettings{}).size(), 1U);
+  other.score = 0.1F;  // five times weaker, but than something that nobody would report
+  EXPECT_EQ(suppress_overlaps({boxed(0.45F, 0), other}, SuppressionSettings{}).size(), 2U);
+}
+
+}  // namespace
+}  // namespace houghstream
