@@ -9,6 +9,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
+#include "pose/seen/camera_colours.hpp"
 #include "pose/verification/pose_decision.hpp"
 
 namespace houghstream {
@@ -24,6 +25,7 @@ struct Estimation {
   std::vector<PoseCandidate> candidates;
   std::vector<RegistrationResult> registered;  ///< the candidates
   std::vector<RegistrationResult> chosen;      ///< the best first
+  std::vector<PoseEvidence> evidence;          ///< of the chosen
 };
 
 ObjectPoses undecided_poses(const Detections& detections) {
@@ -62,7 +64,7 @@ std::vector<Estimation> begin_estimations(const Detections& detections,
     const auto model = models.find(detection.class_name);
     poses[i].status = reason_to_pass_over(detection, model != models.end(), settings);
     if (poses[i].status != PoseStatus::kInvalid) continue;
-    begun.push_back({detection, model->second, poses[i], {}, {}, {}, {}, {}});
+    begun.push_back({detection, model->second, poses[i], {}, {}, {}, {}, {}, {}});
   }
   return begun;
 }
@@ -87,15 +89,46 @@ void choose_one(const PoseSettings& settings, Estimation& it) {
   if (it.chosen.front().inliers == 0) it.pose.status = PoseStatus::kNotConverged;
 }
 
-/// Publishes the pose for which the evidence speaks most, or says why not.
-void verify_one(const PoseSettings& settings, Estimation& it) {
-  std::optional<ObjectPose> best;
+void gather_one(const PoseSettings& settings, Estimation& it) {
+  const QualitySettings& quality = class_quality_of(settings, it.pose.class_name);
   for (const RegistrationResult& result : it.chosen) {
-    const Eigen::Isometry3d& T_camera_object = result.T_camera_object;
+    it.evidence.push_back(gather_evidence(*it.seen, result.T_camera_object, it.detection.score, settings.verification));
+    std::optional<ChromaPair> pair = chroma_pair(it.pose.class_name, it.evidence.back(), quality);
+    if (pair && (!it.pose.chroma || pair->probability > it.pose.chroma->probability)) it.pose.chroma = std::move(pair);
+  }
+}
+
+/// Learns of all objects together how the camera renders colours, for each object without its class.
+void learn_camera_colours(const RgbdFrame& frame, const std::vector<ChromaPair>& remembered,
+                          std::vector<Estimation>& estimations) {
+  if (is_colourless(frame.colour)) {
+    for (Estimation& it : estimations) {
+      it.pose.camera_colours = colourless_camera();
+      it.pose.chroma.reset();
+    }
+    return;
+  }
+  std::vector<ChromaPair> pairs;
+  for (const Estimation& it : estimations) {
+    if (it.pose.chroma) pairs.push_back(*it.pose.chroma);
+  }
+  pairs.insert(pairs.end(), remembered.begin(), remembered.end());
+  const std::vector<ChromaMap> maps = fit_chroma_maps_without_each(pairs);
+  auto next = maps.begin();
+  for (Estimation& it : estimations) {
+    if (it.pose.chroma) it.pose.camera_colours = *next++;
+  }
+}
+
+/// Publishes the pose for which the evidence speaks most, or says why not.
+void decide_one(const PoseSettings& settings, Estimation& it) {
+  std::optional<ObjectPose> best;
+  for (std::size_t i = 0; i < it.chosen.size(); ++i) {
     ObjectPose judged = it.pose;
-    copy_registration_evidence(result, judged);
-    decide_status(gather_evidence(*it.seen, T_camera_object, it.detection.score, settings.verification),
-                  T_camera_object, it.detection.reported, class_quality_of(settings, it.pose.class_name), judged);
+    copy_registration_evidence(it.chosen[i], judged);
+    bring_to_camera(it.pose.camera_colours, it.evidence[i]);
+    decide_status(it.evidence[i], it.chosen[i].T_camera_object, it.detection.reported,
+                  class_quality_of(settings, it.pose.class_name), judged);
     if (!best || judged.quality > best->quality) best = std::move(judged);
   }
   it.pose = *std::move(best);
@@ -148,8 +181,8 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   return estimate(frame, detections, {});
 }
 
-ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& detections,
-                                    const ObjectPoses& earlier) const {
+ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier,
+                                    const std::vector<ChromaPair>& remembered) const {
   if (frame.id != detections.frame) {
     throw std::logic_error(
         fmt::format("detections of frame {} given with frame {}", to_string(detections.frame), to_string(frame.id)));
@@ -175,7 +208,9 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   clock.mark("pose.registration");
   for_each_undecided([&](Estimation& it) { choose_one(settings, it); });
   clock.mark("pose.choice");
-  for_each_undecided([&](Estimation& it) { verify_one(settings, it); });
+  for_each_undecided([&](Estimation& it) { gather_one(settings, it); });
+  if (settings.learn_camera_colours) learn_camera_colours(frame, remembered, estimations);
+  for_each_undecided([&](Estimation& it) { decide_one(settings, it); });
   clock.mark("pose.verification");
 
   result.stages.insert(result.stages.end(), clock.times().begin(), clock.times().end());

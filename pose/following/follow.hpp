@@ -41,6 +41,7 @@ struct ExpectedObject {
   bool is_lost = false;                   ///< it is looked for as far away as a detection's pose is
   bool check_occlusion = true;           ///< whether it is hidden where it is expected first: that renders it once more
   std::optional<Verification> verified;  ///< of an earlier frame: its outline is taken for this one's
+  ChromaMap camera_colours = {};         ///< by which its colours are judged
 };
 
 /// What came of it.

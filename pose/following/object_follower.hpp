@@ -12,6 +12,7 @@
 #include "pose/following/follow.hpp"
 #include "pose/motion/smoothed_velocity.hpp"
 #include "pose/pose_estimator.hpp"
+#include "pose/seen/camera_colours.hpp"
 
 namespace houghstream {
 
@@ -61,6 +62,8 @@ struct FollowedFrame {
 struct FollowedCamera {
   std::vector<FollowedObject> objects;
   std::deque<FollowedFrame> shown;  ///< the last ones
+  CameraColours colours;            ///< that its objects are judged by
+  bool is_colourless = false;       ///< of the last frame: they say nothing
   std::int64_t frames = 0;
   /// The camera's clock minus its frames' utimes, which jump where the host's clock is set or a stamp is wrong. The
   /// camera's clock does not.

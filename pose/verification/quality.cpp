@@ -29,6 +29,10 @@ PoseEvidence gather_evidence(const ObjectObservation& seen, const Eigen::Isometr
           compare_texture(seen, look, tolerance)};
 }
 
+void bring_to_camera(const ChromaMap& camera, PoseEvidence& evidence) {
+  if (evidence.colour) evidence.colour->chroma_conflict = chroma_conflict(evidence.colour->chroma, camera);
+}
+
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings) {
   constexpr double kCameraContrastSq = 0.25;  // cameras show about half of a model's contrast
   // Added to shares, so that none weighs too much where there is little of it.
@@ -61,6 +65,21 @@ float pose_quality(const QualityTerms& terms, const QualitySettings& settings) {
   double sum = settings.bias;
   for (const auto term : kQualityTerms) sum += settings.weights.*term * terms.*term;
   return static_cast<float>(logistic(sum));
+}
+
+std::optional<ChromaPair> chroma_pair(const std::string& class_name, const PoseEvidence& evidence,
+                                      const QualitySettings& settings) {
+  if (!evidence.colour) return std::nullopt;
+  QualityTerms terms = quality_terms(evidence, settings);
+  terms.chroma_conflict = settings.typical.chroma_conflict;
+  const ChromaMeans& chroma = evidence.colour->unclipped_chroma;
+  ChromaPair pair;
+  pair.class_name = class_name;
+  pair.model = chroma.model;
+  pair.measured = chroma.measured;
+  pair.lightness = chroma.lightness;
+  pair.probability = static_cast<double>(pose_quality(terms, settings));
+  return pair;
 }
 
 PoseStatus find_rejection_reason(const QualityTerms& terms, const QualitySettings& settings, bool colours_known) {

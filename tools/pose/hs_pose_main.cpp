@@ -1,3 +1,5 @@
+#include <set>
+
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/files/camera_info.hpp"
 #include "drivers/store/store_watch.hpp"
@@ -10,6 +12,7 @@
 #include "pipeline/process/warm_up.hpp"
 #include "pose/following/object_follower.hpp"
 #include "pose/pose_estimator.hpp"
+#include "pose/seen/camera_colours.hpp"
 #include "tools/common/mesh_size.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
@@ -63,17 +66,33 @@ std::shared_ptr<const PoseEstimator> warmed_up(PoseEstimator cold, const RgbdFra
 /// The estimator may be another one for each frame.
 using CurrentEstimator = std::function<std::shared_ptr<const PoseEstimator>()>;
 
+/// Says once for each camera that its pictures have no colours.
+void report_colourless(const RgbdFrame& frame, std::set<std::string>& reported) {
+  if (reported.count(frame.id.channel) > 0 || !is_colourless(frame.colour)) return;
+  reported.insert(frame.id.channel);
+  log_warning("{}: pictures in black and white, expected colours: poses are judged without chroma", frame.id.channel);
+}
+
 void run(LcmBus& bus, const PoseOptions& options, const CurrentEstimator& current) {
+  std::set<std::string> colourless;  // channels
   if (!options.follow) {
+    std::map<std::string, CameraColours> cameras;  // by channel
     run_pose_process(bus, options.process,
                      [&](const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) {
-                       return current()->estimate(frame, detections, earlier);
+                       report_colourless(frame, colourless);
+                       CameraColours& colours = cameras[detections.frame.channel];
+                       ObjectPoses poses = current()->estimate(frame, detections, earlier, colours.pairs());
+                       colours.update(poses);
+                       return poses;
                      });
     return;
   }
   ObjectFollower follower;
   run_follow_process(bus, options.process,
-                     {[&](const RgbdFrame& frame) { return follower.follow(*current(), frame); },
+                     {[&](const RgbdFrame& frame) {
+                        report_colourless(frame, colourless);
+                        return follower.follow(*current(), frame);
+                      },
                       [&](const RgbdFrame& frame, const Detections& detections) {
                         return follower.answer(*current(), frame, detections);
                       }});
