@@ -34,7 +34,7 @@ struct Found {
 /// A pose with what the truth says of it.
 struct JudgedColours {
   std::size_t frame = 0;
-  const ObjectPose& pose;
+  const ObjectPose* pose = nullptr;
   bool is_right = false;
 };
 
@@ -187,7 +187,7 @@ class Study {
             match.verdict == Verdict::kTrue &&
             add_s_error(model.points, *pose.T_camera_object, frame.objects[match.object].truth.T_camera_object) <
                 kRightBelow * model.diameter;
-        judged.push_back({match.frame, pose, is_right});
+        judged.push_back({match.frame, &pose, is_right});
       }
     }
     return judged;
@@ -195,8 +195,8 @@ class Study {
 
   bool is_published(const JudgedColours& it, const std::vector<EvaluatedFrame>& frames) const {
     const Detection& detection =
-        frames[it.frame].detections->detections[static_cast<std::size_t>(it.pose.detection_index)];
-    return it.pose.quality >= (detection.reported ? kStoreQuality : kStoreCandidateQuality);
+        frames[it.frame].detections->detections[static_cast<std::size_t>(it.pose->detection_index)];
+    return it.pose->quality >= (detection.reported ? kStoreQuality : kStoreCandidateQuality);
   }
 
   Figures figures_of(const std::vector<EvaluatedFrame>& frames) const {
@@ -209,7 +209,7 @@ class Study {
     out.auc = weighted_auc(classes);
     std::vector<JudgedColours> judged = judge(frames);
     std::stable_sort(judged.begin(), judged.end(),
-                     [](const JudgedColours& a, const JudgedColours& b) { return a.pose.quality > b.pose.quality; });
+                     [](const JudgedColours& a, const JudgedColours& b) { return a.pose->quality > b.pose->quality; });
     std::vector<Prediction> qualities;
     std::vector<double> off;
     std::vector<double> wrong_off;
@@ -220,11 +220,11 @@ class Study {
       if (it.is_right) out.pose_auc += static_cast<double>(right) / static_cast<double>(i + 1) / out.objects;
       if (is_published(it, frames)) ++out.published;
       if (is_published(it, frames) && it.is_right) ++out.right;
-      qualities.push_back({it.pose.quality, it.is_right});
-      if (!it.pose.chroma) continue;
-      const ChromaPair& pair = *it.pose.chroma;
+      qualities.push_back({it.pose->quality, it.is_right});
+      if (!it.pose->chroma) continue;
+      const ChromaPair& pair = *it.pose->chroma;
       (it.is_right ? off : wrong_off)
-          .push_back((pair.measured - it.pose.camera_colours.apply(pair.model, pair.lightness)).norm());
+          .push_back((pair.measured - it.pose->camera_colours.apply(pair.model, pair.lightness)).norm());
     }
     out.ece = calibrate(qualities, right).ece;
     out.off = median(off);
@@ -244,10 +244,10 @@ class Study {
   std::string pairs_of(const std::vector<EvaluatedFrame>& frames, std::size_t camera, int learnt) const {
     std::string lines;
     for (const JudgedColours& it : judge(frames)) {
-      if (!it.pose.chroma) continue;
-      const ChromaPair& pair = *it.pose.chroma;
+      if (!it.pose->chroma) continue;
+      const ChromaPair& pair = *it.pose->chroma;
       lines += fmt::format("{},{},{},{},{},{:.3f},{:.4f},{:.4f},{:.2f},{:.2f},{:.2f},{:.2f},{:.1f}\n", camera, learnt,
-                           it.frame, pair.class_name, it.is_right ? 1 : 0, it.pose.detection_score, it.pose.quality,
+                           it.frame, pair.class_name, it.is_right ? 1 : 0, it.pose->detection_score, it.pose->quality,
                            pair.probability, pair.model.x(), pair.model.y(), pair.measured.x(), pair.measured.y(),
                            pair.lightness);
     }
