@@ -79,6 +79,8 @@ class SeedTemplates {
 
 /// What a view says where it stands, `evidence` otherwise.
 void look_at_view(const EvidenceInput& input, const PlacedTemplate& placed, Evidence& evidence) {
+  evidence.view = placed.view;
+  evidence.view_centre = placed.centre_camera;
   evidence.fit = placed.fit;
   evidence.outline =
       measure_boundary_continuation(input.index.forest().views[placed.view], placed.centre_camera, input.frame);
@@ -183,7 +185,8 @@ Candidate weigh(const EvidenceInput& input, const Hypothesis& hypothesis, float 
   detection.vote_weight = hypothesis.weight;
   detection.vote_count = hypothesis.vote_count;
   const float least = std::min(input.settings.threshold, input.settings.candidates_from);
-  if (detection.score < least) return candidate;  // most, whose rotations nobody will ask for
+  const float most = std::max(detection.score, score_as_taught(object.score_model, candidate.evidence));
+  if (most < least) return candidate;  // most, whose rotations nobody will ask for
   add_rotations(input, hypothesis, weighed_views(hypothesis, spread, own), detection.rotations);
   return candidate;
 }

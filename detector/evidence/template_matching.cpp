@@ -250,12 +250,34 @@ class CellColours {
   std::array<int, kSide> y_px_{};
 };
 
+/// An 8-bit L*a*b* colour as the camera would measure it under the light that it measured `seen` in.
+std::array<std::uint8_t, 3> bring_to_camera(const ChromaMap& camera, const std::array<std::uint8_t, 3>& lab,
+                                            const cv::Vec3b& seen) {
+  constexpr double kNeutral = 128.0;
+  constexpr double kLightness = 100.0 / 255.0;
+  const Eigen::Vector2d ab = camera.apply({lab[1] - kNeutral, lab[2] - kNeutral}, kLightness * seen[0]);
+  return {lab[0], cv::saturate_cast<std::uint8_t>(ab.x() + kNeutral),
+          cv::saturate_cast<std::uint8_t>(ab.y() + kNeutral)};
+}
+
 /// Of the cells that are visible or unknown: where depth is missing, colours are all there is to see.
 Likeness compare_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours) {
   Likeness likeness;
   for (std::size_t i = 0; i < tally.shown; ++i) {
     const Cell cell = tally.shown_cells[i];
     likeness.add(appearance.lab[cell.index], colours.at(cell.row, cell.column));
+  }
+  return likeness;
+}
+
+/// The same with the remembered colours as the camera would measure them.
+Likeness compare_camera_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours,
+                                const ChromaMap& camera) {
+  Likeness likeness;
+  for (std::size_t i = 0; i < tally.shown; ++i) {
+    const Cell cell = tally.shown_cells[i];
+    const cv::Vec3b& seen = colours.at(cell.row, cell.column);
+    likeness.add(bring_to_camera(camera, appearance.lab[cell.index], seen), seen);
   }
   return likeness;
 }
@@ -273,7 +295,11 @@ TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& ce
   const float shift = common_shift(comparison);
   const float tolerance = tolerance_at(centre_camera.z());
   const Tally tally = tally_cells(comparison, shift, tolerance);
-  const Likeness likeness = compare_colours(tally, view.appearance, CellColours(comparison, frame));
+  const CellColours colours(comparison, frame);
+  const Likeness as_taught = compare_colours(tally, view.appearance, colours);
+  const Likeness likeness =
+      frame.cameras.empty() ? as_taught
+                            : compare_camera_colours(tally, view.appearance, colours, frame.cameras[view.class_index]);
   TemplateMatch fit;
   fit.unevenness = tally.unevenness / static_cast<float>(std::max(tally.visible, 1));
   fit.visible = tally.share(tally.visible);
@@ -286,6 +312,7 @@ TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& ce
   fit.hue_conflict = likeness.hue_conflict();
   fit.paleness = likeness.paleness();
   fit.contrast = likeness.contrast();
+  fit.colours = as_taught.means();
   fit.visible_box_px = visible_box(comparison, tally.columns, tally.rows);
   return fit;
 }
