@@ -36,8 +36,9 @@ const DetectionSettings& Detector::settings() const {
 }
 
 // The method on one page; sections are those of Haensch, Kaiser and Hellwich (2017).
-Detections Detector::detect(const RgbdFrame& frame, DetectorWorkspace& workspace) const {
-  const SearchContext search{state_->index, state_->settings};
+Detections Detector::detect(const RgbdFrame& frame, DetectorWorkspace& workspace,
+                            const std::vector<ChromaPair>& camera_colours) const {
+  const SearchContext search{state_->index, state_->settings, {}, camera_colours};
   check_frame(frame, "detector");
   StageClock clock;
   make_working_images(search, frame, workspace);  // Section 5.1.1

@@ -4,6 +4,7 @@
 
 #include "detector/detection_settings.hpp"
 #include "detector/forest/forest.hpp"
+#include "pipeline/types/chroma_map.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 
@@ -25,7 +26,10 @@ class Detector {
   /// Detections from settings.evidence.threshold on, strongest first, with stage times "detect.*" appended to the
   /// frame's. Same forest, frame and settings: same result, bit for bit, for any number of threads, whatever the
   /// workspace was used for before. Throws InputError unless the frame's images and camera agree.
-  Detections detect(const RgbdFrame& frame, DetectorWorkspace& workspace) const;
+  /// `camera_colours`: objects that the frame's camera has seen before, of which it is learnt how it renders colours
+  /// (CameraChroma), beside those of the frame.
+  Detections detect(const RgbdFrame& frame, DetectorWorkspace& workspace,
+                    const std::vector<ChromaPair>& camera_colours = {}) const;
 
   /// The same with memory of its own: for a single frame.
   Detections detect(const RgbdFrame& frame) const;

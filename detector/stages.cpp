@@ -1,5 +1,6 @@
 #include "detector/stages.hpp"
 
+#include "detector/evidence/camera_chroma.hpp"
 #include "detector/evidence/suppression.hpp"
 #include "pipeline/base/checks.hpp"
 
@@ -39,8 +40,12 @@ VotingInput voting_input(const SearchContext& search, const DetectorWorkspace& w
 std::vector<Candidate> weigh_evidence(const SearchContext& search, const RgbdFrame& frame,
                                       const std::vector<Hypothesis>& hypotheses, DetectorWorkspace& workspace) {
   const LabFrame in_lab{frame, workspace.images.lab, workspace.images.levels.at(0).scale};
-  return weigh_evidence({search.index, in_lab, workspace.patches, search.settings.evidence, search.excluded_views},
-                        hypotheses, search.settings.threads, workspace.evidence_memory);
+  const EvidenceInput input{search.index, in_lab, workspace.patches, search.settings.evidence, search.excluded_views};
+  const bool is_coloured =
+      search.forest().scoring == Scoring::kEvidence && search.settings.evidence.learn_camera_colours;
+  return is_coloured ? weigh_in_camera_colours(input, search.remembered_colours, hypotheses, search.settings.threads,
+                                               workspace.evidence_memory)
+                     : weigh_evidence(input, hypotheses, search.settings.threads, workspace.evidence_memory);
 }
 
 Detections report_detections(const SearchContext& search, const RgbdFrame& frame, std::vector<Candidate>& candidates,

@@ -10,6 +10,7 @@
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/posteriors.hpp"
 #include "detector/voting/hypotheses.hpp"
+#include "pipeline/types/chroma_map.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 
@@ -25,6 +26,8 @@ struct SearchContext {
   /// Into Forest::views: not compared with the frame. A picture composed for training must not be recognised by the
   /// very views that it shows.
   std::vector<std::uint32_t> excluded_views = {};
+  /// Objects that were seen by the frame's camera before: what its colours are learnt from, beside those of the frame.
+  std::vector<ChromaPair> remembered_colours = {};
 
   const Forest& forest() const { return index.forest(); }
 };

@@ -9,6 +9,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
+#include "pose/seen/camera_colours.hpp"
 #include "pose/verification/pose_decision.hpp"
 #include "pose/verification/print_comparison.hpp"
 
@@ -25,8 +26,8 @@ struct Estimation {
   std::vector<PoseCandidate> candidates = {};
   std::vector<RegistrationResult> registered = {};  ///< the candidates
   std::vector<RegistrationResult> chosen = {};      ///< the best first
-  RegistrationResult published = {};                ///< of those the one that is published, or that would be
-  PoseEvidence evidence = {};                       ///< for that
+  std::vector<PoseEvidence> evidence = {};          ///< of the chosen
+  std::size_t published = 0;                        ///< of the chosen the one that is published, or that would be
 };
 
 ObjectPoses undecided_poses(const Detections& detections) {
@@ -90,6 +91,37 @@ void choose_one(const PoseSettings& settings, Estimation& it) {
   if (it.chosen.front().inliers == 0) it.pose.status = PoseStatus::kNotConverged;
 }
 
+void gather_one(const PoseSettings& settings, Estimation& it) {
+  const QualitySettings& quality = class_quality_of(settings, it.pose.class_name);
+  for (const RegistrationResult& result : it.chosen) {
+    it.evidence.push_back(gather_evidence(*it.seen, result.T_camera_object, it.detection.score, settings.verification));
+    std::optional<ChromaPair> pair = chroma_pair(it.pose.class_name, it.evidence.back(), quality);
+    if (pair && (!it.pose.chroma || pair->probability > it.pose.chroma->probability)) it.pose.chroma = std::move(pair);
+  }
+}
+
+/// Learns of all objects together how the camera renders colours, for each object without its class.
+void learn_camera_colours(const RgbdFrame& frame, const std::vector<ChromaPair>& remembered,
+                          std::vector<Estimation>& estimations) {
+  if (is_colourless(frame.colour)) {
+    for (Estimation& it : estimations) {
+      it.pose.camera_colours = colourless_camera();
+      it.pose.chroma.reset();
+    }
+    return;
+  }
+  std::vector<ChromaPair> pairs;
+  for (const Estimation& it : estimations) {
+    if (it.pose.chroma) pairs.push_back(*it.pose.chroma);
+  }
+  pairs.insert(pairs.end(), remembered.begin(), remembered.end());
+  const std::vector<ChromaMap> maps = fit_chroma_maps_without_each(pairs);
+  auto next = maps.begin();
+  for (Estimation& it : estimations) {
+    if (it.pose.chroma) it.pose.camera_colours = *next++;
+  }
+}
+
 /// The pose of a result, judged by its evidence.
 ObjectPose judged_pose(const Estimation& it, const RegistrationResult& result, const PoseEvidence& evidence,
                        const PoseSettings& settings) {
@@ -102,16 +134,14 @@ ObjectPose judged_pose(const Estimation& it, const RegistrationResult& result, c
 }
 
 /// Publishes the pose for which the evidence speaks most, or says why not.
-void verify_one(const PoseSettings& settings, Estimation& it) {
+void decide_one(const PoseSettings& settings, Estimation& it) {
   std::optional<ObjectPose> best;
-  for (const RegistrationResult& result : it.chosen) {
-    const PoseEvidence evidence =
-        gather_evidence(*it.seen, result.T_camera_object, it.detection.score, settings.verification);
-    ObjectPose judged = judged_pose(it, result, evidence, settings);
+  for (std::size_t i = 0; i < it.chosen.size(); ++i) {
+    bring_to_camera(it.pose.camera_colours, it.evidence[i]);
+    ObjectPose judged = judged_pose(it, it.chosen[i], it.evidence[i], settings);
     if (best && !(judged.quality > best->quality)) continue;
     best = std::move(judged);
-    it.published = result;
-    it.evidence = evidence;
+    it.published = i;
   }
   it.pose = *std::move(best);
 }
@@ -123,16 +153,19 @@ void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
   if (it.pose.shape_quality < kWorthTelling) return;
   const DepthTolerance tolerance{settings.verification.tolerance_m, it.seen->noise};
   const PrintSettings& learnt = class_quality_of(settings, it.pose.class_name).print;
+  const RegistrationResult& published = it.chosen[it.published];
   const std::optional<PrintComparison> print =
-      compare_print(*it.seen, it.published.T_camera_object, tolerance, settings.registration);
+      compare_print(*it.seen, published.T_camera_object, tolerance, settings.registration);
   if (!print) return;
-  it.evidence.print_probability = print_probability(print->margin, learnt);
-  ObjectPose judged = judged_pose(it, it.published, it.evidence, settings);
+  PoseEvidence& published_evidence = it.evidence[it.published];
+  published_evidence.print_probability = print_probability(print->margin, learnt);
+  ObjectPose judged = judged_pose(it, published, published_evidence, settings);
   if (print->better) {
     const RegistrationResult other = refine_pose(*it.seen, *print->better, it.rotations, choice_settings_of(settings));
     const std::optional<PrintComparison> there =
         compare_print(*it.seen, other.T_camera_object, tolerance, settings.registration);
     PoseEvidence evidence = gather_evidence(*it.seen, other.T_camera_object, it.detection.score, settings.verification);
+    bring_to_camera(it.pose.camera_colours, evidence);
     evidence.print_probability = there ? print_probability(there->margin, learnt) : 1.0F;
     ObjectPose turned = judged_pose(it, other, evidence, settings);
     if (other.inliers > 0 && turned.quality > judged.quality) judged = std::move(turned);
@@ -188,8 +221,8 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   return estimate(frame, detections, {});
 }
 
-ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& detections,
-                                    const ObjectPoses& earlier) const {
+ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier,
+                                    const std::vector<ChromaPair>& remembered) const {
   if (frame.id != detections.frame) {
     throw std::logic_error(
         fmt::format("detections of frame {} given with frame {}", to_string(detections.frame), to_string(frame.id)));
@@ -215,7 +248,9 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   clock.mark("pose.registration");
   for_each_undecided([&](Estimation& it) { choose_one(settings, it); });
   clock.mark("pose.choice");
-  for_each_undecided([&](Estimation& it) { verify_one(settings, it); });
+  for_each_undecided([&](Estimation& it) { gather_one(settings, it); });
+  if (settings.learn_camera_colours) learn_camera_colours(frame, remembered, estimations);
+  for_each_undecided([&](Estimation& it) { decide_one(settings, it); });
   clock.mark("pose.verification");
   parallel_for(settings.threads, static_cast<int>(estimations.size()),
                [&](int i) { resolve_symmetry(settings, estimations[i]); });

@@ -49,7 +49,9 @@ class PoseEstimator {
 
   /// The same with the poses of an earlier frame (warm start): they are candidates beside those of the votes, never the
   /// only ones, so that a wrong pose does not stick and what was lost comes back by itself.
-  ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) const;
+  /// `remembered`: what earlier frames of the camera told of its colours (CameraColours::pairs).
+  ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier,
+                       const std::vector<ChromaPair>& remembered = {}) const;
 
   /// Where a detection of the object would have its centre, camera frame, metres; its origin where the class has no
   /// model.

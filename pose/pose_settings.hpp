@@ -26,6 +26,7 @@ struct PoseSettings {
   RegistrationSettings registration;
   RotationSearchSettings turn;
   VerificationSettings verification;
+  bool learn_camera_colours = true;  ///< models are brought to the camera's colours before their chroma is compared
   QualitySettings quality;
   std::map<std::string, QualitySettings> class_quality;  ///< learnt for one class, by name; of the others: `quality`
   float min_score = 0.1F;                                ///< of a detection whose pose is looked for

@@ -110,7 +110,8 @@ Candidate HypothesisScorer::score_hypothesis(const Hypothesis& hypothesis, float
     detection.box_px = visible_box_between(detection.box_px, candidate.evidence.fit.visible_box_px, camera);
   }
   const float min_score = std::min(input_.settings.threshold, input_.settings.candidates_from);
-  if (detection.score < min_score) return candidate;  // most of them: nothing reads their rotations
+  const float max_score = std::max(detection.score, score_as_taught(object.score_model, candidate.evidence));
+  if (max_score < min_score) return candidate;  // most of them: nothing reads their rotations
   add_rotations(hypothesis, weight_views(hypothesis, spread), detection.rotations);
   return candidate;
 }
@@ -174,6 +175,8 @@ void HypothesisScorer::compare_templates(const Hypothesis& hypothesis, std::size
 
 /// Writes into the evidence how a template matches the frame, within its outline and across it.
 void HypothesisScorer::set_match(const PlacedTemplate& placed, Evidence& evidence) const {
+  evidence.view = placed.view;
+  evidence.view_centre = placed.centre_camera;
   evidence.fit = placed.fit;
   evidence.outline = measure_boundary_continuation(views_[placed.view], placed.centre_camera, input_.frame);
 }

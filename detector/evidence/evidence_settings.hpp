@@ -12,6 +12,7 @@ struct EvidenceSettings {
   float candidates_from = 1.0F;
   int max_candidates = 16;  ///< the strongest; a frame full of weak maxima must not hold up the poses of the others
   int max_rotations = 48;   ///< rotations handed to the pose process
+  bool learn_camera_colours = true;  ///< views are brought to the colours of the camera, see camera_chroma.hpp
 };
 
 template <typename Visit>

@@ -18,6 +18,19 @@ double Likeness::seen_variance(std::size_t channel) const {
   return channels_[channel][3] / count - mean * mean;
 }
 
+MeanColours Likeness::means() const {
+  constexpr double kLightness = 100.0 / 255.0;
+  if (count_ < kMin) return {};
+  const double count = count_;
+  const auto chroma = [&](std::size_t channel, std::size_t which) {
+    return static_cast<float>(channels_[channel][which] / count - kNeutral);
+  };
+  return {{chroma(1, 0), chroma(2, 0)},
+          {chroma(1, 1), chroma(2, 1)},
+          static_cast<float>(kLightness * channels_[0][1] / count),
+          true};
+}
+
 float Likeness::foreign_colour() const {
   constexpr double kPlain = 100.0;  // variance of a and b that plain surfaces have in changing light
   constexpr double kPalest = 0.5;   // strengths over the remembered one

@@ -6,6 +6,14 @@
 
 namespace houghstream {
 
+/// Mean colours of a view and of the frame over the same cells, CIE L*a*b*.
+struct MeanColours {
+  std::array<float, 2> remembered_ab{};
+  std::array<float, 2> measured_ab{};
+  float measured_lightness = 0.0F;  ///< 0 to 100
+  bool is_known = false;            ///< false for fewer than a dozen pairs
+};
+
 /// Compares two sets of 8-bit L*a*b* colours, pair by pair. The correlation takes all three channels together, each
 /// about its own mean: gain and offset of a channel, which the light decides, do not matter.
 class Likeness {
@@ -30,6 +38,8 @@ class Likeness {
   /// Logarithm of the contrast of the colours seen over that of the remembered ones, -2 to 2; 0 for fewer than a dozen
   /// pairs. Dim, hazy and blurred pictures show less than was taught.
   float contrast() const;
+
+  MeanColours means() const;
 
   /// How far the mean colour seen is from the remembered one, at any strength that haze or a camera gives it: distance
   /// in the a*b* plane over the spread of the colours seen, at most 4; 0 for fewer than a dozen pairs. Tells plain

@@ -69,6 +69,14 @@ float score(const ScoreModel& model, const Evidence& evidence) {
   return static_cast<float>(logistic(log_odds(model, score_terms(evidence))));
 }
 
+float score_as_taught(const ScoreModel& model, const Evidence& evidence) {
+  Evidence as_taught = evidence;
+  as_taught.fit.foreign_colour = 0.2F;
+  as_taught.fit.hue_conflict = 0.1F;
+  as_taught.fit.paleness = 0.2F;
+  return score(model, as_taught);
+}
+
 ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior) {
   std::vector<LogisticExample<kScoreTerms>> judged;
   judged.reserve(examples.size());

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
+
 #include "detector/evidence/template_matching.hpp"
 #include "detector/forest/forest.hpp"
 
@@ -7,14 +10,18 @@ namespace houghstream {
 
 /// Evidence for and against a hypothesis, from votes, depth and colour.
 struct Evidence {
+  static constexpr std::uint32_t kNoView = std::numeric_limits<std::uint32_t>::max();
+
   float relative_vote_mass = 0.0F;  ///< vote mass over the class's nominal_vote_mass
   float certainty = 1.0F;           ///< weight of the votes over the number of patches that cast them
   float distance = 1.0F;            ///< distance of the centre from the camera, metres
   float radius_px =
       40.0F;  ///< radius of the object at that distance, at about the usual focal length: see focal_octave_scale
-  TemplateMatch fit;             ///< match of the best template
-  BoundaryContinuation outline;  ///< continuation across its outline
-  float other_size = -0.4F;      ///< alternative_scale_gain; where it is not computed, about that of objects
+  std::uint32_t view = kNoView;                           ///< index of the best template into Forest::views
+  Eigen::Vector3f view_centre = Eigen::Vector3f::Zero();  ///< place of its centre, camera frame, metres
+  TemplateMatch fit;                                      ///< its match there
+  BoundaryContinuation outline;                           ///< continuation across its outline
+  float other_size = -0.4F;  ///< alternative_scale_gain; where it is not computed, about that of objects
 };
 
 /// Returns the evidence as the terms that ScoreModel::weights multiply.
@@ -25,6 +32,10 @@ double log_odds(const ScoreModel& model, const ScoreTerms& terms);
 
 /// Returns the probability that the hypothesis is an object of its class (logistic regression, Platt 1999).
 float score(const ScoreModel& model, const Evidence& evidence);
+
+/// Returns the score that the hypothesis would have if its chroma differed from the template's by as little as that of
+/// objects mostly does, whatever the camera makes of it.
+float score_as_taught(const ScoreModel& model, const Evidence& evidence);
 
 /// Returns a score from votes alone. It rises with their mass and is 0.1 at a twentieth of the nominal mass: that of an
 /// object of which a tenth is visible, the least that counts as ground truth, seen half as well as in training.

@@ -100,6 +100,8 @@ float tolerance_at(float z);
 Tally tally_cells(const Comparison& comparison, float shift, float tolerance);
 std::size_t level_of(float cell_width, const LabLevels& levels);
 Likeness compare_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours);
+Likeness compare_camera_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours,
+                                const ChromaMap& camera);
 float continued_share(const Comparison& comparison, float shift, float tolerance);
 cv::Rect2f visible_box(const Comparison& comparison, Lines columns, Lines rows);
 std::pair<int, int> range(Lines seen);
@@ -112,7 +114,11 @@ TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& ce
   const float shift = common_shift(comparison);
   const float tolerance = tolerance_at(centre_camera.z());
   const Tally tally = tally_cells(comparison, shift, tolerance);
-  const Likeness likeness = compare_colours(tally, view.appearance, CellColours(comparison, frame));
+  const CellColours colours(comparison, frame);
+  const Likeness as_taught = compare_colours(tally, view.appearance, colours);
+  const Likeness likeness =
+      frame.cameras.empty() ? as_taught
+                            : compare_camera_colours(tally, view.appearance, colours, frame.cameras[view.class_index]);
   TemplateMatch fit;
   fit.unevenness = tally.unevenness / static_cast<float>(std::max(tally.visible, 1));
   fit.visible = tally.share(tally.visible);
@@ -125,6 +131,7 @@ TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& ce
   fit.hue_conflict = likeness.hue_conflict();
   fit.paleness = likeness.paleness();
   fit.contrast = likeness.contrast();
+  fit.colours = as_taught.means();
   fit.visible_box_px = visible_box(comparison, tally.columns, tally.rows);
   return fit;
 }
@@ -299,6 +306,24 @@ Likeness compare_colours(const Tally& tally, const TemplateGrid& appearance, con
   for (std::size_t i = 0; i < tally.shown; ++i) {
     const Cell cell = tally.shown_cells[i];
     likeness.add(appearance.lab[cell.index], colours.at(cell.row, cell.column));
+  }
+  return likeness;
+}
+
+/// The same with the template's colours as the camera would measure them in the light of the frame.
+Likeness compare_camera_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours,
+                                const ChromaMap& camera) {
+  constexpr double kNeutral = 128.0;
+  constexpr double kLightness = 100.0 / 255.0;  // of 8-bit L*
+  Likeness likeness;
+  for (std::size_t i = 0; i < tally.shown; ++i) {
+    const Cell cell = tally.shown_cells[i];
+    const cv::Vec3b& seen = colours.at(cell.row, cell.column);
+    const std::array<std::uint8_t, 3>& lab = appearance.lab[cell.index];
+    const Eigen::Vector2d ab = camera.apply({lab[1] - kNeutral, lab[2] - kNeutral}, kLightness * seen[0]);
+    likeness.add({lab[0], cv::saturate_cast<std::uint8_t>(ab.x() + kNeutral),
+                  cv::saturate_cast<std::uint8_t>(ab.y() + kNeutral)},
+                 seen);
   }
   return likeness;
 }

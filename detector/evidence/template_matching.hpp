@@ -1,10 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
+#include "detector/evidence/likeness.hpp"
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/forest.hpp"
 #include "pipeline/geometry/boundary_sample.hpp"
+#include "pipeline/types/chroma_map.hpp"
 #include "pipeline/types/frame.hpp"
 
 namespace houghstream {
@@ -14,6 +17,9 @@ struct LabFrame {
   const RgbdFrame& frame;
   LabLevels lab;       ///< see make_smoothed_lab
   float scale = 1.0F;  ///< size of the first level over the frame's
+  /// How the camera renders the colours of each class, by its index: views are brought to these colours before they are
+  /// compared. Empty = as they were taught.
+  std::vector<ChromaMap> cameras = {};
 };
 
 /// How a view template at a hypothesis' centre matches the frame. The first four are fractions of the template's
@@ -30,6 +36,7 @@ struct TemplateMatch {
   float hue_conflict = 0.0F;    ///< see Likeness
   float paleness = 0.0F;        ///< see Likeness
   float contrast = 0.0F;        ///< see Likeness
+  MeanColours colours;          ///< mean colours of the compared cells
   cv::Rect2f visible_box_px;    ///< box of what is visible or unknown, frame pixels; may be empty
 };
 

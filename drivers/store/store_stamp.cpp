@@ -17,13 +17,17 @@ std::string file_stamp(const fs::path& file) {
                      is.st_mtim.tv_nsec, is.st_ctim.tv_sec, is.st_ctim.tv_nsec);
 }
 
-std::string mesh_stamp(const ObjectStore& store) {
+std::string folder_stamp(const fs::path& folder) {
   std::vector<std::string> states;
   std::error_code error;  // a folder that goes away meanwhile shows in the next state
-  for (fs::directory_iterator entry(store.models_folder(), error), end; !error && entry != end; entry.increment(error))
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     states.push_back(file_stamp(entry->path()));
   std::sort(states.begin(), states.end());
-  return fmt::format("{}\n{}", file_stamp(store.json_file()), fmt::join(states, "\n"));
+  return fmt::format("{}", fmt::join(states, "\n"));
+}
+
+std::string mesh_stamp(const ObjectStore& store) {
+  return fmt::format("{}\n{}", file_stamp(store.json_file()), folder_stamp(store.models_folder()));
 }
 
 }  // namespace houghstream::store

@@ -13,6 +13,7 @@ inline const std::string kFrame = "OPENNI_FRAME";                               
 inline const std::string kDetections = "HOUGHSTREAM_DETECTIONS";                 ///< detections_t
 inline const std::string kPoses = "HOUGHSTREAM_POSES";                           ///< object_poses_t
 inline const std::string kPoseProbabilities = "HOUGHSTREAM_POSE_PROBABILITIES";  ///< pose_probabilities_t
+inline const std::string kCameraColours = "HOUGHSTREAM_CAMERA_COLOURS";          ///< camera_colours_t, 1 Hz
 inline const std::string kObjects = "HOUGHSTREAM_OBJECTS";                       ///< objects_t
 inline const std::string kStatus = "HOUGHSTREAM_STATUS";                         ///< status_t, 1 Hz, every process
 inline const std::string kKnownObjects = "HOUGHSTREAM_KNOWN_OBJECTS";  ///< known_objects_t, 1 Hz, who has a store

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <houghstream/camera_colours_t.hpp>
 #include <houghstream/detections_t.hpp>
 #include <houghstream/images_t.hpp>
 #include <houghstream/known_objects_t.hpp>
@@ -81,6 +82,11 @@ houghstream::pose_probabilities_t probabilities_to_message(const ObjectPoses& po
 /// Sets ObjectPose::shape_quality where the message is about these poses: of their frame, with their qualities. Returns
 /// whether it is. Throws InputError where a probability is none.
 bool apply_probabilities(const houghstream::pose_probabilities_t& message, ObjectPoses& poses);
+
+/// The map that is learnt of the objects travels with them, for readers that do not learn it themselves.
+houghstream::camera_colours_t to_message(const CameraChroma& colours);
+/// Throws InputError where a colour, a lightness or a probability is none.
+CameraChroma camera_colours_from_message(const houghstream::camera_colours_t& message);
 
 houghstream::rigid_transform_t to_message(std::int64_t utime, const Eigen::Isometry3d& T_camera_object);
 

@@ -198,6 +198,47 @@ bool apply_probabilities(const pose_probabilities_t& message, ObjectPoses& poses
   return true;
 }
 
+camera_colours_t to_message(const CameraChroma& colours) {
+  const auto number = [](double value) { return static_cast<float>(value); };
+  camera_colours_t message{};
+  message.utime = colours.frame.utime;
+  message.source_channel = colours.frame.channel;
+  message.n_objects = static_cast<std::int32_t>(colours.objects.size());
+  for (const ChromaPair& pair : colours.objects) {
+    message.class_name.push_back(pair.class_name);
+    message.model_a.push_back(number(pair.model.x()));
+    message.model_b.push_back(number(pair.model.y()));
+    message.measured_a.push_back(number(pair.measured.x()));
+    message.measured_b.push_back(number(pair.measured.y()));
+    message.lightness.push_back(number(pair.lightness));
+    message.probability.push_back(number(pair.probability));
+  }
+  const ChromaMap map = fit_chroma_map(colours.objects);
+  for (int i = 0; i < 4; ++i) message.gain[i / 2][i % 2] = number(map.parameters()(i));
+  for (int i = 0; i < 2; ++i) message.cast[i] = number(map.parameters()(4 + i));
+  message.sigma = number(map.sigma());
+  return message;
+}
+
+CameraChroma camera_colours_from_message(const camera_colours_t& message) {
+  CameraChroma colours;
+  colours.frame = {message.source_channel, message.utime};
+  for (std::size_t i = 0; i < message.class_name.size(); ++i) {
+    ChromaPair& pair = colours.objects.emplace_back();
+    pair.class_name = message.class_name[i];
+    pair.model = {message.model_a[i], message.model_b[i]};
+    pair.measured = {message.measured_a[i], message.measured_b[i]};
+    pair.lightness = message.lightness[i];
+    pair.probability = message.probability[i];
+    require(is_chroma_pair(pair),
+            "colours of camera {}: '{}' has ({} {}), measured ({} {}) at lightness {} with probability {}, expected a* "
+            "and b* of -130 to 130, 0 to 100 and 0 to 1",
+            colours.frame.channel, pair.class_name, pair.model.x(), pair.model.y(), pair.measured.x(),
+            pair.measured.y(), pair.lightness, pair.probability);
+  }
+  return colours;
+}
+
 object_poses_t to_message(const ObjectPoses& poses) {
   object_poses_t message{};
   message.utime = poses.frame.utime;

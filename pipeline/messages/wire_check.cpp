@@ -1,6 +1,7 @@
 #include "pipeline/messages/wire_check.hpp"
 
 #include <charconv>
+#include <houghstream/camera_colours_t.hpp>
 #include <houghstream/detections_t.hpp>
 #include <houghstream/images_t.hpp>
 #include <houghstream/known_objects_t.hpp>
@@ -135,6 +136,17 @@ void walk_probabilities(WireReader& reader) {
   reader.skip(kProbabilities * reader.read_count(kProbabilities));
 }
 
+void walk_camera_colours(WireReader& reader) {
+  constexpr std::size_t kMinName = 5;
+  constexpr std::size_t kNumbers = 6 * 4;
+  constexpr std::size_t kMap = (4 + 2 + 1) * 4;
+  reader.skip(8);
+  read_channel(reader);
+  const std::size_t objects = reader.read_count(kMinName + kNumbers);
+  for (std::size_t left = objects; left > 0; --left) walk_name(reader);
+  reader.skip(kNumbers * objects + kMap);
+}
+
 void walk_known_objects(WireReader& reader) {
   reader.skip(8);
   walk_name(reader);
@@ -229,6 +241,8 @@ void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& typ
     walk_poses(reader);
   } else if (fingerprint == pose_probabilities_t::getHash()) {
     walk_probabilities(reader);
+  } else if (fingerprint == camera_colours_t::getHash()) {
+    walk_camera_colours(reader);
   } else if (fingerprint == objects_t::getHash()) {
     walk_objects(reader);
   } else if (fingerprint == status_t::getHash()) {

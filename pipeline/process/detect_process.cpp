@@ -30,6 +30,12 @@ class DetectProcess {
       reception_.subscribe_to_results<object_poses_t>(channel::kPoses, Account::kOthers,
                                                       [this](const ReceivedResult& poses) { note_losses(poses); });
     }
+    if (options_.on_camera_colours && !bus_.is_log()) {
+      reception_.subscribe_to_messages<camera_colours_t>(
+          channel::kCameraColours, [this](const camera_colours_t& message, const ReceivedMessage&) {
+            options_.on_camera_colours(camera_colours_from_message(message));
+          });
+    }
     log_info("ready: frames from {} at {}", options_.frame_channels, bus_.url());
     run_process_loop(bus_, status_, [this](std::chrono::milliseconds timeout) { return step(timeout); });
     status_.count_skipped(static_cast<std::int64_t>(newest_.waiting()));

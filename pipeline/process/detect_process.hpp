@@ -6,6 +6,7 @@
 
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/messages/channels.hpp"
+#include "pipeline/types/chroma_map.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/known_objects.hpp"
@@ -19,6 +20,8 @@ struct DetectProcessOptions {
   double max_rate_hz = 0.0;                      ///< at each camera's frames; 0 = at each one, as far as there is time
   bool keep_frames = false;                      ///< of a log: copies the frames' events to the output log too
   std::function<KnownObjects()> objects;         ///< what its store holds, for the status; empty = no store
+  /// Told on a network what hs-pose has learnt of a camera's colours, by the thread that receives; empty = nobody is.
+  std::function<void(const CameraChroma&)> on_camera_colours;
 };
 
 using DetectObjects = std::function<Detections(const RgbdFrame&)>;

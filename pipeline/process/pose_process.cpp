@@ -3,6 +3,8 @@
 #include <fmt/ranges.h>
 
 #include <atomic>
+#include <cstdlib>
+#include <map>
 #include <set>
 
 #include "pipeline/base/checks.hpp"
@@ -137,6 +139,18 @@ class PoseProcess {
     bus_.publish(channel::kPoses, to_message(poses));
   }
 
+  /// Once a second of each camera's frames, once something is known.
+  void publish_camera_colours(const FrameId& frame) {
+    constexpr std::int64_t kPeriodUs = 1'000'000;
+    if (!options_.camera_colours) return;
+    const auto sent = colours_sent_us_.find(frame.channel);
+    if (sent != colours_sent_us_.end() && std::abs(frame.utime - sent->second) < kPeriodUs) return;
+    const CameraChroma colours = options_.camera_colours(frame.channel);
+    if (colours.objects.empty()) return;
+    colours_sent_us_[frame.channel] = frame.utime;
+    bus_.publish(channel::kCameraColours, to_message(colours));
+  }
+
   bool follow_newest(milliseconds timeout) {
     const std::optional<EncodedFrame> encoded = newest_.pop(timeout);
     if (!encoded) return false;
@@ -148,6 +162,7 @@ class PoseProcess {
       }
       poses->frame = encoded->id;
       publish(*poses);
+      publish_camera_colours(poses->frame);
       transforms_.publish(*poses);
       status_.count_processed(std::chrono::steady_clock::now() - encoded->arrival);
     } catch (const std::exception& error) {
@@ -169,6 +184,7 @@ class PoseProcess {
       if (follow_) {
         ++answered_;
       } else {
+        publish_camera_colours(poses.frame);
         transforms_.publish(poses);
         status_.count_processed(std::chrono::steady_clock::now() - pair->arrival);
       }
@@ -267,9 +283,10 @@ class PoseProcess {
   PoseHistory history_;
   ModelCheck models_;
   TransformPublisher transforms_;
-  std::int64_t without_frame_ = 0;  // detections
-  std::int64_t answered_ = 0;       // detections, by who follows
-  std::int64_t overtaken_ = 0;      // passed over for newer ones, before they were answered
+  std::map<std::string, std::int64_t> colours_sent_us_;  // by camera, frame time
+  std::int64_t without_frame_ = 0;                       // detections
+  std::int64_t answered_ = 0;                            // detections, by who follows
+  std::int64_t overtaken_ = 0;                           // passed over for newer ones, before they were answered
   // What the receiving thread has seen.
   std::set<std::string> cameras_;            // that detections name
   std::atomic<std::int64_t> detections_{0};  // of frames on these channels

@@ -7,6 +7,7 @@
 
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/messages/channels.hpp"
+#include "pipeline/types/chroma_map.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/known_objects.hpp"
@@ -21,6 +22,8 @@ struct PoseProcessOptions {
   bool keep_frames = false;                      ///< of a log: frames and their detections go to the output log too
   std::set<std::string> models;                  ///< classes that have one; where none is detected, it warns
   std::function<KnownObjects()> objects;         ///< what its store holds, for the status; they have models too
+  /// What has been learnt of the colours of the camera with this channel; empty = nothing is.
+  std::function<CameraChroma(const std::string&)> camera_colours;
 };
 
 /// The poses of a frame's detections; the third argument is what was given for this camera's frame before, to start

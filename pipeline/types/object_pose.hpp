@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/types/chroma_map.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/stage_time.hpp"
@@ -55,6 +56,8 @@ struct ObjectPose {
   float quality = 0.0F;               ///< probability that the pose is right, 0 to 1; 0 where none was found
   float shape_quality = 0.0F;         ///< the same up to the symmetries of the shape: never below `quality`
   float free_space_violation = 0.0F;  ///< rendered pixels in front of what was measured, 0 to 1
+  std::optional<ChromaPair> chroma;   ///< what its colours tell of the camera's; not published
+  ChromaMap camera_colours;           ///< that its colours were judged by, learnt without it; not published
 };
 
 /// Whether the object counts as found: its detection is sure enough by itself and not refuted by its pose, or it is a

@@ -85,16 +85,20 @@ void judge_followed(const ObjectObservation& seen, const ExpectedObject& expecte
   const Eigen::Isometry3d& T = followed.T_camera_object;
   const ProjectedView look = look_at_view(seen.frame, seen.model, T, settings.verification.points);
   PoseEvidence evidence{expected.score, {}, compare_texture(seen, look, tolerance), expected.print_probability};
+  bring_to_camera(expected.camera_colours, evidence);
+  followed.pose.camera_colours = expected.camera_colours;
   if (expected.verified) {
     evidence.depth = verify_projected_view(look, tolerance);
     evidence.depth.outline = expected.verified->outline;
     evidence.depth.boundary_continuations = expected.verified->boundary_continuations;
     followed.verified = expected.verified;
+    followed.pose.chroma = chroma_pair(followed.pose.class_name, evidence, quality);
     decide_status(evidence, T, true, quality, followed.pose);
     if (has_pose(followed.pose.status)) return;
   }
   evidence.depth = verify_pose(seen.frame, seen.model.mesh, T, tolerance, &seen.colours);
   followed.verified = evidence.depth;
+  followed.pose.chroma = chroma_pair(followed.pose.class_name, evidence, quality);
   decide_status(evidence, T, true, quality, followed.pose);
 }
 

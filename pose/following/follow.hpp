@@ -60,6 +60,7 @@ struct ExpectedObject {
   bool check_occlusion = true;           ///< whether it is hidden where it is expected first: that renders it once more
   std::optional<Verification> verified;  ///< of an earlier frame: its outline is taken for this one's
   float print_probability = 1.0F;  ///< PoseEvidence::print_probability of the detection's pose that it goes on from
+  ChromaMap camera_colours = {};   ///< by which its colours are judged
 };
 
 /// What came of it.

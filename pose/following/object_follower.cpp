@@ -175,10 +175,23 @@ void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, con
   object.print_probability = print_probability_of(pose);
 }
 
+/// What the object's colours are judged by.
+ChromaMap colours_for(const FollowedObject& object, const PoseEstimator& estimator, const FollowedCamera& camera) {
+  if (!estimator.settings().learn_camera_colours) return {};
+  if (camera.is_colourless) return colourless_camera();
+  return camera.colours.map_without(object.class_name);
+}
+
 }  // namespace
 
 ObjectFollower::ObjectFollower(FollowerSettings settings) : settings_(settings) {
   check_settings(settings_, "settings of a follower");
+}
+
+CameraChroma ObjectFollower::camera_colours(const std::string& channel) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto camera = cameras_.find(channel);
+  return camera == cameras_.end() ? CameraChroma{} : camera->second.colours.chroma();
 }
 
 std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator, const RgbdFrame& frame) {
@@ -189,6 +202,7 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
   if (is_overtaken(frame.id.utime, camera)) return std::nullopt;
   follow_clock(frame.id.utime, camera);
   const std::int64_t clock_us = clock_of(frame.id.utime, camera);
+  camera.is_colourless = is_colourless(frame.colour);
   FollowedFrame shown{frame.id.utime, clock_us, {}, follow_all(estimator, frame, camera)};
   for (std::size_t i = 0; i < camera.objects.size(); ++i) {
     note_result(shown.poses[i], clock_us, camera.objects[i]);
@@ -198,6 +212,7 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
   ++camera.frames;
   ObjectPoses result{frame.id, {}, frame.stages};
   for (const FollowedPose& followed : shown.poses) result.poses.push_back(followed.pose);
+  if (!camera.is_colourless) camera.colours.update(result);
   camera.shown.push_back(std::move(shown));
   if (camera.shown.size() > kShown) camera.shown.pop_front();
   clock.mark(kFollowingStage);
@@ -219,6 +234,7 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
         expected.emplace_back(expected_at(object.velocity.predict(object.T_camera_object, used), object));
     it.settle = settle;
     if (!settle) it.verified = object.verified;
+    it.camera_colours = colours_for(object, estimator, camera);
   }
   std::vector<FollowedPose> poses = follow_objects(estimator, settings_.follow, frame, expected);
   retry_lost(estimator, frame, camera, poses);
@@ -244,6 +260,7 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
     ExpectedObject again = expected_at(object.T_camera_object, object);
     again.settle = true;
     again.is_lost = true;
+    again.camera_colours = colours_for(object, estimator, camera);
     const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(object.T_camera_object, motions);
     if (carried) again.starts.insert(again.starts.begin(), *carried);
     // What stands was expected there the first time too, and it has been told whether it is hidden there.
@@ -311,15 +328,18 @@ void ObjectFollower::give_up(const PoseEstimator& estimator, FollowedCamera& cam
 ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFrame& frame,
                                    const Detections& detections) {
   DetectionAssociation look;
+  std::vector<ChromaPair> remembered;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    look = associate_detections(estimator, detections, settings_, cameras_[detections.frame.channel]);
+    FollowedCamera& camera = cameras_[detections.frame.channel];
+    look = associate_detections(estimator, detections, settings_, camera);
+    remembered = camera.colours.pairs();
   }
   Detections looked_for{detections.frame, {}, detections.stages};
   for (std::size_t i = 0; i < detections.detections.size(); ++i) {
     if (look.needs_estimate(i)) looked_for.detections.push_back(detections.detections[i]);
   }
-  ObjectPoses found = estimator.estimate(frame, looked_for);
+  ObjectPoses found = estimator.estimate(frame, looked_for, {}, remembered);
   ObjectPoses result{detections.frame, {}, found.stages};
   const std::lock_guard<std::mutex> lock(mutex_);
   FollowedCamera& camera = cameras_[detections.frame.channel];

@@ -13,6 +13,7 @@
 #include "pose/following/follow.hpp"
 #include "pose/motion/smoothed_velocity.hpp"
 #include "pose/pose_estimator.hpp"
+#include "pose/seen/camera_colours.hpp"
 
 namespace houghstream {
 
@@ -81,6 +82,8 @@ struct FollowedFrame {
 struct FollowedCamera {
   std::vector<FollowedObject> objects;
   std::deque<FollowedFrame> shown;  ///< the last ones
+  CameraColours colours;            ///< that its objects are judged by
+  bool is_colourless = false;       ///< of the last frame: they say nothing
   std::int64_t frames = 0;
   /// The camera's clock minus its frames' utimes, which jump where the host's clock is set or a stamp is wrong. The
   /// camera's clock does not.
@@ -110,6 +113,9 @@ class ObjectFollower {
   /// The poses of the detections of a frame that follow() has had: of followed objects as they were then, of others as
   /// PoseEstimator::estimate finds them. What is found is followed from the next frame on.
   ObjectPoses answer(const PoseEstimator& estimator, const RgbdFrame& frame, const Detections& detections);
+
+  /// What the followed objects have told of the colours of the camera with this channel.
+  CameraChroma camera_colours(const std::string& channel);
 
  private:
   std::vector<FollowedPose> follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,

@@ -52,16 +52,15 @@ double lightness_left_over(const ColourProducts& products) {
   return std::max(0.0, seen_sq - 2.0 * weights.dot(with_seen) + weights.dot(curvature * weights));
 }
 
-float chroma_conflict(const ColourProducts& products) {
-  constexpr double kPlain = 100.0;  // variance that plain surfaces have in changing light
-  constexpr double kPalest = 0.5;   // strengths over the remembered one
-  constexpr double kStrongest = 2.5;
-  constexpr double kMax = 4.0;
-  const Eigen::Vector2d own(products(kA, kOne), products(kB, kOne));
-  const Eigen::Vector2d seen(products(kSeenA, kOne), products(kSeenB, kOne));
-  const double strength = std::clamp(own.dot(seen) / std::max(own.squaredNorm(), 1.0), kPalest, kStrongest);
-  const double spread_sq = kPlain + variance(products, kSeenA) + variance(products, kSeenB);
-  return static_cast<float>(std::min(kMax, (seen - strength * own).norm() / std::sqrt(spread_sq)));
+ChromaMeans chroma_means(const ColourProducts& products) {
+  constexpr double kOffset = 128.0;        // of 8-bit values about grey
+  constexpr double kUnit = 100.0 / 255.0;  // of 8-bit lightness
+  ChromaMeans means;
+  means.model = {products(kA, kOne), products(kB, kOne)};
+  means.measured = {products(kSeenA, kOne), products(kSeenB, kOne)};
+  means.lightness = kUnit * (products(kSeenLightness, kOne) + kOffset);
+  means.variance = {variance(products, kSeenA), variance(products, kSeenB)};
+  return means;
 }
 
 /// The compared points, and those where the camera was at its limit.
@@ -78,6 +77,7 @@ struct SummedColours {
 };
 
 ColourComparison compare(const SummedColours& sums) {
+  static const ChromaMap kAsTaught;
   const auto weighted = [](double lightness, double a, double b) {
     constexpr double kLightnessWeight = 0.5;  // shading is only roughly accounted for
     return kLightnessWeight * lightness + a + b;
@@ -92,7 +92,9 @@ ColourComparison compare(const SummedColours& sums) {
   comparison.points = sums.compared.count();
   comparison.agreement = static_cast<float>(1.0 - left / (kUntexturedVariance + seen));
   comparison.left_over = static_cast<float>(std::sqrt(left));
-  comparison.chroma_conflict = chroma_conflict(sums.all_means(products));
+  comparison.chroma = chroma_means(sums.all_means(products));
+  comparison.unclipped_chroma = chroma_means(products);
+  comparison.chroma_conflict = chroma_conflict(comparison.chroma, kAsTaught);
   comparison.clipped = sums.clipped.count();
   comparison.observed_contrast = static_cast<float>(std::sqrt(std::max(0.0, seen)));
   comparison.model_contrast = static_cast<float>(std::sqrt(std::max(0.0, own)));
@@ -100,6 +102,18 @@ ColourComparison compare(const SummedColours& sums) {
 }
 
 }  // namespace
+
+float chroma_conflict(const ChromaMeans& means, const ChromaMap& camera) {
+  constexpr double kPlain = 100.0;  // variance that plain surfaces have in changing light
+  constexpr double kPalest = 0.5;   // strengths over the expected one
+  constexpr double kStrongest = 2.5;
+  constexpr double kMax = 4.0;
+  const Eigen::Vector2d expected = camera.apply(means.model, means.lightness);
+  const double strength =
+      std::clamp(expected.dot(means.measured) / std::max(expected.squaredNorm(), 1.0), kPalest, kStrongest);
+  const double spread_sq = kPlain + means.variance.x() + means.variance.y();
+  return static_cast<float>(std::min(kMax, (means.measured - strength * expected).norm() / std::sqrt(spread_sq)));
+}
 
 std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ProjectedView& seen,
                                                 const DepthTolerance& tolerance) {

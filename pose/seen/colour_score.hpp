@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "pipeline/types/chroma_map.hpp"
 #include "pose/seen/depth_score.hpp"
 #include "pose/seen/region.hpp"
 
@@ -12,6 +13,14 @@ namespace houghstream {
 
 /// Variance of the seen 8-bit CIE L*a*b* colours, all channels, on a plain surface in even light: it tells of no print.
 constexpr double kUntexturedVariance = 15.0;
+
+/// The mean chroma of points, and how much the measured one varies about it.
+struct ChromaMeans {
+  Eigen::Vector2d model = Eigen::Vector2d::Zero();     ///< a* and b*
+  Eigen::Vector2d measured = Eigen::Vector2d::Zero();  ///< a* and b*
+  double lightness = 0.0;                              ///< measured, L*, 0 to 100
+  Eigen::Vector2d variance = Eigen::Vector2d::Zero();  ///< of the measured a* and b*
+};
 
 /// How the colours that the model has at a pose and those that are seen compare, where measured and model depth agree
 /// and, unless said otherwise, the camera was not at its limit.
@@ -29,7 +38,12 @@ struct ColourComparison {
   int clipped = 0;                 ///< not compared: the camera was at its limit
   float observed_contrast = 0.0F;  ///< standard deviation of the seen colours, the channels weighted as in `left_over`
   float model_contrast = 0.0F;     ///< the same of the model's
+  ChromaMeans chroma;              ///< of all points: what chroma_conflict compares
+  ChromaMeans unclipped_chroma;    ///< of those where the camera was not at its limit
 };
+
+/// ColourComparison::chroma_conflict with the model's colours brought to the camera's.
+float chroma_conflict(const ChromaMeans& means, const ChromaMap& camera);
 
 /// Compares the points that were looked at. Nothing where the model has no colours or too few points agree.
 std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ProjectedView& seen,

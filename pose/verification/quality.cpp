@@ -29,6 +29,10 @@ PoseEvidence gather_evidence(const ObjectObservation& seen, const Eigen::Isometr
           compare_texture(seen, look, tolerance)};
 }
 
+void bring_to_camera(const ChromaMap& camera, PoseEvidence& evidence) {
+  if (evidence.colour) evidence.colour->chroma_conflict = chroma_conflict(evidence.colour->chroma, camera);
+}
+
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings) {
   constexpr double kCameraContrastSq = 0.25;  // cameras show about half of a model's contrast
   // Added to shares, so that none weighs too much where there is little of it.
@@ -66,6 +70,21 @@ float shape_quality(const QualityTerms& terms, const QualitySettings& settings) 
 float print_probability(double margin, const PrintSettings& settings) {
   constexpr double kMax = 8.0;  // log odds: what is surer has not been learnt from
   return static_cast<float>(logistic(settings.bias + settings.margin_weight * std::clamp(margin, -kMax, kMax)));
+}
+
+std::optional<ChromaPair> chroma_pair(const std::string& class_name, const PoseEvidence& evidence,
+                                      const QualitySettings& settings) {
+  if (!evidence.colour) return std::nullopt;
+  QualityTerms terms = quality_terms(evidence, settings);
+  terms.chroma_conflict = settings.typical.chroma_conflict;
+  const ChromaMeans& chroma = evidence.colour->unclipped_chroma;
+  ChromaPair pair;
+  pair.class_name = class_name;
+  pair.model = chroma.model;
+  pair.measured = chroma.measured;
+  pair.lightness = chroma.lightness;
+  pair.probability = static_cast<double>(shape_quality(terms, settings));
+  return pair;
 }
 
 PoseStatus find_rejection_reason(const QualityTerms& terms, const QualitySettings& settings, bool colours_known) {

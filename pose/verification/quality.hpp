@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 
 #include "pipeline/base/settings_fields.hpp"
 #include "pipeline/types/object_pose.hpp"
@@ -24,6 +25,9 @@ struct PoseEvidence {
 /// Renders the model at the pose and compares its depth and its colours with what is seen.
 PoseEvidence gather_evidence(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
                              float detection_score, const VerificationSettings& settings);
+
+/// Brings the model's colours to the camera's before they are compared.
+void bring_to_camera(const ChromaMap& camera, PoseEvidence& evidence);
 
 /// A number for each term of the regression: a pose's evidence, the larger the better, or a weight of it.
 struct QualityTerms {
@@ -112,6 +116,11 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
 /// Probability in [0, 1] that the pose is right up to what its shape cannot tell: the object is the one that was
 /// detected, and its ADD-S error is below a tenth of the diameter.
 float shape_quality(const QualityTerms& terms, const QualitySettings& settings);
+
+/// What the evidence tells of the camera's colours, where the camera was not at its limit: nothing where the model has
+/// none. Its probability is the quality that the pose would have if its chroma were as it usually is.
+std::optional<ChromaPair> chroma_pair(const std::string& class_name, const PoseEvidence& evidence,
+                                      const QualitySettings& settings);
 
 /// The status that names the term which speaks most against the pose.
 PoseStatus find_rejection_reason(const QualityTerms& terms, const QualitySettings& settings, bool colours_known = true);

@@ -1,5 +1,8 @@
 #include <unistd.h>
 
+#include <map>
+#include <mutex>
+
 #include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
 #include "drivers/files/camera_info.hpp"
@@ -56,17 +59,43 @@ void give_way() {
   if (nice(kPolite) == -1) log_debug("the priority of looks cannot be lowered");
 }
 
+/// What hs-pose has learnt last of each camera's colours. Every function may be called from any thread.
+class KnownColours {
+ public:
+  void update(const CameraChroma& colours) {
+    constexpr std::size_t kMaxCameras = 64;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (objects_.size() < kMaxCameras || objects_.count(colours.frame.channel) > 0)
+      objects_[colours.frame.channel] = colours.objects;
+  }
+
+  std::vector<ChromaPair> objects_seen_by(const std::string& channel) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto known = objects_.find(channel);
+    return known == objects_.end() ? std::vector<ChromaPair>{} : known->second;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::string, std::vector<ChromaPair>> objects_;  // by camera
+};
+
 /// A forest stays what it is.
-void run_with_forest(const DetectOptions& options) {
+void run_with_forest(DetectOptions options) {
+  KnownColours colours;
+  options.process.on_camera_colours = [&](const CameraChroma& learnt) { colours.update(learnt); };
   const std::shared_future<RgbdFrame> made_up = start_warm_up();
   const ReadyDetector ready(make_detector(load_forest(options.forest_file), options.search), made_up.get());
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
-  run_detect_process(bus, options.process,
-                     [&](const RgbdFrame& frame) { return ready.detector.detect(frame, ready.workspace); });
+  run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
+    return ready.detector.detect(frame, ready.workspace, colours.objects_seen_by(frame.id.channel));
+  });
 }
 
 /// A store may change while frames go by: each frame is searched by what is there when its turn comes.
 void run_with_store(DetectOptions options) {
+  KnownColours colours;
+  options.process.on_camera_colours = [&](const CameraChroma& learnt) { colours.update(learnt); };
   const std::shared_future<RgbdFrame> made_up = start_warm_up();
   store::StoreWatcher<ReadyDetector> watch(options.objects, [&](const store::ObjectStore& store) {
     return load_detector(store, options.search, made_up.get());
@@ -76,7 +105,8 @@ void run_with_store(DetectOptions options) {
   bus.is_log() ? watch.hold() : watch.follow();
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
     const std::shared_ptr<const ReadyDetector> ready = watch.current();
-    return ready ? ready->detector.detect(frame, ready->workspace) : Detections{frame.id, {}, frame.stages};
+    if (!ready) return Detections{frame.id, {}, frame.stages};
+    return ready->detector.detect(frame, ready->workspace, colours.objects_seen_by(frame.id.channel));
   });
 }
 

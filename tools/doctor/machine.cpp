@@ -19,6 +19,7 @@
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
 #include "pipeline/messages/channels.hpp"
+#include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 
 namespace houghstream::doctor {
@@ -78,6 +79,25 @@ std::map<std::string, std::string> heard_errors(const std::string& url) {
     return {};  // the self test says what is wrong with the bus
   }
   return errors;
+}
+
+std::vector<CameraChroma> heard_camera_colours(const std::string& url) {
+  constexpr std::size_t kMaxCameras = 64;  // a sender of rubbish may make up names without end
+  std::map<std::string, CameraChroma> cameras;
+  try {
+    LcmBus bus(url, "", Existing::kReplaced, AtStart::kFail);
+    bus.subscribe(channel::kCameraColours, [&](const ReceivedMessage& arrival) {
+      CameraChroma colours = camera_colours_from_message(decode_message<camera_colours_t>(arrival.bytes));
+      const std::string camera = colours.frame.channel;
+      if (cameras.size() < kMaxCameras || cameras.count(camera) > 0) cameras[camera] = std::move(colours);
+    });
+    handle_until(bus, milliseconds(1500), [] { return false; });
+  } catch (const std::exception&) {
+    return {};  // the self test says what is wrong with the bus
+  }
+  std::vector<CameraChroma> all;
+  for (auto& [name, colours] : cameras) all.push_back(std::move(colours));
+  return all;
 }
 
 SelfTest self_test(const std::string& url, std::size_t bytes) {
@@ -171,6 +191,7 @@ Machine this_machine() {
   machine.heard_bytes = heard_bytes;
   machine.heard_frame_channels = heard_frame_channels;
   machine.heard_errors = heard_errors;
+  machine.heard_camera_colours = heard_camera_colours;
   machine.self_test = self_test;
   machine.may_use = [](const fs::path& file) { return access(file.c_str(), R_OK | W_OK) == 0; };
   machine.load_error = load_error;

@@ -8,6 +8,9 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
+
+#include "pipeline/types/chroma_map.hpp"
 
 namespace houghstream::doctor {
 
@@ -32,6 +35,8 @@ struct Machine {
   /// What processes on the bus say of their last error, by name, within a second and a half; those without one are left
   /// out.
   std::function<std::map<std::string, std::string>(const std::string& url)> heard_errors;
+  /// What is heard of cameras' colours within a second and a half, the last of each camera.
+  std::function<std::vector<CameraChroma>(const std::string& url)> heard_camera_colours;
   /// Sends messages of so many bytes and waits for them.
   std::function<SelfTest(const std::string& url, std::size_t bytes)> self_test;
   /// Whether this user may read and write the file (a full path below root).
@@ -67,6 +72,9 @@ std::set<std::string> heard_frame_channels(const std::string& url);
 
 /// Machine::heard_errors of this machine.
 std::map<std::string, std::string> heard_errors(const std::string& url);
+
+/// Machine::heard_camera_colours of this machine.
+std::vector<CameraChroma> heard_camera_colours(const std::string& url);
 
 /// Machine::self_test of this machine: some messages one after another on a channel of their own.
 SelfTest self_test(const std::string& url, std::size_t bytes);

@@ -23,6 +23,7 @@ constexpr const char* kBuffer = "receive buffer";
 constexpr const char* kJavaBuffer = "Java's buffer";
 constexpr const char* kSenders = "who may send";
 constexpr const char* kFrames = "frames";
+constexpr const char* kColours = "colours";
 constexpr const char* kSelfTest = "LCM self test";
 constexpr const char* kBus = "the bus";
 
@@ -140,6 +141,27 @@ Findings check_processes(const Machine& machine, const std::string& url) {
   return findings;
 }
 
+/// How cameras render known colours, where hs-pose has learnt it. Detection allows for it, but what a camera cannot
+/// tell apart nobody can.
+Findings check_camera_colours(const Machine& machine, const std::string& url) {
+  constexpr double kMinObjects = 2.5;  // chosen: one or two may be wrong
+  constexpr double kMaxCast = 15.0;    // chosen: half of the chroma of household objects in the mean
+  constexpr double kMinSaturation = 0.5;
+  constexpr double kMaxSaturation = 1.8;
+  Findings findings;
+  for (const CameraChroma& camera : machine.heard_camera_colours(url)) {
+    const ChromaMap map = fit_chroma_map(camera.objects);
+    const std::string what = fmt::format("{}: {}", off_the_wire(camera.frame.channel), describe(map));
+    const bool is_off =
+        map.white().norm() > kMaxCast || map.saturation() < kMinSaturation || map.saturation() > kMaxSaturation;
+    findings.push_back(
+        is_off && map.objects() >= kMinObjects
+            ? note(kColours, what + ": set white balance and exposure by hand, in the light of the place")
+            : ok(kColours, what));
+  }
+  return findings;
+}
+
 /// Whether frames come on another channel than the one that is listened to.
 Findings check_channel(const Machine& machine, const BusSettings& settings) {
   const std::set<std::string> channels = machine.heard_frame_channels(settings.url);
@@ -206,6 +228,8 @@ Findings check_network(const Machine& machine, const BusSettings& settings) {
     for (const Finding& finding : check_channel(machine, settings)) findings.push_back(finding);
   }
   for (const Finding& finding : check_processes(machine, settings.url)) findings.push_back(finding);
+  if (heard == 0) return findings;
+  for (const Finding& finding : check_camera_colours(machine, settings.url)) findings.push_back(finding);
   return findings;
 }
 

@@ -1,5 +1,8 @@
+#include <set>
+
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/files/camera_info.hpp"
+#include "drivers/store/store_stamp.hpp"
 #include "drivers/store/store_watch.hpp"
 #include "pipeline/base/cache_folder.hpp"
 #include "pipeline/base/checks.hpp"
@@ -9,6 +12,7 @@
 #include "pipeline/process/warm_up.hpp"
 #include "pose/following/object_follower.hpp"
 #include "pose/pose_estimator.hpp"
+#include "pose/seen/camera_colours.hpp"
 #include "tools/common/mesh_size.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/finder/search_arguments.hpp"
@@ -63,45 +67,38 @@ std::shared_ptr<const PoseEstimator> warmed_up(PoseEstimator cold, const RgbdFra
 /// The estimator may be another one for each frame.
 using CurrentEstimator = std::function<std::shared_ptr<const PoseEstimator>()>;
 
-void run(LcmBus& bus, const PoseOptions& options, const CurrentEstimator& current) {
+/// Says once for each camera that its pictures have no colours.
+void report_colourless(const RgbdFrame& frame, std::set<std::string>& reported) {
+  if (reported.count(frame.id.channel) > 0 || !is_colourless(frame.colour)) return;
+  reported.insert(frame.id.channel);
+  log_warning("{}: pictures in black and white, expected colours: poses are judged without chroma", frame.id.channel);
+}
+
+void run(LcmBus& bus, PoseOptions options, const CurrentEstimator& current) {
+  std::set<std::string> colourless;  // channels
   if (!options.follow) {
+    std::map<std::string, CameraColours> cameras;  // by channel
+    options.process.camera_colours = [&](const std::string& channel) { return cameras[channel].chroma(); };
     run_pose_process(bus, options.process,
                      [&](const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) {
-                       return current()->estimate(frame, detections, earlier);
+                       report_colourless(frame, colourless);
+                       CameraColours& colours = cameras[detections.frame.channel];
+                       ObjectPoses poses = current()->estimate(frame, detections, earlier, colours.pairs());
+                       colours.update(poses);
+                       return poses;
                      });
     return;
   }
   ObjectFollower follower;
+  options.process.camera_colours = [&](const std::string& channel) { return follower.camera_colours(channel); };
   run_follow_process(bus, options.process,
-                     {[&](const RgbdFrame& frame) { return follower.follow(*current(), frame); },
+                     {[&](const RgbdFrame& frame) {
+                        report_colourless(frame, colourless);
+                        return follower.follow(*current(), frame);
+                      },
                       [&](const RgbdFrame& frame, const Detections& detections) {
                         return follower.answer(*current(), frame, detections);
                       }});
-}
-
-/// Models stay what they are.
-void run_with_models(PoseOptions options) {
-  const std::shared_future<RgbdFrame> made_up = start_warm_up();
-  const int threads = warm_up_threads(options.settings.threads);
-  std::map<std::string, Mesh> meshes = load_models(options, threads);
-  const std::string fault = fault_of_sizes(meshes, options.model_unit_m, "--model-unit");
-  if (!fault.empty()) log_warning("{}", fault);  // no frame will show such
-  PoseSettings settings = pose_settings_of(options.settings, std::nullopt, options.min_quality);
-  for (const auto& [name, mesh] : meshes) options.process.models.insert(name);
-  if (!options.models.empty()) settings.model.symmetries = load_class_symmetries(options.models);
-  auto estimator = warmed_up(PoseEstimator(std::move(meshes), settings, threads), made_up.get());
-  LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
-  run(bus, options, [&] { return estimator; });
-}
-
-/// Of models that were kept at an earlier start, else of the store's meshes.
-PoseEstimator estimator_of(const store::ObjectStore& store, const PoseSettings& settings, const ModelCache& kept,
-                           int threads) {
-  const std::string state = kept.state_of(store, settings.model);
-  if (auto models = kept.find(store, state)) return PoseEstimator::of_models(std::move(*models), settings);
-  PoseEstimator made(store::load_store_meshes(store, threads), settings, threads);
-  if (kept.state_of(store, settings.model) == state) kept.keep(store, state, made.models());
-  return made;
 }
 
 /// Empty where there is no place for it.
@@ -115,6 +112,40 @@ std::filesystem::path folder_to_keep_in(const PoseOptions& options) {
   }
 }
 
+/// What models are made of: a folder, and what tells whether its files have changed.
+struct ModelFiles {
+  std::filesystem::path folder;
+  std::function<std::string()> stamp;
+  std::function<std::map<std::string, Mesh>()> load;
+};
+
+/// Of models that were kept at an earlier start, else of the meshes.
+PoseEstimator estimator_of(const ModelFiles& files, const PoseSettings& settings, const ModelCache& kept, int threads) {
+  const std::string state = kept.state_of(files.stamp(), settings.model);
+  if (auto models = kept.find(files.folder, state)) return PoseEstimator::of_models(std::move(*models), settings);
+  PoseEstimator made(files.load(), settings, threads);
+  if (kept.state_of(files.stamp(), settings.model) == state) kept.keep(files.folder, state, made.models());
+  return made;
+}
+
+/// Models stay what they are.
+void run_with_models(PoseOptions options) {
+  const ModelCache kept(folder_to_keep_in(options));
+  const std::shared_future<RgbdFrame> made_up = start_warm_up();
+  const int threads = warm_up_threads(options.settings.threads);
+  std::map<std::string, Mesh> meshes = load_models(options, threads);
+  const std::string fault = fault_of_sizes(meshes, options.model_unit_m, "--model-unit");
+  if (!fault.empty()) log_warning("{}", fault);  // no frame will show such
+  PoseSettings settings = pose_settings_of(options.settings, std::nullopt, options.min_quality);
+  for (const auto& [name, mesh] : meshes) options.process.models.insert(name);
+  if (!options.models.empty()) settings.model.symmetries = load_class_symmetries(options.models);
+  const auto stamp = [&] { return fmt::format("{} m\n{}", options.model_unit_m, store::folder_stamp(options.models)); };
+  const ModelFiles files{options.models, stamp, [&] { return std::move(meshes); }};
+  auto estimator = warmed_up(estimator_of(files, settings, kept, threads), made_up.get());
+  LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
+  run(bus, options, [&] { return estimator; });
+}
+
 /// A store may change while frames go by: each frame's poses are those of what is there when its turn comes.
 void run_with_store(PoseOptions options) {
   const ModelCache kept(folder_to_keep_in(options));
@@ -122,7 +153,9 @@ void run_with_store(PoseOptions options) {
   const int threads = warm_up_threads(options.settings.threads);  // of the first store: later ones are loaded alone
   const auto load = [&](const store::ObjectStore& store) {
     const PoseSettings settings = pose_settings_of(options.settings, store, options.min_quality);
-    return warmed_up(estimator_of(store, settings, kept, threads), made_up.get());
+    const ModelFiles files{store.folder, [&] { return store::mesh_stamp(store); },
+                           [&] { return store::load_store_meshes(store, threads); }};
+    return warmed_up(estimator_of(files, settings, kept, threads), made_up.get());
   };
   store::StoreWatcher<PoseEstimator> watch(options.objects, load);
   const auto without_models = std::make_shared<const PoseEstimator>(std::map<std::string, Mesh>(), options.settings);
@@ -143,9 +176,8 @@ int main(int argc, char** argv) {
   std::string camera;
   app.add_option("--objects", options.objects,
                  "object store of hs-teach, instead of --models; it may be made, and changed, while this runs");
-  app.add_option(
-      "--cache", options.cache,
-      "where what is made of a store's meshes is kept for the next start; default ~/.cache/houghstream/models");
+  app.add_option("--cache", options.cache,
+                 "where what is made of the meshes is kept for the next start; default ~/.cache/houghstream/models");
   add_model_options(app, options.models, options.model_unit_m);
   app.add_option("--camera", camera, kCameraOptionHelp);
   add_threads_option(app, options.settings.threads);
@@ -173,7 +205,6 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     if (!camera.empty()) options.process.camera = camera_of_option(camera);
     require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
-    require(options.cache.empty() || !options.objects.empty(), "--cache goes with --objects");
     require_output_log(options.url, options.output_log);
     for (const std::string& input : {options.models, options.objects}) require_other_file(options.output_log, input);
     options.objects.empty() ? run_with_models(options) : run_with_store(options);

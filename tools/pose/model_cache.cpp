@@ -175,8 +175,8 @@ void forget_oldest(const fs::path& folder) {
 
 ModelCache::ModelCache(fs::path folder) : folder_(std::move(folder)), program_(state_of_program()) {}
 
-std::string ModelCache::state_of(const store::ObjectStore& store, const ModelSettings& settings) const {
-  std::string state = fmt::format("{}{}\n", program_, mesh_stamp(store));
+std::string ModelCache::state_of(const std::string& stamp, const ModelSettings& settings) const {
+  std::string state = fmt::format("{}{}\n", program_, stamp);
   for_each_number(settings, [&](const auto& field, auto value) { state += fmt::format("{} {}\n", field.name, value); });
   for (const auto& [name, centre] : settings.vote_centres)
     state += fmt::format("{} {} {} {}\n", name, centre.x(), centre.y(), centre.z());
@@ -185,16 +185,16 @@ std::string ModelCache::state_of(const store::ObjectStore& store, const ModelSet
   return state;
 }
 
-fs::path ModelCache::file_of(const store::ObjectStore& store) const {
-  const std::string place = fs::weakly_canonical(fs::absolute(store.folder)).string();
+fs::path ModelCache::file_of(const fs::path& folder) const {
+  const std::string place = fs::weakly_canonical(fs::absolute(folder)).string();
   return folder_ / fmt::format("{:016x}{}", fnv1a(place.data(), place.size()), kEnding);
 }
 
-std::optional<std::map<std::string, ObjectModel>> ModelCache::find(const store::ObjectStore& store,
+std::optional<std::map<std::string, ObjectModel>> ModelCache::find(const fs::path& folder,
                                                                    const std::string& state) const {
   if (folder_.empty()) return std::nullopt;
   try {
-    const fs::path file = file_of(store);
+    const fs::path file = file_of(folder);
     if (!is_own(file)) return std::nullopt;
     const std::string content = read_file(file, "kept models");
     ModelReader reader{{content, "kept models"}};
@@ -222,7 +222,7 @@ std::optional<std::map<std::string, ObjectModel>> ModelCache::find(const store::
   }
 }
 
-void ModelCache::keep(const store::ObjectStore& store, const std::string& state,
+void ModelCache::keep(const fs::path& folder, const std::string& state,
                       const std::map<std::string, ObjectModel>& models) const {
   if (folder_.empty() || models.empty()) return;
   try {
@@ -235,7 +235,7 @@ void ModelCache::keep(const store::ObjectStore& store, const std::string& state,
     }
     const std::uint32_t crc = checksum(writer.bytes);
     fs::create_directories(folder_);
-    const fs::path file = file_of(store);
+    const fs::path file = file_of(folder);
     write_file_atomically(
         file, std::string(kStart) + std::string(reinterpret_cast<const char*>(&crc), sizeof crc) + writer.bytes);
     fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);

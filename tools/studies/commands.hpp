@@ -7,6 +7,7 @@
 
 namespace houghstream::studies {
 
+int colours_command(CommandLine& app, int argc, char** argv);
 int evaluate_command(CommandLine& app, int argc, char** argv);
 int failures_command(CommandLine& app, int argc, char** argv);
 int hough_command(CommandLine& app, int argc, char** argv);

@@ -28,6 +28,7 @@ BusWatcher::BusWatcher(LcmBus& bus, const std::string& frame_channels, const Mat
   subscribe_to_results();
   subscribe_to_status();
   subscribe_to_teaching();
+  subscribe_to_colours();
   subscribe_to_world();
   const BlockStopSignals block;
   thread_ = std::thread([this] { listen(); });
@@ -93,6 +94,13 @@ void BusWatcher::subscribe_to_world() {
   reception_.subscribe_to_messages<objects_t>(
       channel::kObjects, [this](const objects_t& message, const ReceivedMessage& arrival) {
         stream_.note_world(world_from_message(message), microseconds(arrival.time));
+      });
+}
+
+void BusWatcher::subscribe_to_colours() {
+  reception_.subscribe_to_messages<camera_colours_t>(
+      channel::kCameraColours, [this](const camera_colours_t& message, const ReceivedMessage& arrival) {
+        stream_.note_colours(camera_colours_from_message(message), microseconds(arrival.time));
       });
 }
 

@@ -56,6 +56,7 @@ class BusWatcher {
   void subscribe_to_results();
   void subscribe_to_status();
   void subscribe_to_teaching();
+  void subscribe_to_colours();
   void subscribe_to_world();
   void add_frame(const ReceivedFrame& frame);
   void listen();

@@ -192,6 +192,51 @@ TEST(ResultMessages, AbsurdProbabilitiesAreRefused) {
   }
 }
 
+CameraChroma make_camera_colours() {
+  CameraChroma colours;
+  colours.frame = {"LEFT", 77};
+  for (const char* name : {"bowl", "soup", "tin"}) {
+    ChromaPair& pair = colours.objects.emplace_back();
+    pair.class_name = name;
+    pair.model = {20.0 + 10.0 * static_cast<double>(colours.objects.size()), -12.5};
+    pair.measured = {15.0, -2.25};
+    pair.lightness = 61.5;
+    pair.probability = 0.75;
+  }
+  return colours;
+}
+
+TEST(ResultMessages, ACamerasColoursComeBackWithTheMapThatIsLearntOfThem) {
+  const CameraChroma sent = make_camera_colours();
+  const camera_colours_t message = over_the_wire(to_message(sent));
+  const CameraChroma back = camera_colours_from_message(message);
+  EXPECT_EQ(back.frame, sent.frame);
+  ASSERT_EQ(back.objects.size(), 3U);
+  EXPECT_EQ(back.objects[2].class_name, "tin");
+  EXPECT_EQ(back.objects[1].model, sent.objects[1].model);
+  EXPECT_EQ(back.objects[1].measured, sent.objects[1].measured);
+  EXPECT_EQ(back.objects[1].lightness, 61.5);
+  EXPECT_EQ(back.objects[1].probability, 0.75);
+  const ChromaMap map = fit_chroma_map(sent.objects);
+  EXPECT_FLOAT_EQ(message.gain[1][0], static_cast<float>(map.parameters()(2)));
+  EXPECT_FLOAT_EQ(message.cast[1], static_cast<float>(map.parameters()(5)));
+  EXPECT_FLOAT_EQ(message.sigma, static_cast<float>(map.sigma()));
+}
+
+TEST(ResultMessages, AbsurdColoursOfACameraAreRefused) {
+  const camera_colours_t good = to_message(make_camera_colours());
+  const auto refused = [&](const auto& change) {
+    camera_colours_t bad = good;
+    change(bad);
+    EXPECT_THROW(camera_colours_from_message(bad), InputError);
+  };
+  refused([](camera_colours_t& m) { m.model_a[0] = 131.0F; });
+  refused([](camera_colours_t& m) { m.measured_b[1] = kNan; });
+  refused([](camera_colours_t& m) { m.lightness[2] = -1.0F; });
+  refused([](camera_colours_t& m) { m.probability[0] = 1.5F; });
+  refused([](camera_colours_t& m) { m.probability[0] = kNan; });
+}
+
 TEST(ResultMessages, AbsurdPosesAreRefused) {
   const object_poses_t good = to_message(make_poses());
   const auto refused = [&](const auto& change) {

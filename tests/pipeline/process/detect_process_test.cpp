@@ -1,6 +1,7 @@
 #include "pipeline/process/detect_process.hpp"
 
 #include <houghstream/status_t.hpp>
+#include <mutex>
 
 #include "pipeline/base/checks.hpp"
 #include "tests/pipeline/process_test.hpp"
@@ -61,6 +62,31 @@ TEST(DetectProcess, TakesTheNewestAndAccountsForTheRest) {
   EXPECT_GT(status.frames_skipped, 10);
   EXPECT_EQ(status.frames_processed + status.frames_skipped, status.frames_received);
   EXPECT_EQ(static_cast<std::int64_t>(test.count(channel::kDetections)), status.frames_processed);
+}
+
+TEST(DetectProcess, HearsWhatIsKnownOfACamerasColours) {
+  ProcessOnMemq test({channel::kDetections, channel::kStatus});
+  std::mutex mutex;
+  std::vector<CameraChroma> heard;
+  DetectProcessOptions options;
+  options.on_camera_colours = [&](const CameraChroma& colours) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    heard.push_back(colours);
+  };
+  test.start([&](LcmBus& bus) { run_detect_process(bus, options, find_nothing); });
+  ChromaPair pair;
+  pair.class_name = "bowl";
+  pair.probability = 0.9;
+  camera_colours_t bad = to_message(CameraChroma{{"LEFT", 5}, {pair}});
+  bad.probability[0] = 2.0F;
+  test.bus.publish(channel::kCameraColours, bad);
+  test.bus.publish(channel::kCameraColours, to_message(CameraChroma{{"LEFT", 6}, {pair}}));
+  test.bus.publish(channel::kFrame, frame_message(1000, 0));
+  ASSERT_TRUE(test.wait_for(channel::kDetections, 1)) << "bad colours end nothing";
+  test.stop();
+  const std::lock_guard<std::mutex> lock(mutex);
+  ASSERT_EQ(heard.size(), 1U);
+  EXPECT_EQ(heard.front().frame, (FrameId{"LEFT", 6}));
 }
 
 TEST(DetectProcess, ABudgetSkipsFramesUntilSomethingThatWasFollowedIsLost) {

@@ -51,6 +51,30 @@ TEST(PoseProcess, PublishesPosesAndTransforms) {
   test.stop();
 }
 
+TEST(PoseProcess, WhatIsLearntOfACamerasColoursIsToldOnceASecond) {
+  ProcessOnMemq test({channel::kPoses, channel::kCameraColours});
+  PoseProcessOptions options;
+  options.camera_colours = [](const std::string& camera) {
+    ChromaPair pair;
+    pair.class_name = "bowl";
+    pair.probability = 0.9;
+    return CameraChroma{{camera, 10}, {pair}};
+  };
+  test.start([&](LcmBus& bus) { run_pose_process(bus, options, at_one_metre); });
+  std::size_t answered = 0;
+  for (const std::int64_t utime : {10, 500'000, 1'200'000}) {
+    send_frame(test, utime);
+    test.bus.publish(channel::kDetections, to_message(one_bowl(utime)));
+    ASSERT_TRUE(test.wait_for(channel::kPoses, ++answered));
+  }
+  ASSERT_TRUE(test.wait_for(channel::kCameraColours, 2));
+  test.stop();
+  EXPECT_EQ(test.count(channel::kCameraColours), 2U);
+  const CameraChroma told = camera_colours_from_message(test.at<camera_colours_t>(channel::kCameraColours, 0));
+  EXPECT_EQ(told.frame.channel, channel::kFrame);
+  EXPECT_EQ(told.objects.at(0).class_name, "bowl");
+}
+
 TEST(PoseProcess, EmptyDetectionsGiveEmptyPosesWithoutDecoding) {
   ProcessOnMemq test({channel::kPoses, channel::kStatus});
   test.start(run_fake);

@@ -115,6 +115,37 @@ TEST(NetworkChecks, WhatProcessesComplainOfIsToldCamerasThatContradictAreWrong) 
   EXPECT_NE(track.remedy.find("hs-track --check"), std::string::npos);
 }
 
+/// A camera that adds so much to b* of three objects.
+CameraChroma camera_with_cast(double b) {
+  CameraChroma camera;
+  camera.frame = {"LEFT", 1};
+  for (const double a : {-30.0, 0.0, 20.0, 35.0}) {
+    ChromaPair& pair = camera.objects.emplace_back();
+    pair.class_name = std::to_string(a);
+    pair.model = {a, 0.5 * a};
+    pair.measured = {a, 0.5 * a + b};
+    pair.lightness = 100.0;
+    pair.probability = 0.95;
+  }
+  return camera;
+}
+
+TEST(NetworkChecks, ACameraWithAStrongCastShouldBeSetByHand) {
+  HealthyMachine healthy("network_checks_colours");
+  healthy.machine.heard_bytes = [](const std::string&, const std::string&) { return std::size_t{1'000}; };
+  const auto told_of = [&](double cast) {
+    healthy.machine.heard_camera_colours = [=](const std::string&) {
+      return std::vector<CameraChroma>{camera_with_cast(cast)};
+    };
+    return check_network(healthy.machine, kBus).back();
+  };
+  EXPECT_EQ(told_of(2.0).level, Level::kOk);
+  const Finding strong = told_of(30.0);
+  EXPECT_EQ(strong.level, Level::kNote);
+  EXPECT_EQ(strong.what.rfind("LEFT: saturation ", 0), 0U) << strong.what;
+  EXPECT_NE(strong.what.find("white balance"), std::string::npos) << strong.what;
+}
+
 TEST(NetworkChecks, WhatProcessesSayDoesNotSteerATerminal) {
   HealthyMachine healthy("network_checks_rubbish");
   healthy.machine.heard_errors = [](const std::string&) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/store/store_stamp.hpp"
 #include "pose/pose_estimator.hpp"
 #include "tests/drivers/store/small_store.hpp"
 
@@ -58,7 +59,9 @@ struct MadeOfStore {
     models = PoseEstimator(store::load_store_meshes(list), PoseSettings()).models();
   }
 
-  std::string state_for(const ModelCache& kept) const { return kept.state_of(list, ModelSettings()); }
+  std::string state_for(const ModelCache& kept) const {
+    return kept.state_of(store::mesh_stamp(list), ModelSettings());
+  }
 
   fs::path folder;
   store::ObjectStore list;
@@ -72,9 +75,9 @@ fs::path only_file_in(const fs::path& folder) {
 TEST(ModelCache, ComeBackBitForBit) {
   const MadeOfStore made("kept_models");
   const ModelCache kept(fresh_folder("kept_models_cache") / "models");
-  EXPECT_FALSE(kept.find(made.list, made.state_for(kept)).has_value());
-  kept.keep(made.list, made.state_for(kept), made.models);
-  const auto found = kept.find(made.list, made.state_for(kept));
+  EXPECT_FALSE(kept.find(made.folder, made.state_for(kept)).has_value());
+  kept.keep(made.folder, made.state_for(kept), made.models);
+  const auto found = kept.find(made.folder, made.state_for(kept));
   ASSERT_TRUE(found.has_value());
   ASSERT_EQ(found->size(), 2U);
   EXPECT_FALSE(found->at("mug").mesh.texture.empty());
@@ -88,62 +91,58 @@ TEST(ModelCache, ShapeSymmetriesComeBackAndMakeAnotherState) {
   ObjectModel& mug = models.at("mug");
   mug.shape_symmetries.discrete.assign(2, Eigen::Isometry3d(Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitX())));
   mug.nearly_round = ContinuousSymmetry{Eigen::Vector3d::UnitX(), {0.1, 0.2, 0.3}};
-  kept.keep(made.list, made.state_for(kept), models);
-  const auto found = kept.find(made.list, made.state_for(kept));
+  kept.keep(made.folder, made.state_for(kept), models);
+  const auto found = kept.find(made.folder, made.state_for(kept));
   ASSERT_TRUE(found.has_value());
   for (const auto& [name, model] : models) expect_same(found->at(name), model);
   ModelSettings other;
   other.shape_symmetries["mug"].nearly_round = ContinuousSymmetry{};
-  EXPECT_FALSE(kept.find(made.list, kept.state_of(made.list, other)).has_value());
+  EXPECT_FALSE(kept.find(made.folder, kept.state_of(store::mesh_stamp(made.list), other)).has_value());
 }
 
 TEST(ModelCache, OfAnotherStateAreNone) {
   const MadeOfStore made("kept_models_state");
   const ModelCache kept(fresh_folder("kept_models_state_cache"));
   const std::string before = made.state_for(kept);
-  kept.keep(made.list, before, made.models);
+  kept.keep(made.folder, before, made.models);
   ModelSettings fewer;
   fewer.points_per_view = 50;
-  EXPECT_FALSE(kept.find(made.list, kept.state_of(made.list, fewer)).has_value());
+  EXPECT_FALSE(kept.find(made.folder, kept.state_of(store::mesh_stamp(made.list), fewer)).has_value());
   write_text(made.folder / "models/obj_000005.ply", read_text(made.folder / "models/obj_000005.ply"));
   EXPECT_NE(made.state_for(kept), before) << "written anew, if with the same bytes";
-  EXPECT_FALSE(kept.find(made.list, made.state_for(kept)).has_value());
+  EXPECT_FALSE(kept.find(made.folder, made.state_for(kept)).has_value());
 }
 
 TEST(ModelCache, DamagedOnesOrThoseThatOthersMayWriteAreNone) {
   const MadeOfStore made("kept_models_damaged");
   const fs::path folder = fresh_folder("kept_models_damaged_cache");
   const ModelCache kept(folder);
-  kept.keep(made.list, made.state_for(kept), made.models);
+  kept.keep(made.folder, made.state_for(kept), made.models);
   const fs::path file = only_file_in(folder);
   const std::string whole = read_text(file);
   for (std::size_t i = 0; i < 60; ++i) {
     std::ofstream(file, std::ios::binary) << whole.substr(0, whole.size() * i / 60);
-    EXPECT_FALSE(kept.find(made.list, made.state_for(kept)).has_value()) << "cut to " << whole.size() * i / 60;
+    EXPECT_FALSE(kept.find(made.folder, made.state_for(kept)).has_value()) << "cut to " << whole.size() * i / 60;
     std::string flipped = whole;
     flipped[(i * 7919) % flipped.size()] ^= 4;
     std::ofstream(file, std::ios::binary) << flipped;
-    EXPECT_FALSE(kept.find(made.list, made.state_for(kept)).has_value()) << "flip " << i;
+    EXPECT_FALSE(kept.find(made.folder, made.state_for(kept)).has_value()) << "flip " << i;
   }
   std::ofstream(file, std::ios::binary) << whole;
-  EXPECT_TRUE(kept.find(made.list, made.state_for(kept)).has_value());
+  EXPECT_TRUE(kept.find(made.folder, made.state_for(kept)).has_value());
   fs::permissions(file, fs::perms::others_write, fs::perm_options::add);
-  EXPECT_FALSE(kept.find(made.list, made.state_for(kept)).has_value());
+  EXPECT_FALSE(kept.find(made.folder, made.state_for(kept)).has_value());
 }
 
 TEST(ModelCache, AreOfFewStoresAndNeedNoPlace) {
   const MadeOfStore made("kept_models_few");
   const fs::path folder = fresh_folder("kept_models_few_cache");
   const ModelCache kept(folder);
-  store::ObjectStore other = made.list;
-  for (int i = 0; i < 12; ++i) {
-    other.folder = made.folder.parent_path() / std::to_string(i);
-    kept.keep(other, "state", made.models);
-  }
+  for (int i = 0; i < 12; ++i) kept.keep(made.folder.parent_path() / std::to_string(i), "state", made.models);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 8);
   write_text(folder / "file", "");
-  EXPECT_NO_THROW(ModelCache(folder / "file").keep(made.list, "state", made.models));
-  EXPECT_FALSE(ModelCache("").find(made.list, "state").has_value());
+  EXPECT_NO_THROW(ModelCache(folder / "file").keep(made.folder, "state", made.models));
+  EXPECT_FALSE(ModelCache("").find(made.folder, "state").has_value());
 }
 
 }  // namespace

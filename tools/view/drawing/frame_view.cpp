@@ -57,9 +57,16 @@ std::string process_line(const ProcessState& process) {
   return text;
 }
 
-void draw_stream(Block block, const StreamState& state, std::int64_t lost) {
+std::string colours_line(const ChromaMap& map) {
+  return fmt::format("colours x {:.2f}, white a {:+.0f} b {:+.0f}, +-{:.0f}", map.saturation(), map.white().x(),
+                     map.white().y(), map.sigma());
+}
+
+void draw_stream(Block block, const StreamState& state, const std::string& camera, std::int64_t lost) {
   block.line(0, fmt::format("frames {:.1f} Hz, {} lost", state.frames_hz, lost), lost > 0 ? kWarning : kBright);
   int row = 1;
+  const auto colours = state.colours.find(camera);
+  if (colours != state.colours.end()) block.line(row++, colours_line(colours->second), kMuted);
   for (const ProcessState& process : state.processes) {
     if (row >= kRows) return;
     const bool wrong = process.lost > 0 || process.refused > 0;
@@ -134,7 +141,7 @@ cv::Mat draw_panel(const ViewedFrame& viewed, const StreamView& stream, const Fr
     return cv::Point(block % columns * kBlockWidth, block / columns * kBlockHeight);
   };
   const std::string frame = camera_heading(viewed.frame.id, stream.cameras);
-  draw_stream(Block(panel, corner(0), frame), stream.state, stream.frames_lost);
+  draw_stream(Block(panel, corner(0), frame), stream.state, viewed.frame.id.channel, stream.frames_lost);
   draw_objects(Block(panel, corner(1), objects_heading(viewed, settings.min_score)), viewed);
   Block stages(panel, corner(2), "stages, ms");
   draw_stage_list(stages.image(), stages.area(), viewed.poses ? viewed.poses->stages : viewed.detections.stages, kRows);

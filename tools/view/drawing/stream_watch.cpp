@@ -34,6 +34,13 @@ void StreamWatch::note_teaching(Teaching teaching, std::int64_t now_us) {
   taught_us_ = now_us;
 }
 
+void StreamWatch::note_colours(const CameraChroma& colours, std::int64_t now_us) {
+  constexpr std::size_t kMaxCameras = 64;  // a sender of rubbish may make them up without end
+  const std::lock_guard lock(mutex_);
+  if (colours_.size() >= kMaxCameras && colours_.count(colours.frame.channel) == 0) return;
+  colours_[colours.frame.channel] = {fit_chroma_map(colours.objects), now_us};
+}
+
 void StreamWatch::note_world(const WorldObjects& world, std::int64_t now_us) {
   const std::lock_guard lock(mutex_);
   world_.add(world);
@@ -52,6 +59,9 @@ StreamState StreamWatch::state(std::int64_t now_us) {
     if (now_us - process.heard_us <= kSilenceUs) state.processes.push_back(process);
   }
   if (now_us - taught_us_ <= kSilenceUs) state.teaching = teaching_;
+  for (const auto& [camera, heard] : colours_) {
+    if (now_us - heard.second <= kSilenceUs) state.colours.emplace(camera, heard.first);
+  }
   if (now_us - world_us_ <= kSilenceUs) state.world = world_;
   return state;
 }

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/types/chroma_map.hpp"
 #include "pipeline/types/teaching.hpp"
 #include "tools/view/drawing/world_view.hpp"
 
@@ -29,10 +30,11 @@ struct ProcessState {
 
 /// How the stream goes at a moment.
 struct StreamState {
-  double frames_hz = 0.0;               ///< frames of the camera that arrive here per second
-  std::vector<ProcessState> processes;  ///< those heard of late, by name
-  std::optional<Teaching> teaching;     ///< of an object that is shown just now
-  std::optional<WorldState> world;      ///< where somebody tells of it just now
+  double frames_hz = 0.0;                    ///< frames of the camera that arrive here per second
+  std::vector<ProcessState> processes;       ///< those heard of late, by name
+  std::optional<Teaching> teaching;          ///< of an object that is shown just now
+  std::optional<WorldState> world;           ///< where somebody tells of it just now
+  std::map<std::string, ChromaMap> colours;  ///< how cameras render colours, where hs-pose has learnt it
 };
 
 /// Keeps the rates of a stream. Every function may be called from any thread; times are microseconds of one clock.
@@ -41,6 +43,7 @@ class StreamWatch {
   void note_frame(std::int64_t now_us);
   void note_process(ProcessState process);
   void note_teaching(Teaching teaching, std::int64_t now_us);
+  void note_colours(const CameraChroma& colours, std::int64_t now_us);
   void note_world(const WorldObjects& world, std::int64_t now_us);
 
   /// A process that has been silent for five seconds is gone, and so is a teaching, or a world.
@@ -51,7 +54,8 @@ class StreamWatch {
   std::deque<std::int64_t> arrivals_us_;
   std::map<std::pair<std::string, std::int64_t>, ProcessState> processes_;  // by name and process id
   std::optional<Teaching> teaching_;
-  std::int64_t taught_us_ = 0;  // when it was heard
+  std::int64_t taught_us_ = 0;                                         // when it was heard
+  std::map<std::string, std::pair<ChromaMap, std::int64_t>> colours_;  // by camera, and when it was heard
   WorldState world_;
   std::int64_t world_us_ = std::numeric_limits<std::int64_t>::min() / 2;  // when it was heard
 };

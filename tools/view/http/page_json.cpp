@@ -159,10 +159,19 @@ std::string stream_json(const StreamView& stream, const FrameViewSettings& setti
                 {"message", told.message},
                 {"progress", or_null(told.progress)}};
   }
+  json colours = json::object();
+  for (const auto& [camera, map] : stream.state.colours) {
+    colours[camera] = {{"saturation", map.saturation()},
+                       {"white_a", map.white().x()},
+                       {"white_b", map.white().y()},
+                       {"sigma", map.sigma()},
+                       {"objects", map.objects()}};
+  }
   return line_of({{"frames_hz", stream.state.frames_hz},
                   {"lost", counted(stream.frames_lost)},
                   {"cameras", stream.cameras},
                   {"processes", processes},
+                  {"colours", colours},
                   {"teaching", teaching},
                   {"world", stream.state.world ? world_json(*stream.state.world) : json(nullptr)},
                   {"show_world", settings.show_world},

@@ -54,6 +54,23 @@ TEST(StreamWatch, TwoProcessesOfOneNameAreTwo) {
   EXPECT_EQ(watch.state(3'000'000).processes.size(), 2U);
 }
 
+TEST(StreamWatch, ACamerasColoursAreShownUntilNobodyTellsOfThem) {
+  StreamWatch watch;
+  CameraChroma colours;
+  colours.frame = {"LEFT", 1};
+  ChromaPair& pair = colours.objects.emplace_back();
+  pair.class_name = "bowl";
+  pair.model = {30.0, 10.0};
+  pair.measured = {20.0, 20.0};
+  pair.lightness = 60.0;
+  pair.probability = 0.9;
+  watch.note_colours(colours, 1'000'000);
+  const StreamState state = watch.state(2'000'000);
+  ASSERT_EQ(state.colours.count("LEFT"), 1U);
+  EXPECT_GT(state.colours.at("LEFT").white().y(), 2.0);
+  EXPECT_TRUE(watch.state(7'000'000).colours.empty());
+}
+
 TEST(SelectedCamera, TheFirstIsShownUntilAnotherIsAskedFor) {
   SelectedCamera cameras;
   EXPECT_TRUE(cameras.is_shown("ANY"));

@@ -105,6 +105,9 @@ TEST(PageJson, TheStreamTellsRatesLossesAndWhatIsShown) {
   EXPECT_TRUE(told["teaching"].is_null());
   EXPECT_TRUE(told["world"].is_null());
   EXPECT_EQ(told["show_world"], false);
+  EXPECT_TRUE(told["colours"].empty());
+  stream.state.colours["LEFT"] = ChromaMap();
+  EXPECT_EQ(json::parse(stream_json(stream, settings))["colours"]["LEFT"]["saturation"], 1.0);
   stream.frames_lost = -1;
   EXPECT_TRUE(json::parse(stream_json(stream, settings))["lost"].is_null());
 }

@@ -1,0 +1,109 @@
+#include "detector/evidence/camera_chroma.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+
+#include "tests/detector/evidence/remembered_view.hpp"
+#include "tests/detector/toy_data.hpp"
+
+namespace houghstream {
+namespace {
+
+/// The picture through a camera that adds so much to a* and b*, 8 bits each.
+RgbdFrame with_cast(RgbdFrame frame, int a, int b) {
+  cv::Mat lab;
+  cv::cvtColor(frame.colour, lab, cv::COLOR_BGR2Lab);
+  lab += cv::Scalar(0, a, b);
+  frame.colour = cv::Mat();
+  cv::cvtColor(lab, frame.colour, cv::COLOR_Lab2BGR);
+  return frame;
+}
+
+/// Classes that all look like the toy's view.
+Forest alike(std::size_t classes) {
+  Forest forest;
+  forest.scoring = Scoring::kEvidence;
+  for (std::size_t i = 0; i < classes; ++i) {
+    ObjectClass& object = forest.classes.emplace_back();
+    object.class_id = static_cast<int>(i) + 1;
+    object.name = std::string(1, static_cast<char>('a' + i));
+    object.radius = 0.08F;
+    forest.views.push_back(toy::remembered_view());
+    forest.views.back().class_index = static_cast<std::uint32_t>(i);
+  }
+  return forest;
+}
+
+/// What is found where the toy's view stands, by a hypothesis of each class.
+std::vector<Candidate> weighed(const Forest& forest, const RgbdFrame& frame,
+                               const std::vector<ChromaPair>& remembered = {}) {
+  const ForestIndex index(forest);
+  const LabFrame in_lab = toy::lab_frame(frame, frame.colour, 1.0F);
+  std::vector<Hypothesis> hypotheses(forest.classes.size());
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    hypotheses[i].class_index = i;
+    hypotheses[i].centre_camera = {0.0F, 0.0F, toy::kDistance};
+    hypotheses[i].mass = 0.02F;
+    hypotheses[i].weight = 1.0F;
+    hypotheses[i].views = {{static_cast<std::uint32_t>(i), 1.0F}};
+  }
+  EvidenceMemory memory;
+  return weigh_in_camera_colours({index, in_lab, {}, {}, {}}, remembered, hypotheses, 2, memory);
+}
+
+std::vector<ChromaPair> seen_with_cast(double a, double b) {
+  std::vector<ChromaPair> pairs;
+  for (const auto& [name, chroma] : std::initializer_list<std::pair<const char*, Eigen::Vector2d>>{
+           {"p", {30.0, 20.0}}, {"q", {-15.0, 25.0}}, {"r", {5.0, -25.0}}, {"s", {0.0, 5.0}}, {"t", {-5.0, 40.0}}}) {
+    ChromaPair& pair = pairs.emplace_back();
+    pair.class_name = name;
+    pair.model = chroma;
+    pair.measured = chroma + Eigen::Vector2d(a, b);
+    pair.lightness = 100.0;
+    pair.probability = 0.95;
+  }
+  return pairs;
+}
+
+constexpr int kA = 8;
+constexpr int kB = 30;
+
+TEST(CameraChroma, ACastThatTheCameraIsKnownForSpeaksAgainstNobody) {
+  const RgbdFrame plain = toy::training_views().front().frame;
+  const RgbdFrame cast = with_cast(plain, kA, kB);
+  const Forest forest = alike(1);
+  const float as_taught = weighed(forest, plain).front().detection.score;
+  const Candidate before = weighed(forest, cast).front();
+  const Candidate after = weighed(forest, cast, seen_with_cast(kA, kB)).front();
+  EXPECT_LT(before.detection.score, as_taught - 0.01F) << "alone in a frame nothing is learnt";
+  EXPECT_GT(after.detection.score, 0.5F * (before.detection.score + as_taught));
+  EXPECT_LT(after.evidence.fit.foreign_colour, 0.5F * before.evidence.fit.foreign_colour);
+  EXPECT_EQ(after.evidence.fit.visible, before.evidence.fit.visible);
+}
+
+TEST(CameraChroma, ObjectsOfAFrameTellTheCastToEachOther) {
+  const RgbdFrame cast = with_cast(toy::training_views().front().frame, kA, kB);
+  const float alone = weighed(alike(1), cast).front().detection.score;
+  for (const Candidate& together : weighed(alike(5), cast)) EXPECT_GT(together.detection.score, alone + 0.01F);
+}
+
+TEST(CameraChroma, AKnownCastDoesNotMakeAnotherColourRight) {
+  const RgbdFrame plain = toy::training_views().front().frame;
+  const float as_taught = weighed(alike(1), plain).front().detection.score;
+  EXPECT_LT(weighed(alike(1), with_cast(plain, -30, -30), seen_with_cast(kA, kB)).front().detection.score, as_taught);
+}
+
+TEST(CameraChroma, InAPictureWithoutColoursChromaSaysNothing) {
+  RgbdFrame grey = toy::training_views().front().frame;
+  cv::Mat lightness;
+  cv::cvtColor(grey.colour, lightness, cv::COLOR_BGR2GRAY);
+  grey.colour = cv::Mat();
+  cv::cvtColor(lightness, grey.colour, cv::COLOR_GRAY2BGR);
+  const Candidate seen = weighed(alike(1), grey).front();
+  EXPECT_LT(seen.evidence.fit.foreign_colour, 0.1F);
+  EXPECT_LT(seen.evidence.fit.hue_conflict, 0.05F);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/studies/colours/strange_cameras.hpp"
+
+// What cameras of strange colours cost, and what of it the map of a camera's colours brings back: rendered practice
+// rooms with the objects of a store, seen through each of the cameras.
+
+namespace houghstream::colours {
+
+struct StudySettings {
+  int rooms = 6;  ///< two frames each
+  int cameras = 24;
+  std::uint64_t seed = 1;
+  int threads = 2;
+  std::string pairs;  ///< CSV file with what the poses tell of the cameras' colours; empty: none
+};
+
+/// What was found through one camera or several ones.
+struct Figures {
+  int objects = 0;
+  double auc = 0.0;       ///< of the detections' scores, mean over the classes
+  double pose_auc = 0.0;  ///< of the poses' qualities: average precision over all objects
+  int published = 0;
+  int right = 0;          ///< of the published
+  double ece = 0.0;       ///< of the qualities
+  double off = 0.0;       ///< of right poses: from the expected to the measured chroma, median, CIE a*b*
+  double conflict = 0.0;  ///< share of pairs of a right and a wrong pose in which chroma tells which is which
+};
+
+/// One row of the table.
+struct Row {
+  std::string name;
+  Figures as_taught;  ///< colours are not learnt
+  Figures in_frame;   ///< colours are learnt in each frame
+  Figures in_stream;  ///< and of what the frames before have told, all of which were seen before
+};
+
+/// The plain camera, then each strange one, then the mean over those.
+std::vector<Row> study_cameras(const std::filesystem::path& store, const StudySettings& settings);
+
+std::string to_table(const std::vector<Row>& rows);
+
+}  // namespace houghstream::colours
