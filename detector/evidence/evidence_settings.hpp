@@ -12,7 +12,9 @@ struct EvidenceSettings {
   float candidates_from = 1.0F;
   int max_candidates = 16;  ///< the strongest; a frame full of weak maxima must not hold up the poses of the others
   int max_rotations = 48;   ///< rotations handed to the pose process
-  bool learn_camera_colours = true;  ///< views are brought to the colours of the camera, see camera_chroma.hpp
+  /// Views are brought to the colours of the camera (camera_chroma.hpp). Scores are learnt without: rendered pictures
+  /// have the models' own colours, and what a map leaves of them is less than what it leaves of a real camera's.
+  bool learn_camera_colours = true;
 };
 
 template <typename Visit>

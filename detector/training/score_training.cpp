@@ -130,6 +130,7 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
                                                const Profile& profile, const Forest& forest, const Scales& scales) {
   DetectionSettings detection = profile.detection;
   detection.threads = 1;
+  detection.evidence.learn_camera_colours = false;
   const ForestIndex index(forest);
   const int threads = profile.training.threads;
   std::vector<ScoreExamples> by_frame(static_cast<std::size_t>(source.count));

@@ -15,6 +15,7 @@ namespace {
 PoseSettings unfiltered_settings(const PosedModels& models, int threads) {
   PoseSettings settings;
   settings.threads = threads;
+  settings.learn_camera_colours = false;  // as scores are learnt: EvidenceSettings
   settings.model.vote_centres = models.vote_centres;
   settings.model.symmetries = models.symmetries;
   settings.model.shape_symmetries = models.shape_symmetries;
@@ -84,11 +85,9 @@ std::vector<std::optional<PoseTerms>> UnfilteredPoseFinder::terms_of(const RgbdF
     if (!pose.T_camera_object) continue;
     const Detection& detection = detections.detections[pose.detection_index];
     const ObjectObservation seen = observe_object(seen_frame, detection, models_.at(pose.class_name), settings_.region);
-    PoseEvidence own = gather_evidence(seen, *pose.T_camera_object, detection.score, settings_.verification);
-    bring_to_camera(pose.camera_colours, own);
-    std::optional<PoseEvidence> other =
+    const PoseEvidence own = gather_evidence(seen, *pose.T_camera_object, detection.score, settings_.verification);
+    const std::optional<PoseEvidence> other =
         evidence_with_swapped_texture(seen, *pose.T_camera_object, own, settings_.verification);
-    if (other) bring_to_camera(pose.camera_colours, *other);
     terms = PoseTerms{quality_terms(own, settings_.quality), std::nullopt, std::nullopt};
     const DepthTolerance tolerance{settings_.verification.tolerance_m, seen.noise};
     const std::optional<PrintComparison> print =

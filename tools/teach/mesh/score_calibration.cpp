@@ -107,6 +107,7 @@ quality::FoundPoses find_poses(const Practised& practised, const quality::PosedM
   DetectionSettings detection = detection_settings(forest);
   detection.threads = 1;
   detection.evidence.threshold = PoseSettings{}.min_score;
+  detection.evidence.learn_camera_colours = false;
   std::map<int, std::string> names;
   for (const ObjectClass& known : forest.classes) names[known.class_id] = known.name;
   const quality::UnfilteredPoseFinder finder(models, 1);
