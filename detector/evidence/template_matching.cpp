@@ -313,16 +313,16 @@ Likeness compare_colours(const Tally& tally, const TemplateGrid& appearance, con
 /// The same with the template's colours as the camera would measure them in the light of the frame.
 Likeness compare_camera_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours,
                                 const ChromaMap& camera) {
-  constexpr double kNeutral = 128.0;
+  constexpr double kGrey = 128.0;
   constexpr double kLightness = 100.0 / 255.0;  // of 8-bit L*
   Likeness likeness;
   for (std::size_t i = 0; i < tally.shown; ++i) {
     const Cell cell = tally.shown_cells[i];
     const cv::Vec3b& seen = colours.at(cell.row, cell.column);
     const std::array<std::uint8_t, 3>& lab = appearance.lab[cell.index];
-    const Eigen::Vector2d ab = camera.apply({lab[1] - kNeutral, lab[2] - kNeutral}, kLightness * seen[0]);
-    likeness.add({lab[0], cv::saturate_cast<std::uint8_t>(ab.x() + kNeutral),
-                  cv::saturate_cast<std::uint8_t>(ab.y() + kNeutral)},
+    const Eigen::Vector2d ab = camera.apply({lab[1] - kGrey, lab[2] - kGrey}, kLightness * seen[0]);
+    likeness.add({lab[0], cv::saturate_cast<std::uint8_t>(ab.x() + kGrey),
+                  cv::saturate_cast<std::uint8_t>(ab.y() + kGrey)},
                  seen);
   }
   return likeness;

@@ -44,7 +44,7 @@ def make_data(tools, folder):
 
 
 def start_stream(tools, folder):
-    detect = Process(folder, tools / "hs-detect", "--forest", folder / "small.forest", "--threads", 2,
+    detect = Process(folder, tools / "hs-detect", "--forest", folder / "small.forest", "--no-camera-colours", "--threads", 2,
                      "--threshold", THRESHOLD)
     pose = Process(folder, tools / "hs-pose", "--models", folder / "views" / "models")
     detect.wait_until_ready()

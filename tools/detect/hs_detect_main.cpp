@@ -47,7 +47,8 @@ struct DetectOptions {
   std::string forest_file;
   std::string url;
   std::string output_log;
-  bool replace = false;  // an output log that is there
+  bool replace = false;                // an output log that is there
+  bool ignore_camera_colours = false;  // as hs-pose has learnt them
   SearchOptions search;
   DetectProcessOptions process;
 };
@@ -83,7 +84,9 @@ class KnownColours {
 /// A forest stays what it is.
 void run_with_forest(DetectOptions options) {
   KnownColours colours;
-  options.process.on_camera_colours = [&](const CameraChroma& learnt) { colours.update(learnt); };
+  if (!options.ignore_camera_colours)
+    if (!options.ignore_camera_colours)
+      options.process.on_camera_colours = [&](const CameraChroma& learnt) { colours.update(learnt); };
   const std::shared_future<RgbdFrame> made_up = start_warm_up();
   const ReadyDetector ready(make_detector(load_forest(options.forest_file), options.search), made_up.get());
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
@@ -132,6 +135,9 @@ int main(int argc, char** argv) {
   app.add_option("--looks-per-second", options.process.max_rate_hz,
                  "look at so many of each camera's frames a second, for hs-pose --follow; default: at each one")
       .range(0.1, 1000.0);
+  app.add_flag("--no-camera-colours", options.ignore_camera_colours,
+               "learn how a camera renders colours from each frame by itself, as of a log, and not from what hs-pose "
+               "tells of earlier ones: the same frame gives the same detections whenever it comes");
   add_frame_channels_option(app, options.process.frame_channels);
   app.add_option("--output-log", options.output_log, "with -l file://LOG: write the results to this log");
   app.add_flag("--keep-frames", options.process.keep_frames,

@@ -52,7 +52,7 @@ TEST(ChromaMap, ACamerasColoursAreLearntOfSixObjects) {
   const ChromaPair other = seen_by_warm("banana", -5.0, 60.0, 65.0);
   EXPECT_GT(error_of(ChromaMap(), other), 8.0);
   EXPECT_LT(error_of(map, other), 4.0);
-  for (const ChromaPair& pair : pairs) EXPECT_LT(error_of(map, pair), 6.0) << pair.class_name;
+  for (const ChromaPair& pair : pairs) EXPECT_LT(error_of(map, pair), 7.5) << pair.class_name;
   EXPECT_LT(map.uncertainty(other.model, 65.0).trace(), 0.4 * ChromaMap().uncertainty(other.model, 65.0).trace());
 }
 
