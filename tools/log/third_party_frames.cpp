@@ -13,7 +13,7 @@
 namespace houghstream::log_tools {
 namespace {
 
-image_t read_colour(WireReader& reader) {
+image_t read_kinect_colour(WireReader& reader) {
   reader.skip(8);  // its own time
   const std::int16_t width = reader.read_int16();
   const std::int16_t height = reader.read_int16();
@@ -27,7 +27,7 @@ image_t read_colour(WireReader& reader) {
   return make_image(width, height, image_t::PIXEL_FORMAT_RGB, 3 * width, bytes_of(data));
 }
 
-image_t read_depth(WireReader& reader, bool& zipped) {
+image_t read_kinect_depth(WireReader& reader, bool& zipped) {
   reader.skip(8);  // its own time
   const std::int16_t width = reader.read_int16();
   const std::int16_t height = reader.read_int16();
@@ -181,9 +181,9 @@ images_t images_from_kinect(ByteView message) {
   const std::int64_t fingerprint = reader.read_int64();
   require(fingerprint == kinect_frame_msg_t::getHash(), "{}: another fingerprint", reader.source());
   const std::int64_t utime = reader.read_int64();
-  image_t colour = read_colour(reader);
+  image_t colour = read_kinect_colour(reader);
   bool zipped = false;
-  image_t depth = read_depth(reader, zipped);
+  image_t depth = read_kinect_depth(reader, zipped);
   const std::int16_t depth_type = zipped ? images_t::DEPTH_MM_ZIPPED : images_t::DEPTH_MM;
   constexpr std::size_t kMotor = 3 * 2 + 1 + 3 * 8 + 8 + 1 + 1;  // raw_accel to tilt_status
   reader.skip(kMotor);

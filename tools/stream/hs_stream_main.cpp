@@ -11,7 +11,6 @@
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/messages/channels.hpp"
 #include "tools/common/tool_main.hpp"
-#include "tools/stream/last_frames.hpp"
 #include "tools/stream/state_board.hpp"
 #include "tools/stream/stream_plan.hpp"
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <chrono>
+#include <cstddef>
 #include <houghstream/status_t.hpp>
 #include <map>
 #include <string>
@@ -30,6 +33,29 @@ class StatusBoard {
     Clock::time_point time;
   };
   std::map<pid_t, Entry> entries_;
+};
+
+/// Whether what a source has sent before it ended has gone through all the others, as their statuses tell: one after
+/// another, in the order in which frames pass them, each says that it has nothing left to do, a moment after the one
+/// before it has. Each sends a status once a second. Not thread-safe.
+class DrainMonitor {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// For which the others are waited for: one second for each of four, and as much as hs-view lets a frame wait.
+  static constexpr std::chrono::seconds kPatience{7};
+
+  /// `pids`: of the others, in that order.
+  DrainMonitor(std::vector<pid_t> pids, Clock::time_point ended);
+
+  void note(const status_t& status, Clock::time_point heard);
+
+  bool is_drained() const { return through_ == pids_.size(); }
+
+ private:
+  std::vector<pid_t> pids_;
+  std::size_t through_ = 0;  // so many of them have nothing left to do
+  Clock::time_point since_;  // when the last of these has said so, or the source has ended
 };
 
 }  // namespace houghstream::stream

@@ -11,7 +11,7 @@
 #include "pipeline/process/process_loop.hpp"
 #include "pipeline/process/reception.hpp"
 #include "tools/view/drawing/stream_watch.hpp"
-#include "tools/view/match_queue.hpp"
+#include "tools/view/frame_matcher.hpp"
 
 namespace houghstream::view {
 

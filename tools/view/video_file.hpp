@@ -10,6 +10,11 @@
 
 namespace houghstream::view {
 
+/// Writes the video of one file into another, whose format its name tells, without encoding it again. Its frames get
+/// the times of a constant rate, which a format that counts milliseconds has rounded. Throws InputError where one of
+/// the two cannot be read or written.
+void remux_video(const std::filesystem::path& from, const std::filesystem::path& to, double rate_hz);
+
 /// Writes an MP4 with H.264, which every browser plays, at a constant rate. Until it is finished the frames are in a
 /// FILE.mp4.partial.mkv, which can be played however the program ends, but for the last hundred frames or so: an MP4
 /// without its end cannot. A picture belongs to a slot of 1/rate seconds; a slot without a picture repeats the one

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/base/checks.hpp"
-#include "tools/view/match_queue.hpp"
 
 namespace houghstream::view {
 namespace {

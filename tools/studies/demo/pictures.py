@@ -10,23 +10,32 @@ from studies.stream import Processes
 from studies.virtual_display import VirtualDisplay, open_viewer
 
 RATE_HZ = 10
+BOXES = ((0xE6, 0x9F, 0x00), (0x56, 0xB4, 0xE9), (0x00, 0x9E, 0x73), (0xF0, 0xE4, 0x42))  # of the four objects
+BOX_PIXELS = 300
 AXES = ((255, 60, 60), (60, 220, 60), (60, 120, 255))  # the colours of x, y, z
 VIEW_SIZE = (640, 480)  # where hs-view's window shows colour
-LOOKS, BETWEEN_S = 12, 1.0
+LOOKS, BETWEEN_S, PATIENCE_S = 12, 1.0, 180.0
+
+
+def drawn(picture):
+    """(objects whose box is drawn, pixels in the rarest colour of the axes)"""
+    boxes = sum(picture.count(colour) > BOX_PIXELS for colour in BOXES)
+    return boxes, min(picture.count(colour) for colour in AXES)
 
 
 def best_picture(display, window, size=None):
-    """Of some looks at a window the one with the most pose axes in its upper left part of this size."""
-    best, most = None, -1
-    for _ in range(LOOKS):
+    """Of some looks at a window, from the first that shows a pose on, the one with the most objects and axes in its upper left
+    part of this size."""
+    best, most, looks, end = None, (0, 0), 0, time.monotonic() + PATIENCE_S
+    while looks < LOOKS:
         time.sleep(BETWEEN_S)
         picture = display.photograph(window)
-        part = picture.cut(0, 0, *(size or (picture.width, picture.height)))
-        axes = min(part.count(colour) for colour in AXES)
-        if axes > most:
-            best, most = picture, axes
-    if most == 0:
-        die("no pose is drawn, expected some")
+        found = drawn(picture.cut(0, 0, *(size or (picture.width, picture.height))))
+        if found[1] > 0 and found > most:
+            best, most = picture, found
+        looks += best is not None
+        if best is None and time.monotonic() > end:
+            die(f"no pose is drawn within {PATIENCE_S:.0f} s, expected some")
     return best
 
 
@@ -49,9 +58,9 @@ def take(options, demo):
         for name in ("detect", "pose"):
             running.by_name[name].wait_until_ready()
         running.start("capture", programs / "hs-capture", *scene)
-        running.start("view", programs / "hs-view", "--models", models, "--rate", RATE_HZ)
+        view = running.start("view", programs / "hs-view", "--models", models, "--rate", RATE_HZ)
         save_jpeg(best_picture(display, display.window("Houghstream"), VIEW_SIZE), options.pictures / "hs_view.jpg")
-        running.stop("view")
+        view.kill()
         spy = running.start("spy", programs / "hs-spy")
         display.window("LCM Spy")
         time.sleep(BETWEEN_S)  # spy counts rates once a second

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tools/studies/pose/worst_poses.hpp"
+#include "tools/studies/pose/bench_report.hpp"
 
 namespace houghstream {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tools/studies/pose/pose_makers.hpp"
+#include "tools/studies/pose/pose_bench.hpp"
 
 namespace houghstream {
 namespace {

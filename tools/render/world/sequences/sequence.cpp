@@ -13,7 +13,10 @@
 namespace houghstream::world {
 namespace {
 
-enum Aspect : std::uint64_t { kRoom = 1, kLight, kTable, kHands, kPath, kNoise, kFirstThing = 1000 };
+// Aspects of a sequence's world, each with a seed of its own (aspect_seed).
+namespace sequence_aspect {
+enum : std::uint64_t { kRoom = 1, kLight, kTable, kHands, kPath, kNoise, kFirstThing = 1000 };
+}  // namespace sequence_aspect
 
 constexpr std::uint64_t kFirstWorld = 1ULL << 43U;  // far beyond the numbers of other uses
 constexpr double kComeS = 0.6;                      // how long a hand takes to come, and to go
@@ -79,15 +82,15 @@ Sequence::Sequence(SequencePlan plan, DatasetSplit use) : plan_(std::move(plan))
 
 void Sequence::furnish() {
   World& world = lit_.world;
-  Room room = make_room(RoomStyle::kTable, aspect_seed(seed_, kRoom));
+  Room room = make_room(RoomStyle::kTable, aspect_seed(seed_, sequence_aspect::kRoom));
   world.items = std::move(room.items);
-  set_lighting(world, TimeOfDay::kDay, aspect_seed(seed_, kLight));
-  TableSetter setter(world, room.table_half, aspect_seed(seed_, kTable));
+  set_lighting(world, TimeOfDay::kDay, aspect_seed(seed_, sequence_aspect::kLight));
+  TableSetter setter(world, room.table_half, aspect_seed(seed_, sequence_aspect::kTable));
   // Things that are not taught, about the objects: to both sides and behind; one is a look-alike.
   const int alike = kClassCount + 1 + setter.random().below(kClassCount);
   setter.stand(make_taught_object(alike).thing, setter.region(0.6, 0.95, -0.3, 0.9), M_PI, 0);
   for (int i = 0; i < 9; ++i) {
-    const std::uint64_t own = aspect_seed(seed_, kFirstThing + static_cast<std::uint64_t>(i));
+    const std::uint64_t own = aspect_seed(seed_, sequence_aspect::kFirstThing + static_cast<std::uint64_t>(i));
     const ThingPtr thing =
         i < 3 ? make_other_instance(1 + i, own) : make_distractor(setter.random().below(kDistractorKinds), own);
     const bool behind = i % 3 == 0;
@@ -109,7 +112,7 @@ void Sequence::add_actors() {
 }
 
 void Sequence::add_hands() {
-  Random random(aspect_seed(seed_, kHands));
+  Random random(aspect_seed(seed_, sequence_aspect::kHands));
   for (std::size_t i = 0; i < plan_.actors.size(); ++i) {
     const std::vector<Stop>& stops = plan_.actors[i].stops;
     for (std::size_t k = 1; k < stops.size(); ++k) {
@@ -132,7 +135,7 @@ void Sequence::add_hands() {
 }
 
 void Sequence::add_passing_arm() {
-  Random random(aspect_seed(seed_, kHands));
+  Random random(aspect_seed(seed_, sequence_aspect::kHands));
   Placed object{make_taught_object(4).thing, at_stop({0.35, -0.36, 0.2}, 0.0, 0.12), 0, false};
   HeldPlace place;
   place.views = {T_camera_world(0, 0.0)};
@@ -209,7 +212,8 @@ World Sequence::world_at(double seconds) const {
 
 RenderedFrame Sequence::render(int camera, double seconds, int index) const {
   const LitWorld lit{world_at(seconds), lit_.shadows};
-  const std::uint64_t noise = aspect_seed(aspect_seed(seed_, kNoise), static_cast<std::uint64_t>(camera));
+  const std::uint64_t noise =
+      aspect_seed(aspect_seed(seed_, sequence_aspect::kNoise), static_cast<std::uint64_t>(camera));
   return render_frame(lit, T_camera_world(camera, seconds), aspect_seed(noise, static_cast<std::uint64_t>(index)));
 }
 

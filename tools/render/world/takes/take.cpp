@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <opencv2/core.hpp>
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
@@ -11,6 +12,83 @@
 
 namespace houghstream::world {
 namespace {
+
+constexpr int kBands = 16;
+constexpr double kStillPx = 0.25;  // less is not seen
+constexpr int kMaxTaps = 12;       // on each side
+
+/// Where each thing is seen: T_camera_object.
+std::vector<Eigen::Isometry3d> places(World& world, const Motion& motion, double seconds) {
+  const Eigen::Isometry3d T_camera_world = motion(world, seconds);
+  std::vector<Eigen::Isometry3d> result;
+  result.reserve(world.items.size());
+  for (const Placed& placed : world.items) result.push_back(T_camera_world * placed.T_world_object);
+  return result;
+}
+
+/// How far what each pixel sees moves within half an exposure: CV_32FC2, pixels. The view's first row is the image's
+/// row `first`.
+cv::Mat half_ways(const ShadedView& view, const Camera& camera, int first,
+                  const std::vector<Eigen::Isometry3d>& T_later_now) {
+  cv::Mat ways(view.radiance.size(), CV_32FC2, cv::Scalar::all(0));
+  for (int y = 0; y < ways.rows; ++y) {
+    for (int x = 0; x < ways.cols; ++x) {
+      const std::uint16_t id = view.geometry.id.at<std::uint16_t>(y, x);
+      if (id == 0) continue;
+      const Eigen::Vector3d later =
+          T_later_now[id - 1U] * camera.backproject(x, y + first, view.geometry.depth.at<float>(y, x));
+      if (later.z() < 0.05) continue;
+      const Eigen::Vector2d moved = camera.project(later) - Eigen::Vector2d(x, y + first);
+      ways.at<cv::Vec2f>(y, x) = {static_cast<float>(moved.x()), static_cast<float>(moved.y())};
+    }
+  }
+  return ways;
+}
+
+cv::Vec3f smeared(const cv::Mat& radiance, int x, int y, const cv::Vec2f& way) {
+  const double length = std::hypot(way[0], way[1]);
+  if (length < kStillPx) return radiance.at<cv::Vec3f>(y, x);
+  const int taps = std::min(kMaxTaps, static_cast<int>(std::ceil(length)));
+  cv::Vec3f sum(0.0F, 0.0F, 0.0F);
+  for (int i = -taps; i <= taps; ++i) {
+    const float share = static_cast<float>(i) / static_cast<float>(taps);
+    const int from_x = std::clamp(cvRound(static_cast<float>(x) + share * way[0]), 0, radiance.cols - 1);
+    const int from_y = std::clamp(cvRound(static_cast<float>(y) + share * way[1]), 0, radiance.rows - 1);
+    sum += radiance.at<cv::Vec3f>(from_y, from_x);
+  }
+  return sum * (1.0F / static_cast<float>(2 * taps + 1));
+}
+
+void smear(const cv::Mat& ways, cv::Mat& radiance) {
+  cv::Mat result(radiance.size(), CV_32FC3);
+  for (int y = 0; y < radiance.rows; ++y) {
+    for (int x = 0; x < radiance.cols; ++x)
+      result.at<cv::Vec3f>(y, x) = smeared(radiance, x, y, ways.at<cv::Vec2f>(y, x));
+  }
+  radiance = result;
+}
+
+/// A view of the whole image, without contents.
+ShadedView empty_view(const cv::Size& size) {
+  ShadedView view;
+  view.geometry = {cv::Mat(size, CV_32FC1), cv::Mat(size, CV_16UC1), cv::Mat(size, CV_32SC1), cv::Mat(size, CV_32FC2)};
+  view.radiance.create(size, CV_32FC3);
+  view.cos_incidence.create(size, CV_32FC1);
+  view.reflectance.create(size, CV_32FC1);
+  view.gloss.create(size, CV_32FC1);
+  return view;
+}
+
+void copy_band(const ShadedView& band, const cv::Range& rows, const ShadedView& whole) {
+  band.geometry.depth.copyTo(whole.geometry.depth.rowRange(rows));
+  band.geometry.id.copyTo(whole.geometry.id.rowRange(rows));
+  band.geometry.triangle.copyTo(whole.geometry.triangle.rowRange(rows));
+  band.geometry.bary.copyTo(whole.geometry.bary.rowRange(rows));
+  band.radiance.copyTo(whole.radiance.rowRange(rows));
+  band.cos_incidence.copyTo(whole.cos_incidence.rowRange(rows));
+  band.reflectance.copyTo(whole.reflectance.rowRange(rows));
+  band.gloss.copyTo(whole.gloss.rowRange(rows));
+}
 
 constexpr int kMeterEvery = 4;  // frames
 constexpr double kMeterScale = 0.125;
@@ -35,6 +113,28 @@ constexpr std::array<std::pair<const char*, TakeKind>, 12> kShown = {{{"bowl", T
                                                                       {"flashlight", TakeKind::kHandHeld}}};
 
 }  // namespace
+
+ShadedView expose(LitWorld lit_world, const Camera& camera, const Motion& motion, double seconds,
+                  const Shutter& shutter) {
+  ShadedView whole = empty_view({camera.width, camera.height});
+  cv::Mat ways(whole.radiance.size(), CV_32FC2);
+  for (int band = 0; band < kBands; ++band) {
+    const int first = camera.height * band / kBands;
+    const int last = camera.height * (band + 1) / kBands;
+    const double share = 0.5 * (first + last) / camera.height - 0.5;
+    const double now = seconds + share * shutter.readout_s;
+    std::vector<Eigen::Isometry3d> T_later_now = places(lit_world.world, motion, now + 0.5 * shutter.exposure_s);
+    const Eigen::Isometry3d T_camera_world = motion(lit_world.world, now);
+    for (std::size_t i = 0; i < T_later_now.size(); ++i) {
+      T_later_now[i] = T_later_now[i] * (T_camera_world * lit_world.world.items[i].T_world_object).inverse();
+    }
+    const ShadedView view = shade_view(lit_world, camera, T_camera_world, {0, first, camera.width, last - first});
+    copy_band(view, {first, last}, whole);
+    half_ways(view, camera, first, T_later_now).copyTo(ways.rowRange(first, last));
+  }
+  smear(ways, whole.radiance);
+  return whole;
+}
 
 Take::Take(const TakePlan& plan, int frames, int threads)
     : stage_(plan), seconds_(plan.seconds), frames_(frames), lit_world_(light_world(stage_.world())) {

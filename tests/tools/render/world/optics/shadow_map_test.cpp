@@ -1,6 +1,6 @@
-#include "tools/render/world/optics/shadow_map.hpp"
-
 #include <gtest/gtest.h>
+
+#include "tools/render/world/optics/shading.hpp"
 
 namespace houghstream::world {
 namespace {
