@@ -39,6 +39,7 @@ class HypothesisScorer {
   void set_match(const PlacedTemplate& placed, Evidence& evidence) const;
   SeedTemplates find_seeds(std::size_t count);
   PlacedTemplate refine_over_neighbours(PlacedTemplate best);
+  static cv::Rect2f visible_box_between(const cv::Rect2f& voted, const cv::Rect2f& fitted, const Camera& camera);
   const WeightedViews& weight_views(const Hypothesis& hypothesis, float spread);
   void add_rotations(const Hypothesis& hypothesis, const WeightedViews& views, std::vector<RotationVote>& rotations);
 
@@ -52,16 +53,6 @@ class HypothesisScorer {
   const std::vector<ViewTemplate>& views_;
   EvidenceMemory::Worker& workspace_;
 };
-
-/// Returns the box that votes and template say. Votes tell which patches belong to the object, depth tells where the
-/// template is not occluded: their errors are different ones, so the sides are taken midway.
-cv::Rect2f visible_box_between(const cv::Rect2f& voted, const cv::Rect2f& fitted, const Camera& camera) {
-  const cv::Rect2f inside =
-      fitted & cv::Rect2f(0.0F, 0.0F, static_cast<float>(camera.width), static_cast<float>(camera.height));
-  if (inside.empty()) return voted;
-  return {0.5F * (voted.x + inside.x), 0.5F * (voted.y + inside.y), 0.5F * (voted.width + inside.width),
-          0.5F * (voted.height + inside.height)};
-}
 
 }  // namespace
 
@@ -218,6 +209,17 @@ PlacedTemplate HypothesisScorer::refine_over_neighbours(PlacedTemplate best) {
     best = align_template(views_, best, input_.frame);
   }
   return align_template(views_, best, input_.frame, 0.5F);
+}
+
+/// Returns the box that votes and template say. Votes tell which patches belong to the object, depth tells where the
+/// template is not occluded: their errors are different ones, so the sides are taken midway.
+cv::Rect2f HypothesisScorer::visible_box_between(const cv::Rect2f& voted, const cv::Rect2f& fitted,
+                                                 const Camera& camera) {
+  const cv::Rect2f inside =
+      fitted & cv::Rect2f(0.0F, 0.0F, static_cast<float>(camera.width), static_cast<float>(camera.height));
+  if (inside.empty()) return voted;
+  return {0.5F * (voted.x + inside.x), 0.5F * (voted.y + inside.y), 0.5F * (voted.width + inside.width),
+          0.5F * (voted.height + inside.height)};
 }
 
 /// Returns views with the weight of their rotation, heaviest first: the votes that remember them. Of a class that was

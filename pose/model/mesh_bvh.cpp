@@ -1,6 +1,7 @@
 #include "pose/model/mesh_bvh.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -12,11 +13,6 @@ namespace {
 constexpr std::uint32_t kLeafTriangles = 4;
 
 using Corners = std::array<Eigen::Vector3f, 3>;
-
-Corners corners(const Mesh& mesh, std::uint32_t triangle) {
-  const auto& t = mesh.triangles[triangle];
-  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-}
 
 /// Weight of `b` for the point of the segment that is nearest to `p`.
 float along_segment(const Eigen::Vector3f& p, const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
@@ -40,15 +36,24 @@ std::array<float, 3> nearest_on_edges(const Eigen::Vector3f& p, const Corners& c
   return best;
 }
 
-/// Weights of the triangle's point nearest to `p`: below it where `p` stands over the triangle, else on an edge.
-std::array<float, 3> nearest_weights(const Eigen::Vector3f& p, const Corners& c) {
+/// Sets `best` to the triangle's point nearest to `p` where that is nearer: below `p` where it stands over the
+/// triangle, else on an edge.
+void improve(const Eigen::Vector3f& p, const Corners& c, std::uint32_t triangle, ClosestPoint& best) {
+  constexpr float kRounding = 1.001F;
   const Eigen::Vector3f normal = (c[1] - c[0]).cross(c[2] - c[0]);
   const float area_sq = normal.squaredNorm();
-  if (area_sq <= 0.0F) return nearest_on_edges(p, c);
-  const float w1 = (p - c[0]).cross(c[2] - c[0]).dot(normal) / area_sq;
-  const float w2 = (c[1] - c[0]).cross(p - c[0]).dot(normal) / area_sq;
-  const float w0 = 1.0F - w1 - w2;
-  return w0 >= 0.0F && w1 >= 0.0F && w2 >= 0.0F ? std::array<float, 3>{w0, w1, w2} : nearest_on_edges(p, c);
+  const float height = (p - c[0]).dot(normal);
+  if (height * height > kRounding * area_sq * best.distance * best.distance) return;  // its plane is farther away
+  const auto weights = [&]() -> std::array<float, 3> {
+    if (area_sq <= 0.0F) return nearest_on_edges(p, c);
+    const float w1 = (p - c[0]).cross(c[2] - c[0]).dot(normal) / area_sq;
+    const float w2 = (c[1] - c[0]).cross(p - c[0]).dot(normal) / area_sq;
+    const float w0 = 1.0F - w1 - w2;
+    return w0 >= 0.0F && w1 >= 0.0F && w2 >= 0.0F ? std::array<float, 3>{w0, w1, w2} : nearest_on_edges(p, c);
+  };
+  const std::array<float, 3> w = weights();
+  const float distance = (w[0] * c[0] + w[1] * c[1] + w[2] * c[2] - p).norm();
+  if (distance < best.distance) best = {distance, triangle, w};
 }
 
 }  // namespace
@@ -57,6 +62,13 @@ MeshBvh::MeshBvh(const Mesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) 
   require(!mesh.triangles.empty(), "mesh of {} vertices without triangles, expected a surface", mesh.vertices.size());
   std::iota(order_.begin(), order_.end(), 0U);
   build(0, static_cast<std::uint32_t>(order_.size()));
+  corners_.reserve(order_.size());
+  for (const std::uint32_t triangle : order_) corners_.push_back(corners_of(triangle));
+}
+
+MeshBvh::Corners MeshBvh::corners_of(std::uint32_t triangle) const {
+  const auto& t = mesh_.triangles[triangle];
+  return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
 }
 
 std::uint32_t MeshBvh::build(std::uint32_t first, std::uint32_t count) {
@@ -64,7 +76,7 @@ std::uint32_t MeshBvh::build(std::uint32_t first, std::uint32_t count) {
   nodes_.push_back({});
   Eigen::AlignedBox3f box;
   for (std::uint32_t i = first; i < first + count; ++i) {
-    for (const Eigen::Vector3f& corner : corners(mesh_, order_[i])) box.extend(corner);
+    for (const Eigen::Vector3f& corner : corners_of(order_[i])) box.extend(corner);
   }
   nodes_[index].box = box;
   nodes_[index].first = first;
@@ -75,7 +87,7 @@ std::uint32_t MeshBvh::build(std::uint32_t first, std::uint32_t count) {
   Eigen::Index side = 0;
   box.sizes().maxCoeff(&side);
   const auto middle = [&](std::uint32_t triangle) {
-    const Corners c = corners(mesh_, triangle);
+    const Corners c = corners_of(triangle);
     return c[0][side] + c[1][side] + c[2][side];
   };
   const auto begin = order_.begin() + first;
@@ -87,27 +99,38 @@ std::uint32_t MeshBvh::build(std::uint32_t first, std::uint32_t count) {
   return index;
 }
 
-void MeshBvh::search(std::uint32_t index, const Eigen::Vector3f& point, ClosestPoint& best) const {
+/// `node_distance`: from the point to the node's box, metres.
+void MeshBvh::search(std::uint32_t index, float node_distance, const Eigen::Vector3f& point, ClosestPoint& best) const {
+  if (node_distance >= best.distance) return;
   const Node& node = nodes_[index];
-  if (node.box.exteriorDistance(point) >= best.distance) return;
-  for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-    const Corners c = corners(mesh_, order_[i]);
-    const std::array<float, 3> w = nearest_weights(point, c);
-    const float distance = (w[0] * c[0] + w[1] * c[1] + w[2] * c[2] - point).norm();
-    if (distance < best.distance) best = {distance, order_[i], w};
-  }
+  for (std::uint32_t i = node.first; i < node.first + node.count; ++i) improve(point, corners_[i], order_[i], best);
   if (node.count > 0) return;
-  const bool right_first =
-      nodes_[node.right].box.squaredExteriorDistance(point) < nodes_[index + 1].box.squaredExteriorDistance(point);
-  search(right_first ? node.right : index + 1, point, best);
-  search(right_first ? index + 1 : node.right, point, best);
+  const float left_sq = nodes_[index + 1].box.squaredExteriorDistance(point);
+  const float right_sq = nodes_[node.right].box.squaredExteriorDistance(point);
+  if (right_sq < left_sq) {
+    search(node.right, std::sqrt(right_sq), point, best);
+    search(index + 1, std::sqrt(left_sq), point, best);
+  } else {
+    search(index + 1, std::sqrt(left_sq), point, best);
+    search(node.right, std::sqrt(right_sq), point, best);
+  }
 }
 
 ClosestPoint MeshBvh::nearest(const Eigen::Vector3f& point, float max_distance) const {
   ClosestPoint best;
   best.distance = max_distance;
-  search(0, point, best);
+  search(0, nodes_.front().box.exteriorDistance(point), point, best);
   return best;
+}
+
+ClosestPoint MeshBvh::nearest_with_guess(const Eigen::Vector3f& point, std::uint32_t guess) const {
+  constexpr float kRounding = 1.0001F;  // so that of triangles that are equally near the same one is found
+  ClosestPoint on_guess;
+  on_guess.distance = std::numeric_limits<float>::infinity();
+  improve(point, corners_of(guess), guess, on_guess);
+  const float limit = kRounding * on_guess.distance + std::numeric_limits<float>::min();
+  const ClosestPoint best = nearest(point, limit);
+  return best.distance < limit ? best : on_guess;
 }
 
 }  // namespace houghstream

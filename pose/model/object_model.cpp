@@ -10,7 +10,6 @@
 #include "pipeline/base/parallel.hpp"
 #include "pipeline/base/random.hpp"
 #include "pipeline/geometry/renderer.hpp"
-#include "pose/model/mesh_bvh.hpp"
 #include "pose/model/symmetry.hpp"
 #include "pose/model/symmetry_search.hpp"
 
@@ -210,10 +209,10 @@ double moved_by(const Eigen::Isometry3d& motion, const std::vector<Eigen::Vector
 
 /// Quarter and half turns about the principal axes after which the shape is nearly as before, and all that they combine
 /// to: a pose of a nearly square box that is a quarter turn wrong settles where depth speaks for it.
-std::vector<Eigen::Isometry3d> near_symmetries(const ObjectModel& model) {
+std::vector<Eigen::Isometry3d> near_symmetries(const MeasuredMesh& measured, const ObjectModel& model) {
   SymmetrySearch search;
   search.tolerance = 0.1;  // with which BOP finds candidates (Hodan et al. 2020)
-  const RotationSymmetryTest check(model.mesh, model.middle.cast<double>(), search);
+  const RotationSymmetryTest check(measured, model.middle.cast<double>(), search);
   std::vector<Eigen::Isometry3d> turns;
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d axis = model.axes.col(i).cast<double>();
@@ -227,33 +226,33 @@ std::vector<Eigen::Isometry3d> near_symmetries(const ObjectModel& model) {
 }
 
 /// Points of the surface that most turns about the axis take off it: a mug's handle.
-std::vector<Eigen::Vector3f> unround_points(const Mesh& mesh, const ContinuousSymmetry& axis) {
+std::vector<Eigen::Vector3f> unround_points(const MeasuredMesh& measured, const ContinuousSymmetry& axis) {
   constexpr int kPoints = 1500;
   constexpr int kTurns = 7;
   constexpr float kOff = 0.04F;  // diameters
-  const MeshBvh tree(mesh);
-  const float off_m = kOff * static_cast<float>(mesh_diameter(mesh));
+  const float off_m = kOff * static_cast<float>(measured.diameter_m);
   std::vector<Eigen::Vector3f> unround;
-  for (const Eigen::Vector3f& point : sample_surface(mesh, kPoints, 2).points) {
+  for (const Eigen::Vector3f& point : sample_surface(measured.mesh, kPoints, 2).points) {
     int off = 0;
     for (int i = 1; i <= kTurns; ++i) {
       const Eigen::AngleAxisd turn(2.0 * M_PI * i / (kTurns + 1), axis.axis);
       const Eigen::Vector3d at = axis.offset + turn * (point.cast<double>() - axis.offset);
-      off += tree.nearest(at.cast<float>()).distance > off_m ? 1 : 0;
+      off += measured.tree.nearest(at.cast<float>()).distance > off_m ? 1 : 0;
     }
     if (2 * off > kTurns) unround.push_back(point);
   }
   return unround;
 }
 
-void set_alternatives(const Symmetries& same_print, double right_within, ObjectModel& model) {
+void set_alternatives(const MeasuredMesh& measured, const Symmetries& same_print, double right_within,
+                      ObjectModel& model) {
   constexpr double kShapeStep = 0.13;  // diameters: turns of about 15 degrees
   constexpr double kSameStep = 0.02;
   constexpr double kSame_rad = 0.17;
   constexpr int kPoints = 300;
   const std::vector<Eigen::Isometry3d> same = expand_symmetries(same_print, kSameStep);
   const std::vector<Eigen::Vector3f> points = sample_surface(model.mesh, kPoints, 1).points;
-  const double right_m = right_within * mesh_diameter(model.mesh);
+  const double right_m = right_within * measured.diameter_m;
   const auto add_others = [&](const std::vector<Eigen::Isometry3d>& motions, std::vector<Eigen::Isometry3d>& list) {
     for (const Eigen::Isometry3d& motion : motions) {
       if (moved_by(motion, points, same) > right_m && !is_near_any(motion, model.alternatives, kSame_rad))
@@ -263,10 +262,10 @@ void set_alternatives(const Symmetries& same_print, double right_within, ObjectM
   std::vector<Eigen::Isometry3d> exact;
   add_others(expand_symmetries(model.shape_symmetries, kShapeStep), exact);
   model.alternatives = std::move(exact);
-  add_others(near_symmetries(model), model.near_alternatives);
+  add_others(near_symmetries(measured, model), model.near_alternatives);
   if (!model.nearly_round) return;
   add_others(expand_symmetries({{}, {*model.nearly_round}}, kShapeStep), model.partial_alternatives);
-  model.unround_points = unround_points(model.mesh, *model.nearly_round);
+  model.unround_points = unround_points(measured, *model.nearly_round);
 }
 
 /// Of the surface's second moments: those of a triangle are A / 12 (aa' + bb' + cc' + (a+b+c)(a+b+c)').
@@ -323,9 +322,10 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
     model.vote_centre = known->second;
   model.middle = surface_median(model.mesh);
   model.axes = principal_axes(model.mesh);
+  const MeasuredMesh measured(model.mesh);
   const auto shape = settings.shape_symmetries.find(name);
   const ShapeSymmetry symmetry =
-      shape != settings.shape_symmetries.end() ? shape->second : find_shape_symmetry(model.mesh);
+      shape != settings.shape_symmetries.end() ? shape->second : find_shape_symmetry(measured);
   model.shape_symmetries = symmetry.symmetries;
   model.nearly_round = symmetry.nearly_round;
   const ViewMaker maker(model, settings);
@@ -336,8 +336,8 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
   for (ModelView& view : model.views) view.area /= largest;
   model.print = make_print(maker, 2.0 * static_cast<double>(model.radius) / settings.pixels_per_diameter);
   const auto same_print = settings.symmetries.find(name);
-  set_alternatives(same_print != settings.symmetries.end() ? same_print->second : Symmetries(), settings.right_within,
-                   model);
+  set_alternatives(measured, same_print != settings.symmetries.end() ? same_print->second : Symmetries(),
+                   settings.right_within, model);
   return model;
 }
 

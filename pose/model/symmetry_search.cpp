@@ -172,24 +172,54 @@ std::vector<FoldedTurn> possible_turns(const RotationSymmetryTest& check, const 
   return turns;
 }
 
-/// The rotation by a whole fraction of a full one that is nearest to a motion, about the motion's axis.
+/// Returns the rotation of an n-fold axis, n up to 6, that is nearest to a motion, about the motion's axis.
 Eigen::Isometry3d folded(const Eigen::Isometry3d& T, const Eigen::Vector3d& centre) {
+  constexpr std::array<double, 6> kFolded_deg = {60, 72, 90, 120, 144, 180};
   const Eigen::AngleAxisd rotation(T.linear());
   const Eigen::Vector3d moved = T * centre - centre;
   const Eigen::Vector3d across = moved - rotation.axis().dot(moved) * rotation.axis();
   const double cotangent = 1.0 / std::tan(0.5 * std::max(rotation.angle(), kSameTurn_rad));
   const Eigen::Vector3d offset = centre + 0.5 * (across + cotangent * rotation.axis().cross(across));
-  const int fold = static_cast<int>(std::lround(2.0 * M_PI / std::max(rotation.angle(), kSameTurn_rad)));
-  return rotation_about({rotation.axis(), offset}, 2.0 * M_PI / std::clamp(fold, 2, kMaxFold));
+  double nearest_deg = kFolded_deg.front();
+  for (const double angle_deg : kFolded_deg) {
+    const auto off = [&](double deg) { return std::abs(deg * kRadPerDeg - rotation.angle()); };
+    if (off(angle_deg) < off(nearest_deg)) nearest_deg = angle_deg;
+  }
+  return rotation_about({rotation.axis(), offset}, nearest_deg * kRadPerDeg);
 }
 
-/// Turns that fit after registration, beside those that are known.
-std::vector<Eigen::Isometry3d> registered_turns(const RotationSymmetryTest& check, const Moments& moments,
+/// Adds to a group, whose first element is the identity, what its elements and those of `generators` combine to. A
+/// product that does not fit as it is, is registered: a rotation that is a little off makes products that are more so.
+/// Returns whether all products fit.
+bool close_under_composition(const RotationSymmetryTest& check, const std::vector<Eigen::Isometry3d>& generators,
+                             std::vector<Eigen::Isometry3d>& group) {
+  constexpr double kRmsOfProduct = 1.5;
+  constexpr double kMaxError_rad = 12.0 * kRadPerDeg;  // of products of rotations that are a few degrees off
+  constexpr double kMaxCorrection_rad = 5.0 * kRadPerDeg;
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    for (const Eigen::Isometry3d& generator : generators) {
+      Eigen::Isometry3d product = generator * group[i];
+      if (group.size() == kMaxGroup || is_near_any(product, group, kMaxError_rad)) continue;
+      if (is_near_any(product, group, kSameTurn_rad)) return false;  // neither an element nor another one
+      if (!check.fits(product, kRmsOfProduct)) {
+        const Eigen::Isometry3d refined = folded(check.registered(product), check.centre());
+        if (angle_between(refined, product) > kMaxCorrection_rad || !check.fits(refined, kRmsOfProduct)) return false;
+        product = refined;
+      }
+      group.push_back(product);
+    }
+  }
+  return true;
+}
+
+/// Returns the group that the turns generate together with those that fit after registration.
+std::vector<Eigen::Isometry3d> registered_group(const RotationSymmetryTest& check, const Moments& moments,
                                                 std::vector<Eigen::Isometry3d> turns) {
   constexpr double kBasin_rad = 15.0 * kRadPerDeg;  // registration leads to the same from within
   constexpr std::size_t kMaxTries = 24;
   std::vector<Eigen::Isometry3d> tried;
   std::vector<Eigen::Isometry3d> group = group_of(turns);
+  group.insert(group.begin(), Eigen::Isometry3d::Identity());
   for (const FoldedTurn& start : possible_turns(check, moments)) {
     if (tried.size() >= kMaxTries) break;
     if (is_near_any(start.T, group, kBasin_rad) || is_near_any(start.T, tried, kBasin_rad)) continue;
@@ -197,18 +227,15 @@ std::vector<Eigen::Isometry3d> registered_turns(const RotationSymmetryTest& chec
     const Eigen::Isometry3d turn = folded(check.registered(start.T), check.centre());
     if (is_near_any(turn, group, kSameTurn_rad) || !check.fits(turn)) continue;
     turns.push_back(turn);
-    std::vector<Eigen::Isometry3d> larger = group_of(turns);
-    const bool all_fit = std::all_of(larger.begin(), larger.end(), [&](const Eigen::Isometry3d& T) {
-      constexpr double kRmsOfProduct = 1.5;
-      return check.fits(T, kRmsOfProduct);
-    });
-    if (all_fit) {
+    std::vector<Eigen::Isometry3d> larger = group;
+    if (close_under_composition(check, turns, larger)) {
       group = std::move(larger);
     } else {
       turns.pop_back();
     }
   }
-  return turns;
+  group.erase(group.begin());
+  return group;
 }
 
 /// Half a turn that exchanges the ends of an axis about which any angle fits.
@@ -228,7 +255,7 @@ Symmetries symmetries_by(const RotationSymmetryTest& check, const Moments& momen
   Symmetries found;
   found.continuous = continuous_axes(check, moments, of_revolution);
   if (found.continuous.empty()) {
-    found.discrete = group_of(registered_turns(check, moments, min_turns(check, moments)));
+    found.discrete = registered_group(check, moments, min_turns(check, moments));
   } else if (found.continuous.size() == 1) {
     found.discrete = end_over_end(check, found.continuous.front());
   }
@@ -242,6 +269,13 @@ std::vector<ContinuousSymmetry> revolution_axes(const RotationSymmetryTest& chec
   some.points.resize(std::min(kPoints, some.points.size()));
   some.normals.resize(some.points.size());
   return find_revolution_axes(some, check.centre(), kSigma * check.diameter_m());
+}
+
+/// Returns whether a registration comes no nearer any more: most of them lead nowhere, slowly.
+bool has_stalled(const std::vector<double>& means_m) {
+  constexpr std::size_t kSteps = 8;
+  constexpr double kMinGain = 0.05;  // of the distance, over these steps
+  return means_m.size() > kSteps && means_m.back() > (1.0 - kMinGain) * means_m[means_m.size() - 1 - kSteps];
 }
 
 }  // namespace
@@ -263,14 +297,13 @@ std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& tu
   return group;
 }
 
-RotationSymmetryTest::RotationSymmetryTest(const Mesh& mesh, const Eigen::Vector3d& centre,
+RotationSymmetryTest::RotationSymmetryTest(const MeasuredMesh& measured, const Eigen::Vector3d& centre,
                                            const SymmetrySearch& settings)
-    : mesh_(mesh),
+    : measured_(measured),
       settings_(settings),
-      tree_(mesh),
       centre_(centre),
-      diameter_m_(mesh_diameter(mesh)),
-      tolerance_m_(tolerance_of(diameter_m_, settings)) {
+      tolerance_m_(tolerance_of(measured.diameter_m, settings)) {
+  const Mesh& mesh = measured.mesh;
   constexpr int kPoints = 1000;
   constexpr std::uint64_t kSeed = 1;
   surface_ = sample_surface(mesh, kPoints, kSeed);
@@ -278,7 +311,8 @@ RotationSymmetryTest::RotationSymmetryTest(const Mesh& mesh, const Eigen::Vector
   const std::size_t step = mesh.vertices.size() / kMaxCorners + 1;
   for (std::size_t i = 0; i < mesh.vertices.size(); i += step) corners_.push_back(mesh.vertices[i]);
   if (!settings.compare_colours || !has_colours(mesh)) return;
-  for (const Eigen::Vector3f& point : surface_.points) colours_.push_back(colour_at(mesh, tree_.nearest(point)));
+  for (const Eigen::Vector3f& point : surface_.points)
+    colours_.push_back(colour_at(mesh, measured.tree.nearest(point)));
 }
 
 Eigen::Isometry3d RotationSymmetryTest::turn(const Eigen::Vector3d& axis, double angle_rad) const {
@@ -306,7 +340,8 @@ double RotationSymmetryTest::deviation(const Eigen::Isometry3d& T_exact) const {
   const Eigen::Isometry3f T = T_exact.cast<float>();
   const std::size_t count = std::min(kPoints, surface_.points.size());
   double sum = 0.0;
-  for (std::size_t i = 0; i < count; ++i) sum += static_cast<double>(tree_.nearest(T * surface_.points[i]).distance);
+  for (std::size_t i = 0; i < count; ++i)
+    sum += static_cast<double>(measured_.tree.nearest(T * surface_.points[i]).distance);
   return sum / static_cast<double>(count);
 }
 
@@ -314,24 +349,35 @@ Eigen::Isometry3d RotationSymmetryTest::registered(const Eigen::Isometry3d& star
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   constexpr std::size_t kPoints = 200;
+  constexpr std::size_t kPointsOfSigma = 100;
   constexpr int kSteps = 40;
   constexpr double kDamping = 1e-4;
   constexpr double kStill_m = 1e-5;
+  const Mesh& mesh = measured_.mesh;
   const std::size_t count = std::min(kPoints, surface_.points.size());
   const double radius_m = std::max(1e-3, (surface_.points.front().cast<double>() - centre_).norm());
+  std::vector<ClosestPoint> hits(count);
+  std::vector<double> means_m;  // of the distances, by step
   Eigen::Isometry3d T = start;
   for (int step = 0; step < kSteps; ++step) {
-    const double sigma_m = std::max(static_cast<double>(tolerance_m_), 2.0 * deviation(T));
+    double sum_m = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Eigen::Vector3f moved = (T * surface_.points[i].cast<double>()).cast<float>();
+      hits[i] = step == 0 ? measured_.tree.nearest(moved) : measured_.tree.nearest_with_guess(moved, hits[i].triangle);
+      if (i < kPointsOfSigma) sum_m += static_cast<double>(hits[i].distance);
+    }
+    means_m.push_back(sum_m / static_cast<double>(std::min(kPointsOfSigma, count)));
+    if (has_stalled(means_m)) break;
+    const double sigma_m = std::max(tolerance_m(), 2.0 * means_m.back());
     Matrix6 normal_matrix = Matrix6::Zero();
     Vector6 right_side = Vector6::Zero();
     for (std::size_t i = 0; i < count; ++i) {
       const Eigen::Vector3d moved = T * surface_.points[i].cast<double>();
-      const ClosestPoint hit = tree_.nearest(moved.cast<float>());
-      const auto& t = mesh_.triangles[hit.triangle];
+      const auto& t = mesh.triangles[hits[i].triangle];
       Eigen::Vector3f closest = Eigen::Vector3f::Zero();
-      for (std::size_t k = 0; k < 3; ++k) closest += hit.weights[k] * mesh_.vertices[t[k]];
-      const Eigen::Vector3d normal = (mesh_.vertices[t[1]] - mesh_.vertices[t[0]])
-                                         .cross(mesh_.vertices[t[2]] - mesh_.vertices[t[0]])
+      for (std::size_t k = 0; k < 3; ++k) closest += hits[i].weights[k] * mesh.vertices[t[k]];
+      const Eigen::Vector3d normal = (mesh.vertices[t[1]] - mesh.vertices[t[0]])
+                                         .cross(mesh.vertices[t[2]] - mesh.vertices[t[0]])
                                          .cast<double>()
                                          .normalized();
       const double r = normal.dot(moved - closest.cast<double>());
@@ -372,7 +418,7 @@ double RotationSymmetryTest::round_fraction(const ContinuousSymmetry& axis) cons
 double RotationSymmetryTest::differing_fraction(const Eigen::Isometry3f& T) const {
   int differing = 0;
   for (std::size_t i = 0; i < colours_.size(); ++i) {
-    const Eigen::Vector3f there = colour_at(mesh_, tree_.nearest(T * surface_.points[i]));
+    const Eigen::Vector3f there = colour_at(measured_.mesh, measured_.tree.nearest(T * surface_.points[i]));
     const double difference = static_cast<double>((there - colours_[i]).cwiseAbs().mean()) / 255.0;
     differing += difference > settings_.colour_difference ? 1 : 0;
   }
@@ -381,19 +427,24 @@ double RotationSymmetryTest::differing_fraction(const Eigen::Isometry3f& T) cons
 
 Symmetries find_symmetries(const Mesh& mesh, const SymmetrySearch& settings) {
   const Moments moments = surface_moments(mesh);
-  const RotationSymmetryTest check(mesh, moments.centroid, settings);
+  const MeasuredMesh measured(mesh);
+  const RotationSymmetryTest check(measured, moments.centroid, settings);
   return symmetries_by(check, moments, revolution_axes(check));
 }
 
 ShapeSymmetry find_shape_symmetry(const Mesh& mesh) {
+  return find_shape_symmetry(MeasuredMesh(mesh));
+}
+
+ShapeSymmetry find_shape_symmetry(const MeasuredMesh& measured) {
   // Structured light errs by this at 1.2 m (Nguyen et al. 2012: 0.0012 + 0.0019 (z - 0.4)^2 m).
   constexpr double kDepthNoise_m = 0.0025;
   constexpr double kMinRoundFraction = 0.7;
   SymmetrySearch settings;
   settings.min_tolerance_m = kDepthNoise_m;
   settings.max_deviation = 3.0;
-  const Moments moments = surface_moments(mesh);
-  const RotationSymmetryTest check(mesh, moments.centroid, settings);
+  const Moments moments = surface_moments(measured.mesh);
+  const RotationSymmetryTest check(measured, moments.centroid, settings);
   const std::vector<ContinuousSymmetry> round = revolution_axes(check);
   ShapeSymmetry found;
   found.symmetries = symmetries_by(check, moments, round);

@@ -9,7 +9,17 @@
 
 namespace houghstream {
 
-/// What counts as looking the same.
+/// A mesh with what its surface is measured by: made once, for all searches in it. Keeps a reference to the mesh.
+struct MeasuredMesh {
+  /// Throws InputError for a mesh without triangles.
+  explicit MeasuredMesh(const Mesh& measured) : mesh(measured), tree(measured), diameter_m(mesh_diameter(measured)) {}
+
+  const Mesh& mesh;
+  MeshBvh tree;
+  double diameter_m;
+};
+
+/// Limits within which two views look the same.
 struct SymmetrySearch {
   /// A rotation fits while no point of the surface ends up farther from the surface than this, in diameters: the
   /// Hausdorff distance with which BOP finds candidates (Hodan et al. 2020), which allows 0.1 and leaves the choice to
@@ -30,13 +40,15 @@ struct SymmetrySearch {
 /// perpendicular axis where that fits too; two continuous axes are a ball. Else n-fold turns, n from 2 to 6, and all
 /// that they combine to. Mirror images are no motions. A symmetry keeps the second moments of the surface: its axis is
 /// a principal one, or where two or three of these spread alike within the tolerance, any in their plane or any at all.
-/// Box axes and principal axes through the centroid come first; what does not fit as it is, is registered with the mesh
-/// itself; of the many of a cube that lies anyhow, some may be missed. Throws InputError for a mesh without surface.
+/// Box axes and principal axes through the centroid come first; a rotation that does not fit as it is, is registered
+/// with the mesh itself. The discrete ones are a whole group: the product of two of them is one of them, registered
+/// where it does not fit as it is. Throws InputError for a mesh without surface.
 Symmetries find_symmetries(const Mesh& mesh, const SymmetrySearch& settings = {});
 
 /// The rotations after which a depth camera measures the same: those of the shape within its noise, print aside. Where
 /// no rotation by any angle fits, `nearly_round` is an axis about which most of the surface maps onto itself at any
 /// angle: a mug's, which its handle breaks. Throws InputError for a mesh without surface.
+ShapeSymmetry find_shape_symmetry(const MeasuredMesh& measured);
 ShapeSymmetry find_shape_symmetry(const Mesh& mesh);
 
 /// Whether a motion's rotation is less than an angle from that of a known one.
@@ -49,8 +61,8 @@ std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& tu
 /// spread points of the surface, and up to 2000 of its vertices: corners deviate most.
 class RotationSymmetryTest {
  public:
-  /// Keeps a reference to `mesh`. Throws InputError for a mesh without surface.
-  RotationSymmetryTest(const Mesh& mesh, const Eigen::Vector3d& centre, const SymmetrySearch& settings);
+  /// Keeps a reference to `measured`. Throws InputError for a mesh without surface.
+  RotationSymmetryTest(const MeasuredMesh& measured, const Eigen::Vector3d& centre, const SymmetrySearch& settings);
 
   /// The rotation about an axis through the centre.
   Eigen::Isometry3d turn(const Eigen::Vector3d& axis, double angle_rad) const;
@@ -64,22 +76,22 @@ class RotationSymmetryTest {
   Eigen::Isometry3d registered(const Eigen::Isometry3d& T) const;
   /// Fraction of the surface that maps onto itself at any angle about the axis, what lies across the axis left out.
   double round_fraction(const ContinuousSymmetry& axis) const;
-  double diameter_m() const { return diameter_m_; }
+  double diameter_m() const { return measured_.diameter_m; }
   const SurfacePoints& surface() const { return surface_; }
   const Eigen::Vector3d& centre() const { return centre_; }
   double tolerance_m() const { return tolerance_m_; }
 
  private:
   /// Distance from the surface, metres; `limit_m` where it is not less.
-  float distance(const Eigen::Vector3f& point, float limit_m) const { return tree_.nearest(point, limit_m).distance; }
+  float distance(const Eigen::Vector3f& point, float limit_m) const {
+    return measured_.tree.nearest(point, limit_m).distance;
+  }
   /// Share of the samples whose colour is another where the rotation takes them.
   double differing_fraction(const Eigen::Isometry3f& T) const;
 
-  const Mesh& mesh_;
+  const MeasuredMesh& measured_;
   SymmetrySearch settings_;
-  MeshBvh tree_;
   Eigen::Vector3d centre_;
-  double diameter_m_;
   float tolerance_m_;
   SurfacePoints surface_;
   std::vector<Eigen::Vector3f> corners_;

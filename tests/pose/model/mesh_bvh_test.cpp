@@ -64,6 +64,24 @@ TEST(MeshBvh, FindsWhatATryOfAllTrianglesFinds) {
   }
 }
 
+TEST(MeshBvh, AGuessChangesNothing) {
+  const Mesh mesh = flat_sheet();
+  const MeshBvh tree(mesh);
+  Random random(6);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3f point(static_cast<float>(random.uniform(-0.2, 1.2)),
+                                static_cast<float>(random.uniform(-0.2, 1.2)),
+                                static_cast<float>(random.uniform(-0.3, 0.3)));
+    const ClosestPoint nearest = tree.nearest(point);
+    for (const std::uint32_t guess : {nearest.triangle, static_cast<std::uint32_t>(random.below(800))}) {
+      const ClosestPoint found = tree.nearest_with_guess(point, guess);
+      EXPECT_EQ(found.triangle, nearest.triangle);
+      EXPECT_EQ(found.distance, nearest.distance);
+      EXPECT_EQ(found.weights, nearest.weights);
+    }
+  }
+}
+
 TEST(MeshBvh, RefusesAMeshWithoutTriangles) {
   Mesh mesh;
   mesh.vertices = {{0, 0, 0}};
