@@ -17,6 +17,7 @@ struct SearchOptions {
   std::optional<float> threshold;
   std::optional<float> min_mass_share;
   float candidates_from = 1.0F;  ///< none
+  bool learn_camera_colours = true;
   int threads = 2;
 
   DetectionSettings settings_for(const Forest& forest) const { return change(detection_settings(forest)); }
@@ -26,6 +27,7 @@ struct SearchOptions {
     settings.spacing.stride = stride.value_or(settings.spacing.stride);
     settings.evidence.threshold = threshold.value_or(settings.evidence.threshold);
     settings.evidence.candidates_from = candidates_from;
+    settings.evidence.learn_camera_colours = learn_camera_colours;
     settings.voting.min_mass_share = min_mass_share.value_or(settings.voting.min_mass_share);
     settings.threads = threads;
     return settings;

@@ -111,13 +111,11 @@ class Study {
   }
 
   Detector detector(bool learn) const {
-    Forest forest = load_store_forest(store_);
     SearchOptions options;
     options.threads = 1;
     options.threshold = PoseSettings{}.min_score;
-    DetectionSettings settings = options.settings_for(forest);
-    settings.evidence.learn_camera_colours = learn;
-    return Detector(std::move(forest), settings);
+    options.learn_camera_colours = learn;
+    return detector_of(load_store_forest(store_), options);
   }
 
   /// As hs-detect and hs-pose would, but that no pose is withheld.
