@@ -17,7 +17,7 @@ void compute_features(const SearchContext& search, DetectorWorkspace& workspace)
   workspace.features.resize(frames.size());
   for (std::size_t level = 0; level < frames.size(); ++level) {
     compute_features({frames[level], settings, workspace.patches.tiles[level]}, search.settings.threads,
-                     workspace.feature_memory, workspace.features[level]);
+                     workspace.feature_workspace, workspace.features[level]);
   }
 }
 
@@ -25,11 +25,11 @@ void find_posteriors(const SearchContext& search, DetectorWorkspace& workspace) 
   const DetectionSettings& settings = search.settings;
   PosteriorInput input{search.index, workspace.features, workspace.patches, settings.leaves};
   input.threads = settings.threads;
-  find_posteriors(input, workspace.leaf_memory, workspace.posteriors);
+  find_posteriors(input, workspace.leaf_workspace, workspace.posteriors);
 }
 
 std::vector<Hypothesis> find_hypotheses(const SearchContext& search, DetectorWorkspace& workspace) {
-  return find_hypotheses(voting_input(search, workspace), search.settings.threads, workspace.voting_memory);
+  return find_hypotheses(voting_input(search, workspace), search.settings.threads, workspace.voting_workspace);
 }
 
 VotingInput voting_input(const SearchContext& search, const DetectorWorkspace& workspace) {
@@ -44,8 +44,8 @@ std::vector<Candidate> weigh_evidence(const SearchContext& search, const RgbdFra
   const bool is_coloured =
       search.forest().scoring == Scoring::kEvidence && search.settings.evidence.learn_camera_colours;
   return is_coloured ? weigh_in_camera_colours(input, search.remembered_colours, hypotheses, search.settings.threads,
-                                               workspace.evidence_memory)
-                     : weigh_evidence(input, hypotheses, search.settings.threads, workspace.evidence_memory);
+                                               workspace.evidence_workspace)
+                     : weigh_evidence(input, hypotheses, search.settings.threads, workspace.evidence_workspace);
 }
 
 Detections report_detections(const SearchContext& search, const RgbdFrame& frame, std::vector<Candidate>& candidates,

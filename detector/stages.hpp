@@ -40,10 +40,10 @@ struct DetectorWorkspace {
   std::vector<FeatureImage> features;  ///< one for each level
   PatchPosteriors posteriors;
   // What stages need for themselves:
-  FeatureMemory feature_memory;
-  LeafMemory leaf_memory;
-  VotingMemory voting_memory;
-  EvidenceMemory evidence_memory;
+  FeatureWorkspace feature_workspace;
+  LeafWorkspace leaf_workspace;
+  VotingWorkspace voting_workspace;
+  EvidenceWorkspace evidence_workspace;
 };
 
 /// Resizes the frame to the sizes at which it is searched (paper, Section 5.1.1): features/working_frame.

@@ -61,7 +61,7 @@ cv::Mat hough_image(const SearchContext& search, int class_index, const RgbdFram
   compute_features_by(Way::kFast, search, workspace);
   find_posteriors(search, workspace);
   const VotingInput input = voting_input(search, workspace);
-  CastMemory memory;
+  CastWorkspace memory;
   HoughSpace space;
   cast_votes(input, class_index, memory, space);
   const cv::Mat masses = masses_by_cell(space, input);

@@ -33,13 +33,14 @@ void reference_leaves(const LeafInput& input, int threads, const LeafVisitor& vi
   });
 }
 
-void compute_features_by(Way way, const FeatureInput& input, int threads, FeatureMemory& memory, FeatureImage& image) {
+void compute_features_by(Way way, const FeatureInput& input, int threads, FeatureWorkspace& workspace,
+                         FeatureImage& image) {
   if (way == Way::kReference) {
     image = reference_features(input.frame, input.settings);
     return;
   }
   const ExtraPlanes extra = extra_planes(input.frame, input.settings, threads);
-  compute_features({input.frame, input.settings, input.tiles, &extra}, threads, memory, image);
+  compute_features({input.frame, input.settings, input.tiles, &extra}, threads, workspace, image);
 }
 
 void compute_features_by(Way way, const SearchContext& search, DetectorWorkspace& workspace) {
@@ -48,16 +49,16 @@ void compute_features_by(Way way, const SearchContext& search, DetectorWorkspace
   workspace.features.resize(frames.size());
   for (std::size_t level = 0; level < frames.size(); ++level) {
     compute_features_by(way, {frames[level], search.forest().features, workspace.patches.tiles[level]},
-                        search.settings.threads, workspace.feature_memory, workspace.features[level]);
+                        search.settings.threads, workspace.feature_workspace, workspace.features[level]);
   }
 }
 
-void find_posteriors_by(Way way, const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors) {
-  if (way == Way::kFast) return find_posteriors(input, memory, posteriors);
-  list_runs(input.patches, memory.runs);
-  LeafInput leaves{input.index, input.features, input.patches, memory.runs};
+void find_posteriors_by(Way way, const PosteriorInput& input, LeafWorkspace& workspace, PatchPosteriors& posteriors) {
+  if (way == Way::kFast) return find_posteriors(input, workspace, posteriors);
+  list_runs(input.patches, workspace.runs);
+  LeafInput leaves{input.index, input.features, input.patches, workspace.runs};
   leaves.early_end = {input.settings.first_trees, input.settings.min_first_posterior};
-  posteriors.reset(input.index, memory.runs.size(), input.settings.min_class_share, input.threads);
+  posteriors.reset(input.index, workspace.runs.size(), input.settings.min_class_share, input.threads);
   reference_leaves(leaves, input.threads, [&](const RunLeaves& seen) { posteriors.note(seen); });
 }
 

@@ -12,11 +12,12 @@ enum class Way {
 };
 
 /// Surface families are computed too: FeatureInput::extra is not asked.
-void compute_features_by(Way way, const FeatureInput& input, int threads, FeatureMemory& memory, FeatureImage& image);
+void compute_features_by(Way way, const FeatureInput& input, int threads, FeatureWorkspace& workspace,
+                         FeatureImage& image);
 /// The stage compute_features.
 void compute_features_by(Way way, const SearchContext& search, DetectorWorkspace& workspace);
 
-void find_posteriors_by(Way way, const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors);
+void find_posteriors_by(Way way, const PosteriorInput& input, LeafWorkspace& workspace, PatchPosteriors& posteriors);
 
 /// The leaves of find_leaves, by find_leaf alone.
 void reference_leaves(const LeafInput& input, int threads, const LeafVisitor& visit);

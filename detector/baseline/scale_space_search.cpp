@@ -33,19 +33,19 @@ SeenLevel see_level(const SearchContext& search, Way way, const RgbdFrame& frame
   clock.mark("detect.resize");
   FeatureTiles everywhere;
   everywhere.want_all(working.colour.size());
-  FeatureMemory feature_memory;
+  FeatureWorkspace feature_workspace;
   std::vector<FeatureImage> features(1);
-  compute_features_by(way, {working, forest.features, everywhere}, settings.threads, feature_memory, features[0]);
+  compute_features_by(way, {working, forest.features, everywhere}, settings.threads, feature_workspace, features[0]);
   clock.mark("detect.features");
   SeenLevel seen;
   seen.camera = working.camera;
   seen.size_ratio = level.size_ratio;
   seen.px_per_offset = static_cast<float>(frame.camera.fx) * forest.features.image_scale;
   add_patches_everywhere(working, level, forest.patch, settings.spacing.stride, seen.grid);
-  LeafMemory leaf_memory;
+  LeafWorkspace leaf_workspace;
   PosteriorInput input{search.index, features, seen.grid, settings.leaves};
   input.threads = settings.threads;
-  find_posteriors_by(way, input, leaf_memory, seen.posteriors);
+  find_posteriors_by(way, input, leaf_workspace, seen.posteriors);
   clock.mark("detect.leaves");
   return seen;
 }
@@ -177,7 +177,7 @@ std::vector<ScalePeak> level_peaks(const SearchContext& search, int class_index,
   const auto limit = static_cast<std::size_t>(settings.maxima_per_class);
   const std::vector<cv::Point> maxima = maxima_of(image, reach_px, settings.min_mass_share, limit);
   std::vector<Hypothesis> hypotheses = gather_supporters(search, class_index, seen, maxima);
-  BoxMemory box_memory;
+  BoxWorkspace box_workspace;
   const float to_frame = static_cast<float>(camera.width) / static_cast<float>(seen.camera.width);
   const cv::Point2f half(0.5F, 0.5F);
   std::vector<ScalePeak> peaks;
@@ -185,7 +185,7 @@ std::vector<ScalePeak> level_peaks(const SearchContext& search, int class_index,
     const cv::Point at = maxima[m];
     Hypothesis& hypothesis = hypotheses[m];
     hypothesis.centre_camera = seen.camera.backproject(at.x, at.y, seen.size_ratio).cast<float>();
-    const cv::Rect2f box_px = backproject_box(search.forest(), hypothesis, seen.grid, camera, box_memory);
+    const cv::Rect2f box_px = backproject_box(search.forest(), hypothesis, seen.grid, camera, box_workspace);
     if (box_px.empty()) continue;
     peaks.push_back({make_candidate(object, hypothesis, image.at<float>(at), box_px),
                      (cv::Point2f(at) + half) * to_frame - half, static_cast<float>(reach_px) * to_frame, seen.size});

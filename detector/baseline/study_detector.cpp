@@ -18,7 +18,7 @@ std::vector<Candidate> search_normalised(const SearchContext& search, Way way, c
   clock.mark("detect.features");
   PosteriorInput input{search.index, workspace.features, workspace.patches, settings.leaves};
   input.threads = settings.threads;
-  find_posteriors_by(way, input, workspace.leaf_memory, workspace.posteriors);
+  find_posteriors_by(way, input, workspace.leaf_workspace, workspace.posteriors);
   clock.mark("detect.leaves");
   const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);
   clock.mark("detect.votes");

@@ -12,9 +12,9 @@ using Sides = std::array<float, 4>;
 
 /// Where the supporting patches lie. Patches that support the object weakly lie beside it; the median supporter says
 /// what is weak here.
-Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches, BoxMemory& memory) {
-  std::vector<float>& weights = memory.weights;
-  std::array<std::vector<float>, 4>& values = memory.sides;
+Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches, BoxWorkspace& workspace) {
+  std::vector<float>& weights = workspace.weights;
+  std::array<std::vector<float>, 4>& values = workspace.sides;
   weights.clear();
   for (const auto& [patch, weight] : hypothesis.patches) weights.push_back(weight);
   std::nth_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
@@ -39,11 +39,12 @@ Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches, B
 }
 
 /// Where the remembered training views have their sides: weighted medians.
-Sides template_sides(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera, BoxMemory& memory) {
+Sides template_sides(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera,
+                     BoxWorkspace& workspace) {
   const Eigen::Vector3d centre = hypothesis.centre_camera.cast<double>();
   const Eigen::Vector2d centre_px = camera.project(centre);
   const auto px_per_metre = static_cast<float>(1.0 / camera.metres_per_px(centre.z()));
-  std::vector<std::pair<float, float>>& values = memory.remembered;
+  std::vector<std::pair<float, float>>& values = workspace.remembered;
   Sides sides{};
   for (std::size_t i = 0; i < sides.size(); ++i) {
     values.clear();
@@ -60,11 +61,11 @@ Sides template_sides(const Forest& forest, const Hypothesis& hypothesis, const C
 }  // namespace
 
 cv::Rect2f backproject_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
-                           const Camera& camera, BoxMemory& memory) {
+                           const Camera& camera, BoxWorkspace& workspace) {
   if (hypothesis.patches.empty() || hypothesis.views.empty()) return {};
   constexpr float kHidden = 0.3F;  // of the object's width or height: from here on a side is taken to be hidden
-  const Sides seen = supporting_sides(hypothesis, patches, memory);
-  const Sides whole = template_sides(forest, hypothesis, camera, memory);
+  const Sides seen = supporting_sides(hypothesis, patches, workspace);
+  const Sides whole = template_sides(forest, hypothesis, camera, workspace);
   Sides sides{};
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const float size = whole[(i % 2) + 2] - whole[i % 2];

@@ -10,7 +10,7 @@
 namespace houghstream {
 
 /// Workspace of backproject_box(), used again from box to box.
-struct BoxMemory {
+struct BoxWorkspace {
   std::vector<float> weights;
   std::array<std::vector<float>, 4> sides;          ///< of the supporting patches
   std::vector<std::pair<float, float>> remembered;  ///< a side of the remembered views, and their weights
@@ -21,6 +21,6 @@ struct BoxMemory {
 /// views that the votes remember have theirs, unless the patches end so far from it that the object must be occluded
 /// there.
 cv::Rect2f backproject_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
-                           const Camera& camera, BoxMemory& memory);
+                           const Camera& camera, BoxWorkspace& workspace);
 
 }  // namespace houghstream

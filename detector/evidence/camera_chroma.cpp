@@ -130,19 +130,19 @@ void judge_again(const EvidenceInput& input, int threads, std::vector<Candidate>
 
 std::vector<Candidate> weigh_in_camera_colours(const EvidenceInput& input, const std::vector<ChromaPair>& colours,
                                                const std::vector<Hypothesis>& hypotheses, int threads,
-                                               EvidenceMemory& memory) {
+                                               EvidenceWorkspace& workspace) {
   const Forest& forest = input.index.forest();
   LabFrame frame = input.frame;
   const EvidenceInput in_camera{input.index, frame, input.patches, input.settings, input.excluded_views};
   const bool is_grey = is_colourless(frame.frame.colour);
   if (is_grey) frame.cameras.assign(forest.classes.size(), colourless_camera());
   if (!is_grey && !colours.empty()) frame.cameras = learn_cameras(forest, colours);
-  std::vector<Candidate> candidates = weigh_evidence(in_camera, hypotheses, threads, memory);
+  std::vector<Candidate> candidates = weigh_evidence(in_camera, hypotheses, threads, workspace);
   if (is_grey) return candidates;
   std::vector<ChromaMap> cameras = learn_cameras(forest, all_pairs(forest, colours, candidates));
   const bool is_new = are_far(cameras, frame.cameras);
   frame.cameras = std::move(cameras);
-  if (is_new) return weigh_evidence(in_camera, hypotheses, threads, memory);
+  if (is_new) return weigh_evidence(in_camera, hypotheses, threads, workspace);
   judge_again(in_camera, threads, candidates);
   return candidates;
 }

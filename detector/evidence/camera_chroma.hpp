@@ -15,6 +15,6 @@ namespace houghstream {
 /// a picture without colours chroma speaks neither for a candidate nor against it. The same for any number of threads.
 std::vector<Candidate> weigh_in_camera_colours(const EvidenceInput& input, const std::vector<ChromaPair>& colours,
                                                const std::vector<Hypothesis>& hypotheses, int threads,
-                                               EvidenceMemory& memory);
+                                               EvidenceWorkspace& workspace);
 
 }  // namespace houghstream

@@ -27,7 +27,7 @@ struct SeedTemplates {
 /// Scores hypotheses one after another, in one thread. Its functions stand below in the order of their calls.
 class HypothesisScorer {
  public:
-  HypothesisScorer(const EvidenceInput& input, EvidenceMemory::Worker& workspace)
+  HypothesisScorer(const EvidenceInput& input, EvidenceWorkspace::Worker& workspace)
       : input_(input), forest_(input.index.forest()), views_(forest_.views), workspace_(workspace) {}
 
   Candidate score_hypothesis(const Hypothesis& hypothesis, float spread);
@@ -51,24 +51,24 @@ class HypothesisScorer {
   const EvidenceInput& input_;
   const Forest& forest_;
   const std::vector<ViewTemplate>& views_;
-  EvidenceMemory::Worker& workspace_;
+  EvidenceWorkspace::Worker& workspace_;
 };
 
 }  // namespace
 
 std::vector<Candidate> weigh_evidence(const EvidenceInput& input, const std::vector<Hypothesis>& hypotheses,
-                                      int threads, EvidenceMemory& memory) {
+                                      int threads, EvidenceWorkspace& workspace) {
   std::vector<float> spreads(input.index.forest().classes.size(), 0.0F);
   for (const Hypothesis& hypothesis : hypotheses) {
     float& spread = spreads[hypothesis.class_index];
     if (spread == 0.0F)
       spread = attitude_spread(input.index.forest(), static_cast<std::uint32_t>(hypothesis.class_index));
   }
-  memory.workers.make_room(threads);
+  workspace.workers.resize(threads);
   std::vector<Candidate> candidates(hypotheses.size());
   parallel_for_workers(threads, static_cast<int>(hypotheses.size()), [&](int worker, int i) {
     const Hypothesis& hypothesis = hypotheses[static_cast<std::size_t>(i)];
-    HypothesisScorer scorer(input, memory.workers[worker]);
+    HypothesisScorer scorer(input, workspace.workers[worker]);
     candidates[static_cast<std::size_t>(i)] = scorer.score_hypothesis(hypothesis, spreads[hypothesis.class_index]);
   });
   return candidates;

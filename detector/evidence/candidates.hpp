@@ -30,13 +30,13 @@ struct EvidenceInput {
 };
 
 /// Workspace of weigh_evidence(), used again from frame to frame.
-struct EvidenceMemory {
+struct EvidenceWorkspace {
   struct Worker {
     std::vector<PlacedTemplate> compared;  ///< templates of a hypothesis, compared with the frame
     std::vector<PlacedTemplate> way;       ///< the same, compared while a template was refined
     std::vector<PlacedTemplate> best_way;  ///< the same of the refinement that led to the best
     std::vector<std::pair<std::uint32_t, float>> weighted_views;  ///< views with the weight of their rotation
-    BoxMemory box;
+    BoxWorkspace box;
   };
   PerWorker<Worker> workers;
 };
@@ -44,7 +44,7 @@ struct EvidenceMemory {
 /// Returns a candidate for each hypothesis, in their order: its box, how the templates match the frame at its centre,
 /// and the score that follows. The result is the same for any number of threads.
 std::vector<Candidate> weigh_evidence(const EvidenceInput& input, const std::vector<Hypothesis>& hypotheses,
-                                      int threads, EvidenceMemory& memory);
+                                      int threads, EvidenceWorkspace& workspace);
 
 /// Returns how many times as many views a class has as one that was taught in one attitude, 1 to 3.
 float attitude_spread(const Forest& forest, std::uint32_t class_index);

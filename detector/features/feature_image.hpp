@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <opencv2/core/types.hpp>
 
-#include "detector/features/picture_memory.hpp"
+#include "detector/features/image_buffer.hpp"
 
 namespace houghstream {
 

@@ -10,33 +10,33 @@
 namespace houghstream {
 namespace {
 
-void list_parts(const FeatureTiles& tiles, FeatureMemory& memory) {
-  memory.parts.clear();
-  memory.columns.assign(static_cast<std::size_t>(tiles.rows()), cv::Range(INT_MAX, INT_MIN));
+void list_parts(const FeatureTiles& tiles, FeatureWorkspace& workspace) {
+  workspace.parts.clear();
+  workspace.columns.assign(static_cast<std::size_t>(tiles.rows()), cv::Range(INT_MAX, INT_MIN));
   for (int row = 0; row < tiles.rows(); ++row) {
-    const std::size_t first = memory.parts.size();
-    tiles.list_parts(row, kMaxPart, memory.parts);
-    if (memory.parts.size() == first) continue;
-    const cv::Rect& last = memory.parts.back();
-    memory.columns[static_cast<std::size_t>(row)] = {memory.parts[first].x, last.x + last.width};
+    const std::size_t first = workspace.parts.size();
+    tiles.list_parts(row, kMaxPart, workspace.parts);
+    if (workspace.parts.size() == first) continue;
+    const cv::Rect& last = workspace.parts.back();
+    workspace.columns[static_cast<std::size_t>(row)] = {workspace.parts[first].x, last.x + last.width};
   }
 }
 
 /// Lightness and colour of one row of tiles, as far as it or the rows beside it will look at them.
-void convert_row(const cv::Mat& colour, int row, int margin, FeatureMemory& memory, PictureMemory& lab_row) {
+void convert_row(const cv::Mat& colour, int row, int margin, FeatureWorkspace& workspace, ImageBuffer& lab_row) {
   cv::Range columns(INT_MAX, INT_MIN);
-  const auto last = static_cast<int>(memory.columns.size()) - 1;
+  const auto last = static_cast<int>(workspace.columns.size()) - 1;
   for (int r = std::max(0, row - 1); r <= std::min(last, row + 1); ++r) {
-    columns.start = std::min(columns.start, memory.columns[static_cast<std::size_t>(r)].start);
-    columns.end = std::max(columns.end, memory.columns[static_cast<std::size_t>(r)].end);
+    columns.start = std::min(columns.start, workspace.columns[static_cast<std::size_t>(r)].start);
+    columns.end = std::max(columns.end, workspace.columns[static_cast<std::size_t>(r)].end);
   }
   if (columns.end < columns.start) return;
   columns = {std::max(0, columns.start - margin), std::min(colour.cols, columns.end + margin)};
   const cv::Range rows(row * FeatureTiles::kSide, std::min(colour.rows, (row + 1) * FeatureTiles::kSide));
-  cv::Mat lab = lab_row.picture(cv::Size(columns.size(), rows.size()), CV_8UC3);
+  cv::Mat lab = lab_row.image(cv::Size(columns.size(), rows.size()), CV_8UC3);
   cv::cvtColor(colour(rows, columns), lab, cv::COLOR_BGR2Lab);
   std::array<cv::Mat, 3> places;
-  for (std::size_t c = 0; c < places.size(); ++c) places[c] = memory.lab[c](rows, columns);
+  for (std::size_t c = 0; c < places.size(); ++c) places[c] = workspace.lab[c](rows, columns);
   cv::split(lab, places.data());
 }
 
@@ -55,28 +55,28 @@ std::vector<std::vector<cv::Mat>> surface_blocks(const FeatureLayout& layout, co
 
 }  // namespace
 
-void compute_features(const FeatureInput& input, int threads, FeatureMemory& memory, FeatureImage& image) {
+void compute_features(const FeatureInput& input, int threads, FeatureWorkspace& workspace, FeatureImage& image) {
   const cv::Mat& colour = input.frame.colour;
   const FeatureSettings& settings = input.settings;
-  memory.workers.make_room(threads);
-  list_parts(input.tiles, memory);
+  workspace.workers.resize(threads);
+  list_parts(input.tiles, workspace);
   if ((settings.families & kIntensity) != 0) {
-    for (std::size_t c = 0; c < memory.lab.size(); ++c) {
-      memory.lab[c] = memory.lab_memory[c].picture(colour.size(), CV_8UC1);
+    for (std::size_t c = 0; c < workspace.lab.size(); ++c) {
+      workspace.lab[c] = workspace.lab_buffers[c].image(colour.size(), CV_8UC1);
     }
     parallel_for_workers(threads, input.tiles.rows(), [&](int worker, int row) {
-      convert_row(colour, row, lab_margin(settings), memory, memory.workers[worker].lab_row);
+      convert_row(colour, row, lab_margin(settings), workspace, workspace.workers[worker].lab_row);
     });
   }
   const FeatureLayout layout(settings);
   const std::vector<std::vector<cv::Mat>> base = surface_blocks(layout, input.extra);
-  if (memory.sobel_px != settings.depth_sobel_px) memory.kernels = sobel_kernels(settings.depth_sobel_px);
-  memory.sobel_px = settings.depth_sobel_px;
-  const TileSources sources{input.frame, settings, layout, memory.lab, memory.kernels, base};
+  if (workspace.sobel_px != settings.depth_sobel_px) workspace.kernels = sobel_kernels(settings.depth_sobel_px);
+  workspace.sobel_px = settings.depth_sobel_px;
+  const TileSources sources{input.frame, settings, layout, workspace.lab, workspace.kernels, base};
   image.reset(colour.cols, colour.rows, layout.pixel_stride());
-  parallel_for_workers(threads, static_cast<int>(memory.parts.size()), [&](int worker, int i) {
-    TileFeatures& features = memory.workers[worker].part;
-    const cv::Rect& part = memory.parts[static_cast<std::size_t>(i)];
+  parallel_for_workers(threads, static_cast<int>(workspace.parts.size()), [&](int worker, int i) {
+    TileFeatures& features = workspace.workers[worker].part;
+    const cv::Rect& part = workspace.parts[static_cast<std::size_t>(i)];
     features.compute(sources, part);
     interleave_planes(features.rows(), part, image);
     image.replicate_border(part);
@@ -87,9 +87,9 @@ FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& 
                               const ExtraPlanes* extra) {
   FeatureTiles tiles;
   tiles.want_all(frame.colour.size());
-  FeatureMemory memory;
+  FeatureWorkspace workspace;
   FeatureImage image;
-  compute_features({frame, settings, tiles, extra}, threads, memory, image);
+  compute_features({frame, settings, tiles, extra}, threads, workspace, image);
   return image;
 }
 

@@ -9,7 +9,7 @@
 #include "detector/features/feature_image.hpp"
 #include "detector/features/feature_settings.hpp"
 #include "detector/features/feature_tiles.hpp"
-#include "detector/features/picture_memory.hpp"
+#include "detector/features/image_buffer.hpp"
 #include "detector/features/tile_features.hpp"
 #include "detector/features/working_frame.hpp"
 #include "pipeline/base/parallel.hpp"
@@ -29,14 +29,14 @@ struct FeatureInput {
 };
 
 /// What compute_features needs for itself, to be kept from picture to picture.
-struct FeatureMemory {
+struct FeatureWorkspace {
   struct Worker {
-    PictureMemory lab_row;  ///< a row of tiles
+    ImageBuffer lab_row;  ///< a row of tiles
     TileFeatures part;
   };
   std::vector<cv::Rect> parts;
   std::vector<cv::Range> columns;  ///< by row of tiles: from the first wanted one to the last
-  std::array<PictureMemory, 3> lab_memory;
+  std::array<ImageBuffer, 3> lab_buffers;
   std::array<cv::Mat, 3> lab;
   int sobel_px = 0;  ///< of the kernels
   SobelKernels kernels;
@@ -47,7 +47,7 @@ struct FeatureMemory {
 /// the border beside them. Where depth is missing beyond repair the depth planes are neutral: no slope, no curvature,
 /// empty histograms. What else is in `image`, which keeps its memory, is undefined: left over from earlier frames.
 /// Throws InputError for a surface family that FeatureInput::extra lacks.
-void compute_features(const FeatureInput& input, int threads, FeatureMemory& memory, FeatureImage& image);
+void compute_features(const FeatureInput& input, int threads, FeatureWorkspace& workspace, FeatureImage& image);
 
 /// The same in all tiles.
 FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& settings, int threads,

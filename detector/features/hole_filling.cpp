@@ -50,7 +50,8 @@ void list_holes(const cv::Mat& depth, std::vector<Hole>& holes) {
 
 class Distances {
  public:
-  Distances(cv::Size size, std::vector<std::int32_t>& memory) : stride_(size.width + 2 * kBorder), memory_(memory) {
+  Distances(cv::Size size, std::vector<std::int32_t>& workspace)
+      : stride_(size.width + 2 * kBorder), memory_(workspace) {
     memory_.assign(static_cast<std::size_t>(stride_ * (size.height + 2 * kBorder)), kFarAway);
     for (int y = 0; y < size.height; ++y) std::fill_n(&at({0, static_cast<std::int16_t>(y)}), size.width, 0);
   }
@@ -96,11 +97,11 @@ void borrow_all(const std::vector<Hole>& holes, Distances& distances, cv::Mat& d
 
 }  // namespace
 
-void fill_holes(cv::Mat& depth, const HoleReach& reach, HoleMemory& memory) {
-  const std::vector<Hole>& holes = memory.holes;
-  list_holes(depth, memory.holes);
+void fill_holes(cv::Mat& depth, const HoleReach& reach, HoleWorkspace& workspace) {
+  const std::vector<Hole>& holes = workspace.holes;
+  list_holes(depth, workspace.holes);
   if (holes.empty() || holes.size() == depth.total()) return;
-  Distances distances(depth.size(), memory.distances);
+  Distances distances(depth.size(), workspace.distances);
   for (const Hole hole : holes) distances.at(hole) = kFarAway;
   if (reach.px_at_1m > 0.0F) {
     borrow_all<true>(holes, distances, depth);

@@ -20,7 +20,7 @@ struct Hole {
 };
 
 /// What fill_holes needs for itself, to be kept from picture to picture.
-struct HoleMemory {
+struct HoleWorkspace {
   std::vector<Hole> holes;              ///< row by row
   std::vector<std::int32_t> distances;  ///< to the pixel that a hole has borrowed from; 0 where there is no hole
 };
@@ -30,11 +30,11 @@ struct HoleMemory {
 /// camera loses near surfaces, and what lies in their shadow, before it loses what is behind them, so that a hole
 /// between the two is more likely part of the near one. Distances are those of the 5x5 chamfer mask (Borgefors 1986),
 /// within 2 % of the true ones. The time taken grows with the number of holes.
-void fill_holes(cv::Mat& depth, const HoleReach& reach, HoleMemory& memory);
+void fill_holes(cv::Mat& depth, const HoleReach& reach, HoleWorkspace& workspace);
 
 inline void fill_holes(cv::Mat& depth, const HoleReach& reach) {
-  HoleMemory memory;
-  fill_holes(depth, reach, memory);
+  HoleWorkspace workspace;
+  fill_holes(depth, reach, workspace);
 }
 
 }  // namespace houghstream

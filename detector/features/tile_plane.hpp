@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "detector/features/picture_memory.hpp"
+#include "detector/features/image_buffer.hpp"
 
 namespace houghstream {
 

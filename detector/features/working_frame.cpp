@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "detector/features/picture_memory.hpp"
+#include "detector/features/image_buffer.hpp"
 #include "pipeline/base/no_value.hpp"
 #include "pipeline/base/parallel.hpp"
 
@@ -97,7 +97,7 @@ HoleReach hole_reach(const FeatureSettings& settings, const Camera& camera) {
 }
 
 /// Into `out`, whose memory is used again where nobody shares it.
-void resize_into(const RgbdFrame& frame, float scale, const FeatureSettings& settings, HoleMemory& holes,
+void resize_into(const RgbdFrame& frame, float scale, const FeatureSettings& settings, HoleWorkspace& holes,
                  WorkingFrame& out) {
   forget_shared(out.colour);
   forget_shared(out.filled_depth);
@@ -151,7 +151,7 @@ std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings, const 
 
 WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings) {
   WorkingFrame out;
-  HoleMemory holes;
+  HoleWorkspace holes;
   resize_into(frame, scale, settings, holes, out);
   return out;
 }

@@ -62,7 +62,7 @@ struct WorkingImages {
   std::vector<FeatureLevel> levels;  ///< for the frame's camera
   std::vector<WorkingFrame> frames;  ///< one for each level
   LabLevels lab;                     ///< make_smoothed_lab of the first level
-  std::vector<HoleMemory> holes;     ///< one for each level
+  std::vector<HoleWorkspace> holes;  ///< one for each level
   cv::Mat blurred;
   cv::Mat toned;  ///< colours of the level that has the frame's own size
 };

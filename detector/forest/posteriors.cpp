@@ -63,7 +63,7 @@ void append_entries(const ForestIndex& index, std::size_t class_index, std::size
 void PatchPosteriors::reset(const ForestIndex& index, std::size_t runs, float min_share, int threads) {
   index_ = &index;
   min_share_ = min_share;
-  workers_.make_room(threads);
+  workers_.resize(threads);
   supporters_.resize(runs * index.forest().classes.size());
   for (SupportingPatches& supporters : supporters_) {
     supporters.patches.clear();
@@ -93,13 +93,13 @@ void PatchPosteriors::note(const RunLeaves& seen) {
   }
 }
 
-void find_posteriors(const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors) {
-  std::vector<PatchRun>& runs = memory.runs;
+void find_posteriors(const PosteriorInput& input, LeafWorkspace& workspace, PatchPosteriors& posteriors) {
+  std::vector<PatchRun>& runs = workspace.runs;
   list_runs(input.patches, runs);
   LeafInput leaves{input.index, input.features, input.patches, runs};
   leaves.early_end = {input.settings.first_trees, input.settings.min_first_posterior};
   posteriors.reset(input.index, runs.size(), input.settings.min_class_share, input.threads);
-  find_leaves(leaves, input.threads, memory, [&](const RunLeaves& seen) { posteriors.note(seen); });
+  find_leaves(leaves, input.threads, workspace, [&](const RunLeaves& seen) { posteriors.note(seen); });
 }
 
 }  // namespace houghstream

@@ -68,6 +68,6 @@ struct PosteriorInput {
 
 /// Walks the patches down the forest and notes for which classes they vote. What `posteriors` held is overwritten and
 /// its memory used again.
-void find_posteriors(const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors);
+void find_posteriors(const PosteriorInput& input, LeafWorkspace& workspace, PatchPosteriors& posteriors);
 
 }  // namespace houghstream

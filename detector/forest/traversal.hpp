@@ -42,7 +42,7 @@ struct RunLeaves {
 using LeafVisitor = std::function<void(const RunLeaves&)>;
 
 /// What find_leaves needs for itself, to be kept from frame to frame.
-struct LeafMemory {
+struct LeafWorkspace {
   struct Worker {
     std::vector<std::int32_t> leaves;    ///< tree by tree, of the patches that are left
     std::vector<std::uint32_t> patches;  ///< those left, into the grid
@@ -57,6 +57,6 @@ struct LeafMemory {
 
 /// Leaf of every patch in every tree, but for patches that are given up. Patches are walked many at once, and runs are
 /// visited at the same time; the leaves are those of find_leaf.
-void find_leaves(const LeafInput& input, int threads, LeafMemory& memory, const LeafVisitor& visit);
+void find_leaves(const LeafInput& input, int threads, LeafWorkspace& workspace, const LeafVisitor& visit);
 
 }  // namespace houghstream

@@ -135,7 +135,7 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
   const int threads = profile.training.threads;
   std::vector<ScoreExamples> by_frame(static_cast<std::size_t>(source.count));
   PerWorker<DetectorWorkspace> workspaces;
-  workspaces.make_room(threads);
+  workspaces.resize(threads);
   parallel_for_workers(threads, source.count, [&](int worker, int f) {
     const ValidationFrame validation = source.frame(f);
     std::vector<std::uint32_t> shown = validation.others;

@@ -70,7 +70,7 @@ void smooth(double sigma_px, HoughSpace& space) {
 
 }  // namespace
 
-void cast_votes(const VotingInput& input, int class_index, CastMemory& memory, HoughSpace& space) {
+void cast_votes(const VotingInput& input, int class_index, CastWorkspace& workspace, HoughSpace& space) {
   space.cell_px = 2;
   const CellGrid grid(input.camera, space.cell_px);
   space.width = grid.width;
@@ -81,10 +81,10 @@ void cast_votes(const VotingInput& input, int class_index, CastMemory& memory, H
                                                for (std::uint32_t e = 0; e < count; ++e)
                                                  space.voters.push_back({p, entries[e]});
                                              });
-  cast_all({input.forest, input.patches, space.voters, grid}, memory.cast);
-  sum_by_cell(memory.cast, grid, memory.sums);
-  lay_out(memory.sums, memory.next, space);
-  sort_by_cell(memory.cast, memory.next, space);
+  cast_all({input.forest, input.patches, space.voters, grid}, workspace.cast);
+  sum_by_cell(workspace.cast, grid, workspace.sums);
+  lay_out(workspace.sums, workspace.next, space);
+  sort_by_cell(workspace.cast, workspace.next, space);
   smooth(input.settings.hough_sigma_px, space);
 }
 

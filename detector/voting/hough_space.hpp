@@ -75,7 +75,7 @@ struct CellSum {
 };
 
 /// What cast_votes needs for itself, to be kept from class to class.
-struct CastMemory {
+struct CastWorkspace {
   CastVotes cast;
   std::vector<CellSum> sums;
   std::vector<std::uint32_t> next;
@@ -83,7 +83,7 @@ struct CastMemory {
 
 /// Votes for one class of all patches that support it (paper, Section 2; Gall et al. 2011, Section 3.3, here in 3-D).
 /// What `space` held is overwritten and its memory used again.
-void cast_votes(const VotingInput& input, int class_index, CastMemory& memory, HoughSpace& space);
+void cast_votes(const VotingInput& input, int class_index, CastWorkspace& workspace, HoughSpace& space);
 
 /// The image of cells in which votes are counted.
 struct CellGrid {

@@ -11,15 +11,15 @@ namespace houghstream {
 namespace {
 
 /// Sums the support of a maximum by voter; returns the number of votes.
-int sum_by_voter(const VotingInput& input, const Eigen::Vector3f& centre, VotingMemory::Worker& own,
+int sum_by_voter(const VotingInput& input, const Eigen::Vector3f& centre, VotingWorkspace::Worker& workspace,
                  SparseSums::Weights& by_voter) {
-  const HoughSpace& space = own.space;
+  const HoughSpace& space = workspace.space;
   const float vote_sigma = input.settings.vote_sigma;
-  SparseSums::Weights& supports = own.supports;
-  own.voter_sums.make_room(space.voters.size());
-  ranges_around(space, input.camera, centre, vote_sigma, own.ranges);
+  SparseSums::Weights& supports = workspace.supports;
+  workspace.voter_sums.resize(space.voters.size());
+  ranges_around(space, input.camera, centre, vote_sigma, workspace.ranges);
   int count = 0;
-  for (const VoteRange& range : own.ranges) {
+  for (const VoteRange& range : workspace.ranges) {
     supports.resize(std::max<std::size_t>(supports.size(), range.end - range.begin + 1));
     std::size_t found = 0;
     for (std::uint32_t v = range.begin; v < range.end; ++v) {  // without a branch that nobody can predict
@@ -28,21 +28,22 @@ int sum_by_voter(const VotingInput& input, const Eigen::Vector3f& centre, Voting
       supports[found] = {v, k * vote.weight};
       found += k > 0.0F ? 1 : 0;
     }
-    for (std::size_t i = 0; i < found; ++i) own.voter_sums.add(space.voter[supports[i].first], supports[i].second);
+    for (std::size_t i = 0; i < found; ++i)
+      workspace.voter_sums.add(space.voter[supports[i].first], supports[i].second);
     count += static_cast<int>(found);
   }
-  own.voter_sums.take(by_voter);
+  workspace.voter_sums.take(by_voter);
   return count;
 }
 
 /// Sums the support by remembered view, heaviest first.
-void sum_by_view(const Forest& forest, const SparseSums::Weights& by_voter, VotingMemory::Worker& own,
+void sum_by_view(const Forest& forest, const SparseSums::Weights& by_voter, VotingWorkspace::Worker& workspace,
                  SparseSums::Weights& by_view) {
   constexpr std::size_t kAhead = 8;  // voters, so that their cache misses overlap
   const auto class_of = [&](std::size_t s) {
-    return &forest.leaf_classes[own.space.voters[by_voter[s].first].leaf_class];
+    return &forest.leaf_classes[workspace.space.voters[by_voter[s].first].leaf_class];
   };
-  own.view_sums.make_room(forest.views.size());
+  workspace.view_sums.resize(forest.views.size());
   for (std::size_t i = 0; i < by_voter.size(); ++i) {
     if (i + 2 * kAhead < by_voter.size()) {
       hwy::Prefetch(class_of(i + 2 * kAhead));
@@ -51,10 +52,10 @@ void sum_by_view(const Forest& forest, const SparseSums::Weights& by_voter, Voti
     }
     const LeafClass& entry = *class_of(i);
     for (std::uint32_t v = entry.first_view; v < entry.first_view + entry.view_count; ++v) {
-      own.view_sums.add(forest.leaf_views[v].view, by_voter[i].second * forest.leaf_views[v].weight);
+      workspace.view_sums.add(forest.leaf_views[v].view, by_voter[i].second * forest.leaf_views[v].weight);
     }
   }
-  own.view_sums.take(by_view);
+  workspace.view_sums.take(by_view);
   // ties by index, as a stable sort would leave them, which takes memory for each maximum
   std::sort(by_view.begin(), by_view.end(), [](const auto& a, const auto& b) {
     return a.second > b.second || (a.second == b.second && a.first < b.first);
@@ -62,29 +63,30 @@ void sum_by_view(const Forest& forest, const SparseSums::Weights& by_voter, Voti
 }
 
 /// A maximum with its mass, which is what is seen of the object: the weight times the area of the patches.
-Hypothesis score_maximum(const VotingInput& input, const Eigen::Vector3f& centre, VotingMemory::Worker& own,
+Hypothesis score_maximum(const VotingInput& input, const Eigen::Vector3f& centre, VotingWorkspace::Worker& workspace,
                          SparseSums::Weights& by_voter) {
   Hypothesis hypothesis;
   hypothesis.centre_camera = centre;
-  hypothesis.vote_count = sum_by_voter(input, centre, own, by_voter);
+  hypothesis.vote_count = sum_by_voter(input, centre, workspace, by_voter);
   for (const auto& [index, weight] : by_voter) {
     hypothesis.weight += weight;
-    hypothesis.mass += weight * input.patches.area[own.space.voters[index].patch];
+    hypothesis.mass += weight * input.patches.area[workspace.space.voters[index].patch];
   }
   return hypothesis;
 }
 
 /// What supports it, by patch and by view.
-void add_support(const Forest& forest, const SparseSums::Weights& by_voter, VotingMemory::Worker& own,
+void add_support(const Forest& forest, const SparseSums::Weights& by_voter, VotingWorkspace::Worker& workspace,
                  Hypothesis& hypothesis) {
-  own.by_patch.clear();
+  workspace.by_patch.clear();
   for (const auto& [index, weight] : by_voter) {
-    const std::uint32_t patch = own.space.voters[index].patch;
-    if (own.by_patch.empty() || own.by_patch.back().first != patch) own.by_patch.emplace_back(patch, 0.0F);
-    own.by_patch.back().second += weight;
+    const std::uint32_t patch = workspace.space.voters[index].patch;
+    if (workspace.by_patch.empty() || workspace.by_patch.back().first != patch)
+      workspace.by_patch.emplace_back(patch, 0.0F);
+    workspace.by_patch.back().second += weight;
   }
-  hypothesis.patches = own.by_patch;
-  sum_by_view(forest, by_voter, own, hypothesis.views);
+  hypothesis.patches = workspace.by_patch;
+  sum_by_view(forest, by_voter, workspace, hypothesis.views);
 }
 
 /// The classes, those with the most to do first, so that no thread starts with one when the others have ended.
@@ -102,7 +104,7 @@ std::vector<std::size_t> by_work(std::size_t classes, const PatchPosteriors& pos
 
 }  // namespace
 
-void SparseSums::make_room(std::size_t count) {
+void SparseSums::resize(std::size_t count) {
   if (sums_.size() >= count) return;
   sums_.resize(count, 0.0F);
   touched_.resize(count / kBits + 1, 0);
@@ -123,19 +125,20 @@ void SparseSums::take(Weights& out) {
   }
 }
 
-std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t class_index, VotingMemory::Worker& own) {
+std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t class_index,
+                                         VotingWorkspace::Worker& workspace) {
   const VotingSettings& settings = input.settings;
   const std::size_t classes = input.forest.classes.size();
   const float min_mass = settings.min_mass_share * input.forest.classes[class_index].nominal_vote_mass;
-  const std::vector<Eigen::Vector3f> maxima =
-      find_maxima(own.space, input.camera, settings, per_class_budget(classes, settings.maxima_per_class), own.maxima);
+  const std::vector<Eigen::Vector3f> maxima = find_maxima(
+      workspace.space, input.camera, settings, per_class_budget(classes, settings.maxima_per_class), workspace.maxima);
   std::vector<Hypothesis> weighed;
   std::vector<std::size_t> order;
   weighed.reserve(maxima.size());
   order.reserve(maxima.size());
-  own.by_voter.resize(std::max(own.by_voter.size(), maxima.size()));
+  workspace.by_voter.resize(std::max(workspace.by_voter.size(), maxima.size()));
   for (std::size_t i = 0; i < maxima.size(); ++i) {
-    weighed.push_back(score_maximum(input, maxima[i], own, own.by_voter[i]));
+    weighed.push_back(score_maximum(input, maxima[i], workspace, workspace.by_voter[i]));
     if (weighed.back().mass >= min_mass) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(),
@@ -147,21 +150,21 @@ std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t c
   for (const std::size_t i : order) {
     hypotheses.push_back(std::move(weighed[i]));
     hypotheses.back().class_index = class_index;
-    add_support(input.forest, own.by_voter[i], own, hypotheses.back());
+    add_support(input.forest, workspace.by_voter[i], workspace, hypotheses.back());
   }
   return hypotheses;
 }
 
-std::vector<Hypothesis> find_hypotheses(const VotingInput& input, int threads, VotingMemory& memory) {
+std::vector<Hypothesis> find_hypotheses(const VotingInput& input, int threads, VotingWorkspace& workspaces) {
   const std::vector<ObjectClass>& classes = input.forest.classes;
   const std::vector<std::size_t> order = by_work(classes.size(), input.posteriors);
   std::vector<std::vector<Hypothesis>> by_class(classes.size());
-  memory.workers.make_room(threads);
+  workspaces.workers.resize(threads);
   parallel_for_workers(threads, static_cast<int>(order.size()), [&](int worker, int i) {
     const std::size_t c = order[static_cast<std::size_t>(i)];
-    VotingMemory::Worker& own = memory.workers[worker];
-    cast_votes(input, static_cast<int>(c), own.casting, own.space);
-    by_class[c] = class_hypotheses(input, c, own);
+    VotingWorkspace::Worker& workspace = workspaces.workers[worker];
+    cast_votes(input, static_cast<int>(c), workspace.casting, workspace.space);
+    by_class[c] = class_hypotheses(input, c, workspace);
   });
   std::vector<Hypothesis> all;
   std::size_t count = 0;

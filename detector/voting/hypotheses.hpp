@@ -25,7 +25,7 @@ class SparseSums {
  public:
   using Weights = std::vector<std::pair<std::uint32_t, float>>;
 
-  void make_room(std::size_t count);
+  void resize(std::size_t count);
   void add(std::uint32_t index, float value) {
     touched_[index / kBits] |= std::uint64_t{1} << index % kBits;
     sums_[index] += value;
@@ -40,11 +40,11 @@ class SparseSums {
 };
 
 /// What find_hypotheses needs for itself, to be kept from frame to frame.
-struct VotingMemory {
+struct VotingWorkspace {
   struct Worker {
     HoughSpace space;
-    CastMemory casting;
-    MaximaMemory maxima;
+    CastWorkspace casting;
+    MaximaWorkspace maxima;
     std::vector<VoteRange> ranges;
     SparseSums::Weights supports;  ///< of a range's votes
     SparseSums voter_sums;
@@ -57,11 +57,12 @@ struct VotingMemory {
 
 /// Of the maxima of a class's votes in own.space the heaviest, as many as the settings say and heaviest first: those of
 /// the Hough image's highest that have the mass that is asked for.
-std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t class_index, VotingMemory::Worker& own);
+std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t class_index,
+                                         VotingWorkspace::Worker& workspace);
 
 /// Casts the votes of every class and finds their maxima: class by class in one pass, so that a class's Hough space is
 /// still in the cache. Ordered by class, each class's heaviest first: what is near has more patches, and so more
 /// votes, while its mass is that of what is far. The same for any number of threads.
-std::vector<Hypothesis> find_hypotheses(const VotingInput& input, int threads, VotingMemory& memory);
+std::vector<Hypothesis> find_hypotheses(const VotingInput& input, int threads, VotingWorkspace& workspace);
 
 }  // namespace houghstream

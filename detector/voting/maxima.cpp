@@ -40,15 +40,15 @@ void list_maxima(const HoughSpace& space, float min_relative_peak, int limit, st
 }
 
 /// Weighted median depth of the votes of a cell's neighbourhood: the start of the mean shift.
-float start_depth(const HoughSpace& space, const HoughCell& cell, MaximaMemory& memory) {
-  ranges_near(space, cell.x, cell.y, 1, memory.ranges);
-  memory.depths.clear();
-  for (const VoteRange& range : memory.ranges) {
+float start_depth(const HoughSpace& space, const HoughCell& cell, MaximaWorkspace& workspace) {
+  ranges_near(space, cell.x, cell.y, 1, workspace.ranges);
+  workspace.depths.clear();
+  for (const VoteRange& range : workspace.ranges) {
     for (std::uint32_t v = range.begin; v < range.end; ++v) {
-      memory.depths.emplace_back(space.votes[v].centre_camera.z(), space.votes[v].weight);
+      workspace.depths.emplace_back(space.votes[v].centre_camera.z(), space.votes[v].weight);
     }
   }
-  return weighted_median(memory.depths);
+  return weighted_median(workspace.depths);
 }
 
 }  // namespace
@@ -61,17 +61,17 @@ int per_class_budget(std::size_t classes, int per_class) {
 }
 
 std::vector<Eigen::Vector3f> find_maxima(const HoughSpace& space, const Camera& camera, const VotingSettings& settings,
-                                         int limit, MaximaMemory& memory) {
-  list_maxima(space, settings.min_relative_peak, limit, memory.cells);
+                                         int limit, MaximaWorkspace& workspace) {
+  list_maxima(space, settings.min_relative_peak, limit, workspace.cells);
   std::vector<Eigen::Vector3f> centres;
-  centres.reserve(memory.cells.size());
-  for (const HoughCell& cell : memory.cells) {
-    const float z = start_depth(space, cell, memory);
+  centres.reserve(workspace.cells.size());
+  for (const HoughCell& cell : workspace.cells) {
+    const float z = start_depth(space, cell, workspace);
     if (z <= 0.0F) continue;
     const double u = (cell.x + 0.5) * space.cell_px - 0.5;
     const double v = (cell.y + 0.5) * space.cell_px - 0.5;
     const Eigen::Vector3f start = camera.backproject(u, v, z).cast<float>();
-    const Eigen::Vector3f centre = climb(space, camera, start, settings.vote_sigma, memory.ranges);
+    const Eigen::Vector3f centre = climb(space, camera, start, settings.vote_sigma, workspace.ranges);
     const auto meets = [&](const Eigen::Vector3f& other) {
       return (other - centre).norm() < 2.0F * settings.vote_sigma;
     };

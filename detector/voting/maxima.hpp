@@ -20,7 +20,7 @@ struct HoughCell {
 };
 
 /// What find_maxima needs for itself, to be kept from class to class.
-struct MaximaMemory {
+struct MaximaWorkspace {
   std::vector<HoughCell> cells;
   std::vector<VoteRange> ranges;
   std::vector<std::pair<float, float>> depths;  ///< and weights
@@ -29,6 +29,6 @@ struct MaximaMemory {
 /// Maxima of the Hough image, at most `limit`, each moved to the nearest maximum of the votes in 3-D, those that meet
 /// merged: camera frame, metres, the image's highest first.
 std::vector<Eigen::Vector3f> find_maxima(const HoughSpace& space, const Camera& camera, const VotingSettings& settings,
-                                         int limit, MaximaMemory& memory);
+                                         int limit, MaximaWorkspace& workspace);
 
 }  // namespace houghstream

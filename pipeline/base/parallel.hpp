@@ -64,7 +64,7 @@ template <typename T>
 class PerWorker {
  public:
   /// To be called before the workers start.
-  void make_room(int threads) {
+  void resize(int threads) {
     while (parts_.empty() || parts_.size() < static_cast<std::size_t>(threads < 0 ? 0 : threads)) {
       parts_.push_back(std::make_unique<T>());
     }

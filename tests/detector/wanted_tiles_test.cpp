@@ -60,7 +60,7 @@ TEST(WantedTiles, LeavesInWantedTilesAreThoseInWholeImages) {
     DetectorWorkspace workspace;
     see(other_frame(), settings, workspace);
     see(frame, settings, workspace);
-    LeafMemory memory;
+    LeafWorkspace memory;
     PatchPosteriors expected;
     find_posteriors({toy::forest_index(), whole, workspace.patches, settings.leaves, threads}, memory, expected);
     for (int c = 0; c < 2; ++c) {
@@ -84,7 +84,7 @@ TEST(WantedTiles, EveryLeafOfEveryTreeIsFoundInWantedTilesAlone) {
     const WorkingFrame other = make_working_frame(other_frame(), levels[l].scale, forest.features);
     wanted[l] = compute_features(other, forest.features, 1);
     const WorkingFrame working = make_working_frame(frame, levels[l].scale, forest.features);
-    FeatureMemory memory;
+    FeatureWorkspace memory;
     compute_features({working, forest.features, patches.tiles[l]}, 2, memory, wanted[l]);
   }
   EXPECT_NE(*wanted[0].at(wanted[0].width() - 1, 0), *whole[0].at(whole[0].width() - 1, 0));  // nobody looks there

@@ -81,11 +81,12 @@ Canvas make_canvas(const Composite& composite, const FeatureLevel& level, const 
 }
 
 /// All features of a picture; they stay until the next one.
-const FeatureImage& all_features(const WorkingFrame& frame, const PictureInput& input, PictureWorkspace& own) {
-  own.tiles.want_all(frame.colour.size());
+const FeatureImage& all_features(const WorkingFrame& frame, const PictureInput& input, PictureWorkspace& workspace) {
+  workspace.tiles.want_all(frame.colour.size());
   const ExtraPlanes extra = input.scales.extra_planes(frame, input.features);
-  compute_features({frame, input.features, own.tiles, &extra}, 1, own.feature_memory, own.features);
-  return own.features;
+  compute_features({frame, input.features, workspace.tiles, &extra}, 1, workspace.feature_workspace,
+                   workspace.features);
+  return workspace.features;
 }
 
 /// What the patches of a picture look at.
@@ -125,7 +126,7 @@ cv::Rect background_window(const RgbdFrame& background, const FeatureLevel& leve
 }  // namespace
 
 TrainingPicture object_picture(const LabelledView& taught, const RgbdFrame& background, const PictureInput& input,
-                               Random& random, PictureWorkspace& own) {
+                               Random& random, PictureWorkspace& workspace) {
   const TrainingView& view = taught.view;
   const PictureSettings& settings = input.settings;
   TrainingPicture picture;
@@ -164,12 +165,12 @@ TrainingPicture object_picture(const LabelledView& taught, const RgbdFrame& back
   }
   const double px = composite->frame.camera.metres_per_px(input.scales.counted_distance(distance));
   picture.whole_area = static_cast<float>(composite->whole_px * px * px);
-  picture.features = all_features(canvas.frame, input, own).cut_out(seen_by(picture, input.patch));
+  picture.features = all_features(canvas.frame, input, workspace).cut_out(seen_by(picture, input.patch));
   return picture;
 }
 
 TrainingPicture background_picture(const RgbdFrame& background, const FeatureLevel& level, const PictureInput& input,
-                                   Random& random, PictureWorkspace& own) {
+                                   Random& random, PictureWorkspace& workspace) {
   const PictureSettings& settings = input.settings;
   const cv::Rect place = background_window(background, level, input.scales, random);
   RgbdFrame part;
@@ -188,7 +189,7 @@ TrainingPicture background_picture(const RgbdFrame& background, const FeatureLev
     auto& list = picture.samples.size() < count ? picture.samples : picture.spare_background;
     list.push_back(sample_at(at, frame, input));
   }
-  picture.features = all_features(frame, input, own).cut_out(seen_by(picture, input.patch));
+  picture.features = all_features(frame, input, workspace).cut_out(seen_by(picture, input.patch));
   return picture;
 }
 
@@ -309,7 +310,7 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
   const int total = object_count + static_cast<int>(backgrounds.size()) * kBackgroundPictures;
   std::vector<TrainingPicture> pictures(static_cast<std::size_t>(total));
   PerWorker<PictureWorkspace> workspaces;
-  workspaces.make_room(settings.threads);
+  workspaces.resize(settings.threads);
   parallel_for_workers(settings.threads, total, [&](int worker, int i) {
     Random random = Random::for_item(settings.seed, static_cast<std::uint64_t>(i));
     auto& picture = pictures[static_cast<std::size_t>(i)];

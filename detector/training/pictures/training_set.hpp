@@ -76,18 +76,18 @@ struct LabelledView {
 /// clear first.
 struct PictureWorkspace {
   FeatureTiles tiles;
-  FeatureMemory feature_memory;
+  FeatureWorkspace feature_workspace;
   FeatureImage features;
 };
 
 /// An object put into a background: patches on it and some beside it. Empty where the background is too small.
 TrainingPicture object_picture(const LabelledView& taught, const RgbdFrame& background, const PictureInput& input,
-                               Random& random, PictureWorkspace& own);
+                               Random& random, PictureWorkspace& workspace);
 
 constexpr int kBackgroundPictures = 4;  ///< per background frame, spread over the levels
 
 /// A part of a background as one level sees it.
 TrainingPicture background_picture(const RgbdFrame& background, const FeatureLevel& level, const PictureInput& input,
-                                   Random& random, PictureWorkspace& own);
+                                   Random& random, PictureWorkspace& workspace);
 
 }  // namespace houghstream::training

@@ -103,13 +103,13 @@ TEST(ReferenceFeatures, WantedTilesDoNotDependOnTheOthers) {
   tiles.clear({200, 150});
   tiles.add_patch(70, 40, 3);
   tiles.add_patch(199, 149, 24);
-  FeatureMemory memory;
+  FeatureWorkspace workspace;
   FeatureImage found;
   FeatureTiles all;
   all.want_all({210, 150});
   const WorkingFrame other = rough_frame(210, 150, random);
-  compute_features({other, {}, all}, 1, memory, found);  // another picture, left in the memory
-  compute_features({frame, {}, tiles}, 2, memory, found);
+  compute_features({other, {}, all}, 1, workspace, found);  // another picture, left in the memory
+  compute_features({frame, {}, tiles}, 2, workspace, found);
   const int planes = FeatureLayout().planes();
   std::vector<cv::Rect> parts;
   for (int row = 0; row < tiles.rows(); ++row) tiles.list_parts(row, 128, parts);

@@ -22,8 +22,8 @@ cv::Rect2f box_of(const cv::Rect& supported) {
       patches.cell_px.emplace_back(x, y, 2, 2);
     }
   }
-  BoxMemory memory;
-  return backproject_box(forest, hypothesis, patches, Camera{640, 480, 500, 500, 319.5, 239.5}, memory);
+  BoxWorkspace workspace;
+  return backproject_box(forest, hypothesis, patches, Camera{640, 480, 500, 500, 319.5, 239.5}, workspace);
 }
 
 TEST(Boxes, SidesMoveOutToTheRememberedOnesUnlessHidden) {
@@ -40,8 +40,8 @@ TEST(Boxes, SidesMoveOutToTheRememberedOnesUnlessHidden) {
 }
 
 TEST(Boxes, WithoutSupportThereIsNoBox) {
-  BoxMemory memory;
-  EXPECT_EQ(backproject_box({}, {}, {}, toy::kSmallCamera, memory), cv::Rect2f());
+  BoxWorkspace workspace;
+  EXPECT_EQ(backproject_box({}, {}, {}, toy::kSmallCamera, workspace), cv::Rect2f());
 }
 
 }  // namespace

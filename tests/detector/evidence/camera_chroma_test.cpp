@@ -48,8 +48,8 @@ std::vector<Candidate> weighed(const Forest& forest, const RgbdFrame& frame,
     hypotheses[i].weight = 1.0F;
     hypotheses[i].views = {{static_cast<std::uint32_t>(i), 1.0F}};
   }
-  EvidenceMemory memory;
-  return weigh_in_camera_colours({index, in_lab, {}, {}, {}}, remembered, hypotheses, 2, memory);
+  EvidenceWorkspace workspace;
+  return weigh_in_camera_colours({index, in_lab, {}, {}, {}}, remembered, hypotheses, 2, workspace);
 }
 
 std::vector<ChromaPair> seen_with_cast(double a, double b) {

@@ -92,9 +92,9 @@ Evidence evidence_among(std::size_t views, const RgbdFrame& frame) {
   hypothesis.mass = 1.0F;
   hypothesis.weight = 1.0F;
   hypothesis.views = {{0, 0.5F}, {1, 0.5F}};
-  EvidenceMemory memory;
+  EvidenceWorkspace workspace;
   const EvidenceInput input{index, toy::lab_frame(frame, frame.colour, 1.0F), {}, {}, without_appearance};
-  return weigh_evidence(input, {hypothesis}, 1, memory).front().evidence;
+  return weigh_evidence(input, {hypothesis}, 1, workspace).front().evidence;
 }
 
 TEST(Candidates, APartThatAgreesBetterIsNotTakenForTheWholeInAnotherAttitude) {

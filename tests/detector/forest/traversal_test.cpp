@@ -32,9 +32,9 @@ std::vector<std::int32_t> leaves_of(const ForestIndex& index, const std::vector<
   };
   LeafInput input{index, features, patches, runs};
   input.early_end = early_end;
-  LeafMemory memory;
+  LeafWorkspace workspace;
   if (threads > 0) {
-    find_leaves(input, threads, memory, visit);
+    find_leaves(input, threads, workspace, visit);
   } else {
     baseline::reference_leaves(input, -threads, visit);
   }

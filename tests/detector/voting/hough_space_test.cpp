@@ -35,8 +35,8 @@ HoughSpace vote(const Forest& forest, const std::vector<Eigen::Vector3f>& points
   std::iota(all.begin(), all.end(), 0U);
   posteriors.note({0, all.size(), all.data(), leaves.data()});
   HoughSpace space;
-  CastMemory memory;
-  cast_votes({forest, patches, posteriors, kHundredWide, {}}, 0, memory, space);
+  CastWorkspace workspace;
+  cast_votes({forest, patches, posteriors, kHundredWide, {}}, 0, workspace, space);
   return space;
 }
 
@@ -108,8 +108,8 @@ TEST(HoughSpace, ASpaceIsUsedAgain) {
   const ForestIndex index(forest);
   PatchPosteriors posteriors(index, 1, 0.0F);
   posteriors.note({0, 1, &patch, &leaf});
-  CastMemory memory;
-  cast_votes({forest, patches, posteriors, kHundredWide, {}}, 0, memory, space);
+  CastWorkspace workspace;
+  cast_votes({forest, patches, posteriors, kHundredWide, {}}, 0, workspace, space);
   const HoughSpace fresh = vote(forest, patches.point_camera);
   EXPECT_EQ(space.voter.size(), 1U);
   EXPECT_EQ(space.voters.size(), 1U);

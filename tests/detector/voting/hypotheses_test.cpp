@@ -54,9 +54,9 @@ std::vector<Hypothesis> find(const PatchGrid& patches, float min_mass) {
   VotingSettings settings;
   settings.min_mass_share = min_mass;
   const VotingInput input{forest, patches, posteriors, toy::kSmallCamera, settings};
-  VotingMemory::Worker own;
-  cast_votes(input, 0, own.casting, own.space);
-  return class_hypotheses(input, 0, own);
+  VotingWorkspace::Worker workspace;
+  cast_votes(input, 0, workspace.casting, workspace.space);
+  return class_hypotheses(input, 0, workspace);
 }
 
 TEST(Hypotheses, TwoClustersGiveTwoMaximaAtTheirMeans) {
@@ -104,8 +104,8 @@ TEST(Hypotheses, WhatIsFarIsNotPassedOverForWhatHasMorePatches) {
   settings.min_mass_share = 0.0F;
   settings.candidates_per_class = 1;
   const VotingInput input{forest, patches, posteriors, toy::kSmallCamera, settings};
-  VotingMemory memory;
-  const std::vector<Hypothesis> found = find_hypotheses(input, 1, memory);
+  VotingWorkspace workspace;
+  const std::vector<Hypothesis> found = find_hypotheses(input, 1, workspace);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_LT((found[0].centre_camera - far).norm(), 0.001F) << found[0].centre_camera.transpose();
 }

@@ -34,8 +34,8 @@ HoughSpace space_of(const std::vector<Placed>& placed) {
 }
 
 std::vector<Eigen::Vector3f> maxima_of(const HoughSpace& space, int limit = 24) {
-  MaximaMemory memory;
-  return find_maxima(space, toy::kSmallCamera, {}, limit, memory);
+  MaximaWorkspace workspace;
+  return find_maxima(space, toy::kSmallCamera, {}, limit, workspace);
 }
 
 TEST(Maxima, TheHighestComesFirst) {

@@ -113,13 +113,13 @@ TEST(ParallelForWorkers, AWorkerDoesOneItemAtATime) {
 
 TEST(PerWorker, MemoryStaysWhereItIsWhenThereAreMore) {
   PerWorker<std::vector<int>> memory;
-  memory.make_room(0);  // one worker works at any rate
+  memory.resize(0);  // one worker works at any rate
   memory[0].assign(10, 7);
   const int* const before = memory[0].data();
-  memory.make_room(4);
+  memory.resize(4);
   EXPECT_EQ(memory[0].data(), before);
   EXPECT_TRUE(memory[3].empty());
-  memory.make_room(2);
+  memory.resize(2);
   EXPECT_TRUE(memory[3].empty());
 }
 

@@ -57,13 +57,13 @@ void register_search(const RgbdFrame& frame, const ForestIndex& index, const Det
   static DetectorWorkspace seen;
   see({index, settings}, frame, seen);
   add("votes", [&index, &settings] {
-    static VotingMemory::Worker own;
+    static VotingWorkspace::Worker voting;
     const VotingInput input = voting_input({index, settings}, seen);
     for (std::size_t c = 0; c < index.forest().classes.size(); ++c) {
-      cast_votes(input, static_cast<int>(c), own.casting, own.space);
+      cast_votes(input, static_cast<int>(c), voting.casting, voting.space);
     }
   });
-  static std::vector<VotingMemory::Worker> by_class(index.forest().classes.size());
+  static std::vector<VotingWorkspace::Worker> by_class(index.forest().classes.size());
   const VotingInput input = voting_input({index, settings}, seen);
   for (std::size_t c = 0; c < by_class.size(); ++c) {
     cast_votes(input, static_cast<int>(c), by_class[c].casting, by_class[c].space);

@@ -115,7 +115,7 @@ quality::FoundPoses find_poses(const Practised& practised, const quality::PosedM
   found.frames.resize(practised.frames.size());
   found.terms.resize(practised.frames.size());
   PerWorker<DetectorWorkspace> workspaces;
-  workspaces.make_room(practised.threads);
+  workspaces.resize(practised.threads);
   ProgressLine progress("search in practice rooms", static_cast<double>(practised.frames.size()));
   for (int half = 0; half < kHalves; ++half) {
     fit_scores_without(half, practised, forest);

@@ -44,8 +44,8 @@ PictureInput input_of(const Profile& profile) {
 
 TrainingPicture picture_of(const TrainingView& view, const Profile& profile, std::uint64_t seed) {
   Random random(seed);
-  PictureWorkspace own;
-  return object_picture({view, 2, 5}, toy::room(3), input_of(profile), random, own);
+  PictureWorkspace workspace;
+  return object_picture({view, 2, 5}, toy::room(3), input_of(profile), random, workspace);
 }
 
 /// How much larger the picture shows the object than the view does, `image_scale` aside.
@@ -147,12 +147,12 @@ void expect_held(const TrainingPicture& picture, const PatchSettings& patch) {
 
 TEST(TrainingPictures, PicturesHoldWhatTheirPatchesLookAtOnly) {
   const Profile profile = open_profile("realtime");
-  PictureWorkspace own;
+  PictureWorkspace workspace;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     expect_held(picture_of(round_view(), profile, seed), profile.patch);
     Random random(seed);
     for (const FeatureLevel& level : feature_levels(profile.features)) {
-      expect_held(background_picture(toy::room(3), level, input_of(profile), random, own), profile.patch);
+      expect_held(background_picture(toy::room(3), level, input_of(profile), random, workspace), profile.patch);
     }
   }
 }
@@ -214,10 +214,10 @@ TEST(TrainingPictures, ATooSmallBackgroundGivesNothing) {
   corner.depth = corner.depth(cv::Rect(0, 0, 120, 120)).clone();
   corner.camera = corner.camera.cropped(0, 0, 120, 120);
   Random random(1);
-  PictureWorkspace own;
+  PictureWorkspace workspace;
   const TrainingView view = round_view();
   const Profile gall = open_profile("gall");
-  const TrainingPicture picture = object_picture({view, 1, 0}, corner, input_of(gall), random, own);
+  const TrainingPicture picture = object_picture({view, 1, 0}, corner, input_of(gall), random, workspace);
   EXPECT_TRUE(picture.samples.empty());
   EXPECT_EQ(picture.whole_area, 0.0F);
 }
@@ -232,8 +232,8 @@ TEST(TrainingPictures, ABackgroundIsDrawnFromWhereItsLevelSees) {
   for (const FeatureLevel& level : levels) {
     const float seen = level.min_distance > 0.0F ? 2.0F : 0.8F;
     Random random(7);
-    PictureWorkspace own;
-    const TrainingPicture picture = background_picture(room, level, input_of(profile), random, own);
+    PictureWorkspace workspace;
+    const TrainingPicture picture = background_picture(room, level, input_of(profile), random, workspace);
     const auto drawn = static_cast<std::size_t>(profile.training.patches_per_background / kBackgroundPictures);
     EXPECT_EQ(picture.samples.size(), drawn);
     EXPECT_EQ(picture.spare_background.size(), drawn * static_cast<std::size_t>(profile.training.spare_background));
@@ -252,8 +252,8 @@ TEST(TrainingPictures, ABackgroundOfAScaleSpaceNeedsNoDepth) {
   const Profile profile = open_profile("gall");
   for (const FeatureLevel& level : baseline::scale_space_levels(profile.features)) {
     Random random(7);
-    PictureWorkspace own;
-    const TrainingPicture picture = background_picture(room, level, input_of(profile), random, own);
+    PictureWorkspace workspace;
+    const TrainingPicture picture = background_picture(room, level, input_of(profile), random, workspace);
     EXPECT_EQ(picture.samples.size(), 20U) << level.size_ratio;
     EXPECT_TRUE(picture.spare_background.empty());
     for (const TrainingSample& sample : picture.samples) ASSERT_EQ(sample.scale, 256);

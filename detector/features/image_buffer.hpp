@@ -28,10 +28,10 @@ struct LineAllocator {
 using LineBytes = std::vector<std::uint8_t, LineAllocator<std::uint8_t>>;
 
 /// Memory for a picture that is made again and again in several sizes: cv::Mat would ask for other memory each time.
-class PictureMemory {
+class ImageBuffer {
  public:
   /// What it shows is what was there before; it ends with the next one, and with the memory.
-  cv::Mat picture(cv::Size size, int type) {
+  cv::Mat image(cv::Size size, int type) {
     const std::size_t bytes = static_cast<std::size_t>(size.area()) * CV_ELEM_SIZE(type);
     if (bytes_.size() < bytes) bytes_.resize(bytes);
     return {size, type, bytes_.data()};
@@ -45,5 +45,8 @@ class PictureMemory {
 inline void forget_shared(cv::Mat& image) {
   if (image.u == nullptr || image.u->refcount > 1) image.release();
 }
+
+// The names of before, for one release.
+using PictureMemory [[deprecated("is ImageBuffer now")]] = ImageBuffer;
 
 }  // namespace houghstream
