@@ -156,9 +156,10 @@ BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, con
     if (is_hidden) continue;
     BoundarySample seen;
     const float cell_px = in.row == out.row ? comparison.cell_width : comparison.cell_height;
-    seen.apart = OutlineCells::kApart * comparison.metres_per_px * cell_px;
-    seen.gained = *beyond - *inside;
-    seen.expected = cells.gained_mm > TemplateGrid::kNoDepth ? comparison.metres_per_mm * cells.gained_mm : kNoValue;
+    seen.lateral_distance = OutlineCells::kApart * comparison.metres_per_px * cell_px;
+    seen.depth_change = *beyond - *inside;
+    seen.expected_depth_change =
+        cells.gained_mm > TemplateGrid::kNoDepth ? comparison.metres_per_mm * cells.gained_mm : kNoValue;
     seen.colour_sq = colour_distance_sq(colours.at(in.row, in.column), colours.at(out.row, out.column));
     if (!is_foreground_step(seen, tolerance)) fit.add(seen, tolerance);
   }
@@ -321,9 +322,9 @@ Likeness compare_camera_colours(const Tally& tally, const TemplateGrid& appearan
     const cv::Vec3b& seen = colours.at(cell.row, cell.column);
     const std::array<std::uint8_t, 3>& lab = appearance.lab[cell.index];
     const Eigen::Vector2d ab = camera.apply({lab[1] - kGrey, lab[2] - kGrey}, kLightness * seen[0]);
-    likeness.add({lab[0], cv::saturate_cast<std::uint8_t>(ab.x() + kGrey),
-                  cv::saturate_cast<std::uint8_t>(ab.y() + kGrey)},
-                 seen);
+    likeness.add(
+        {lab[0], cv::saturate_cast<std::uint8_t>(ab.x() + kGrey), cv::saturate_cast<std::uint8_t>(ab.y() + kGrey)},
+        seen);
   }
   return likeness;
 }

@@ -48,11 +48,11 @@ class BoundaryContinuation {
  public:
   /// `tolerance`: of depth, metres.
   void add(const BoundarySample& seen, float tolerance) {
-    const float surface = houghstream::surface_goes_on(seen, tolerance);
+    const float surface = houghstream::surface_continuation(seen, tolerance);
     ++count_;
     surface_ += surface;
     colour_ += is_background_step(seen, tolerance) ? 0.0F : uniform_colour_continuation(seen);
-    both_ += surface * houghstream::colour_goes_on(seen);
+    both_ += surface * houghstream::textured_colour_continuation(seen);
   }
 
   float surface_goes_on() const { return share(surface_); }  ///< straight on from within

@@ -57,10 +57,10 @@ std::optional<BoundarySample> sample_boundary(const BoundaryView& view, const cv
   if (!colour_sq) return std::nullopt;
   BoundarySample seen;
   const auto steps = static_cast<float>(in_px + out_px);
-  seen.apart = steps * static_cast<float>(metres_per_px);
-  seen.gained = view.measured(beyond) - here;
+  seen.lateral_distance = steps * static_cast<float>(metres_per_px);
+  seen.depth_change = view.measured(beyond) - here;
   const float slope = view.is_model(before) ? view.model(inside) - view.model(before) : kNoValue;
-  seen.expected = slope * steps / static_cast<float>(2 * in_px);
+  seen.expected_depth_change = slope * steps / static_cast<float>(2 * in_px);
   seen.colour_sq = *colour_sq;
   return seen;
 }
@@ -78,7 +78,7 @@ void compare_boundary(const BoundaryView& view, const DepthTolerance& tolerance,
         const std::optional<BoundarySample> seen = sample_boundary(view, at, side, tolerance);
         if (!seen || is_foreground_step(*seen, limit)) continue;
         ++result.outline;
-        result.boundary_continuations += surface_goes_on(*seen, limit) * colour_goes_on(*seen);
+        result.boundary_continuations += surface_continuation(*seen, limit) * textured_colour_continuation(*seen);
       }
     }
   }
