@@ -49,7 +49,7 @@ Detections Detector::detect(const RgbdFrame& frame, DetectorWorkspace& workspace
   clock.mark("detect.leaves");
   const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);  // Section 2: votes and their maxima
   clock.mark("detect.votes");
-  std::vector<Candidate> candidates = weigh_evidence(search, frame, hypotheses, workspace);  // scores
+  std::vector<ScoredHypothesis> candidates = score_hypotheses(search, frame, hypotheses, workspace);  // scores
   clock.mark("detect.evidence");
   return report_detections(search, frame, candidates, clock);  // Section 2: non-maximum suppression
 }

@@ -37,19 +37,20 @@ VotingInput voting_input(const SearchContext& search, const DetectorWorkspace& w
           search.settings.voting};
 }
 
-std::vector<Candidate> weigh_evidence(const SearchContext& search, const RgbdFrame& frame,
-                                      const std::vector<Hypothesis>& hypotheses, DetectorWorkspace& workspace) {
+std::vector<ScoredHypothesis> score_hypotheses(const SearchContext& search, const RgbdFrame& frame,
+                                               const std::vector<Hypothesis>& hypotheses,
+                                               DetectorWorkspace& workspace) {
   const LabFrame in_lab{frame, workspace.images.lab, workspace.images.levels.at(0).scale};
-  const EvidenceInput input{search.index, in_lab, workspace.patches, search.settings.evidence, search.excluded_views};
+  const ScoringInput input{search.index, in_lab, workspace.patches, search.settings.evidence, search.excluded_views};
   const bool is_coloured =
       search.forest().scoring == Scoring::kEvidence && search.settings.evidence.learn_camera_colours;
   return is_coloured ? weigh_in_camera_colours(input, search.remembered_colours, hypotheses, search.settings.threads,
-                                               workspace.evidence_workspace)
-                     : weigh_evidence(input, hypotheses, search.settings.threads, workspace.evidence_workspace);
+                                               workspace.scoring_workspace)
+                     : score_hypotheses(input, hypotheses, search.settings.threads, workspace.scoring_workspace);
 }
 
-Detections report_detections(const SearchContext& search, const RgbdFrame& frame, std::vector<Candidate>& candidates,
-                             StageClock& clock) {
+Detections report_detections(const SearchContext& search, const RgbdFrame& frame,
+                             std::vector<ScoredHypothesis>& candidates, StageClock& clock) {
   Detections out;
   out.frame = frame.id;
   out.detections = suppress(candidates, search.settings.evidence, search.settings.suppression);

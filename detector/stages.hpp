@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "detector/detection_settings.hpp"
-#include "detector/evidence/candidates.hpp"
+#include "detector/evidence/hypothesis_scoring.hpp"
 #include "detector/features/features.hpp"
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/posteriors.hpp"
@@ -43,7 +43,7 @@ struct DetectorWorkspace {
   FeatureWorkspace feature_workspace;
   LeafWorkspace leaf_workspace;
   VotingWorkspace voting_workspace;
-  EvidenceWorkspace evidence_workspace;
+  ScoringWorkspace scoring_workspace;
 };
 
 /// Resizes the frame to the sizes at which it is searched (paper, Section 5.1.1): features/working_frame.
@@ -61,14 +61,14 @@ void find_posteriors(const SearchContext& search, DetectorWorkspace& workspace);
 std::vector<Hypothesis> find_hypotheses(const SearchContext& search, DetectorWorkspace& workspace);
 
 /// Compares view templates with the frame at each hypothesis and scores it: evidence/candidates.
-std::vector<Candidate> weigh_evidence(const SearchContext& search, const RgbdFrame& frame,
-                                      const std::vector<Hypothesis>& hypotheses, DetectorWorkspace& workspace);
+std::vector<ScoredHypothesis> score_hypotheses(const SearchContext& search, const RgbdFrame& frame,
+                                               const std::vector<Hypothesis>& hypotheses, DetectorWorkspace& workspace);
 
 /// Returns what is likely enough, and weaker candidates for a pose to confirm; of overlapping boxes the stronger
 /// (Section 2): evidence/suppression. It closes the stage "detect.suppression"; the clock's times follow those of the
 /// frame.
-Detections report_detections(const SearchContext& search, const RgbdFrame& frame, std::vector<Candidate>& candidates,
-                             StageClock& clock);
+Detections report_detections(const SearchContext& search, const RgbdFrame& frame,
+                             std::vector<ScoredHypothesis>& candidates, StageClock& clock);
 
 /// Returns the inputs of the votes in the workspace.
 VotingInput voting_input(const SearchContext& search, const DetectorWorkspace& workspace);

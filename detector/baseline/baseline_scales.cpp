@@ -22,13 +22,13 @@ class SurfaceScales : public training::DepthNormalisedScales {
     return baseline::extra_planes(frame, settings, 1);
   }
 
-  std::vector<Candidate> search(const SearchContext& search, const RgbdFrame& frame,
-                                DetectorWorkspace& workspace) const override {
+  std::vector<ScoredHypothesis> search(const SearchContext& search, const RgbdFrame& frame,
+                                       DetectorWorkspace& workspace) const override {
     make_working_images(search, frame, workspace);
     compute_features_by(Way::kFast, search, workspace);
     find_posteriors(search, workspace);
     const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);
-    return weigh_evidence(search, frame, hypotheses, workspace);
+    return score_hypotheses(search, frame, hypotheses, workspace);
   }
 };
 
@@ -85,8 +85,8 @@ class ScaleSpaceScales : public training::Scales {
     return {static_cast<float>(offset.x() / camera.fx), static_cast<float>(offset.y() / camera.fy), 0.0F};
   }
 
-  std::vector<Candidate> search(const SearchContext& search, const RgbdFrame& frame,
-                                DetectorWorkspace&) const override {
+  std::vector<ScoredHypothesis> search(const SearchContext& search, const RgbdFrame& frame,
+                                       DetectorWorkspace&) const override {
     StageClock clock;
     return search_scale_space(search, Way::kFast, frame, clock);
   }

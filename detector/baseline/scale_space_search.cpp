@@ -152,9 +152,9 @@ std::vector<Hypothesis> gather_supporters(const SearchContext& search, int class
   return hypotheses;
 }
 
-Candidate make_candidate(const ObjectClass& object, const Hypothesis& hypothesis, float relative_vote_mass,
-                         cv::Rect2f box_px) {
-  Candidate candidate;
+ScoredHypothesis make_candidate(const ObjectClass& object, const Hypothesis& hypothesis, float relative_vote_mass,
+                                cv::Rect2f box_px) {
+  ScoredHypothesis candidate;
   candidate.evidence.relative_vote_mass = relative_vote_mass;
   Detection& detection = candidate.detection;
   detection.class_id = object.class_id;
@@ -225,16 +225,16 @@ WorkingFrame scale_space_frame(const RgbdFrame& frame, const FeatureLevel& level
   return make_working_frame(frame, level, in_pixels);
 }
 
-std::vector<Candidate> maxima_over_sizes(const std::vector<ScalePeak>& peaks) {
-  std::vector<Candidate> candidates;
+std::vector<ScoredHypothesis> maxima_over_sizes(const std::vector<ScalePeak>& peaks) {
+  std::vector<ScoredHypothesis> candidates;
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     if (!is_slope(peaks, i)) candidates.push_back(peaks[i].candidate);
   }
   return candidates;
 }
 
-std::vector<Candidate> search_scale_space(const SearchContext& search, Way way, const RgbdFrame& frame,
-                                          StageClock& clock) {
+std::vector<ScoredHypothesis> search_scale_space(const SearchContext& search, Way way, const RgbdFrame& frame,
+                                                 StageClock& clock) {
   std::vector<ScalePeak> all;
   int sizes = 0;
   for (const FeatureLevel& level : scale_space_levels(search.forest().features)) {

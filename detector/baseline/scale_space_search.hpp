@@ -18,8 +18,8 @@ WorkingFrame scale_space_frame(const RgbdFrame& frame, const FeatureLevel& level
 /// its own; candidates are the maxima over place and size, see maxima_over_sizes. Boxes by back-projection of all
 /// supporting patches. A candidate's centre has no depth: centre_camera is NaN. Same result for any number of threads.
 /// Closes the stages "detect.resize", "detect.features", "detect.leaves" and "detect.votes" on the clock.
-std::vector<Candidate> search_scale_space(const SearchContext& search, Way way, const RgbdFrame& frame,
-                                          StageClock& clock);
+std::vector<ScoredHypothesis> search_scale_space(const SearchContext& search, Way way, const RgbdFrame& frame,
+                                                 StageClock& clock);
 
 /// The Hough images of one class before maxima are taken, one per size, CV_32FC1: vote mass as a share of what a wholly
 /// visible object is expected to have.
@@ -27,7 +27,7 @@ std::vector<cv::Mat> scale_space_hough_images(const SearchContext& search, int c
 
 /// A maximum of the Hough image of one class in one size of the frame.
 struct ScalePeak {
-  Candidate candidate;
+  ScoredHypothesis candidate;
   cv::Point2f at_px;      ///< frame pixels
   float reach_px = 0.0F;  ///< it is the highest of its size at most so far away along either axis, frame pixels
   int size = 0;           ///< which of the sizes, counted in the order of FeatureSettings::scales
@@ -36,6 +36,6 @@ struct ScalePeak {
 /// The voting space has a third axis, the size (paper, Section 2: maxima over place, class and scale; Gall et al. 2011,
 /// Section 3.3): a maximum of one size that a higher one of the next size stands beside is a slope of that one. Of a
 /// class's equal neighbours the first counts. What is left keeps its order.
-std::vector<Candidate> maxima_over_sizes(const std::vector<ScalePeak>& peaks);
+std::vector<ScoredHypothesis> maxima_over_sizes(const std::vector<ScalePeak>& peaks);
 
 }  // namespace houghstream::baseline

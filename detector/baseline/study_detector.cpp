@@ -9,8 +9,8 @@ namespace houghstream::baseline {
 namespace {
 
 /// The stages of Detector::detect up to the evidence, two of them in the way that is asked for.
-std::vector<Candidate> search_normalised(const SearchContext& search, Way way, const RgbdFrame& frame,
-                                         DetectorWorkspace& workspace, StageClock& clock) {
+std::vector<ScoredHypothesis> search_normalised(const SearchContext& search, Way way, const RgbdFrame& frame,
+                                                DetectorWorkspace& workspace, StageClock& clock) {
   const DetectionSettings& settings = search.settings;
   make_working_images(search, frame, workspace);
   clock.mark("detect.resize");
@@ -22,7 +22,7 @@ std::vector<Candidate> search_normalised(const SearchContext& search, Way way, c
   clock.mark("detect.leaves");
   const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);
   clock.mark("detect.votes");
-  std::vector<Candidate> candidates = weigh_evidence(search, frame, hypotheses, workspace);
+  std::vector<ScoredHypothesis> candidates = score_hypotheses(search, frame, hypotheses, workspace);
   clock.mark("detect.evidence");
   return candidates;
 }
@@ -39,8 +39,8 @@ Detections StudyDetector::detect(const RgbdFrame& frame, DetectorWorkspace& work
   check_frame(frame, "detector");
   StageClock clock;
   const bool in_scale_space = forest_.features.handling == ScaleHandling::kScaleSpace;
-  std::vector<Candidate> candidates = in_scale_space ? search_scale_space(search, way_, frame, clock)
-                                                     : search_normalised(search, way_, frame, workspace, clock);
+  std::vector<ScoredHypothesis> candidates = in_scale_space ? search_scale_space(search, way_, frame, clock)
+                                                            : search_normalised(search, way_, frame, workspace, clock);
   return report_detections(search, frame, candidates, clock);
 }
 

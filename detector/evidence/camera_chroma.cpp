@@ -11,25 +11,25 @@ namespace {
 
 /// A candidate that says something of the camera's colours.
 struct Witness {
-  const Candidate* candidate = nullptr;
+  const ScoredHypothesis* candidate = nullptr;
   float probability = 0.0F;  ///< that it is an object of its class, whatever the camera's colours
 };
 
-const ObjectClass& class_of(const Forest& forest, const Candidate& candidate) {
+const ObjectClass& class_of(const Forest& forest, const ScoredHypothesis& candidate) {
   return *std::find_if(forest.classes.begin(), forest.classes.end(),
                        [&](const ObjectClass& object) { return object.class_id == candidate.detection.class_id; });
 }
 
-bool is_beside(const Candidate& a, const Candidate& b, float radius) {
+bool is_beside(const ScoredHypothesis& a, const ScoredHypothesis& b, float radius) {
   return (a.detection.centre_camera - b.detection.centre_camera).norm() < radius;
 }
 
 /// Of each class the likeliest; of maxima that lie within one object the likeliest alone.
-std::vector<Witness> find_likeliest(const Forest& forest, const std::vector<Candidate>& candidates) {
+std::vector<Witness> find_likeliest(const Forest& forest, const std::vector<ScoredHypothesis>& candidates) {
   constexpr float kMinProbability = 0.05F;
   constexpr std::size_t kMaxPerClass = 3;
   std::map<std::string, std::vector<Witness>> by_class;
-  for (const Candidate& candidate : candidates) {
+  for (const ScoredHypothesis& candidate : candidates) {
     if (candidate.evidence.view == Evidence::kNoView || !candidate.evidence.fit.colours.is_known) continue;
     const float probability = score_as_taught(class_of(forest, candidate).score_model, candidate.evidence);
     if (probability >= kMinProbability) by_class[candidate.detection.class_name].push_back({&candidate, probability});
@@ -89,7 +89,7 @@ std::vector<ChromaMap> learn_cameras(const Forest& forest, const std::vector<Chr
 
 /// The pairs that are remembered, and those of the frame's candidates.
 std::vector<ChromaPair> all_pairs(const Forest& forest, std::vector<ChromaPair> pairs,
-                                  const std::vector<Candidate>& candidates) {
+                                  const std::vector<ScoredHypothesis>& candidates) {
   std::vector<Witness> witnesses = find_likeliest(forest, candidates);
   share_places(forest, witnesses);
   std::transform(witnesses.begin(), witnesses.end(), std::back_inserter(pairs), to_pair);
@@ -110,12 +110,12 @@ bool are_far(const std::vector<ChromaMap>& cameras, const std::vector<ChromaMap>
 }
 
 /// Compares the views where they stand once more.
-void judge_again(const EvidenceInput& input, int threads, std::vector<Candidate>& candidates) {
+void judge_again(const ScoringInput& input, int threads, std::vector<ScoredHypothesis>& candidates) {
   constexpr float kHopeless = 0.02F;  // score, if the colours were as usual
   const Forest& forest = input.index.forest();
   const float least = std::min(input.settings.threshold, input.settings.candidates_from);
   parallel_for(threads, static_cast<int>(candidates.size()), [&](int i) {
-    Candidate& candidate = candidates[static_cast<std::size_t>(i)];
+    ScoredHypothesis& candidate = candidates[static_cast<std::size_t>(i)];
     Evidence& evidence = candidate.evidence;
     if (evidence.view == Evidence::kNoView) return;
     const ScoreModel& model = class_of(forest, candidate).score_model;
@@ -128,21 +128,21 @@ void judge_again(const EvidenceInput& input, int threads, std::vector<Candidate>
 
 }  // namespace
 
-std::vector<Candidate> weigh_in_camera_colours(const EvidenceInput& input, const std::vector<ChromaPair>& colours,
-                                               const std::vector<Hypothesis>& hypotheses, int threads,
-                                               EvidenceWorkspace& workspace) {
+std::vector<ScoredHypothesis> weigh_in_camera_colours(const ScoringInput& input, const std::vector<ChromaPair>& colours,
+                                                      const std::vector<Hypothesis>& hypotheses, int threads,
+                                                      ScoringWorkspace& workspace) {
   const Forest& forest = input.index.forest();
   LabFrame frame = input.frame;
-  const EvidenceInput in_camera{input.index, frame, input.patches, input.settings, input.excluded_views};
+  const ScoringInput in_camera{input.index, frame, input.patches, input.settings, input.excluded_views};
   const bool is_grey = is_colourless(frame.frame.colour);
   if (is_grey) frame.cameras.assign(forest.classes.size(), colourless_camera());
   if (!is_grey && !colours.empty()) frame.cameras = learn_cameras(forest, colours);
-  std::vector<Candidate> candidates = weigh_evidence(in_camera, hypotheses, threads, workspace);
+  std::vector<ScoredHypothesis> candidates = score_hypotheses(in_camera, hypotheses, threads, workspace);
   if (is_grey) return candidates;
   std::vector<ChromaMap> cameras = learn_cameras(forest, all_pairs(forest, colours, candidates));
   const bool is_new = are_far(cameras, frame.cameras);
   frame.cameras = std::move(cameras);
-  if (is_new) return weigh_evidence(in_camera, hypotheses, threads, workspace);
+  if (is_new) return score_hypotheses(in_camera, hypotheses, threads, workspace);
   judge_again(in_camera, threads, candidates);
   return candidates;
 }

@@ -20,60 +20,60 @@ Vector to_vector(const ScoreTerms& terms) {
 
 ScoreTerms score_terms(const Evidence& evidence) {
   const TemplateMatch& fit = evidence.fit;
-  const float foreign = std::min(fit.foreign_colour, 1.0F);
+  const float foreign = std::min(fit.mean_chroma_distance, 1.0F);
   constexpr float kNearest = 0.1F;  // metres, as far as a logarithm means something
   constexpr float kMin = 1e-4F;     // the same of shares
   constexpr float kUsualRadius_px = 40.0F;
-  const float log_mass = std::log(std::max(evidence.relative_vote_mass, kMin));
-  const float log_shown = std::log(1.02F - fit.hidden);
+  const float log_vote_mass = std::log(std::max(evidence.relative_vote_mass, kMin));
+  const float log_visible = std::log(1.02F - fit.occluded_fraction);
   const float log_certainty = std::log(std::max(evidence.certainty, kMin));
   ScoreTerms terms;
   terms.constant = 1.0F;
-  terms.mass = log_mass;
-  terms.shown = log_shown;
-  terms.seen_through = fit.seen_through;
-  terms.unknown = fit.unknown;
-  terms.continued = fit.continued;
-  terms.likeness = fit.likeness;
-  terms.hue_conflict = fit.hue_conflict;
-  terms.foreign_colour = foreign * foreign;
-  terms.unevenness = fit.unevenness;
-  terms.unknown_mass = fit.unknown * log_mass;
-  terms.unknown_likeness = fit.unknown * fit.likeness;
-  terms.unknown_distance = fit.unknown * std::log(std::max(evidence.distance, kNearest));
-  terms.likeness_hue_conflict = fit.likeness * fit.hue_conflict;
-  terms.other_size = evidence.other_size;
-  terms.certainty = log_certainty;
-  terms.shown_sq = log_shown * log_shown;
-  terms.other_size_sq = evidence.other_size * evidence.other_size;
-  terms.seen_through_certainty = fit.seen_through * log_certainty;
-  terms.hue_conflict_foreign_colour = fit.hue_conflict * foreign * foreign;
-  terms.unevenness_sq = fit.unevenness * fit.unevenness;
+  terms.log_vote_mass = log_vote_mass;
+  terms.log_visible = log_visible;
+  terms.free_space_violation = fit.free_space_violation;
+  terms.no_depth = fit.no_depth_fraction;
+  terms.rim_continuation = fit.rim_continuation;
+  terms.colour_correlation = fit.colour_correlation;
+  terms.hue_mismatch = fit.hue_mismatch;
+  terms.mean_chroma_distance = foreign * foreign;
+  terms.depth_residual = fit.depth_residual;
+  terms.no_depth_log_vote_mass = fit.no_depth_fraction * log_vote_mass;
+  terms.no_depth_colour_correlation = fit.no_depth_fraction * fit.colour_correlation;
+  terms.no_depth_distance = fit.no_depth_fraction * std::log(std::max(evidence.distance, kNearest));
+  terms.colour_correlation_hue_mismatch = fit.colour_correlation * fit.hue_mismatch;
+  terms.alternative_scale_gain = evidence.alternative_scale_gain;
+  terms.log_certainty = log_certainty;
+  terms.log_visible_sq = log_visible * log_visible;
+  terms.alternative_scale_gain_sq = evidence.alternative_scale_gain * evidence.alternative_scale_gain;
+  terms.free_space_violation_log_certainty = fit.free_space_violation * log_certainty;
+  terms.hue_mismatch_chroma_distance = fit.hue_mismatch * foreign * foreign;
+  terms.depth_residual_sq = fit.depth_residual * fit.depth_residual;
   terms.extent = std::log(std::max(evidence.radius_px, 1.0F) / kUsualRadius_px);
-  terms.contrast = fit.contrast;
-  terms.extent_likeness = terms.extent * fit.likeness;
-  terms.contrast_likeness = fit.contrast * fit.likeness;
-  terms.paleness = fit.paleness;
-  terms.goes_on = evidence.outline.goes_on();
-  terms.surface_goes_on = evidence.outline.surface_goes_on();
-  terms.colour_goes_on = evidence.outline.colour_goes_on();
-  terms.boundary_continuation_correlation = terms.goes_on * fit.likeness;
+  terms.log_contrast_ratio = fit.log_contrast_ratio;
+  terms.extent_colour_correlation = terms.extent * fit.colour_correlation;
+  terms.contrast_colour_correlation = fit.log_contrast_ratio * fit.colour_correlation;
+  terms.chroma_deficit = fit.chroma_deficit;
+  terms.boundary_continuation = evidence.outline.joint();
+  terms.surface_continuation = evidence.outline.surface();
+  terms.colour_continuation = evidence.outline.colour();
+  terms.boundary_continuation_correlation = terms.boundary_continuation * fit.colour_correlation;
   return terms;
 }
 
-double log_odds(const ScoreModel& model, const ScoreTerms& terms) {
+double score_logit(const ScoreModel& model, const ScoreTerms& terms) {
   return to_vector(model.weights).dot(to_vector(terms));
 }
 
 float score(const ScoreModel& model, const Evidence& evidence) {
-  return static_cast<float>(logistic(log_odds(model, score_terms(evidence))));
+  return static_cast<float>(logistic(score_logit(model, score_terms(evidence))));
 }
 
 float score_as_taught(const ScoreModel& model, const Evidence& evidence) {
   Evidence as_taught = evidence;
-  as_taught.fit.foreign_colour = 0.2F;
-  as_taught.fit.hue_conflict = 0.1F;
-  as_taught.fit.paleness = 0.2F;
+  as_taught.fit.mean_chroma_distance = 0.2F;
+  as_taught.fit.hue_mismatch = 0.1F;
+  as_taught.fit.chroma_deficit = 0.2F;
   return score(model, as_taught);
 }
 

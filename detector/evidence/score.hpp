@@ -15,20 +15,20 @@ struct Evidence {
   float relative_vote_mass = 0.0F;  ///< vote mass over the class's nominal_vote_mass
   float certainty = 1.0F;           ///< weight of the votes over the number of patches that cast them
   float distance = 1.0F;            ///< distance of the centre from the camera, metres
-  float radius_px =
-      40.0F;  ///< radius of the object at that distance, at about the usual focal length: see focal_octave_scale
+  /// Radius of the object at that distance, at about the usual focal length: see focal_octave_scale.
+  float radius_px = 40.0F;
   std::uint32_t view = kNoView;                           ///< index of the best template into Forest::views
   Eigen::Vector3f view_centre = Eigen::Vector3f::Zero();  ///< place of its centre, camera frame, metres
   TemplateMatch fit;                                      ///< its match there
   BoundaryContinuation outline;                           ///< continuation across its outline
-  float other_size = -0.4F;  ///< alternative_scale_gain; where it is not computed, about that of objects
+  float alternative_scale_gain = -0.4F;  ///< alternative_scale_gain; where it is not computed, about that of objects
 };
 
 /// Returns the evidence as the terms that ScoreModel::weights multiply.
 ScoreTerms score_terms(const Evidence& evidence);
 
 /// Returns the model's weighted sum of the terms: the log odds that the hypothesis is an object.
-double log_odds(const ScoreModel& model, const ScoreTerms& terms);
+double score_logit(const ScoreModel& model, const ScoreTerms& terms);
 
 /// Returns the probability that the hypothesis is an object of its class (logistic regression, Platt 1999).
 float score(const ScoreModel& model, const Evidence& evidence);

@@ -5,10 +5,10 @@
 
 namespace houghstream {
 
-std::vector<Detection> suppress(std::vector<Candidate>& candidates, const EvidenceSettings& evidence,
+std::vector<Detection> suppress(std::vector<ScoredHypothesis>& candidates, const EvidenceSettings& evidence,
                                 const SuppressionSettings& suppression) {
   std::vector<Detection> likely;
-  for (Candidate& candidate : candidates) {
+  for (ScoredHypothesis& candidate : candidates) {
     Detection& detection = candidate.detection;
     detection.reported = detection.score >= evidence.threshold;
     if (detection.reported || detection.score >= evidence.candidates_from) likely.push_back(std::move(detection));

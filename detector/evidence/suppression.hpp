@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "detector/evidence/candidates.hpp"
 #include "detector/evidence/evidence_settings.hpp"
+#include "detector/evidence/hypothesis_scoring.hpp"
 #include "pipeline/types/detection.hpp"
 
 namespace houghstream {
@@ -11,7 +11,7 @@ namespace houghstream {
 /// Returns the detections that are likely enough to be reported, strongest first, and behind them weaker candidates,
 /// which a pose may confirm; of overlapping ones the stronger (non-maximum suppression, Section 2). A candidate never
 /// suppresses a detection that is reported. The detections are moved out of `candidates`.
-std::vector<Detection> suppress(std::vector<Candidate>& candidates, const EvidenceSettings& evidence,
+std::vector<Detection> suppress(std::vector<ScoredHypothesis>& candidates, const EvidenceSettings& evidence,
                                 const SuppressionSettings& suppression);
 
 /// Returns the detections, strongest first, without those whose box overlaps that of a stronger one of its class, or of

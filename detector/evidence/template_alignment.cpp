@@ -5,9 +5,9 @@
 
 namespace houghstream {
 
-float agreement(const TemplateMatch& fit) {
-  return fit.visible + 0.5F * fit.unknown - fit.seen_through + 0.5F * fit.likeness - 0.25F * fit.continued -
-         0.2F * fit.hue_conflict;
+float match_quality(const TemplateMatch& fit) {
+  return fit.visible_fraction + 0.5F * fit.no_depth_fraction - fit.free_space_violation +
+         0.5F * fit.colour_correlation - 0.25F * fit.rim_continuation - 0.2F * fit.hue_mismatch;
 }
 
 PlacedTemplate align_template(const std::vector<ViewTemplate>& views, PlacedTemplate placed, const LabFrame& frame,
@@ -24,7 +24,7 @@ PlacedTemplate align_template(const std::vector<ViewTemplate>& views, PlacedTemp
     for (std::size_t m = 0; m < moves.size(); ++m) {
       if (m == back) continue;
       const TemplateMatch moved = match_template(view, placed.centre_camera + moves[m], frame);
-      if (agreement(moved) <= agreement(placed.fit)) continue;
+      if (match_quality(moved) <= match_quality(placed.fit)) continue;
       placed.fit = moved;
       best = m;
     }
@@ -37,7 +37,7 @@ PlacedTemplate align_template(const std::vector<ViewTemplate>& views, PlacedTemp
 
 const PlacedTemplate& best_match(const std::vector<PlacedTemplate>& compared) {
   const auto worse = [](const PlacedTemplate& a, const PlacedTemplate& b) {
-    return agreement(a.fit) < agreement(b.fit);
+    return match_quality(a.fit) < match_quality(b.fit);
   };
   return *std::max_element(compared.begin(), compared.end(), worse);
 }
@@ -46,13 +46,13 @@ PlacedTemplate align_best_templates(const std::vector<ViewTemplate>& views, cons
                                     std::vector<PlacedTemplate>& compared) {
   constexpr std::size_t kFew = 4;
   const auto better = [](const PlacedTemplate& a, const PlacedTemplate& b) {
-    return agreement(a.fit) > agreement(b.fit);
+    return match_quality(a.fit) > match_quality(b.fit);
   };
   std::stable_sort(compared.begin(), compared.end(), better);
   PlacedTemplate best = compared.front();
   for (std::size_t i = 0; i < std::min(kFew, compared.size()); ++i) {
     compared[i] = align_template(views, compared[i], frame);
-    if (agreement(compared[i].fit) > agreement(best.fit)) best = compared[i];
+    if (match_quality(compared[i].fit) > match_quality(best.fit)) best = compared[i];
   }
   return best;
 }
@@ -60,9 +60,9 @@ PlacedTemplate align_best_templates(const std::vector<ViewTemplate>& views, cons
 float alternative_scale_gain(const ViewTemplate& view, const PlacedTemplate& placed, const LabFrame& frame) {
   constexpr float kSmaller = 0.7F;
   constexpr float kLarger = 1.4F;
-  const float smaller = agreement(match_template(view, placed.centre_camera, frame, kSmaller));
-  const float larger = agreement(match_template(view, placed.centre_camera, frame, kLarger));
-  return std::max(smaller, larger) - agreement(placed.fit);
+  const float smaller = match_quality(match_template(view, placed.centre_camera, frame, kSmaller));
+  const float larger = match_quality(match_template(view, placed.centre_camera, frame, kLarger));
+  return std::max(smaller, larger) - match_quality(placed.fit);
 }
 
 }  // namespace houghstream

@@ -8,7 +8,7 @@
 namespace houghstream {
 
 /// Returns how well a template matches the frame, a weighted sum; larger is better.
-float agreement(const TemplateMatch& fit);
+float match_quality(const TemplateMatch& fit);
 
 /// A template at a place in the frame, and how it matches there.
 struct PlacedTemplate {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "detector/evidence/likeness.hpp"
+#include "detector/evidence/colour_similarity.hpp"
 #include "detector/forest/off_axis_slope.hpp"
 #include "pipeline/base/no_value.hpp"
 
@@ -30,9 +30,9 @@ struct Comparison {
   std::array<float, kSide * kSide> excess_beside;  // the first beside_cells: beside the outline
   std::array<int, kSide> column_px{};              // frame pixels that the cells' centres lie in
   std::array<int, kSide> row_px{};
-  std::array<float, kSide> row_depth{};  // depth that the relief is counted from, in a row at the centre's column...
-  std::array<float, kSide> gained{};     // ...and more in a column
-  float left = 0.0F;                     // of the first cell, frame pixels
+  std::array<float, kSide> row_depth{};     // depth that the relief is counted from, in a row at the centre's column...
+  std::array<float, kSide> column_depth{};  // ...and more in a column
+  float left = 0.0F;                        // of the first cell, frame pixels
   float top = 0.0F;
   float cell_width = 0.0F;
   float cell_height = 0.0F;
@@ -45,7 +45,7 @@ struct Comparison {
   std::optional<float> beyond_centre(const RgbdFrame& frame, OutlineCells::Cell cell) const {
     const cv::Point at(column_px[cell.column], row_px[cell.row]);
     if (!cv::Rect(cv::Point(), frame.depth.size()).contains(at)) return std::nullopt;
-    return frame.depth.at<float>(at) - (row_depth[cell.row] + gained[cell.column]);
+    return frame.depth.at<float>(at) - (row_depth[cell.row] + column_depth[cell.column]);
   }
 
   /// Returns the centre of a cell, frame pixels from the left upper edge of the first pixel.
@@ -63,16 +63,16 @@ static_assert(kSide <= 32);
 struct Tally {
   std::size_t cells = 0;
   int visible = 0;
-  int hidden = 0;
-  int seen_through = 0;
-  int unknown = 0;
-  float unevenness = 0.0F;  // sum over the visible ones
-  Lines rows = 0;           // with cells that are visible or unknown
+  int occluded = 0;
+  int free_space_violations = 0;
+  int no_depth = 0;
+  float depth_residual = 0.0F;  // sum over the visible ones
+  Lines rows = 0;               // with cells that are visible or unknown
   Lines columns = 0;
-  std::size_t shown = 0;                        // number of cells that are visible or unknown
-  std::array<Cell, kSide * kSide> shown_cells;  // the first `shown` of them
+  std::size_t unoccluded = 0;                        // number of cells that are visible or unknown
+  std::array<Cell, kSide * kSide> unoccluded_cells;  // the first `shown` of them
 
-  float share(int count) const {
+  float fraction(int count) const {
     return static_cast<float>(count) / static_cast<float>(std::max<std::size_t>(cells, 1));
   }
 };
@@ -99,10 +99,10 @@ float common_shift(const Comparison& comparison);
 float tolerance_at(float z);
 Tally tally_cells(const Comparison& comparison, float shift, float tolerance);
 std::size_t level_of(float cell_width, const LabLevels& levels);
-Likeness compare_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours);
-Likeness compare_camera_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours,
-                                const ChromaMap& camera);
-float continued_share(const Comparison& comparison, float shift, float tolerance);
+ColourSimilarity compare_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours);
+ColourSimilarity compare_camera_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours,
+                                        const ChromaMap& camera);
+float rim_continuation(const Comparison& comparison, float shift, float tolerance);
 cv::Rect2f visible_box(const Comparison& comparison, Lines columns, Lines rows);
 std::pair<int, int> range(Lines seen);
 
@@ -115,22 +115,22 @@ TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& ce
   const float tolerance = tolerance_at(centre_camera.z());
   const Tally tally = tally_cells(comparison, shift, tolerance);
   const CellColours colours(comparison, frame);
-  const Likeness as_taught = compare_colours(tally, view.appearance, colours);
-  const Likeness likeness =
+  const ColourSimilarity as_taught = compare_colours(tally, view.appearance, colours);
+  const ColourSimilarity similarity =
       frame.cameras.empty() ? as_taught
                             : compare_camera_colours(tally, view.appearance, colours, frame.cameras[view.class_index]);
   TemplateMatch fit;
-  fit.unevenness = tally.unevenness / static_cast<float>(std::max(tally.visible, 1));
-  fit.visible = tally.share(tally.visible);
-  fit.hidden = tally.share(tally.hidden);
-  fit.seen_through = tally.share(tally.seen_through);
-  fit.unknown = tally.share(tally.unknown);
-  fit.continued = continued_share(comparison, shift, tolerance);
-  fit.likeness = likeness.correlation();
-  fit.foreign_colour = likeness.foreign_colour();
-  fit.hue_conflict = likeness.hue_conflict();
-  fit.paleness = likeness.paleness();
-  fit.contrast = likeness.contrast();
+  fit.depth_residual = tally.depth_residual / static_cast<float>(std::max(tally.visible, 1));
+  fit.visible_fraction = tally.fraction(tally.visible);
+  fit.occluded_fraction = tally.fraction(tally.occluded);
+  fit.free_space_violation = tally.fraction(tally.free_space_violations);
+  fit.no_depth_fraction = tally.fraction(tally.no_depth);
+  fit.rim_continuation = rim_continuation(comparison, shift, tolerance);
+  fit.colour_correlation = similarity.correlation();
+  fit.mean_chroma_distance = similarity.mean_chroma_distance();
+  fit.hue_mismatch = similarity.hue_mismatch();
+  fit.chroma_deficit = similarity.chroma_deficit();
+  fit.log_contrast_ratio = similarity.log_contrast_ratio();
   fit.colours = as_taught.means();
   fit.visible_box_px = visible_box(comparison, tally.columns, tally.rows);
   return fit;
@@ -181,7 +181,7 @@ Comparison compare(const ViewTemplate& view, const Eigen::Vector3f& centre, cons
     const cv::Point2f px = out.cell_centre(i, i);
     out.column_px[i] = static_cast<int>(std::floor(px.x));
     out.row_px[i] = static_cast<int>(std::floor(px.y));
-    out.gained[i] = tilt.right * metres_per_px * (px.x - out.centre_px.x);
+    out.column_depth[i] = tilt.right * metres_per_px * (px.x - out.centre_px.x);
     out.row_depth[i] = centre.z() + tilt.down * metres_per_px * (px.y - out.centre_px.y);
   }
   std::array<float, kSide> expected{};  // depth that the relief is counted from, in a row
@@ -189,7 +189,8 @@ Comparison compare(const ViewTemplate& view, const Eigen::Vector3f& centre, cons
     const int y = out.row_px[row];
     if (y < 0 || y >= frame.depth.rows) continue;
     const auto* depth = frame.depth.ptr<float>(y);
-    for (std::size_t column = 0; column < kSide; ++column) expected[column] = out.row_depth[row] + out.gained[column];
+    for (std::size_t column = 0; column < kSide; ++column)
+      expected[column] = out.row_depth[row] + out.column_depth[column];
     for (std::size_t column = 0; column < kSide; ++column) {
       const int x = out.column_px[column];
       if (x < 0 || x >= frame.depth.cols) continue;
@@ -266,16 +267,16 @@ Tally tally_cells(const Comparison& comparison, float shift, float tolerance) {
   for (std::size_t i = 0; i < comparison.object_cells; ++i) {
     const Cell cell = comparison.cells[i];
     const float e = comparison.excess[i] - shift;
-    const int unknown = std::isnan(e) ? 1 : 0;
+    const int no_depth = std::isnan(e) ? 1 : 0;
     const int visible = std::abs(e) <= tolerance ? 1 : 0;
-    const int seen = visible | unknown;
-    tally.shown_cells[tally.shown] = cell;
-    tally.shown += static_cast<std::size_t>(seen);
-    tally.unevenness += visible != 0 ? std::abs(e) / tolerance : 0.0F;
+    const int seen = visible | no_depth;
+    tally.unoccluded_cells[tally.unoccluded] = cell;
+    tally.unoccluded += static_cast<std::size_t>(seen);
+    tally.depth_residual += visible != 0 ? std::abs(e) / tolerance : 0.0F;
     tally.visible += visible;
-    tally.unknown += unknown;
-    tally.hidden += e < -tolerance ? 1 : 0;
-    tally.seen_through += e > tolerance ? 1 : 0;
+    tally.no_depth += no_depth;
+    tally.occluded += e < -tolerance ? 1 : 0;
+    tally.free_space_violations += e > tolerance ? 1 : 0;
     tally.rows |= static_cast<Lines>(seen) << cell.row;
     tally.columns |= static_cast<Lines>(seen) << cell.column;
   }
@@ -302,36 +303,36 @@ CellColours::CellColours(const Comparison& comparison, const LabFrame& frame) {
 }
 
 /// Compares the colours of the cells that are visible or unknown: where depth is missing, only colour is known.
-Likeness compare_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours) {
-  Likeness likeness;
-  for (std::size_t i = 0; i < tally.shown; ++i) {
-    const Cell cell = tally.shown_cells[i];
-    likeness.add(appearance.lab[cell.index], colours.at(cell.row, cell.column));
+ColourSimilarity compare_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours) {
+  ColourSimilarity similarity;
+  for (std::size_t i = 0; i < tally.unoccluded; ++i) {
+    const Cell cell = tally.unoccluded_cells[i];
+    similarity.add(appearance.lab[cell.index], colours.at(cell.row, cell.column));
   }
-  return likeness;
+  return similarity;
 }
 
 /// The same with the template's colours as the camera would measure them in the light of the frame.
-Likeness compare_camera_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours,
-                                const ChromaMap& camera) {
+ColourSimilarity compare_camera_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours,
+                                        const ChromaMap& camera) {
   constexpr double kGrey = 128.0;
   constexpr double kLightness = 100.0 / 255.0;  // of 8-bit L*
-  Likeness likeness;
-  for (std::size_t i = 0; i < tally.shown; ++i) {
-    const Cell cell = tally.shown_cells[i];
+  ColourSimilarity similarity;
+  for (std::size_t i = 0; i < tally.unoccluded; ++i) {
+    const Cell cell = tally.unoccluded_cells[i];
     const cv::Vec3b& seen = colours.at(cell.row, cell.column);
     const std::array<std::uint8_t, 3>& lab = appearance.lab[cell.index];
     const Eigen::Vector2d ab = camera.apply({lab[1] - kGrey, lab[2] - kGrey}, kLightness * seen[0]);
-    likeness.add(
+    similarity.add(
         {lab[0], cv::saturate_cast<std::uint8_t>(ab.x() + kGrey), cv::saturate_cast<std::uint8_t>(ab.y() + kGrey)},
         seen);
   }
-  return likeness;
+  return similarity;
 }
 
 /// Returns the fraction of the cells beside the outline to which the object's surface continues: a larger thing of the
 /// same shape comes nearer there before it turns away.
-float continued_share(const Comparison& comparison, float shift, float tolerance) {
+float rim_continuation(const Comparison& comparison, float shift, float tolerance) {
   constexpr float kNearer = 0.03F;
   int continued = 0;
   for (std::size_t i = 0; i < comparison.beside_cells; ++i) {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "detector/evidence/likeness.hpp"
+#include "detector/evidence/colour_similarity.hpp"
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/forest.hpp"
 #include "pipeline/geometry/boundary_sample.hpp"
@@ -25,19 +25,19 @@ struct LabFrame {
 /// How a view template at a hypothesis' centre matches the frame. The first four are fractions of the template's
 /// surface and sum to 1.
 struct TemplateMatch {
-  float visible = 0.0F;         ///< depth is that of the template
-  float hidden = 0.0F;          ///< a nearer surface occludes it
-  float seen_through = 0.0F;    ///< a farther surface is measured there: the object cannot be there
-  float unknown = 0.0F;         ///< no depth is measured
-  float unevenness = 0.0F;      ///< mean error of the visible depth over the tolerance, 0 to 1
-  float continued = 0.0F;       ///< fraction of the rim beside the outline to which the surface continues
-  float likeness = 0.0F;        ///< correlation of the visible or unknown colours with the template's, -1 to 1
-  float foreign_colour = 0.0F;  ///< see Likeness
-  float hue_conflict = 0.0F;    ///< see Likeness
-  float paleness = 0.0F;        ///< see Likeness
-  float contrast = 0.0F;        ///< see Likeness
-  MeanColours colours;          ///< mean colours of the compared cells
-  cv::Rect2f visible_box_px;    ///< box of what is visible or unknown, frame pixels; may be empty
+  float visible_fraction = 0.0F;      ///< depth is that of the template
+  float occluded_fraction = 0.0F;     ///< a nearer surface occludes it
+  float free_space_violation = 0.0F;  ///< a farther surface is measured there: the object cannot be there
+  float no_depth_fraction = 0.0F;     ///< no depth is measured
+  float depth_residual = 0.0F;        ///< mean error of the visible depth over the tolerance, 0 to 1
+  float rim_continuation = 0.0F;      ///< fraction of the rim beside the outline to which the surface continues
+  float colour_correlation = 0.0F;    ///< correlation of the visible or unknown colours with the template's, -1 to 1
+  float mean_chroma_distance = 0.0F;  ///< see ColourSimilarity
+  float hue_mismatch = 0.0F;          ///< see ColourSimilarity
+  float chroma_deficit = 0.0F;        ///< see ColourSimilarity
+  float log_contrast_ratio = 0.0F;    ///< see ColourSimilarity
+  MeanColours colours;                ///< mean colours of the compared cells
+  cv::Rect2f visible_box_px;          ///< box of what is visible or unknown, frame pixels; may be empty
 };
 
 /// Continuation of surface and colour across the outline of a template, each as a fraction of the outline, 0 to 1; 0

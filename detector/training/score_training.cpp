@@ -25,10 +25,10 @@ constexpr ComposedThings kThings = {6, 5, 0};
 constexpr ComposedThings kHardNegativeObjects = {6, 5, 5};
 
 /// Strongest first; one that overlaps a stronger one of its class would not be reported, so it is no example.
-ScoreExamples judge(const std::vector<Candidate>& candidates, const ValidationFrame& truth) {
+ScoreExamples judge(const std::vector<ScoredHypothesis>& candidates, const ValidationFrame& truth) {
   ScoreExamples examples;
   std::vector<const Detection*> kept;
-  for (const Candidate& candidate : candidates) {
+  for (const ScoredHypothesis& candidate : candidates) {
     const Detection& found = candidate.detection;
     const auto repeats = [&](const Detection* other) {
       return other->class_id == found.class_id && box_iou(other->box_px, found.box_px) > kMinIou;
@@ -90,7 +90,7 @@ using OddsExamples = std::vector<LogisticExample<2>>;
 OddsExamples odds_examples(const ScoreModel& model, const std::vector<ScoreExample>& examples) {
   OddsExamples out;
   for (const ScoreExample& example : examples)
-    out.push_back({{log_odds(model, example.terms), 1.0}, example.is_object});
+    out.push_back({{score_logit(model, example.terms), 1.0}, example.is_object});
   return out;
 }
 

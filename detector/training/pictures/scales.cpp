@@ -54,13 +54,13 @@ Eigen::Vector3f DepthNormalisedScales::centre_offset(const TrainingView& view, c
   return ray_rotation(surface.cast<float>()).transpose() * offset.cast<float>();
 }
 
-std::vector<Candidate> DepthNormalisedScales::search(const SearchContext& search, const RgbdFrame& frame,
-                                                     DetectorWorkspace& workspace) const {
+std::vector<ScoredHypothesis> DepthNormalisedScales::search(const SearchContext& search, const RgbdFrame& frame,
+                                                            DetectorWorkspace& workspace) const {
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);
   find_posteriors(search, workspace);
   const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);
-  return weigh_evidence(search, frame, hypotheses, workspace);
+  return score_hypotheses(search, frame, hypotheses, workspace);
 }
 
 const Scales& depth_normalised_scales() {

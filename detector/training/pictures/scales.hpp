@@ -62,8 +62,8 @@ class Scales {
   virtual Eigen::Vector3f centre_offset(const TrainingView& view, const ShownPoint& point) const = 0;
 
   /// What the forest offers in a frame, by the stages of a search up to the evidence.
-  virtual std::vector<Candidate> search(const SearchContext& search, const RgbdFrame& frame,
-                                        DetectorWorkspace& workspace) const = 0;
+  virtual std::vector<ScoredHypothesis> search(const SearchContext& search, const RgbdFrame& frame,
+                                               DetectorWorkspace& workspace) const = 0;
 };
 
 /// Depth normalisation (paper, Section 5.1.2).
@@ -86,8 +86,8 @@ class DepthNormalisedScales : public Scales {
   std::int32_t scale_of_patch(const PatchSettings& patch, const Camera& camera, float depth) const override;
   /// In the ray frame of the pixel that shows the point.
   Eigen::Vector3f centre_offset(const TrainingView& view, const ShownPoint& point) const override;
-  std::vector<Candidate> search(const SearchContext& search, const RgbdFrame& frame,
-                                DetectorWorkspace& workspace) const override;
+  std::vector<ScoredHypothesis> search(const SearchContext& search, const RgbdFrame& frame,
+                                       DetectorWorkspace& workspace) const override;
 };
 
 const Scales& depth_normalised_scales();

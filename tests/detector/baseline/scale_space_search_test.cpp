@@ -50,19 +50,19 @@ Scene tile_at(int kind, double u_px, double v_px, double distance) {
   return scene;
 }
 
-std::vector<Candidate> search(const RgbdFrame& frame, const DetectionSettings& settings, Way way = Way::kFast) {
+std::vector<ScoredHypothesis> search(const RgbdFrame& frame, const DetectionSettings& settings, Way way = Way::kFast) {
   StageClock clock;
   static const ForestIndex index(toy_forest());
   return search_scale_space({index, settings}, way, frame, clock);
 }
 
-const Candidate& strongest(const std::vector<Candidate>& candidates) {
-  return *std::max_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return a.detection.score < b.detection.score;
-  });
+const ScoredHypothesis& strongest(const std::vector<ScoredHypothesis>& candidates) {
+  return *std::max_element(
+      candidates.begin(), candidates.end(),
+      [](const ScoredHypothesis& a, const ScoredHypothesis& b) { return a.detection.score < b.detection.score; });
 }
 
-void expect_same(const std::vector<Candidate>& a, const std::vector<Candidate>& b) {
+void expect_same(const std::vector<ScoredHypothesis>& a, const std::vector<ScoredHypothesis>& b) {
   ASSERT_EQ(a.size(), b.size());
   ASSERT_FALSE(a.empty());
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -79,9 +79,9 @@ TEST(ScaleSpaceSearch, FindsTheTaughtObjectsInEverySize) {
   for (const double distance : {0.46, 0.7, 1.1}) {
     for (const int kind : {0, 1}) {
       const Scene scene = tile_at(kind, 120, 110, distance);
-      const std::vector<Candidate> found = search(scene.frame, quick_settings());
+      const std::vector<ScoredHypothesis> found = search(scene.frame, quick_settings());
       ASSERT_FALSE(found.empty()) << distance;
-      const Candidate& best = strongest(found);
+      const ScoredHypothesis& best = strongest(found);
       EXPECT_EQ(best.detection.class_id, kind + 1) << distance;
       EXPECT_EQ(best.detection.class_name, kind == 0 ? "stripes" : "rings");
       EXPECT_GT(best.detection.score, quick_settings().evidence.threshold) << distance;
@@ -94,10 +94,10 @@ TEST(ScaleSpaceSearch, FindsTheTaughtObjectsInEverySize) {
 
 TEST(ScaleSpaceSearch, KnowsNoDepth) {
   Scene scene = tile_at(0, 120, 110, 0.7);
-  const std::vector<Candidate> with_depth = search(scene.frame, quick_settings());
+  const std::vector<ScoredHypothesis> with_depth = search(scene.frame, quick_settings());
   scene.frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   expect_same(with_depth, search(scene.frame, quick_settings()));
-  for (const Candidate& candidate : with_depth) {
+  for (const ScoredHypothesis& candidate : with_depth) {
     EXPECT_TRUE(candidate.detection.centre_camera.array().isNaN().all());
     EXPECT_TRUE(candidate.detection.rotations.empty());
   }
@@ -108,7 +108,7 @@ TEST(ScaleSpaceSearch, AnyNumberOfThreadsGivesTheSameCandidates) {
   toy::put_tile(1, 230, 120, 1.1, scene.frame);
   DetectionSettings settings = quick_settings();
   settings.threads = 1;
-  const std::vector<Candidate> serial = search(scene.frame, settings);
+  const std::vector<ScoredHypothesis> serial = search(scene.frame, settings);
   for (const int threads : {2, 3}) {
     settings.threads = threads;
     expect_same(serial, search(scene.frame, settings));
@@ -118,7 +118,7 @@ TEST(ScaleSpaceSearch, AnyNumberOfThreadsGivesTheSameCandidates) {
 TEST(ScaleSpaceSearch, TheReferenceWayFindsTheSameCandidates) {
   const Scene scene = tile_at(1, 150, 120, 0.7);
   const DetectionSettings settings = quick_settings();
-  const std::vector<Candidate> fast = search(scene.frame, settings);
+  const std::vector<ScoredHypothesis> fast = search(scene.frame, settings);
   expect_same(fast, search(scene.frame, settings, Way::kReference));
 }
 
@@ -146,9 +146,9 @@ TEST(ScaleSpaceSearch, EachSizeHasAHoughImageThatPeaksWhereTheObjectFits) {
 
 TEST(ScaleSpaceSearch, AnObjectBetweenTwoSizesIsOneCandidate) {
   const Scene scene = tile_at(1, 120, 110, 0.7 * std::sqrt(1.66));
-  const std::vector<Candidate> found = search(scene.frame, quick_settings());
+  const std::vector<ScoredHypothesis> found = search(scene.frame, quick_settings());
   const float best = strongest(found).detection.score;
-  const auto is_the_object = [&](const Candidate& candidate) {
+  const auto is_the_object = [&](const ScoredHypothesis& candidate) {
     return candidate.detection.box_px.contains(cv::Point2f(120, 110)) && candidate.detection.score > 0.5F * best;
   };
   EXPECT_EQ(std::count_if(found.begin(), found.end(), is_the_object), 1);
@@ -185,7 +185,7 @@ TEST(ScaleSpaceFrame, HolesBorrowOverPixelsAlone) {
 
 TEST(ScaleSpaceSearch, AnEmptyRoomOffersLittle) {
   const float found = strongest(search(tile_at(0, 120, 110, 0.7).frame, quick_settings())).detection.score;
-  for (const Candidate& candidate : search(toy::room(78), quick_settings())) {
+  for (const ScoredHypothesis& candidate : search(toy::room(78), quick_settings())) {
     EXPECT_LT(candidate.detection.score, 0.5F * found);
   }
 }
@@ -202,7 +202,8 @@ ScalePeak peak(int size, float x_px, float mass, std::int32_t class_id = 1) {
 
 std::vector<float> kept_masses(const std::vector<ScalePeak>& peaks) {
   std::vector<float> masses;
-  for (const Candidate& candidate : maxima_over_sizes(peaks)) masses.push_back(candidate.evidence.relative_vote_mass);
+  for (const ScoredHypothesis& candidate : maxima_over_sizes(peaks))
+    masses.push_back(candidate.evidence.relative_vote_mass);
   return masses;
 }
 

@@ -36,8 +36,8 @@ Forest alike(std::size_t classes) {
 }
 
 /// What is found where the toy's view stands, by a hypothesis of each class.
-std::vector<Candidate> weighed(const Forest& forest, const RgbdFrame& frame,
-                               const std::vector<ChromaPair>& remembered = {}) {
+std::vector<ScoredHypothesis> weighed(const Forest& forest, const RgbdFrame& frame,
+                                      const std::vector<ChromaPair>& remembered = {}) {
   const ForestIndex index(forest);
   const LabFrame in_lab = toy::lab_frame(frame, frame.colour, 1.0F);
   std::vector<Hypothesis> hypotheses(forest.classes.size());
@@ -48,7 +48,7 @@ std::vector<Candidate> weighed(const Forest& forest, const RgbdFrame& frame,
     hypotheses[i].weight = 1.0F;
     hypotheses[i].views = {{static_cast<std::uint32_t>(i), 1.0F}};
   }
-  EvidenceWorkspace workspace;
+  ScoringWorkspace workspace;
   return weigh_in_camera_colours({index, in_lab, {}, {}, {}}, remembered, hypotheses, 2, workspace);
 }
 
@@ -74,18 +74,18 @@ TEST(CameraChroma, ACastThatTheCameraIsKnownForSpeaksAgainstNobody) {
   const RgbdFrame cast = with_cast(plain, kA, kB);
   const Forest forest = alike(1);
   const float as_taught = weighed(forest, plain).front().detection.score;
-  const Candidate before = weighed(forest, cast).front();
-  const Candidate after = weighed(forest, cast, seen_with_cast(kA, kB)).front();
+  const ScoredHypothesis before = weighed(forest, cast).front();
+  const ScoredHypothesis after = weighed(forest, cast, seen_with_cast(kA, kB)).front();
   EXPECT_LT(before.detection.score, as_taught - 0.01F) << "alone in a frame nothing is learnt";
   EXPECT_GT(after.detection.score, 0.5F * (before.detection.score + as_taught));
-  EXPECT_LT(after.evidence.fit.foreign_colour, 0.5F * before.evidence.fit.foreign_colour);
-  EXPECT_EQ(after.evidence.fit.visible, before.evidence.fit.visible);
+  EXPECT_LT(after.evidence.fit.mean_chroma_distance, 0.5F * before.evidence.fit.mean_chroma_distance);
+  EXPECT_EQ(after.evidence.fit.visible_fraction, before.evidence.fit.visible_fraction);
 }
 
 TEST(CameraChroma, ObjectsOfAFrameTellTheCastToEachOther) {
   const RgbdFrame cast = with_cast(toy::training_views().front().frame, kA, kB);
   const float alone = weighed(alike(1), cast).front().detection.score;
-  for (const Candidate& together : weighed(alike(5), cast)) EXPECT_GT(together.detection.score, alone + 0.01F);
+  for (const ScoredHypothesis& together : weighed(alike(5), cast)) EXPECT_GT(together.detection.score, alone + 0.01F);
 }
 
 TEST(CameraChroma, AKnownCastDoesNotMakeAnotherColourRight) {
@@ -100,9 +100,9 @@ TEST(CameraChroma, InAPictureWithoutColoursChromaSaysNothing) {
   cv::cvtColor(grey.colour, lightness, cv::COLOR_BGR2GRAY);
   grey.colour = cv::Mat();
   cv::cvtColor(lightness, grey.colour, cv::COLOR_GRAY2BGR);
-  const Candidate seen = weighed(alike(1), grey).front();
-  EXPECT_LT(seen.evidence.fit.foreign_colour, 0.1F);
-  EXPECT_LT(seen.evidence.fit.hue_conflict, 0.05F);
+  const ScoredHypothesis seen = weighed(alike(1), grey).front();
+  EXPECT_LT(seen.evidence.fit.mean_chroma_distance, 0.1F);
+  EXPECT_LT(seen.evidence.fit.hue_mismatch, 0.05F);
 }
 
 }  // namespace

@@ -21,12 +21,12 @@ ScoreModel of_few_terms() {
   ScoreModel model;
   model.weights = {};
   model.weights.constant = 3.6F;
-  model.weights.mass = 3.0F;
-  model.weights.shown = -1.0F;
-  model.weights.seen_through = -4.0F;
-  model.weights.continued = -2.0F;
-  model.weights.likeness = 2.0F;
-  model.weights.hue_conflict = -1.0F;
+  model.weights.log_vote_mass = 3.0F;
+  model.weights.log_visible = -1.0F;
+  model.weights.free_space_violation = -4.0F;
+  model.weights.rim_continuation = -2.0F;
+  model.weights.colour_correlation = 2.0F;
+  model.weights.hue_mismatch = -1.0F;
   return model;
 }
 
@@ -55,73 +55,73 @@ TEST(Score, WhatIsSeenThroughOrGoesOnSpeaksAgainstIt) {
   const ScoreModel model = of_few_terms();
   Evidence evidence = with_mass(0.5F);
   const float clean = score(model, evidence);
-  evidence.fit.seen_through = 0.4F;
+  evidence.fit.free_space_violation = 0.4F;
   EXPECT_LT(score(model, evidence), clean);
-  evidence.fit.seen_through = 0.0F;
-  evidence.fit.continued = 0.8F;
+  evidence.fit.free_space_violation = 0.0F;
+  evidence.fit.rim_continuation = 0.8F;
   EXPECT_LT(score(model, evidence), clean);
-  evidence.fit.continued = 0.0F;
-  evidence.fit.hidden = 0.5F;  // half the mass is all that can be expected then
+  evidence.fit.rim_continuation = 0.0F;
+  evidence.fit.occluded_fraction = 0.5F;  // half the mass is all that can be expected then
   EXPECT_GT(score(model, evidence), clean);
 }
 
 TEST(Score, MassAndLikenessWeighOtherwiseWhereDepthIsUnknown) {
   ScoreModel model = of_few_terms();
-  model.weights.unknown_mass = -1.0F;
-  model.weights.unknown_likeness = 2.0F;
+  model.weights.no_depth_log_vote_mass = -1.0F;
+  model.weights.no_depth_colour_correlation = 2.0F;
   Evidence evidence = with_mass(0.3F);
-  evidence.fit.likeness = 0.7F;
+  evidence.fit.colour_correlation = 0.7F;
   const float known = score(model, evidence);
   EXPECT_EQ(known, score(of_few_terms(), evidence));
-  evidence.fit.unknown = 0.8F;  // of which the model without these terms makes nothing
+  evidence.fit.no_depth_fraction = 0.8F;  // of which the model without these terms makes nothing
   EXPECT_GT(score(model, evidence), known);
   EXPECT_EQ(score(of_few_terms(), evidence), known);
 }
 
 TEST(Score, MissingDepthIsAnotherThingFarAway) {
   ScoreModel model = of_few_terms();
-  model.weights.unknown_distance = -2.0F;
+  model.weights.no_depth_distance = -2.0F;
   Evidence evidence = with_mass(0.3F);
   evidence.distance = 2.0F;
   EXPECT_EQ(score(model, evidence), score(of_few_terms(), evidence)) << "where depth is known, distance is nothing";
-  evidence.fit.unknown = 0.8F;
+  evidence.fit.no_depth_fraction = 0.8F;
   const float far = score(model, evidence);
   evidence.distance = 0.4F;
   EXPECT_GT(score(model, evidence), far);
   evidence.distance = 0.0F;
-  EXPECT_TRUE(std::isfinite(score_terms(evidence).unknown_distance));
+  EXPECT_TRUE(std::isfinite(score_terms(evidence).no_depth_distance));
 }
 
 TEST(Score, LikenessInOtherHuesWeighsOtherwise) {
   ScoreModel model = of_few_terms();
-  model.weights.likeness_hue_conflict = -3.0F;
+  model.weights.colour_correlation_hue_mismatch = -3.0F;
   Evidence evidence = with_mass(0.3F);
-  evidence.fit.likeness = 0.7F;
+  evidence.fit.colour_correlation = 0.7F;
   EXPECT_EQ(score(model, evidence), score(of_few_terms(), evidence));
-  evidence.fit.hue_conflict = 0.5F;
+  evidence.fit.hue_mismatch = 0.5F;
   EXPECT_LT(score(model, evidence), score(of_few_terms(), evidence));
 }
 
 TEST(Score, WhatAgreesBetterInAnotherSizeIsAnotherThing) {
   ScoreModel model = of_few_terms();
-  model.weights.other_size = -3.0F;
+  model.weights.alternative_scale_gain = -3.0F;
   Evidence evidence = with_mass(0.3F);
   const float usual = score(model, evidence);
-  evidence.other_size = 0.2F;
+  evidence.alternative_scale_gain = 0.2F;
   EXPECT_LT(score(model, evidence), usual);
   EXPECT_EQ(score(of_few_terms(), evidence), score(of_few_terms(), with_mass(0.3F)));
 }
 
 TEST(Score, ManyUncertainPatchesAreLessThanFewCertainOnes) {
   ScoreModel model = of_few_terms();
-  model.weights.certainty = 1.5F;
+  model.weights.log_certainty = 1.5F;
   Evidence evidence = with_mass(0.3F);
   evidence.certainty = 2.0F;
   const float certain = score(model, evidence);
   evidence.certainty = 0.5F;
   EXPECT_LT(score(model, evidence), certain);
   evidence.certainty = 0.0F;
-  EXPECT_TRUE(std::isfinite(score_terms(evidence).certainty));
+  EXPECT_TRUE(std::isfinite(score_terms(evidence).log_certainty));
 }
 
 TEST(Score, WhatIsMuchHiddenOrAgreesMuchBetterInAnotherSizeWeighsMoreThanItsShare) {
@@ -130,29 +130,30 @@ TEST(Score, WhatIsMuchHiddenOrAgreesMuchBetterInAnotherSizeWeighsMoreThanItsShar
     ScoreModel model = of_few_terms();
     model.weights.*term = 1.0F;
     Evidence evidence = with_mass(0.3F);
-    evidence.other_size = 0.0F;
+    evidence.alternative_scale_gain = 0.0F;
     set(evidence);
     const auto odds = [&](const ScoreModel& m) { return std::log(score(m, evidence) / (1.0F - score(m, evidence))); };
     return odds(model) - odds(of_few_terms());
   };
-  EXPECT_NEAR(change(&ScoreTerms::shown_sq, [](Evidence& e) { e.fit.hidden = 0.52F; }), std::log(2.0F) * std::log(2.0F),
-              1e-3F);
-  EXPECT_NEAR(change(&ScoreTerms::other_size_sq, [](Evidence& e) { e.other_size = -0.4F; }), 0.16F, 1e-3F);
-  EXPECT_NEAR(change(&ScoreTerms::unevenness_sq, [](Evidence& e) { e.fit.unevenness = 0.5F; }), 0.25F, 1e-3F);
+  EXPECT_NEAR(change(&ScoreTerms::log_visible_sq, [](Evidence& e) { e.fit.occluded_fraction = 0.52F; }),
+              std::log(2.0F) * std::log(2.0F), 1e-3F);
+  EXPECT_NEAR(change(&ScoreTerms::alternative_scale_gain_sq, [](Evidence& e) { e.alternative_scale_gain = -0.4F; }),
+              0.16F, 1e-3F);
+  EXPECT_NEAR(change(&ScoreTerms::depth_residual_sq, [](Evidence& e) { e.fit.depth_residual = 0.5F; }), 0.25F, 1e-3F);
 }
 
 TEST(Score, WhatIsSeenThroughWeighsByTheCertaintyAndHuesByTheForeignColour) {
   ScoreModel model = of_few_terms();
-  model.weights.seen_through_certainty = 1.0F;
-  model.weights.hue_conflict_foreign_colour = -1.0F;
+  model.weights.free_space_violation_log_certainty = 1.0F;
+  model.weights.hue_mismatch_chroma_distance = -1.0F;
   Evidence evidence = with_mass(0.3F);
   evidence.certainty = 2.0F;
-  evidence.fit.hue_conflict = 0.5F;
+  evidence.fit.hue_mismatch = 0.5F;
   EXPECT_EQ(score(model, evidence), score(of_few_terms(), evidence)) << "nothing is seen through, no colour is foreign";
-  evidence.fit.seen_through = 0.3F;
+  evidence.fit.free_space_violation = 0.3F;
   EXPECT_GT(score(model, evidence), score(of_few_terms(), evidence));
-  evidence.fit.seen_through = 0.0F;
-  evidence.fit.foreign_colour = 0.8F;
+  evidence.fit.free_space_violation = 0.0F;
+  evidence.fit.mean_chroma_distance = 0.8F;
   EXPECT_LT(score(model, evidence), score(of_few_terms(), evidence));
 }
 
@@ -162,14 +163,14 @@ std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
   std::vector<ScoreExample> examples;
   for (int i = 0; i < count; ++i) {
     Evidence evidence = with_mass(static_cast<float>(std::exp(random.uniform(-4.0, 0.5))));
-    evidence.fit.hidden = static_cast<float>(random.uniform(0.0, 0.8));
-    evidence.fit.seen_through = static_cast<float>(random.uniform(0.0, 0.5));
-    evidence.fit.unknown = static_cast<float>(random.uniform(0.0, 0.5));
-    evidence.fit.continued = static_cast<float>(random.uniform(0.0, 1.0));
-    evidence.fit.likeness = static_cast<float>(random.uniform(-0.2, 1.0));
-    evidence.fit.hue_conflict = static_cast<float>(random.uniform(0.0, 1.0));
-    evidence.fit.foreign_colour = static_cast<float>(random.uniform(0.0, 2.0));
-    evidence.other_size = static_cast<float>(random.uniform(-1.0, 0.3));
+    evidence.fit.occluded_fraction = static_cast<float>(random.uniform(0.0, 0.8));
+    evidence.fit.free_space_violation = static_cast<float>(random.uniform(0.0, 0.5));
+    evidence.fit.no_depth_fraction = static_cast<float>(random.uniform(0.0, 0.5));
+    evidence.fit.rim_continuation = static_cast<float>(random.uniform(0.0, 1.0));
+    evidence.fit.colour_correlation = static_cast<float>(random.uniform(-0.2, 1.0));
+    evidence.fit.hue_mismatch = static_cast<float>(random.uniform(0.0, 1.0));
+    evidence.fit.mean_chroma_distance = static_cast<float>(random.uniform(0.0, 2.0));
+    evidence.alternative_scale_gain = static_cast<float>(random.uniform(-1.0, 0.3));
     evidence.certainty = static_cast<float>(std::exp(random.uniform(-1.0, 1.0)));
     examples.push_back({score_terms(evidence), random.uniform() < score(truth, evidence)});
   }

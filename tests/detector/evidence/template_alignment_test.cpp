@@ -19,9 +19,9 @@ TEST(ViewAlignment, AVoteBesideTheCentreFindsItsWayBack) {
     const PlacedTemplate before = {0, beside, match_template(view, beside, frame)};
     const PlacedTemplate placed = align_template({view}, before, frame);
     const TemplateMatch& after = placed.fit;
-    EXPECT_GT(agreement(after), agreement(before.fit));
-    EXPECT_EQ(agreement(after), agreement(match_template(view, placed.centre_camera, frame)));
-    EXPECT_GT(after.visible, 0.97F);
+    EXPECT_GT(match_quality(after), match_quality(before.fit));
+    EXPECT_EQ(match_quality(after), match_quality(match_template(view, placed.centre_camera, frame)));
+    EXPECT_GT(after.visible_fraction, 0.97F);
     EXPECT_GT(box_iou(after.visible_box_px, truth), 0.9F);
   }
 }
@@ -33,7 +33,7 @@ TEST(ViewAlignment, WhereNothingIsBetterNothingMoves) {
   const Eigen::Vector3f outside(3.0F, 0.0F, toy::kDistance);
   const PlacedTemplate nothing = {0, outside, match_template(view, outside, frame)};
   const PlacedTemplate aligned = align_template({view}, nothing, frame);
-  EXPECT_EQ(agreement(aligned.fit), agreement(nothing.fit));
+  EXPECT_EQ(match_quality(aligned.fit), match_quality(nothing.fit));
   EXPECT_EQ(aligned.centre_camera, outside);
 }
 
@@ -55,8 +55,8 @@ TEST(ViewAlignment, TheViewThatAgreesBestOnceAlignedIsTaken) {
   const std::vector<PlacedTemplate> before = compared;
   const PlacedTemplate aligned = align_best_templates(views, frame, compared);
   EXPECT_EQ(aligned.view, 0U);
-  EXPECT_EQ(agreement(aligned.fit), agreement(align_template(views, before[0], frame).fit));
-  EXPECT_GT(agreement(aligned.fit), agreement(align_template(views, before[1], frame).fit));
+  EXPECT_EQ(match_quality(aligned.fit), match_quality(align_template(views, before[0], frame).fit));
+  EXPECT_GT(match_quality(aligned.fit), match_quality(align_template(views, before[1], frame).fit));
 }
 
 TEST(ViewAlignment, AnObjectOfAnotherSizeAgreesBetterInThatSize) {

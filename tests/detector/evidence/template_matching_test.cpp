@@ -27,9 +27,9 @@ RgbdFrame tile_frame() {
 TEST(TemplateMatch, TheViewItselfFitsWholly) {
   const TrainingView view = toy::training_views().front();
   const TemplateMatch result = fit(view.frame);
-  EXPECT_GT(result.visible, 0.99F);
-  EXPECT_GT(result.likeness, 0.8F);
-  EXPECT_EQ(result.continued, 0.0F);
+  EXPECT_GT(result.visible_fraction, 0.99F);
+  EXPECT_GT(result.colour_correlation, 0.8F);
+  EXPECT_EQ(result.rim_continuation, 0.0F);
   EXPECT_GT(box_iou(result.visible_box_px, cv::Rect2f(cv::boundingRect(view.mask))), 0.9F);
 }
 
@@ -38,16 +38,16 @@ TEST(TemplateMatch, FitsWhereverInThePictureTheObjectFacesTheCamera) {
     RgbdFrame frame = toy::room(5);
     toy::put_tile(0, at.x, at.y, kDistance, frame);
     const TemplateMatch result = fit(frame, frame.camera.backproject(at.x, at.y, kDistance).cast<float>());
-    EXPECT_GT(result.visible, 0.97F) << at;
-    EXPECT_LT(result.unevenness, 0.2F) << at;
+    EXPECT_GT(result.visible_fraction, 0.97F) << at;
+    EXPECT_LT(result.depth_residual, 0.2F) << at;
   }
 }
 
 TEST(TemplateMatch, ADepthErrorOfAVoteIsForgivenAndLargerOnesAreNot) {
-  EXPECT_GT(fit(tile_frame(), {0, 0, kDistance + 0.02F}).visible, 0.9F);
-  EXPECT_LT(fit(tile_frame(), {0, 0, kDistance - 0.2F}).visible, 0.1F);
-  EXPECT_GT(fit(tile_frame(), {0, 0, kDistance - 0.2F}).seen_through, 0.9F);
-  EXPECT_GT(fit(tile_frame(), {0, 0, kDistance + 0.2F}).hidden, 0.9F);
+  EXPECT_GT(fit(tile_frame(), {0, 0, kDistance + 0.02F}).visible_fraction, 0.9F);
+  EXPECT_LT(fit(tile_frame(), {0, 0, kDistance - 0.2F}).visible_fraction, 0.1F);
+  EXPECT_GT(fit(tile_frame(), {0, 0, kDistance - 0.2F}).free_space_violation, 0.9F);
+  EXPECT_GT(fit(tile_frame(), {0, 0, kDistance + 0.2F}).occluded_fraction, 0.9F);
 }
 
 TEST(TemplateMatch, AnOccluderHidesItsPartOfTheBox) {
@@ -55,9 +55,9 @@ TEST(TemplateMatch, AnOccluderHidesItsPartOfTheBox) {
   const cv::Rect whole = cv::boundingRect(toy::training_views().front().mask);
   frame.depth(cv::Rect(whole.x + whole.width / 2, 0, 320 - whole.x - whole.width / 2, 240)).setTo(0.5F);
   const TemplateMatch result = fit(frame);
-  EXPECT_NEAR(result.hidden, 0.5F, 0.06F);
-  EXPECT_NEAR(result.visible, 0.5F, 0.06F);
-  EXPECT_EQ(result.seen_through, 0.0F);
+  EXPECT_NEAR(result.occluded_fraction, 0.5F, 0.06F);
+  EXPECT_NEAR(result.visible_fraction, 0.5F, 0.06F);
+  EXPECT_EQ(result.free_space_violation, 0.0F);
   EXPECT_NEAR(result.visible_box_px.x, static_cast<float>(whole.x), 3.0F);
   EXPECT_NEAR(result.visible_box_px.width, 0.5F * static_cast<float>(whole.width), 4.0F);
   EXPECT_NEAR(result.visible_box_px.height, static_cast<float>(whole.height), 3.0F);
@@ -70,7 +70,7 @@ TEST(TemplateMatch, TheVisibleBoxEnclosesWhatLittleIsSeen) {
   const cv::Point corner(whole.x + whole.width / 8, whole.y + whole.height / 8);
   frame.depth(cv::Rect(corner, whole.br())).setTo(0.5F);
   const TemplateMatch result = fit(frame);
-  EXPECT_GT(result.hidden, 0.6F);
+  EXPECT_GT(result.occluded_fraction, 0.6F);
   EXPECT_GT(box_iou(result.visible_box_px, cv::Rect2f(whole)), 0.9F);
 }
 
@@ -78,31 +78,32 @@ TEST(TemplateMatch, MissingDepthIsUnknownAndNeitherForNorAgainst) {
   RgbdFrame frame = tile_frame();
   frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   const TemplateMatch result = fit(frame);
-  EXPECT_EQ(result.unknown, 1.0F);
-  EXPECT_EQ(result.visible + result.hidden + result.seen_through + result.continued, 0.0F);
+  EXPECT_EQ(result.no_depth_fraction, 1.0F);
+  EXPECT_EQ(result.visible_fraction + result.occluded_fraction + result.free_space_violation + result.rim_continuation,
+            0.0F);
 }
 
 TEST(TemplateMatch, ColoursCountWhereDepthIsMissing) {
   RgbdFrame frame = tile_frame();
   frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
-  EXPECT_GT(fit(frame).likeness, 0.8F);
+  EXPECT_GT(fit(frame).colour_correlation, 0.8F);
   frame.colour = toy::room(5).colour;
-  EXPECT_LT(fit(frame).likeness, 0.3F);
+  EXPECT_LT(fit(frame).colour_correlation, 0.3F);
 }
 
 TEST(TemplateMatch, WhatHidesTheObjectDoesNotLendItItsColours) {
   RgbdFrame frame = tile_frame();
-  const float alone = fit(frame).likeness;
+  const float alone = fit(frame).colour_correlation;
   const cv::Rect left(0, 0, frame.colour.cols / 2, frame.colour.rows);
   frame.depth(left).setTo(0.5F);
   frame.colour(left).setTo(cv::Scalar(0, 255, 0));
-  EXPECT_NEAR(fit(frame).likeness, alone, 0.1F);
+  EXPECT_NEAR(fit(frame).colour_correlation, alone, 0.1F);
 }
 
 TEST(TemplateMatch, AWallGoesOnBesideTheOutline) {
   RgbdFrame frame = tile_frame();
   frame.depth.setTo(kDistance);
-  EXPECT_GT(fit(frame).continued, 0.5F);
+  EXPECT_GT(fit(frame).rim_continuation, 0.5F);
 }
 
 TEST(TemplateMatch, ALargerThingGoesOnBesideTheOutlineAndComesNearerThere) {
@@ -112,7 +113,7 @@ TEST(TemplateMatch, ALargerThingGoesOnBesideTheOutlineAndComesNearerThere) {
     around.setTo(kDistance - nearer);
     frame.depth.copyTo(around, toy::training_views().front().mask);
     frame.depth = around;
-    return fit(frame).continued;
+    return fit(frame).rim_continuation;
   };
   EXPECT_GT(beside(0.02F), 0.5F);
   EXPECT_EQ(beside(0.06F), 0.0F) << "something in front";
@@ -135,13 +136,13 @@ BoundaryContinuation outline_fit(double behind, const cv::Scalar& colour) {
 
 TEST(TemplateMatch, AnObjectEndsAtItsOutlineWhereDepthOrColourDoes) {
   const BoundaryContinuation alone = outline_fit(0.3, {0, 200, 0});
-  EXPECT_LT(alone.surface_goes_on(), 0.05F);
-  EXPECT_LT(alone.colour_goes_on(), 0.05F);
-  EXPECT_LT(alone.goes_on(), 0.05F);
+  EXPECT_LT(alone.surface(), 0.05F);
+  EXPECT_LT(alone.colour(), 0.05F);
+  EXPECT_LT(alone.joint(), 0.05F);
   const BoundaryContinuation lying_on_another = outline_fit(0.0, {0, 200, 0});
-  EXPECT_GT(lying_on_another.surface_goes_on(), 0.3F);
-  EXPECT_LT(lying_on_another.colour_goes_on(), 0.05F);
-  EXPECT_LT(lying_on_another.goes_on(), 0.05F);
+  EXPECT_GT(lying_on_another.surface(), 0.3F);
+  EXPECT_LT(lying_on_another.colour(), 0.05F);
+  EXPECT_LT(lying_on_another.joint(), 0.05F);
 }
 
 /// The remembered view is a window of a plain wall.
@@ -155,14 +156,14 @@ TEST(TemplateMatch, APartOfALargerThingDoesNotEndAtTheOutline) {
   const auto outline = [&] {
     return measure_boundary_continuation(window, kCentre, toy::lab_frame(wall, wall.colour, 1.0F));
   };
-  EXPECT_GT(outline().surface_goes_on(), 0.9F);
-  EXPECT_GT(outline().colour_goes_on(), 0.9F);
-  EXPECT_GT(outline().goes_on(), 0.9F);
+  EXPECT_GT(outline().surface(), 0.9F);
+  EXPECT_GT(outline().colour(), 0.9F);
+  EXPECT_GT(outline().joint(), 0.9F);
   cv::Mat outside;
   cv::bitwise_not(mask, outside);
   wall.depth.setTo(kDistance + 0.3, outside);
-  EXPECT_LT(outline().surface_goes_on(), 0.1F);
-  EXPECT_LT(outline().colour_goes_on(), 0.1F) << "another thing of its colour, behind it";
+  EXPECT_LT(outline().surface(), 0.1F);
+  EXPECT_LT(outline().colour(), 0.1F) << "another thing of its colour, behind it";
 }
 
 TEST(TemplateMatch, WhatHidesTheOutlineHasNoSayInWhereTheObjectEnds) {
@@ -171,10 +172,10 @@ TEST(TemplateMatch, WhatHidesTheOutlineHasNoSayInWhereTheObjectEnds) {
   const cv::Rect left(0, 0, frame.colour.cols / 2, frame.colour.rows);
   frame.depth(left).setTo(0.5F);
   frame.colour(left).setTo(cv::Scalar(0, 255, 0));
-  EXPECT_NEAR(outline_of(frame).goes_on(), whole.goes_on(), 0.1F);
+  EXPECT_NEAR(outline_of(frame).joint(), whole.joint(), 0.1F);
   frame.depth.setTo(0.5F);
-  EXPECT_EQ(outline_of(frame).goes_on(), 0.0F);
-  EXPECT_EQ(outline_of(frame).colour_goes_on(), 0.0F);
+  EXPECT_EQ(outline_of(frame).joint(), 0.0F);
+  EXPECT_EQ(outline_of(frame).colour(), 0.0F);
 }
 
 TEST(TemplateMatch, AViewMayBeTakenForOneOfALargerObject) {
@@ -182,16 +183,17 @@ TEST(TemplateMatch, AViewMayBeTakenForOneOfALargerObject) {
   const LabFrame lab = toy::lab_frame(frame, frame.colour, 1.0F);
   const TemplateMatch own = match_template(toy::remembered_view(), kCentre, lab);
   const TemplateMatch resized = match_template(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab, 2.0F);
-  EXPECT_NEAR(resized.visible, own.visible, 0.01F);
-  EXPECT_NEAR(resized.likeness, own.likeness, 0.01F);
+  EXPECT_NEAR(resized.visible_fraction, own.visible_fraction, 0.01F);
+  EXPECT_NEAR(resized.colour_correlation, own.colour_correlation, 0.01F);
   EXPECT_GT(box_iou(resized.visible_box_px, own.visible_box_px), 0.99F);
-  EXPECT_LT(match_template(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab).likeness, own.likeness - 0.1F);
+  EXPECT_LT(match_template(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab).colour_correlation,
+            own.colour_correlation - 0.1F);
 }
 
 TEST(TemplateMatch, LikenessIgnoresLightButNotPattern) {
   RgbdFrame dim = tile_frame();
   dim.colour.convertTo(dim.colour, -1, 0.5, 20.0);
-  EXPECT_GT(fit(dim).likeness, 0.75F);
+  EXPECT_GT(fit(dim).colour_correlation, 0.75F);
   RgbdFrame noise = tile_frame();
   Random random(3);
   for (int y = 0; y < noise.colour.rows; ++y) {
@@ -200,17 +202,17 @@ TEST(TemplateMatch, LikenessIgnoresLightButNotPattern) {
       noise.colour.at<cv::Vec3b>(y, x) = {value, value, value};
     }
   }
-  EXPECT_LT(fit(noise).likeness, 0.3F);
+  EXPECT_LT(fit(noise).colour_correlation, 0.3F);
 }
 
 TEST(TemplateMatch, AnotherReliefIsUnevenWhereItIsStillNear) {
-  const float of_itself = fit(tile_frame()).unevenness;
+  const float of_itself = fit(tile_frame()).depth_residual;
   RgbdFrame flat = tile_frame();
   const cv::Mat mask = toy::training_views().front().mask;
   flat.depth.setTo(static_cast<float>(cv::mean(flat.depth, mask)[0]), mask);
   EXPECT_LT(of_itself, 0.1F);
-  EXPECT_GT(fit(flat).unevenness, of_itself + 0.1F);
-  EXPECT_LE(fit(flat).unevenness, 1.0F);
+  EXPECT_GT(fit(flat).depth_residual, of_itself + 0.1F);
+  EXPECT_LE(fit(flat).depth_residual, 1.0F);
 }
 
 TEST(TemplateMatch, ColoursAreAveragedOverNeighbours) {
@@ -228,7 +230,7 @@ TEST(TemplateMatch, ColoursAreAveragedOverNeighbours) {
 TEST(TemplateMatch, PrintThatIsFinerThanWhatIsRememberedIsAveraged) {
   constexpr int kLarger = 4;
   RgbdFrame frame = tile_frame();
-  const float of_itself = fit(frame).likeness;
+  const float of_itself = fit(frame).colour_correlation;
   cv::resize(frame.colour.clone(), frame.colour, {}, kLarger, kLarger, cv::INTER_NEAREST);
   cv::resize(frame.depth.clone(), frame.depth, {}, kLarger, kLarger, cv::INTER_NEAREST);
   Camera& camera = frame.camera;
@@ -240,14 +242,15 @@ TEST(TemplateMatch, PrintThatIsFinerThanWhatIsRememberedIsAveraged) {
       for (int c = 0; c < 3; ++c) pixel[c] = cv::saturate_cast<std::uint8_t>(pixel[c] + (x / 3 % 2 == 0 ? 60 : -60));
     }
   }
-  EXPECT_GT(fit(frame).likeness, of_itself - 0.15F);
+  EXPECT_GT(fit(frame).colour_correlation, of_itself - 0.15F);
 }
 
 TEST(TemplateMatch, OutsideTheFrameNothingIsCompared) {
   const TemplateMatch result = fit(tile_frame(), {2.0F, 0.0F, kDistance});
-  EXPECT_EQ(result.visible + result.hidden + result.seen_through + result.unknown, 0.0F);
+  EXPECT_EQ(result.visible_fraction + result.occluded_fraction + result.free_space_violation + result.no_depth_fraction,
+            0.0F);
   const BoundaryContinuation outline = outline_of(tile_frame(), {2.0F, 0.0F, kDistance});
-  EXPECT_EQ(outline.surface_goes_on() + outline.colour_goes_on(), 0.0F);
+  EXPECT_EQ(outline.surface() + outline.colour(), 0.0F);
   EXPECT_TRUE(result.visible_box_px.empty());
 }
 
@@ -259,7 +262,7 @@ TEST(TemplateMatch, WhatLiesOutsideTheFrameHasNoSayInTheDepth) {
   frame.colour = frame.colour.colRange(0, columns).clone();
   frame.depth = frame.depth.colRange(0, columns).clone();
   frame.camera.width = columns;
-  EXPECT_GT(fit(frame, {0, 0, kDistance + 0.025F}).visible, 0.9F);
+  EXPECT_GT(fit(frame, {0, 0, kDistance + 0.025F}).visible_fraction, 0.9F);
 }
 
 }  // namespace

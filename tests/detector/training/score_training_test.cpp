@@ -42,13 +42,13 @@ TEST(ScoreTraining, GivesAFullySeenObjectMuchAndNothingLittle) {
   const Forest forest = with_score_trained(toys, train_forest(toys.views, toy::quick_profile(), [](auto&) {}), 2);
   Evidence whole;
   whole.relative_vote_mass = 1.0F;
-  whole.fit.visible = 1.0F;
-  whole.fit.likeness = 0.8F;
+  whole.fit.visible_fraction = 1.0F;
+  whole.fit.colour_correlation = 0.8F;
   Evidence wall;
   wall.relative_vote_mass = 0.03F;
-  wall.fit.visible = 1.0F;
-  wall.fit.continued = 1.0F;
-  wall.other_size = 0.0F;  // it looks the same in any size
+  wall.fit.visible_fraction = 1.0F;
+  wall.fit.rim_continuation = 1.0F;
+  wall.alternative_scale_gain = 0.0F;  // it looks the same in any size
   for (const ObjectClass& object : forest.classes) {
     EXPECT_GT(score(object.score_model, whole), 0.8F) << object.name;
     EXPECT_LT(score(object.score_model, wall), 0.1F) << object.name;
@@ -74,9 +74,9 @@ TEST(ScoreTraining, MissingDepthIsNoMarkOfTheBackground) {
   const Forest forest = with_score_trained(toys, train_forest(toys.views, toy::quick_profile(), [](auto&) {}), 2);
   Evidence dazzled;
   dazzled.relative_vote_mass = 0.3F;
-  dazzled.fit.visible = 0.15F;
-  dazzled.fit.unknown = 0.85F;
-  dazzled.fit.likeness = 0.6F;
+  dazzled.fit.visible_fraction = 0.15F;
+  dazzled.fit.no_depth_fraction = 0.85F;
+  dazzled.fit.colour_correlation = 0.6F;
   for (const ObjectClass& object : forest.classes) {
     EXPECT_GT(score(object.score_model, dazzled), 0.6F) << object.name;
   }
@@ -107,8 +107,8 @@ ValidationFrame tiles_in_a_room(int index, bool is_there) {
 Evidence of_a_tile() {
   Evidence evidence;
   evidence.relative_vote_mass = 1.0F;
-  evidence.fit.visible = 1.0F;
-  evidence.fit.likeness = 0.8F;
+  evidence.fit.visible_fraction = 1.0F;
+  evidence.fit.colour_correlation = 0.8F;
   return evidence;
 }
 
@@ -147,7 +147,7 @@ std::vector<ScoreExamples> judged_by_mass(int class_id, double log_odds, double 
   for (int i = 0; i < 4000; ++i) {
     const double odds = random.uniform(-3.0, 3.0);
     ScoreExample example;
-    example.terms.mass = static_cast<float>(odds / log_odds);
+    example.terms.log_vote_mass = static_cast<float>(odds / log_odds);
     example.is_object = random.uniform() < 1.0 / (1.0 + std::exp(-(odds + offset)));
     frames.push_back({{class_id, {example}}});
   }
@@ -161,13 +161,13 @@ TEST(ScoreTraining, CalibratedScoresAreRightAsOftenAsTheySayAndKeepTheirOrder) {
   forest.classes = {{1, "mug", 0.1F, 1.0F, {}}, {2, "older", 0.1F, 1.0F, {}}};
   for (ObjectClass& object : forest.classes) {
     object.score_model.weights = {};
-    object.score_model.weights.mass = kOfMass;
+    object.score_model.weights.log_vote_mass = kOfMass;
   }
   calibrate_scores(judged_by_mass(1, kOfMass, kFewer), {1}, forest);
   const ScoreTerms& weights = forest.classes[0].score_model.weights;
   EXPECT_NEAR(weights.constant, kFewer, 0.15);
-  EXPECT_NEAR(weights.mass, kOfMass, 0.2);
-  EXPECT_EQ(forest.classes[1].score_model.weights.mass, static_cast<float>(kOfMass));  // was not asked for
+  EXPECT_NEAR(weights.log_vote_mass, kOfMass, 0.2);
+  EXPECT_EQ(forest.classes[1].score_model.weights.log_vote_mass, static_cast<float>(kOfMass));  // was not asked for
   EXPECT_EQ(forest.classes[1].score_model.weights.constant, 0.0F);
 }
 

@@ -16,16 +16,16 @@
 namespace houghstream::terms {
 namespace {
 
-Sample sample_of(const Candidate& candidate, const ScoreModel& model) {
+Sample sample_of(const ScoredHypothesis& candidate, const ScoreModel& model) {
   Sample sample{candidate.detection.class_name, candidate.detection.score, score_terms(candidate.evidence), {}};
   for (const auto term : kScoreTermList) sample.contributions.*term = sample.terms.*term * model.weights.*term;
   return sample;
 }
 
 /// The strongest candidate whose box is the object's.
-const Candidate* strongest_of(const NamedObject& object, const std::vector<Candidate>& candidates) {
-  const Candidate* best = nullptr;
-  for (const Candidate& candidate : candidates) {
+const ScoredHypothesis* strongest_of(const NamedObject& object, const std::vector<ScoredHypothesis>& candidates) {
+  const ScoredHypothesis* best = nullptr;
+  for (const ScoredHypothesis& candidate : candidates) {
     const Detection& detection = candidate.detection;
     if (detection.class_name != object.class_name) continue;
     if (box_iou(detection.box_px, cv::Rect2f(object.truth.box_visible_px)) < DetectionRules{}.min_iou) continue;
@@ -35,7 +35,7 @@ const Candidate* strongest_of(const NamedObject& object, const std::vector<Candi
 }
 
 /// What the detector would find without a threshold; each detection has its candidate's number for a vote_count.
-Detections numbered_detections(const std::vector<Candidate>& candidates, const SuppressionSettings& settings) {
+Detections numbered_detections(const std::vector<ScoredHypothesis>& candidates, const SuppressionSettings& settings) {
   std::vector<Detection> all;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     all.push_back(candidates[i].detection);
@@ -118,14 +118,14 @@ OrderedJson figures_json(const std::vector<Sample>& samples) {
 
 }  // namespace
 
-void add_frame(EvaluatedFrame truth, const std::vector<Candidate>& candidates, const ModelsByClass& models,
+void add_frame(EvaluatedFrame truth, const std::vector<ScoredHypothesis>& candidates, const ModelsByClass& models,
                const StudyRules& rules, Group& group) {
   ++group.frames;
   for (const NamedObject& object : truth.objects) {
     const auto model = models.find(object.class_name);
     if (model == models.end() || object.truth.visible_fraction < rules.min_visible) continue;
     ++group.objects;
-    const Candidate* found = strongest_of(object, candidates);
+    const ScoredHypothesis* found = strongest_of(object, candidates);
     if (found == nullptr) continue;
     ++group.with_candidate;
     group.true_ones.push_back(sample_of(*found, model->second));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "detector/detection_settings.hpp"
-#include "detector/evidence/candidates.hpp"
+#include "detector/evidence/hypothesis_scoring.hpp"
 #include "drivers/files/json_file.hpp"
 #include "tools/evaluate/metrics/evaluated_frame.hpp"
 
@@ -42,7 +42,7 @@ struct Group {
 using ModelsByClass = std::map<std::string, ScoreModel>;
 
 /// Adds a frame: its true objects and all candidates in it. Those that are false are so as hs-evaluate judges.
-void add_frame(EvaluatedFrame truth, const std::vector<Candidate>& candidates, const ModelsByClass& models,
+void add_frame(EvaluatedFrame truth, const std::vector<ScoredHypothesis>& candidates, const ModelsByClass& models,
                const StudyRules& rules, Group& group);
 
 /// One term over many candidates; NaN where there are none.

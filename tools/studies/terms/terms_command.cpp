@@ -53,12 +53,12 @@ std::vector<SceneGroup> parse_groups(const StudyOptions& options) {
   return groups;
 }
 
-std::vector<Candidate> candidates_in(const SearchContext& search, const RgbdFrame& frame,
-                                     DetectorWorkspace& workspace) {
+std::vector<ScoredHypothesis> candidates_in(const SearchContext& search, const RgbdFrame& frame,
+                                            DetectorWorkspace& workspace) {
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);
   find_posteriors(search, workspace);
-  return weigh_evidence(search, frame, find_hypotheses(search, workspace), workspace);
+  return score_hypotheses(search, frame, find_hypotheses(search, workspace), workspace);
 }
 
 /// The candidates need no rotations.
@@ -93,7 +93,7 @@ terms::Group study(const StudyOptions& options, const SceneGroup& scenes, const 
     const NamedSide truth{"the scene " + folder, true_names(frames)};
     if (!truth.names.empty()) require_shared_name(known, truth);
     for (EvaluatedFrame& frame : every_nth(std::move(frames), options.every)) {
-      const std::vector<Candidate> candidates = candidates_in(search, scene.read_frame(frame.image), workspace);
+      const std::vector<ScoredHypothesis> candidates = candidates_in(search, scene.read_frame(frame.image), workspace);
       terms::add_frame(std::move(frame), candidates, models, rules, group);
     }
   }

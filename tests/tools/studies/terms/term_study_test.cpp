@@ -17,12 +17,12 @@ NamedObject object(const std::string& name, double visible, const cv::Rect& box 
   return out;
 }
 
-Candidate candidate(const std::string& name, const cv::Rect& box, float score, float likeness) {
-  Candidate out;
+ScoredHypothesis candidate(const std::string& name, const cv::Rect& box, float score, float likeness) {
+  ScoredHypothesis out;
   out.detection.class_name = name;
   out.detection.box_px = box;
   out.detection.score = score;
-  out.evidence.fit.likeness = likeness;
+  out.evidence.fit.colour_correlation = likeness;
   return out;
 }
 
@@ -30,7 +30,7 @@ Candidate candidate(const std::string& name, const cv::Rect& box, float score, f
 ModelsByClass mugs() {
   ScoreModel model;
   model.weights = {};
-  model.weights.likeness = 2.0F;
+  model.weights.colour_correlation = 2.0F;
   return {{"mug", model}};
 }
 
@@ -58,9 +58,9 @@ TEST(TermStudy, AnObjectsStrongestCandidateStandsForIt) {
   EXPECT_EQ(group.with_candidate, 1);
   ASSERT_EQ(group.true_ones.size(), 1U);
   EXPECT_EQ(group.true_ones[0].score, 0.4F);
-  EXPECT_EQ(group.true_ones[0].terms.likeness, 0.5F);
-  EXPECT_EQ(group.true_ones[0].contributions.likeness, 1.0F);
-  EXPECT_EQ(group.true_ones[0].contributions.mass, 0.0F);
+  EXPECT_EQ(group.true_ones[0].terms.colour_correlation, 0.5F);
+  EXPECT_EQ(group.true_ones[0].contributions.colour_correlation, 1.0F);
+  EXPECT_EQ(group.true_ones[0].contributions.log_vote_mass, 0.0F);
 }
 
 TEST(TermStudy, AMissedObjectHasNoCandidate) {
@@ -81,44 +81,44 @@ TEST(TermStudy, FalseIsWhatSuppressionLeavesAndTheTruthLacks) {
              candidate("mug", kBox, 0.7F, 0.8F)},
             mugs(), rules, group);
   ASSERT_EQ(group.false_ones.size(), 1U) << "not the suppressed, the weak, the hardly visible and the true one";
-  EXPECT_EQ(group.false_ones[0].terms.likeness, 0.3F);
+  EXPECT_EQ(group.false_ones[0].terms.colour_correlation, 0.3F);
 }
 
 TEST(TermStudy, FiguresAreMediansAndMeans) {
   std::vector<Sample> samples(3);
-  samples[0].terms.likeness = 0.1F;
-  samples[1].terms.likeness = 0.2F;
-  samples[2].terms.likeness = 0.9F;
-  samples[2].contributions.likeness = 3.0F;
-  const TermFigures figures = figures_of(samples, "likeness");
+  samples[0].terms.colour_correlation = 0.1F;
+  samples[1].terms.colour_correlation = 0.2F;
+  samples[2].terms.colour_correlation = 0.9F;
+  samples[2].contributions.colour_correlation = 3.0F;
+  const TermFigures figures = figures_of(samples, "colour_correlation");
   EXPECT_NEAR(figures.median, 0.2, 1e-6);
   EXPECT_NEAR(figures.mean, 0.4, 1e-6);
   EXPECT_NEAR(figures.contribution, 1.0, 1e-6);
   EXPECT_EQ(figures.contribution_median, 0.0);
-  EXPECT_TRUE(std::isnan(figures_of({}, "likeness").mean));
+  EXPECT_TRUE(std::isnan(figures_of({}, "colour_correlation").mean));
 }
 
 TEST(TermStudy, EachTermHasItsOwnName) {
   Sample sample;
   for (std::size_t i = 0; i < kScoreTerms; ++i) sample.terms.*kScoreTermList[i] = static_cast<float>(i);
-  EXPECT_EQ(figures_of({sample}, "mass").median, static_cast<double>(sample.terms.mass));
-  EXPECT_EQ(figures_of({sample}, "certainty").median, static_cast<double>(sample.terms.certainty));
-  EXPECT_EQ(figures_of({sample}, "unevenness_sq").median, static_cast<double>(sample.terms.unevenness_sq));
+  EXPECT_EQ(figures_of({sample}, "log_vote_mass").median, static_cast<double>(sample.terms.log_vote_mass));
+  EXPECT_EQ(figures_of({sample}, "log_certainty").median, static_cast<double>(sample.terms.log_certainty));
+  EXPECT_EQ(figures_of({sample}, "depth_residual_sq").median, static_cast<double>(sample.terms.depth_residual_sq));
 }
 
 TEST(TermStudy, WhatPushesDownMostComesFirst) {
   Sample rendered;
-  rendered.contributions.likeness = 3.0F;
-  rendered.contributions.certainty = -1.0F;
+  rendered.contributions.colour_correlation = 3.0F;
+  rendered.contributions.log_certainty = -1.0F;
   Sample recorded;
   recorded.contributions.constant = -9.0F;
-  recorded.contributions.likeness = 2.0F;
-  recorded.contributions.certainty = -5.0F;
+  recorded.contributions.colour_correlation = 2.0F;
+  recorded.contributions.log_certainty = -5.0F;
   const std::vector<TermShift> shifts = shifts_between({rendered}, {recorded});
   ASSERT_EQ(shifts.size(), kScoreTerms - 1);
-  EXPECT_EQ(shifts[0].term, "certainty");
+  EXPECT_EQ(shifts[0].term, "log_certainty");
   EXPECT_NEAR(shifts[0].shift, -4.0, 1e-6);
-  EXPECT_EQ(shifts[1].term, "likeness");
+  EXPECT_EQ(shifts[1].term, "colour_correlation");
   EXPECT_TRUE(shifts_between({rendered}, {}).empty());
 }
 
@@ -135,9 +135,9 @@ TEST(TermStudy, TableAndJsonHaveTheGroupsSideBySide) {
       << text;
   EXPECT_NE(text.find("true ones of cat against rendered: likeness -1.00"), std::string::npos) << text;
   const OrderedJson json = to_json(groups, {});
-  EXPECT_EQ(json["cat"]["true"]["likeness"]["contribution"], 0.5);
+  EXPECT_EQ(json["cat"]["true"]["colour_correlation"]["contribution"], 0.5);
   EXPECT_EQ(json["rendered"]["reported"], 1);
-  EXPECT_TRUE(json["rendered"]["false"]["likeness"]["median"].is_null());
+  EXPECT_TRUE(json["rendered"]["false"]["colour_correlation"]["median"].is_null());
 }
 
 }  // namespace

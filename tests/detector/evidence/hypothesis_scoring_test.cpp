@@ -1,4 +1,4 @@
-#include "detector/evidence/candidates.hpp"
+#include "detector/evidence/hypothesis_scoring.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,27 +14,27 @@
 namespace houghstream {
 namespace {
 
-std::vector<Candidate> candidates(const RgbdFrame& frame, const DetectionSettings& settings = {},
-                                  const std::vector<std::uint32_t>& excluded_views = {}) {
+std::vector<ScoredHypothesis> candidates(const RgbdFrame& frame, const DetectionSettings& settings = {},
+                                         const std::vector<std::uint32_t>& excluded_views = {}) {
   const SearchContext search{toy::forest_index(), settings, excluded_views};
   DetectorWorkspace workspace;
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);
   find_posteriors(search, workspace);
   const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);
-  return weigh_evidence(search, frame, hypotheses, workspace);
+  return score_hypotheses(search, frame, hypotheses, workspace);
 }
 
 TEST(Candidates, TheStrongestOfAClassComesWithEvidenceForIt) {
   RgbdFrame frame = toy::room(77);
   const cv::Mat mask = toy::put_tile(0, 159.5, 119.5, 0.7, frame);
-  const std::vector<Candidate> found = candidates(frame);
+  const std::vector<ScoredHypothesis> found = candidates(frame);
   ASSERT_FALSE(found.empty());
-  const Candidate& best = found.front();
+  const ScoredHypothesis& best = found.front();
   EXPECT_EQ(best.detection.class_id, 1);
   EXPECT_GT(best.evidence.relative_vote_mass, 0.3F);
-  EXPECT_GT(best.evidence.fit.visible, 0.8F);
-  EXPECT_GT(best.evidence.fit.likeness, 0.5F);
+  EXPECT_GT(best.evidence.fit.visible_fraction, 0.8F);
+  EXPECT_GT(best.evidence.fit.colour_correlation, 0.5F);
   EXPECT_GT(box_iou(best.detection.box_px, cv::Rect2f(cv::boundingRect(mask))), 0.7F);
   EXPECT_EQ(best.detection.score, score(toy::forest().classes[0].score_model, best.evidence));
 }
@@ -45,9 +45,9 @@ TEST(Candidates, ExcludedViewsAreNotCompared) {
   std::vector<std::uint32_t> all;
   all.reserve(toy::forest().views.size());
   for (std::uint32_t v = 0; v < toy::forest().views.size(); ++v) all.push_back(v);
-  const std::vector<Candidate> found = candidates(frame, {}, all);
+  const std::vector<ScoredHypothesis> found = candidates(frame, {}, all);
   ASSERT_FALSE(found.empty());
-  EXPECT_EQ(found.front().evidence.fit.visible, 0.0F);
+  EXPECT_EQ(found.front().evidence.fit.visible_fraction, 0.0F);
 }
 
 TEST(Candidates, NoClassOffersMoreThanItMay) {
@@ -57,8 +57,9 @@ TEST(Candidates, NoClassOffersMoreThanItMay) {
   const auto stripes = [&](int candidates_per_class) {
     DetectionSettings settings;
     settings.voting.candidates_per_class = candidates_per_class;
-    const std::vector<Candidate> found = candidates(frame, settings);
-    return std::count_if(found.begin(), found.end(), [](const Candidate& c) { return c.detection.class_id == 1; });
+    const std::vector<ScoredHypothesis> found = candidates(frame, settings);
+    return std::count_if(found.begin(), found.end(),
+                         [](const ScoredHypothesis& c) { return c.detection.class_id == 1; });
   };
   EXPECT_GE(stripes(20), 2);
   EXPECT_EQ(stripes(1), 1);
@@ -92,9 +93,9 @@ Evidence evidence_among(std::size_t views, const RgbdFrame& frame) {
   hypothesis.mass = 1.0F;
   hypothesis.weight = 1.0F;
   hypothesis.views = {{0, 0.5F}, {1, 0.5F}};
-  EvidenceWorkspace workspace;
-  const EvidenceInput input{index, toy::lab_frame(frame, frame.colour, 1.0F), {}, {}, without_appearance};
-  return weigh_evidence(input, {hypothesis}, 1, workspace).front().evidence;
+  ScoringWorkspace workspace;
+  const ScoringInput input{index, toy::lab_frame(frame, frame.colour, 1.0F), {}, {}, without_appearance};
+  return score_hypotheses(input, {hypothesis}, 1, workspace).front().evidence;
 }
 
 TEST(Candidates, APartThatAgreesBetterIsNotTakenForTheWholeInAnotherAttitude) {

@@ -1,4 +1,4 @@
-#include "detector/evidence/candidates.hpp"
+#include "detector/evidence/hypothesis_scoring.hpp"
 
 #include <algorithm>
 #include <array>
@@ -27,10 +27,10 @@ struct SeedTemplates {
 /// Scores hypotheses one after another, in one thread. Its functions stand below in the order of their calls.
 class HypothesisScorer {
  public:
-  HypothesisScorer(const EvidenceInput& input, EvidenceWorkspace::Worker& workspace)
+  HypothesisScorer(const ScoringInput& input, ScoringWorkspace::Worker& workspace)
       : input_(input), forest_(input.index.forest()), views_(forest_.views), workspace_(workspace) {}
 
-  Candidate score_hypothesis(const Hypothesis& hypothesis, float spread);
+  ScoredHypothesis score_hypothesis(const Hypothesis& hypothesis, float spread);
 
  private:
   Evidence evidence_of_votes(const Hypothesis& hypothesis) const;
@@ -48,16 +48,16 @@ class HypothesisScorer {
     return std::find(excluded.begin(), excluded.end(), view) != excluded.end();
   }
 
-  const EvidenceInput& input_;
+  const ScoringInput& input_;
   const Forest& forest_;
   const std::vector<ViewTemplate>& views_;
-  EvidenceWorkspace::Worker& workspace_;
+  ScoringWorkspace::Worker& workspace_;
 };
 
 }  // namespace
 
-std::vector<Candidate> weigh_evidence(const EvidenceInput& input, const std::vector<Hypothesis>& hypotheses,
-                                      int threads, EvidenceWorkspace& workspace) {
+std::vector<ScoredHypothesis> score_hypotheses(const ScoringInput& input, const std::vector<Hypothesis>& hypotheses,
+                                               int threads, ScoringWorkspace& workspace) {
   std::vector<float> spreads(input.index.forest().classes.size(), 0.0F);
   for (const Hypothesis& hypothesis : hypotheses) {
     float& spread = spreads[hypothesis.class_index];
@@ -65,13 +65,13 @@ std::vector<Candidate> weigh_evidence(const EvidenceInput& input, const std::vec
       spread = attitude_spread(input.index.forest(), static_cast<std::uint32_t>(hypothesis.class_index));
   }
   workspace.workers.resize(threads);
-  std::vector<Candidate> candidates(hypotheses.size());
+  std::vector<ScoredHypothesis> scored(hypotheses.size());
   parallel_for_workers(threads, static_cast<int>(hypotheses.size()), [&](int worker, int i) {
     const Hypothesis& hypothesis = hypotheses[static_cast<std::size_t>(i)];
     HypothesisScorer scorer(input, workspace.workers[worker]);
-    candidates[static_cast<std::size_t>(i)] = scorer.score_hypothesis(hypothesis, spreads[hypothesis.class_index]);
+    scored[static_cast<std::size_t>(i)] = scorer.score_hypothesis(hypothesis, spreads[hypothesis.class_index]);
   });
-  return candidates;
+  return scored;
 }
 
 float attitude_spread(const Forest& forest, std::uint32_t class_index) {
@@ -81,30 +81,30 @@ float attitude_spread(const Forest& forest, std::uint32_t class_index) {
   return std::clamp(static_cast<float>(views) / kOneAttitude, 1.0F, static_cast<float>(kMaxAttitudes));
 }
 
-Candidate HypothesisScorer::score_hypothesis(const Hypothesis& hypothesis, float spread) {
+ScoredHypothesis HypothesisScorer::score_hypothesis(const Hypothesis& hypothesis, float spread) {
   const ObjectClass& object = forest_.classes[hypothesis.class_index];
   const Camera& camera = input_.frame.frame.camera;
   workspace_.compared.clear();
-  Candidate candidate;
-  candidate.evidence = evidence_of_votes(hypothesis);
-  Detection& detection = candidate.detection;
+  ScoredHypothesis scored;
+  scored.evidence = evidence_of_votes(hypothesis);
+  Detection& detection = scored.detection;
   detection.class_id = object.class_id;
   detection.class_name = object.name;
   detection.centre_camera = hypothesis.centre_camera;
   detection.vote_weight = hypothesis.weight;
   detection.vote_count = hypothesis.vote_count;
   detection.box_px = backproject_box(forest_, hypothesis, input_.patches, camera, workspace_.box);
-  detection.score = vote_score(candidate.evidence.relative_vote_mass);
+  detection.score = vote_score(scored.evidence.relative_vote_mass);
   if (forest_.scoring == Scoring::kEvidence) {
-    add_best_match(hypothesis, spread, candidate.evidence);
-    detection.score = score(object.score_model, candidate.evidence);
-    detection.box_px = visible_box_between(detection.box_px, candidate.evidence.fit.visible_box_px, camera);
+    add_best_match(hypothesis, spread, scored.evidence);
+    detection.score = score(object.score_model, scored.evidence);
+    detection.box_px = visible_box_between(detection.box_px, scored.evidence.fit.visible_box_px, camera);
   }
   const float min_score = std::min(input_.settings.threshold, input_.settings.candidates_from);
-  const float max_score = std::max(detection.score, score_as_taught(object.score_model, candidate.evidence));
-  if (max_score < min_score) return candidate;  // most of them: nothing reads their rotations
+  const float max_score = std::max(detection.score, score_as_taught(object.score_model, scored.evidence));
+  if (max_score < min_score) return scored;  // most of them: nothing reads their rotations
   add_rotations(hypothesis, weight_views(hypothesis, spread), detection.rotations);
-  return candidate;
+  return scored;
 }
 
 Evidence HypothesisScorer::evidence_of_votes(const Hypothesis& hypothesis) const {
@@ -132,21 +132,21 @@ void HypothesisScorer::add_best_match(const Hypothesis& hypothesis, float spread
   if (score(forest_.classes[hypothesis.class_index].score_model, evidence) < kHopeless) return;
   compare_templates(hypothesis, static_cast<std::size_t>(kTemplates * spread));
   const Evidence unrefined = evidence;
-  workspace_.best_way.clear();
+  workspace_.best_visited.clear();
   double max_log_odds = -std::numeric_limits<double>::infinity();
   for (const PlacedTemplate& seed : find_seeds(static_cast<std::size_t>(spread))) {
     const PlacedTemplate best = refine_over_neighbours(seed);
     Evidence refined = unrefined;
     set_match(best, refined);
     refined.other_size = alternative_scale_gain(views_[best.view], best, input_.frame);
-    const double odds = log_odds(kCommon, score_terms(refined));
+    const double odds = score_logit(kCommon, score_terms(refined));
     if (odds <= max_log_odds) continue;
     max_log_odds = odds;
     evidence = refined;
-    workspace_.way.swap(workspace_.best_way);
+    workspace_.visited.swap(workspace_.best_visited);
   }
   // Of the refinements only that which led to the best match supports rotations.
-  compared.insert(compared.end(), workspace_.best_way.begin(), workspace_.best_way.end());
+  compared.insert(compared.end(), workspace_.best_visited.begin(), workspace_.best_visited.end());
 }
 
 /// Compares the first `count` templates that most votes remember with the frame, but for those that stand in
@@ -195,15 +195,15 @@ SeedTemplates HypothesisScorer::find_seeds(std::size_t count) {
 /// better: votes remember few of the templates that would match. Writes all that were compared into `way`.
 PlacedTemplate HypothesisScorer::refine_over_neighbours(PlacedTemplate best) {
   constexpr int kSteps = 6;
-  std::vector<PlacedTemplate>& way = workspace_.way;
-  way.clear();
+  std::vector<PlacedTemplate>& visited = workspace_.visited;
+  visited.clear();
   for (int step = 0; step < kSteps; ++step) {
     const std::uint32_t from = best.view;
     const Eigen::Vector3f centre = best.centre_camera;
     for (const std::uint32_t view : input_.index.view_neighbours()[from]) {
       if (view == from || is_excluded(view)) continue;
-      way.push_back({view, centre, match_template(views_[view], centre, input_.frame)});
-      if (agreement(way.back().fit) > agreement(best.fit)) best = way.back();
+      visited.push_back({view, centre, match_template(views_[view], centre, input_.frame)});
+      if (match_quality(visited.back().fit) > match_quality(best.fit)) best = visited.back();
     }
     if (best.view == from) break;
     best = align_template(views_, best, input_.frame);
@@ -230,7 +230,7 @@ const WeightedViews& HypothesisScorer::weight_views(const Hypothesis& hypothesis
   WeightedViews& weighted = workspace_.weighted_views;
   weighted.clear();
   for (const PlacedTemplate& placed : workspace_.compared) {
-    weighted.emplace_back(placed.view, std::exp(kSharpness * agreement(placed.fit)));
+    weighted.emplace_back(placed.view, std::exp(kSharpness * match_quality(placed.fit)));
   }
   std::stable_sort(weighted.begin(), weighted.end(), [](const auto& a, const auto& b) {
     return a.first != b.first ? a.first < b.first : a.second > b.second;

@@ -1,4 +1,4 @@
-#include "detector/evidence/likeness.hpp"
+#include "detector/evidence/colour_similarity.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,13 +12,13 @@ constexpr double kPale = 120.0;     // squared strength in the a*b* plane about 
 
 }  // namespace
 
-double Likeness::seen_variance(std::size_t channel) const {
+double ColourSimilarity::observed_variance(std::size_t channel) const {
   const double count = count_;
   const double mean = channels_[channel][1] / count;
   return channels_[channel][3] / count - mean * mean;
 }
 
-MeanColours Likeness::means() const {
+MeanColours ColourSimilarity::means() const {
   constexpr double kLightness = 100.0 / 255.0;
   if (count_ < kMin) return {};
   const double count = count_;
@@ -31,7 +31,7 @@ MeanColours Likeness::means() const {
           true};
 }
 
-float Likeness::foreign_colour() const {
+float ColourSimilarity::mean_chroma_distance() const {
   constexpr double kPlain = 100.0;  // variance of a and b that plain surfaces have in changing light
   constexpr double kPalest = 0.5;   // strengths over the remembered one
   constexpr double kStrongest = 2.5;
@@ -40,77 +40,78 @@ float Likeness::foreign_colour() const {
   const auto mean = [&](std::size_t channel, std::size_t which) {
     return channels_[channel][which] / count - kNeutral;
   };
-  const double remembered_sq = mean(1, 0) * mean(1, 0) + mean(2, 0) * mean(2, 0);
+  const double expected_sq = mean(1, 0) * mean(1, 0) + mean(2, 0) * mean(2, 0);
   const double product = mean(1, 0) * mean(1, 1) + mean(2, 0) * mean(2, 1);
-  const double strength = std::clamp(product / std::max(remembered_sq, 1.0), kPalest, kStrongest);
+  const double strength = std::clamp(product / std::max(expected_sq, 1.0), kPalest, kStrongest);
   const double a = mean(1, 1) - strength * mean(1, 0);
   const double b = mean(2, 1) - strength * mean(2, 0);
-  return static_cast<float>(std::min(4.0, std::sqrt((a * a + b * b) / (kPlain + seen_variance(1) + seen_variance(2)))));
+  return static_cast<float>(
+      std::min(4.0, std::sqrt((a * a + b * b) / (kPlain + observed_variance(1) + observed_variance(2)))));
 }
 
-Likeness::Strengths Likeness::strengths() const {
+ColourSimilarity::Strengths ColourSimilarity::strengths() const {
   Strengths out;
   const double count = count_;
   for (const std::size_t c : {std::size_t{1}, std::size_t{2}}) {
     const Sums& sums = channels_[c];
     const double offset = count * kNeutral * kNeutral;
     out.product += sums[4] - kNeutral * (static_cast<double>(sums[0]) + sums[1]) + offset;
-    out.remembered_sq += sums[2] - 2.0 * kNeutral * sums[0] + offset;
-    out.seen_sq += sums[3] - 2.0 * kNeutral * sums[1] + offset;
+    out.expected_sq += sums[2] - 2.0 * kNeutral * sums[0] + offset;
+    out.observed_sq += sums[3] - 2.0 * kNeutral * sums[1] + offset;
   }
   return out;
 }
 
-float Likeness::hue_conflict() const {
+float ColourSimilarity::hue_mismatch() const {
   if (count_ < kMin) return 0.0F;
   const Strengths sum = strengths();
-  const double lacking = std::sqrt(sum.remembered_sq * sum.seen_sq) - sum.product;
+  const double lacking = std::sqrt(sum.expected_sq * sum.observed_sq) - sum.product;
   const double pale = kPale * count_;
-  return static_cast<float>(std::max(lacking, 0.0) / std::sqrt((sum.remembered_sq + pale) * (sum.seen_sq + pale)));
+  return static_cast<float>(std::max(lacking, 0.0) / std::sqrt((sum.expected_sq + pale) * (sum.observed_sq + pale)));
 }
 
-float Likeness::paleness() const {
+float ColourSimilarity::chroma_deficit() const {
   constexpr double kDarkest = 0.1;  // brightness over the remembered one
   constexpr double kBrightest = 4.0;
   if (count_ < kMin) return 0.0F;
   const Strengths sum = strengths();
-  const double remembered = std::max(static_cast<double>(channels_[0][0]), 1.0);
-  const double brightness = std::clamp(channels_[0][1] / remembered, kDarkest, kBrightest);
+  const double expected = std::max(static_cast<double>(channels_[0][0]), 1.0);
+  const double brightness = std::clamp(channels_[0][1] / expected, kDarkest, kBrightest);
   const double pale = kPale * count_;
-  const double expected = brightness * sum.remembered_sq + pale;
-  return static_cast<float>(std::clamp(std::log(expected / (std::max(sum.product, 0.0) + pale)), -1.0, 2.0));
+  const double expected_chroma = brightness * sum.expected_sq + pale;
+  return static_cast<float>(std::clamp(std::log(expected_chroma / (std::max(sum.product, 0.0) + pale)), -1.0, 2.0));
 }
 
-float Likeness::contrast() const {
+float ColourSimilarity::log_contrast_ratio() const {
   constexpr double kNoise = 9.0;  // variance that a plain surface's pixels have
   constexpr double kMax = 2.0;
   if (count_ < kMin) return 0.0F;
   const double count = count_;
-  double remembered = 3.0 * kNoise;
-  double seen = 3.0 * kNoise;
+  double expected = 3.0 * kNoise;
+  double observed = 3.0 * kNoise;
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const double mean = channels_[c][0] / count;
-    remembered += channels_[c][2] / count - mean * mean;
-    seen += seen_variance(c);
+    expected += channels_[c][2] / count - mean * mean;
+    observed += observed_variance(c);
   }
-  return static_cast<float>(std::clamp(0.5 * std::log(seen / remembered), -kMax, kMax));
+  return static_cast<float>(std::clamp(0.5 * std::log(observed / expected), -kMax, kMax));
 }
 
-float Likeness::correlation() const {
+float ColourSimilarity::correlation() const {
   constexpr double kNoise = 9.0;  // variance that a plain surface's pixels have
   if (count_ < kMin) return 0.0F;
   const double count = count_;
   double covariance = 0.0;
-  double remembered = 3.0 * kNoise;
-  double seen = 3.0 * kNoise;
+  double expected = 3.0 * kNoise;
+  double observed = 3.0 * kNoise;
   for (const Sums& sums : channels_) {
     const double mean_a = sums[0] / count;
     const double mean_b = sums[1] / count;
     covariance += sums[4] / count - mean_a * mean_b;
-    remembered += sums[2] / count - mean_a * mean_a;
-    seen += sums[3] / count - mean_b * mean_b;
+    expected += sums[2] / count - mean_a * mean_a;
+    observed += sums[3] / count - mean_b * mean_b;
   }
-  return static_cast<float>(covariance / std::sqrt(remembered * seen));
+  return static_cast<float>(covariance / std::sqrt(expected * observed));
 }
 
 }  // namespace houghstream

@@ -15,13 +15,13 @@
 namespace houghstream {
 
 /// A hypothesis of the Hough space with its score, before suppression.
-struct Candidate {
+struct ScoredHypothesis {
   Detection detection;  ///< complete; without rotations where its score is too low for a candidate
   Evidence evidence;
 };
 
-/// Inputs of weigh_evidence().
-struct EvidenceInput {
+/// Inputs of score_hypotheses().
+struct ScoringInput {
   const ForestIndex& index;
   const LabFrame& frame;
   const PatchGrid& patches;
@@ -29,12 +29,12 @@ struct EvidenceInput {
   const std::vector<std::uint32_t>& excluded_views;  ///< into Forest::views: not compared with the frame
 };
 
-/// Workspace of weigh_evidence(), used again from frame to frame.
-struct EvidenceWorkspace {
+/// Workspace of score_hypotheses(), used again from frame to frame.
+struct ScoringWorkspace {
   struct Worker {
-    std::vector<PlacedTemplate> compared;  ///< templates of a hypothesis, compared with the frame
-    std::vector<PlacedTemplate> way;       ///< the same, compared while a template was refined
-    std::vector<PlacedTemplate> best_way;  ///< the same of the refinement that led to the best
+    std::vector<PlacedTemplate> compared;      ///< templates of a hypothesis, compared with the frame
+    std::vector<PlacedTemplate> visited;       ///< the same, compared while a template was refined
+    std::vector<PlacedTemplate> best_visited;  ///< the same of the refinement that led to the best
     std::vector<std::pair<std::uint32_t, float>> weighted_views;  ///< views with the weight of their rotation
     BoxWorkspace box;
   };
@@ -43,8 +43,8 @@ struct EvidenceWorkspace {
 
 /// Returns a candidate for each hypothesis, in their order: its box, how the templates match the frame at its centre,
 /// and the score that follows. The result is the same for any number of threads.
-std::vector<Candidate> weigh_evidence(const EvidenceInput& input, const std::vector<Hypothesis>& hypotheses,
-                                      int threads, EvidenceWorkspace& workspace);
+std::vector<ScoredHypothesis> score_hypotheses(const ScoringInput& input, const std::vector<Hypothesis>& hypotheses,
+                                               int threads, ScoringWorkspace& workspace);
 
 /// Returns how many times as many views a class has as one that was taught in one attitude, 1 to 3.
 float attitude_spread(const Forest& forest, std::uint32_t class_index);
