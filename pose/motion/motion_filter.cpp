@@ -21,7 +21,7 @@ Vector6 both(double translation, double rotation) {
 MotionFilter::MotionFilter(const PoseMeasurement& first, const MotionSettings& settings)
     : settings_(settings), utime_(first.utime), measured_utime_(first.utime), T_(first.T_world_object) {
   P_.topLeftCorner<6, 6>() = first.covariance;
-  common_.topRows<6>() = consider_covariance(first);
+  consider_.topRows<6>() = consider_covariance(first);
 }
 
 /// A root of the common part of its covariance: the symmetric one, so that it turns with the line of sight.
@@ -45,7 +45,7 @@ void MotionFilter::predict(std::int64_t utime) {
   Matrix12 F = Matrix12::Identity();
   F.topRightCorner<6, 6>().diagonal().setConstant(dt);
   P_ = F * P_ * F.transpose();
-  common_ = F * common_;
+  consider_ = F * consider_;
   const Vector6 density = both(settings_.acceleration, settings_.angular_acceleration);
   P_.diagonal().head<6>() += dt * dt * dt / 3.0 * density;
   P_.topRightCorner<6, 6>().diagonal() += dt * dt / 2.0 * density;
@@ -59,8 +59,8 @@ void MotionFilter::update(const PoseMeasurement& measured) {
   const Matrix12x6 gain = P_.leftCols<6>() * S.inverse();
   const Eigen::Matrix<double, 12, 1> step = gain * local_coordinates_about_world(measured.T_world_object, T_);
   T_ = retract_about_world(T_, step.head<6>());
-  const Covariance6 unlike = consider_covariance(measured) - common_.topRows<6>();
-  common_ += gain * unlike;
+  const Covariance6 unlike = consider_covariance(measured) - consider_.topRows<6>();
+  consider_ += gain * unlike;
   P_ -= gain * P_.topRows<6>();
   P_ = 0.5 * (P_ + P_.transpose()).eval();
   if (moving_) velocity_ += step.tail<6>();
@@ -76,8 +76,8 @@ void MotionFilter::start_moving(const PoseMeasurement& measured, const Vector6& 
   velocity_ = velocity;
   P_.setZero();
   P_.topLeftCorner<6, 6>() = measured.covariance;
-  common_.setZero();
-  common_.topRows<6>() = consider_covariance(measured);
+  consider_.setZero();
+  consider_.topRows<6>() = consider_covariance(measured);
   P_.diagonal().tail<6>() = both(kVelocity * kVelocity, kAngularVelocity * kAngularVelocity);
 }
 
@@ -87,7 +87,7 @@ void MotionFilter::stop() {
   const Covariance6 pose = P_.topLeftCorner<6, 6>();
   P_.setZero();
   P_.topLeftCorner<6, 6>() = pose;
-  common_.bottomRows<6>().setZero();
+  consider_.bottomRows<6>().setZero();
 }
 
 }  // namespace houghstream

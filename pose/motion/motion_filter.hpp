@@ -71,7 +71,7 @@ class MotionFilter {
   Vector6 velocity() const { return velocity_; }
   /// Of the pose, with the error that its measurements have in common.
   Covariance6 covariance() const {
-    return P_.topLeftCorner<6, 6>() + common_.topRows<6>() * common_.topRows<6>().transpose();
+    return P_.topLeftCorner<6, 6>() + consider_.topRows<6>() * consider_.topRows<6>().transpose();
   }
 
  private:
@@ -86,8 +86,8 @@ class MotionFilter {
   std::int64_t measured_utime_ = 0;
   Eigen::Isometry3d T_;
   Vector6 velocity_ = Vector6::Zero();
-  Matrix12 P_ = Matrix12::Zero();           // of pose, then velocity
-  Matrix12x6 common_ = Matrix12x6::Zero();  // what the common error is in the state, for one with unit covariance
+  Matrix12 P_ = Matrix12::Zero();             // of pose, then velocity
+  Matrix12x6 consider_ = Matrix12x6::Zero();  // what the common error is in the state, for one with unit covariance
 };
 
 }  // namespace houghstream

@@ -30,9 +30,9 @@ std::vector<int> assign_poses(const ClassGroup& group, const AssociationSettings
     for (std::size_t j = 0; j < group.measured.size(); ++j) {
       const double distance = track.pose.distance(group.measured[j]->measured, group.symmetries, group.centre);
       const double angle = track.pose.angle(group.measured[j]->measured, group.symmetries);
-      costs(i, j) = distance > reach
-                        ? 10.0
-                        : distance / reach + settings.turn_cost * angle / M_PI + (track.id == 0 ? kUnconfirmed : 0.0);
+      costs(i, j) = distance > reach ? 10.0
+                                     : distance / reach + settings.rotation_cost * angle / M_PI +
+                                           (track.id == 0 ? kUnconfirmed : 0.0);
     }
   }
   constexpr double kLimit = 2.0;

@@ -13,7 +13,7 @@ namespace houghstream::tracks {
 struct AssociationSettings {
   double reach_m = 0.06;         ///< distance up to which a pose is of an object that stands, metres
   double moving_reach_m = 0.12;  ///< the same of one that moves
-  double turn_cost = 0.5;        ///< cost of a rotation by half a turn; that of the whole reach is 1
+  double rotation_cost = 0.5;    ///< cost of a rotation by half a turn; that of the whole reach is 1
   double exclusion_ratio = 0.6;  ///< radii within which there is no second object of a class
 };
 
@@ -22,7 +22,7 @@ void fields(const AssociationSettings& /*settings*/, const Visit& visit) {
   using S = AssociationSettings;
   visit(number("reach_m", &S::reach_m, 0, 10, "m"));
   visit(number("moving_reach_m", &S::moving_reach_m, 0, 10, "m"));
-  visit(number("turn_cost", &S::turn_cost, 0, 100));
+  visit(number("rotation_cost", &S::rotation_cost, 0, 100));
   visit(number("exclusion_ratio", &S::exclusion_ratio, 0, 10));
 }
 

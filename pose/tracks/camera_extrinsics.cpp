@@ -124,11 +124,12 @@ Eigen::Isometry3d chained(const Links& links, const std::string& camera, const s
 
 }  // namespace
 
-void CameraExtrinsics::fix(const std::string& camera, const Eigen::Isometry3d& T_world_camera) {
-  fixed_[camera] = T_world_camera;
+void CameraExtrinsics::set_static(const std::string& camera, const Eigen::Isometry3d& T_world_camera) {
+  static_[camera] = T_world_camera;
 }
 
-void CameraExtrinsics::add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera) {
+void CameraExtrinsics::add_transform(const std::string& camera, std::int64_t utime,
+                                     const Eigen::Isometry3d& T_world_camera) {
   require(moving_.size() < kMaxMoving || moving_.count(camera) > 0,
           "transforms of more than {} cameras, expected at most that many", kMaxMoving);
   std::deque<Sample>& samples = moving_[camera];
@@ -143,9 +144,9 @@ void CameraExtrinsics::add(const std::string& camera, std::int64_t utime, const 
   if (samples.size() > kSamples) samples.pop_front();
 }
 
-CameraPose CameraExtrinsics::at(const std::string& camera, std::int64_t utime) const {
+CameraPose CameraExtrinsics::interpolate(const std::string& camera, std::int64_t utime) const {
   const auto seconds = [&](std::int64_t other) { return seconds_between(utime, other); };
-  if (const auto fixed = fixed_.find(camera); fixed != fixed_.end()) return {fixed->second, false, ""};
+  if (const auto fixed = static_.find(camera); fixed != static_.end()) return {fixed->second, false, ""};
   const auto moving = moving_.find(camera);
   if (moving == moving_.end()) return {std::nullopt, true, fmt::format("no transform of {} has come", camera)};
   const std::deque<Sample>& samples = moving->second;
@@ -179,12 +180,12 @@ std::map<std::string, Eigen::Isometry3d> read_camera_extrinsics(const std::files
   require(!links.empty(), "{}: neither 'cameras:' nor 'transforms:', expected poses of cameras", file.string());
   require(links.size() <= kMaxFrames, "{}: poses of {} frames, expected at most {}", file.string(), links.size(),
           kMaxFrames);
-  std::map<std::string, Eigen::Isometry3d> places;
-  for (const auto& [camera, link] : links) places[camera] = chained(links, camera, file.string());
-  return places;
+  std::map<std::string, Eigen::Isometry3d> poses;
+  for (const auto& [camera, link] : links) poses[camera] = chained(links, camera, file.string());
+  return poses;
 }
 
-std::pair<std::string, Eigen::Isometry3d> parse_camera_place(const std::string& text) {
+std::pair<std::string, Eigen::Isometry3d> parse_camera_pose(const std::string& text) {
   const std::string expected = "CHANNEL=x,y,z,qw,qx,qy,qz";
   const std::size_t equals = text.find('=');
   require(equals != std::string::npos && equals > 0, "--camera-pose '{}', expected {}", printable(text), expected);
@@ -203,9 +204,9 @@ std::pair<std::string, Eigen::Isometry3d> parse_camera_place(const std::string& 
                 "--camera-pose " + printable(text))};
 }
 
-void add_camera_place(const std::string& text, std::map<std::string, Eigen::Isometry3d>& places) {
-  const auto [camera, T_world_camera] = parse_camera_place(text);
-  require(places.emplace(camera, T_world_camera).second,
+void add_camera_pose(const std::string& text, std::map<std::string, Eigen::Isometry3d>& poses) {
+  const auto [camera, T_world_camera] = parse_camera_pose(text);
+  require(poses.emplace(camera, T_world_camera).second,
           "--camera-pose '{}': {} has a place already, of --cameras or of another --camera-pose", text, camera);
 }
 

@@ -28,24 +28,24 @@ class CameraExtrinsics {
   /// Cameras that move; further ones are refused: a sender of rubbish may make up channels without end.
   static constexpr std::size_t kMaxMoving = 256;
 
-  void fix(const std::string& camera, const Eigen::Isometry3d& T_world_camera);
+  void set_static(const std::string& camera, const Eigen::Isometry3d& T_world_camera);
 
   /// A transform of a camera that moves. One that is older than the last one by more than a second begins anew. Throws
   /// InputError for one camera too many.
-  void add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera);
+  void add_transform(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera);
 
   /// Whether anything is known of any camera.
-  bool any() const { return !fixed_.empty() || !moving_.empty(); }
+  bool any() const { return !static_.empty() || !moving_.empty(); }
 
   /// Interpolated at the very time; a camera that stood still for its last two transforms still stands there.
-  CameraPose at(const std::string& camera, std::int64_t utime) const;
+  CameraPose interpolate(const std::string& camera, std::int64_t utime) const;
 
  private:
   struct Sample {
     std::int64_t utime = 0;
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   };
-  std::map<std::string, Eigen::Isometry3d> fixed_;
+  std::map<std::string, Eigen::Isometry3d> static_;
   std::map<std::string, std::deque<Sample>> moving_;  // by time
 };
 
@@ -61,9 +61,9 @@ class CameraExtrinsics {
 std::map<std::string, Eigen::Isometry3d> read_camera_extrinsics(const std::filesystem::path& file);
 
 /// The value of an option --camera-pose: CHANNEL=x,y,z,qw,qx,qy,qz, T_world_camera. Throws InputError.
-std::pair<std::string, Eigen::Isometry3d> parse_camera_place(const std::string& text);
+std::pair<std::string, Eigen::Isometry3d> parse_camera_pose(const std::string& text);
 
 /// Adds such a value to the places that are given. Throws InputError also where its camera has one.
-void add_camera_place(const std::string& text, std::map<std::string, Eigen::Isometry3d>& places);
+void add_camera_pose(const std::string& text, std::map<std::string, Eigen::Isometry3d>& poses);
 
 }  // namespace houghstream::tracks

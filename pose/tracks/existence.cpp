@@ -11,7 +11,7 @@ namespace houghstream::tracks {
 namespace {
 
 /// Whether an object of another class is recognised in its place.
-bool is_crowded_out(const UnobservedContext& frame, const Track& track) {
+bool is_displaced(const UnobservedContext& frame, const Track& track) {
   const Eigen::Vector3d place = track.pose.filter().T_world_object() * centre_of(frame.models, track.class_name);
   return std::any_of(frame.poses.begin(), frame.poses.end(), [&](const PoseObservation& pose) {
     return pose.class_name != track.class_name &&
@@ -21,12 +21,13 @@ bool is_crowded_out(const UnobservedContext& frame, const Track& track) {
 }
 
 /// Whether the class is detected at a place, which is where such a detection has its centre; camera frame, metres.
-bool is_detected(const UnobservedContext& frame, const std::string& class_name, const Eigen::Vector3d& here) {
-  const Detections* detections = frame.seen.detections;
+bool is_detected(const UnobservedContext& frame, const std::string& class_name,
+                 const Eigen::Vector3d& expected_centre) {
+  const Detections* detections = frame.observation.detections;
   return detections != nullptr &&
          std::any_of(detections->detections.begin(), detections->detections.end(), [&](const Detection& detection) {
            return detection.class_name == class_name &&
-                  (detection.centre_camera.cast<double>() - here).norm() < frame.reach_m;
+                  (detection.centre_camera.cast<double>() - expected_centre).norm() < frame.reach_m;
          });
 }
 
@@ -34,60 +35,65 @@ bool is_detected(const UnobservedContext& frame, const std::string& class_name, 
 
 void update_unobserved(const UnobservedContext& frame, const MissedDetection& missed, const ExistenceSettings& settings,
                        Track& track) {
-  const FrameObservation& seen = frame.seen;
+  const FrameObservation& observation = frame.observation;
   const auto known = frame.models.find(track.class_name);
   const TrackModel* model = known == frame.models.end() ? nullptr : &known->second;
-  const RgbdFrame* image = model != nullptr && seen.image ? seen.image() : nullptr;
-  const Eigen::Isometry3d T_camera_object = seen.T_world_camera.inverse() * track.pose.filter().T_world_object();
-  const VisibilityCheck look = image != nullptr ? check_visibility(*image, *model, T_camera_object) : VisibilityCheck{};
-  const double unseen_s = seconds_between(track.last_seen.utime, seen.poses.frame.utime);
-  const bool crowded = is_crowded_out(frame, track);
-  const Eigen::Vector3d here = T_camera_object * (model != nullptr ? model->vote_centre : Eigen::Vector3d::Zero());
-  const bool detected = is_detected(frame, track.class_name, here);
+  const RgbdFrame* image = model != nullptr && observation.image ? observation.image() : nullptr;
+  const Eigen::Isometry3d T_camera_object = observation.T_world_camera.inverse() * track.pose.filter().T_world_object();
+  const VisibilityCheck visibility =
+      image != nullptr ? check_visibility(*image, *model, T_camera_object) : VisibilityCheck{};
+  const double unseen_s = seconds_between(track.last_seen.utime, observation.poses.frame.utime);
+  const bool displaced = is_displaced(frame, track);
+  const Eigen::Vector3d expected_centre =
+      T_camera_object * (model != nullptr ? model->vote_centre : Eigen::Vector3d::Zero());
+  const bool detected = is_detected(frame, track.class_name, expected_centre);
   double rate = 0.0;
-  std::string why;
-  switch (look.state) {
+  std::string reason;
+  switch (visibility.state) {
     case TrackState::kGone:
       if (missed.by_depth) {
-        rate = settings.free_space_rate * look.seen_through;
-        track.seen_through_s += missed.seconds;
+        rate = settings.free_space_rate * visibility.free_space_violation;
+        track.free_space_violation_s += missed.seconds;
       }
-      why =
-          fmt::format("{} sees through {:.0f} % of where it was", seen.poses.frame.channel, 100.0 * look.seen_through);
+      reason = fmt::format("{} sees through {:.0f} % of where it was", observation.poses.frame.channel,
+                           100.0 * visibility.free_space_violation);
       break;
-    case TrackState::kHidden: why = fmt::format("something stands before it in {}", seen.poses.frame.channel); break;
+    case TrackState::kHidden:
+      reason = fmt::format("something stands before it in {}", observation.poses.frame.channel);
+      break;
     case TrackState::kOutOfView:
-      why = fmt::format("not in view of {}, or without depth", seen.poses.frame.channel);
+      reason = fmt::format("not in view of {}, or without depth", observation.poses.frame.channel);
       break;
     default:
       if (missed.by_recognition)
-        rate = look.is_boundary_continued ? settings.continuation_rate : detected ? 0.0 : settings.missed_rate;
-      why = fmt::format("not recognised by {}, whose depth agrees", seen.poses.frame.channel);
+        rate = visibility.is_boundary_continued ? settings.continuation_rate : detected ? 0.0 : settings.missed_rate;
+      reason = fmt::format("not recognised by {}, whose depth agrees", observation.poses.frame.channel);
   }
-  if (crowded && look.state != TrackState::kOutOfView) {
+  if (displaced && visibility.state != TrackState::kOutOfView) {
     if (missed.by_depth) rate += settings.displaced_rate;
-    why += ", where something else is";
+    reason += ", where something else is";
   }
   if (track.pose.filter().moving() && unseen_s > frame.coast_s) {
     if (missed.by_recognition)
-      rate += look.state == TrackState::kHidden ? 0.25 * settings.moving_missed_rate : settings.moving_missed_rate;
-    why += "; it moved when it was seen last";
+      rate +=
+          visibility.state == TrackState::kHidden ? 0.25 * settings.moving_missed_rate : settings.moving_missed_rate;
+    reason += "; it moved when it was seen last";
   }
   if (track.id == 0 && missed.by_recognition) rate += settings.tentative_rate;
   track.log_odds -= missed.seconds * rate;
   // Of several cameras the one that observed it last decides, as long as that is not long ago.
   constexpr double kLastObserverHold_s = 0.1;
-  const bool says_anything = missed.by_recognition || look.state != TrackState::kUnrecognised;
-  if (says_anything && (track.last_seen.channel == seen.poses.frame.channel || unseen_s > kLastObserverHold_s)) {
-    track.state = look.state == TrackState::kGone ? TrackState::kUnrecognised : look.state;
-    track.reason = why;
+  const bool says_anything = missed.by_recognition || visibility.state != TrackState::kUnrecognised;
+  if (says_anything && (track.last_seen.channel == observation.poses.frame.channel || unseen_s > kLastObserverHold_s)) {
+    track.state = visibility.state == TrackState::kGone ? TrackState::kUnrecognised : visibility.state;
+    track.reason = reason;
   }
   if (track.log_odds < settings.delete_log_odds) {
-    track.deleted_utime = seen.poses.frame.utime;
+    track.deleted_utime = observation.poses.frame.utime;
     track.state = TrackState::kGone;
-    track.reason = why;
+    track.reason = reason;
     if (track.id != 0)
-      log_info("{} #{} is gone: {} (last seen by {} {:.2f} s before)", track.class_name, track.id, why,
+      log_info("{} #{} is gone: {} (last seen by {} {:.2f} s before)", track.class_name, track.id, reason,
                track.last_seen.channel, unseen_s);
   }
 }

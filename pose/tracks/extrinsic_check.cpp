@@ -70,7 +70,7 @@ std::vector<ExtrinsicInconsistency> ExtrinsicCheck::pairs() const {
   return out;
 }
 
-std::vector<ExtrinsicInconsistency> ExtrinsicCheck::contradictions() const {
+std::vector<ExtrinsicInconsistency> ExtrinsicCheck::inconsistencies() const {
   std::vector<ExtrinsicInconsistency> out = pairs();
   out.erase(std::remove_if(out.begin(), out.end(),
                            [](const ExtrinsicInconsistency& c) { return c.offset_m.norm() < kReport_m; }),

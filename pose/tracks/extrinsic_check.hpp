@@ -30,7 +30,7 @@ class ExtrinsicCheck {
   void add(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera, const TrackModels& models);
 
   /// Pairs of cameras whose median offset over the last samples is too large, by their names.
-  std::vector<ExtrinsicInconsistency> contradictions() const;
+  std::vector<ExtrinsicInconsistency> inconsistencies() const;
 
   /// All pairs that have enough samples, for a report.
   std::vector<ExtrinsicInconsistency> pairs() const;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kHypotheses = 3;
 constexpr double kMaxWeight = 6.0;
-constexpr double kForgetS = 3.0;
+constexpr double kForget_s = 3.0;
 
 Covariance6 covariance_of(const ObjectPose& pose, const Eigen::Isometry3d& T_world_camera,
                           const Eigen::Vector3d& centre, double radius_m) {
@@ -38,7 +38,7 @@ Covariance6 covariance_of(const ObjectPose& pose, const Eigen::Isometry3d& T_wor
 
 }  // namespace
 
-double log_odds_of(double quality) {
+double quality_logit(double quality) {
   constexpr double kMargin = 0.02;
   return log_odds(quality, kMargin);
 }
@@ -112,17 +112,17 @@ VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model
   const int judged = seen.agreeing + seen.violating + seen.occluded;
   if (seen.rendered < kMinPx || judged < kMeasured * seen.rendered) return {};
   VisibilityCheck look;
-  look.seen_through = static_cast<double>(seen.violating) / std::max(1, seen.agreeing + seen.violating);
+  visibility.free_space_violation = static_cast<double>(seen.violating) / std::max(1, seen.agreeing + seen.violating);
   look.is_boundary_continued = seen.boundary_continuations > 0.5F * static_cast<float>(seen.outline);
-  look.state = TrackState::kUnrecognised;
-  if (look.seen_through > kThrough) look.state = TrackState::kGone;
-  if (seen.occluded > kHidden * judged) look.state = TrackState::kHidden;
-  return look;
+  visibility.state = TrackState::kUnrecognised;
+  if (visibility.free_space_violation > kThrough) visibility.state = TrackState::kGone;
+  if (seen.occluded > kHidden * judged) visibility.state = TrackState::kHidden;
+  return visibility;
 }
 
 PoseTrack::PoseTrack(const PoseObservation& first, const PoseTrackSettings& settings)
     : settings_(settings),
-      hypotheses_{{MotionFilter(first.measured, settings.motion), log_odds_of(first.quality)}},
+      hypotheses_{{MotionFilter(first.measured, settings.motion), quality_logit(first.quality)}},
       weighed_utime_(first.frame.utime) {
   observers_[first.frame.channel].agreed_utime = first.frame.utime;
 }
@@ -135,10 +135,10 @@ void PoseTrack::update(const PoseObservation& pose, const Symmetries& symmetries
   constexpr double kLead = 1.0;  // by which another hypothesis has to be ahead
   const double passed = std::max(0.0, seconds_between(weighed_utime_, pose.frame.utime));
   weighed_utime_ = std::max(weighed_utime_, pose.frame.utime);
-  for (Hypothesis& hypothesis : hypotheses_) hypothesis.weight *= std::exp(-passed / kForgetS);
+  for (Hypothesis& hypothesis : hypotheses_) hypothesis.weight *= std::exp(-passed / kForget_s);
   const std::size_t index = hypothesis_for(pose.measured, symmetries);
   Hypothesis& hypothesis = hypotheses_[index];
-  hypothesis.weight = std::min(kMaxWeight, hypothesis.weight + std::max(0.1, log_odds_of(pose.quality)));
+  hypothesis.weight = std::min(kMaxWeight, hypothesis.weight + std::max(0.1, quality_logit(pose.quality)));
   PoseObservation turned = pose;
   turned.measured.T_world_object =
       nearest_equivalent(pose.measured.T_world_object, hypothesis.filter.T_world_object(), symmetries);
@@ -190,7 +190,7 @@ void PoseTrack::update_standing(const PoseObservation& pose, bool has_contrary_d
   const Covariance6& noise = pose.measured.covariance;
   const double place_gate =
       std::max(settings_.static_gate_m, 4.0 * std::sqrt(noise.topLeftCorner<3, 3>().trace() / 3.0));
-  const double turn_gate = std::max(settings_.stands_rad, 4.0 * std::sqrt(noise(5, 5)));
+  const double turn_gate = std::max(settings_.static_gate_rad, 4.0 * std::sqrt(noise(5, 5)));
   const bool in_place = apart.head<3>().norm() < place_gate;
   ObserverHistory& observer = observers_[pose.frame.channel];
   if (in_place && apart.tail<3>().norm() < turn_gate) {
@@ -244,7 +244,8 @@ void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypot
   for (std::size_t i = 0; i < 2 * half; ++i)
     means[i / half] += local_coordinates_about_world(recent_[i].T_world_object, T_middle) / static_cast<double>(half);
   const Vector6 between = means[1] - means[0];
-  if (between.head<3>().norm() < settings_.rest_threshold_m && between.tail<3>().norm() < settings_.settles_rad) {
+  if (between.head<3>().norm() < settings_.rest_threshold_m &&
+      between.tail<3>().norm() < settings_.rest_threshold_rad) {
     hypothesis.filter.stop();
     recent_.clear();
   }

@@ -73,12 +73,12 @@ std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen
                                            const TrackModels& models);
 
 /// Log odds of a pose's quality, which is cut to 0.02 and 0.98.
-double log_odds_of(double quality);
+double quality_logit(double quality);
 
 /// Result of check_visibility().
 struct VisibilityCheck {
   TrackState state = TrackState::kOutOfView;  ///< kUnrecognised: it agrees; kGone: it was seen through
-  double seen_through = 0.0;                  ///< fraction of what is not occluded, 0 to 1
+  double free_space_violation = 0.0;          ///< fraction of what is not occluded, 0 to 1
   bool is_boundary_continued = false;         ///< the measured surface goes on where the object's outline is
 };
 
@@ -90,11 +90,11 @@ VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model
 /// rest.
 struct PoseTrackSettings {
   MotionSettings motion;
-  double same_rotation_rad = 0.44;  ///< poses rotated farther apart are two hypotheses
-  double static_gate_m = 0.008;     ///< what stands is not measured farther away than this, nor than 4 sigma
-  double stands_rad = 0.21;         ///< the same of its rotation
-  double rest_threshold_m = 0.004;  ///< what moved stands when two fifths of a second differ by less
-  double settles_rad = 0.09;        ///< and by less than this
+  double same_rotation_rad = 0.44;   ///< poses rotated farther apart are two hypotheses
+  double static_gate_m = 0.008;      ///< what stands is not measured farther away than this, nor than 4 sigma
+  double static_gate_rad = 0.21;     ///< the same of its rotation
+  double rest_threshold_m = 0.004;   ///< what moved stands when two fifths of a second differ by less
+  double rest_threshold_rad = 0.09;  ///< and by less than this
 };
 
 template <typename Visit>
@@ -103,9 +103,9 @@ void fields(const PoseTrackSettings& /*settings*/, const Visit& visit) {
   visit(group("motion", &S::motion));
   visit(number("same_rotation_rad", &S::same_rotation_rad, 0, 3.2, "rad"));
   visit(number("static_gate_m", &S::static_gate_m, 0, 10, "m"));
-  visit(number("stands_rad", &S::stands_rad, 0, 3.2, "rad"));
+  visit(number("static_gate_rad", &S::static_gate_rad, 0, 3.2, "rad"));
   visit(number("rest_threshold_m", &S::rest_threshold_m, 0, 10, "m"));
-  visit(number("settles_rad", &S::settles_rad, 0, 3.2, "rad"));
+  visit(number("rest_threshold_rad", &S::rest_threshold_rad, 0, 3.2, "rad"));
 }
 
 /// The pose of one object over time: one or a few hypotheses of it, each with a filter of its own, so that no average
@@ -163,9 +163,9 @@ struct Track {
   FrameId last_seen = {};
   TrackState state = TrackState::kVisible;
   std::string reason = {};
-  std::int64_t deleted_utime = 0;  ///< 0 while it is present
-  bool seen_now = false;           ///< a result of the current frame has a pose of it
-  double seen_through_s = 0.0;     ///< time for which it was seen through since its last pose
+  std::int64_t deleted_utime = 0;       ///< 0 while it is present
+  bool is_observed = false;             ///< a result of the current frame has a pose of it
+  double free_space_violation_s = 0.0;  ///< time for which it was seen through since its last pose
 
   bool is_present() const { return deleted_utime == 0; }
 };

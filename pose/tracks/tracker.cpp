@@ -26,7 +26,7 @@ std::optional<WorldObjects> Tracker::update(const FrameObservation& received) {
   const FrameId frame{received.poses.frame.channel, camera->utime};  // on the world's clock
   for (Track& track : tracks_) {
     track.pose.predict(frame.utime);
-    track.seen_now = track.last_seen == frame;  // by another result of the same frame
+    track.is_observed = track.last_seen == frame;  // by another result of the same frame
   }
   ObjectPoses poses = names_.resolve(received, models_, tracks_, settings_.pose.same_rotation_rad);
   poses.frame = frame;
@@ -51,7 +51,7 @@ CameraClock* Tracker::begin_frame(const FrameObservation& received) {
   const StampedFrame frame{id, received.number, received.newest_utime.value_or(id.utime)};
   const TimeOrder order = clock_.order_of(frame);
   if (order == TimeOrder::kLate) return nullptr;
-  if (order == TimeOrder::kReset) begin_world();
+  if (order == TimeOrder::kReset) reset();
   return &clock_.set(frame);
 }
 
@@ -82,7 +82,7 @@ std::vector<PoseObservation> Tracker::associate(const std::vector<PoseObservatio
     }
     const int together =
         static_cast<int>(std::count_if(group.objects.begin(), group.objects.end(),
-                                       [](const Track* track) { return track->id != 0 && track->seen_now; }));
+                                       [](const Track* track) { return track->id != 0 && track->is_observed; }));
     max_instances_[class_name] = std::max(max_instances_[class_name], together);
     for (std::size_t j = 0; j < group.measured.size(); ++j) {
       const PoseObservation& pose = *group.measured[j];
@@ -97,13 +97,13 @@ void Tracker::update_track(Track& track, const PoseObservation& pose, double sec
   constexpr double kRateHz = 30.0;
   constexpr double kMax = 4.0;
   const double share = std::clamp(seconds * kRateHz, 0.5, 1.5);
-  track.pose.update(pose, symmetries_of(models_, track.class_name), track.seen_through_s > 0.0);
+  track.pose.update(pose, symmetries_of(models_, track.class_name), track.free_space_violation_s > 0.0);
   track.log_odds =
       std::min(settings_.existence.max_log_odds,
-               track.log_odds + share * settings_.existence.gain * std::clamp(log_odds_of(pose.quality), 0.3, kMax));
+               track.log_odds + share * settings_.existence.gain * std::clamp(quality_logit(pose.quality), 0.3, kMax));
   ++track.seen;
-  track.seen_now = true;
-  track.seen_through_s = 0.0;
+  track.is_observed = true;
+  track.free_space_violation_s = 0.0;
   track.last_seen = pose.frame;
   track.state = TrackState::kVisible;
   track.reason = fmt::format("seen by {}", pose.frame.channel);
@@ -113,17 +113,17 @@ void Tracker::update_track(Track& track, const PoseObservation& pose, double sec
 void Tracker::update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses,
                                        CameraClock& camera) {
   searched_classes_.note(seen.poses);
-  UnobservedContext unseen{seen, poses, models_};
-  unseen.reach_m = settings_.association.reach_m;
-  unseen.coast_s = settings_.pose.motion.coast_s;
+  UnobservedContext context{seen, poses, models_};
+  context.reach_m = settings_.association.reach_m;
+  context.coast_s = settings_.pose.motion.coast_s;
   std::set<std::string> missed_now;
   for (Track& track : tracks_) {
-    if (!track.is_present() || track.seen_now) continue;
+    if (!track.is_present() || track.is_observed) continue;
     const MissedDetection missed{
         camera.seconds, camera.results == 1,
         camera.missed.count(track.class_name) == 0 && searched_classes_.has_searched(seen.poses, track.class_name)};
     if (missed.by_recognition) missed_now.insert(track.class_name);
-    if (missed.by_depth || missed.by_recognition) update_unobserved(unseen, missed, settings_.existence, track);
+    if (missed.by_depth || missed.by_recognition) update_unobserved(context, missed, settings_.existence, track);
   }
   camera.missed.insert(missed_now.begin(), missed_now.end());
 }
@@ -140,8 +140,8 @@ void Tracker::begin_track(const PoseObservation& pose) {
   track.first_utime = pose.frame.utime;
   track.last_seen = pose.frame;
   track.reason = fmt::format("seen by {}", pose.frame.channel);
-  track.log_odds = settings_.existence.prior + settings_.existence.gain * log_odds_of(pose.quality);
-  track.seen_now = true;
+  track.log_odds = settings_.existence.prior + settings_.existence.gain * quality_logit(pose.quality);
+  track.is_observed = true;
   tracks_.push_back(std::move(track));
 }
 
@@ -159,11 +159,11 @@ bool Tracker::make_room() {
 
 /// Candidates that have been observed enough become objects, or are found to be earlier ones.
 void Tracker::confirm_tracks(std::int64_t utime) {
-  const ExistenceSettings& how = settings_.existence;
+  const ExistenceSettings& existence = settings_.existence;
   for (Track& candidate : tracks_) {
     const double spread_s = seconds_between(candidate.first_utime, candidate.last_seen.utime);
-    if (candidate.id != 0 || !candidate.is_present() || candidate.log_odds < how.confirm_log_odds ||
-        candidate.seen < how.min_frames || spread_s < how.min_duration_s)
+    if (candidate.id != 0 || !candidate.is_present() || candidate.log_odds < existence.confirm_log_odds ||
+        candidate.seen < existence.min_frames || spread_s < existence.min_duration_s)
       continue;
     if (Track* earlier = find_reidentified(candidate, utime)) {
       const std::int64_t id = earlier->id;
@@ -184,16 +184,16 @@ void Tracker::confirm_tracks(std::int64_t utime) {
 Track* Tracker::find_reidentified(const Track& candidate, std::int64_t utime) {
   int visible = 1;
   for (const Track& track : tracks_) {
-    if (track.id != 0 && track.class_name == candidate.class_name && track.seen_now) ++visible;
+    if (track.id != 0 && track.class_name == candidate.class_name && track.is_observed) ++visible;
   }
   Track* best = nullptr;
   double best_rank = 0.0;
   for (Track& track : tracks_) {
     // A track whose number another candidate has got in this frame is no object any more.
-    if (track.id <= 0 || track.class_name != candidate.class_name || track.seen_now) continue;
+    if (track.id <= 0 || track.class_name != candidate.class_name || track.is_observed) continue;
     const double unseen_s = seconds_between(track.last_seen.utime, utime);
     const bool handled = track.state == TrackState::kHidden && unseen_s < settings_.hand_occlusion_s;
-    const bool lost = track.pose.filter().moving() || track.seen_through_s > 0.0;
+    const bool lost = track.pose.filter().moving() || track.free_space_violation_s > 0.0;
     const bool free = !track.is_present() || lost || (handled && visible <= max_instances_[candidate.class_name]);
     if (!free || track.last_seen.utime > candidate.last_seen.utime) continue;
     const double rank =
@@ -255,9 +255,9 @@ WorldObjects Tracker::report(const FrameObservation& received, std::int64_t utim
   return out;
 }
 
-void Tracker::begin_world() {
+void Tracker::reset() {
   tracks_.clear();
-  clock_.begin_world();
+  clock_.reset();
   searched_classes_ = {};
   max_instances_.clear();
   next_id_ = 1;
@@ -394,7 +394,7 @@ CameraClock& WorldClock::set(const StampedFrame& frame) {
   return clock;
 }
 
-void WorldClock::begin_world() {
+void WorldClock::reset() {
   cameras_.clear();
   doubted_.clear();
   newest_.reset();

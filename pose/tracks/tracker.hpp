@@ -84,7 +84,7 @@ class WorldClock {
   CameraClock& set(const StampedFrame& frame);
 
   /// Forgets all cameras and times.
-  void begin_world();
+  void reset();
 
   /// The world's clock minus the frames' utimes: 0 as long as no clock was set.
   std::int64_t ahead_us() const { return ahead_us_; }
@@ -167,7 +167,7 @@ class Tracker {
   std::size_t refused() const { return refused_; }
 
   /// Forgets all objects: they were in another coordinate frame.
-  void begin_world();
+  void reset();
 
   /// Other models from here on. Objects of a class that is renamed (find_model_change()) keep their number and pose
   /// under the new name, objects of a class that is removed are gone, all others stay.

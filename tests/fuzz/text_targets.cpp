@@ -29,7 +29,7 @@ Taken read_words(ByteView input) {
   if (input.data[0] == 'c') parse_camera(text);
   if (input.data[0] == 's') parse_sequence({input.data + 1, input.size - 1});
   if (input.data[0] == 'q') stream::shell_words(text, "--view-options");
-  if (input.data[0] == 'l') tracks::parse_camera_place(text);
+  if (input.data[0] == 'l') tracks::parse_camera_pose(text);
   std::istringstream lines(text);
   if (input.data[0] == 'k') read_key_values(lines);
   return {};

@@ -37,7 +37,7 @@ void report(const tracks::ExtrinsicCheck& check) {
     fmt::print("{} and {}: objects {:.1f} mm apart ({:+.1f}, {:+.1f}, {:+.1f} along the world's axes), {} compared\n",
                pair.first, pair.second, mm.norm(), mm.x(), mm.y(), mm.z(), pair.samples);
   }
-  const std::vector<tracks::ExtrinsicInconsistency> wrong = check.contradictions();
+  const std::vector<tracks::ExtrinsicInconsistency> wrong = check.inconsistencies();
   if (wrong.empty()) return;
   fail("{} and {} see the same objects {:.1f} cm apart, expected at most {:.1f} cm: one of their places is wrong",
        wrong.front().first, wrong.front().second, 100.0 * wrong.front().offset_m.norm(),
@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
     if (options.drake_viewer)
       options.process.output.drake_meshes = cache_folder("one of them for the meshes of --drake-viewer") / "meshes";
     if (!options.cameras_file.empty()) options.process.places = tracks::read_camera_extrinsics(options.cameras_file);
-    for (const std::string& text : options.camera_poses) tracks::add_camera_place(text, options.process.places);
+    for (const std::string& text : options.camera_poses) tracks::add_camera_pose(text, options.process.places);
     options.objects.empty() ? run_with_models(options) : run_with_store(options);
   });
 }

@@ -111,7 +111,7 @@ class TrackProcess {
     count_dropped();
     if (!bus_.is_log()) silence_->tell(reception_.now_us());
     if (!pair) return false;
-    if (world_.consume_reset()) tracker_.begin_world();
+    if (world_.consume_reset()) tracker_.reset();
     work_on(*pair);
     return true;
   }
@@ -183,7 +183,7 @@ class TrackProcess {
   }
 
   void tell_contradictions() {
-    for (const tracks::ExtrinsicInconsistency& pair : check_.contradictions()) {
+    for (const tracks::ExtrinsicInconsistency& pair : check_.inconsistencies()) {
       const std::string line =
           fmt::format("{} sees objects {:.1f} cm from where {} sees them: one of their places is wrong", pair.second,
                       100.0 * pair.offset_m.norm(), pair.first);

@@ -8,20 +8,21 @@
 namespace houghstream::track {
 
 WorldReference::WorldReference(const std::map<std::string, Eigen::Isometry3d>& fixed) {
-  for (const auto& [camera, T_world_camera] : fixed) places_.fix(channel::camera_name(camera), T_world_camera);
+  for (const auto& [camera, T_world_camera] : fixed)
+    extrinsics_.set_static(channel::camera_name(camera), T_world_camera);
 }
 
 void WorldReference::add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  places_.add(camera, utime, T_world_camera);
+  extrinsics_.add_transform(camera, utime, T_world_camera);
 }
 
 tracks::CameraPose WorldReference::place_of(const FrameId& frame, bool patient) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  tracks::CameraPose place = places_.at(channel::camera_name(frame.channel), frame.utime);
-  place.may_come = place.may_come && patient && (alone_.empty() || places_.any());
+  tracks::CameraPose place = extrinsics_.interpolate(channel::camera_name(frame.channel), frame.utime);
+  place.may_come = place.may_come && patient && (alone_.empty() || extrinsics_.any());
   if (place.T_world_camera || place.may_come) return begin("WORLD", place);
-  if (places_.any()) return place;
+  if (extrinsics_.any()) return place;
   if (!alone_.empty() && alone_ != frame.channel)
     return {
         std::nullopt, false,

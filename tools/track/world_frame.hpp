@@ -41,7 +41,7 @@ class WorldReference {
   std::string alone_;  // the camera whose frame is the world, where no place is known
   bool begun_ = false;
   std::mutex mutex_;  // of what follows
-  tracks::CameraExtrinsics places_;
+  tracks::CameraExtrinsics extrinsics_;
 };
 
 }  // namespace houghstream::track

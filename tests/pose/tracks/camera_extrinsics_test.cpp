@@ -21,67 +21,67 @@ std::filesystem::path written(const std::string& name, const std::string& text) 
 }
 
 TEST(CameraExtrinsics, AMovingCameraIsInterpolatedAtTheFramesOwnTime) {
-  CameraExtrinsics places;
-  places.add("LEFT", 1000000, at(0.0, 0.0));
-  places.add("LEFT", 1100000, at(1.0, 0.4));
-  const CameraPose place = places.at("LEFT", 1025000);
+  CameraExtrinsics extrinsics;
+  extrinsics.add_transform("LEFT", 1000000, at(0.0, 0.0));
+  extrinsics.add_transform("LEFT", 1100000, at(1.0, 0.4));
+  const CameraPose place = extrinsics.interpolate("LEFT", 1025000);
   ASSERT_TRUE(place.T_world_camera.has_value());
   EXPECT_TRUE(place.T_world_camera->isApprox(at(0.25, 0.1), 1e-9));
-  EXPECT_TRUE(places.at("LEFT", 1100000).T_world_camera.has_value());
+  EXPECT_TRUE(extrinsics.interpolate("LEFT", 1100000).T_world_camera.has_value());
 }
 
 TEST(CameraExtrinsics, WhatIsMissingLateOrFarApartIsNoPlaceAndSaysWhy) {
-  CameraExtrinsics places;
-  EXPECT_TRUE(places.at("LEFT", 1000000).may_come);
-  places.add("LEFT", 1000000, at(0.0));
-  places.add("LEFT", 1200000, at(0.1));
-  const CameraPose late = places.at("LEFT", 1300000);
+  CameraExtrinsics extrinsics;
+  EXPECT_TRUE(extrinsics.interpolate("LEFT", 1000000).may_come);
+  extrinsics.add_transform("LEFT", 1000000, at(0.0));
+  extrinsics.add_transform("LEFT", 1200000, at(0.1));
+  const CameraPose late = extrinsics.interpolate("LEFT", 1300000);
   EXPECT_FALSE(late.T_world_camera.has_value());
   EXPECT_TRUE(late.may_come);
   EXPECT_EQ(late.reason, "the last transform of LEFT is 0.100 s older");
-  const CameraPose before = places.at("LEFT", 500000);
+  const CameraPose before = extrinsics.interpolate("LEFT", 500000);
   EXPECT_FALSE(before.T_world_camera.has_value() || before.may_come);
   EXPECT_NE(before.reason.find("0.500 s later: do the clocks agree?"), std::string::npos) << before.reason;
-  places.add("LEFT", 2200000, at(0.3));
-  EXPECT_EQ(places.at("LEFT", 1700000).reason,
+  extrinsics.add_transform("LEFT", 2200000, at(0.3));
+  EXPECT_EQ(extrinsics.interpolate("LEFT", 1700000).reason,
             "the transforms of LEFT about it are 1.000 s apart, expected at most 0.5 s");
 }
 
 TEST(CameraExtrinsics, ACameraThatStandsNeedsFewTransformsAFixedOneNone) {
-  CameraExtrinsics places;
-  places.add("LEFT", 1000000, at(0.2));
-  places.add("LEFT", 9000000, at(0.2));
-  EXPECT_TRUE(places.at("LEFT", 5000000).T_world_camera.has_value());
-  EXPECT_TRUE(places.at("LEFT", 9900000).T_world_camera.has_value());
-  places.fix("RIGHT", at(0.7));
-  EXPECT_TRUE(places.at("RIGHT", 1).T_world_camera->isApprox(at(0.7)));
+  CameraExtrinsics extrinsics;
+  extrinsics.add_transform("LEFT", 1000000, at(0.2));
+  extrinsics.add_transform("LEFT", 9000000, at(0.2));
+  EXPECT_TRUE(extrinsics.interpolate("LEFT", 5000000).T_world_camera.has_value());
+  EXPECT_TRUE(extrinsics.interpolate("LEFT", 9900000).T_world_camera.has_value());
+  extrinsics.set_static("RIGHT", at(0.7));
+  EXPECT_TRUE(extrinsics.interpolate("RIGHT", 1).T_world_camera->isApprox(at(0.7)));
 }
 
 TEST(CameraExtrinsics, TimesMayBeAny) {
   constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
-  CameraExtrinsics places;
-  places.add("MOVING", kFirst, at(0.0));
-  places.add("MOVING", kLast, at(0.1));
-  EXPECT_NE(places.at("MOVING", 0).reason.find("s apart, expected at most 0.5 s"), std::string::npos);
-  places.add("STANDING", kFirst, at(0.2));
-  places.add("STANDING", kLast, at(0.2));
-  EXPECT_TRUE(places.at("STANDING", 0).T_world_camera->isApprox(at(0.2)));
-  places.add("LATER", kLast, at(0.0));
-  EXPECT_NE(places.at("LATER", kFirst).reason.find("is 9223372036854.775 s later"), std::string::npos);
-  places.add("EARLIER", kFirst, at(0.0));
-  EXPECT_NE(places.at("EARLIER", kLast).reason.find("is 9223372036854.775 s older"), std::string::npos);
+  CameraExtrinsics extrinsics;
+  extrinsics.add_transform("MOVING", kFirst, at(0.0));
+  extrinsics.add_transform("MOVING", kLast, at(0.1));
+  EXPECT_NE(extrinsics.interpolate("MOVING", 0).reason.find("s apart, expected at most 0.5 s"), std::string::npos);
+  extrinsics.add_transform("STANDING", kFirst, at(0.2));
+  extrinsics.add_transform("STANDING", kLast, at(0.2));
+  EXPECT_TRUE(extrinsics.interpolate("STANDING", 0).T_world_camera->isApprox(at(0.2)));
+  extrinsics.add_transform("LATER", kLast, at(0.0));
+  EXPECT_NE(extrinsics.interpolate("LATER", kFirst).reason.find("is 9223372036854.775 s later"), std::string::npos);
+  extrinsics.add_transform("EARLIER", kFirst, at(0.0));
+  EXPECT_NE(extrinsics.interpolate("EARLIER", kLast).reason.find("is 9223372036854.775 s older"), std::string::npos);
 }
 
 TEST(CameraExtrinsics, ACameraTooManyIsRefusedAndTheOthersGoOn) {
-  CameraExtrinsics places;
+  CameraExtrinsics extrinsics;
   for (std::size_t i = 0; i < CameraExtrinsics::kMaxMoving; ++i)
-    places.add("CAMERA_" + std::to_string(i), 1000000, at(0));
-  EXPECT_EQ(error_of([&] { places.add("FORGED", 1000000, at(0)); }),
+    extrinsics.add_transform("CAMERA_" + std::to_string(i), 1000000, at(0));
+  EXPECT_EQ(error_of([&] { extrinsics.add_transform("FORGED", 1000000, at(0)); }),
             "transforms of more than 256 cameras, expected at most that many");
-  places.add("CAMERA_0", 1100000, at(1.0));
-  EXPECT_TRUE(places.at("CAMERA_0", 1050000).T_world_camera->isApprox(at(0.5), 1e-9));
-  EXPECT_EQ(places.at("FORGED", 1000000).reason, "no transform of FORGED has come");
+  extrinsics.add_transform("CAMERA_0", 1100000, at(1.0));
+  EXPECT_TRUE(extrinsics.interpolate("CAMERA_0", 1050000).T_world_camera->isApprox(at(0.5), 1e-9));
+  EXPECT_EQ(extrinsics.interpolate("FORGED", 1000000).reason, "no transform of FORGED has come");
 }
 
 TEST(CameraExtrinsics, OursAreReadWithTheirParents) {
@@ -181,21 +181,21 @@ TEST(CameraExtrinsics, WhatIsNoNumberOrLiesTooDeepIsRefused) {
 }
 
 TEST(CameraExtrinsics, TheOptionIsParsed) {
-  const auto [name, T] = parse_camera_place("LEFT=1,2,3,1,0,0,0");
+  const auto [name, T] = parse_camera_pose("LEFT=1,2,3,1,0,0,0");
   EXPECT_EQ(name, "LEFT");
   EXPECT_TRUE(T.translation().isApprox(Eigen::Vector3d(1, 2, 3)));
-  EXPECT_NE(error_of([] { parse_camera_place("LEFT=1,2,3"); }).find("3 numbers, expected CHANNEL=x,y,z,qw,qx,qy,qz"),
+  EXPECT_NE(error_of([] { parse_camera_pose("LEFT=1,2,3"); }).find("3 numbers, expected CHANNEL=x,y,z,qw,qx,qy,qz"),
             std::string::npos);
-  EXPECT_NE(error_of([] { parse_camera_place("LEFT=1,2,3,a,0,0,0"); }).find("'a' is no number"), std::string::npos);
-  EXPECT_NE(error_of([] { parse_camera_place("1,2,3"); }).find("expected CHANNEL="), std::string::npos);
+  EXPECT_NE(error_of([] { parse_camera_pose("LEFT=1,2,3,a,0,0,0"); }).find("'a' is no number"), std::string::npos);
+  EXPECT_NE(error_of([] { parse_camera_pose("1,2,3"); }).find("expected CHANNEL="), std::string::npos);
 }
 
 TEST(CameraExtrinsics, ACameraHasOnePlaceOfTheCommandLine) {
   std::map<std::string, Eigen::Isometry3d> places = {{"LEFT", at(0.2)}};
-  add_camera_place("RIGHT=1,2,3,1,0,0,0", places);
+  add_camera_pose("RIGHT=1,2,3,1,0,0,0", places);
   EXPECT_EQ(places.at("RIGHT").translation().y(), 2.0);
   for (const std::string camera : {"LEFT", "RIGHT"}) {
-    const std::string error = error_of([&] { add_camera_place(camera + "=4,5,6,1,0,0,0", places); });
+    const std::string error = error_of([&] { add_camera_pose(camera + "=4,5,6,1,0,0,0", places); });
     EXPECT_NE(error.find(camera + " has a place already"), std::string::npos) << error;
   }
   EXPECT_EQ(places.at("RIGHT").translation().y(), 2.0);

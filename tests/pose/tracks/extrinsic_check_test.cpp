@@ -35,13 +35,13 @@ TEST(ExtrinsicCheck, CamerasThatAgreeAreNotReported) {
   const ExtrinsicCheck check = after_frames(Eigen::Vector3d::Zero());
   ASSERT_EQ(check.pairs().size(), 1U);
   EXPECT_LT(check.pairs()[0].offset_m.norm(), 0.003);
-  EXPECT_TRUE(check.contradictions().empty());
+  EXPECT_TRUE(check.inconsistencies().empty());
 }
 
 TEST(ExtrinsicCheck, TwoCentimetresAreReportedWithTheirDirection) {
   const ExtrinsicCheck check = after_frames({0.0, 0.02, 0.0});
-  ASSERT_EQ(check.contradictions().size(), 1U);
-  const ExtrinsicInconsistency found = check.contradictions()[0];
+  ASSERT_EQ(check.inconsistencies().size(), 1U);
+  const ExtrinsicInconsistency found = check.inconsistencies()[0];
   EXPECT_EQ(found.first, "LEFT");
   EXPECT_EQ(found.second, "RIGHT");
   EXPECT_NEAR(found.offset_m.y(), 0.02, 0.003);

@@ -22,45 +22,45 @@ ObjectPoses telling(std::int64_t utime, const std::vector<std::string>& names, P
 }
 
 TEST(SearchedClasses, OneDetectorsResultsSpeakOfEverything) {
-  SearchedClasses looked_for;
-  looked_for.note(telling(1, {"can", "mug"}));
-  looked_for.note(telling(2, {"bowl"}));
-  EXPECT_TRUE(looked_for.has_searched(telling(2, {"bowl"}), "can"));
-  EXPECT_TRUE(looked_for.has_searched(telling(2, {}), "can"));
-  EXPECT_TRUE(looked_for.has_searched(telling(2, {"bowl"}), "never heard of"));
+  SearchedClasses searched;
+  searched.note(telling(1, {"can", "mug"}));
+  searched.note(telling(2, {"bowl"}));
+  EXPECT_TRUE(searched.has_searched(telling(2, {"bowl"}), "can"));
+  EXPECT_TRUE(searched.has_searched(telling(2, {}), "can"));
+  EXPECT_TRUE(searched.has_searched(telling(2, {"bowl"}), "never heard of"));
 }
 
 TEST(SearchedClasses, OfSeveralDetectorsEachSpeaksOfItsOwnClasses) {
-  SearchedClasses looked_for;
-  looked_for.note(telling(1, {"can", "mug"}));
-  looked_for.note(telling(1, {"bowl"}));
+  SearchedClasses searched;
+  searched.note(telling(1, {"can", "mug"}));
+  searched.note(telling(1, {"bowl"}));
   const ObjectPoses mug = telling(2, {"mug"});
-  looked_for.note(mug);
-  EXPECT_TRUE(looked_for.has_searched(mug, "mug"));
-  EXPECT_TRUE(looked_for.has_searched(mug, "can")) << "told of together once";
-  EXPECT_FALSE(looked_for.has_searched(mug, "bowl"));
-  EXPECT_FALSE(looked_for.has_searched(telling(2, {}), "bowl")) << "its own detector may say that, and will again";
-  EXPECT_FALSE(looked_for.has_searched(telling(2, {"bowl"}, PoseStatus::kNoModel), "bowl")) << "another host's hs-pose";
-  EXPECT_TRUE(looked_for.has_searched(telling(2, {"bowl"}, PoseStatus::kNotConverged), "bowl"));
+  searched.note(mug);
+  EXPECT_TRUE(searched.has_searched(mug, "mug"));
+  EXPECT_TRUE(searched.has_searched(mug, "can")) << "told of together once";
+  EXPECT_FALSE(searched.has_searched(mug, "bowl"));
+  EXPECT_FALSE(searched.has_searched(telling(2, {}), "bowl")) << "its own detector may say that, and will again";
+  EXPECT_FALSE(searched.has_searched(telling(2, {"bowl"}, PoseStatus::kNoModel), "bowl")) << "another host's hs-pose";
+  EXPECT_TRUE(searched.has_searched(telling(2, {"bowl"}, PoseStatus::kNotConverged), "bowl"));
 }
 
 TEST(SearchedClasses, ADetectorThatIsSilentLeavesItsClassesToTheOthers) {
-  SearchedClasses looked_for;
-  looked_for.note(telling(kSecond, {"can"}));
-  looked_for.note(telling(kSecond, {"bowl"}));
+  SearchedClasses searched;
+  searched.note(telling(kSecond, {"can"}));
+  searched.note(telling(kSecond, {"bowl"}));
   for (std::int64_t utime = kSecond; utime <= 3 * kSecond; utime += kSecond / 10)
-    looked_for.note(telling(utime, {"can"}));
-  EXPECT_FALSE(looked_for.has_searched(telling(2 * kSecond, {"can"}), "bowl"));
-  EXPECT_TRUE(looked_for.has_searched(telling(3 * kSecond, {"can"}), "bowl"));
+    searched.note(telling(utime, {"can"}));
+  EXPECT_FALSE(searched.has_searched(telling(2 * kSecond, {"can"}), "bowl"));
+  EXPECT_TRUE(searched.has_searched(telling(3 * kSecond, {"can"}), "bowl"));
 }
 
 TEST(SearchedClasses, ClassesThatNothingIsKnownOfAreForgotten) {
-  SearchedClasses looked_for;
-  looked_for.note(telling(1, {"can"}));
-  looked_for.note(telling(1, {"bowl"}));
-  EXPECT_FALSE(looked_for.has_searched(telling(1, {"can"}), "bowl"));
-  looked_for.keep_only({"can"});
-  EXPECT_TRUE(looked_for.has_searched(telling(1, {"can"}), "bowl"));
+  SearchedClasses searched;
+  searched.note(telling(1, {"can"}));
+  searched.note(telling(1, {"bowl"}));
+  EXPECT_FALSE(searched.has_searched(telling(1, {"can"}), "bowl"));
+  searched.keep_only({"can"});
+  EXPECT_TRUE(searched.has_searched(telling(1, {"can"}), "bowl"));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ constexpr std::int64_t kSecondUs = 1000000;
 /// Told of a frame that came last.
 TimeOrder tell(WorldClock& clock, const FrameId& frame, const FrameNumber& number = {}) {
   const TimeOrder order = clock.order_of({frame, number, frame.utime});
-  if (order == TimeOrder::kReset) clock.begin_world();
+  if (order == TimeOrder::kReset) clock.reset();
   if (order != TimeOrder::kLate) clock.set({frame, number, frame.utime});
   return order;
 }

@@ -34,7 +34,7 @@ struct Arguments {
 std::map<std::string, Eigen::Vector3d> wrong_places(const std::vector<std::string>& texts) {
   std::map<std::string, Eigen::Vector3d> out;
   for (const std::string& text : texts) {
-    const auto [channel, T] = tracks::parse_camera_place(text + ",1,0,0,0");
+    const auto [channel, T] = tracks::parse_camera_pose(text + ",1,0,0,0");
     out[channel] = T.translation();
   }
   return out;
