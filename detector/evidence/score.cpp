@@ -81,8 +81,8 @@ ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const Scor
   std::vector<LogisticExample<kScoreTerms>> judged;
   judged.reserve(examples.size());
   for (const ScoreExample& example : examples) judged.push_back({to_vector(example.terms), example.is_object});
-  constexpr double kStiffness = 1.0;
-  const Vector weights = fit_logistic<kScoreTerms>(judged, {to_vector(prior.weights), kStiffness});
+  constexpr double kPriorPrecision = 1.0;
+  const Vector weights = fit_logistic<kScoreTerms>(judged, {to_vector(prior.weights), kPriorPrecision});
   ScoreModel model;
   for (std::size_t i = 0; i < kScoreTerms; ++i) {
     model.weights.*kScoreTermList[i] = static_cast<float>(weights(static_cast<Eigen::Index>(i)));

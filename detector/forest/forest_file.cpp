@@ -185,7 +185,7 @@ void save_forest(const Forest& forest, const std::filesystem::path& file) {
   out << kName << kForestFileVersion << '\n' << header.bytes << payload.bytes;
   out.close();
   require(out.good(), "{}: cannot be written", file.string());
-  whole.publish();
+  whole.commit();
 }
 
 /// Read at once: a forest of many objects has hundreds of megabytes.

@@ -95,8 +95,8 @@ OddsExamples odds_examples(const ScoreModel& model, const std::vector<ScoreExamp
 }
 
 OddsScale fit_scale(const OddsExamples& examples, const OddsScale& prior) {
-  constexpr double kStiffness = 1.0;
-  return fit_logistic<2>(examples, {prior, kStiffness});
+  constexpr double kPriorPrecision = 1.0;
+  return fit_logistic<2>(examples, {prior, kPriorPrecision});
 }
 
 void scale_odds(const OddsScale& scale, ScoreModel& model) {

@@ -130,7 +130,7 @@ std::size_t copy_repaired_oni(const std::filesystem::path& from, const std::file
   std::filesystem::copy_file(from, whole.partial(), std::filesystem::copy_options::overwrite_existing, error);
   require(!error, "{}: cannot be written: {}", to.string(), error.message());
   const std::size_t images = repair_oni(whole.partial());
-  whole.publish();
+  whole.commit();
   return images;
 }
 

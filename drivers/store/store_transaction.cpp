@@ -131,7 +131,7 @@ StoreTransaction::~StoreTransaction() {
   if (lock_ >= 0) close(lock_);
 }
 
-void StoreTransaction::publish() {
+void StoreTransaction::commit() {
   exchange_folder(partial_, store_, is_store_entry);
   is_published_ = true;
 }

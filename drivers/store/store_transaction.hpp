@@ -4,7 +4,7 @@
 
 namespace houghstream::store {
 
-/// A store that is being made, in the folder `.STORE.partial-PID` beside STORE; STORE stays whole until publish(),
+/// A store that is being made, in the folder `.STORE.partial-PID` beside STORE; STORE stays whole until commit(),
 /// which puts the new one into its place in one step. Where STORE is a symbolic link, all this is where it leads. What
 /// an interrupted teaching left is removed when the next begins. One at a time works on a store, of all processes. What
 /// lies in STORE and is no part of a store (is_store_entry()) is somebody's, and is there afterwards as it was before.
@@ -21,7 +21,7 @@ class StoreTransaction {
   const std::filesystem::path& folder() const { return partial_; }
 
   /// The folder becomes STORE, and what STORE was is removed. Throws InputError where it cannot.
-  void publish();
+  void commit();
 
  private:
   std::filesystem::path store_;

@@ -183,7 +183,7 @@ bool AtomicFile::rename_into_place() {
   return true;
 }
 
-void AtomicFile::publish() {
+void AtomicFile::commit() {
   if (lock_ < 0) return;
   const bool has_replaced = put_into_place();
   if (!has_replaced) sync_to_disk(file_);
@@ -207,7 +207,7 @@ bool AtomicFile::put_into_place() {
   return replaces;
 }
 
-void AtomicFile::keep() {
+void AtomicFile::keep_partial() {
   if (lock_ >= 0) release();
 }
 

@@ -81,9 +81,11 @@ class AtomicFile {
   /// older FILE goes only once the new one is on the disk. Where there is none, FILE has its name first: who is killed
   /// while a slow disk takes a long recording leaves it whole. Throws InputError; what was written can then still be
   /// kept.
-  void publish();
+  void commit();
+  [[deprecated("is commit() now")]] void publish() { commit(); }
   /// What was written stays as FILE.partial: what cannot be had again, like a recording on a full disk.
-  void keep();
+  void keep_partial();
+  [[deprecated("is keep_partial() now")]] void keep() { keep_partial(); }
 
  private:
   friend void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);

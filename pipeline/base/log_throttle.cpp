@@ -13,18 +13,18 @@ std::optional<std::string> LogThrottle::admit(const std::string& kind, const std
   const bool is_known = kinds_.count(kind) > 0 || kinds_.size() < kMaxKinds;
   Kind& found = kinds_[is_known ? kind : std::string()];
   if (found.last && now - *found.last < kPeriod) {
-    ++found.held_back;
+    ++found.suppressed;
     return std::nullopt;
   }
   found.last = now;
-  const std::int64_t held_back = std::exchange(found.held_back, 0);
-  return held_back == 0 ? line : fmt::format("{} (and {} more not shown)", line, held_back);
+  const std::int64_t suppressed = std::exchange(found.suppressed, 0);
+  return suppressed == 0 ? line : fmt::format("{} (and {} more not shown)", line, suppressed);
 }
 
-std::int64_t LogThrottle::held_back() const {
+std::int64_t LogThrottle::suppressed() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::int64_t sum = 0;
-  for (const auto& [kind, state] : kinds_) sum += state.held_back;
+  for (const auto& [kind, state] : kinds_) sum += state.suppressed;
   return sum;
 }
 

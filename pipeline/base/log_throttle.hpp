@@ -20,12 +20,12 @@ class LogThrottle {
   std::optional<std::string> admit(const std::string& kind, const std::string& line, Clock::time_point now);
 
   /// Lines that no later one has told of yet.
-  std::int64_t held_back() const;
+  std::int64_t suppressed() const;
 
  private:
   struct Kind {
     std::optional<Clock::time_point> last;
-    std::int64_t held_back = 0;
+    std::int64_t suppressed = 0;
   };
 
   mutable std::mutex mutex_;

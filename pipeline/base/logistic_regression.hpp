@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/base/log_odds.hpp"
+#include "pipeline/base/logit.hpp"
 
 namespace houghstream {
 
@@ -21,15 +21,15 @@ struct LogisticExample {
 template <int N>
 struct LogisticPrior {
   Eigen::Matrix<double, N, 1> weights = Eigen::Matrix<double, N, 1>::Zero();
-  double stiffness = 1.0;
-  std::optional<int> held = std::nullopt;
+  double precision = 1.0;
+  std::optional<int> fixed = std::nullopt;
 };
 
 /// Minus the logarithm of what the weights make of the examples and of how far they leave the prior.
 template <int N>
 double logistic_loss(const std::vector<LogisticExample<N>>& examples, const Eigen::Matrix<double, N, 1>& weights,
                      const LogisticPrior<N>& prior) {
-  double loss = prior.stiffness * (0.5 * (weights - prior.weights).squaredNorm());
+  double loss = prior.precision * (0.5 * (weights - prior.weights).squaredNorm());
   for (const LogisticExample<N>& example : examples) {
     const double x = weights.dot(example.terms) * (example.is_true ? 1.0 : -1.0);
     loss += x > 0.0 ? std::log1p(std::exp(-x)) : -x + std::log1p(std::exp(x));
@@ -48,20 +48,20 @@ Eigen::Matrix<double, N, 1> fit_logistic(const std::vector<LogisticExample<N>>& 
   Vector weights = prior.weights;
   double loss = logistic_loss<N>(examples, weights, prior);
   for (int step = 0; step < kSteps; ++step) {
-    Vector gradient = prior.stiffness * (prior.weights - weights);
-    Matrix curvature = prior.stiffness * Matrix::Identity();
+    Vector gradient = prior.precision * (prior.weights - weights);
+    Matrix hessian = prior.precision * Matrix::Identity();
     for (const LogisticExample<N>& example : examples) {
       const double p = logistic(weights.dot(example.terms));
       gradient += ((example.is_true ? 1.0 : 0.0) - p) * example.terms;
-      curvature += p * (1.0 - p) * example.terms * example.terms.transpose();
+      hessian += p * (1.0 - p) * example.terms * example.terms.transpose();
     }
-    if (prior.held) {
-      gradient[*prior.held] = 0.0;
-      curvature.row(*prior.held).setZero();
-      curvature.col(*prior.held).setZero();
-      curvature(*prior.held, *prior.held) = 1.0;
+    if (prior.fixed) {
+      gradient[*prior.fixed] = 0.0;
+      hessian.row(*prior.fixed).setZero();
+      hessian.col(*prior.fixed).setZero();
+      hessian(*prior.fixed, *prior.fixed) = 1.0;
     }
-    Vector change = curvature.ldlt().solve(gradient);
+    Vector change = hessian.ldlt().solve(gradient);
     // Far from the minimum a whole step may lead away from it.
     while (logistic_loss<N>(examples, weights + change, prior) > loss && change.norm() > 1e-9) change *= 0.5;
     weights += change;

@@ -16,7 +16,7 @@ namespace {
 /// The items of one call of parallel_for_workers.
 class Items {
  public:
-  Items(const WorkerItemWork& work, int count) : work_(work), count_(count), error_index_(count) {}
+  Items(const WorkerItemFunction& work, int count) : work_(work), count_(count), error_index_(count) {}
 
   /// Works until there are no more.
   void work(int worker) {
@@ -38,7 +38,7 @@ class Items {
   }
 
  private:
-  const WorkerItemWork& work_;
+  const WorkerItemFunction& work_;
   int count_;
   std::atomic<int> next_{0};
   std::mutex error_mutex_;
@@ -168,19 +168,19 @@ SerialScope::~SerialScope() {
   working_alone() = outer_;
 }
 
-void SerialScope::ask() const {
+void SerialScope::throw_if_cancelled() const {
   if (is_over_ && is_over_()) throw WorkCancelled("work that nobody waits for any more");
 }
 
-void parallel_for(int threads, int count, const ItemWork& work) {
+void parallel_for(int threads, int count, const ItemFunction& work) {
   parallel_for_workers(threads, count, [&](int, int item) { work(item); });
 }
 
-void parallel_for_workers(int threads, int count, const WorkerItemWork& work) {
+void parallel_for_workers(int threads, int count, const WorkerItemFunction& work) {
   const SerialScope* alone = working_alone();
   if (threads <= 1 || count <= 1 || alone != nullptr) {
     for (int i = 0; i < count; ++i) {
-      if (alone != nullptr) alone->ask();
+      if (alone != nullptr) alone->throw_if_cancelled();
       work(0, i);
     }
     return;

@@ -23,18 +23,18 @@ class FunctionRef {
   void (*call_)(const void*, Arguments...);
 };
 
-using ItemWork = FunctionRef<int>;             ///< of an item
-using WorkerItemWork = FunctionRef<int, int>;  ///< of a worker and an item
+using ItemFunction = FunctionRef<int>;             ///< of an item
+using WorkerItemFunction = FunctionRef<int, int>;  ///< of a worker and an item
 
 /// Calls work(i) for every i in [0, count), on `threads` threads, the caller's among them; one thread means no others.
 /// Items are handed out in order, so work must write only to item i's own place: then the result does not depend on
 /// `threads`. The first exception (lowest i among those thrown) is rethrown when all have ended. May be called from
 /// several threads at once and from within work. The other threads are kept from call to call.
-void parallel_for(int threads, int count, const ItemWork& work);
+void parallel_for(int threads, int count, const ItemFunction& work);
 
 /// The same, but calls work(worker, i): no two items of one worker are worked on at the same time, so that they may
 /// share memory. Workers are numbered from 0; there are at most max(threads, 1). Which items a worker gets is chance.
-void parallel_for_workers(int threads, int count, const WorkerItemWork& work);
+void parallel_for_workers(int threads, int count, const WorkerItemFunction& work);
 
 /// Work that nobody waits for any more: what SerialScope's calls end with.
 struct WorkCancelled : std::runtime_error {
@@ -51,7 +51,7 @@ class SerialScope {
   SerialScope(const SerialScope&) = delete;
   SerialScope& operator=(const SerialScope&) = delete;
 
-  void ask() const;
+  void throw_if_cancelled() const;
 
  private:
   std::function<bool()> is_over_;

@@ -128,12 +128,12 @@ void LogWriter::close() {
   log_.reset();
   require(!torn, "{}: an event could not be written, the log is torn", file_);
   require(flushed, "{}: the end of the log could not be written: {}", file_, std::strerror(error));
-  whole_.publish();
+  whole_.commit();
 }
 
-void LogWriter::keep() {
+void LogWriter::keep_partial() {
   log_.reset();
-  whole_.keep();
+  whole_.keep_partial();
 }
 
 LogReader::LogReader(const std::filesystem::path& file) : file_(file.string()) {

@@ -62,7 +62,8 @@ class LogWriter {
   /// Pushes everything to the file, checks that it arrived there, and ends the log. Throws InputError.
   void close();
   /// Instead of close(): what was written stays as FILE.partial, for what cannot be had again.
-  void keep();
+  void keep_partial();
+  [[deprecated("is keep_partial() now")]] void keep() { keep_partial(); }
 
  private:
   struct Closer {

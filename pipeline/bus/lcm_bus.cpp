@@ -222,8 +222,8 @@ void LcmBus::wait_until_reachable() {
 }
 
 LcmBus::~LcmBus() {
-  const std::int64_t held_back = state_->complaints.held_back();
-  if (held_back > 0) log_error("{} more messages dropped", held_back);
+  const std::int64_t suppressed = state_->complaints.suppressed();
+  if (suppressed > 0) log_error("{} more messages dropped", suppressed);
 }
 
 void LcmBus::subscribe(const std::string& channels, Handler handler) {

@@ -62,16 +62,16 @@ void StatusReporter::count_processed(Clock::duration latency) {
 void StatusReporter::count_refused(const std::string& reason, const std::string& kind) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++refused_;
-  complain(kind, reason);
+  log_throttled(kind, reason);
 }
 
 void StatusReporter::note_bad_message(const std::string& reason) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++bad_messages_;
-  complain("other message", reason);
+  log_throttled("other message", reason);
 }
 
-void StatusReporter::complain(const std::string& kind, const std::string& reason) {
+void StatusReporter::log_throttled(const std::string& kind, const std::string& reason) {
   last_error_ = shortened(reason);
   if (const auto line = complaints_.admit(kind, last_error_, Clock::now())) log_line(LogLevel::kWarning, *line);
 }
@@ -149,7 +149,7 @@ bool StatusReporter::try_publish_if_due(LcmBus& bus) {
     return publish_if_due(bus);
   } catch (const std::exception& error) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    complain("status", fmt::format("no status: {}", error.what()));
+    log_throttled("status", fmt::format("no status: {}", error.what()));
     return false;
   }
 }

@@ -12,7 +12,7 @@
 
 #include "pipeline/base/log_throttle.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
-#include "pipeline/bus/sequence_count.hpp"
+#include "pipeline/bus/sequence_tracker.hpp"
 #include "pipeline/types/known_objects.hpp"
 
 namespace houghstream {
@@ -59,7 +59,7 @@ class StatusReporter {
   std::string summary() const;
 
  private:
-  void complain(const std::string& kind, const std::string& reason);
+  void log_throttled(const std::string& kind, const std::string& reason);
   void note_outage(const LcmBus& bus);
 
   struct Finished {

@@ -146,7 +146,7 @@ const image_metadata_t* find_metadata(const images_t& message, const std::string
 }
 
 Camera camera_or(const images_t& message, const std::optional<Camera>& fallback_camera) {
-  const std::optional<Camera> own = camera_of(message);
+  const std::optional<Camera> own = read_camera_metadata(message);
   require(own || fallback_camera, "no camera in its metadata; give --camera WIDTHxHEIGHT,fx,fy,cx,cy");
   return own ? *own : *fallback_camera;
 }
@@ -284,7 +284,7 @@ FrameImages images_from_message(const images_t& message) {
   return decode_named({"", message.utime}, [&] { return decode_images(message); });
 }
 
-std::optional<Camera> camera_of(const images_t& message) {
+std::optional<Camera> read_camera_metadata(const images_t& message) {
   const image_metadata_t* entry = find_metadata(message, metadata::kCamera);
   if (entry == nullptr) return std::nullopt;
   camera_t stored{};
@@ -294,7 +294,7 @@ std::optional<Camera> camera_of(const images_t& message) {
   return Camera{stored.width, stored.height, stored.fx, stored.fy, stored.cx, stored.cy};
 }
 
-std::optional<std::int64_t> sequence_of(const images_t& message) {
+std::optional<std::int64_t> read_sequence_number(const images_t& message) {
   const image_metadata_t* entry = find_metadata(message, metadata::kSequence);
   if (entry == nullptr) return std::nullopt;
   return parse_sequence({entry->value.data(), entry->value.size()});

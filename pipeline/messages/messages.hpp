@@ -64,10 +64,18 @@ struct FrameImages {
 FrameImages images_from_message(const houghstream::images_t& message);
 
 /// The camera that the message carries, unchecked, if any. Throws InputError where its bytes are none.
-std::optional<Camera> camera_of(const houghstream::images_t& message);
+std::optional<Camera> read_camera_metadata(const houghstream::images_t& message);
+[[deprecated("is read_camera_metadata now")]] inline std::optional<Camera> camera_of(
+    const houghstream::images_t& message) {
+  return read_camera_metadata(message);
+}
 
 /// The source's frame counter, if the message carries one.
-std::optional<std::int64_t> sequence_of(const houghstream::images_t& message);
+std::optional<std::int64_t> read_sequence_number(const houghstream::images_t& message);
+[[deprecated("is read_sequence_number now")]] inline std::optional<std::int64_t> sequence_of(
+    const houghstream::images_t& message) {
+  return read_sequence_number(message);
+}
 
 /// Keeps the first detection_t::MAX_VOTES rotations of each detection.
 houghstream::detections_t to_message(const Detections& detections);

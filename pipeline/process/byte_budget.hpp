@@ -12,28 +12,28 @@ namespace houghstream {
 class ByteBudget {
  public:
   /// The bytes of one item, which count for as long as this lives.
-  class Held {
+  class Reservation {
    public:
-    Held() = default;
-    ~Held() {
+    Reservation() = default;
+    ~Reservation() {
       if (count_ != nullptr) count_->total_ -= bytes_;
     }
-    Held(Held&& other) noexcept : count_(std::exchange(other.count_, nullptr)), bytes_(other.bytes_) {}
-    Held& operator=(Held&& other) noexcept {
-      Held mine(std::move(other));
+    Reservation(Reservation&& other) noexcept : count_(std::exchange(other.count_, nullptr)), bytes_(other.bytes_) {}
+    Reservation& operator=(Reservation&& other) noexcept {
+      Reservation mine(std::move(other));
       std::swap(count_, mine.count_);
       std::swap(bytes_, mine.bytes_);
       return *this;
     }
-    Held(const Held&) = delete;
-    Held& operator=(const Held&) = delete;
+    Reservation(const Reservation&) = delete;
+    Reservation& operator=(const Reservation&) = delete;
 
     /// Zero where nothing is held: by default, and after a move.
     std::size_t bytes() const { return count_ == nullptr ? 0 : bytes_; }
 
    private:
     friend class ByteBudget;
-    Held(ByteBudget& count, std::size_t bytes) : count_(&count), bytes_(bytes) { count.total_ += bytes; }
+    Reservation(ByteBudget& count, std::size_t bytes) : count_(&count), bytes_(bytes) { count.total_ += bytes; }
 
     ByteBudget* count_ = nullptr;
     std::size_t bytes_ = 0;
@@ -43,7 +43,7 @@ class ByteBudget {
   ByteBudget(const ByteBudget&) = delete;
   ByteBudget& operator=(const ByteBudget&) = delete;
 
-  [[nodiscard]] Held hold(std::size_t bytes) { return {*this, bytes}; }
+  [[nodiscard]] Reservation reserve(std::size_t bytes) { return {*this, bytes}; }
   std::size_t total() const { return total_; }
 
  private:

@@ -59,7 +59,7 @@ class DetectProcess {
     const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(result.bytes));
     for (const ObjectPose& pose : poses.poses) {
       const bool is_lost = !has_pose(pose.status) && pose.status != PoseStatus::kOccluded;
-      if (pose.detection_index < 0 && is_lost) throttle_.hurry(poses.frame.channel);
+      if (pose.detection_index < 0 && is_lost) throttle_.expedite(poses.frame.channel);
     }
   }
 

@@ -5,20 +5,20 @@
 namespace houghstream {
 
 bool DetectionThrottle::is_due(const FrameId& frame) {
-  constexpr double kHurry = 0.25;
+  constexpr double kExpedited = 0.25;
   constexpr double kSlack = 0.002;  // seconds, for times that tremble
-  if (!(looks_per_second_ > 0.0)) return true;
+  if (!(max_rate_hz_ > 0.0)) return true;
   if (cameras_.size() >= kCameras && cameras_.count(frame.channel) == 0) return true;
   Camera& camera = cameras_[frame.channel];
   const double passed_s = seconds_between(camera.last_utime, frame.utime);
-  const double wait_s = (camera.hurried ? kHurry : 1.0) / looks_per_second_;
-  if (camera.looked && passed_s >= -kMaxOvertakenS && passed_s + kSlack < wait_s) return false;
+  const double wait_s = (camera.is_expedited ? kExpedited : 1.0) / max_rate_hz_;
+  if (camera.was_due && passed_s >= -kMaxOvertakenS && passed_s + kSlack < wait_s) return false;
   camera = {true, false, frame.utime};
   return true;
 }
 
-void DetectionThrottle::hurry(const std::string& channel) {
-  if (const auto camera = cameras_.find(channel); camera != cameras_.end()) camera->second.hurried = true;
+void DetectionThrottle::expedite(const std::string& channel) {
+  if (const auto camera = cameras_.find(channel); camera != cameras_.end()) camera->second.is_expedited = true;
 }
 
 }  // namespace houghstream

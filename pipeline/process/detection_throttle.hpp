@@ -18,7 +18,7 @@ class DetectionThrottle {
   static constexpr std::size_t kCameras = 64;
 
   /// 0: at every frame.
-  explicit DetectionThrottle(double max_rate_hz) : looks_per_second_(max_rate_hz) {}
+  explicit DetectionThrottle(double max_rate_hz) : max_rate_hz_(max_rate_hz) {}
 
   /// Whether this frame is looked at: where enough time has passed since the camera's last look. Times that go back by
   /// more than a second begin anew; a frame that is older by less has been overtaken on its way.
@@ -26,16 +26,16 @@ class DetectionThrottle {
 
   /// The camera's next look comes after a quarter of the time, once. One that has had no look is left alone: results
   /// may name any camera.
-  void hurry(const std::string& channel);
+  void expedite(const std::string& channel);
 
  private:
   struct Camera {
-    bool looked = false;
-    bool hurried = false;
+    bool was_due = false;
+    bool is_expedited = false;
     std::int64_t last_utime = 0;  // of a look
   };
 
-  double looks_per_second_;
+  double max_rate_hz_;
   std::map<std::string, Camera> cameras_;  // by channel
 };
 

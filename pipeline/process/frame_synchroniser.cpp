@@ -13,11 +13,11 @@ void FrameSynchroniser::add_frame(const FrameId& id, SharedBytes bytes) {
     const std::lock_guard<std::mutex> lock(mutex_);
     Camera& camera = camera_of(id.channel);
     detectors_.note_frame(id);
-    ByteBudget::Held held = frame_bytes_.hold(bytes->size());
+    ByteBudget::Reservation reservation = frame_bytes_.reserve(bytes->size());
     ++camera.frames_seen;
-    camera.frames.push_back({{id, std::move(bytes)}, ++frames_, std::move(held)});
+    camera.frames.push_back({{id, std::move(bytes)}, ++frames_, std::move(reservation)});
     if (camera.frames.size() > kHistory) camera.frames.pop_front();
-    keep_within_bytes();
+    limit_frame_bytes();
     camera.fresh = newest_first_ && ahead_;
     drop_unmatchable(camera);
     is_awaited = camera.fresh || !camera.waiting.empty();
@@ -32,14 +32,14 @@ void FrameSynchroniser::add_detections(const FrameId& id, std::vector<std::uint8
     detectors_.note_result(id);
     Waiting waiting;
     waiting.id = id;
-    waiting.held = waiting_bytes_.hold(bytes.size());
+    waiting.reservation = waiting_bytes_.reserve(bytes.size());
     waiting.bytes = std::move(bytes);
     waiting.arrival = std::chrono::steady_clock::now();
     waiting.number = ++arrivals_;
     waiting.frames_before = camera.frames_seen;
     camera.waiting.push_back(std::move(waiting));
     drop_unmatchable(camera);
-    keep_waiting_within_bytes();
+    limit_waiting_bytes();
   }
   changed_.notify_one();
 }
@@ -51,7 +51,7 @@ FrameSynchroniser::Camera& FrameSynchroniser::camera_of(const std::string& chann
 }
 
 // There are frames.
-FrameSynchroniser::Camera& FrameSynchroniser::camera_to_shorten() {
+FrameSynchroniser::Camera& FrameSynchroniser::largest_camera() {
   Camera* chosen = nullptr;
   for (auto& [channel, camera] : cameras_) {
     if (camera.frames.empty()) continue;
@@ -63,21 +63,21 @@ FrameSynchroniser::Camera& FrameSynchroniser::camera_to_shorten() {
   return *chosen;
 }
 
-void FrameSynchroniser::keep_within_bytes() {
+void FrameSynchroniser::limit_frame_bytes() {
   while (frame_bytes_.total() > kHistoryBytes) {
-    Camera& camera = camera_to_shorten();
+    Camera& camera = largest_camera();
     if (camera.frames.front().number == frames_) return;  // the last one that has come is the only one left
     camera.frames.pop_front();
     if (camera.frames.empty()) camera.fresh = false;
   }
 }
 
-void FrameSynchroniser::keep_waiting_within_bytes() {
+void FrameSynchroniser::limit_waiting_bytes() {
   while (waiting_bytes_.total() > kAllWaitingBytes) {
     const auto most = std::max_element(cameras_.begin(), cameras_.end(), [](const auto& a, const auto& b) {
       return a.second.waiting.size() < b.second.waiting.size();
     });
-    give_up_first(most->second);
+    drop_first(most->second);
   }
 }
 
@@ -105,7 +105,7 @@ std::optional<SynchronisedMessages> FrameSynchroniser::next_pair() {
     if (answer == FrameGate::Answer::kGo) return pair;
   }
   while (Camera* camera = next_camera()) {
-    SynchronisedMessages pair = take_pair(*camera);
+    SynchronisedMessages pair = pop_pair(*camera);
     const std::int64_t now_us = gate_.now_us ? gate_.now_us() : 0;
     const FrameGate::Answer answer = ask_gate(pair.id, now_us);
     if (answer == FrameGate::Answer::kGo) return pair;
@@ -123,8 +123,8 @@ FrameGate::Answer FrameSynchroniser::ask_gate(const FrameId& id, std::int64_t si
 
 // A frame goes with each pair, and detections of one frame may be sent without end.
 void FrameSynchroniser::hold_back(SynchronisedMessages pair, std::int64_t since_us) {
-  ByteBudget::Held held = held_back_bytes_.hold(pair.frame->size());
-  held_back_.push_back({std::move(pair), since_us, std::move(held)});
+  ByteBudget::Reservation reservation = held_back_bytes_.reserve(pair.frame->size());
+  held_back_.push_back({std::move(pair), since_us, std::move(reservation)});
   while (held_back_.size() > 1 && (held_back_.size() > kHeldBack || held_back_bytes_.total() > kHeldBackBytes)) {
     dropped_.refused.push_back({held_back_.front().pair.id, "too many wait for " + gate_.awaited});
     held_back_.pop_front();
@@ -152,13 +152,13 @@ FrameSynchroniser::Dropped FrameSynchroniser::pop_dropped() {
 void FrameSynchroniser::flush() {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (auto& [channel, camera] : cameras_) {
-    while (!camera.waiting.empty()) give_up_first(camera);
+    while (!camera.waiting.empty()) drop_first(camera);
   }
-  for (const HeldBack& held : held_back_) dropped_.refused.push_back({held.pair.id, "the stream has ended"});
+  for (const HeldBack& waiting : held_back_) dropped_.refused.push_back({waiting.pair.id, "the stream has ended"});
   held_back_.clear();
 }
 
-void FrameSynchroniser::give_up_first(Camera& camera) {
+void FrameSynchroniser::drop_first(Camera& camera) {
   const FrameId& id = camera.waiting.front().id;
   if (camera.find_frame(id) == nullptr) {
     dropped_.without_frame.push_back(id);
@@ -217,12 +217,12 @@ void FrameSynchroniser::drop_unmatchable(Camera& camera) {
   while (
       !camera.waiting.empty() && camera.find_frame(camera.waiting.front().id) == nullptr &&
       (camera.frames_seen - camera.waiting.front().frames_before > kMaxLagFrames || camera.waiting.size() > kHistory)) {
-    give_up_first(camera);
+    drop_first(camera);
   }
-  while (camera.waiting.size() > kWaiting) give_up_first(camera);
+  while (camera.waiting.size() > kWaiting) drop_first(camera);
 }
 
-SynchronisedMessages FrameSynchroniser::take_pair(Camera& camera) {
+SynchronisedMessages FrameSynchroniser::pop_pair(Camera& camera) {
   const auto chosen = camera.waiting.begin() + static_cast<std::ptrdiff_t>(*camera.first_complete());
   if (chosen->id == camera.frames.back().frame.id) camera.fresh = false;
   const Kept& kept = *camera.find_frame(chosen->id);

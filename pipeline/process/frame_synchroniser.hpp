@@ -112,7 +112,7 @@ class FrameSynchroniser {
   struct Kept {
     ArrivedFrame frame;
     std::int64_t number = 0;  // SynchronisedMessages::frame_number
-    ByteBudget::Held held;
+    ByteBudget::Reservation reservation;
   };
   struct Waiting {
     FrameId id;
@@ -120,12 +120,12 @@ class FrameSynchroniser {
     std::chrono::steady_clock::time_point arrival;
     std::int64_t number = 0;         // in the order of arrival, of all cameras
     std::int64_t frames_before = 0;  // frames of the camera that had arrived when it did
-    ByteBudget::Held held;
+    ByteBudget::Reservation reservation;
   };
   struct HeldBack {
     SynchronisedMessages pair;
-    std::int64_t since_us = 0;  // on the gate's clock
-    ByteBudget::Held held;      // of the frame, which may have gone from those that are kept
+    std::int64_t since_us = 0;            // on the gate's clock
+    ByteBudget::Reservation reservation;  // of the frame, which may have gone from those that are kept
   };
   struct Camera {
     std::deque<Kept> frames;      // the last ones
@@ -139,14 +139,14 @@ class FrameSynchroniser {
   };
 
   Camera& camera_of(const std::string& channel);
-  Camera& camera_to_shorten();
-  void keep_within_bytes();
-  void keep_waiting_within_bytes();
+  Camera& largest_camera();
+  void limit_frame_bytes();
+  void limit_waiting_bytes();
   Camera* next_camera();
   void drop_stale(const std::string& channel, Camera& camera);
-  void give_up_first(Camera& camera);
+  void drop_first(Camera& camera);
   void drop_unmatchable(Camera& camera);
-  SynchronisedMessages take_pair(Camera& camera);
+  SynchronisedMessages pop_pair(Camera& camera);
   std::optional<SynchronisedMessages> next_pair();
   FrameGate::Answer ask_gate(const FrameId& id, std::int64_t since_us);
   void hold_back(SynchronisedMessages pair, std::int64_t since_us);

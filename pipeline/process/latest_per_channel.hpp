@@ -30,7 +30,7 @@ class LatestPerChannel {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       if (is_full_for(channel, bytes)) return true;
-      is_first = items_.insert_or_assign(channel, Waiting{std::move(item), bytes_.hold(bytes)}).second;
+      is_first = items_.insert_or_assign(channel, Waiting{std::move(item), bytes_.reserve(bytes)}).second;
       if (is_first) turns_.push_back(channel);
     }
     filled_.notify_one();
@@ -42,7 +42,7 @@ class LatestPerChannel {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       if (is_full_for(channel, bytes)) return true;
-      if (!items_.emplace(channel, Waiting{std::move(item), bytes_.hold(bytes)}).second) return true;
+      if (!items_.emplace(channel, Waiting{std::move(item), bytes_.reserve(bytes)}).second) return true;
       turns_.push_back(channel);
     }
     filled_.notify_one();
@@ -67,7 +67,7 @@ class LatestPerChannel {
  private:
   struct Waiting {
     T item;
-    ByteBudget::Held held;
+    ByteBudget::Reservation reservation;
   };
 
   bool is_full_for(const std::string& channel, std::size_t bytes) const {
@@ -75,7 +75,7 @@ class LatestPerChannel {
     const bool is_known = known != items_.end();
     if (!is_known && items_.size() >= kChannels) return true;
     const std::size_t others = items_.size() - (is_known ? 1 : 0);
-    return others > 0 && bytes_.total() - (is_known ? known->second.held.bytes() : 0) + bytes > kBytes;
+    return others > 0 && bytes_.total() - (is_known ? known->second.reservation.bytes() : 0) + bytes > kBytes;
   }
 
   mutable std::mutex mutex_;

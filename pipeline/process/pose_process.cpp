@@ -88,13 +88,13 @@ class PoseProcess {
         [this](const FrameId& frame) { note_other_camera(frame); });
     log_info("ready: {}frames from {}, detections from {} at {}", follow_ ? "follows in " : "", options_.frame_channels,
              channel::kDetections, bus_.url());
-    const WorkStep answer = [this](milliseconds timeout) { return answer_next(timeout); };
+    const WorkStep process = [this](milliseconds timeout) { return process_next(timeout); };
     if (follow_) {
       run_process_loop(
-          bus_, status_, [this](milliseconds timeout) { return follow_newest(timeout); }, answer);
+          bus_, status_, [this](milliseconds timeout) { return follow_newest(timeout); }, process);
       status_.count_skipped(static_cast<std::int64_t>(newest_.waiting()));
     } else {
-      run_process_loop(bus_, status_, answer);
+      run_process_loop(bus_, status_, process);
       synchroniser_.flush();
       count_dropped();
     }
@@ -171,7 +171,7 @@ class PoseProcess {
     return true;
   }
 
-  bool answer_next(milliseconds timeout) {
+  bool process_next(milliseconds timeout) {
     const std::optional<SynchronisedMessages> pair = synchroniser_.pop(timeout);
     count_dropped();
     if (!pair) {
@@ -300,10 +300,11 @@ void run_pose_process(LcmBus& bus, const PoseProcessOptions& options, const Esti
 }
 
 void run_follow_process(LcmBus& bus, const PoseProcessOptions& options, const FollowPoses& poses) {
-  const EstimatePoses answer = [&](const RgbdFrame& frame, const Detections& detections, const ObjectPoses&) {
-    return poses.answer(frame, detections);
+  const EstimatePoses process_detections = [&](const RgbdFrame& frame, const Detections& detections,
+                                               const ObjectPoses&) {
+    return poses.process_detections(frame, detections);
   };
-  PoseProcess(bus, options, answer, poses.follow).run();
+  PoseProcess(bus, options, process_detections, poses.follow).run();
 }
 
 }  // namespace houghstream

@@ -53,7 +53,7 @@ using FollowFrame = std::function<std::optional<ObjectPoses>(const RgbdFrame&)>;
 struct FollowPoses {
   FollowFrame follow;
   /// Poses of a frame's detections, which come later; what is found is followed from then on.
-  std::function<ObjectPoses(const RgbdFrame&, const Detections&)> answer;
+  std::function<ObjectPoses(const RgbdFrame&, const Detections&)> process_detections;
 };
 
 /// As run_pose_process, but each frame is worked on as soon as it comes, always the newest of each camera: the poses of

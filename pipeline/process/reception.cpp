@@ -48,7 +48,7 @@ void Reception::subscribe_to_results(MessageType type, const std::string& channe
 bool Reception::take_result(const ReceivedMessage& message, const ResultHandlers& handlers,
                             DuplicateFilter& duplicates) {
   const FrameId frame = read_result_frame(message.bytes, message.channel);
-  if (!bus_.is_log() && duplicates.is_repeated(frame, message.bytes.data, message.bytes.size, message.time)) {
+  if (!bus_.is_log() && duplicates.is_duplicate(frame, message.bytes.data, message.bytes.size, message.time)) {
     status_.note_duplicate();
     return false;
   }

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "pipeline/base/log_odds.hpp"
+#include "pipeline/base/logit.hpp"
 
 namespace houghstream {
 namespace {
@@ -75,7 +75,7 @@ double responsibility(const ChromaPair& pair, const ChromaMap& map) {
       map.uncertainty(pair.model, pair.lightness) + kObjectVariance * Eigen::Matrix2d::Identity();
   const double own = log_density(pair.measured - map.apply(pair.model, pair.lightness), spread);
   const double other = log_density(pair.measured, kOutlierVariance * Eigen::Matrix2d::Identity());
-  return logistic(log_odds(pair.probability, kMargin) + own - other);
+  return logistic(logit(pair.probability, kMargin) + own - other);
 }
 
 ChromaMap weighted_fit(const std::vector<const ChromaPair*>& pairs, const std::vector<double>& weights) {

@@ -68,7 +68,7 @@ void sort_by_score(FrameResult& all) {
 
 }  // namespace
 
-bool answers(const ObjectPoses& poses, const Detections& detections) {
+bool is_result_of(const ObjectPoses& poses, const Detections& detections) {
   if (poses.frame != detections.frame || poses.poses.size() > detections.detections.size()) return false;
   if (poses.poses.empty() != detections.detections.empty()) return false;
   return std::all_of(poses.poses.begin(), poses.poses.end(), [&](const ObjectPose& pose) {
@@ -115,7 +115,7 @@ bool FrameResults::place(ObjectPoses& poses) {
   FrameResult* best = nullptr;
   int best_rank = -1;
   for (FrameResult& result : results_) {
-    if (!answers(poses, result.detections)) continue;
+    if (!is_result_of(poses, result.detections)) continue;
     const int rank = (same_scores(poses, result.detections) ? 2 : 0) + (result.poses ? 0 : 1);
     if (rank > best_rank) best = &result;
     best_rank = std::max(best_rank, rank);
@@ -130,7 +130,7 @@ bool FrameResults::has_all_poses() const {
                      [](const FrameResult& result) { return result.poses.has_value(); });
 }
 
-std::optional<FrameResult> FrameResults::joined() const {
+std::optional<FrameResult> FrameResults::merge() const {
   if (results_.empty()) return std::nullopt;
   if (results_.size() == 1) return results_.front();
   FrameResult all = results_.front();

@@ -20,7 +20,7 @@ struct FrameResult {
 
 /// Whether the poses are those of these detections: of the same frame, of its classes at the places that they name, and
 /// some where there are detections. The messages do not say which detector they are of.
-bool answers(const ObjectPoses& poses, const Detections& detections);
+bool is_result_of(const ObjectPoses& poses, const Detections& detections);
 
 /// Whether these are poses of objects that hs-pose follows from frame to frame, which answer no detections.
 bool has_followed_poses(const ObjectPoses& poses);
@@ -49,7 +49,7 @@ class FrameResults {
   /// All results as one, strongest detections first, and the poses that have come with indices to match. What several
   /// results say of a stage stands several times, but the stages that they begin with alike, which are the frame's
   /// own, once. Nothing where there are no detections; no poses where none of the results has any.
-  std::optional<FrameResult> joined() const;
+  std::optional<FrameResult> merge() const;
 
  private:
   bool place(ObjectPoses& poses);

@@ -18,7 +18,7 @@ const char* to_string(TeachingState state) {
   return "unknown state";
 }
 
-int count_seen(const Teaching& teaching) {
+int count_covered(const Teaching& teaching) {
   return static_cast<int>(std::count_if(teaching.directions.begin(), teaching.directions.end(),
                                         [](const ViewDirection& direction) { return direction.seen; }));
 }

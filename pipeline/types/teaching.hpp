@@ -47,7 +47,7 @@ struct Teaching {
 };
 
 /// How many of the directions were seen.
-int count_seen(const Teaching& teaching);
+int count_covered(const Teaching& teaching);
 
 // The names of before, for one release.
 using SeenDirection [[deprecated("is ViewDirection now")]] = ViewDirection;

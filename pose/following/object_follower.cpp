@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "pipeline/base/check_settings.hpp"
-#include "pipeline/base/log_odds.hpp"
+#include "pipeline/base/logit.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/frame_results.hpp"
 #include "pipeline/types/frame_time.hpp"
@@ -120,7 +120,7 @@ void update_from_detections(const Detections& detections, const DetectionAssocia
                seconds_between(object->found_us, shown.clock_us) < settings.missed_after_s) {
       continue;
     }
-    object->remembered_score += settings.logit_gain * (log_odds(score) - object->remembered_score);
+    object->remembered_score += settings.logit_gain * (logit(score) - object->remembered_score);
   }
 }
 
@@ -168,8 +168,8 @@ void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, con
                        FollowedObject& object) {
   constexpr double kMargin = 1e-6;  // of two poses of one object small differences count
   // By its shape alone, or with its print, at which following does not look.
-  const double by_shape = log_odds(pose.shape_quality, kMargin) - log_odds(followed.pose.shape_quality, kMargin);
-  const double by_all = log_odds(pose.quality, kMargin) - log_odds(followed.pose.quality, kMargin);
+  const double by_shape = logit(pose.shape_quality, kMargin) - logit(followed.pose.shape_quality, kMargin);
+  const double by_all = logit(pose.quality, kMargin) - logit(followed.pose.quality, kMargin);
   if (std::max(by_shape, by_all) < settings.better_log_odds) return;
   object.T_camera_object = object.T_camera_object * followed.T_camera_object.inverse() * *pose.T_camera_object;
   object.print_probability = print_probability_of(pose);
@@ -325,8 +325,8 @@ void ObjectFollower::give_up(const PoseEstimator& estimator, FollowedCamera& cam
   }
 }
 
-ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFrame& frame,
-                                   const Detections& detections) {
+ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, const RgbdFrame& frame,
+                                               const Detections& detections) {
   DetectionAssociation look;
   std::vector<ChromaPair> remembered;
   {
@@ -370,7 +370,7 @@ void ObjectFollower::add_object(const PoseEstimator& estimator, const FrameId& f
   found.number = found_++;
   found.class_id = pose.class_id;
   found.class_name = pose.class_name;
-  found.remembered_score = log_odds(pose.detection_score);
+  found.remembered_score = logit(pose.detection_score);
   found.print_probability = print_probability_of(pose);
   found.T_camera_object = *pose.T_camera_object;
   const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),

@@ -112,7 +112,7 @@ class ObjectFollower {
 
   /// The poses of the detections of a frame that follow() has had: of followed objects as they were then, of others as
   /// PoseEstimator::estimate finds them. What is found is followed from the next frame on.
-  ObjectPoses answer(const PoseEstimator& estimator, const RgbdFrame& frame, const Detections& detections);
+  ObjectPoses process_detections(const PoseEstimator& estimator, const RgbdFrame& frame, const Detections& detections);
 
   /// What the followed objects have told of the colours of the camera with this channel.
   CameraChroma camera_colours(const std::string& channel);

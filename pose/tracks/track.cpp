@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/log_odds.hpp"
+#include "pipeline/base/logit.hpp"
 #include "pose/model/symmetry.hpp"
 #include "pose/motion/twist.hpp"
 #include "pose/verification/verification.hpp"
@@ -40,7 +40,7 @@ Covariance6 covariance_of(const ObjectPose& pose, const Eigen::Isometry3d& T_wor
 
 double quality_logit(double quality) {
   constexpr double kMargin = 0.02;
-  return log_odds(quality, kMargin);
+  return logit(quality, kMargin);
 }
 
 TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map<std::string, Symmetries>& symmetries) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pipeline/base/settings_fields.hpp"
-#include "pipeline/bus/sequence_count.hpp"
+#include "pipeline/bus/sequence_tracker.hpp"
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/symmetry.hpp"
 #include "pipeline/types/detection.hpp"

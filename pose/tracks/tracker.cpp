@@ -9,7 +9,7 @@
 #include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/base/log_odds.hpp"
+#include "pipeline/base/logit.hpp"
 #include "pipeline/types/frame_time.hpp"
 
 namespace houghstream::tracks {

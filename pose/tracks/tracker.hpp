@@ -10,7 +10,7 @@
 
 #include "pipeline/base/log_throttle.hpp"
 #include "pipeline/base/settings_fields.hpp"
-#include "pipeline/bus/sequence_count.hpp"
+#include "pipeline/bus/sequence_tracker.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pose/tracks/association.hpp"
 #include "pose/tracks/class_names.hpp"

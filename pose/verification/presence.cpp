@@ -1,7 +1,7 @@
 #include "pose/verification/presence.hpp"
 
-#include "pipeline/base/log_odds.hpp"
 #include "pipeline/base/logistic_regression.hpp"
+#include "pipeline/base/logit.hpp"
 
 namespace houghstream {
 namespace {
@@ -9,7 +9,7 @@ namespace {
 using PresenceWeights = Eigen::Vector3d;
 
 PresenceWeights terms_of(float score, float quality) {
-  return {1.0, log_odds(static_cast<double>(score)), log_odds(static_cast<double>(quality))};
+  return {1.0, logit(static_cast<double>(score)), logit(static_cast<double>(quality))};
 }
 
 PresenceWeights weights_of(const PresenceSettings& settings) {
@@ -23,12 +23,12 @@ float presence_probability(float score, float quality, const PresenceSettings& s
 }
 
 PresenceSettings fit_presence(const std::vector<PresenceExample>& examples, const PresenceSettings& prior,
-                              double stiffness) {
+                              double precision) {
   std::vector<LogisticExample<3>> judged;
   judged.reserve(examples.size());
   for (const PresenceExample& example : examples)
     judged.push_back({terms_of(example.score, example.quality), example.is_there});
-  const PresenceWeights weights = fit_logistic<3>(judged, {weights_of(prior), stiffness});
+  const PresenceWeights weights = fit_logistic<3>(judged, {weights_of(prior), precision});
   return {weights[0], weights[1], weights[2]};
 }
 

@@ -36,6 +36,6 @@ struct PresenceExample {
 
 /// The settings that explain the examples best; `prior` and `stiffness` as for fit_quality_settings().
 PresenceSettings fit_presence(const std::vector<PresenceExample>& examples, const PresenceSettings& prior,
-                              double stiffness);
+                              double precision);
 
 }  // namespace houghstream

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/base/log_odds.hpp"
+#include "pipeline/base/logit.hpp"
 
 namespace houghstream {
 namespace {
@@ -43,7 +43,7 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   const Verification& depth = evidence.depth;
   const double judged = std::max(1, depth.agreeing + depth.violating);
   QualityTerms terms = settings.typical;
-  terms.detection_log_odds = log_odds(static_cast<double>(evidence.detection_score));
+  terms.detection_log_odds = logit(static_cast<double>(evidence.detection_score));
   terms.seen_through = -std::log(depth.violating / judged + kShare);
   terms.visible = std::log(static_cast<double>(depth.visible_fraction()) + kFraction);
   const double goes_on = depth.outline > 0 ? static_cast<double>(depth.boundary_continuations) / depth.outline : kEven;

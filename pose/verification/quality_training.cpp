@@ -36,7 +36,8 @@ QualityTerms mean_of_right(const std::vector<QualityExample>& examples, const Qu
 
 using ExamplesByName = std::map<std::string, std::vector<QualityExample>>;
 
-constexpr double kStiffness = 10.0;  // of what objects have in common: few poses of one object do not tell its weights
+// Of what objects have in common: few poses of one object do not tell its weights.
+constexpr double kPriorPrecision = 10.0;
 constexpr double kCommonStiffness = 5.0;  // of the numbers in use: nor do those of the few objects of a store
 
 std::map<std::string, QualitySettings> fit_each(const ExamplesByName& examples) {
@@ -44,7 +45,7 @@ std::map<std::string, QualitySettings> fit_each(const ExamplesByName& examples) 
   for (const auto& [name, own] : examples) all.insert(all.end(), own.begin(), own.end());
   const QualitySettings common = fit_quality_settings(all, QualitySettings{}, kCommonStiffness);
   std::map<std::string, QualitySettings> fitted;
-  for (const auto& [name, own] : examples) fitted[name] = fit_quality_settings(own, common, kStiffness);
+  for (const auto& [name, own] : examples) fitted[name] = fit_quality_settings(own, common, kPriorPrecision);
   return fitted;
 }
 
@@ -74,7 +75,7 @@ std::map<std::string, std::vector<PresenceExample>> presence_examples(const Exam
 }  // namespace
 
 PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, const PrintSettings& prior,
-                                 double stiffness) {
+                                 double precision) {
   // What is sure beyond this is sure: a few examples far out must not decide about those near to the border.
   constexpr double kMax = 8.0;
   std::vector<LogisticExample<2>> judged;
@@ -82,12 +83,12 @@ PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, co
     if (!example.is_right_up_to_shape || !example.print_margin) continue;
     judged.push_back({{1.0, std::clamp(*example.print_margin, -kMax, kMax)}, example.is_right});
   }
-  const Eigen::Vector2d weights = fit_logistic<2>(judged, {{prior.bias, prior.margin_weight}, stiffness});
+  const Eigen::Vector2d weights = fit_logistic<2>(judged, {{prior.bias, prior.margin_weight}, precision});
   return {weights[0], weights[1]};
 }
 
 QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples, const QualitySettings& prior,
-                                     double stiffness) {
+                                     double precision) {
   std::vector<LogisticExample<kWeights>> judged;
   judged.reserve(examples.size());
   for (const QualityExample& example : examples) {
@@ -99,7 +100,7 @@ QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples
   // In scenes where nothing is taken away hardly a pose that was found is seen through: what they say of it is chance.
   constexpr int kSeenThrough = 2;
   static_assert(kQualityTerms[kSeenThrough - 1] == &QualityTerms::seen_through);
-  const LogisticPrior<kWeights> pull{to_vector(prior.bias, prior.weights), stiffness, kSeenThrough};
+  const LogisticPrior<kWeights> pull{to_vector(prior.bias, prior.weights), precision, kSeenThrough};
   const Weights weights = fit_logistic<kWeights>(judged, pull);
   QualitySettings settings = prior;
   settings.bias = weights[0];
@@ -115,11 +116,12 @@ std::map<std::string, QualitySettings> learn_qualities(const ExamplesByName& exa
   std::vector<PresenceExample> all;
   for (const auto& [name, own] : presence) all.insert(all.end(), own.begin(), own.end());
   const PresenceSettings common = fit_presence(all, PresenceSettings{}, 1.0);
-  for (const auto& [name, own] : presence) learnt.at(name).presence = fit_presence(own, common, kStiffness);
+  for (const auto& [name, own] : presence) learnt.at(name).presence = fit_presence(own, common, kPriorPrecision);
   std::vector<QualityExample> posed;
   for (const auto& [name, own] : examples) posed.insert(posed.end(), own.begin(), own.end());
   const PrintSettings common_print = fit_print_settings(posed, PrintSettings{}, kCommonStiffness);
-  for (const auto& [name, own] : examples) learnt.at(name).print = fit_print_settings(own, common_print, kStiffness);
+  for (const auto& [name, own] : examples)
+    learnt.at(name).print = fit_print_settings(own, common_print, kPriorPrecision);
   return learnt;
 }
 

@@ -26,13 +26,13 @@ struct QualityExample {
 /// What the print's margins say of which of the poses that look alike by their shape is right: of the examples that are
 /// right up to the shape and have alternatives, by logistic regression with a prior as for fit_quality_settings().
 PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, const PrintSettings& prior,
-                                 double stiffness);
+                                 double precision);
 
 /// Bias, weights and typical values that explain the examples best (maximum a posteriori, a Gaussian about each weight
 /// of `prior`, as strong as `stiffness` examples): few examples move them little from there. `least` is the prior's,
 /// and so is the weight of seen_through.
 QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples, const QualitySettings& prior,
-                                     double stiffness);
+                                     double precision);
 
 /// What the poses of several objects, by name, teach of each: its quality, which is drawn to what they have in common,
 /// and what that says of its presence. The latter is learnt from qualities that did not know the examples (those of one

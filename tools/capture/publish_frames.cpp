@@ -208,7 +208,7 @@ CaptureResult capture_to_log(const OpenSource& open, const CaptureSettings& sett
     return result;
   } catch (const std::exception& error) {
     if (!feed.is_live()) throw;
-    log.keep();  // what a camera has seen cannot be had again
+    log.keep_partial();  // what a camera has seen cannot be had again
     fail("{}; what was recorded until then is in {} (hs-log filter makes a log of it)", error.what(),
          log.partial().string());
   }

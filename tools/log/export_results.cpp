@@ -65,7 +65,7 @@ std::vector<ObjectPose> followed_beside(const FrameResult& look, const ObjectPos
 
 /// Nothing where the frame has neither detections nor what is followed.
 std::optional<ExportedFrame> exported(const FrameResults& all) {
-  std::optional<FrameResult> look = all.joined();
+  std::optional<FrameResult> look = all.merge();
   if (!look && !all.followed()) return std::nullopt;
   if (!all.followed()) return ExportedFrame{std::move(*look), {}};
   const ObjectPoses& followed = *all.followed();

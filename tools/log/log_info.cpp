@@ -10,7 +10,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/printable.hpp"
-#include "pipeline/bus/sequence_count.hpp"
+#include "pipeline/bus/sequence_tracker.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 #include "pipeline/types/frame_id.hpp"
@@ -35,7 +35,7 @@ std::string describe_frame(ByteView bytes) {
         fmt::format("{}{} {}x{}", i == 0 ? "" : ", ",
                     message.image_types[i] == images_t::LEFT && !jpeg ? "raw colour" : kind, image.width, image.height);
   }
-  const auto camera = camera_of(message);
+  const auto camera = read_camera_metadata(message);
   if (!camera) return text + ", without a camera (give --camera)";
   return text + fmt::format(", camera {}x{},{:g},{:g},{:g},{:g}", camera->width, camera->height, camera->fx, camera->fy,
                             camera->cx, camera->cy);

@@ -74,13 +74,13 @@ images_t images_of(ByteView bytes) {
 /// Gives it the camera that it lacks; throws InputError unless it is a frame with images that can be decoded.
 void complete(images_t& message, const RecordingSettings& settings, std::int64_t sequence) {
   const FrameImages images = images_from_message(message);
-  if (settings.camera && !camera_of(message)) {
+  if (settings.camera && !read_camera_metadata(message)) {
     require(images.colour.cols == settings.camera->width && images.colour.rows == settings.camera->height,
             "frame {}: {}x{} pixels, the camera given has {}x{}", message.utime, images.colour.cols, images.colour.rows,
             settings.camera->width, settings.camera->height);
     add_camera(message, *settings.camera);
   }
-  if (!sequence_of(message)) add_sequence(message, sequence);
+  if (!read_sequence_number(message)) add_sequence(message, sequence);
 }
 
 class LogRecording {

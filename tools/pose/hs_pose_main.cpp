@@ -97,7 +97,7 @@ void run(LcmBus& bus, PoseOptions options, const CurrentEstimator& current) {
                         return follower.follow(*current(), frame);
                       },
                       [&](const RgbdFrame& frame, const Detections& detections) {
-                        return follower.answer(*current(), frame, detections);
+                        return follower.process_detections(*current(), frame, detections);
                       }});
 }
 

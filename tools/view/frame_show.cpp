@@ -24,7 +24,7 @@ ViewedFrame decode(const MatchedFrame& matched, const std::optional<Camera>& cam
     viewed.pose_latency_ms = matched.pose_latency_ms;
     return viewed;
   }
-  if (std::optional<FrameResult> all = matched.results.joined()) {
+  if (std::optional<FrameResult> all = matched.results.merge()) {
     viewed.detections = std::move(all->detections);
     viewed.detect_latency_ms = matched.detect_latency_ms;
     viewed.poses = std::move(all->poses);

@@ -199,8 +199,8 @@ void VideoFile::complete() {
   require(frames == frames_written_,
           "{}: the video holds {} frames, expected the {} that were drawn; is the disk full?", file_.string(), frames,
           frames_written_);
-  if (remuxed) remuxed->publish();
-  whole_->publish();
+  if (remuxed) remuxed->commit();
+  whole_->commit();
 }
 
 void VideoFile::finish() {
@@ -211,7 +211,7 @@ void VideoFile::finish() {
   try {
     complete();
   } catch (const InputError& error) {
-    whole_->keep();  // what was seen cannot be had again
+    whole_->keep_partial();  // what was seen cannot be had again
     fail("{}; what could be written stays in {}", error.what(), whole_->partial().string());
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;

@@ -45,12 +45,12 @@ void mark_covered(const Eigen::Vector3d& towards_camera, SeenDirections& seen) {
   for (std::size_t i = 0; i < directions.size(); ++i) seen[i] = seen[i] || directions[i].dot(unit) > kCosine;
 }
 
-int count_seen(const SeenDirections& seen) {
+int count_covered(const SeenDirections& seen) {
   return static_cast<int>(std::count(seen.begin(), seen.end(), true));
 }
 
 std::string describe_coverage(const SeenDirections& seen, const Eigen::Vector3d& front) {
-  std::string text = fmt::format("seen from {} of {} directions", count_seen(seen), kSphereDirections);
+  std::string text = fmt::format("seen from {} of {} directions", count_covered(seen), kSphereDirections);
   std::vector<std::string> missing;
   const auto& directions = sphere_of_directions();
   for (const char* part : {"in front", "the right", "behind", "the left", "above", "low", "below"}) {

@@ -18,7 +18,7 @@ const std::array<Eigen::Vector3d, kSphereDirections>& sphere_of_directions();
 /// within 50 degrees.
 void mark_covered(const Eigen::Vector3d& towards_camera, SeenDirections& seen);
 
-int count_seen(const SeenDirections& seen);
+int count_covered(const SeenDirections& seen);
 
 /// "seen from 40 of 60 directions; from behind and from low nothing yet". In front is where the camera began, `front`
 /// in the object frame.

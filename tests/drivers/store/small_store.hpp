@@ -49,7 +49,7 @@ inline std::map<std::string, std::string> files_of(const std::filesystem::path& 
 inline void exchange(const std::filesystem::path& folder, const std::string& second) {
   StoreTransaction build(folder);
   fill_store(build.folder(), second);
-  build.publish();
+  build.commit();
 }
 
 }  // namespace houghstream::store

@@ -24,7 +24,7 @@ TEST(StoreTransaction, TheOldStoreStaysWholeUntilTheNewOneIs) {
     StoreTransaction build(folder);
     fill_store(build.folder(), "bowl");
     EXPECT_EQ(read_store(folder).objects[1].name, "brick") << "before it is published";
-    build.publish();
+    build.commit();
   }
   EXPECT_EQ(read_store(folder).objects[1].name, "bowl");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
@@ -202,7 +202,7 @@ TEST(StoreTransaction, WhatIsWrittenIntoAStoreWhileANewOneIsMadeStays) {
   fill_store(build.folder(), "bowl");
   growing << "first " << std::flush;
   write_text(folder / "recordings" / "second", "late");
-  build.publish();
+  build.commit();
   growing << "last" << std::flush;
   EXPECT_EQ(read_text(folder / "recordings" / "take.partial"), "first last") << "who writes it goes on";
   EXPECT_EQ(read_text(folder / "recordings" / "second"), "late");

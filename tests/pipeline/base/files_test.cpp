@@ -36,7 +36,7 @@ TEST_F(Files, AreWhatTheyWereUntilThePublishing) {
   AtomicFile whole(file);
   std::ofstream(whole.partial()) << "new";
   EXPECT_EQ(read_file(file, "text"), "old");
-  whole.publish();
+  whole.commit();
   EXPECT_EQ(read_file(file, "text"), "new");
   EXPECT_EQ(entries(), 1U);
 }
@@ -65,7 +65,7 @@ TEST_F(Files, HaveOneWriterAtATime) {
 TEST_F(Files, MayBeKeptInParts) {
   AtomicFile whole(file);
   std::ofstream(whole.partial()) << "a half";
-  whole.keep();
+  whole.keep_partial();
   EXPECT_EQ(read_file(file.string() + ".partial", "text"), "a half");
 }
 
@@ -75,16 +75,16 @@ TEST_F(Files, MayBeKeptWhereTheyCannotBePublished) {
     AtomicFile whole(file);
     std::ofstream(whole.partial()) << "cannot be had again";
     fs::create_directory(file);
-    EXPECT_THROW(whole.publish(), InputError);
+    EXPECT_THROW(whole.commit(), InputError);
     EXPECT_TRUE(fs::exists(partial));
-    whole.keep();
+    whole.keep_partial();
   }
   EXPECT_EQ(read_file(partial, "text"), "cannot be had again");
   fs::remove(file);
   {
     AtomicFile whole(file);
     fs::create_directory(file);
-    EXPECT_THROW(whole.publish(), InputError);
+    EXPECT_THROW(whole.commit(), InputError);
   }
   EXPECT_FALSE(fs::exists(partial)) << "nobody has kept it";
 }

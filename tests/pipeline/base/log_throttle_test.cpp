@@ -13,10 +13,10 @@ TEST(LogThrottle, OneASecondOfEachKindAndTheOthersAreCounted) {
   EXPECT_EQ(lines.admit("a", "first", start), "first");
   for (int i = 1; i <= 30; ++i) EXPECT_FALSE(lines.admit("a", "next", start + milliseconds(i)).has_value());
   EXPECT_EQ(lines.admit("b", "other", start + milliseconds(31)), "other");
-  EXPECT_EQ(lines.held_back(), 30);
+  EXPECT_EQ(lines.suppressed(), 30);
   EXPECT_EQ(lines.admit("a", "later", start + milliseconds(1000)), "later (and 30 more not shown)");
   EXPECT_EQ(lines.admit("a", "last", start + milliseconds(2000)), "last");
-  EXPECT_EQ(lines.held_back(), 0);
+  EXPECT_EQ(lines.suppressed(), 0);
 }
 
 TEST(LogThrottle, KindsWithoutEndAreOne) {
@@ -24,7 +24,7 @@ TEST(LogThrottle, KindsWithoutEndAreOne) {
   int admitted = 0;
   for (int i = 0; i < 1000; ++i) admitted += lines.admit(std::to_string(i), "x", {}).has_value() ? 1 : 0;
   EXPECT_LT(admitted, 70);
-  EXPECT_EQ(lines.held_back(), 1000 - admitted);
+  EXPECT_EQ(lines.suppressed(), 1000 - admitted);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ class RecordingNames : public testing::Test {
   void record(Existing existing, const std::string& text) const {
     AtomicFile whole(file, kPartialEnding, existing);
     write_text(whole.partial(), text);
-    whole.publish();
+    whole.commit();
   }
 
   fs::path folder;
@@ -88,7 +88,7 @@ TEST_F(RecordingNames, AFileThatComesMeanwhileStays) {
   AtomicFile whole(file, kPartialEnding, Existing::kRecordingKept);
   write_text(whole.partial(), "recorded");
   write_text(file, "of somebody else");
-  whole.publish();
+  whole.commit();
   EXPECT_EQ(read_text(file), "of somebody else");
   EXPECT_EQ(whole.file(), folder / "take_2.oni");
   EXPECT_EQ(read_text(whole.file()), "recorded");

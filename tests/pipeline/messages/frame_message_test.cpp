@@ -56,7 +56,7 @@ TEST(FrameMessage, CompressedDepthComesBackExactly) {
   EXPECT_EQ(message.image_types[1], images_t::DEPTH_MM_ZIPPED);
   const RgbdFrame back = frame_from_message(message, "LEFT", std::nullopt);
   EXPECT_TRUE(same_depth(back.depth, make_test_frame(99).depth));
-  EXPECT_EQ(sequence_of(message), 3);
+  EXPECT_EQ(read_sequence_number(message), 3);
 }
 
 TEST(FrameMessage, DepthAloneIsReadWithoutTheColours) {
@@ -89,7 +89,7 @@ TEST(FrameMessage, AForeignFrameNeedsTheCameraOption) {
   expect_refused(message, "--camera");
   const Camera camera = make_test_frame(99).camera;
   EXPECT_EQ(frame_from_message(message, "LEFT", camera).camera, camera);
-  EXPECT_FALSE(sequence_of(message).has_value());
+  EXPECT_FALSE(read_sequence_number(message).has_value());
 }
 
 TEST(FrameMessage, ACameraOfAnotherSizeIsRefused) {
@@ -133,7 +133,7 @@ TEST(FrameMessage, ImagesAreReadWithoutACamera) {
   const FrameImages images = images_from_message(message);
   EXPECT_EQ(cv::norm(images.colour, make_test_frame(99).colour, cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::norm(images.depth_mm, depth_to_millimetres(make_test_frame(99).depth), cv::NORM_INF), 0.0);
-  EXPECT_FALSE(camera_of(message).has_value());
+  EXPECT_FALSE(read_camera_metadata(message).has_value());
 }
 
 TEST(FrameMessage, CameraAndCounterCanBeAdded) {
@@ -142,7 +142,7 @@ TEST(FrameMessage, CameraAndCounterCanBeAdded) {
   add_camera(message, camera);
   add_sequence(message, 7);
   EXPECT_EQ(frame_from_message(message, "LEFT", std::nullopt).camera, camera);
-  EXPECT_EQ(sequence_of(message), 7);
+  EXPECT_EQ(read_sequence_number(message), 7);
   images_t empty{};
   EXPECT_THROW(add_camera(empty, camera), InputError);
 }

@@ -50,7 +50,7 @@ TEST(TeachingMessages, ATeachingComesBackAsItWas) {
   EXPECT_TRUE(back.T_camera_object->isApprox(*mug.T_camera_object, 1e-12));
   ASSERT_EQ(back.directions.size(), 2U);
   EXPECT_EQ(back.directions[1].direction, -Eigen::Vector3f::UnitX());
-  EXPECT_EQ(count_seen(back), 1);
+  EXPECT_EQ(count_covered(back), 1);
 }
 
 TEST(TeachingMessages, WhatIsNotKnownIsNoNumber) {

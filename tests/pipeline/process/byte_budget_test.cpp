@@ -13,20 +13,20 @@ namespace {
 TEST(ByteBudget, CountsWhileItIsHeld) {
   ByteBudget count;
   {
-    const ByteBudget::Held some = count.hold(3);
-    const ByteBudget::Held more = count.hold(4);
+    const ByteBudget::Reservation some = count.reserve(3);
+    const ByteBudget::Reservation more = count.reserve(4);
     EXPECT_EQ(some.bytes(), 3U);
     EXPECT_EQ(count.total(), 7U);
   }
   EXPECT_EQ(count.total(), 0U);
-  EXPECT_EQ(ByteBudget::Held().bytes(), 0U);
+  EXPECT_EQ(ByteBudget::Reservation().bytes(), 0U);
 }
 
 TEST(ByteBudget, MovesWithItsItem) {
   ByteBudget count;
-  ByteBudget::Held first = count.hold(3);
+  ByteBudget::Reservation first = count.reserve(3);
   {
-    const ByteBudget::Held taken = std::move(first);
+    const ByteBudget::Reservation taken = std::move(first);
     EXPECT_EQ(taken.bytes(), 3U);
     EXPECT_EQ(count.total(), 3U);
   }
@@ -35,11 +35,11 @@ TEST(ByteBudget, MovesWithItsItem) {
 
 TEST(ByteBudget, IsGivenBackByWhatIsReplaced) {
   ByteBudget count;
-  std::map<std::string, ByteBudget::Held> items;
-  items.insert_or_assign("LEFT", count.hold(3));
-  items.insert_or_assign("LEFT", count.hold(5));
+  std::map<std::string, ByteBudget::Reservation> items;
+  items.insert_or_assign("LEFT", count.reserve(3));
+  items.insert_or_assign("LEFT", count.reserve(5));
   EXPECT_EQ(count.total(), 5U);
-  EXPECT_FALSE(items.emplace("LEFT", count.hold(7)).second);
+  EXPECT_FALSE(items.emplace("LEFT", count.reserve(7)).second);
   EXPECT_EQ(count.total(), 5U);
   items.clear();
   EXPECT_EQ(count.total(), 0U);
@@ -47,8 +47,8 @@ TEST(ByteBudget, IsGivenBackByWhatIsReplaced) {
 
 TEST(ByteBudget, IsGivenBackByWhatIsDropped) {
   ByteBudget count;
-  std::deque<ByteBudget::Held> items;
-  for (const unsigned bytes : {1U, 2U, 4U, 8U, 16U}) items.push_back(count.hold(bytes));
+  std::deque<ByteBudget::Reservation> items;
+  for (const unsigned bytes : {1U, 2U, 4U, 8U, 16U}) items.push_back(count.reserve(bytes));
   items.pop_front();
   EXPECT_EQ(count.total(), 30U);
   items.erase(items.begin() + 1);

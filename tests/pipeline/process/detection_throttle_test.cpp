@@ -34,7 +34,7 @@ TEST(DetectionThrottle, LooksAreSpreadEvenlyWhateverTheTimesTremble) {
 TEST(DetectionThrottle, ALossBringsTheNextLookForwardOnce) {
   DetectionThrottle budget(5.0);
   EXPECT_TRUE(budget.is_due({"LEFT", 0}));
-  budget.hurry("LEFT");
+  budget.expedite("LEFT");
   EXPECT_FALSE(budget.is_due({"LEFT", 40000}));
   EXPECT_TRUE(budget.is_due({"LEFT", 50000}));
   EXPECT_FALSE(budget.is_due({"LEFT", 100000}));
@@ -43,7 +43,7 @@ TEST(DetectionThrottle, ALossBringsTheNextLookForwardOnce) {
 
 TEST(DetectionThrottle, ALossOfACameraThatIsNotKnownTakesNoCamerasPlace) {
   DetectionThrottle budget(5.0);
-  for (std::size_t i = 0; i < DetectionThrottle::kCameras; ++i) budget.hurry("FORGED_" + std::to_string(i));
+  for (std::size_t i = 0; i < DetectionThrottle::kCameras; ++i) budget.expedite("FORGED_" + std::to_string(i));
   EXPECT_TRUE(budget.is_due({"LEFT", 0}));
   EXPECT_FALSE(budget.is_due({"LEFT", 40000}));
 }

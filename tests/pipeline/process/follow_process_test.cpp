@@ -73,7 +73,7 @@ TEST(FollowProcess, FramesDoNotWaitForAnAnswerAndAnOvertakenLookIsCounted) {
   ProcessOnMemq test({channel::kPoses, "BOWL_TO_CAMERA"});
   std::atomic<bool> may_answer{false};
   FollowPoses slow = fake();
-  slow.answer = [&](const RgbdFrame& frame, const Detections&) {
+  slow.process_detections = [&](const RgbdFrame& frame, const Detections&) {
     for (int i = 0; i < 2000 && !may_answer; ++i) std::this_thread::sleep_for(milliseconds(1));
     return bowl_at(frame.id, 2.0, 0);
   };

@@ -36,14 +36,14 @@ const Detections kCan{kFrame, {found("can", 0.6F)}, {{"capture", 1}, {"detect", 
 
 TEST(FrameResults, OneResultIsWhatItIs) {
   FrameResults results;
-  EXPECT_FALSE(results.joined().has_value());
+  EXPECT_FALSE(results.merge().has_value());
   results.add(kBowls);
   EXPECT_FALSE(results.has_all_poses());
-  EXPECT_FALSE(results.joined()->poses.has_value());
+  EXPECT_FALSE(results.merge()->poses.has_value());
   results.add(poses_of(kBowls, 10));
   EXPECT_TRUE(results.has_all_poses());
-  EXPECT_EQ(results.joined()->detections.stages.size(), 2U);
-  EXPECT_EQ(results.joined()->poses->poses.at(1).inliers, 11);
+  EXPECT_EQ(results.merge()->detections.stages.size(), 2U);
+  EXPECT_EQ(results.merge()->poses->poses.at(1).inliers, 11);
 }
 
 TEST(FrameResults, TwoDetectorsAreJoinedStrongestFirstEachWithItsOwnPoses) {
@@ -54,7 +54,7 @@ TEST(FrameResults, TwoDetectorsAreJoinedStrongestFirstEachWithItsOwnPoses) {
   results.add(kCan);
   EXPECT_TRUE(results.unmatched().empty());
   results.add(poses_of(kBowls, 10));
-  const std::optional<FrameResult> all = results.joined();
+  const std::optional<FrameResult> all = results.merge();
   ASSERT_EQ(all->detections.detections.size(), 3U);
   EXPECT_EQ(all->detections.detections[1].class_name, "can");
   ASSERT_EQ(all->poses->poses.size(), 3U);
@@ -74,7 +74,7 @@ TEST(FrameResults, PosesOfOneDetectorAloneStayWithItsDetections) {
   results.add(kCan);
   results.add(poses_of(kCan, 20));
   EXPECT_FALSE(results.has_all_poses());
-  const std::optional<FrameResult> all = results.joined();
+  const std::optional<FrameResult> all = results.merge();
   ASSERT_EQ(all->poses->poses.size(), 1U);
   EXPECT_EQ(all->poses->poses[0].detection_index, 1);
 }
@@ -97,7 +97,7 @@ TEST(FrameResults, ALogThatIsPlayedAgainCountsOnce) {
     results.add(poses_of(kBowls, inliers));
   }
   EXPECT_EQ(results.results().size(), 1U);
-  EXPECT_EQ(results.joined()->poses->poses.at(0).inliers, 30) << "the last counts";
+  EXPECT_EQ(results.merge()->poses->poses.at(0).inliers, 30) << "the last counts";
 }
 
 TEST(FrameResults, FollowedPosesStandBesideTheAnswers) {
@@ -108,7 +108,7 @@ TEST(FrameResults, FollowedPosesStandBesideTheAnswers) {
   results.add(followed);
   results.add(kBowls);
   results.add(poses_of(kBowls, 30));
-  EXPECT_EQ(results.joined()->poses->poses.at(0).inliers, 30);
+  EXPECT_EQ(results.merge()->poses->poses.at(0).inliers, 30);
   EXPECT_EQ(results.followed()->poses.at(0).inliers, 7);
   EXPECT_TRUE(results.unmatched().empty());
 
@@ -129,7 +129,7 @@ TEST(FrameResults, AnAnswerOfAnotherHostsPosesWithoutTheModelsDoesNotTakeThePlac
     results.add(kBowls);
     results.add(first ? with : without);
     results.add(first ? without : with);
-    EXPECT_EQ(results.joined()->poses->poses.at(1).inliers, 11);
+    EXPECT_EQ(results.merge()->poses->poses.at(1).inliers, 11);
   }
 }
 
@@ -138,10 +138,10 @@ TEST(FrameResults, OtherPosesAnswerNothing) {
   other_frame.frame.channel = "RIGHT";
   ObjectPoses no_such_place = poses_of(kBowls, 0);
   no_such_place.poses[0].detection_index = 2;
-  EXPECT_TRUE(answers(poses_of(kBowls, 0), kBowls));
-  EXPECT_FALSE(answers(other_frame, kBowls));
-  EXPECT_FALSE(answers(no_such_place, kBowls));
-  EXPECT_FALSE(answers(poses_of(kCan, 0), kBowls));
+  EXPECT_TRUE(is_result_of(poses_of(kBowls, 0), kBowls));
+  EXPECT_FALSE(is_result_of(other_frame, kBowls));
+  EXPECT_FALSE(is_result_of(no_such_place, kBowls));
+  EXPECT_FALSE(is_result_of(poses_of(kCan, 0), kBowls));
 }
 
 TEST(FrameResults, MoreThanAnybodysDetectorsAreRefused) {

@@ -82,7 +82,7 @@ class Following {
   explicit Following(Film start, FollowerSettings settings = {}) : film(std::move(start)), follower(settings) {
     const RgbdFrame frame = film.next();
     EXPECT_TRUE(follower.follow(estimator(), frame).value().poses.empty());
-    const ObjectPoses found = follower.answer(estimator(), frame, film.detected(frame.id));
+    const ObjectPoses found = follower.process_detections(estimator(), frame, film.detected(frame.id));
     EXPECT_EQ(valid_ones(found), static_cast<int>(film.things.size()));
   }
 
@@ -193,7 +193,7 @@ TEST(ObjectFollower, DetectionsOfAFollowedObjectHaveItsPoseOfThen) {
   const ObjectPoses shown = it.follower.follow(estimator(), then).value();
   it.film.walk();
   it.next();
-  const ObjectPoses answer = it.follower.answer(estimator(), then, detections);
+  const ObjectPoses answer = it.follower.process_detections(estimator(), then, detections);
   ASSERT_EQ(answer.poses.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(answer.poses[i].detection_index, static_cast<int>(i));
@@ -214,7 +214,7 @@ TEST(ObjectFollower, WhatIsFoundFramesLaterIsFollowedFromThere) {
     it.film.walk();
     EXPECT_EQ(valid_ones(it.next()), 2);
   }
-  EXPECT_EQ(valid_ones(it.follower.answer(estimator(), then, detections)), 3);
+  EXPECT_EQ(valid_ones(it.follower.process_detections(estimator(), then, detections)), 3);
   it.film.walk();
   const ObjectPoses poses = it.next();
   ASSERT_EQ(valid_ones(poses), 3);
@@ -235,7 +235,7 @@ double handle_error_after_a_turn(FollowerSettings settings) {
     it.film.utime += 20 * kPeriod;
     const RgbdFrame frame = it.film.next();
     it.follower.follow(estimator, frame);
-    it.follower.answer(estimator, frame, it.film.detected(frame.id));
+    it.follower.process_detections(estimator, frame, it.film.detected(frame.id));
     const ObjectPoses poses = it.follower.follow(estimator, it.film.next()).value();
     if (valid_ones(poses) == 0) continue;
     const Eigen::Vector3d handle = poses.poses[0].T_camera_object->linear().col(0);
@@ -262,7 +262,7 @@ TEST(ObjectFollower, WhatTheDetectorMissesThoughItIsInFullViewBecomesLessSure) {
     ASSERT_GE(poses.poses.size(), 1U);
     Detections only_mug = it.film.detected(frame.id);
     only_mug.detections.erase(only_mug.detections.begin());
-    it.follower.answer(estimator(), frame, only_mug);
+    it.follower.process_detections(estimator(), frame, only_mug);
     EXPECT_LE(poses.poses[0].detection_score, score);
     score = poses.poses[0].detection_score;
     if (i == 4) {
@@ -302,7 +302,7 @@ TEST(ObjectFollower, WhatIsFoundInAFrameThatWasOvertakenIsNotFollowedTwice) {
   const RgbdFrame overtaken = it.film.next();
   it.next();
   EXPECT_FALSE(it.follower.follow(estimator(), overtaken).has_value());
-  EXPECT_EQ(valid_ones(it.follower.answer(estimator(), overtaken, it.film.detected(overtaken.id))), 2);
+  EXPECT_EQ(valid_ones(it.follower.process_detections(estimator(), overtaken, it.film.detected(overtaken.id))), 2);
   EXPECT_EQ(it.next().poses.size(), 2U);
 }
 
@@ -361,11 +361,11 @@ TEST(ObjectFollower, LooksGoOnAfterAClockWasSetBackWhileOneWasOnItsWay) {
   it.follower.follow(estimator(), before);
   it.film.utime -= kHour;
   it.next();
-  it.follower.answer(estimator(), before, it.film.detected(before.id));
+  it.follower.process_detections(estimator(), before, it.film.detected(before.id));
   for (int i = 0; i < 70; ++i) {  // the detector sees nothing
     const RgbdFrame frame = it.film.next();
     it.follower.follow(estimator(), frame);
-    it.follower.answer(estimator(), frame, {frame.id, {}, {}});
+    it.follower.process_detections(estimator(), frame, {frame.id, {}, {}});
   }
   EXPECT_LT(it.next().poses.at(0).detection_score, 0.9F) << "an hour is not waited for until it counts";
 }

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "pipeline/base/log_odds.hpp"
+#include "pipeline/base/logit.hpp"
 #include "pipeline/base/random.hpp"
 
 namespace houghstream {

@@ -93,10 +93,10 @@ TEST(Recording, FramesKeepTheirOwnCameraAndTimeAndAreCounted) {
   const std::optional<RecordedFrame> own = next();
   const std::optional<RecordedFrame> given = next();
   ASSERT_TRUE(own && given);
-  EXPECT_EQ(camera_of(own->message), numbered_frame(0).camera);
-  EXPECT_EQ(sequence_of(own->message), 70);
-  EXPECT_EQ(camera_of(given->message), settings.camera);
-  EXPECT_EQ(sequence_of(given->message), 1);
+  EXPECT_EQ(read_camera_metadata(own->message), numbered_frame(0).camera);
+  EXPECT_EQ(read_sequence_number(own->message), 70);
+  EXPECT_EQ(read_camera_metadata(given->message), settings.camera);
+  EXPECT_EQ(read_sequence_number(given->message), 1);
   EXPECT_EQ(given->timestamp, 1'500'000'000'033'000);
 }
 
@@ -154,8 +154,8 @@ TEST(ImportLog, KeepsTimesAndAddsWhatIsMissing) {
     EXPECT_EQ(event->timestamp, 1'500'000'000'000'000 + 33'000 * 2 * i);
     const auto message = decode_message<images_t>({event->data.data(), event->data.size()});
     EXPECT_EQ(message.utime, numbered_frame(i).id.utime);
-    EXPECT_EQ(camera_of(message), kImportedCamera);
-    EXPECT_EQ(sequence_of(message), i);
+    EXPECT_EQ(read_camera_metadata(message), kImportedCamera);
+    EXPECT_EQ(read_sequence_number(message), i);
   }
 }
 

@@ -20,7 +20,7 @@ TEST(BusWatcher, AFrameComesWithItsResults) {
   const std::optional<MatchedFrame> matched = watched.next();
   ASSERT_TRUE(matched.has_value());
   EXPECT_EQ(matched->id, (FrameId{channel::kFrame, 1}));
-  const std::optional<FrameResult> found = matched->results.joined();
+  const std::optional<FrameResult> found = matched->results.merge();
   ASSERT_TRUE(found.has_value());
   EXPECT_EQ(found->detections.detections.size(), 1U);
   EXPECT_TRUE(found->poses.has_value());
@@ -76,7 +76,7 @@ TEST(BusWatcher, OfTwoCamerasOfEqualTimesOneIsShownAndNothingMixed) {
     ASSERT_TRUE(matched.has_value());
     const std::string shown = i == 1 ? "LEFT" : "RIGHT";
     EXPECT_EQ(matched->id, (FrameId{shown, i}));
-    EXPECT_EQ(matched->results.joined()->detections.detections.at(0).class_name, i == 1 ? "bowl" : "can");
+    EXPECT_EQ(matched->results.merge()->detections.detections.at(0).class_name, i == 1 ? "bowl" : "can");
     EXPECT_FALSE(watched.watcher.next(std::chrono::milliseconds(200)).has_value());
     watched.watcher.cameras().next();
   }

@@ -27,8 +27,8 @@ TEST(FrameMatcher, FrameComesOutWithItsOwnResultsOnceBothAreThere) {
   const auto matched = matcher.next(34 * kMs);
   ASSERT_TRUE(matched);
   EXPECT_EQ(matched->frame_bytes, std::vector<std::uint8_t>{42});
-  EXPECT_EQ(matched->results.joined()->detections.frame.utime, 100);
-  EXPECT_EQ(matched->results.joined()->poses->frame.utime, 100);
+  EXPECT_EQ(matched->results.merge()->detections.frame.utime, 100);
+  EXPECT_EQ(matched->results.merge()->poses->frame.utime, 100);
   EXPECT_DOUBLE_EQ(matched->detect_latency_ms, 20.0);
   EXPECT_DOUBLE_EQ(matched->pose_latency_ms, 33.0);
   EXPECT_FALSE(matcher.next(35 * kMs));
@@ -89,8 +89,8 @@ TEST(FrameMatcher, WithoutPoseProcessDetectionsAreShownAfterTheWait) {
   EXPECT_FALSE(matcher.next(1900 * kMs));
   const auto matched = matcher.next(2001 * kMs);
   ASSERT_TRUE(matched);
-  ASSERT_TRUE(matched->results.joined());
-  EXPECT_FALSE(matched->results.joined()->poses);
+  ASSERT_TRUE(matched->results.merge());
+  EXPECT_FALSE(matched->results.merge()->poses);
 }
 
 TEST(FrameMatcher, WithoutAnyResultsFramesAreShownBare) {
@@ -99,7 +99,7 @@ TEST(FrameMatcher, WithoutAnyResultsFramesAreShownBare) {
   EXPECT_FALSE(matcher.next(1900 * kMs));
   const auto matched = matcher.next(2001 * kMs);
   ASSERT_TRUE(matched);
-  EXPECT_FALSE(matched->results.joined());
+  EXPECT_FALSE(matched->results.merge());
 }
 
 Detections one(const FrameId& frame, const std::string& object) {
@@ -132,8 +132,8 @@ TEST(FrameMatcher, FramesOfEqualTimesKeepTheirOwnResults) {
     ASSERT_TRUE(matched);
     EXPECT_EQ(matched->id, frame);
     EXPECT_EQ(matched->frame_bytes[0], frame == left ? 1 : 2);
-    EXPECT_EQ(matched->results.joined()->detections.detections.at(0).class_name, frame.channel);
-    EXPECT_EQ(matched->results.joined()->poses->poses.at(0).class_name, frame.channel);
+    EXPECT_EQ(matched->results.merge()->detections.detections.at(0).class_name, frame.channel);
+    EXPECT_EQ(matched->results.merge()->poses->poses.at(0).class_name, frame.channel);
   }
 }
 
@@ -155,7 +155,7 @@ TEST(FrameMatcher, AFrameWaitsForAllDetectorsOfItsCameraButNotForEver) {
   add(2, "bowl", 130 * kMs);
   const std::optional<MatchedFrame> both = matcher.next(131 * kMs);
   ASSERT_TRUE(both);
-  EXPECT_EQ(both->results.joined()->detections.detections.size(), 2U);
+  EXPECT_EQ(both->results.merge()->detections.detections.size(), 2U);
   matcher.add_frame({"LEFT", 3}, {}, 200 * kMs);
   add(3, "bowl", 210 * kMs);
   EXPECT_FALSE(matcher.next(699 * kMs));

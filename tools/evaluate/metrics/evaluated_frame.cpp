@@ -78,7 +78,7 @@ void add_results(std::vector<EvaluatedFrame>& frames, const PublishedResults& pu
     const std::string where = fmt::format("{}: utime {}", source, utime);
     check_classes(results, where);
     check_poses(results, where);
-    if (std::optional<FrameResult> all = results.joined()) {
+    if (std::optional<FrameResult> all = results.merge()) {
       frame->second->detections = std::move(all->detections);
       frame->second->poses = std::move(all->poses);
     } else if (!results.unmatched().empty()) {

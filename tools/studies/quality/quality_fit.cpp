@@ -14,7 +14,7 @@
 namespace houghstream::quality {
 namespace {
 
-constexpr double kStiffness = 10.0;  // of the numbers in use, see fit_quality()
+constexpr double kPriorPrecision = 10.0;  // of the numbers in use, see fit_quality()
 constexpr double kRightShare = 0.98;
 constexpr int kRoundSteps = 20;  // thresholds are multiples of one over this
 
@@ -65,7 +65,7 @@ QualitySettings fit_quality(const std::vector<Example>& examples) {
     judged.back().terms = example.terms;
     judged.back().is_right_up_to_shape = example.is_right_up_to_shape;
   }
-  return fit_quality_settings(judged, QualitySettings{}, kStiffness);
+  return fit_quality_settings(judged, QualitySettings{}, kPriorPrecision);
 }
 
 std::vector<CheckedPose> check_by(const QualitySettings& settings, const std::vector<Example>& examples) {

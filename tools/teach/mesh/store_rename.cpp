@@ -78,7 +78,7 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
   write_pictures(store, store::find_object(store, new_name));
   store::write_store_json(store);
   load_store_forest(store::read_store(build.folder()));  // what nothing can read takes no store's place
-  build.publish();
+  build.commit();
 }
 
 }  // namespace houghstream::teach

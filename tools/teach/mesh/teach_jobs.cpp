@@ -249,7 +249,7 @@ void teach_meshes(const TeachOptions& options) {
   progress("scores and qualities learnt");
   made.settings = {{"attitudes", options.attitudes}, {"seed", options.seed}, {"profile", forest.profile}};
   write_store(made, models, forest);
-  build.publish();
+  build.commit();
   name_lookalikes(models);
   fmt::print("teach_seconds {:.1f}\n", progress.seconds());
 }
@@ -272,7 +272,7 @@ void remove_from_store(const fs::path& folder, const std::string& name) {
   std::vector<NamedModel> models;
   keep(old, name, made, models);
   write_store(made, models, forest);
-  build.publish();
+  build.commit();
 }
 
 void practise_store(const fs::path& folder, const CalibrationSettings& settings,
@@ -290,7 +290,7 @@ void practise_store(const fs::path& folder, const CalibrationSettings& settings,
   progress(practice_step(settings, ids.size()));
   practise_all(models, ids, settings, forest, made);
   write_store(made, models, forest);
-  build.publish();
+  build.commit();
   progress("scores and qualities learnt");
 }
 

@@ -84,7 +84,7 @@ OrderedJson report_json(const ShowResult& shown, const Verdict& verdict) {
   json["seen_through"] = shown.seen_through;
   json["outline_overlap"] = shown.outline_overlap ? OrderedJson(*shown.outline_overlap) : OrderedJson();
   json["seen_share"] =
-      static_cast<double>(reconstruction::count_seen(seen_by_all(shown))) / reconstruction::kSphereDirections;
+      static_cast<double>(reconstruction::count_covered(seen_by_all(shown))) / reconstruction::kSphereDirections;
   json["seen_surface"] = shown.seen_surface;
   json["degrees_round"] = shown.takes.front().degrees_round;
   json["lost"] = lost;

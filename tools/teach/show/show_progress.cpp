@@ -34,7 +34,7 @@ void ProgressReporter::frame(const FrameId& id, const reconstruction::TakePlacer
   now_.keyframes = state.keyframes;
   now_.box = state.box_px;
   now_.T_camera_object = state.T_camera_object;
-  now_.progress = static_cast<double>(reconstruction::count_seen(state.seen)) / ShowProgress::kDirections;
+  now_.progress = static_cast<double>(reconstruction::count_covered(state.seen)) / ShowProgress::kDirections;
   tell();
 }
 

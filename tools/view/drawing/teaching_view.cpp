@@ -68,7 +68,7 @@ void draw_spheres(cv::Mat& picture, const Teaching& teaching) {
   draw_sphere(part, {2 * kMargin_px + kSphere_px, top, kSphere_px, kSphere_px}, teaching.directions, far);
   draw_text(part, "from here", {kMargin_px + 10, kLine_px - 2}, kPanelText);
   draw_text(part, "from behind", {2 * kMargin_px + kSphere_px + 2, kLine_px - 2}, kPanelText);
-  draw_text(part, fmt::format("seen from {} of {}", count_seen(teaching), teaching.directions.size()),
+  draw_text(part, fmt::format("seen from {} of {}", count_covered(teaching), teaching.directions.size()),
             {kMargin_px + 10, top + kSphere_px + kLine_px - 4}, kPanelText);
 }
 

@@ -42,7 +42,7 @@ TEST(PoseGraph, SpreadsTheGapOfALoop) {
 TEST(SphereOfDirections, FillsAndSaysWhatIsMissing) {
   SeenDirections seen{};
   mark_covered({1.0, 0.0, 0.7}, seen);
-  const int once = count_seen(seen);
+  const int once = count_covered(seen);
   EXPECT_GT(once, 5);
   EXPECT_LT(once, 20);
   const std::string text = describe_coverage(seen, {1.0, 0.0, 0.7});

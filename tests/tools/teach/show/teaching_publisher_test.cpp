@@ -55,7 +55,7 @@ TEST(TeachingPublisher, SaysOnTheBusWhatTheObserverIsTold) {
   EXPECT_EQ(said.state, TeachingState::kTracking);
   EXPECT_EQ(said.box_px, cv::Rect2f(1, 2, 3, 4));
   EXPECT_EQ(said.directions.size(), 60U);
-  EXPECT_EQ(count_seen(said), 2);
+  EXPECT_EQ(count_covered(said), 2);
   EXPECT_NEAR(*said.progress, 1.0F / 30.0F, 1e-6F);
   ShowProgress choosing;
   EXPECT_FALSE(teaching_of(choosing, all_up()).box_px.has_value());

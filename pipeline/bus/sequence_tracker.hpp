@@ -59,18 +59,18 @@ class SequenceTracker {
   };
   struct Run {
     std::int64_t id = 0;
-    SequenceRange course;
+    SequenceRange range;
     std::list<SequenceRange> before;  // what it was before the last jumps that were believed
-    std::deque<Seen> far;             // the last frames that lie far from it
+    std::deque<Seen> probation;       // the last frames that lie far from it
   };
 
   Run& run_of(std::int64_t id, const Seen& frame, bool& is_new);
   static std::size_t slot(std::int64_t number);
-  static bool is_repeated(const Seen& seen, const Seen& frame);
-  static bool has_place(const SequenceRange& course, std::int64_t number);
-  static FrameOrder place(SequenceRange& course, const Seen& frame);
-  static FrameOrder note_far(Run& run, const Seen& frame);
-  static void jump(Run& run, std::int64_t low, std::int64_t high);
+  static bool is_duplicate(const Seen& seen, const Seen& frame);
+  static bool has_place(const SequenceRange& range, std::int64_t number);
+  static FrameOrder place(SequenceRange& range, const Seen& frame);
+  static FrameOrder note_probation(Run& run, const Seen& frame);
+  static void resync(Run& run, std::int64_t low, std::int64_t high);
 
   std::list<Run> runs_;    // the one heard last first
   std::int64_t lost_ = 0;  // of runs that are not kept any more
@@ -83,15 +83,15 @@ class DuplicateFilter {
  public:
   using Clock = std::chrono::steady_clock;
 
-  bool is_repeated(const FrameId& frame, const std::uint8_t* bytes, std::size_t size, Clock::time_point arrival);
+  bool is_duplicate(const FrameId& frame, const std::uint8_t* bytes, std::size_t size, Clock::time_point arrival);
 
  private:
-  struct Heard {
+  struct Received {
     FrameId frame;
     std::size_t hash = 0;
     Clock::time_point arrival;
   };
-  std::deque<Heard> heard_;
+  std::deque<Received> received_;
 };
 
 }  // namespace houghstream

@@ -6,7 +6,7 @@
 namespace houghstream {
 
 /// Log odds of a probability, which is brought to [margin, 1 - margin] first: exactly 0 or 1 is not certainty.
-inline double log_odds(double probability, double margin = 0.001) {
+inline double logit(double probability, double margin = 0.001) {
   const double p = std::clamp(probability, margin, 1.0 - margin);
   return std::log(p / (1.0 - p));
 }

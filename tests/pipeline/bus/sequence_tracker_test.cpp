@@ -1,4 +1,4 @@
-#include "pipeline/bus/sequence_count.hpp"
+#include "pipeline/bus/sequence_tracker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -169,11 +169,11 @@ TEST(DuplicateFilter, AreTheSameBytesOfTheSameFrameSoonAfter) {
   const std::vector<std::uint8_t> b = {1, 2, 4};
   const DuplicateFilter::Clock::time_point start{};
   const auto soon = start + std::chrono::microseconds(10);
-  EXPECT_FALSE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), start));
-  EXPECT_TRUE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), soon));
-  EXPECT_FALSE(repeats.is_repeated({"LEFT", 1}, b.data(), b.size(), soon)) << "of another detector";
-  EXPECT_FALSE(repeats.is_repeated({"RIGHT", 1}, a.data(), a.size(), soon));
-  EXPECT_FALSE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), start + std::chrono::seconds(2)))
+  EXPECT_FALSE(repeats.is_duplicate({"LEFT", 1}, a.data(), a.size(), start));
+  EXPECT_TRUE(repeats.is_duplicate({"LEFT", 1}, a.data(), a.size(), soon));
+  EXPECT_FALSE(repeats.is_duplicate({"LEFT", 1}, b.data(), b.size(), soon)) << "of another detector";
+  EXPECT_FALSE(repeats.is_duplicate({"RIGHT", 1}, a.data(), a.size(), soon));
+  EXPECT_FALSE(repeats.is_duplicate({"LEFT", 1}, a.data(), a.size(), start + std::chrono::seconds(2)))
       << "a log that is replayed";
 }
 
