@@ -51,9 +51,9 @@ using StopRequested = std::function<bool()>;
 
 /// What a camera says to the process that runs it, and asks it. Each may be left empty.
 struct CameraListener {
-  StopRequested stop_requested;                            ///< asked ten times a second or more
-  std::function<void(const std::string& reason)> trouble;  ///< the camera is gone, is back, cannot be opened
-  std::function<void(std::int64_t number)> depth_number;   ///< the device's count of each depth image that is used
+  StopRequested stop_requested;                              ///< asked ten times a second or more
+  std::function<void(const std::string& reason)> on_error;   ///< the camera is gone, is back, cannot be opened
+  std::function<void(std::int64_t number)> on_depth_number;  ///< the device's count of each depth image that is used
 };
 
 }  // namespace houghstream::openni

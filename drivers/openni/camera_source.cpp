@@ -37,7 +37,7 @@ class CameraSource : public FrameSource {
   std::optional<RgbdFrame> next() override {
     while (!stop_requested()) {
       if (!device_ && !try_again()) continue;
-      std::optional<SensorImage> image = device_->wait(kGlance);
+      std::optional<SensorImage> image = device_->wait(kPollInterval);
       if (image) {
         const std::optional<ImagePair> pair = pairing_.put(std::move(*image));
         if (pair) return complete(*pair);
@@ -55,7 +55,7 @@ class CameraSource : public FrameSource {
 
   void tell(const std::string& reason) const {
     log_warning("{}", reason);
-    if (listener_.trouble) listener_.trouble(reason);
+    if (listener_.on_error) listener_.on_error(reason);
   }
 
   /// A serial number needs a closer look, which opens the cameras; a URI or number does not.
@@ -88,12 +88,12 @@ class CameraSource : public FrameSource {
     } catch (const InputError& error) {
       log_debug("{}", error.what());
     }
-    std::this_thread::sleep_for(kGlance);
+    std::this_thread::sleep_for(kPollInterval);
     return false;
   }
 
   RgbdFrame complete(const ImagePair& pair) {
-    if (listener_.depth_number) listener_.depth_number(pair.depth.number);
+    if (listener_.on_depth_number) listener_.on_depth_number(pair.depth.number);
     if (!std::exchange(told_distance_, true)) {
       const double apart_us = static_cast<double>(pair.colour.device_us) - static_cast<double>(pair.depth.device_us);
       log_info("{}: colour is taken {:.1f} ms after depth", uri_, 1e-3 * apart_us);

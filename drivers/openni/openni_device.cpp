@@ -24,11 +24,11 @@ constexpr milliseconds kFirstImage(1000);  // cameras take that long to start
 
 /// Calls `wait` with parts of `patience` until it returns something, the patience has run out or a stop is asked for.
 template <typename Wait>
-auto wait_in_parts(milliseconds patience, const StopRequested& stop_requested, const Wait& wait) {
-  auto result = wait(std::min(patience, kGlance));
-  const auto end = std::chrono::steady_clock::now() + patience - std::min(patience, kGlance);
+auto wait_in_parts(milliseconds timeout, const StopRequested& stop_requested, const Wait& wait) {
+  auto result = wait(std::min(timeout, kPollInterval));
+  const auto end = std::chrono::steady_clock::now() + timeout - std::min(timeout, kPollInterval);
   while (!result && std::chrono::steady_clock::now() < end && !(stop_requested && stop_requested())) {
-    result = wait(kGlance);
+    result = wait(kPollInterval);
   }
   return result;
 }
@@ -170,20 +170,20 @@ struct OpenniDevice::State {
     inbox.clear();
     depth_to_skip = kDepthBeforeModes;
   }
-  std::optional<SensorImage> read_camera(milliseconds patience) {
-    std::optional<SensorImage> image = inbox.take(patience);
+  std::optional<SensorImage> read_camera(milliseconds timeout) {
+    std::optional<SensorImage> image = inbox.take(timeout);
     while (image && depth_to_skip > 0) {
       if (image->sensor == Sensor::kDepth && --depth_to_skip == 0 && recording) recording->start();
-      image = inbox.take(patience);
+      image = inbox.take(timeout);
     }
     return image;
   }
 
   /// A file waits until it is asked, so nothing is lost; what cannot be read is not waited for a second time.
-  std::optional<SensorImage> read_file(milliseconds patience) {
+  std::optional<SensorImage> read_file(milliseconds timeout) {
     if (images_left == 0) return std::nullopt;
     const std::optional<Sensor> sensor =
-        wait_in_parts(patience, stop_requested, [&](milliseconds part) { return wait_for_image(depth, colour, part); });
+        wait_in_parts(timeout, stop_requested, [&](milliseconds part) { return wait_for_image(depth, colour, part); });
     if (!sensor && stop_requested && stop_requested()) return std::nullopt;
     require(sensor.has_value(), "{}: no further image, but {} are still to come: {}", uri, images_left,
             "the file is cut or damaged");
@@ -235,8 +235,8 @@ std::unique_ptr<OpenniDevice> OpenniDevice::open_file(const std::string& file, c
 OpenniDevice::OpenniDevice(std::unique_ptr<State> state) : state_(std::move(state)) {}
 OpenniDevice::~OpenniDevice() = default;
 
-std::optional<SensorImage> OpenniDevice::wait(milliseconds patience) {
-  std::optional<SensorImage> image = state_->is_file ? state_->read_file(patience) : state_->read_camera(patience);
+std::optional<SensorImage> OpenniDevice::wait(milliseconds timeout) {
+  std::optional<SensorImage> image = state_->is_file ? state_->read_file(timeout) : state_->read_camera(timeout);
   if (!image) return std::nullopt;
   const bool whole = image->image.cols == state_->mode.width && image->image.rows == state_->mode.height;
   if (whole && image->sensor == Sensor::kColour) cv::cvtColor(image->image, image->image, cv::COLOR_RGB2BGR);

@@ -13,7 +13,7 @@
 namespace houghstream::openni {
 
 /// How long a stop request or an unplugged camera may go unnoticed.
-inline constexpr std::chrono::milliseconds kGlance(50);
+inline constexpr std::chrono::milliseconds kPollInterval(50);
 
 /// How long a file's image is waited for: disks may be asleep.
 inline constexpr std::chrono::seconds kFileTimeout(5);
@@ -45,7 +45,7 @@ class OpenniDevice {
   /// The next image in the order of arrival; nothing after `patience`. A camera's first images, which may be from
   /// before its depth was registered, are left out, and so is one that is not as the mode says, for instance cut short
   /// on the way; in a file it makes this throw InputError, as does a file's end before all its images have come.
-  std::optional<SensorImage> wait(std::chrono::milliseconds patience);
+  std::optional<SensorImage> wait(std::chrono::milliseconds timeout);
 
   /// The camera has been unplugged, or all images of the file have been given.
   bool ended() const;

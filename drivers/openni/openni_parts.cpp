@@ -101,11 +101,11 @@ std::string serial_of(const ::openni::Device& device) {
 }
 
 std::optional<Sensor> wait_for_image(::openni::VideoStream& depth, ::openni::VideoStream& colour,
-                                     std::chrono::milliseconds patience) {
+                                     std::chrono::milliseconds timeout) {
   ::openni::VideoStream* streams[] = {&depth, &colour};
   int ready = 0;
   const ::openni::Status status =
-      ::openni::OpenNI::waitForAnyStream(streams, 2, &ready, static_cast<int>(patience.count()));
+      ::openni::OpenNI::waitForAnyStream(streams, 2, &ready, static_cast<int>(timeout.count()));
   if (status != ::openni::STATUS_OK) return std::nullopt;
   return ready == 0 ? Sensor::kDepth : Sensor::kColour;
 }

@@ -68,7 +68,7 @@ std::string serial_of(const ::openni::Device& device);
 
 /// The sensor of the image that is there first; nothing where none comes in time.
 std::optional<SensorImage::Sensor> wait_for_image(::openni::VideoStream& depth, ::openni::VideoStream& colour,
-                                                  std::chrono::milliseconds patience);
+                                                  std::chrono::milliseconds timeout);
 
 /// Reads the stream's newest image, colour still as RGB: OpenCV would convert it with the help of other threads, for
 /// which the one that reads a camera must not wait. Its picture is empty where the device gave less than the frame

@@ -27,9 +27,9 @@ class ImageQueue {
     if (images_.size() > kCapacity) images_.pop_front();
     arrived_.notify_one();
   }
-  std::optional<SensorImage> take(std::chrono::milliseconds patience) {
+  std::optional<SensorImage> take(std::chrono::milliseconds timeout) {
     std::unique_lock<std::mutex> lock(mutex_);
-    if (!arrived_.wait_for(lock, patience, [&] { return !images_.empty(); })) return std::nullopt;
+    if (!arrived_.wait_for(lock, timeout, [&] { return !images_.empty(); })) return std::nullopt;
     SensorImage image = std::move(images_.front());
     images_.pop_front();
     return image;
@@ -63,13 +63,13 @@ class StreamReader {
   ~StreamReader() { running_ = false; }
 
  private:
-  static constexpr int kHurry = -10;
-  static constexpr std::chrono::milliseconds kPatience{100};
+  static constexpr int kNiceLevel = -10;
+  static constexpr std::chrono::milliseconds kTimeout{100};
 
   void run() {
-    setpriority(PRIO_PROCESS, 0, kHurry);  // on Linux: of the calling thread
+    setpriority(PRIO_PROCESS, 0, kNiceLevel);  // on Linux: of the calling thread
     while (running_) {
-      const std::optional<SensorImage::Sensor> sensor = wait_for_image(depth_, colour_, kPatience);
+      const std::optional<SensorImage::Sensor> sensor = wait_for_image(depth_, colour_, kTimeout);
       if (!sensor) continue;
       std::optional<SensorImage> image = read_image(*sensor == SensorImage::Sensor::kDepth ? depth_ : colour_, *sensor);
       if (image) inbox_.put(std::move(*image));

@@ -29,7 +29,7 @@ std::optional<ImagePair> TimestampPairing::put(SensorImage image) {
   });
   if (nearest == other.end() || distance_us(*nearest, image) > tolerance_us_) {
     own.push_back(std::move(image));
-    if (own.size() > kPatience) give_up_front(own, 1);
+    if (own.size() > kMaxUnpaired) give_up_front(own, 1);
     return std::nullopt;
   }
   give_up_front(own, own.size());

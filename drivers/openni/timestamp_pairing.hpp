@@ -52,7 +52,7 @@ class TimestampPairing {
   void clear();
 
   /// Images of a sensor that wait for the other; more are given up, the oldest first. Half a second at 30 Hz.
-  static constexpr std::size_t kPatience = 16;
+  static constexpr std::size_t kMaxUnpaired = 16;
 
  private:
   using Queue = std::deque<SensorImage>;

@@ -19,7 +19,7 @@ using SteadyTime = std::chrono::steady_clock::time_point;
 
 constexpr double kTransfer = 0.75;  // of a period: VGA depth and colour fill a USB 2 cable; late ones come no closer
 constexpr double kClockAtOpeningUs = 5e6;  // a device's clock does not start when it is opened
-constexpr int kHurry = -10;
+constexpr int kNiceLevel = -10;
 constexpr int kColourAhead = 7;  // unsynchronised, a sensor counts its own images
 
 bool is_dropped(int number, int every) {
@@ -141,7 +141,7 @@ bool VirtualDevice::synchronise() {
 }
 
 void VirtualDevice::run() {
-  setpriority(PRIO_PROCESS, 0, kHurry);  // of this thread, where the rights allow: a real camera waits for nobody
+  setpriority(PRIO_PROCESS, 0, kNiceLevel);  // of this thread, where the rights allow: a real camera waits for nobody
   std::unique_lock<std::mutex> lock(mutex_);
   Clock::time_point shutter = start_;
   Clock::time_point cable_free = start_;

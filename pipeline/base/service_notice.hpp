@@ -45,10 +45,10 @@ class StillFinishing {
 class Heartbeat {
  public:
   /// The longest that a step of work may take.
-  static constexpr std::chrono::seconds kPatience{5};
+  static constexpr std::chrono::seconds kHeartbeatTimeout{5};
 
   void beat() { last_ = now(); }
-  bool is_beating() const { return now() - last_ < std::chrono::nanoseconds(kPatience).count(); }
+  bool is_beating() const { return now() - last_ < std::chrono::nanoseconds(kHeartbeatTimeout).count(); }
 
  private:
   static std::int64_t now() { return std::chrono::steady_clock::now().time_since_epoch().count(); }

@@ -95,13 +95,13 @@ std::string no_route_reason(const std::string& url, const Endpoint& group) {
 
 /// Why no connection comes about at this address within a quarter of a second; "" where one does.
 std::string connection_fault(const addrinfo& address) {
-  constexpr int kPatienceMs = 250;
+  constexpr int kTimeout_ms = 250;
   const Probe probe(socket(address.ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (probe.number < 0) return std::strerror(errno);
   if (connect(probe.number, address.ai_addr, address.ai_addrlen) == 0) return "";
   if (errno != EINPROGRESS) return std::strerror(errno);
   pollfd waiting{probe.number, POLLOUT, 0};
-  if (poll(&waiting, 1, kPatienceMs) <= 0) return "it does not answer";
+  if (poll(&waiting, 1, kTimeout_ms) <= 0) return "it does not answer";
   int fault = 0;
   socklen_t size = sizeof fault;
   if (getsockopt(probe.number, SOL_SOCKET, SO_ERROR, &fault, &size) != 0) fault = errno;

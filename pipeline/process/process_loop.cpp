@@ -18,11 +18,11 @@ namespace {
 using std::chrono::milliseconds;
 
 // How long a stop signal may go unnoticed.
-constexpr milliseconds kPatience(100);
+constexpr milliseconds kTimeout(100);
 
 void play_log(LcmBus& bus, const WorkStep& work, const WorkStep& background) {
   constexpr milliseconds kNow(0);
-  while (!stop_requested() && bus.handle(kPatience)) {
+  while (!stop_requested() && bus.handle(kTimeout)) {
     while (work(kNow) || (background && background(kNow))) {
     }
   }
@@ -57,7 +57,7 @@ class Receiver {
   void receive() noexcept {
     try {
       while (running_) {
-        bus_.handle(kPatience);
+        bus_.handle(kTimeout);
         // Who hangs says nothing more.
         if (work_.is_beating() && status_.publish_if_due(bus_)) notify_service("WATCHDOG=1");
       }
@@ -95,7 +95,7 @@ class BackgroundWorker {
     constexpr int kPolite = 2;
     if (nice(kPolite) == -1) log_debug("the priority of the work in the background cannot be lowered");
     const SerialScope alone;  // its helpers would be of its priority, and kept for the others
-    while (running_) work_(kPatience);
+    while (running_) work_(kTimeout);
   }
 
   const WorkStep& work_;
@@ -114,7 +114,7 @@ void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work,
     Receiver receiver(bus, status, heart);
     notify_service("READY=1");
     while (!stop_requested() && receiver.running()) {
-      work(kPatience);
+      work(kTimeout);
       heart.beat();
     }
     notify_service("STOPPING=1");

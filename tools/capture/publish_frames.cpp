@@ -88,14 +88,14 @@ class Pace {
     while (Clock::now() < due_) {
       heart_.beat();
       if (stop_requested()) return false;
-      std::this_thread::sleep_until(std::min(due_, Clock::now() + kGlance));
+      std::this_thread::sleep_until(std::min(due_, Clock::now() + kPollInterval));
     }
     due_ += period_;
     return true;
   }
 
  private:
-  static constexpr std::chrono::milliseconds kGlance{50};  // how long a stop signal may go unnoticed
+  static constexpr std::chrono::milliseconds kPollInterval{50};  // how long a stop signal may go unnoticed
 
   Clock::duration period_;
   Heartbeat& heart_;

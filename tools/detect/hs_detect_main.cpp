@@ -6,7 +6,7 @@
 #include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
 #include "drivers/files/camera_info.hpp"
-#include "drivers/store/store_watch.hpp"
+#include "drivers/store/store_watcher.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
@@ -105,7 +105,7 @@ void run_with_store(DetectOptions options) {
   });
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
-  bus.is_log() ? watch.hold() : watch.follow();
+  bus.is_log() ? watch.require_store() : watch.follow();
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
     const std::shared_ptr<const ReadyDetector> ready = watch.current();
     if (!ready) return Detections{frame.id, {}, frame.stages};

@@ -3,7 +3,7 @@
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/files/camera_info.hpp"
 #include "drivers/store/store_stamp.hpp"
-#include "drivers/store/store_watch.hpp"
+#include "drivers/store/store_watcher.hpp"
 #include "pipeline/base/cache_folder.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
@@ -161,7 +161,7 @@ void run_with_store(PoseOptions options) {
   const auto without_models = std::make_shared<const PoseEstimator>(std::map<std::string, Mesh>(), options.settings);
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
-  bus.is_log() ? watch.hold() : watch.follow();
+  bus.is_log() ? watch.require_store() : watch.follow();
   run(bus, options, [&] {
     std::shared_ptr<const PoseEstimator> estimator = watch.current();
     return estimator ? estimator : without_models;

@@ -20,8 +20,8 @@ namespace {
 /// Seconds.
 struct Pace {
   double every = 5.0;            ///< between two lines of state
-  double patience = 1.5;         ///< for the processes to end by themselves
-  double hang_patience = 10.0;   ///< with a process that was heard and is silent
+  double stop_timeout = 1.5;     ///< for the processes to end by themselves
+  double hang_timeout = 10.0;    ///< with a process that was heard and is silent
   double start_patience = 60.0;  ///< with one that was never heard
 };
 
@@ -49,12 +49,12 @@ void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
   app.add_option("--track-options", options.track_options, "further options for hs-track");
   app.add_option("--view-options", options.view_options, "further options for hs-view");
   app.add_option("--every", pace.every, "seconds between two lines of state").range(0.1, 3600.0).capture_default_str();
-  app.add_option("--patience", pace.patience,
+  app.add_option("--patience", pace.stop_timeout,
                  "seconds in which to end; who says that it writes the end of a file gets ten minutes")
       .range(0.1, 600.0)
       .capture_default_str();
   app.add_option(
-         "--hang-patience", pace.hang_patience,
+         "--hang-patience", pace.hang_timeout,
          "seconds without a status (each process sends one a second) after which one counts as hung: started again")
       .range(2.0, 3600.0)
       .capture_default_str();
@@ -96,7 +96,7 @@ class StatusEar {
 
 /// Until what the source has sent last has gone through all others, and no longer than they are worth waiting for.
 void await_last_frames(StatusEar& ear, const DrainMonitor& last_frames) {
-  const auto end = DrainMonitor::Clock::now() + DrainMonitor::kPatience;
+  const auto end = DrainMonitor::Clock::now() + DrainMonitor::kTimeout;
   while (!stop_requested() && !last_frames.is_drained() && DrainMonitor::Clock::now() < end)
     ear.listen(std::chrono::milliseconds(20));
   if (!last_frames.is_drained() && !stop_requested())
@@ -115,8 +115,8 @@ void run_stream(StreamOptions options, const Pace& pace) {
   catch_stop_signals();
   StatusEar ear(options.lcm_url);
   SupervisorSettings settings;
-  settings.patience = from_seconds<std::chrono::milliseconds>(pace.patience);
-  settings.silence = from_seconds<std::chrono::milliseconds>(pace.hang_patience);
+  settings.stop_timeout = from_seconds<std::chrono::milliseconds>(pace.stop_timeout);
+  settings.heartbeat_timeout = from_seconds<std::chrono::milliseconds>(pace.hang_timeout);
   settings.startup_timeout = from_seconds<std::chrono::milliseconds>(pace.start_patience);
   Supervisor supervisor(plan_stream(options), settings, [](const std::string& words) { log_info("{}", words); });
   StatusBoard board;

@@ -43,7 +43,7 @@ class DrainMonitor {
   using Clock = std::chrono::steady_clock;
 
   /// For which the others are waited for: one second for each of four, and as much as hs-view lets a frame wait.
-  static constexpr std::chrono::seconds kPatience{7};
+  static constexpr std::chrono::seconds kTimeout{7};
 
   /// `pids`: of the others, in that order.
   DrainMonitor(std::vector<pid_t> pids, Clock::time_point ended);

@@ -60,19 +60,19 @@ void Supervisor::start_waiting() {
   for (const Member& member : members_) {
     if (!member.waits && !member.has_heartbeat) silent += (silent.empty() ? "" : ", ") + member.plan.name;
   }
-  if (!silent.empty() && Clock::now() - begun_ < settings_.others_patience) return;
+  if (!silent.empty() && Clock::now() - begun_ < settings_.others_timeout) return;
   for (Member& member : members_) {
     if (!std::exchange(member.waits, false)) continue;
     if (!silent.empty())
       say_(fmt::format("{} starts without waiting any longer for {}: nothing was heard of it for {:.1f} s",
-                       member.plan.name, silent, seconds(settings_.others_patience)));
+                       member.plan.name, silent, seconds(settings_.others_timeout)));
     start(member);
   }
 }
 
 void Supervisor::plan_restart(Member& member, const std::string& words) {
-  const bool settled = Clock::now() - member.since > settings_.settled;
-  member.failures = settled ? 1 : member.failures + 1;
+  const bool is_first = Clock::now() - member.since > settings_.backoff_reset;
+  member.failures = is_first ? 1 : member.failures + 1;
   require(member.failures < settings_.max_failures, "{} {}, {} times in a row: it is given up; {}", member.plan.name,
           words, member.failures, last_words_of(*member.child));
   member.wait = std::clamp(2 * member.wait, settings_.initial_backoff, settings_.max_backoff);
@@ -93,13 +93,13 @@ void Supervisor::restart_if_due(Member& member) {
 void Supervisor::check_heartbeat(Member& member, Clock::duration listened) {
   const bool needs_time = member.child->needs_time();
   member.silent = needs_time ? Clock::duration(0) : member.silent + listened;
-  const milliseconds limit = member.has_heartbeat ? settings_.silence : settings_.startup_timeout;
+  const milliseconds limit = member.has_heartbeat ? settings_.heartbeat_timeout : settings_.startup_timeout;
   if (!member.asked_end && member.silent >= limit) {
     say_(fmt::format("{} has said nothing for {:.1f} s: it hangs and is ended", member.plan.name, seconds(limit)));
     member.child->signal(SIGTERM);
     member.asked_end = Clock::now();
   } else if (member.asked_end &&
-             Clock::now() - *member.asked_end > (needs_time ? settings_.finishing : settings_.patience)) {
+             Clock::now() - *member.asked_end > (needs_time ? settings_.finishing : settings_.stop_timeout)) {
     member.child->signal(SIGKILL);
   }
 }
@@ -180,11 +180,11 @@ std::vector<std::string> Supervisor::stop() {
   const auto is_awaited = [&](Member& member) {
     if (!member.child || member.child->ending()) return false;
     const bool needs_time = member.child->needs_time();
-    return Clock::now() - begun < (needs_time ? settings_.finishing : settings_.patience);
+    return Clock::now() - begun < (needs_time ? settings_.finishing : settings_.stop_timeout);
   };
   bool has_said = false;
   while (std::any_of(members_.begin(), members_.end(), is_awaited)) {
-    if (Clock::now() - begun > settings_.patience && !std::exchange(has_said, true))
+    if (Clock::now() - begun > settings_.stop_timeout && !std::exchange(has_said, true))
       say_(fmt::format("waiting for the end of a file that is being written: {}", names_of_writing()));
     std::this_thread::sleep_for(milliseconds(10));
   }

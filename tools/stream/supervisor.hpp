@@ -22,21 +22,21 @@ struct ChildPlan {
 struct SupervisorSettings {
   std::chrono::milliseconds initial_backoff{250};  ///< before a second restart; doubled by each failure that follows
   std::chrono::milliseconds max_backoff{10'000};
-  std::chrono::milliseconds settled{10'000};          ///< after so long a run the next failure counts as the first
-  int max_failures = 8;                               ///< in a row: then it is given up, and the stream ends
-  std::chrono::milliseconds start_time{3000};         ///< who runs that long has started
-  std::chrono::milliseconds patience{1500};           ///< for a process to end by itself when it is asked to
-  std::chrono::milliseconds finishing{600'000};       ///< instead, for one that says that it is still writing
-  std::chrono::milliseconds silence{10'000};          ///< who has spoken and then says nothing for so long hangs
-  std::chrono::milliseconds startup_timeout{60'000};  ///< the same for one that has not spoken yet: it may still read
-  std::chrono::milliseconds others_patience{10'000};  ///< who awaits the others starts after so long without them
+  std::chrono::milliseconds backoff_reset{10'000};      ///< after so long a run the next failure counts as the first
+  int max_failures = 8;                                 ///< in a row: then it is given up, and the stream ends
+  std::chrono::milliseconds start_time{3000};           ///< who runs that long has started
+  std::chrono::milliseconds stop_timeout{1500};         ///< for a process to end by itself when it is asked to
+  std::chrono::milliseconds finishing{600'000};         ///< instead, for one that says that it is still writing
+  std::chrono::milliseconds heartbeat_timeout{10'000};  ///< who has spoken and then says nothing for so long hangs
+  std::chrono::milliseconds startup_timeout{60'000};    ///< the same for one that has not spoken yet: it may still read
+  std::chrono::milliseconds others_timeout{10'000};     ///< who awaits the others starts after so long without them
 };
 
 /// Keeps the processes of a stream running: one that dies is started again, at once the first time, after a pause that
 /// grows with each failure that follows, until it has failed `max_failures` times in a row. One that fails before it
 /// has ever run is not: it would fail again for the same reason. One that awaits the others starts when each of them
-/// has spoken, or `others_patience` after them. One that hangs, as its silence tells, is asked to end (SIGTERM), killed
-/// where it does not (SIGKILL after `patience`, or `finishing` where it says that it is still writing), and started
+/// has spoken, or `others_timeout` after them. One that hangs, as its silence tells, is asked to end (SIGTERM), killed
+/// where it does not (SIGKILL after `stop_timeout`, or `finishing` where it says that it is still writing), and started
 /// again likewise. A process that is started again replaces no file that is there, whatever --replace said: it may be
 /// what it has recorded before. Only silence that was listened to counts:
 /// where this process has stood still itself, or its bus was gone, its children have not. Call it from one thread.
@@ -64,8 +64,8 @@ class Supervisor {
   /// Since the last step nothing could have been heard of any.
   void pause_watchdog();
 
-  /// Asks all to end, waits, insists after `patience`, or, with who says that it needs more time, `finishing`. Returns
-  /// the names of those that had to be killed.
+  /// Asks all to end, waits, insists after `stop_timeout`, or, with who says that it needs more time, `finishing`.
+  /// Returns the names of those that had to be killed.
   std::vector<std::string> stop();
 
   /// What there is to know of a process.

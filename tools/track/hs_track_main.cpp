@@ -1,5 +1,5 @@
 #include "drivers/files/camera_info.hpp"
-#include "drivers/store/store_watch.hpp"
+#include "drivers/store/store_watcher.hpp"
 #include "pipeline/base/cache_folder.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
@@ -65,7 +65,7 @@ void run_with_store(TrackOptions options) {
   const auto none = std::make_shared<const tracks::TrackModels>();
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
-  bus.is_log() ? watch.hold() : watch.follow();
+  bus.is_log() ? watch.require_store() : watch.follow();
   run(bus, options, [&] {
     std::shared_ptr<const tracks::TrackModels> models = watch.current();
     return models ? models : none;

@@ -134,11 +134,11 @@ void BusWatcher::hand_over() {
 }
 
 void BusWatcher::listen() {
-  constexpr std::chrono::milliseconds kPatience(50);
+  constexpr std::chrono::milliseconds kTimeout(50);
   LogThrottle complaints;
   while (!stopping_) {
     try {
-      bus_.handle(kPatience);
+      bus_.handle(kTimeout);
     } catch (const std::exception& error) {
       const auto admitted = complaints.admit("bus", error.what(), std::chrono::steady_clock::now());
       if (admitted) log_error("{}", *admitted);

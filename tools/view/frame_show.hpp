@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "drivers/store/store_watch.hpp"
+#include "drivers/store/store_watcher.hpp"
 #include "tools/view/bus_watcher.hpp"
 #include "tools/view/drawing/frame_view.hpp"
 #include "tools/view/http/live_page.hpp"

@@ -125,7 +125,7 @@ TEST(CameraSource, LostColourCostsItsFrameOnly) {
     const VirtualCamera camera("lost", std::string("drop_colour_every 5\ncan_sync ") + sync + "\n");
     std::vector<std::int64_t> numbers;
     CameraListener listener = patient_listener(20);
-    listener.depth_number = [&](std::int64_t number) { numbers.push_back(number); };
+    listener.on_depth_number = [&](std::int64_t number) { numbers.push_back(number); };
     const auto source = open_camera_source("", CameraOptions{}, listener);
     for (int i = 0; i < 40; ++i) {
       const std::optional<RgbdFrame> frame = source->next();
@@ -141,7 +141,7 @@ TEST(CameraSource, AnUnpluggedCameraIsWaitedFor) {
   const VirtualCamera camera("replug", "serial AA01\nserial AA02\n");
   std::vector<std::string> words;
   CameraListener listener = patient_listener(30);
-  listener.trouble = [&](const std::string& reason) { words.push_back(reason); };
+  listener.on_error = [&](const std::string& reason) { words.push_back(reason); };
   const auto source = open_camera_source("AA02", CameraOptions{}, listener);
   std::int64_t last = source->next()->id.utime;
   Clock::time_point replugged;

@@ -25,7 +25,7 @@ Recording record(const VirtualCamera& camera, int frames, bool jpeg) {
   options.record = recording.file.string();
   options.record_jpeg = jpeg;
   CameraListener listener;
-  listener.depth_number = [&](std::int64_t number) { recording.numbers.push_back(number); };
+  listener.on_depth_number = [&](std::int64_t number) { recording.numbers.push_back(number); };
   const auto source = open_camera_source("", options, listener);
   for (int i = 0; i < frames; ++i) recording.seen.push_back(source->next().value());
   return recording;

@@ -9,7 +9,7 @@ namespace houghstream::openni {
 namespace {
 
 using Sensor = SensorImage::Sensor;
-constexpr std::chrono::seconds kPatience(20);
+constexpr std::chrono::seconds kTimeout(20);
 const std::string kUri = "houghstream-virtual://1";
 
 TEST(ListCameras, NamesSerialNumbersAndModes) {
@@ -31,7 +31,7 @@ TEST(OpenniDevice, GivesImagesOfBothSensorsInTheModeAskedFor) {
   EXPECT_FALSE(device->ended());
   std::set<Sensor> sensors;
   for (int i = 0; i < 10; ++i) {
-    const std::optional<SensorImage> image = device->wait(kPatience);
+    const std::optional<SensorImage> image = device->wait(kTimeout);
     ASSERT_TRUE(image.has_value());
     EXPECT_EQ(image->image.size(), cv::Size(320, 240));
     EXPECT_GT(image->host_us, 0);

@@ -85,7 +85,7 @@ TEST(TimestampPairing, AClockThatJumpsStartsAfresh) {
 TEST(TimestampPairing, WithoutColourNothingPilesUp) {
   TimestampPairing pairing(kTolerance);
   for (std::uint64_t t = 0; t < 3300; t += 33) EXPECT_FALSE(pairing.put(depth(t)).has_value());
-  EXPECT_EQ(pairing.unpaired(), 100 - static_cast<std::int64_t>(TimestampPairing::kPatience));
+  EXPECT_EQ(pairing.unpaired(), 100 - static_cast<std::int64_t>(TimestampPairing::kMaxUnpaired));
   pairing.clear();
   EXPECT_EQ(pairing.unpaired(), 100);
 }

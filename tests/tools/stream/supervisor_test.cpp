@@ -71,7 +71,7 @@ TEST(Supervisor, StopLeavesNoProcess) {
 TEST(Supervisor, WhoDoesNotEndIsKilled) {
   const auto folder = fresh_folder("supervisor_deaf");
   SupervisorSettings settings = quick();
-  settings.patience = milliseconds(200);
+  settings.stop_timeout = milliseconds(200);
   Supervisor supervisor(
       {shell("deaf", "trap '' INT TERM; touch " + (folder / "ready").string() + "; while true; do sleep 0.1; done")},
       settings, be_silent);
@@ -80,7 +80,7 @@ TEST(Supervisor, WhoDoesNotEndIsKilled) {
   const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(supervisor.stop(), std::vector<std::string>{"deaf"});
   EXPECT_FALSE(is_running(pid));
-  EXPECT_GE(std::chrono::steady_clock::now() - start, settings.patience);
+  EXPECT_GE(std::chrono::steady_clock::now() - start, settings.stop_timeout);
 }
 
 /// A process that needs a second to end once it is asked to, and has said before, or not, that it needs more time, with
@@ -106,7 +106,7 @@ TEST(Supervisor, WhoSaysThatItIsStillWritingIsWaitedFor) {
   for (const bool says_so : {true, false}) {
     const auto folder = fresh_folder("supervisor_slow");
     SupervisorSettings settings = quick();
-    settings.patience = milliseconds(100);
+    settings.stop_timeout = milliseconds(100);
     std::vector<std::string> lines;
     Supervisor supervisor({slow_to_end(folder, says_so)}, settings,
                           [&](const std::string& words) { lines.push_back(words); });
@@ -122,7 +122,7 @@ TEST(Supervisor, WhoSaysThatItIsStillWritingIsWaitedFor) {
 TEST(Supervisor, WhoSaysSoForEverIsKilledAllTheSame) {
   const auto folder = fresh_folder("supervisor_for_ever");
   SupervisorSettings settings = quick();
-  settings.patience = milliseconds(100);
+  settings.stop_timeout = milliseconds(100);
   settings.finishing = milliseconds(300);
   Supervisor supervisor({slow_to_end(folder, true)}, settings, be_silent);
   ASSERT_TRUE(await_file(folder / "ready"));
@@ -142,8 +142,8 @@ TEST(Supervisor, ARestartReplacesNoFile) {
 
 TEST(Supervisor, WhoHangsIsKilledAndStartedAgain) {
   SupervisorSettings settings = quick();
-  settings.silence = milliseconds(300);
-  settings.patience = milliseconds(100);
+  settings.heartbeat_timeout = milliseconds(300);
+  settings.stop_timeout = milliseconds(100);
   std::vector<std::string> lines;
   Supervisor supervisor({shell("a", "exec sleep 100"), shell("b", "exec sleep 100")}, settings,
                         [&](const std::string& words) { lines.push_back(words); });
@@ -165,7 +165,7 @@ TEST(Supervisor, WhoHangsIsKilledAndStartedAgain) {
 
 TEST(Supervisor, WhoNeverSpeaksIsGivenLonger) {
   SupervisorSettings settings = quick();
-  settings.silence = milliseconds(50);
+  settings.heartbeat_timeout = milliseconds(50);
   settings.startup_timeout = milliseconds(600);
   // It ends with status 0 when it is asked to, as a window does: that is not the stream's end.
   Supervisor supervisor({shell("mute", "trap 'exit 0' TERM; while true; do sleep 0.02; done", true)}, settings,
@@ -177,7 +177,7 @@ TEST(Supervisor, WhoNeverSpeaksIsGivenLonger) {
 
 TEST(Supervisor, SilenceWhileNobodyListenedDoesNotCount) {
   SupervisorSettings settings = quick();
-  settings.silence = milliseconds(900);
+  settings.heartbeat_timeout = milliseconds(900);
   std::vector<std::string> lines;
   Supervisor supervisor({shell("a", "exec sleep 100")}, settings,
                         [&](const std::string& words) { lines.push_back(words); });
@@ -189,7 +189,7 @@ TEST(Supervisor, SilenceWhileNobodyListenedDoesNotCount) {
 
 TEST(Supervisor, SilenceOfABusThatIsGoneDoesNotCount) {
   SupervisorSettings settings = quick();
-  settings.silence = milliseconds(100);
+  settings.heartbeat_timeout = milliseconds(100);
   std::vector<std::string> lines;
   Supervisor supervisor({shell("a", "exec sleep 100")}, settings,
                         [&](const std::string& words) { lines.push_back(words); });
@@ -256,7 +256,7 @@ TEST(Supervisor, TheSourceStartsWhenAllOthersHaveSpoken) {
 
 TEST(Supervisor, TheSourceDoesNotWaitForEver) {
   SupervisorSettings settings = quick();
-  settings.others_patience = milliseconds(200);
+  settings.others_timeout = milliseconds(200);
   std::vector<std::string> lines;
   Supervisor supervisor({shell("mute", "exec sleep 100"), source_of_frames()}, settings,
                         [&](const std::string& words) { lines.push_back(words); });
@@ -281,7 +281,7 @@ TEST(Supervisor, WhatTheSourceHasSentLastGoesThroughTheOthers) {
   ChildPlan source = shell("capture", "exit 0", true);
   source.is_started_last = true;
   SupervisorSettings settings = quick();
-  settings.others_patience = milliseconds(10);
+  settings.others_timeout = milliseconds(10);
   Supervisor supervisor({shell("detect", "exec sleep 100"), source}, settings, be_silent);
   const pid_t detector = supervisor.states()[0].pid;
   EXPECT_TRUE(supervisor.downstream_pids().empty());

@@ -54,7 +54,7 @@ int show_from_stream(ShowOptions options, const std::string& lcm_url) {
   StreamTakeSettings settings;
   if (!options.channel.empty()) settings.channel = options.channel;
   if (!options.camera.empty()) settings.camera = parse_camera(options.camera);
-  settings.longest = std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * options.max_duration_s));
+  settings.max_length = std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * options.max_duration_s));
   StreamTake take(bus, settings);
   TakeObserver observer(bus, take);
   options.source = fmt::format("stream:{}", settings.channel);

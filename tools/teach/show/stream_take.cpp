@@ -107,12 +107,12 @@ void StreamTake::drop_first() {
 }
 
 StreamTake::Clock::time_point StreamTake::deadline() const {
-  if (!first_) return begin_ + settings_.patience;
-  return std::min(*first_ + settings_.longest, last_ + settings_.silence);
+  if (!first_) return begin_ + settings_.first_frame_timeout;
+  return std::min(*first_ + settings_.max_length, last_ + settings_.frame_timeout);
 }
 
 void StreamTake::require_stream() const {
-  const double seconds = std::chrono::duration<double>(settings_.patience).count();
+  const double seconds = std::chrono::duration<double>(settings_.first_frame_timeout).count();
   require(refused_ == 0, "no frame within {:.0f} s on {} at {}: {} messages were refused, the last: {}", seconds,
           settings_.channel, bus_.url(), refused_.load(), last_reason_);
   fail("no frame within {:.0f} s on {} at {}, expected a stream that runs", seconds, settings_.channel, bus_.url());
@@ -124,7 +124,7 @@ std::optional<StreamTake::Waiting> StreamTake::take() {
     changed_.wait_for(lock, kMoment);
     ended_ = ended_ || stop_requested() || Clock::now() > deadline();
   }
-  ended_ = ended_ || stop_requested() || (first_ && Clock::now() > *first_ + settings_.longest);
+  ended_ = ended_ || stop_requested() || (first_ && Clock::now() > *first_ + settings_.max_length);
   require(failure_.empty(), "{}", failure_);
   // A message that came after the deadline would be too late even if it were a frame.
   ended_ = ended_ || (!waiting_.empty() && waiting_.front().arrival > deadline());

@@ -23,9 +23,9 @@ namespace houghstream::teach {
 struct StreamTakeSettings {
   std::string channel = channel::kFrame;  ///< of one camera's frames
   std::optional<Camera> camera;           ///< of frames that carry none of their own
-  std::chrono::milliseconds longest{60'000};
-  std::chrono::milliseconds patience{10'000};  ///< with the first frame
-  std::chrono::milliseconds silence{3'000};    ///< without a frame, after which the stream counts as ended
+  std::chrono::milliseconds max_length{60'000};
+  std::chrono::milliseconds first_frame_timeout{10'000};  ///< with the first frame
+  std::chrono::milliseconds frame_timeout{3'000};         ///< without a frame, after which the stream counts as ended
 };
 
 /// A take that comes off the bus while the stream goes on. A thread receives, so that none of the frames waits in LCM;
@@ -41,8 +41,9 @@ class StreamTake {
   StreamTake& operator=(const StreamTake&) = delete;
 
   /// The next frame; waits for it. Nothing at the take's end: after end() or a stop signal, as soon as `longest` has
-  /// passed since the first frame, or where no frame comes for `silence`. Throws InputError where none comes within
-  /// `patience`, or receiving fails. Time in which the bus cannot be reached counts for none of these.
+  /// passed since the first frame, or where no frame comes for `frame_timeout`. Throws InputError where none comes
+  /// within `first_frame_timeout`, or receiving fails. Time in which the bus cannot be reached counts for none of
+  /// these.
   std::optional<RgbdFrame> next();
 
   /// The take is long enough. May be called from any thread.

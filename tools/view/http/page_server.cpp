@@ -20,8 +20,8 @@ namespace houghstream::view {
 namespace {
 
 constexpr std::size_t kThreads = 4 * PageBoard::kMaxViewers;  // a page has one for events, two or three for the rest
-constexpr std::chrono::milliseconds kPatience(1000);          // for an event
-constexpr std::chrono::milliseconds kPicturePatience(2000);   // for a picture of the frame that is shown
+constexpr std::chrono::milliseconds kEventTimeout(1000);      // for an event
+constexpr std::chrono::milliseconds kImageTimeout(2000);      // for a picture of the frame that is shown
 constexpr std::size_t kMaxOrderLength = 4096;                 // bytes
 constexpr const char* kTokenHeader = "X-Houghstream-Token";
 // Nothing from elsewhere is loaded or asked, and no other page shows this one.
@@ -93,7 +93,7 @@ class EventSender {
   explicit EventSender(PageBoard& board) : board_(board) {}
 
   bool operator()(std::size_t /*offset*/, httplib::DataSink& sink) {
-    const std::optional<PageUpdates> news = board_.news_after(seen_, kPatience);
+    const std::optional<PageUpdates> news = board_.news_after(seen_, kEventTimeout);
     if (!news) {
       sink.done();
       return true;
@@ -182,7 +182,7 @@ void PageServer::State::add_pages() {
 void PageServer::State::serve_picture(const httplib::Request& request, httplib::Response& response) {
   static const std::map<std::string, PageView> views = {
       {"colour", PageView::kColour}, {"depth", PageView::kDepth}, {"3d", PageView::k3d}, {"world", PageView::kWorld}};
-  const Jpeg jpeg = board.picture(views.at(request.matches[1]), kPicturePatience);
+  const Jpeg jpeg = board.picture(views.at(request.matches[1]), kImageTimeout);
   if (!jpeg) return answer(response, 503, "no frame has come yet");
   if (jpeg->empty()) return answer(response, 503, "this view of the frame cannot be drawn");
   response.set_content(reinterpret_cast<const char*>(jpeg->data()), jpeg->size(), "image/jpeg");
@@ -221,8 +221,8 @@ PageServer::PageServer(const HttpAddress& address, PageBoard& board) : state_(st
   require(bound, "--http {}:{}: cannot be listened at", address.host, address.port);
   const BlockStopSignals block;
   state_->thread = std::thread([state = state_.get()] {
-    constexpr int kPolite =
-        15;  // pages are late on a busy machine, results are not; on Linux of this thread and its own
+    // Pages are late on a busy machine, results are not; on Linux of this thread and its own.
+    constexpr int kPolite = 15;
     if (nice(kPolite) == -1) log_warning("the priority of serving pages cannot be lowered");
     state->server.listen_after_bind();
   });

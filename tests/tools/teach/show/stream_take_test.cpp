@@ -23,15 +23,15 @@ using std::chrono::milliseconds;
 /// For a machine that may be busy: nothing ends the take but its test.
 StreamTakeSettings patient() {
   StreamTakeSettings settings;
-  settings.longest = settings.patience = settings.silence = milliseconds(60'000);
+  settings.max_length = settings.first_frame_timeout = settings.frame_timeout = milliseconds(60'000);
   return settings;
 }
 
 StreamTakeSettings quick() {
   StreamTakeSettings settings;
-  settings.longest = milliseconds(5000);
-  settings.patience = milliseconds(300);
-  settings.silence = milliseconds(300);
+  settings.max_length = milliseconds(5000);
+  settings.first_frame_timeout = milliseconds(300);
+  settings.frame_timeout = milliseconds(300);
   return settings;
 }
 
@@ -57,8 +57,8 @@ TEST(StreamTake, FramesComeInOrderUntilTheStreamEnds) {
 TEST(StreamTake, ItEndsWhenAskedAndAfterItsLongestTime) {
   LcmBus bus("memq://");
   StreamTakeSettings settings = quick();
-  settings.longest = milliseconds(400);
-  settings.silence = milliseconds(5000);
+  settings.max_length = milliseconds(400);
+  settings.frame_timeout = milliseconds(5000);
   StreamTake take(bus, settings);
   send(bus, 1);
   EXPECT_TRUE(take.next().has_value());

@@ -37,7 +37,7 @@ class StoreWatcherBase {
   void follow(std::chrono::milliseconds period);
 
   /// Instead of follow(), where all is to go by the same: throws InputError if there is no store yet.
-  void hold() const;
+  void require_store() const;
 
   /// What was loaded last; null while there is no store yet.
   std::shared_ptr<const void> current() const;
@@ -45,8 +45,8 @@ class StoreWatcherBase {
   KnownObjects known() const;
 
  private:
-  void live(std::chrono::milliseconds period);
-  void look();
+  void run(std::chrono::milliseconds period);
+  void poll();
   void load(const std::string& state);
   void refuse(const std::string& state, const std::string& problem);
   void report_missing_store();
@@ -57,9 +57,9 @@ class StoreWatcherBase {
   Load load_;
   std::string taken_;                                 // the files' state when they were loaded
   std::string refused_;                               // or when they could not be
-  int looks_since_refusal_ = 0;                       // of the same state
-  int looks_until_retry_ = 0;                         // after the refusal
-  int looks_without_folder_ = 0;                      // since the start, while nothing is known
+  int polls_since_refusal_ = 0;                       // of the same state
+  int polls_until_retry_ = 0;                         // after the refusal
+  int polls_without_folder_ = 0;                      // since the start, while nothing is known
   std::string pending_;                               // seen last: one that may not last
   std::vector<std::shared_ptr<const void>> retired_;  // given up here, where their end keeps no frame waiting
   mutable std::mutex mutex_;
@@ -76,15 +76,15 @@ class StoreWatcher {
  public:
   using Load = std::function<std::shared_ptr<const T>(const ObjectStore&)>;
 
-  StoreWatcher(const std::filesystem::path& folder, Load load) : follower_(folder, std::move(load)) {}
+  StoreWatcher(const std::filesystem::path& folder, Load load) : watcher_(folder, std::move(load)) {}
 
-  void follow(std::chrono::milliseconds period = std::chrono::milliseconds(200)) { follower_.follow(period); }
-  void hold() const { follower_.hold(); }
-  std::shared_ptr<const T> current() const { return std::static_pointer_cast<const T>(follower_.current()); }
-  KnownObjects known() const { return follower_.known(); }
+  void follow(std::chrono::milliseconds period = std::chrono::milliseconds(200)) { watcher_.follow(period); }
+  void require_store() const { watcher_.require_store(); }
+  std::shared_ptr<const T> current() const { return std::static_pointer_cast<const T>(watcher_.current()); }
+  KnownObjects known() const { return watcher_.known(); }
 
  private:
-  StoreWatcherBase follower_;
+  StoreWatcherBase watcher_;
 };
 
 }  // namespace houghstream::store

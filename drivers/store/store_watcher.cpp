@@ -1,4 +1,4 @@
-#include "drivers/store/store_watch.hpp"
+#include "drivers/store/store_watcher.hpp"
 
 #include <fmt/ranges.h>
 #include <sched.h>
@@ -102,10 +102,10 @@ StoreWatcherBase::~StoreWatcherBase() {
 
 void StoreWatcherBase::follow(std::chrono::milliseconds period) {
   const BlockStopSignals block;
-  thread_ = std::thread([this, period] { live(period); });
+  thread_ = std::thread([this, period] { run(period); });
 }
 
-void StoreWatcherBase::hold() const {
+void StoreWatcherBase::require_store() const {
   require(current() != nullptr, "{}: no such folder, expected an object store of hs-teach", folder_.string());
 }
 
@@ -119,7 +119,7 @@ KnownObjects StoreWatcherBase::known() const {
   return known_;
 }
 
-void StoreWatcherBase::live(std::chrono::milliseconds period) {
+void StoreWatcherBase::run(std::chrono::milliseconds period) {
   lower_priority();
   const SerialScope alone([this] {
     const std::lock_guard ending(mutex_);
@@ -129,7 +129,7 @@ void StoreWatcherBase::live(std::chrono::milliseconds period) {
   while (!ended_.wait_for(lock, period, [this] { return ending_; })) {
     lock.unlock();
     try {
-      look();
+      poll();
     } catch (const std::bad_alloc&) {
       pending_.clear();  // it is looked at again
     }
@@ -137,7 +137,7 @@ void StoreWatcherBase::live(std::chrono::milliseconds period) {
   }
 }
 
-void StoreWatcherBase::look() {
+void StoreWatcherBase::poll() {
   retired_.erase(
       std::remove_if(retired_.begin(), retired_.end(), [](const auto& loaded) { return loaded.use_count() == 1; }),
       retired_.end());
@@ -146,15 +146,15 @@ void StoreWatcherBase::look() {
   pending_ = state;
   report_missing_store();
   if (state == taken_) return set_problem("");
-  if (!lasts || (state == refused_ && (looks_until_retry_ == 0 || ++looks_since_refusal_ < looks_until_retry_))) return;
+  if (!lasts || (state == refused_ && (polls_until_retry_ == 0 || ++polls_since_refusal_ < polls_until_retry_))) return;
   load(state);
 }
 
 /// Once, where nothing has ever been there: the name may be a wrong one.
 void StoreWatcherBase::report_missing_store() {
   std::error_code error;
-  if (current() != nullptr || looks_without_folder_ > kReportMissing || fs::exists(folder_, error)) return;
-  if (++looks_without_folder_ <= kReportMissing) return;
+  if (current() != nullptr || polls_without_folder_ > kReportMissing || fs::exists(folder_, error)) return;
+  if (++polls_without_folder_ <= kReportMissing) return;
   set_problem(fmt::format("{}: still not there, nothing is known until hs-teach makes it; {}", folder_.string(),
                           describe_neighbours(folder_)));
 }
@@ -180,8 +180,8 @@ void StoreWatcherBase::load(const std::string& state) {
 
 /// A state that stays the same is loaded again only after a while.
 void StoreWatcherBase::refuse(const std::string& state, const std::string& problem) {
-  looks_until_retry_ = state == refused_ ? std::min(2 * looks_until_retry_, kLastRetry) : kFirstRetry;
-  looks_since_refusal_ = 0;
+  polls_until_retry_ = state == refused_ ? std::min(2 * polls_until_retry_, kLastRetry) : kFirstRetry;
+  polls_since_refusal_ = 0;
   refused_ = state;
   set_problem(problem);
 }

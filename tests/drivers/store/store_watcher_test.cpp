@@ -1,4 +1,4 @@
-#include "drivers/store/store_watch.hpp"
+#include "drivers/store/store_watcher.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
