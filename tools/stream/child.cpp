@@ -90,7 +90,7 @@ std::optional<std::chrono::microseconds> NoticeSocket::extension() {
   return extension;
 }
 
-Child::Child(const std::vector<std::string>& command, bool hears_words) {
+ChildProcess::ChildProcess(const std::vector<std::string>& command, bool capture_stderr) {
   const std::string& program = command.at(0);
   require(access(program.c_str(), X_OK) == 0, "{}: cannot be started: {}", program, std::strerror(errno));
   // Between fork and exec only what is safe in a process with threads: memory is asked for before.
@@ -99,17 +99,17 @@ Child::Child(const std::vector<std::string>& command, bool hears_words) {
   const std::vector<char*> variables = pointers_to(environment);
   // Neither end waits: where this process stands still, lines are lost and the child goes on.
   std::array<int, 2> pipe = {-1, -1};
-  require(!hears_words || pipe2(pipe.data(), O_CLOEXEC | O_NONBLOCK) == 0, "{}: cannot be heard: {}", program,
+  require(!capture_stderr || pipe2(pipe.data(), O_CLOEXEC | O_NONBLOCK) == 0, "{}: cannot be heard: {}", program,
           std::strerror(errno));
   const pid_t parent = getpid();
   pid_ = fork();
   const int error = errno;
-  if (pid_ != 0 && hears_words) close(pipe[1]);
+  if (pid_ != 0 && capture_stderr) close(pipe[1]);
   words_ = pipe[0];
   require(pid_ >= 0, "{}: cannot be started: {}", program, std::strerror(error));
   if (pid_ == 0) {
     setpgid(0, 0);
-    if (hears_words) dup2(pipe[1], STDERR_FILENO);
+    if (capture_stderr) dup2(pipe[1], STDERR_FILENO);
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent) _exit(1);  // the parent died before it could be watched
     execve(arguments[0], arguments.data(), variables.data());
@@ -118,8 +118,8 @@ Child::Child(const std::vector<std::string>& command, bool hears_words) {
   setpgid(pid_, pid_);  // whichever of the two comes first
 }
 
-Child::~Child() {
-  if (!ending()) {
+ChildProcess::~ChildProcess() {
+  if (!poll_exit()) {
     signal(SIGKILL);
     waitpid(pid_, nullptr, 0);
     pass_on_words();
@@ -127,7 +127,7 @@ Child::~Child() {
   if (words_ >= 0) close(words_);
 }
 
-void Child::pass_on_words() {
+void ChildProcess::pass_on_words() {
   constexpr std::size_t kMaxLineLength = 1000;
   std::array<char, 4096> piece{};
   constexpr int kMaxPieces = 32;  // more than a pipe holds: who writes without end does not keep us
@@ -138,30 +138,30 @@ void Child::pass_on_words() {
       const char c = piece[static_cast<std::size_t>(at)];
       if (c != '\n' && line_.size() < kMaxLineLength) line_ += c;
       if (c != '\n') continue;
-      if (!line_.empty()) last_words_ = std::exchange(line_, "");
+      if (!line_.empty()) last_stderr_line_ = std::exchange(line_, "");
     }
   }
   std::fflush(stderr);
 }
 
-std::optional<ExitStatus> Child::ending() {
+std::optional<ExitStatus> ChildProcess::poll_exit() {
   int status = 0;
   pass_on_words();
-  if (!ending_ && waitpid(pid_, &status, WNOHANG) == pid_) {
+  if (!exit_ && waitpid(pid_, &status, WNOHANG) == pid_) {
     pass_on_words();
-    ending_ = describe(status);
+    exit_ = describe(status);
     signal(SIGKILL);  // what it has started and left behind
   }
-  return ending_;
+  return exit_;
 }
 
-bool Child::needs_time() {
+bool ChildProcess::needs_time() {
   const auto now = std::chrono::steady_clock::now();
   if (const auto extension = notices_.extension()) needs_time_until_ = now + *extension;
   return now < needs_time_until_;
 }
 
-void Child::signal(int number) const {
+void ChildProcess::signal(int number) const {
   kill(-pid_, number);
 }
 

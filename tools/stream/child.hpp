@@ -39,20 +39,20 @@ struct ExitStatus {
 /// A process that this one starts and ends. It has a process group of its own, so that Ctrl-C in the terminal reaches
 /// it through this one only, and it gets SIGTERM when this process dies, however that happens. Start it from the thread
 /// that lives as long as the process does.
-class Child {
+class ChildProcess {
  public:
   /// `command`: program with its path, arguments. With `hears_words` what it writes to stderr goes through this
   /// process, which remembers its last line. Throws InputError when it cannot be started.
-  explicit Child(const std::vector<std::string>& command, bool hears_words = false);
+  explicit ChildProcess(const std::vector<std::string>& command, bool capture_stderr = false);
   /// Kills it if it still runs.
-  ~Child();
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
 
   /// How it ended; nothing while it runs. Passes on what it has written; call it often.
-  std::optional<ExitStatus> ending();
+  std::optional<ExitStatus> poll_exit();
   /// The last line of its stderr, for people; "" where it has written none, or is not heard.
-  const std::string& last_stderr_line() const { return last_words_; }
+  const std::string& last_stderr_line() const { return last_stderr_line_; }
   /// Whether it has said of late that it is ending and needs more time ($NOTIFY_SOCKET, EXTEND_TIMEOUT_USEC).
   bool needs_time();
   /// Sends a signal to it and to what it has started.
@@ -67,8 +67,8 @@ class Child {
   pid_t pid_ = 0;
   int words_ = -1;  // where its stderr is read
   std::string line_;
-  std::string last_words_;
-  std::optional<ExitStatus> ending_;
+  std::string last_stderr_line_;
+  std::optional<ExitStatus> exit_;
 };
 
 }  // namespace houghstream::stream

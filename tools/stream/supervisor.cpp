@@ -21,7 +21,7 @@ double seconds(milliseconds time) {
   return std::chrono::duration<double>(time).count();
 }
 
-std::string last_words_of(const Child& child) {
+std::string last_line_of(const ChildProcess& child) {
   return child.last_stderr_line().empty() ? "it has said nothing"
                                           : "its last words: " + printable(child.last_stderr_line());
 }
@@ -47,7 +47,7 @@ Supervisor::~Supervisor() {
 void Supervisor::start(Member& member) {
   std::vector<std::string>& command = member.plan.command;
   if (member.restarts > 0) command.erase(std::remove(command.begin(), command.end(), "--replace"), command.end());
-  member.child = std::make_unique<Child>(command, true);
+  member.child = std::make_unique<ChildProcess>(command, true);
   member.since = Clock::now();
   member.has_heartbeat = false;
   member.silent = Clock::duration(0);
@@ -74,7 +74,7 @@ void Supervisor::plan_restart(Member& member, const std::string& words) {
   const bool is_first = Clock::now() - member.since > settings_.backoff_reset;
   member.failures = is_first ? 1 : member.failures + 1;
   require(member.failures < settings_.max_failures, "{} {}, {} times in a row: it is given up; {}", member.plan.name,
-          words, member.failures, last_words_of(*member.child));
+          words, member.failures, last_line_of(*member.child));
   member.wait = std::clamp(2 * member.wait, settings_.initial_backoff, settings_.max_backoff);
   if (member.failures == 1) member.wait = milliseconds(0);
   member.since = Clock::now() + member.wait;
@@ -111,25 +111,25 @@ bool Supervisor::look_after(Member& member, Clock::duration listened) {
     return true;
   }
   if (Clock::now() - member.since > settings_.start_time) member.has_run = true;
-  const std::optional<ExitStatus> ending = member.child->ending();
-  if (!ending) {
+  const std::optional<ExitStatus> exit = member.child->poll_exit();
+  if (!exit) {
     check_heartbeat(member, listened);
     return true;
   }
   if (member.asked_end) {
-    plan_restart(member, "hung and " + ending->words);
+    plan_restart(member, "hung and " + exit->words);
     return true;
   }
-  if (ending->success && member.plan.ends_stream) {
+  if (exit->success && member.plan.ends_stream) {
     say_(fmt::format("{} has ended: the stream ends", member.plan.name));
     source_has_ended_ = member.plan.is_started_last;
     return false;
   }
   // A signal is somebody's doing; a status says that the process itself sees no way.
-  const bool gave_up = !ending->success && !ending->by_signal;
-  require(member.has_run || !gave_up, "{} {} at its start; {}", member.plan.name, ending->words,
-          last_words_of(*member.child));
-  plan_restart(member, ending->words);
+  const bool gave_up = !exit->success && !exit->by_signal;
+  require(member.has_run || !gave_up, "{} {} at its start; {}", member.plan.name, exit->words,
+          last_line_of(*member.child));
+  plan_restart(member, exit->words);
   return true;
 }
 
@@ -166,7 +166,7 @@ void Supervisor::pause_watchdog() {
 std::string Supervisor::names_of_writing() {
   std::string names;
   for (Member& member : members_) {
-    const bool is_writing = member.child && !member.child->ending() && member.child->needs_time();
+    const bool is_writing = member.child && !member.child->poll_exit() && member.child->needs_time();
     if (is_writing) names += (names.empty() ? "" : ", ") + member.plan.name;
   }
   return names;
@@ -178,7 +178,7 @@ std::vector<std::string> Supervisor::stop() {
   }
   const Clock::time_point begun = Clock::now();
   const auto is_awaited = [&](Member& member) {
-    if (!member.child || member.child->ending()) return false;
+    if (!member.child || member.child->poll_exit()) return false;
     const bool needs_time = member.child->needs_time();
     return Clock::now() - begun < (needs_time ? settings_.finishing : settings_.stop_timeout);
   };
@@ -190,7 +190,7 @@ std::vector<std::string> Supervisor::stop() {
   }
   std::vector<std::string> killed;
   for (Member& member : members_) {
-    if (member.child && !member.child->ending()) killed.push_back(member.plan.name);
+    if (member.child && !member.child->poll_exit()) killed.push_back(member.plan.name);
     member.child.reset();
   }
   return killed;

@@ -80,7 +80,7 @@ class Supervisor {
  private:
   struct Member {
     ChildPlan plan;
-    std::unique_ptr<Child> child;
+    std::unique_ptr<ChildProcess> child;
     bool waits = false;    // for the others, before its first start
     bool has_run = false;  // once, since the stream began
     bool has_heartbeat = false;

@@ -12,7 +12,7 @@
 
 namespace houghstream::track {
 
-void HeartbeatMonitor::hear(const ReceivedMessage& arrival) {
+void HeartbeatMonitor::on_status(const ReceivedMessage& arrival) {
   try {
     const auto status = decode_message<status_t>(arrival.bytes);
     if (status.process != "hs-detect" && status.process != "hs-pose") return;
@@ -35,7 +35,7 @@ std::vector<std::string> HeartbeatMonitor::pop_timed_out(std::int64_t now_us) {
   return out;
 }
 
-void HeartbeatMonitor::tell(std::int64_t now_us) {
+void HeartbeatMonitor::log_timed_out(std::int64_t now_us) {
   for (const std::string& name : pop_timed_out(now_us)) {
     const std::string line = name + " has fallen silent: what it alone finds is not seen any more";
     const auto admitted = lines_.admit(name, line, std::chrono::steady_clock::now());

@@ -22,14 +22,14 @@ inline std::int64_t steady_us(std::chrono::steady_clock::time_point moment) {
 class HeartbeatMonitor {
  public:
   /// Takes note of a process' status. What is no status is somebody else's.
-  void hear(const ReceivedMessage& arrival);
+  void on_status(const ReceivedMessage& arrival);
 
   /// Names of those that have been silent for too long since they were asked for last; each is told once. `now_us` as
   /// steady_us() has it.
   std::vector<std::string> pop_timed_out(std::int64_t now_us);
 
   /// Logs those.
-  void tell(std::int64_t now_us);
+  void log_timed_out(std::int64_t now_us);
 
  private:
   static constexpr std::size_t kProcesses = 64;  // a sender of rubbish may make up numbers without end

@@ -11,7 +11,7 @@
 #include "pipeline/process/reception.hpp"
 #include "tools/track/heartbeat_monitor.hpp"
 #include "tools/track/recent_detections.hpp"
-#include "tools/track/world_frame.hpp"
+#include "tools/track/world_reference.hpp"
 
 namespace houghstream::track {
 namespace {
@@ -50,7 +50,8 @@ class TrackProcess {
           add_transform(message, arrival.channel);
         });
     // Its own last status may come when it has ended itself.
-    bus_.subscribe(channel::kStatus, [silence = silence_](const ReceivedMessage& arrival) { silence->hear(arrival); });
+    bus_.subscribe(channel::kStatus,
+                   [heartbeats = heartbeats_](const ReceivedMessage& arrival) { heartbeats->on_status(arrival); });
     log_info("ready: frames from {}, poses from {} at {}", options_.frame_channels, channel::kPoses, bus_.url());
     run_process_loop(bus_, status_, [this](milliseconds timeout) { return step(timeout); });
     synchroniser_.flush();
@@ -95,7 +96,7 @@ class TrackProcess {
   FrameGate place_gate() {
     FrameGate gate;
     gate.ask = [this](const FrameId& frame, double age_s) -> FrameGate::Decision {
-      const tracks::CameraPose place = world_.place_of(frame, age_s < options_.wait_s);
+      const tracks::CameraPose place = world_.camera_pose(frame, age_s < options_.wait_s);
       if (!place.T_world_camera && place.may_come) return {FrameGate::Answer::kWait, ""};
       if (!place.T_world_camera) return {FrameGate::Answer::kRefuse, place.reason};
       T_world_camera_ = *place.T_world_camera;
@@ -109,7 +110,7 @@ class TrackProcess {
   bool step(milliseconds timeout) {
     const std::optional<SynchronisedMessages> pair = synchroniser_.pop(timeout);
     count_dropped();
-    if (!bus_.is_log()) silence_->tell(reception_.now_us());
+    if (!bus_.is_log()) heartbeats_->log_timed_out(reception_.now_us());
     if (!pair) return false;
     if (world_.consume_reset()) tracker_.reset();
     work_on(*pair);
@@ -207,7 +208,7 @@ class TrackProcess {
   Eigen::Isometry3d T_world_camera_ = Eigen::Isometry3d::Identity();  // of the pair that the gate let go last
   tracks::ExtrinsicCheck check_;
   LogThrottle lines_;  // of contradictions
-  std::shared_ptr<HeartbeatMonitor> silence_ = std::make_shared<HeartbeatMonitor>();
+  std::shared_ptr<HeartbeatMonitor> heartbeats_ = std::make_shared<HeartbeatMonitor>();
   std::int64_t without_frame_ = 0;  // poses
   RecentDetections detections_;
   // What the receiving thread writes.

@@ -47,7 +47,7 @@ void TeachingStarter::press(const TeachingOrder& order) {
   }
   try {
     is_asked_to_end_ = false;
-    child_ = std::make_unique<stream::Child>(teaching_command(order));
+    child_ = std::make_unique<stream::ChildProcess>(teaching_command(order));
     log_info("{} is taught: move the camera around it; the same key ends the take", order.name);
   } catch (const InputError& error) {
     log_error("{}", error.what());
@@ -56,7 +56,7 @@ void TeachingStarter::press(const TeachingOrder& order) {
 
 bool TeachingStarter::runs() {
   if (!child_) return false;
-  const std::optional<stream::ExitStatus> ending = child_->ending();
+  const std::optional<stream::ExitStatus> ending = child_->poll_exit();
   if (!ending) return true;
   if (!ending->success) log_warning("hs-teach {}", ending->words);
   child_.reset();

@@ -39,7 +39,7 @@ class TeachingStarter {
   bool runs();
 
  private:
-  std::unique_ptr<stream::Child> child_;
+  std::unique_ptr<stream::ChildProcess> child_;
   bool is_asked_to_end_ = false;
 };
 

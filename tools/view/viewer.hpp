@@ -3,7 +3,7 @@
 #include <string>
 
 #include "pipeline/messages/channels.hpp"
-#include "tools/view/frame_show.hpp"
+#include "tools/view/frame_renderer.hpp"
 
 namespace houghstream::view {
 

@@ -18,32 +18,32 @@ namespace {
 
 using std::chrono::milliseconds;
 
-ExitStatus wait_for(Child& child) {
+ExitStatus wait_for(ChildProcess& child) {
   for (int i = 0; i < 1000; ++i) {
-    if (const auto ending = child.ending()) return *ending;
+    if (const auto poll_exit = child.poll_exit()) return *poll_exit;
     std::this_thread::sleep_for(milliseconds(10));
   }
   ADD_FAILURE() << "it did not end";
   return {};
 }
 
-TEST(Child, TellsHowItEnded) {
-  Child good({"/bin/sh", "-c", "exit 0"});
+TEST(ChildProcess, TellsHowItEnded) {
+  ChildProcess good({"/bin/sh", "-c", "exit 0"});
   EXPECT_TRUE(wait_for(good).success);
-  Child bad({"/bin/sh", "-c", "exit 7"});
-  const ExitStatus ending = wait_for(bad);
-  EXPECT_FALSE(ending.success);
-  EXPECT_FALSE(ending.by_signal);
-  EXPECT_EQ(ending.words, "ended with status 7");
-  Child killed({"/bin/sh", "-c", "exec sleep 100"});
+  ChildProcess bad({"/bin/sh", "-c", "exit 7"});
+  const ExitStatus poll_exit = wait_for(bad);
+  EXPECT_FALSE(poll_exit.success);
+  EXPECT_FALSE(poll_exit.by_signal);
+  EXPECT_EQ(poll_exit.words, "ended with status 7");
+  ChildProcess killed({"/bin/sh", "-c", "exec sleep 100"});
   killed.signal(SIGTERM);
   EXPECT_TRUE(wait_for(killed).by_signal);
 }
 
-TEST(Child, HasAServiceManagerOfItsOwn) {
+TEST(ChildProcess, HasAServiceManagerOfItsOwn) {
   setenv("NOTIFY_SOCKET", "/of/somebody/else", 1);
   const auto folder = fresh_folder("child_notice");
-  Child child({"/bin/sh", "-c", "echo \"$NOTIFY_SOCKET\" >" + (folder / "name").string() + "; exec sleep 100"});
+  ChildProcess child({"/bin/sh", "-c", "echo \"$NOTIFY_SOCKET\" >" + (folder / "name").string() + "; exec sleep 100"});
   for (int i = 0; i < 1000 && read_text(folder / "name").empty(); ++i) std::this_thread::sleep_for(milliseconds(10));
   const std::string name = read_text(folder / "name");
   EXPECT_EQ(name.substr(0, 1), "@");
@@ -60,10 +60,10 @@ TEST(Child, HasAServiceManagerOfItsOwn) {
   unsetenv("NOTIFY_SOCKET");
 }
 
-TEST(Child, DoesNotOutliveItsOwner) {
+TEST(ChildProcess, DoesNotOutliveItsOwner) {
   pid_t pid = 0;
   {
-    Child child({"/bin/sh", "-c", "exec sleep 100"});
+    ChildProcess child({"/bin/sh", "-c", "exec sleep 100"});
     pid = child.pid();
     EXPECT_EQ(kill(pid, 0), 0);
   }
@@ -71,11 +71,11 @@ TEST(Child, DoesNotOutliveItsOwner) {
 }
 
 // The owner is a process that is killed without a chance to tidy up.
-TEST(Child, DoesNotOutliveAnOwnerThatIsKilled) {
+TEST(ChildProcess, DoesNotOutliveAnOwnerThatIsKilled) {
   const auto file = fresh_folder("child_orphan") / "pid";
   const pid_t owner = fork();
   if (owner == 0) {
-    const Child child({"/bin/sh", "-c", "exec sleep 100"});
+    const ChildProcess child({"/bin/sh", "-c", "exec sleep 100"});
     std::ofstream(file) << child.pid() << std::endl;
     pause();
     _exit(0);
@@ -97,16 +97,16 @@ TEST(Child, DoesNotOutliveAnOwnerThatIsKilled) {
   EXPECT_TRUE(ended());
 }
 
-TEST(Child, AMissingProgramIsNamed) {
-  EXPECT_THROW(Child({"/nowhere/hs-detect"}), InputError);
+TEST(ChildProcess, AMissingProgramIsNamed) {
+  EXPECT_THROW(ChildProcess({"/nowhere/hs-detect"}), InputError);
 }
 
-TEST(Child, WhoWritesWithoutEndKeepsNobody) {
+TEST(ChildProcess, WhoWritesWithoutEndKeepsNobody) {
   testing::internal::CaptureStderr();
   {
-    Child flood({"/bin/sh", "-c", "while true; do echo words without end >&2; done"}, true);
+    ChildProcess flood({"/bin/sh", "-c", "while true; do echo words without end >&2; done"}, true);
     for (int i = 0; i < 20; ++i) {
-      EXPECT_FALSE(flood.ending().has_value());
+      EXPECT_FALSE(flood.poll_exit().has_value());
       std::this_thread::sleep_for(milliseconds(10));
     }
   }

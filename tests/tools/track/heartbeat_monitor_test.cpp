@@ -18,7 +18,7 @@ void hear_of(HeartbeatMonitor& silence, const std::string& process, std::int64_t
   const std::vector<std::uint8_t> bytes = encode_message(status);
   const std::chrono::steady_clock::time_point time{std::chrono::microseconds(time_us)};
   const std::int64_t set_back_us = -time_us;
-  silence.hear({channel::kStatus, {bytes.data(), bytes.size()}, time, set_back_us});
+  silence.on_status({channel::kStatus, {bytes.data(), bytes.size()}, time, set_back_us});
 }
 
 TEST(HeartbeatMonitor, IsToldOnceOfWhoFindsObjects) {
@@ -36,7 +36,7 @@ TEST(HeartbeatMonitor, IsToldOnceOfWhoFindsObjects) {
 TEST(HeartbeatMonitor, HearsNothingOfWhatIsNoStatus) {
   HeartbeatMonitor silence;
   const std::vector<std::uint8_t> rubbish(100, 1);
-  silence.hear({channel::kStatus, {rubbish.data(), rubbish.size()}, {}, 1});
+  silence.on_status({channel::kStatus, {rubbish.data(), rubbish.size()}, {}, 1});
   EXPECT_TRUE(silence.pop_timed_out(9000000).empty());
 }
 

@@ -14,7 +14,7 @@ namespace houghstream::view {
 namespace {
 
 constexpr int kJpegQuality = 75;
-constexpr std::chrono::seconds kTellEvery(1);
+constexpr std::chrono::seconds kUpdateInterval(1);
 
 // Depth stands small beside the colour image: of a large picture every second or third pixel is drawn, and encoded.
 cv::Mat small_depth(const cv::Mat& depth, const FrameViewSettings& settings) {
@@ -85,12 +85,12 @@ void LivePage::show(const PageContent& content) {
 }
 
 bool LivePage::is_due() const {
-  return is_looked_at() && (PageBoard::Clock::now() - told_ >= kTellEvery || !board_.missing().empty());
+  return has_viewers() && (PageBoard::Clock::now() - updated_ >= kUpdateInterval || !board_.missing().empty());
 }
 
 void LivePage::catch_up(const std::optional<ViewedFrame>& viewed, const ClassModels& models,
                         const FrameViewSettings& settings, const StreamView& stream) {
-  told_ = PageBoard::Clock::now();
+  updated_ = PageBoard::Clock::now();
   board_.put_stream(stream_json(stream, settings));
   if (const auto missing = board_.missing(); viewed && !missing.empty())
     draw(missing, {without_weak(*viewed, settings.min_score), models, settings, stream});

@@ -25,8 +25,8 @@ class LivePage {
   /// Serves at "[ADDRESS:]PORT", which may be asked for by these names too, and logs where. Throws InputError.
   explicit LivePage(const std::string& address, const std::vector<std::string>& names = {});
 
-  bool is_looked_at() const { return board_.is_looked_at(); }
-  PageCommands take_orders() { return board_.take_orders(); }
+  bool has_viewers() const { return board_.has_viewers(); }
+  PageCommands pop_commands() { return board_.pop_commands(); }
 
   /// Tells of a frame and draws what is wanted of it. Throws InputError as draw_overlay does.
   void show(const PageContent& content);
@@ -45,7 +45,7 @@ class LivePage {
   PageServer server_;
   FrameId shown_;
   PageBoard::Clock::time_point first_shown_;
-  PageBoard::Clock::time_point told_;
+  PageBoard::Clock::time_point updated_;
 };
 
 }  // namespace houghstream::view

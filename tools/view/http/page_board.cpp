@@ -5,7 +5,7 @@
 
 namespace houghstream::view {
 
-bool PageBoard::is_looked_at() const {
+bool PageBoard::has_viewers() const {
   const std::lock_guard lock(mutex_);
   return viewers_ > 0 ||
          std::any_of(pictures_.begin(), pictures_.end(), [this](const Picture& picture) { return is_wanted(picture); });
@@ -24,7 +24,7 @@ std::vector<PageView> PageBoard::missing() const {
   const std::lock_guard lock(mutex_);
   std::vector<PageView> views;
   for (std::size_t i = 0; i < kPageViews; ++i) {
-    if (pictures_[i].waiting > 0 && pictures_[i].frame_number < news_.frame_number)
+    if (pictures_[i].waiting > 0 && pictures_[i].frame_number < updates_.frame_number)
       views.push_back(static_cast<PageView>(i));
   }
   return views;
@@ -32,8 +32,8 @@ std::vector<PageView> PageBoard::missing() const {
 
 void PageBoard::put_frame(std::string json) {
   const std::lock_guard lock(mutex_);
-  ++news_.frame_number;
-  news_.frame = std::move(json);
+  ++updates_.frame_number;
+  updates_.frame = std::move(json);
   changed_.notify_all();
 }
 
@@ -41,20 +41,20 @@ void PageBoard::put_picture(PageView view, std::vector<std::uint8_t> jpeg) {
   const std::lock_guard lock(mutex_);
   Picture& picture = pictures_[static_cast<std::size_t>(view)];
   picture.jpeg = std::make_shared<const std::vector<std::uint8_t>>(std::move(jpeg));
-  picture.frame_number = news_.frame_number;
+  picture.frame_number = updates_.frame_number;
   changed_.notify_all();
 }
 
 void PageBoard::put_stream(std::string json) {
   const std::lock_guard lock(mutex_);
-  ++news_.stream_number;
-  news_.stream = std::move(json);
+  ++updates_.stream_number;
+  updates_.stream = std::move(json);
   changed_.notify_all();
 }
 
-PageCommands PageBoard::take_orders() {
+PageCommands PageBoard::pop_commands() {
   const std::lock_guard lock(mutex_);
-  return std::exchange(orders_, {});
+  return std::exchange(commands_, {});
 }
 
 bool PageBoard::join() {
@@ -69,15 +69,15 @@ void PageBoard::leave() {
   --viewers_;
 }
 
-std::optional<PageUpdates> PageBoard::news_after(const PageUpdates& seen, std::chrono::milliseconds timeout) {
+std::optional<PageUpdates> PageBoard::updates_after(const PageUpdates& seen, std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, timeout, [&] {
-    return closed_ || news_.frame_number > seen.frame_number || news_.stream_number > seen.stream_number;
+    return closed_ || updates_.frame_number > seen.frame_number || updates_.stream_number > seen.stream_number;
   });
   if (closed_) return std::nullopt;
-  PageUpdates fresh = news_;
-  if (news_.frame_number <= seen.frame_number) fresh.frame.clear();
-  if (news_.stream_number <= seen.stream_number) fresh.stream.clear();
+  PageUpdates fresh = updates_;
+  if (updates_.frame_number <= seen.frame_number) fresh.frame.clear();
+  if (updates_.stream_number <= seen.stream_number) fresh.stream.clear();
   return fresh;
 }
 
@@ -86,17 +86,17 @@ Jpeg PageBoard::picture(PageView view, std::chrono::milliseconds timeout) {
   Picture& picture = pictures_[static_cast<std::size_t>(view)];
   picture.asked = Clock::now();
   ++picture.waiting;
-  const std::int64_t wanted = std::max<std::int64_t>(news_.frame_number, 1);
+  const std::int64_t wanted = std::max<std::int64_t>(updates_.frame_number, 1);
   changed_.wait_for(lock, timeout, [&] { return closed_ || picture.frame_number >= wanted; });
   --picture.waiting;
   return picture.jpeg;
 }
 
-void PageBoard::order(const PageCommands& orders) {
+void PageBoard::push_command(const PageCommands& commands) {
   const std::lock_guard lock(mutex_);
-  if (orders.paused) orders_.paused = orders.paused;
-  if (orders.min_score) orders_.min_score = orders.min_score;
-  orders_.next_camera = orders_.next_camera || orders.next_camera;
+  if (commands.paused) commands_.paused = commands.paused;
+  if (commands.min_score) commands_.min_score = commands.min_score;
+  commands_.next_camera = commands_.next_camera || commands.next_camera;
 }
 
 void PageBoard::close() {

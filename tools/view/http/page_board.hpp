@@ -44,7 +44,7 @@ class PageBoard {
   static constexpr std::chrono::seconds kViewTimeout{2};  ///< after a request its view is drawn for so long
 
   /// For the thread that draws. Somebody listens, or asked for a picture of late.
-  bool is_looked_at() const;
+  bool has_viewers() const;
   /// Views that were asked for of late.
   std::vector<PageView> wanted() const;
   /// Views that somebody waits for, and that were not drawn of the frame that is shown.
@@ -53,16 +53,16 @@ class PageBoard {
   void put_frame(std::string json);
   void put_picture(PageView view, std::vector<std::uint8_t> jpeg);
   void put_stream(std::string json);
-  PageCommands take_orders();
+  PageCommands pop_commands();
 
   /// For those that serve. False where kMaxViewers listen already.
   bool join();
   void leave();
   /// Waits until there is more than `seen`, or for `timeout`; what is not new is empty. Nothing once it is closed.
-  std::optional<PageUpdates> news_after(const PageUpdates& seen, std::chrono::milliseconds timeout);
+  std::optional<PageUpdates> updates_after(const PageUpdates& seen, std::chrono::milliseconds timeout);
   /// The picture of the frame that is shown, waited for if need be; an older one, or nothing, after `timeout`.
   Jpeg picture(PageView view, std::chrono::milliseconds timeout);
-  void order(const PageCommands& orders);
+  void push_command(const PageCommands& commands);
 
   /// Nobody waits any longer.
   void close();
@@ -79,8 +79,8 @@ class PageBoard {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::array<Picture, kPageViews> pictures_;
-  PageUpdates news_;
-  PageCommands orders_;
+  PageUpdates updates_;
+  PageCommands commands_;
   int viewers_ = 0;
   bool closed_ = false;
 };

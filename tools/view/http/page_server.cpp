@@ -72,19 +72,19 @@ int status_of_content(const httplib::Request& request) {
 PageCommands parse_orders(const std::string& body) {
   const nlohmann::json value = nlohmann::json::parse(body, nullptr, false);
   require(value.is_object(), "expected a JSON object");
-  PageCommands orders;
+  PageCommands commands;
   for (const auto& [key, wish] : value.items()) {
     if (key == "paused" && wish.is_boolean()) {
-      orders.paused = wish.get<bool>();
+      commands.paused = wish.get<bool>();
     } else if (key == "min_score" && wish.is_number() && wish.get<double>() >= 0.0 && wish.get<double>() <= 1.0) {
-      orders.min_score = wish.get<float>();
+      commands.min_score = wish.get<float>();
     } else if (key == "next_camera" && wish.is_boolean()) {
-      orders.next_camera = wish.get<bool>();
+      commands.next_camera = wish.get<bool>();
     } else {
       fail("{}: {}, expected paused or next_camera (true, false) or min_score (0 to 1)", key, wish.dump());
     }
   }
-  return orders;
+  return commands;
 }
 
 // Sends what is new as an event, and now and then a comment: so a viewer that has gone is noticed.
@@ -93,16 +93,16 @@ class EventSender {
   explicit EventSender(PageBoard& board) : board_(board) {}
 
   bool operator()(std::size_t /*offset*/, httplib::DataSink& sink) {
-    const std::optional<PageUpdates> news = board_.news_after(seen_, kEventTimeout);
-    if (!news) {
+    const std::optional<PageUpdates> updates = board_.updates_after(seen_, kEventTimeout);
+    if (!updates) {
       sink.done();
       return true;
     }
     std::string text;
-    if (!news->stream.empty()) text += fmt::format("event: stream\ndata: {}\n\n", news->stream);
-    if (!news->frame.empty()) text += fmt::format("event: frame\ndata: {}\n\n", news->frame);
+    if (!updates->stream.empty()) text += fmt::format("event: stream\ndata: {}\n\n", updates->stream);
+    if (!updates->frame.empty()) text += fmt::format("event: frame\ndata: {}\n\n", updates->frame);
     if (text.empty()) text = ": still here\n\n";
-    seen_ = *news;
+    seen_ = *updates;
     return sink.write(text.data(), text.size());
   }
 
@@ -124,7 +124,7 @@ struct PageServer::State {
   void add_pages();
   void serve_picture(const httplib::Request& request, httplib::Response& response);
   void serve_events(httplib::Response& response);
-  void take_orders(const httplib::Request& request, httplib::Response& response);
+  void pop_commands(const httplib::Request& request, httplib::Response& response);
 
   HttpAddress address;
   PageBoard& board;
@@ -175,8 +175,9 @@ void PageServer::State::add_pages() {
   server.Get(
       R"(/picture/(colour|depth|3d|world)\.jpg)",
       [this](const httplib::Request& request, httplib::Response& response) { serve_picture(request, response); });
-  server.Post("/orders",
-              [this](const httplib::Request& request, httplib::Response& response) { take_orders(request, response); });
+  server.Post("/orders", [this](const httplib::Request& request, httplib::Response& response) {
+    pop_commands(request, response);
+  });
 }
 
 void PageServer::State::serve_picture(const httplib::Request& request, httplib::Response& response) {
@@ -193,7 +194,7 @@ void PageServer::State::serve_events(httplib::Response& response) {
   response.set_chunked_content_provider("text/event-stream", EventSender(board), [this](bool) { board.leave(); });
 }
 
-void PageServer::State::take_orders(const httplib::Request& request, httplib::Response& response) {
+void PageServer::State::pop_commands(const httplib::Request& request, httplib::Response& response) {
   const bool may =
       request.has_header(kTokenHeader) && (token.empty() || same_token(request.get_header_value(kTokenHeader), token));
   if (!may && token.empty())
@@ -203,7 +204,7 @@ void PageServer::State::take_orders(const httplib::Request& request, httplib::Re
   if (!may)
     return answer(response, 403, "the buttons need the token of the address that hs-view printed when it started");
   try {
-    board.order(parse_orders(request.body));
+    board.push_command(parse_orders(request.body));
     response.status = 204;
   } catch (const InputError& error) {
     answer(response, 400, error.what());

@@ -9,7 +9,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "tests/tools/view/watched_bus.hpp"
-#include "tools/view/frame_show.hpp"
+#include "tools/view/frame_renderer.hpp"
 
 namespace houghstream::view {
 namespace {
@@ -124,7 +124,7 @@ TEST(LivePage, AViewThatCannotBeDrawnIsSaidToBeSoAndTheOthersAreDrawn) {
 TEST(LivePage, WithoutViewersNothingIsDue) {
   Looked looked;
   looked.show(viewed_frame(5));
-  EXPECT_FALSE(looked.page.is_looked_at());
+  EXPECT_FALSE(looked.page.has_viewers());
   EXPECT_FALSE(looked.page.is_due());
 }
 

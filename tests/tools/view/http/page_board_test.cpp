@@ -12,14 +12,14 @@ constexpr std::chrono::milliseconds kLong(10'000);
 
 TEST(PageBoard, WithoutViewersNothingIsWanted) {
   PageBoard board;
-  EXPECT_FALSE(board.is_looked_at());
+  EXPECT_FALSE(board.has_viewers());
   EXPECT_TRUE(board.join());
-  EXPECT_TRUE(board.is_looked_at());
+  EXPECT_TRUE(board.has_viewers());
   EXPECT_TRUE(board.wanted().empty());
   board.leave();
-  EXPECT_FALSE(board.is_looked_at());
+  EXPECT_FALSE(board.has_viewers());
   EXPECT_EQ(board.picture(PageView::kDepth, kNow), nullptr);
-  EXPECT_TRUE(board.is_looked_at());
+  EXPECT_TRUE(board.has_viewers());
   EXPECT_EQ(board.wanted(), std::vector<PageView>{PageView::kDepth});
 }
 
@@ -28,16 +28,16 @@ TEST(PageBoard, EachSeesTheNewestOnce) {
   board.put_frame("a");
   board.put_frame("b");
   board.put_stream("s");
-  const std::optional<PageUpdates> first = board.news_after({}, kNow);
+  const std::optional<PageUpdates> first = board.updates_after({}, kNow);
   ASSERT_TRUE(first);
   EXPECT_EQ(first->frame, "b");
   EXPECT_EQ(first->stream, "s");
   board.put_stream("t");
-  const std::optional<PageUpdates> second = board.news_after(*first, kNow);
+  const std::optional<PageUpdates> second = board.updates_after(*first, kNow);
   ASSERT_TRUE(second);
   EXPECT_EQ(second->frame, "");
   EXPECT_EQ(second->stream, "t");
-  EXPECT_EQ(board.news_after(*second, kNow)->stream, "");
+  EXPECT_EQ(board.updates_after(*second, kNow)->stream, "");
 }
 
 TEST(PageBoard, APictureThatIsWaitedForIsMissing) {
@@ -57,20 +57,20 @@ TEST(PageBoard, APictureThatIsWaitedForIsMissing) {
 
 TEST(PageBoard, OrdersAreTakenOnceAndTheLastCounts) {
   PageBoard board;
-  EXPECT_TRUE(board.take_orders().empty());
-  PageCommands orders;
-  orders.paused = true;
-  orders.next_camera = true;
-  board.order(orders);
-  orders = {};
-  orders.paused = false;
-  orders.min_score = 0.25F;
-  board.order(orders);
-  const PageCommands taken = board.take_orders();
+  EXPECT_TRUE(board.pop_commands().empty());
+  PageCommands commands;
+  commands.paused = true;
+  commands.next_camera = true;
+  board.push_command(commands);
+  commands = {};
+  commands.paused = false;
+  commands.min_score = 0.25F;
+  board.push_command(commands);
+  const PageCommands taken = board.pop_commands();
   EXPECT_EQ(taken.paused, false);
   EXPECT_EQ(taken.min_score, 0.25F);
   EXPECT_TRUE(taken.next_camera);
-  EXPECT_TRUE(board.take_orders().empty());
+  EXPECT_TRUE(board.pop_commands().empty());
 }
 
 TEST(PageBoard, NotMoreThanSoManyListen) {
@@ -83,7 +83,7 @@ TEST(PageBoard, NotMoreThanSoManyListen) {
 
 TEST(PageBoard, ClosingLetsAllGo) {
   PageBoard board;
-  std::thread viewer([&] { EXPECT_FALSE(board.news_after({}, kLong)); });
+  std::thread viewer([&] { EXPECT_FALSE(board.updates_after({}, kLong)); });
   board.close();
   viewer.join();
 }

@@ -139,9 +139,9 @@ TEST(PageServer, ThisMachinesButtonsNeedNoTokenButTheHeaderThatOthersCannotSend)
   ASSERT_TRUE(refused);
   EXPECT_NE(refused->body.find("a header X-Houghstream-Token"), std::string::npos) << refused->body;
   EXPECT_EQ(served.order(R"({"paused":true,"min_score":0.5})", kNoToken), 204);
-  const PageCommands orders = served.board.take_orders();
-  EXPECT_EQ(orders.paused, true);
-  EXPECT_EQ(orders.min_score, 0.5F);
+  const PageCommands commands = served.board.pop_commands();
+  EXPECT_EQ(commands.paused, true);
+  EXPECT_EQ(commands.min_score, 0.5F);
 }
 
 TEST(PageServer, FromElsewhereButtonsNeedTheToken) {
@@ -151,7 +151,7 @@ TEST(PageServer, FromElsewhereButtonsNeedTheToken) {
   EXPECT_EQ(served.order("{}", kNoToken), 403);
   EXPECT_EQ(served.order("{}", {{"X-Houghstream-Token", std::string(32, '0')}}), 403);
   EXPECT_EQ(served.order(R"({"next_camera":true})", {{"X-Houghstream-Token", served.server.token()}}), 204);
-  EXPECT_TRUE(served.board.take_orders().next_camera);
+  EXPECT_TRUE(served.board.pop_commands().next_camera);
   EXPECT_EQ(served.client.Get("/")->status, 200);  // looking is free
 }
 
@@ -160,7 +160,7 @@ TEST(PageServer, OrdersThatAreNoneAreRefused) {
   for (const char* bad : {"", "[]", "{", R"({"pause":true})", R"({"paused":1})", R"({"min_score":1.5})",
                           R"({"min_score":"0.5"})", R"({"next_camera":null})"})
     EXPECT_EQ(served.order(bad, kNoToken), 400) << bad;
-  EXPECT_TRUE(served.board.take_orders().empty());
+  EXPECT_TRUE(served.board.pop_commands().empty());
 }
 
 TEST(PageServer, ANameThatSomebodyMadeUpForThisMachineIsRefused) {
@@ -202,7 +202,7 @@ TEST(PageServer, WhatARefusedRequestBringsIsNotTakenForARequest) {
       std::to_string(order.size()) + "\r\n\r\n" + order;
   answer_to(served.server.port(), "POST /orders HTTP/1.1\r\nHost: evil.example\r\nContent-Length: " +
                                       std::to_string(hidden.size()) + "\r\n\r\n" + hidden);
-  EXPECT_TRUE(served.board.take_orders().empty());
+  EXPECT_TRUE(served.board.pop_commands().empty());
 }
 
 TEST(PageServer, EndsWhileSomebodyListens) {
@@ -212,7 +212,7 @@ TEST(PageServer, EndsWhileSomebodyListens) {
     httplib::Client client("127.0.0.1", port);
     client.Get("/events", [](const char*, std::size_t) { return true; });
   });
-  while (!served->board.is_looked_at()) std::this_thread::yield();
+  while (!served->board.has_viewers()) std::this_thread::yield();
   served.reset();
   viewer.join();
 }
@@ -275,11 +275,11 @@ TEST(PageServer, ViewersThatReadNothingLoseTheirPlaces) {
   Served served;
   const int port = served.server.port();
   const RawClients deaf = crowd(port, "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
-  const std::string news = "\"" + std::string(1'000'000, 'x') + "\"";
+  const std::string updates = "\"" + std::string(1'000'000, 'x') + "\"";
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   bool heard = false;
   while (!heard && std::chrono::steady_clock::now() < end) {
-    served.board.put_stream(news);
+    served.board.put_stream(updates);
     httplib::Client viewer("127.0.0.1", port);
     viewer.Get(
         "/events",

@@ -24,9 +24,9 @@ class WorldReference {
   /// many.
   void add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera);
 
-  /// Where the frame's camera was; `may_come` only while it is worth waiting, for the `patient`. Where the place is
+  /// Where the frame's camera was; `may_come` only while it is worth waiting, for the `may_wait`. Where the place is
   /// one in another world than the last, that begins.
-  tracks::CameraPose place_of(const FrameId& frame, bool patient);
+  tracks::CameraPose camera_pose(const FrameId& frame, bool may_wait);
 
   /// "WORLD", or the channel of the camera whose frame it is; empty until a place was known.
   const std::string& name() const { return name_; }
@@ -38,7 +38,7 @@ class WorldReference {
   tracks::CameraPose begin(const std::string& world, const tracks::CameraPose& place);
 
   std::string name_;
-  std::string alone_;  // the camera whose frame is the world, where no place is known
+  std::string reference_camera_;  // the camera whose frame is the world, where no place is known
   bool begun_ = false;
   std::mutex mutex_;  // of what follows
   tracks::CameraExtrinsics extrinsics_;

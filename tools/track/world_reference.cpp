@@ -1,4 +1,4 @@
-#include "tools/track/world_frame.hpp"
+#include "tools/track/world_reference.hpp"
 
 #include <optional>
 
@@ -17,19 +17,19 @@ void WorldReference::add(const std::string& camera, std::int64_t utime, const Ei
   extrinsics_.add_transform(camera, utime, T_world_camera);
 }
 
-tracks::CameraPose WorldReference::place_of(const FrameId& frame, bool patient) {
+tracks::CameraPose WorldReference::camera_pose(const FrameId& frame, bool may_wait) {
   const std::lock_guard<std::mutex> lock(mutex_);
   tracks::CameraPose place = extrinsics_.interpolate(channel::camera_name(frame.channel), frame.utime);
-  place.may_come = place.may_come && patient && (alone_.empty() || extrinsics_.any());
+  place.may_come = place.may_come && may_wait && (reference_camera_.empty() || extrinsics_.any());
   if (place.T_world_camera || place.may_come) return begin("WORLD", place);
   if (extrinsics_.any()) return place;
-  if (!alone_.empty() && alone_ != frame.channel)
+  if (!reference_camera_.empty() && reference_camera_ != frame.channel)
     return {
         std::nullopt, false,
         "where its camera is is not known, expected --cameras, --camera-pose or " + channel::to_world(frame.channel)};
-  if (alone_.empty())
+  if (reference_camera_.empty())
     log_info("where {} is is not known: the world is its own frame, and objects move when it does", frame.channel);
-  alone_ = frame.channel;
+  reference_camera_ = frame.channel;
   return begin(frame.channel, {Eigen::Isometry3d::Identity(), false, ""});
 }
 

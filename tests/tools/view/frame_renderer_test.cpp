@@ -1,4 +1,4 @@
-#include "tools/view/frame_show.hpp"
+#include "tools/view/frame_renderer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tools/view/frame_show.hpp"
+#include "tools/view/frame_renderer.hpp"
 
 #include <filesystem>
 #include <utility>
@@ -64,7 +64,7 @@ FrameRenderer::FrameRenderer(const FrameRendererSettings& settings, const std::s
 }
 
 void FrameRenderer::show(const MatchedFrame& matched, BusWatcher& watcher) {
-  const bool unseen = page_alone_ && !page_->is_looked_at();
+  const bool unseen = page_alone_ && !page_->has_viewers();
   if (unseen || picture_settings_.paused || !watcher.cameras().is_shown(matched.id.channel)) {
     watcher.note_skipped();
     return;
@@ -99,14 +99,14 @@ void FrameRenderer::look_at_stream(BusWatcher& watcher) {
 }
 
 void FrameRenderer::serve_page(BusWatcher& watcher) {
-  const PageCommands orders = page_->take_orders();
-  if (orders.next_camera) watcher.cameras().next();
-  picture_settings_.paused = orders.paused.value_or(picture_settings_.paused);
-  picture_settings_.min_score = orders.min_score.value_or(picture_settings_.min_score);
-  if (orders.empty() && !page_->is_due()) return;
+  const PageCommands commands = page_->pop_commands();
+  if (commands.next_camera) watcher.cameras().next();
+  picture_settings_.paused = commands.paused.value_or(picture_settings_.paused);
+  picture_settings_.min_score = commands.min_score.value_or(picture_settings_.min_score);
+  if (commands.empty() && !page_->is_due()) return;
   look_at_stream(watcher);
   try {
-    if (orders.min_score && viewed_) page_->show({*viewed_, *models(), picture_settings_, stream_});
+    if (commands.min_score && viewed_) page_->show({*viewed_, *models(), picture_settings_, stream_});
     page_->catch_up(viewed_, *models(), picture_settings_, stream_);
   } catch (const std::exception& error) {  // OpenCV's too: no frame may end the program
     watcher.note_trouble(error.what());

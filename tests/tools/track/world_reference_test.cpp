@@ -1,4 +1,4 @@
-#include "tools/track/world_frame.hpp"
+#include "tools/track/world_reference.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,11 +9,11 @@ using Places = std::map<std::string, Eigen::Isometry3d>;
 
 TEST(WorldReference, IsTheOneCamerasWhereNoPlaceIsKnown) {
   WorldReference world(Places{});
-  EXPECT_TRUE(world.place_of({"LEFT", 1}, true).may_come);
+  EXPECT_TRUE(world.camera_pose({"LEFT", 1}, true).may_come);
   EXPECT_EQ(world.name(), "");
-  EXPECT_TRUE(world.place_of({"LEFT", 1}, false).T_world_camera);
+  EXPECT_TRUE(world.camera_pose({"LEFT", 1}, false).T_world_camera);
   EXPECT_EQ(world.name(), "LEFT");
-  const tracks::CameraPose other = world.place_of({"RIGHT", 1}, false);
+  const tracks::CameraPose other = world.camera_pose({"RIGHT", 1}, false);
   EXPECT_FALSE(other.T_world_camera);
   EXPECT_FALSE(other.may_come);
   EXPECT_NE(other.reason, "");
@@ -22,10 +22,10 @@ TEST(WorldReference, IsTheOneCamerasWhereNoPlaceIsKnown) {
 
 TEST(WorldReference, BeginsAnewWithTheFirstTransform) {
   WorldReference world(Places{});
-  world.place_of({"LEFT", 1}, false);
+  world.camera_pose({"LEFT", 1}, false);
   const Eigen::Isometry3d there(Eigen::Translation3d(1, 2, 3));
   world.add("LEFT", 2, there);
-  const tracks::CameraPose place = world.place_of({"LEFT", 2}, true);
+  const tracks::CameraPose place = world.camera_pose({"LEFT", 2}, true);
   ASSERT_TRUE(place.T_world_camera);
   EXPECT_TRUE(place.T_world_camera->isApprox(there));
   EXPECT_EQ(world.name(), "WORLD");
@@ -36,11 +36,11 @@ TEST(WorldReference, BeginsAnewWithTheFirstTransform) {
 TEST(WorldReference, KnowsCamerasThatStandStill) {
   const Eigen::Isometry3d there(Eigen::Translation3d(1, 2, 3));
   WorldReference world(Places{{"left", there}});
-  ASSERT_TRUE(world.place_of({"left", 7}, true).T_world_camera);
+  ASSERT_TRUE(world.camera_pose({"left", 7}, true).T_world_camera);
   EXPECT_EQ(world.name(), "WORLD");
   EXPECT_FALSE(world.consume_reset());
-  EXPECT_TRUE(world.place_of({"RIGHT", 7}, true).may_come);
-  EXPECT_FALSE(world.place_of({"RIGHT", 7}, false).may_come);
+  EXPECT_TRUE(world.camera_pose({"RIGHT", 7}, true).may_come);
+  EXPECT_FALSE(world.camera_pose({"RIGHT", 7}, false).may_come);
 }
 
 }  // namespace
