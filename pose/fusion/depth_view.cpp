@@ -54,14 +54,14 @@ void set_surface(const cv::Mat& depth, DepthView& out) {
 
 /// The mask without specks, which are not of the object.
 cv::Mat without_specks(const cv::Mat& mask) {
-  constexpr double kLeastShare = 0.02;  // of the largest part
+  constexpr double kMinFraction = 0.02;  // of the largest part
   std::vector<std::vector<cv::Point>> outlines;
   cv::findContours(mask, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
   double largest = 0.0;
   for (const auto& outline : outlines) largest = std::max(largest, cv::contourArea(outline));
   cv::Mat kept = cv::Mat::zeros(mask.size(), CV_8UC1);
   for (std::size_t i = 0; i < outlines.size(); ++i) {
-    if (cv::contourArea(outlines[i]) < kLeastShare * largest) continue;
+    if (cv::contourArea(outlines[i]) < kMinFraction * largest) continue;
     cv::drawContours(kept, outlines, static_cast<int>(i), cv::Scalar(255), cv::FILLED);
   }
   return kept & mask;
@@ -89,11 +89,11 @@ cv::Mat outside_hull(const cv::Mat& mask) {
 }
 
 cv::Mat outside_of(const cv::Mat& mask, const cv::Mat& depth) {
-  constexpr double kFewestShare = 0.02;  // of the pixels beside the mask
+  constexpr double kMinFraction = 0.02;  // of the pixels beside the mask
   const cv::Mat wide = widened(mask);
   const cv::Mat beside = wide == 0;
   const int with_depth = cv::countNonZero(beside & (depth == depth));
-  return with_depth > kFewestShare * cv::countNonZero(beside) ? beside : outside_hull(wide);
+  return with_depth > kMinFraction * cv::countNonZero(beside) ? beside : outside_hull(wide);
 }
 
 /// Pixel of `area` that shows a point of the camera frame.
@@ -124,7 +124,7 @@ DepthView make_depth_view(const TrainingView& view) {
   cv::Mat depth = view.frame.depth.clone();
   depth.setTo(kNoValue, mask == 0);
   set_surface(depth, out);
-  out.outside = outside_of(mask, view.frame.depth);
+  out.free_space_mask = outside_of(mask, view.frame.depth);
   return out;
 }
 

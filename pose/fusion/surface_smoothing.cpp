@@ -26,7 +26,7 @@ Neighbours neighbours_of(const Mesh& mesh) {
 }
 
 /// How alike two normals are, 1 for equal ones.
-float likeness(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+float normal_kernel(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   constexpr float kWidth = 0.35F;  // difference of unit vectors: 20 degrees
   return std::exp(-(a - b).squaredNorm() / (2.0F * kWidth * kWidth));
 }
@@ -42,7 +42,8 @@ void smooth_surface(int threads, Mesh& mesh) {
   for (int round = 0; round < kNormalRounds; ++round) {
     parallel_for(threads, n, [&](int i) {
       Eigen::Vector3f sum = mesh.normals[i];
-      for (const std::uint32_t j : neighbours[i]) sum += likeness(mesh.normals[i], mesh.normals[j]) * mesh.normals[j];
+      for (const std::uint32_t j : neighbours[i])
+        sum += normal_kernel(mesh.normals[i], mesh.normals[j]) * mesh.normals[j];
       next[i] = sum.norm() > 0.0F ? sum.normalized() : mesh.normals[i];
     });
     mesh.normals.swap(next);
@@ -52,7 +53,7 @@ void smooth_surface(int threads, Mesh& mesh) {
       float off = 0.0F;
       float weight = 1.0F;
       for (const std::uint32_t j : neighbours[i]) {
-        const float w = likeness(mesh.normals[i], mesh.normals[j]);
+        const float w = normal_kernel(mesh.normals[i], mesh.normals[j]);
         // The mean of both vertices' planes: where they agree nothing moves, on a curved surface either.
         off += 0.5F * w * (mesh.normals[i] + mesh.normals[j]).dot(mesh.vertices[j] - mesh.vertices[i]);
         weight += w;

@@ -91,7 +91,8 @@ Observation observe(const DepthView& view, const Eigen::Vector3d& p_camera, doub
                     const TsdfSettings& settings) {
   const auto px = view.pixel_of(p_camera);
   if (!px && !view.in_picture(p_camera)) return {};
-  if (!px || view.outside.at<std::uint8_t>(*px) != 0) return {1.0F, static_cast<float>(settings.outline_weight)};
+  if (!px || view.free_space_mask.at<std::uint8_t>(*px) != 0)
+    return {1.0F, static_cast<float>(settings.outline_weight)};
   const double depth = view.depth.at<float>(*px);
   if (!std::isfinite(depth)) return {};
   // From where the voxel's own ray meets the pixel's tangent plane: distances of flatly seen surface are not too long.

@@ -41,39 +41,40 @@ class Lighting {
   /// Log of how much brighter than its paint a view shows surface of this normal.
   double operator()(int view, const Eigen::Vector3d& normal) const {
     const auto at = static_cast<std::size_t>(view);
-    return exposures_[at] + (light_[at] >= 0 ? shades_[static_cast<std::size_t>(light_[at])](normal) : 0.0);
+    return exposures_[at] +
+           (lighting_ids_[at] >= 0 ? shadings_[static_cast<std::size_t>(lighting_ids_[at])](normal) : 0.0);
   }
 
  private:
   void add_samples(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh);
-  void remove_shading(const Mesh& mesh, int light);
+  void remove_shading(const Mesh& mesh, int lighting_id);
 
-  std::vector<int> light_;     ///< of each view
-  std::vector<int> vertices_;  ///< those that are looked at
+  std::vector<int> lighting_ids_;  ///< of each view
+  std::vector<int> vertices_;      ///< those that are looked at
   std::vector<ColourSample> samples_;
   std::vector<Eigen::Vector3d> colours_;  ///< of the samples
   std::vector<double> exposures_;
-  std::vector<ShadingModel> shades_;
+  std::vector<ShadingModel> shadings_;
 };
 
 Lighting::Lighting(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh) {
-  int lights = 0;
+  int lightings = 0;
   for (const DepthView& view : views) {
-    light_.push_back(view.light);
-    lights = std::max(lights, view.light + 1);
+    lighting_ids_.push_back(view.lighting_id);
+    lightings = std::max(lightings, view.lighting_id + 1);
   }
   add_samples(views, tolerance_m, mesh);
   exposures_.assign(views.size(), 0.0);
-  shades_.resize(static_cast<std::size_t>(lights));
-  for (int light = 0; light < lights; ++light) remove_shading(mesh, light);
+  shadings_.resize(static_cast<std::size_t>(lightings));
+  for (int id = 0; id < lightings; ++id) remove_shading(mesh, id);
   // Views of several lights agree on the paint only now.
   for (ColourSample& sample : samples_) {
-    if (light_[static_cast<std::size_t>(sample.view)] < 0) continue;
+    if (lighting_ids_[static_cast<std::size_t>(sample.view)] < 0) continue;
     const int vertex = vertices_[static_cast<std::size_t>(sample.vertex)];
-    sample.level -= shades_[static_cast<std::size_t>(light_[static_cast<std::size_t>(sample.view)])](
+    sample.level -= shadings_[static_cast<std::size_t>(lighting_ids_[static_cast<std::size_t>(sample.view)])](
         mesh.normals[static_cast<std::size_t>(vertex)].cast<double>());
   }
-  exposures_ = exposures(samples_, static_cast<int>(vertices_.size()), static_cast<int>(views.size()));
+  exposures_ = estimate_exposures(samples_, static_cast<int>(vertices_.size()), static_cast<int>(views.size()));
 }
 
 void Lighting::add_samples(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh) {
@@ -94,18 +95,18 @@ void Lighting::add_samples(const std::vector<DepthView>& views, double tolerance
   }
 }
 
-void Lighting::remove_shading(const Mesh& mesh, int light) {
+void Lighting::remove_shading(const Mesh& mesh, int lighting_id) {
   std::vector<ColourSample> lit;
   for (const ColourSample& sample : samples_) {
-    if (light_[static_cast<std::size_t>(sample.view)] == light) lit.push_back(sample);
+    if (lighting_ids_[static_cast<std::size_t>(sample.view)] == lighting_id) lit.push_back(sample);
   }
   const std::vector<double> exposed =
-      exposures(lit, static_cast<int>(vertices_.size()), static_cast<int>(light_.size()));
+      estimate_exposures(lit, static_cast<int>(vertices_.size()), static_cast<int>(lighting_ids_.size()));
   std::vector<Sum> sums(vertices_.size());
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const ColourSample& sample = samples_[i];
     const auto view = static_cast<std::size_t>(sample.view);
-    if (light_[view] != light) continue;
+    if (lighting_ids_[view] != lighting_id) continue;
     Sum& sum = sums[static_cast<std::size_t>(sample.vertex)];
     sum.colour += sample.weight * std::exp(-exposed[view]) * colours_[i];
     sum.weight += sample.weight;
@@ -116,7 +117,7 @@ void Lighting::remove_shading(const Mesh& mesh, int light) {
     colours.emplace_back(sums[i].colour / sums[i].weight);
     normals.push_back(mesh.normals[static_cast<std::size_t>(vertices_[i])].cast<double>());
   }
-  shades_[static_cast<std::size_t>(light)] = fit_shading(colours, normals);
+  shadings_[static_cast<std::size_t>(lighting_id)] = fit_shading(colours, normals);
 }
 
 /// Brightness that one vertex in twenty exceeds.

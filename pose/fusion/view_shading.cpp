@@ -122,7 +122,7 @@ cv::Vec3b linear_to_srgb(const Eigen::Vector3d& linear) {
   return coded;
 }
 
-std::vector<double> exposures(const std::vector<ColourSample>& samples, int vertices, int views) {
+std::vector<double> estimate_exposures(const std::vector<ColourSample>& samples, int vertices, int views) {
   constexpr int kRounds = 40;
   std::vector<double> exposure(static_cast<std::size_t>(views), 0.0);
   for (int round = 0; round < kRounds; ++round) {

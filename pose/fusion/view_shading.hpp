@@ -22,7 +22,7 @@ struct ColourSample {
 /// How much brighter than the others each view was exposed, log; its median is 0. Brightness is taken to be
 /// exposure times what the vertex sends out; medians, so that shine and shadows that come and go do not matter. A view
 /// that shares no vertex with others has 0. (Gain compensation of panoramas: Brown and Lowe 2007, with medians.)
-std::vector<double> exposures(const std::vector<ColourSample>& samples, int vertices, int views);
+std::vector<double> estimate_exposures(const std::vector<ColourSample>& samples, int vertices, int views);
 
 /// How brightly light that stands still about the object falls on surface that faces one way: log, spherical harmonics
 /// to the second order (Ramamoorthi and Hanrahan 2001 show that these hold diffuse light).

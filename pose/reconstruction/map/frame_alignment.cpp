@@ -11,15 +11,15 @@ namespace houghstream::reconstruction {
 namespace {
 
 /// Normal equations and counts of one look at all points.
-struct Sums {
-  Matrix6 squares = Matrix6::Zero();
-  Vector6 slope = Vector6::Zero();
-  int pairs = 0, seen = 0, lights = 0;
-  double depth_sq = 0.0, light_sq = 0.0;
+struct NormalEquations {
+  Matrix6 hessian = Matrix6::Zero();
+  Vector6 gradient = Vector6::Zero();
+  int pairs = 0, visible = 0, photometric_pairs = 0;
+  double depth_sq = 0.0, photometric_sq = 0.0;
 
   void add(const Vector6& row, double residual, double weight) {
-    squares.noalias() += weight * row * row.transpose();
-    slope.noalias() += (weight * residual) * row;
+    hessian.noalias() += weight * row * row.transpose();
+    gradient.noalias() += (weight * residual) * row;
   }
 };
 
@@ -39,16 +39,16 @@ float depth_between(const cv::Mat& depth, float u, float v) {
 }
 
 /// Light between pixels and its slope there.
-struct Light {
+struct IntensitySample {
   float value, slope_u, slope_v;
 };
-Light light_between(const cv::Mat& light, float u, float v) {
+IntensitySample interpolate_intensity(const cv::Mat& intensity, float u, float v) {
   const int x = static_cast<int>(u);
   const int y = static_cast<int>(v);
   const float du = u - static_cast<float>(x);
   const float dv = v - static_cast<float>(y);
-  const float* a = light.ptr<float>(y) + x;
-  const float* b = light.ptr<float>(y + 1) + x;
+  const float* a = intensity.ptr<float>(y) + x;
+  const float* b = intensity.ptr<float>(y + 1) + x;
   const float above = a[0] + du * (a[1] - a[0]);
   const float below = b[0] + du * (b[1] - b[0]);
   return {above + dv * (below - above), (1 - dv) * (a[1] - a[0]) + dv * (b[1] - b[0]), below - above};
@@ -61,19 +61,19 @@ double tukey(double r) {
   return rest > 0.0 ? rest * rest : 0.0;
 }
 
-class Look {
-  static constexpr double kShade = 0.15;  // of light a pixel
-  static constexpr double kNear_m = 0.6;  // of the world's origin, at which the object stands
+class ResidualEvaluator {
+  static constexpr double kMinSlope = 0.15;  // of light a pixel
+  static constexpr double kNear_m = 0.6;     // of the world's origin, at which the object stands
 
  public:
-  Look(const FrameLevel& frame, const Eigen::Isometry3d& T, int level, const AlignmentLimits& limits)
+  ResidualEvaluator(const FrameLevel& frame, const Eigen::Isometry3d& T, int level, const AlignmentLimits& limits)
       : frame_(frame),
         R_(T.linear().cast<float>()),
         t_(T.translation().cast<float>()),
         gate_(limits.gate_m * static_cast<double>(1 << level)),
         limits_(limits) {}
 
-  void at(const SurfacePoint& point, Sums& sums) const {
+  void add(const SurfacePoint& point, NormalEquations& equations) const {
     const Eigen::Vector3f p = R_ * point.point + t_;
     if (!(p.z() > 0.1F)) return;
     const Eigen::Vector2f px = frame_.camera.project_single(p);
@@ -86,7 +86,7 @@ class Look {
     if (!std::isfinite(z)) return;
     const double behind = p.z() - z;
     if (behind > gate) return;  // hidden
-    ++sums.seen;
+    ++equations.visible;
     if (behind < -gate) return;  // seen through
     const Eigen::Vector3f n = R_ * point.normal;
     const float facing = -n.dot(p) / p.norm();
@@ -94,24 +94,26 @@ class Look {
     const double residual = n.dot(p) * (z / p.z() - 1.0F);
     const double weight = tukey(residual / (1.5 * sigma + 0.3 * gate_));
     if (weight > 0.0) {
-      ++sums.pairs;
-      sums.depth_sq += residual * residual;
+      ++equations.pairs;
+      equations.depth_sq += residual * residual;
       Vector6 row;
       row << -point.normal.cast<double>(), -point.point.cross(point.normal).cast<double>();
-      sums.add(row, residual, weight * std::min(1.0F, 2.0F * facing) / (sigma * sigma));
+      equations.add(row, residual, weight * std::min(1.0F, 2.0F * facing) / (sigma * sigma));
     }
-    if (limits_.use_photometric) add_light(point, p, px, sums);
+    if (limits_.use_photometric) add_photometric(point, p, px, equations);
   }
 
  private:
-  void add_light(const SurfacePoint& point, const Eigen::Vector3f& p, const Eigen::Vector2f& px, Sums& sums) const {
-    const bool stays = !frame_.stays.empty() && frame_.stays.at<std::uint8_t>(cvRound(px.y()), cvRound(px.x())) != 0;
-    if (stays || !std::isfinite(point.light)) return;
-    const Light seen = light_between(frame_.light, px.x(), px.y());
-    const double residual = seen.value - point.light;
+  void add_photometric(const SurfacePoint& point, const Eigen::Vector3f& p, const Eigen::Vector2f& px,
+                       NormalEquations& equations) const {
+    const bool is_static =
+        !frame_.static_mask.empty() && frame_.static_mask.at<std::uint8_t>(cvRound(px.y()), cvRound(px.x())) != 0;
+    if (is_static || !std::isfinite(point.intensity)) return;
+    const IntensitySample seen = interpolate_intensity(frame_.intensity, px.x(), px.y());
+    const double residual = seen.value - point.intensity;
     const double weight = tukey(residual / (2.0 * limits_.photometric_sigma));
-    ++sums.lights;
-    sums.light_sq += std::min(residual * residual, 1.0);
+    ++equations.photometric_pairs;
+    equations.photometric_sq += std::min(residual * residual, 1.0);
     if (weight <= 0.0) return;
     const float a = seen.slope_u * static_cast<float>(frame_.camera.fx) / p.z();
     const float b = seen.slope_v * static_cast<float>(frame_.camera.fy) / p.z();
@@ -122,9 +124,9 @@ class Look {
     const double far = point.point.norm() / kNear_m;
     // Faint slopes are shade and shine, which do not move with the surface.
     const double slope_sq = seen.slope_u * seen.slope_u + seen.slope_v * seen.slope_v;
-    const double edge = slope_sq / (slope_sq + kShade * kShade);
-    sums.add(row, residual,
-             edge * weight / (limits_.photometric_sigma * limits_.photometric_sigma * (1.0 + far * far)));
+    const double edge = slope_sq / (slope_sq + kMinSlope * kMinSlope);
+    equations.add(row, residual,
+                  edge * weight / (limits_.photometric_sigma * limits_.photometric_sigma * (1.0 + far * far)));
   }
 
   const FrameLevel& frame_;
@@ -134,18 +136,18 @@ class Look {
   const AlignmentLimits& limits_;
 };
 
-void add_plane(const PlanePrior& plane, const Eigen::Isometry3d& T, Sums& sums) {
+void add_plane(const PlanePrior& plane, const Eigen::Isometry3d& T, NormalEquations& equations) {
   const Eigen::Vector3d up = T.linear().transpose() * plane.normal;  // should be z
   const double turn = 1.0 / (plane.sigma_rad * plane.sigma_rad);
   Vector6 row = Vector6::Zero();
   row[4] = 1.0;
-  sums.add(row, -up.x(), turn);
+  equations.add(row, -up.x(), turn);
   row.setZero();
   row[3] = -1.0;
-  sums.add(row, -up.y(), turn);
+  equations.add(row, -up.y(), turn);
   row.setZero();
   row.head<3>() = up;
-  sums.add(row, plane.normal.dot(T.translation()) + plane.offset, 1.0 / (plane.sigma_m * plane.sigma_m));
+  equations.add(row, plane.normal.dot(T.translation()) + plane.offset, 1.0 / (plane.sigma_m * plane.sigma_m));
 }
 
 /// bearing_error() of a corner whose point lies at p, which is before the camera.
@@ -154,28 +156,28 @@ double bearing_error_at(const Eigen::Vector3d& p, const LandmarkObservation& cor
 }
 
 /// A corner's bearing hardly depends on its depth, so what is far away says which way the camera looks.
-void add_corner(const LandmarkObservation& corner, const Eigen::Isometry3d& T, Sums& sums) {
+void add_corner(const LandmarkObservation& corner, const Eigen::Isometry3d& T, NormalEquations& equations) {
   constexpr double kSigma = 0.003;  // of a bearing: one to two pixels
   const Eigen::Vector3d p = T * corner.in_world;
   if (!(p.z() > 0.1)) return;
   const double weight = tukey(bearing_error_at(p, corner) / (2.0 * kSigma)) / (kSigma * kSigma);
   if (weight <= 0.0) return;
   for (const int axis : {0, 1}) {
-    Eigen::Vector3d slope = Eigen::Vector3d::Unit(axis) / p.z();
-    slope.z() = -p[axis] / (p.z() * p.z());
-    const Eigen::Vector3d in_world = T.linear().transpose() * slope;
+    Eigen::Vector3d gradient = Eigen::Vector3d::Unit(axis) / p.z();
+    gradient.z() = -p[axis] / (p.z() * p.z());
+    const Eigen::Vector3d in_world = T.linear().transpose() * gradient;
     Vector6 row;
     row << in_world, corner.in_world.cross(in_world);
-    sums.add(row, p[axis] / p.z() - corner.in_camera[axis] / corner.in_camera.z(), weight);
+    equations.add(row, p[axis] / p.z() - corner.in_camera[axis] / corner.in_camera.z(), weight);
   }
 }
 
-Sums look(const std::vector<SurfacePoint>& points, const FrameLevel& frame, const Eigen::Isometry3d& T, int level,
-          const AlignmentLimits& limits) {
-  Sums sums;
-  const Look one(frame, T, level, limits);
-  for (const SurfacePoint& point : points) one.at(point, sums);
-  return sums;
+NormalEquations build_normal_equations(const std::vector<SurfacePoint>& points, const FrameLevel& frame,
+                                       const Eigen::Isometry3d& T, int level, const AlignmentLimits& limits) {
+  NormalEquations equations;
+  const ResidualEvaluator evaluator(frame, T, level, limits);
+  for (const SurfacePoint& point : points) evaluator.add(point, equations);
+  return equations;
 }
 
 }  // namespace
@@ -186,34 +188,35 @@ double bearing_error(const LandmarkObservation& corner, const Eigen::Isometry3d&
 }
 
 Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
-                      const PoseConstraints& holds, const AlignmentLimits& limits) {
+                      const PoseConstraints& constraints, const AlignmentLimits& limits) {
   constexpr int kMin = 40;
   Alignment out;
   out.T_camera_world = T_camera_world;
-  Sums sums;
+  NormalEquations equations;
   for (int level = limits.coarsest; level >= limits.finest; --level) {
     const auto l = static_cast<std::size_t>(level);
     for (int i = 0; i <= limits.iterations; ++i) {
-      sums = look(points[l], frame.levels[l], out.T_camera_world, level, limits);
-      if (sums.pairs < kMin) break;
-      if (holds.plane) add_plane(*holds.plane, out.T_camera_world, sums);
-      for (const LandmarkObservation& corner : holds.corners) add_corner(corner, out.T_camera_world, sums);
+      equations = build_normal_equations(points[l], frame.levels[l], out.T_camera_world, level, limits);
+      if (equations.pairs < kMin) break;
+      if (constraints.plane) add_plane(*constraints.plane, out.T_camera_world, equations);
+      for (const LandmarkObservation& corner : constraints.corners) add_corner(corner, out.T_camera_world, equations);
       if (i == limits.iterations) break;
-      Matrix6 damped = sums.squares;
-      damped.diagonal() += Vector6::Constant(1.0) + 1e-6 * sums.squares.diagonal();
-      const Vector6 step = damped.ldlt().solve(-sums.slope);
+      Matrix6 damped = equations.hessian;
+      damped.diagonal() += Vector6::Constant(1.0) + 1e-6 * equations.hessian.diagonal();
+      const Vector6 step = damped.ldlt().solve(-equations.gradient);
       if (!step.allFinite() || step.norm() > 0.5) break;
       out.T_camera_world = retract_about_body(out.T_camera_world, step);
-      if (step.head<3>().norm() < limits.enough_m && step.tail<3>().norm() < 2.0 * limits.enough_m) break;
+      if (step.head<3>().norm() < limits.min_step_m && step.tail<3>().norm() < 2.0 * limits.min_step_m) break;
     }
   }
   const auto all = static_cast<double>(points[static_cast<std::size_t>(limits.finest)].size());
-  out.information = sums.squares;
-  out.pairs = sums.pairs;
-  out.inlier_share = sums.seen > 0 ? static_cast<double>(sums.pairs) / sums.seen : 0.0;
-  out.visible_point_fraction = all > 0.0 ? sums.seen / all : 0.0;
-  out.geometric_rms_m = sums.pairs > 0 ? std::sqrt(sums.depth_sq / sums.pairs) : 0.0;
-  out.photometric_rms = sums.lights > 0 ? std::sqrt(sums.light_sq / sums.lights) : 0.0;
+  out.information = equations.hessian;
+  out.pairs = equations.pairs;
+  out.inlier_fraction = equations.visible > 0 ? static_cast<double>(equations.pairs) / equations.visible : 0.0;
+  out.visible_point_fraction = all > 0.0 ? equations.visible / all : 0.0;
+  out.geometric_rms_m = equations.pairs > 0 ? std::sqrt(equations.depth_sq / equations.pairs) : 0.0;
+  out.photometric_rms =
+      equations.photometric_pairs > 0 ? std::sqrt(equations.photometric_sq / equations.photometric_pairs) : 0.0;
   return out;
 }
 

@@ -34,9 +34,9 @@ struct AlignmentLimits {
   int iterations = 7;               ///< on each level, at most
   int coarsest = 2;                 ///< level to begin on
   int finest = 0;                   ///< level to end on
-  double photometric_sigma = 0.35;  ///< of FrameLevel::light
+  double photometric_sigma = 0.35;  ///< of FrameLevel::intensity
   double gate_m = 0.014;            ///< on the finest level; what is farther apart is no pair. Twice that on the next
-  double enough_m = 1e-4;           ///< a step that moves nothing farther ends a level
+  double min_step_m = 1e-4;         ///< a step that moves nothing farther ends a level
   bool use_photometric = true;
 };
 
@@ -45,7 +45,7 @@ struct Alignment {
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
   Matrix6 information = Matrix6::Zero();  ///< of a twist for retract_about_body(), at the end
   int pairs = 0;                          ///< points with a measured partner
-  double inlier_share = 0.0;              ///< of the points in the image that nothing hides: those with a partner
+  double inlier_fraction = 0.0;           ///< of the points in the image that nothing hides: those with a partner
   double visible_point_fraction = 0.0;    ///< of all points: those in the image, not hidden, with depth
   double geometric_rms_m = 0.0;           ///< of the pairs, along normals
   double photometric_rms = 0.0;           ///< of the pairs, robust
@@ -56,7 +56,7 @@ struct Alignment {
 /// odometry from dense RGB-D images", ICCVW 2011), and bearings of corners are lowered together by Gauss-Newton under
 /// Tukey's weights, from coarse to fine. `points` lie in the world frame, as many levels as the frame's. Thread-safe.
 Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
-                      const PoseConstraints& holds, const AlignmentLimits& limits);
+                      const PoseConstraints& constraints, const AlignmentLimits& limits);
 
 /// The statistics of a frame at a pose that is left as it is, on one level.
 Alignment compare_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,

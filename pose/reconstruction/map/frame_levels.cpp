@@ -35,7 +35,7 @@ cv::Mat half_depth(const cv::Mat& depth) {
   return half;
 }
 
-cv::Mat half_light(const cv::Mat& grey) {
+cv::Mat half_intensity(const cv::Mat& grey) {
   cv::Mat half;
   cv::resize(grey(cv::Rect(0, 0, grey.cols / 2 * 2, grey.rows / 2 * 2)), half, {grey.cols / 2, grey.rows / 2}, 0, 0,
              cv::INTER_AREA);
@@ -55,27 +55,27 @@ cv::Mat normalise_intensity(const cv::Mat& grey) {
   grey.convertTo(values, CV_32F);
   cv::boxFilter(values, mean, CV_32F, {kAround_px, kAround_px}, {-1, -1}, true, cv::BORDER_REFLECT);
   cv::sqrBoxFilter(values, mean_sq, CV_32F, {kAround_px, kAround_px}, {-1, -1}, true, cv::BORDER_REFLECT);
-  cv::Mat light(grey.size(), CV_32FC1);
+  cv::Mat intensity(grey.size(), CV_32FC1);
   for (int y = 0; y < grey.rows; ++y) {
     const float* v = values.ptr<float>(y);
     const float* m = mean.ptr<float>(y);
     const float* s = mean_sq.ptr<float>(y);
-    float* out = light.ptr<float>(y);
+    float* out = intensity.ptr<float>(y);
     for (int x = 0; x < grey.cols; ++x) {
       const float variance = std::max(0.0F, s[x] - m[x] * m[x]);
       out[x] = (v[x] - m[x]) / (std::sqrt(variance) + static_cast<float>(kNoise));
     }
   }
-  return light;
+  return intensity;
 }
 
-PictureQuality judge(const cv::Mat& grey) {
+ImageQuality measure_quality(const cv::Mat& grey) {
   constexpr int kBlack = 6;
   constexpr int kBurnt = 250;
-  PictureQuality quality;
+  ImageQuality quality;
   const double pixels = static_cast<double>(grey.total());
-  quality.dark_share = cv::countNonZero(grey < kBlack) / pixels;
-  quality.bright_share = cv::countNonZero(grey > kBurnt) / pixels;
+  quality.dark_fraction = cv::countNonZero(grey < kBlack) / pixels;
+  quality.bright_fraction = cv::countNonZero(grey > kBurnt) / pixels;
   cv::Mat laplacian;
   cv::Laplacian(grey, laplacian, CV_16S, 3);
   cv::Scalar mean, deviation, edge_mean, edge_deviation;
@@ -125,8 +125,8 @@ bool strongest_pixel(const FrameLevel& level, const cv::Rect& square, const cv::
   for (int y = square.y; y < square.br().y; ++y) {
     for (int x = square.x; x < square.br().x; ++x) {
       if (!(level.depth.at<float>(y, x) > 0.0F) || (!mask.empty() && mask.at<std::uint8_t>(y, x) == 0)) continue;
-      const float gx = level.light.at<float>(y, x + 1) - level.light.at<float>(y, x - 1);
-      const float gy = level.light.at<float>(y + 1, x) - level.light.at<float>(y - 1, x);
+      const float gx = level.intensity.at<float>(y, x + 1) - level.intensity.at<float>(y, x - 1);
+      const float gy = level.intensity.at<float>(y + 1, x) - level.intensity.at<float>(y - 1, x);
       const float edge = gx * gx + gy * gy;
       if (edge <= strongest) continue;
       strongest = edge;
@@ -147,8 +147,8 @@ std::vector<SurfacePoint> points_of(const FrameLevel& level, const cv::Mat& mask
       if (!fit_normal(level, px.x, px.y, point.normal)) continue;
       point.point = level.camera.backproject(px.x, px.y, level.depth.at<float>(px)).cast<float>();
       if (-point.normal.dot(point.point.normalized()) < static_cast<float>(min_facing)) continue;
-      const bool stays = !level.stays.empty() && level.stays.at<std::uint8_t>(px) != 0;
-      point.light = stays ? kNoValue : level.light.at<float>(px);
+      const bool is_static = !level.static_mask.empty() && level.static_mask.at<std::uint8_t>(px) != 0;
+      point.intensity = is_static ? kNoValue : level.intensity.at<float>(px);
       points.push_back(point);
     }
   }
@@ -166,14 +166,14 @@ FrameLevels make_levels(const RgbdFrame& frame, const LevelSettings& settings) {
   cv::Mat depth = frame.depth(region);
   Camera camera = frame.camera.cropped(region.x, region.y, region.width, region.height);
   while (grey.cols > settings.min_width) {
-    grey = half_light(grey);
+    grey = half_intensity(grey);
     depth = half_depth(depth);
     camera = half_camera(camera);
   }
-  out.quality = judge(grey);
+  out.quality = measure_quality(grey);
   for (int level = 0; level < settings.levels; ++level) {
     if (level > 0) {
-      grey = half_light(grey);
+      grey = half_intensity(grey);
       depth = half_depth(depth);
       camera = half_camera(camera);
     }

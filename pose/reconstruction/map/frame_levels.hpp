@@ -11,22 +11,23 @@ namespace houghstream::reconstruction {
 /// A frame at one resolution.
 struct FrameLevel {
   Camera camera;
-  cv::Mat light;  ///< CV_32FC1, brightness less the mean around, in deviations around: the same at any exposure
-  cv::Mat depth;  ///< CV_32FC1, metres, NaN = none
-  cv::Mat stays;  ///< CV_8UC1, 255 where the light tells nothing, as it stayed while the object turned; empty = nowhere
+  cv::Mat intensity;    ///< CV_32FC1, brightness less the mean around, in deviations around: the same at any exposure
+  cv::Mat depth;        ///< CV_32FC1, metres, NaN = none
+  cv::Mat static_mask;  ///< CV_8UC1, 255 where the light tells nothing, as it stayed while the object turned; empty =
+                        ///< nowhere
 };
 
 /// How good a picture is, for leaving out what would blur a model.
-struct PictureQuality {
-  double sharpness = 0.0;     ///< mean square of the Laplacian over the mean square of the brightness' deviation
-  double dark_share = 0.0;    ///< pixels that are black
-  double bright_share = 0.0;  ///< pixels that are burnt out
+struct ImageQuality {
+  double sharpness = 0.0;        ///< mean square of the Laplacian over the mean square of the brightness' deviation
+  double dark_fraction = 0.0;    ///< pixels that are black
+  double bright_fraction = 0.0;  ///< pixels that are burnt out
 };
 
 /// A frame from fine to coarse, as registration needs it.
 struct FrameLevels {
   std::vector<FrameLevel> levels;  ///< the finest first, each half as large as the one before
-  PictureQuality quality;
+  ImageQuality quality;
 };
 
 /// What of a frame is taken.
@@ -42,7 +43,7 @@ FrameLevels make_levels(const RgbdFrame& frame, const LevelSettings& settings);
 struct SurfacePoint {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< metres
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit length, towards the camera
-  float light = 0.0F;                                ///< of FrameLevel::light there; NaN where it tells nothing
+  float intensity = 0.0F;                            ///< of FrameLevel::intensity there; NaN where it tells nothing
   bool on_table = false;                             ///< of the plane z = 0 of the world, as far as is known
 };
 

@@ -16,14 +16,14 @@ std::vector<Eigen::Isometry3d> poses_of(const std::vector<Keyframe>& keyframes) 
   return poses;
 }
 
-LoopGap gap_between(const Eigen::Isometry3d& before, const Eigen::Isometry3d& after) {
+LoopClosureError gap_between(const Eigen::Isometry3d& before, const Eigen::Isometry3d& after) {
   const Vector6 gap = local_coordinates_about_body(before.inverse() * after);
   return {gap.head<3>().norm(), gap.tail<3>().norm()};
 }
 
 }  // namespace
 
-double KeyframeMap::difference(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) const {
+double KeyframeMap::view_angle(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) const {
   const Eigen::Vector3d from_a = a.inverse().translation() - settings_.middle;
   const Eigen::Vector3d from_b = b.inverse().translation() - settings_.middle;
   const double cosine = std::clamp(from_a.normalized().dot(from_b.normalized()), -1.0, 1.0);
@@ -31,16 +31,16 @@ double KeyframeMap::difference(const Eigen::Isometry3d& a, const Eigen::Isometry
 }
 
 bool KeyframeMap::is_good(const Alignment& alignment) const {
-  return alignment.pairs >= 100 && alignment.inlier_share >= settings_.min_inlier_share &&
-         alignment.visible_point_fraction >= settings_.min_seen_share &&
-         alignment.photometric_rms <= settings_.max_light_rms;
+  return alignment.pairs >= 100 && alignment.inlier_fraction >= settings_.min_inlier_fraction &&
+         alignment.visible_point_fraction >= settings_.min_visible_fraction &&
+         alignment.photometric_rms <= settings_.max_photometric_rms;
 }
 
 int KeyframeMap::nearest(const Eigen::Isometry3d& T_camera_world) const {
   int best = -1;
   double least = 1e9;
   for (std::size_t k = 0; k < keyframes_.size(); ++k) {
-    const double d = difference(T_camera_world, keyframes_[k].T_camera_world);
+    const double d = view_angle(T_camera_world, keyframes_[k].T_camera_world);
     if (d >= least) continue;
     least = d;
     best = static_cast<int>(k);
@@ -48,20 +48,20 @@ int KeyframeMap::nearest(const Eigen::Isometry3d& T_camera_world) const {
   return best;
 }
 
-std::vector<int> KeyframeMap::references_for(const Eigen::Isometry3d& T_camera_world) const {
+std::vector<int> KeyframeMap::local_keyframes_for(const Eigen::Isometry3d& T_camera_world) const {
   std::vector<std::pair<double, int>> ranked;
   for (std::size_t k = 0; k < keyframes_.size(); ++k) {
     if (steps_[k] < 0 || steps_[k] > settings_.loop_steps) continue;
-    ranked.emplace_back(difference(T_camera_world, keyframes_[k].T_camera_world), static_cast<int>(k));
+    ranked.emplace_back(view_angle(T_camera_world, keyframes_[k].T_camera_world), static_cast<int>(k));
   }
   std::sort(ranked.begin(), ranked.end());
-  std::vector<int> references;
+  std::vector<int> local;
   for (const auto& [d, k] : ranked) {
-    if (static_cast<int>(references.size()) == settings_.references) break;
-    if (references.empty() || d < settings_.alike) references.push_back(k);
+    if (static_cast<int>(local.size()) == settings_.local_keyframes) break;
+    if (local.empty() || d < settings_.max_local_angle) local.push_back(k);
   }
-  std::sort(references.begin(), references.end());
-  return references;
+  std::sort(local.begin(), local.end());
+  return local;
 }
 
 LevelPoints KeyframeMap::points_of(const std::vector<int>& keyframes) const {
@@ -86,8 +86,8 @@ LevelPoints KeyframeMap::points_of(const std::vector<int>& keyframes) const {
 }
 
 const LevelPoints& KeyframeMap::local_map(const Eigen::Isometry3d& T_camera_world) {
-  std::vector<int> references = references_for(T_camera_world);
-  if (references != local_.keyframes) local_ = part_of(std::move(references));
+  std::vector<int> local = local_keyframes_for(T_camera_world);
+  if (local != local_.keyframes) local_ = part_of(std::move(local));
   return local_.points;
 }
 
@@ -102,22 +102,23 @@ PoseEdge KeyframeMap::edge_between(int from, int to, const Matrix6& information)
   return {from, to, b.T_camera_world * a.T_camera_world.inverse(), information};
 }
 
-std::optional<LoopGap> KeyframeMap::add(Keyframe keyframe, const Alignment& alignment) {
+std::optional<LoopClosureError> KeyframeMap::add(Keyframe keyframe, const Alignment& alignment) {
   const int last = static_cast<int>(keyframes_.size());
   keyframes_.push_back(std::move(keyframe));
   for (const int reference : local_.keyframes)
     edges_.push_back(
         edge_between(reference, last, alignment.information / static_cast<double>(local_.keyframes.size())));
   steps_ = graph_distances(last, last + 1, edges_);
-  const std::optional<LoopGap> gap = close_loop(last);
+  const std::optional<LoopClosureError> gap = close_loop(last);
   if (gap) correct_poses();
   local_.keyframes.clear();
   return gap;
 }
 
 /// Those of the keyframes that have enough corners in common with a frame.
-std::vector<SeenAgain> KeyframeMap::find_again(const std::vector<int>& keyframes, const Landmarks& seen) const {
-  std::vector<SeenAgain> again;
+std::vector<LandmarkReobservation> KeyframeMap::match_keyframes(const std::vector<int>& keyframes,
+                                                                const Landmarks& seen) const {
+  std::vector<LandmarkReobservation> again;
   for (const int k : keyframes) {
     std::optional<LandmarkMatch> match = match_landmarks(keyframes_[static_cast<std::size_t>(k)].landmarks, seen);
     if (match && match->inliers.size() >= settings_.min_corners) again.push_back({k, std::move(*match)});
@@ -128,8 +129,8 @@ std::vector<SeenAgain> KeyframeMap::find_again(const std::vector<int>& keyframes
 /// Corners that contradict the likely pose are mistaken, wallpaper for instance, unless it may be far off and many
 /// agree.
 Alignment KeyframeMap::register_to_part(const MapPart& part, const FrameLevels& levels,
-                                        const std::vector<SeenAgain>& again, const Eigen::Isometry3d& T_likely,
-                                        const RegistrationLimits& limits) const {
+                                        const std::vector<LandmarkReobservation>& again,
+                                        const Eigen::Isometry3d& T_likely, const RegistrationLimits& limits) const {
   constexpr double kContradicts = 0.015;  // radians
   PoseConstraints holds{settings_.plane, {}};
   std::size_t most = 0;
@@ -160,31 +161,31 @@ Alignment KeyframeMap::register_to_part(const MapPart& part, const FrameLevels& 
 }
 
 Alignment KeyframeMap::constrain_by_landmarks(const FrameLevels& levels, const Landmarks& seen,
-                                              const Alignment& laid) const {
-  std::vector<SeenAgain> again;
-  if (settings_.use_landmarks) again = find_again(local_.keyframes, seen);
-  const Alignment held = register_to_part(local_, levels, again, laid.T_camera_world, {});
-  return is_good(held) ? held : laid;
+                                              const Alignment& alignment) const {
+  std::vector<LandmarkReobservation> again;
+  if (settings_.use_landmarks) again = match_keyframes(local_.keyframes, seen);
+  const Alignment held = register_to_part(local_, levels, again, alignment.T_camera_world, {});
+  return is_good(held) ? held : alignment;
 }
 
-std::optional<LoopGap> KeyframeMap::close_loop(int last) {
+std::optional<LoopClosureError> KeyframeMap::close_loop(int last) {
   constexpr int kMaxTries = 2;
   constexpr double kMaxShift_m = 0.2;
   const Keyframe& now = keyframes_[static_cast<std::size_t>(last)];
   std::vector<std::pair<double, int>> candidates;
   for (int k = 0; k < last; ++k) {
-    const double d = difference(now.T_camera_world, keyframes_[static_cast<std::size_t>(k)].T_camera_world);
-    if (steps_[static_cast<std::size_t>(k)] > settings_.loop_steps && d < settings_.loop_alike)
+    const double d = view_angle(now.T_camera_world, keyframes_[static_cast<std::size_t>(k)].T_camera_world);
+    if (steps_[static_cast<std::size_t>(k)] > settings_.loop_steps && d < settings_.max_loop_angle)
       candidates.emplace_back(d, k);
   }
   std::sort(candidates.begin(), candidates.end());
   if (candidates.size() > kMaxTries) candidates.resize(kMaxTries);
   for (const auto& [d, k] : candidates) {
     const Keyframe& old = keyframes_[static_cast<std::size_t>(k)];
-    const std::vector<SeenAgain> again = find_again({k}, now.landmarks);
+    const std::vector<LandmarkReobservation> again = match_keyframes({k}, now.landmarks);
     const Alignment found =
         register_to_part(part_of({k}), now.levels, again, now.T_camera_world, {settings_.coarsest, true});
-    const LoopGap gap = gap_between(now.T_camera_world, found.T_camera_world);
+    const LoopClosureError gap = gap_between(now.T_camera_world, found.T_camera_world);
     if (!is_good(found) || gap.shift_m > kMaxShift_m) continue;
     edges_.push_back({k, last, found.T_camera_world * old.T_camera_world.inverse(), found.information});
     return gap;
@@ -202,13 +203,13 @@ void KeyframeMap::correct_poses() {
 /// What the neighbours of a keyframe say of it. `again`: by neighbour, how its corners were found there; asked for in
 /// each round, and the same in all of them.
 std::vector<PoseEdge> KeyframeMap::edges_from(int from, int coarsest,
-                                              std::map<int, std::vector<SeenAgain>>& again) const {
+                                              std::map<int, std::vector<LandmarkReobservation>>& again) const {
   constexpr std::size_t kNeighbours = 8;
   const Keyframe& one = keyframes_[static_cast<std::size_t>(from)];
   std::vector<std::pair<double, int>> near;
   for (int j = 0; j < static_cast<int>(keyframes_.size()); ++j) {
-    const double d = difference(one.T_camera_world, keyframes_[static_cast<std::size_t>(j)].T_camera_world);
-    if (j != from && d < 1.5 * settings_.alike) near.emplace_back(d, j);
+    const double d = view_angle(one.T_camera_world, keyframes_[static_cast<std::size_t>(j)].T_camera_world);
+    if (j != from && d < 1.5 * settings_.max_local_angle) near.emplace_back(d, j);
   }
   std::sort(near.begin(), near.end());
   if (near.size() > kNeighbours) near.resize(kNeighbours);
@@ -217,16 +218,17 @@ std::vector<PoseEdge> KeyframeMap::edges_from(int from, int coarsest,
   for (const auto& [d, j] : near) {
     const Keyframe& to = keyframes_[static_cast<std::size_t>(j)];
     const auto [corners, is_new] = again.try_emplace(j);
-    if (is_new && settings_.use_landmarks) corners->second = find_again(own.keyframes, to.landmarks);
-    const Alignment laid = register_to_part(own, to.levels, corners->second, to.T_camera_world, {coarsest, false});
-    if (is_good(laid)) edges.push_back({from, j, laid.T_camera_world * one.T_camera_world.inverse(), laid.information});
+    if (is_new && settings_.use_landmarks) corners->second = match_keyframes(own.keyframes, to.landmarks);
+    const Alignment alignment = register_to_part(own, to.levels, corners->second, to.T_camera_world, {coarsest, false});
+    if (is_good(alignment))
+      edges.push_back({from, j, alignment.T_camera_world * one.T_camera_world.inverse(), alignment.information});
   }
   return edges;
 }
 
 void KeyframeMap::refine(int rounds) {
   const int n = static_cast<int>(keyframes_.size());
-  std::vector<std::map<int, std::vector<SeenAgain>>> again(static_cast<std::size_t>(n));
+  std::vector<std::map<int, std::vector<LandmarkReobservation>>> again(static_cast<std::size_t>(n));
   for (int round = 0; round < rounds; ++round) {
     std::vector<std::vector<PoseEdge>> found(static_cast<std::size_t>(n));
     parallel_for(settings_.threads, n, [&](int i) {

@@ -19,20 +19,20 @@ struct Keyframe {
 };
 
 /// What the loop missed when it was closed.
-struct LoopGap {
-  double shift_m = 0.0;  ///< of the world's origin
-  double turn = 0.0;     ///< radians
+struct LoopClosureError {
+  double shift_m = 0.0;    ///< of the world's origin
+  double angle_rad = 0.0;  ///< radians
 };
 
 /// When two views are alike enough to be laid on each other, and how well that must go.
 struct MapSettings {
-  double alike = 0.44;       ///< radians between views: a keyframe of the local map
-  double loop_alike = 0.35;  ///< radians between views: a loop may be closed
-  int loop_steps = 8;        ///< keyframes in between that make a loop
-  int references = 3;        ///< keyframes of the local map
-  double min_inlier_share = 0.75;
-  double min_seen_share = 0.25;
-  double max_light_rms = 0.62;
+  double max_local_angle = 0.44;  ///< radians between views: a keyframe of the local map
+  double max_loop_angle = 0.35;   ///< radians between views: a loop may be closed
+  int loop_steps = 8;             ///< keyframes in between that make a loop
+  int local_keyframes = 3;        ///< keyframes of the local map
+  double min_inlier_fraction = 0.75;
+  double min_visible_fraction = 0.25;
+  double max_photometric_rms = 0.62;
   int coarsest = 2;               ///< level on which registration begins
   bool use_landmarks = true;      ///< those of surroundings; of a thing that turns, shine has some too
   std::size_t min_corners = 12;   ///< in common with another frame, to hold a pose
@@ -49,7 +49,7 @@ struct MapPart {
 };
 
 /// A keyframe whose corners a frame shows again.
-struct SeenAgain {
+struct LandmarkReobservation {
   int keyframe = 0;
   LandmarkMatch match;  ///< from the keyframe's camera to the frame's
 };
@@ -71,7 +71,7 @@ class KeyframeMap {
 
   /// Adds a keyframe; `alignment` is how it was laid on the local map (not asked for with the first). Closes a loop
   /// where one is found, and corrects all poses then: the gap that was closed.
-  std::optional<LoopGap> add(Keyframe keyframe, const Alignment& alignment);
+  std::optional<LoopClosureError> add(Keyframe keyframe, const Alignment& alignment);
 
   /// Points of the keyframes that see most of what a camera there sees, without such as are across an open loop.
   const LevelPoints& local_map(const Eigen::Isometry3d& T_camera_world);
@@ -79,12 +79,12 @@ class KeyframeMap {
 
   /// How a frame lies on the keyframes of the local map, given how it lies on their surface and light: where these
   /// leave a turn open or misread it (something plain and round on a plain table), corners of the surroundings say it.
-  Alignment constrain_by_landmarks(const FrameLevels& levels, const Landmarks& seen, const Alignment& laid) const;
+  Alignment constrain_by_landmarks(const FrameLevels& levels, const Landmarks& seen, const Alignment& alignment) const;
 
   /// Whether an alignment is one.
   bool is_good(const Alignment& alignment) const;
   /// Angle between two views of the object, and how far nearer one is, as an angle; radians.
-  double difference(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) const;
+  double view_angle(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) const;
   /// The keyframe whose view is nearest.
   int nearest(const Eigen::Isometry3d& T_camera_world) const;
 
@@ -97,13 +97,15 @@ class KeyframeMap {
   bool empty() const { return keyframes_.empty(); }
 
  private:
-  std::vector<int> references_for(const Eigen::Isometry3d& T_camera_world) const;
+  std::vector<int> local_keyframes_for(const Eigen::Isometry3d& T_camera_world) const;
   MapPart part_of(std::vector<int> keyframes) const;
-  std::vector<SeenAgain> find_again(const std::vector<int>& keyframes, const Landmarks& seen) const;
-  Alignment register_to_part(const MapPart& part, const FrameLevels& levels, const std::vector<SeenAgain>& again,
-                             const Eigen::Isometry3d& T_likely, const RegistrationLimits& limits) const;
-  std::vector<PoseEdge> edges_from(int from, int coarsest, std::map<int, std::vector<SeenAgain>>& again) const;
-  std::optional<LoopGap> close_loop(int last);
+  std::vector<LandmarkReobservation> match_keyframes(const std::vector<int>& keyframes, const Landmarks& seen) const;
+  Alignment register_to_part(const MapPart& part, const FrameLevels& levels,
+                             const std::vector<LandmarkReobservation>& again, const Eigen::Isometry3d& T_likely,
+                             const RegistrationLimits& limits) const;
+  std::vector<PoseEdge> edges_from(int from, int coarsest,
+                                   std::map<int, std::vector<LandmarkReobservation>>& again) const;
+  std::optional<LoopClosureError> close_loop(int last);
   void correct_poses();
   PoseEdge edge_between(int from, int to, const Matrix6& information) const;
 

@@ -9,7 +9,7 @@ namespace houghstream::reconstruction {
 namespace {
 
 /// Where the motion that an edge misses is large, the edge is wrong rather than the poses.
-double trust(const Vector6& error) {
+double robust_weight(const Vector6& error) {
   constexpr double kShift_m = 0.006;
   constexpr double kTurn = 0.02;
   const double shift = error.head<3>().norm() / kShift_m;
@@ -33,7 +33,7 @@ void optimise_pose_graph(const std::vector<PoseEdge>& edges, std::vector<Eigen::
       const auto j = static_cast<std::size_t>(edge.to);
       const Vector6 error =
           local_coordinates_about_body((edge.T_to_from * T_camera_world[i]).inverse() * T_camera_world[j]);
-      const Matrix6 weight = edge.information * (iteration < kPlainIterations ? 1.0 : trust(error));
+      const Matrix6 weight = edge.information * (iteration < kPlainIterations ? 1.0 : robust_weight(error));
       squares.block<6, 6>(6 * edge.from, 6 * edge.from) += weight;
       squares.block<6, 6>(6 * edge.to, 6 * edge.to) += weight;
       squares.block<6, 6>(6 * edge.from, 6 * edge.to) -= weight;

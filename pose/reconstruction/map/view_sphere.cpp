@@ -24,7 +24,7 @@ const char* part_of(const Eigen::Vector3d& direction, const Eigen::Vector3d& fro
 
 }  // namespace
 
-const std::array<Eigen::Vector3d, kSphereDirections>& sphere_of_directions() {
+const std::array<Eigen::Vector3d, kSphereDirections>& view_directions() {
   static const std::array<Eigen::Vector3d, kSphereDirections> directions = [] {
     std::array<Eigen::Vector3d, kSphereDirections> made;
     const double golden = 2.39996322972865332;
@@ -38,21 +38,21 @@ const std::array<Eigen::Vector3d, kSphereDirections>& sphere_of_directions() {
   return directions;
 }
 
-void mark_covered(const Eigen::Vector3d& towards_camera, SeenDirections& seen) {
+void mark_covered(const Eigen::Vector3d& towards_camera, ViewCoverage& seen) {
   constexpr double kCosine = 0.6428;  // of 50 degrees
   const Eigen::Vector3d unit = towards_camera.normalized();
-  const auto& directions = sphere_of_directions();
+  const auto& directions = view_directions();
   for (std::size_t i = 0; i < directions.size(); ++i) seen[i] = seen[i] || directions[i].dot(unit) > kCosine;
 }
 
-int count_covered(const SeenDirections& seen) {
+int count_covered(const ViewCoverage& seen) {
   return static_cast<int>(std::count(seen.begin(), seen.end(), true));
 }
 
-std::string describe_coverage(const SeenDirections& seen, const Eigen::Vector3d& front) {
+std::string describe_coverage(const ViewCoverage& seen, const Eigen::Vector3d& front) {
   std::string text = fmt::format("seen from {} of {} directions", count_covered(seen), kSphereDirections);
   std::vector<std::string> missing;
-  const auto& directions = sphere_of_directions();
+  const auto& directions = view_directions();
   for (const char* part : {"in front", "the right", "behind", "the left", "above", "low", "below"}) {
     bool any = false;
     for (std::size_t i = 0; i < directions.size(); ++i)

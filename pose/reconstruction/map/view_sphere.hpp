@@ -9,19 +9,19 @@ namespace houghstream::reconstruction {
 constexpr int kSphereDirections = 60;
 
 /// Which of the directions of a sphere have been seen.
-using SeenDirections = std::array<bool, kSphereDirections>;
+using ViewCoverage = std::array<bool, kSphereDirections>;
 
 /// Evenly spread unit vectors in the object frame (z up), from the top down: a Fibonacci lattice (Gonzalez 2010).
-const std::array<Eigen::Vector3d, kSphereDirections>& sphere_of_directions();
+const std::array<Eigen::Vector3d, kSphereDirections>& view_directions();
 
 /// Marks those sides of the object that a camera in this direction (object frame, from the object's middle) looks at
 /// within 50 degrees.
-void mark_covered(const Eigen::Vector3d& towards_camera, SeenDirections& seen);
+void mark_covered(const Eigen::Vector3d& towards_camera, ViewCoverage& seen);
 
-int count_covered(const SeenDirections& seen);
+int count_covered(const ViewCoverage& seen);
 
 /// "seen from 40 of 60 directions; from behind and from low nothing yet". In front is where the camera began, `front`
 /// in the object frame.
-std::string describe_coverage(const SeenDirections& seen, const Eigen::Vector3d& front);
+std::string describe_coverage(const ViewCoverage& seen, const Eigen::Vector3d& front);
 
 }  // namespace houghstream::reconstruction

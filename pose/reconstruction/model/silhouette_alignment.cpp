@@ -76,7 +76,7 @@ void place(const Mesh& mesh, TrainingView& view) {
 
 }  // namespace
 
-double outline_overlap(const Mesh& mesh, const TrainingView& view) {
+double silhouette_iou(const Mesh& mesh, const TrainingView& view) {
   const cv::Mat model = rendered(mesh, view);
   return overlap_at(model == model, view.mask, {});
 }

@@ -9,7 +9,7 @@ namespace houghstream::reconstruction {
 
 /// Share of the pixels of a view's mask and of the model's outline that both have, 0 to 1. The mask must not have been
 /// made of the model.
-double outline_overlap(const Mesh& mesh, const TrainingView& view);
+double silhouette_iou(const Mesh& mesh, const TrainingView& view);
 
 /// Moves each view's T_camera_object, without turning it, to where the model's outline fits the mask best and its
 /// surface lies at the measured depth. For views whose turn is known better than their place, such as those of a

@@ -53,7 +53,7 @@ std::vector<DepthView> views_about(const Take& take, const Eigen::AlignedBox3d& 
     }
     view.T_camera_object = keyframe.T_camera_world;
     views[static_cast<std::size_t>(i)] = fusion::make_depth_view(view);
-    views[static_cast<std::size_t>(i)].light = light_of(take, 0);
+    views[static_cast<std::size_t>(i)].lighting_id = lighting_of(take, 0);
   });
   views.erase(std::remove_if(views.begin(), views.end(), [](const DepthView& view) { return view.depth.empty(); }),
               views.end());
@@ -225,7 +225,7 @@ void cut_out(const Filled& filled, const ReconstructionSettings& settings, TsdfV
 
 }  // namespace
 
-int light_of(const Take& take, int number) {
+int lighting_of(const Take& take, int number) {
   return take.motion == Motion::kCamera ? number : -1;
 }
 
@@ -259,7 +259,7 @@ ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSetti
   for (MaskedKeyframe& view : shown) {
     if (cv::countNonZero(view.mask) > 0) model.views.push_back(std::move(view));
   }
-  model.agreement_m = disagreement(model.mesh, {{&take, &model.views}}, settings.threads);
+  model.agreement_m = surface_deviation(model.mesh, {{&take, &model.views}}, settings.threads);
   model.seen_through = free_space_violation(model.mesh, take, model.views, settings.threads);
   return model;
 }
@@ -286,7 +286,7 @@ fusion::DepthView depth_view(const TrainingView& view, const Mesh& known, bool w
   cut.mask = view.mask(region);
   fusion::DepthView out = fusion::make_depth_view(cut);
   cv::dilate(outline, outline, cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * kUnsure_px + 1, 2 * kUnsure_px + 1}));
-  out.outside = outline(region) == 0;
+  out.free_space_mask = outline(region) == 0;
   if (whole_picture) out.picture = whole - region.tl();
   return out;
 }
@@ -370,7 +370,7 @@ ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views
   parallel_for(settings.threads, static_cast<int>(depth_views.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     depth_views[at] = depth_view(views.views[at], known, views.whole_pictures);
-    if (!views.lights.empty()) depth_views[at].light = views.lights[at];
+    if (!views.lighting_ids.empty()) depth_views[at].lighting_id = views.lighting_ids[at];
   });
   fusion::TsdfSettings grid_settings;
   const Eigen::AlignedBox3d bounds = mesh_bounds(known).cast<double>();
@@ -401,10 +401,10 @@ bool merge_takes(const Take& first, ReconstructedModel& model, const Take& secon
   Mesh both = model.mesh;  // its outline is that of both
   append_mesh(other.mesh, found->T_a_b, both);
   MaskedViews views{training_views(first, model.views, ""), {}, true};
-  views.lights.assign(views.views.size(), light_of(first, 0));
+  views.lighting_ids.assign(views.views.size(), lighting_of(first, 0));
   std::vector<TrainingView> more = training_views(second, moved.views, "");
   std::move(more.begin(), more.end(), std::back_inserter(views.views));
-  views.lights.resize(views.views.size(), light_of(second, 1));
+  views.lighting_ids.resize(views.views.size(), lighting_of(second, 1));
   ModelOfViews fused = fuse_masked_views("both takes", views, both, std::nullopt, settings);
   moved.seen_through = std::max(free_space_violation(fused.mesh, first, model.views, settings.threads),
                                 free_space_violation(fused.mesh, second, moved.views, settings.threads));
@@ -422,7 +422,8 @@ bool merge_takes(const Take& first, ReconstructedModel& model, const Take& secon
                                       view.T_camera_object);
     });
   }
-  model.agreement_m = disagreement(model.mesh, {{&first, &model.views}, {&second, &other.views}}, settings.threads);
+  model.agreement_m =
+      surface_deviation(model.mesh, {{&first, &model.views}, {&second, &other.views}}, settings.threads);
   other.agreement_m = model.agreement_m;
   return true;
 }

@@ -5,7 +5,7 @@
 
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/types/training_view.hpp"
-#include "pose/reconstruction/model/model_agreement.hpp"
+#include "pose/reconstruction/model/model_deviation.hpp"
 #include "pose/reconstruction/tracking/take.hpp"
 
 namespace houghstream::reconstruction {
@@ -33,9 +33,9 @@ struct ReconstructionSettings {
 /// of the depth, so that they hold neither table nor hand. Throws InputError where there is no such part.
 ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSettings& settings);
 
-/// DepthView::light of the take's keyframes: `number` where the camera moved and the light stood still about the
+/// DepthView::lighting_id of the take's keyframes: `number` where the camera moved and the light stood still about the
 /// object.
-int light_of(const Take& take, int number);
+int lighting_of(const Take& take, int number);
 
 /// Views of one object, whose poses mean one frame.
 struct ModelOfViews {
@@ -45,8 +45,8 @@ struct ModelOfViews {
 
 struct MaskedViews {
   std::vector<TrainingView> views;
-  std::vector<int> lights;      ///< DepthView::light of each view; empty: all -1
-  bool whole_pictures = false;  ///< false: cut out of larger ones, which go on around them
+  std::vector<int> lighting_ids;  ///< DepthView::lighting_id of each view; empty: all -1
+  bool whole_pictures = false;    ///< false: cut out of larger ones, which go on around them
 };
 
 /// Fuses masked views from all sides (Curless & Levoy 1996). What hides the object in a view, within the outline of

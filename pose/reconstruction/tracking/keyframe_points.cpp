@@ -15,7 +15,7 @@ void remove_seen_through(const Keyframe& seen, const KeyframeMap& map, cv::Mat& 
   const FrameLevel& level = seen.levels.levels[0];
   const Eigen::Isometry3d T_world_camera = seen.T_camera_world.inverse();
   for (const Keyframe& keyframe : map.keyframes()) {
-    if (map.difference(keyframe.T_camera_world, seen.T_camera_world) > kAlike) continue;
+    if (map.view_angle(keyframe.T_camera_world, seen.T_camera_world) > kAlike) continue;
     const Eigen::Isometry3d T = keyframe.T_camera_world * T_world_camera;
     for (int y = 0; y < mask.rows; ++y) {
       for (int x = 0; x < mask.cols; ++x) {

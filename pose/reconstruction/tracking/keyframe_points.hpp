@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 
-#include "pose/reconstruction/choice/object_selection.hpp"
 #include "pose/reconstruction/map/keyframe_map.hpp"
+#include "pose/reconstruction/selection/object_selection.hpp"
 
 namespace houghstream::reconstruction {
 

@@ -13,7 +13,7 @@ namespace houghstream::reconstruction {
 namespace {
 
 /// Of the pixels with a clear edge in the first picture, where `mask` is set: the share that looks the same now.
-double unchanged_share(const cv::Mat& light, const cv::Mat& first, const cv::Mat& mask) {
+double unchanged_fraction(const cv::Mat& intensity, const cv::Mat& first, const cv::Mat& mask) {
   constexpr float kEdge_sq = 0.16F;
   constexpr float kSame = 0.4F;
   int edges = 0;
@@ -25,7 +25,7 @@ double unchanged_share(const cv::Mat& light, const cv::Mat& first, const cv::Mat
       const float gy = first.at<float>(y + 1, x) - first.at<float>(y - 1, x);
       if (gx * gx + gy * gy < kEdge_sq) continue;
       ++edges;
-      same += std::abs(light.at<float>(y, x) - first.at<float>(y, x)) < kSame ? 1 : 0;
+      same += std::abs(intensity.at<float>(y, x) - first.at<float>(y, x)) < kSame ? 1 : 0;
     }
   }
   return edges > 0 ? static_cast<double>(same) / edges : 1.0;
@@ -36,7 +36,7 @@ double unchanged_share(const cv::Mat& light, const cv::Mat& first, const cv::Mat
 MotionClassifier::MotionClassifier(FlowFrame first, const FrameLevels& levels, const cv::Mat& on_object,
                                    const Eigen::Isometry3d& T_camera_world, std::size_t min_corners)
     : first_(std::move(first)),
-      first_light_(levels.levels[0].light),
+      first_intensity_(levels.levels[0].intensity),
       T_first_(T_camera_world),
       min_corners_(min_corners) {
   cv::dilate(on_object, about_object_, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
@@ -71,12 +71,12 @@ bool MotionClassifier::camera_is_still(const FlowFrame& now, const FrameLevels& 
   return as_still < as_moved + kBetter;
 }
 
-Motion MotionClassifier::judge(const FlowFrame& now, const FrameLevels& levels, Eigen::Isometry3d& T_camera_world) {
+Motion MotionClassifier::classify(const FlowFrame& now, const FrameLevels& levels, Eigen::Isometry3d& T_camera_world) {
   constexpr int kSure = 3;
   constexpr double kLess = 0.2;  // share of edges
   const bool is_still = camera_is_still(now, levels, T_camera_world);
-  const double around = unchanged_share(levels.levels[0].light, first_light_, away_from_object_);
-  const double on_it = unchanged_share(levels.levels[0].light, first_light_, about_object_);
+  const double around = unchanged_fraction(levels.levels[0].intensity, first_intensity_, away_from_object_);
+  const double on_it = unchanged_fraction(levels.levels[0].intensity, first_intensity_, about_object_);
   camera_moves_ = is_still ? 0 : camera_moves_ + 1;
   object_moves_ = is_still && on_it < around - kLess ? object_moves_ + 1 : 0;
   if (is_still) T_camera_world = T_first_;
@@ -89,19 +89,20 @@ void StaticShadingDetector::mark_static_intensity(const cv::Mat& on_object, Fram
   constexpr float kSame = 0.3F;
   constexpr double kRests = 0.03;
   std::vector<cv::Mat> now;
-  for (const FrameLevel& level : levels.levels) now.push_back(level.light);
-  lights_.push_back(std::move(now));
-  if (lights_.size() <= kFramesAgo) return;
-  const double changed = 1.0 - unchanged_share(levels.levels[0].light, lights_.front()[0], on_object);
+  for (const FrameLevel& level : levels.levels) now.push_back(level.intensity);
+  intensities_.push_back(std::move(now));
+  if (intensities_.size() <= kFramesAgo) return;
+  const double changed = 1.0 - unchanged_fraction(levels.levels[0].intensity, intensities_.front()[0], on_object);
   if (changed > kRests) {
     for (std::size_t l = 0; l < levels.levels.size(); ++l) {
       cv::Mat difference;
-      cv::absdiff(levels.levels[l].light, lights_.front()[l], difference);
-      levels.levels[l].stays = difference < kSame;
-      cv::erode(levels.levels[l].stays, levels.levels[l].stays, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
+      cv::absdiff(levels.levels[l].intensity, intensities_.front()[l], difference);
+      levels.levels[l].static_mask = difference < kSame;
+      cv::erode(levels.levels[l].static_mask, levels.levels[l].static_mask,
+                cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
     }
   }
-  lights_.pop_front();
+  intensities_.pop_front();
 }
 
 }  // namespace houghstream::reconstruction

@@ -27,7 +27,7 @@ class MotionClassifier {
 
   /// The next frame, with the pose that a moved camera would have. Where the camera stands still, the pose becomes the
   /// first frame's. kUnknown until three frames one after the other say the same.
-  Motion judge(const FlowFrame& now, const FrameLevels& levels, Eigen::Isometry3d& T_camera_world);
+  Motion classify(const FlowFrame& now, const FrameLevels& levels, Eigen::Isometry3d& T_camera_world);
 
   /// Frames in which the object moved, one after the other, the last one judged included.
   int object_moves() const { return object_moves_; }
@@ -36,7 +36,7 @@ class MotionClassifier {
   bool camera_is_still(const FlowFrame& now, const FrameLevels& levels, const Eigen::Isometry3d& T_moved) const;
 
   FlowFrame first_;
-  cv::Mat first_light_, about_object_, away_from_object_;  ///< of its finest level
+  cv::Mat first_intensity_, about_object_, away_from_object_;  ///< of its finest level
   Eigen::Isometry3d T_first_ = Eigen::Isometry3d::Identity();
   std::size_t min_corners_ = 0;
   std::vector<cv::Point2f> corners_;  ///< of it, away from the object
@@ -49,12 +49,12 @@ class MotionClassifier {
 class StaticShadingDetector {
  public:
   /// Shade and shine stay where they are while the object turns: what looks as it did some frames ago tells nothing of
-  /// the turn, unless all of it does, and the object rests. Marks it in the next frame's levels (FrameLevel::stays).
-  /// `on_object`: as for MotionClassifier.
+  /// the turn, unless all of it does, and the object rests. Marks it in the next frame's levels
+  /// (FrameLevel::static_mask). `on_object`: as for MotionClassifier.
   void mark_static_intensity(const cv::Mat& on_object, FrameLevels& levels);
 
  private:
-  std::deque<std::vector<cv::Mat>> lights_;  ///< by level, the oldest frame first
+  std::deque<std::vector<cv::Mat>> intensities_;  ///< by level, the oldest frame first
 };
 
 }  // namespace houghstream::reconstruction

@@ -16,7 +16,7 @@ std::vector<std::pair<double, int>> keyframes_by_distance(const KeyframeMap& map
   const std::vector<Keyframe>& keyframes = map.keyframes();
   std::vector<std::pair<double, int>> by_distance;
   for (std::size_t k = 0; k < keyframes.size(); ++k)
-    by_distance.emplace_back(map.difference(T_camera_world, keyframes[k].T_camera_world), static_cast<int>(k));
+    by_distance.emplace_back(map.view_angle(T_camera_world, keyframes[k].T_camera_world), static_cast<int>(k));
   std::sort(by_distance.begin(), by_distance.end());
   return by_distance;
 }
@@ -27,7 +27,7 @@ std::optional<Alignment> register_to_keyframe(const KeyframeMap& map, int keyfra
   AlignmentLimits limits;
   limits.coarsest = map.settings().coarsest;
   Alignment found = align_frame(map.points_of({keyframe}), levels, T_start, {map.settings().plane, {}}, limits);
-  if (!map.is_good(found) || found.inlier_share <= kSureInliers) return std::nullopt;
+  if (!map.is_good(found) || found.inlier_fraction <= kSureInliers) return std::nullopt;
   return found;
 }
 
@@ -75,7 +75,7 @@ std::optional<Alignment> Relocaliser::find(const KeyframeMap& map, const FrameLe
   }
   if (best_keyframe < 0 || best.corners < map.settings().sure_corners) return std::nullopt;
   const Eigen::Isometry3d T = best.T_frame_keyframe * keyframes[static_cast<std::size_t>(best_keyframe)].T_camera_world;
-  if (map.difference(T, last.T_camera_world) > last.farthest) return std::nullopt;
+  if (map.view_angle(T, last.T_camera_world) > last.farthest) return std::nullopt;
   return register_to_keyframe(map, best_keyframe, levels, T);
 }
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "pipeline/types/frame_id.hpp"
-#include "pose/reconstruction/choice/object_selection.hpp"
 #include "pose/reconstruction/map/keyframe_map.hpp"
 #include "pose/reconstruction/map/view_sphere.hpp"
+#include "pose/reconstruction/selection/object_selection.hpp"
 
 namespace houghstream::reconstruction {
 
@@ -39,8 +39,8 @@ struct Take {
   std::vector<Keyframe> keyframes;
   std::vector<PlacedFrame> frames;
   std::vector<LostSpan> lost;
-  std::optional<LoopGap> gap;  ///< of the loop that goes round, before it was closed
-  SeenDirections seen{};
+  std::optional<LoopClosureError> gap;  ///< of the loop that goes round, before it was closed
+  ViewCoverage seen{};
   int degrees_round = 0;               ///< of the turn from which it was seen, 0 to 360
   int blurred = 0, badly_exposed = 0;  ///< frames
   double tracking_hz = 0.0;            ///< frames a second that tracking alone takes

@@ -49,10 +49,10 @@ const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
     take_.frames.back().left_out = !is_fit_for_model(levels.quality);
     std::optional<Alignment> found;
     if (motion_ == Motion::kObject)
-      lights_.mark_static_intensity(object_pixels(levels.levels[0], chosen_, step_.T_last), levels);
-    if (state_.state == TakeState::kTracking) found = follower_.follow(now, levels, step_, motion_, map_);
+      static_shading_.mark_static_intensity(object_pixels(levels.levels[0], chosen_, step_.T_last), levels);
+    if (state_.state == TakePlacerState::kTracking) found = follower_.follow(now, levels, step_, motion_, map_);
     if (found && motion_ == Motion::kUnknown) {
-      motion_ = judge_.judge(now, levels, found->T_camera_world);
+      motion_ = motion_classifier_.classify(now, levels, found->T_camera_world);
       if (motion_ == Motion::kObject) {
         follow_object_only();
         levels = make_levels(frame, levels_);
@@ -60,7 +60,7 @@ const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
       }
     }
     LandmarkCache corners;
-    if (!found) found = find_again(frame, levels, false, corners);
+    if (!found) found = relocalise(frame, levels, false, corners);
     if (found) {
       accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), *found);
       follower_.set_last(std::move(now));
@@ -76,10 +76,10 @@ const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
 }
 
 void TakePlacer::choose(const RgbdFrame& frame) {
-  Choice choice = select_object(frame, settings_.choice);
+  ObjectSelection choice = select_object(frame, settings_.selection);
   if (!choice.object) {
     state_.message = choice.reason;
-    require(state_.frames < settings_.max_frames_to_choose && !settings_.choice.box_px, "{}", choice.reason);
+    require(state_.frames < settings_.max_frames_to_choose && !settings_.selection.box_px, "{}", choice.reason);
     return;
   }
   chosen_ = std::move(*choice.object);
@@ -87,24 +87,24 @@ void TakePlacer::choose(const RgbdFrame& frame) {
   first_number_ = state_.frames - 1;
   FrameLevels levels = make_levels(frame, levels_);
   step_.restart(chosen_.T_camera_stand);
-  state_.state = TakeState::kTracking;
+  state_.state = TakePlacerState::kTracking;
   round_.assign(36, false);
-  judge_ =
+  motion_classifier_ =
       MotionClassifier(make_flow_frame(frame), levels, object_pixels(levels.levels[0], chosen_, chosen_.T_camera_stand),
                        chosen_.T_camera_stand, settings_.map.min_corners);
-  follower_.set_last(judge_.first());
+  follower_.set_last(motion_classifier_.first());
   Alignment at_start;
   at_start.T_camera_world = chosen_.T_camera_stand;
   accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), at_start);
 }
 
-bool TakePlacer::is_fit_for_model(const PictureQuality& quality) {
+bool TakePlacer::is_fit_for_model(const ImageQuality& quality) {
   constexpr std::size_t kAround = 31;
   std::vector<double> around(sharpness_.begin(), sharpness_.end());
   sharpness_.push_back(quality.sharpness);
   if (sharpness_.size() > kAround) sharpness_.pop_front();
   const bool badly_exposed =
-      quality.dark_share > settings_.max_dark_share || quality.bright_share > settings_.max_bright_share;
+      quality.dark_fraction > settings_.max_dark_fraction || quality.bright_fraction > settings_.max_bright_fraction;
   take_.badly_exposed += badly_exposed ? 1 : 0;
   if (badly_exposed) return false;
   if (around.size() < 3) return true;
@@ -114,7 +114,7 @@ bool TakePlacer::is_fit_for_model(const PictureQuality& quality) {
   return !blurred;
 }
 
-std::optional<Alignment> TakePlacer::find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
+std::optional<Alignment> TakePlacer::relocalise(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
                                                 LandmarkCache& corners) {
   // What is round or a box looks alike from several sides.
   const LastPlace last{step_.T_last, motion_ == Motion::kObject ? 0.5 : 1e9};
@@ -125,8 +125,8 @@ std::optional<Alignment> TakePlacer::find_again(const RgbdFrame& frame, const Fr
 }
 
 void TakePlacer::accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
-  const bool was_lost = state_.state == TakeState::kLost;
-  state_.state = TakeState::kTracking;
+  const bool was_lost = state_.state == TakePlacerState::kLost;
+  state_.state = TakePlacerState::kTracking;
   if (was_lost) {
     step_.restart(alignment.T_camera_world);
   } else {
@@ -137,8 +137,8 @@ void TakePlacer::accept(int number, const RgbdFrame& frame, FrameLevels levels, 
   const int nearest = map_.nearest(step_.T_last);
   const double away =
       nearest < 0 ? 1e9
-                  : map_.difference(step_.T_last, map_.keyframes()[static_cast<std::size_t>(nearest)].T_camera_world);
-  if (nearest < 0 || (fit && away > settings_.keyframe_turn) || away > 2.0 * settings_.keyframe_turn) {
+                  : map_.view_angle(step_.T_last, map_.keyframes()[static_cast<std::size_t>(nearest)].T_camera_world);
+  if (nearest < 0 || (fit && away > settings_.keyframe_angle) || away > 2.0 * settings_.keyframe_angle) {
     Keyframe made;
     made.landmarks = detect_landmarks(frame, landmark_mask(frame, step_.T_last));
     Alignment held = alignment;
@@ -167,12 +167,12 @@ void TakePlacer::accept(int number, const RgbdFrame& frame, FrameLevels levels, 
 /// table, which does not move, holds it upright.
 void TakePlacer::follow_object_only() {
   constexpr double kAround = 0.6;
-  const RgbdFrame& first = judge_.first().frame;
+  const RgbdFrame& first = motion_classifier_.first().frame;
   MapSettings& map = map_.settings();
   map.plane = PlanePrior();
   map.plane->normal = chosen_.plane.normal;
   map.plane->offset = chosen_.plane.offset;
-  map.min_inlier_share = 0.6;
+  map.min_inlier_fraction = 0.6;
   map.coarsest = 1;
   map.use_landmarks = false;
   map.sure_corners = 12;
@@ -197,7 +197,7 @@ void TakePlacer::follow_object_only() {
 /// The frames of before were tied to keyframes of the surroundings, and the map now holds the first frame alone: all of
 /// them show the object as that one does. In the last of them it moved already, and nobody knows how far.
 void TakePlacer::tie_to_first_keyframe() {
-  int moved = judge_.object_moves() - 1;  // the last is the present frame, which is not placed yet
+  int moved = motion_classifier_.object_moves() - 1;  // the last is the present frame, which is not placed yet
   for (auto frame = take_.frames.rbegin(); frame != take_.frames.rend(); ++frame) {
     if (!frame->tracked) continue;
     frame->T_camera_keyframe.setIdentity();
@@ -217,7 +217,7 @@ cv::Mat TakePlacer::landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3
 void TakePlacer::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
   keyframe.points = motion_ == Motion::kObject ? points_of_object(keyframe, map_, chosen_, levels_.region_px)
                                                : points_of_scene(keyframe);
-  const std::optional<LoopGap> gap = map_.add(std::move(keyframe), alignment);
+  const std::optional<LoopClosureError> gap = map_.add(std::move(keyframe), alignment);
   if (!gap) return;
   step_.restart(map_.keyframes().back().T_camera_world);
   const auto seen_round = std::count(round_.begin(), round_.end(), true);
@@ -228,16 +228,16 @@ void TakePlacer::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
 void TakePlacer::note_lost(const FrameLevels& levels) {
   constexpr double kFast = 0.06;  // radians of view a frame
   const int number = static_cast<int>(take_.frames.size()) - 1;
-  if (state_.state == TakeState::kLost && !take_.lost.empty() && take_.lost.back().to == number - 1) {
+  if (state_.state == TakePlacerState::kLost && !take_.lost.empty() && take_.lost.back().to == number - 1) {
     take_.lost.back().to = number;
     return;
   }
-  const double speed = map_.difference(step_.T_last, step_.T_before);
+  const double speed = map_.view_angle(step_.T_last, step_.T_before);
   std::string why = "the picture jumped, or something hid what was followed";
   if (speed > kFast ||
       levels.quality.sharpness < settings_.min_sharpness * (sharpness_.empty() ? 0.0 : sharpness_.front()))
     why = "too fast";
-  state_.state = TakeState::kLost;
+  state_.state = TakePlacerState::kLost;
   take_.lost.push_back({number, number, why});
 }
 
@@ -247,15 +247,15 @@ void TakePlacer::describe() {
   state_.T_camera_object.reset();
   state_.box_px = {};
   if (map_.empty()) return;
-  if (state_.state == TakeState::kLost) {
+  if (state_.state == TakePlacerState::kLost) {
     state_.message = take_.lost.empty() ? "lost" : "lost: " + take_.lost.back().why + "; go back to where it was seen";
     return;
   }
   state_.T_camera_object = step_.T_last;
-  state_.box_px = box_of(chosen_, judge_.first().frame.camera, step_.T_last);
+  state_.box_px = box_of(chosen_, motion_classifier_.first().frame.camera, step_.T_last);
   state_.message = describe_coverage(state_.seen, chosen_.T_camera_stand.inverse().translation());
   if (state_.frames - first_number_ <= kTold)
-    state_.message = describe_choice(chosen_) + "; move the camera once around it, or turn it";
+    state_.message = describe_selection(chosen_) + "; move the camera once around it, or turn it";
 }
 
 /// What was lost when it came may be found now that more of the surroundings is known.
@@ -264,7 +264,7 @@ void TakePlacer::relocalise_lost_frames() {
     any = false;
     for (auto at = unplaced_.begin(); at != unplaced_.end();) {
       FrameLevels levels = make_levels(at->frame, levels_);
-      const std::optional<Alignment> found = find_again(at->frame, levels, true, at->corners);
+      const std::optional<Alignment> found = relocalise(at->frame, levels, true, at->corners);
       if (!found) {
         ++at;
         continue;

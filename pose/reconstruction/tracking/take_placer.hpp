@@ -14,23 +14,23 @@
 
 namespace houghstream::reconstruction {
 
-enum class TakeState : std::uint8_t { kChoosing, kTracking, kLost };
+enum class TakePlacerState : std::uint8_t { kChoosing, kTracking, kLost };
 
 struct TakePlacerSettings {
-  ChoiceSettings choice;
-  MapSettings map;                ///< middle and plane are those of the object
-  int max_frames_to_choose = 45;  ///< without an object in so many frames, there is none
-  double keyframe_turn = 0.12;    ///< radians between the views of keyframes
-  double min_sharpness = 0.5;     ///< of the median of the frames around; what is less is blurred
-  double max_dark_share = 0.7;    ///< of a picture; what is more is badly exposed
-  double max_bright_share = 0.4;
+  SelectionSettings selection;
+  MapSettings map;                 ///< middle and plane are those of the object
+  int max_frames_to_choose = 45;   ///< without an object in so many frames, there is none
+  double keyframe_angle = 0.12;    ///< radians between the views of keyframes
+  double min_sharpness = 0.5;      ///< of the median of the frames around; what is less is blurred
+  double max_dark_fraction = 0.7;  ///< of a picture; what is more is badly exposed
+  double max_bright_fraction = 0.4;
 };
 
 /// What can be said at any time.
 struct TakePlacerStatus {
-  TakeState state = TakeState::kChoosing;
+  TakePlacerState state = TakePlacerState::kChoosing;
   std::string message;  ///< for a person, one line
-  SeenDirections seen{};
+  ViewCoverage seen{};
   int frames = 0;
   int keyframes = 0;
   cv::Rect box_px;                                   ///< of the object in the last frame; empty where it is not known
@@ -56,12 +56,12 @@ class TakePlacer {
  private:
   void require_same_size(const RgbdFrame& frame);
   void choose(const RgbdFrame& frame);
-  std::optional<Alignment> find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
+  std::optional<Alignment> relocalise(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
                                       LandmarkCache& corners);
   void relocalise_lost_frames();
   void accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   void note_lost(const FrameLevels& levels);
-  bool is_fit_for_model(const PictureQuality& quality);
+  bool is_fit_for_model(const ImageQuality& quality);
   void follow_object_only();
   void tie_to_first_keyframe();
   void add_keyframe(Keyframe keyframe, const Alignment& alignment);
@@ -74,8 +74,8 @@ class TakePlacer {
   KeyframeMap map_;
   LevelSettings levels_;
   Motion motion_ = Motion::kUnknown;
-  MotionClassifier judge_;        ///< from the frame on in which the object was chosen
-  StaticShadingDetector lights_;  ///< while the object turns
+  MotionClassifier motion_classifier_;    ///< from the frame on in which the object was chosen
+  StaticShadingDetector static_shading_;  ///< while the object turns
   FrameFollower follower_;
   cv::Size size_;  ///< of all frames, pixels
   int first_number_ = 0;

@@ -38,9 +38,9 @@ TEST(DepthView, BesideTheMaskIsOutsideWhereTheWallIsSeen) {
   const cv::Point hole(130, 140);
   cv::circle(training.mask, hole, 8, cv::Scalar(0), cv::FILLED);
   const DepthView view = make_depth_view(training);
-  EXPECT_EQ(view.outside.at<std::uint8_t>(hole), 255) << "a hole through which the wall is seen";
-  EXPECT_EQ(view.outside.at<std::uint8_t>(2, 2), 255);
-  EXPECT_EQ(cv::countNonZero(view.outside & training.mask), 0);
+  EXPECT_EQ(view.free_space_mask.at<std::uint8_t>(hole), 255) << "a hole through which the wall is seen";
+  EXPECT_EQ(view.free_space_mask.at<std::uint8_t>(2, 2), 255);
+  EXPECT_EQ(cv::countNonZero(view.free_space_mask & training.mask), 0);
 }
 
 TEST(DepthView, AMaskMadeOfDepthIsFilledToItsHull) {
@@ -53,8 +53,8 @@ TEST(DepthView, AMaskMadeOfDepthIsFilledToItsHull) {
   training.mask(notch) = 0;
   training.frame.depth(notch) = std::numeric_limits<float>::quiet_NaN();
   const DepthView view = make_depth_view(training);
-  EXPECT_EQ(cv::countNonZero(view.outside & whole), 0);
-  EXPECT_EQ(view.outside.at<std::uint8_t>(2, 2), 255);
+  EXPECT_EQ(cv::countNonZero(view.free_space_mask & whole), 0);
+  EXPECT_EQ(view.free_space_mask.at<std::uint8_t>(2, 2), 255);
 }
 
 TEST(DepthView, SpecksOfTheMaskAreDropped) {
@@ -66,7 +66,7 @@ TEST(DepthView, SpecksOfTheMaskAreDropped) {
   training.frame.depth(speck) = 0.6F;
   const DepthView view = make_depth_view(training);
   EXPECT_EQ(cv::countNonZero(view.depth(speck) == view.depth(speck)), 0);
-  EXPECT_EQ(view.outside.at<std::uint8_t>(274, 7), 255);
+  EXPECT_EQ(view.free_space_mask.at<std::uint8_t>(274, 7), 255);
 }
 
 TEST(DepthView, PixelsOfPointsOutOfSightAreNone) {

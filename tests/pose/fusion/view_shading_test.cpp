@@ -81,7 +81,7 @@ TEST(Exposures, OfARingOfViewsAreFound) {
           {v, view, level[static_cast<std::size_t>(v)] + truth[static_cast<std::size_t>(view)] + shine, 1.0});
     }
   }
-  const std::vector<double> found = exposures(samples, kVertices, kViews);
+  const std::vector<double> found = estimate_exposures(samples, kVertices, kViews);
   for (int k = 1; k < kViews; ++k) {
     const auto at = static_cast<std::size_t>(k);
     EXPECT_NEAR(found[at] - found[0], truth[at] - truth[0], 0.15) << k;
@@ -89,7 +89,7 @@ TEST(Exposures, OfARingOfViewsAreFound) {
 }
 
 TEST(Exposures, AViewAloneHasNone) {
-  EXPECT_EQ(exposures({{0, 0, -1.0, 1.0}}, 1, 2), std::vector<double>(2, 0.0));
+  EXPECT_EQ(estimate_exposures({{0, 0, -1.0, 1.0}}, 1, 2), std::vector<double>(2, 0.0));
 }
 
 /// Share by which the darkest tenth of the coloured vertices is darker than the brightest tenth.
@@ -116,7 +116,7 @@ TEST(ViewColours, StandingLightAndExposureAreTakenOut) {
   std::vector<DepthView> views;
   for (; view < scene.views; ++view) {
     views.push_back(make_depth_view(turntable_view(scene, view)));
-    views.back().light = 0;
+    views.back().lighting_id = 0;
   }
   Mesh side;
   for (int i = 0; i < 64; ++i) {
@@ -128,7 +128,7 @@ TEST(ViewColours, StandingLightAndExposureAreTakenOut) {
   Mesh coloured = side;
   colour_mesh(views, 0.004, 1, coloured);
   EXPECT_NEAR(srgb_to_linear(coloured.colours[3])[0], 0.3, 0.05) << "as bright as where the lamp shone on it";
-  for (DepthView& one : views) one.light = -1;
+  for (DepthView& one : views) one.lighting_id = -1;
   EXPECT_GT(unevenness(views, side), 0.5) << "who knows where the light was: it stays";
 }
 

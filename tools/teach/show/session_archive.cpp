@@ -82,7 +82,7 @@ OrderedJson report_json(const ShowResult& shown, const Verdict& verdict) {
   json["drift_deg"] = drift_deg;
   json["agreement_mm"] = 1e3 * shown.agreement_m;
   json["seen_through"] = shown.seen_through;
-  json["outline_overlap"] = shown.outline_overlap ? OrderedJson(*shown.outline_overlap) : OrderedJson();
+  json["outline_overlap"] = shown.silhouette_iou ? OrderedJson(*shown.silhouette_iou) : OrderedJson();
   json["seen_share"] =
       static_cast<double>(reconstruction::count_covered(seen_by_all(shown))) / reconstruction::kSphereDirections;
   json["seen_surface"] = shown.seen_surface;

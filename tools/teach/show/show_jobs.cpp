@@ -163,9 +163,9 @@ Take follow(const TakeSource& source, const ShowOptions& options, ProgressReport
   const bool live = is_live(source.name);
   reconstruction::TakePlacerSettings settings;
   if (live && !source.at) settings.max_frames_to_choose = kAimed;
-  settings.choice.box_px = source.box;
-  settings.choice.at_px = source.at;
-  settings.choice.seed = options.seed;
+  settings.selection.box_px = source.box;
+  settings.selection.at_px = source.at;
+  settings.selection.seed = options.seed;
   settings.map.threads = options.threads;
   TakePlacer placer(settings);
   int blank = 0;

@@ -23,11 +23,11 @@ ProgressReporter::ProgressReporter(const std::string& name, ShowObserver* observ
 }
 
 void ProgressReporter::frame(const FrameId& id, const reconstruction::TakePlacerStatus& state) {
-  using reconstruction::TakeState;
+  using reconstruction::TakePlacerState;
   now_.frame = id;
-  now_.state = state.state == TakeState::kTracking ? ShowState::kTracking
-               : state.state == TakeState::kLost   ? ShowState::kLost
-                                                   : ShowState::kChoosing;
+  now_.state = state.state == TakePlacerState::kTracking ? ShowState::kTracking
+               : state.state == TakePlacerState::kLost   ? ShowState::kLost
+                                                         : ShowState::kChoosing;
   now_.message = state.message;
   now_.seen = state.seen;
   now_.frames = state.frames;

@@ -28,7 +28,7 @@ const char* name_of(ShowState state);
 
 /// What can be said while an object is shown: after each frame, and as fusing and teaching go on.
 struct ShowProgress {
-  static constexpr int kDirections = 60;  ///< of a sphere about the object: reconstruction::sphere_of_directions()
+  static constexpr int kDirections = 60;  ///< of a sphere about the object: reconstruction::view_directions()
 
   FrameId frame;     ///< the last that was looked at
   std::string name;  ///< of the object

@@ -53,7 +53,7 @@ void judge_take(const Take& take, std::vector<std::string>& reasons) {
       if (reasons.size() < 8) reasons.push_back(span_text(take, span));
     }
   }
-  if (take.gap && (take.gap->shift_m > kMaxGap_m || take.gap->turn > kMaxGapTurn))
+  if (take.gap && (take.gap->shift_m > kMaxGap_m || take.gap->angle_rad > kMaxGapTurn))
     reasons.push_back(fmt::format("the turn missed its beginning by {:.0f} mm and {:.1f} degrees",
                                   1e3 * take.gap->shift_m, degrees_of(*take.gap)));
 }
@@ -84,7 +84,7 @@ const char* what_moved(Motion motion) {
 std::string describe_take(const Take& take) {
   if (take.motion == Motion::kTurntable)
     return fmt::format("  {} pictures with masks; {}\n", take.keyframes.size(), what_moved(take.motion));
-  std::string text = fmt::format("  {}\n", reconstruction::describe_choice(take.chosen));
+  std::string text = fmt::format("  {}\n", reconstruction::describe_selection(take.chosen));
   text += fmt::format(
       "  {} frames in {:.1f} s, {} tracked, {} keyframes, {} blurred, {} badly exposed; {}; tracked at {:.0f} Hz\n",
       take.frames.size(), second_of(take, static_cast<int>(take.frames.size()) - 1), tracked_frames(take),
@@ -108,17 +108,17 @@ int tracked_frames(const Take& take) {
       std::count_if(take.frames.begin(), take.frames.end(), [](const PlacedFrame& frame) { return frame.tracked; }));
 }
 
-reconstruction::SeenDirections seen_by_all(const ShowResult& shown) {
-  reconstruction::SeenDirections seen{};
+reconstruction::ViewCoverage seen_by_all(const ShowResult& shown) {
+  reconstruction::ViewCoverage seen{};
   for (const Take& take : shown.takes) {
     for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] || take.seen[i];
   }
   return seen;
 }
 
-double degrees_of(const reconstruction::LoopGap& gap) {
+double degrees_of(const reconstruction::LoopClosureError& gap) {
   constexpr double kDegrees = 57.29577951308232;
-  return kDegrees * gap.turn;
+  return kDegrees * gap.angle_rad;
 }
 
 double share_of_seen(const std::vector<bool>& seen) {
@@ -135,9 +135,9 @@ Verdict judge(const ShowResult& shown) {
   if (shown.agreement_m > kMaxDisagreement_m)
     verdict.reasons.push_back(fmt::format("the views disagree by {:.1f} mm, expected less than {:.0f}",
                                           1e3 * shown.agreement_m, 1e3 * kMaxDisagreement_m));
-  if (shown.outline_overlap.value_or(1.0) < kMinOverlap)
+  if (shown.silhouette_iou.value_or(1.0) < kMinOverlap)
     verdict.reasons.push_back(fmt::format("the model's outline overlaps with the masks by {:.2f}, expected at least {}",
-                                          *shown.outline_overlap, kMinOverlap));
+                                          *shown.silhouette_iou, kMinOverlap));
   if (shown.seen_surface < kMinSurface)
     verdict.reasons.push_back(fmt::format("only {:.0f} % of its surface was seen", 100.0 * shown.seen_surface));
   if (shown.seen_through > reconstruction::kMaxFreeSpaceViolation)

@@ -17,9 +17,9 @@ struct ShowResult {
   double seen_surface = 0.0;  ///< share of the closed surface that some view shows
   bool second_fits = true;    ///< the second take, where there was one
   double agreement_m = 0.0;
-  double seen_through = 0.0;              ///< reconstruction::free_space_violation()
-  std::optional<double> outline_overlap;  ///< median over the views, with masks that were given
-  double seconds = 0.0;                   ///< that it took until the model was there
+  double seen_through = 0.0;             ///< reconstruction::free_space_violation()
+  std::optional<double> silhouette_iou;  ///< median over the views, with masks that were given
+  double seconds = 0.0;                  ///< that it took until the model was there
 };
 
 /// Share of vertices.
@@ -41,10 +41,10 @@ double second_of(const reconstruction::Take& take, int frame);
 int tracked_frames(const reconstruction::Take& take);
 
 /// From which directions some take shows the object.
-reconstruction::SeenDirections seen_by_all(const ShowResult& shown);
+reconstruction::ViewCoverage seen_by_all(const ShowResult& shown);
 
 /// By how much a turn missed its beginning.
-double degrees_of(const reconstruction::LoopGap& gap);
+double degrees_of(const reconstruction::LoopClosureError& gap);
 
 /// The verdict and its figures in words, a few lines.
 std::string describe(const ShowResult& shown, const Verdict& verdict);

@@ -24,7 +24,7 @@ void let_others_first() {
 /// Publishes what it is told, and ends the take when enough was seen.
 class TakeObserver : public ShowObserver {
  public:
-  TakeObserver(LcmBus& bus, StreamTake& take) : publisher_(bus, reconstruction::sphere_of_directions()), take_(take) {}
+  TakeObserver(LcmBus& bus, StreamTake& take) : publisher_(bus, reconstruction::view_directions()), take_(take) {}
 
   void progress(const ShowProgress& now) override {
     publisher_.progress(now);

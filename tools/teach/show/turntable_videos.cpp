@@ -31,10 +31,10 @@ struct Video {
 };
 
 /// Median overlap of the model's outline with the views' masks.
-double outline_overlap(const Mesh& mesh, const std::vector<TrainingView>& views) {
+double silhouette_iou(const Mesh& mesh, const std::vector<TrainingView>& views) {
   std::vector<double> overlaps;
   overlaps.reserve(views.size());
-  for (const TrainingView& view : views) overlaps.push_back(reconstruction::outline_overlap(mesh, view));
+  for (const TrainingView& view : views) overlaps.push_back(reconstruction::silhouette_iou(mesh, view));
   const auto middle = overlaps.begin() + static_cast<std::ptrdiff_t>(overlaps.size() / 2);
   std::nth_element(overlaps.begin(), middle, overlaps.end());
   return *middle;
@@ -50,7 +50,7 @@ fusion::FusedModel fused_model(const std::string& name, const std::vector<Traini
 Video fuse(const std::string& name, std::vector<TrainingView> views, int threads) {
   Video video{std::move(views), {}, 0.0};
   video.model = fused_model(name, video.views, threads);
-  video.overlap = outline_overlap(video.model.mesh, video.views);
+  video.overlap = silhouette_iou(video.model.mesh, video.views);
   return video;
 }
 
@@ -93,7 +93,7 @@ class Merging {
     making_.threads = options.threads;
     outline_ = first.model.mesh;
     model_ = fuse(views_, outline_);
-    overlap_ = teach::outline_overlap(model_.mesh, views_);
+    overlap_ = teach::silhouette_iou(model_.mesh, views_);
   }
 
   /// Adds a video where the outlines of all views still fit.
@@ -111,7 +111,7 @@ class Merging {
       Mesh outline = outline_;
       reconstruction::append_mesh(video.model.mesh, found->T_a_b, outline);
       ModelOfViews model = fuse(all, outline);
-      overlap = teach::outline_overlap(model.mesh, all);
+      overlap = teach::silhouette_iou(model.mesh, all);
       if (overlap > overlap_ - kMaxLost) {
         std::tie(views_, outline_, model_, overlap_) =
             std::tuple(std::move(all), std::move(outline), std::move(model), overlap);
@@ -129,7 +129,7 @@ class Merging {
       std::vector<TrainingView> placed = views_;
       reconstruction::align_silhouettes(model_.mesh, options_.threads, placed);
       ModelOfViews again = fuse(placed, model_.mesh);
-      const double overlap = teach::outline_overlap(again.mesh, placed);
+      const double overlap = teach::silhouette_iou(again.mesh, placed);
       if (overlap <= overlap_) return;
       std::tie(views_, model_, overlap_) = std::tuple(std::move(placed), std::move(again), overlap);
     }
@@ -201,7 +201,7 @@ ShowResult show_turntable(const ShowOptions& options) {
   shown.mesh = std::move(model.mesh);
   shown.seen_surface = share_of_seen(model.seen);
   shown.agreement_m = fused_model(options.name, views, options.threads).after.median_m;
-  shown.outline_overlap = merging.overlap();
+  shown.silhouette_iou = merging.overlap();
   shown.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return shown;
 }

@@ -40,7 +40,7 @@ TEST(PoseGraph, SpreadsTheGapOfALoop) {
 }
 
 TEST(SphereOfDirections, FillsAndSaysWhatIsMissing) {
-  SeenDirections seen{};
+  ViewCoverage seen{};
   mark_covered({1.0, 0.0, 0.7}, seen);
   const int once = count_covered(seen);
   EXPECT_GT(once, 5);

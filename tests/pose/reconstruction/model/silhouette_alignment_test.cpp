@@ -14,12 +14,12 @@ TEST(OutlinePlacement, AViewMovesToWhereItsMaskIs) {
   for (int i = 0; i < 4; ++i) {
     views.push_back(turntable_view(scene, i));
     views.back().T_camera_object.translation() += Eigen::Vector3d(0.007, -0.005, 0.012);
-    EXPECT_LT(outline_overlap(scene.mesh, views.back()), 0.87);
+    EXPECT_LT(silhouette_iou(scene.mesh, views.back()), 0.87);
   }
   align_silhouettes(scene.mesh, 2, views);
   for (int i = 0; i < 4; ++i) {
     const TrainingView& view = views[static_cast<std::size_t>(i)];
-    EXPECT_GT(outline_overlap(scene.mesh, view), 0.97);
+    EXPECT_GT(silhouette_iou(scene.mesh, view), 0.97);
     const Eigen::Isometry3d truth = turntable_view(scene, i).T_camera_object;
     EXPECT_LT((view.T_camera_object.translation() - truth.translation()).norm(), 0.002);
     EXPECT_TRUE(view.T_camera_object.linear().isApprox(truth.linear()));
@@ -32,7 +32,7 @@ TEST(OutlinePlacement, WithoutDepthAndMaskNothingMoves) {
   std::vector<TrainingView> views = {turntable_view(scene, 0)};
   views[0].mask.setTo(0);
   const Eigen::Isometry3d before = views[0].T_camera_object;
-  EXPECT_EQ(outline_overlap(scene.mesh, views[0]), 0.0);
+  EXPECT_EQ(silhouette_iou(scene.mesh, views[0]), 0.0);
   align_silhouettes(scene.mesh, 1, views);
   EXPECT_EQ(views[0].T_camera_object.matrix(), before.matrix());
 }

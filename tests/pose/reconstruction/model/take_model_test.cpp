@@ -72,7 +72,7 @@ TEST(MergeTakes, HowWellTheViewsAgreeIsThatOfBothTakes) {
   ASSERT_TRUE(merge_takes(first, model, second, other, settings));
   EXPECT_LT(model.agreement_m, 0.003);
   EXPECT_EQ(other.agreement_m, model.agreement_m);
-  EXPECT_EQ(model.agreement_m, disagreement(model.mesh, {{&first, &model.views}, {&second, &other.views}}, 1));
+  EXPECT_EQ(model.agreement_m, surface_deviation(model.mesh, {{&first, &model.views}, {&second, &other.views}}, 1));
 }
 
 }  // namespace

@@ -14,14 +14,14 @@ ShowResult good_turntable() {
   shown.takes.front().motion = reconstruction::Motion::kTurntable;
   shown.views.emplace_back(20);
   shown.seen_surface = 1.0;
-  shown.outline_overlap = 0.93;
+  shown.silhouette_iou = 0.93;
   return shown;
 }
 
 TEST(Verdict, OutlinesThatDoNotFitTheGivenMasksArePoor) {
   ShowResult shown = good_turntable();
   EXPECT_TRUE(judge(shown).good);
-  shown.outline_overlap = 0.85;
+  shown.silhouette_iou = 0.85;
   const Verdict verdict = judge(shown);
   EXPECT_FALSE(verdict.good);
   ASSERT_EQ(verdict.reasons.size(), 1U);
@@ -43,13 +43,13 @@ reconstruction::Take closed_turn() {
   reconstruction::Take take;
   take.motion = reconstruction::Motion::kCamera;
   take.degrees_round = 360;
-  take.gap = reconstruction::LoopGap{0.004, 0.01};
+  take.gap = reconstruction::LoopClosureError{0.004, 0.01};
   return take;
 }
 
 TEST(Verdict, EachTakeIsJudged) {
   ShowResult shown = good_turntable();
-  shown.outline_overlap.reset();
+  shown.silhouette_iou.reset();
   shown.takes = {closed_turn(), closed_turn()};
   shown.views.emplace_back(20);
   EXPECT_TRUE(judge(shown).good);
@@ -62,7 +62,7 @@ TEST(Verdict, EachTakeIsJudged) {
 
 TEST(Verdict, ATakeInTheDarkIsNotCalledShortWithoutSayingWhy) {
   ShowResult shown = good_turntable();
-  shown.outline_overlap.reset();
+  shown.silhouette_iou.reset();
   shown.takes = {closed_turn()};
   shown.takes[0].frames.resize(100);
   shown.takes[0].degrees_round = 50;
@@ -88,7 +88,7 @@ TEST(Verdict, OfATurntableNothingIsSaidThatOnlyTrackingKnows) {
 
 TEST(Verdict, WithoutGivenMasksTheirOverlapIsNotAsked) {
   ShowResult shown = good_turntable();
-  shown.outline_overlap.reset();
+  shown.silhouette_iou.reset();
   EXPECT_TRUE(judge(shown).good);
 }
 

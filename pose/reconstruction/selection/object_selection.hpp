@@ -7,7 +7,7 @@
 #include <string>
 
 #include "pipeline/types/frame.hpp"
-#include "pose/reconstruction/choice/support_planes.hpp"
+#include "pose/reconstruction/selection/support_planes.hpp"
 
 namespace houghstream::reconstruction {
 
@@ -24,16 +24,16 @@ struct ChosenObject {
 };
 
 /// The object, or in words why there is none.
-struct Choice {
+struct ObjectSelection {
   std::optional<ChosenObject> object;
   std::string reason;  ///< empty with an object
 };
 
-struct ChoiceSettings {
+struct SelectionSettings {
   std::optional<cv::Rect> box_px;  ///< about the object; none: what is nearest to at_px
   std::optional<cv::Point> at_px;  ///< on the object or nearly so; none: the image's middle
   double min_m = 0.012;            ///< sides of an object
-  double largest_m = 0.6;
+  double max_m = 0.6;
   double max_distance_m = 2.0;  ///< from the camera
   double max_share = 0.25;      ///< of the image's width: how far from its middle or from at_px, without a box
   std::uint64_t seed = 1;
@@ -48,9 +48,9 @@ std::optional<cv::Rect> seen_box(const Eigen::AlignedBox3d& box, const Camera& c
 
 /// What stands on the dominant plane nearest to the image's middle or to a place there, or in the box: points above the
 /// plane that hang together. Planes are tried in their order until one carries something.
-Choice select_object(const RgbdFrame& frame, const ChoiceSettings& settings);
+ObjectSelection select_object(const RgbdFrame& frame, const SelectionSettings& settings);
 
 /// In words, so that a person sees what is meant: where it is in the picture, and how large.
-std::string describe_choice(const ChosenObject& object);
+std::string describe_selection(const ChosenObject& object);
 
 }  // namespace houghstream::reconstruction

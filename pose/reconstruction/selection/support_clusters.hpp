@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "pose/reconstruction/choice/support_planes.hpp"
+#include "pose/reconstruction/selection/support_planes.hpp"
 
 namespace houghstream::reconstruction {
 

@@ -24,7 +24,7 @@ struct ViewsOfTake {
 
 /// Median distance of all that the takes' views measure on their masks from the model, along its normals, metres; 0
 /// where they measure nothing. Thread-count makes no difference.
-double disagreement(const Mesh& mesh, const std::vector<ViewsOfTake>& of_takes, int threads);
+double surface_deviation(const Mesh& mesh, const std::vector<ViewsOfTake>& of_takes, int threads);
 
 /// Pixels of the frame in which the model is seen at this pose, and neither hidden nor seen through.
 cv::Mat render_visible_mask(const Mesh& mesh, const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_object);

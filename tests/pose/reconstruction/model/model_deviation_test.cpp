@@ -1,4 +1,4 @@
-#include "pose/reconstruction/model/model_agreement.hpp"
+#include "pose/reconstruction/model/model_deviation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -61,11 +61,11 @@ TEST(Disagreement, IsTheMedianDistanceOverTheViewsOfAllTakes) {
     takes[of].keyframes.push_back(std::move(keyframe));
   }
   const std::vector<ViewsOfTake> both = {{&takes[0], &views[0]}, {&takes[1], &views[1]}};
-  EXPECT_LT(disagreement(box, both, 1), 1e-4);
-  const double apart = disagreement(larger, both, 1);
+  EXPECT_LT(surface_deviation(box, both, 1), 1e-4);
+  const double apart = surface_deviation(larger, both, 1);
   EXPECT_NEAR(apart, 0.005, 0.001);
-  EXPECT_EQ(disagreement(larger, both, 3), apart);
-  EXPECT_EQ(disagreement(box, {}, 1), 0.0);
+  EXPECT_EQ(surface_deviation(larger, both, 3), apart);
+  EXPECT_EQ(surface_deviation(box, {}, 1), 0.0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/choice/object_selection.hpp"
+#include "pose/reconstruction/selection/object_selection.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ RgbdFrame frame_of(const ShownScene& scene) {
 }
 
 TEST(ObjectChoice, FindsWhatStandsInTheMiddle) {
-  const Choice choice = select_object(frame_of({}), {});
+  const ObjectSelection choice = select_object(frame_of({}), {});
   ASSERT_TRUE(choice.object) << choice.reason;
   const Eigen::Isometry3d T = test_scene::camera_at(0.4, 0.6, 0.7);
   EXPECT_NEAR(choice.object->height_m, 0.16, 0.005);
@@ -32,13 +32,13 @@ TEST(ObjectChoice, TakesWhatStandsNearestToAPlaceThatIsPointedAt) {
   test_scene::add_box({0.05, 0.05, 0.06}, 0.0, mesh);
   for (std::size_t i = first; i < mesh.vertices.size(); ++i) mesh.vertices[i] += beside;
   const RgbdFrame frame = photograph(mesh, T, ShownScene().camera, 1);
-  const Choice in_the_middle = select_object(frame, {});
+  const ObjectSelection in_the_middle = select_object(frame, {});
   ASSERT_TRUE(in_the_middle.object) << in_the_middle.reason;
   EXPECT_NEAR(in_the_middle.object->height_m, 0.16, 0.005);
-  ChoiceSettings pointing;
+  SelectionSettings pointing;
   const Eigen::Vector2d px = frame.camera.project(T * Eigen::Vector3d(-0.05, 0.24, 0.05));
   pointing.at_px = cv::Point(cvRound(px.x()), cvRound(px.y()));
-  const Choice there = select_object(frame, pointing);
+  const ObjectSelection there = select_object(frame, pointing);
   ASSERT_TRUE(there.object) << there.reason;
   EXPECT_NEAR(there.object->height_m, 0.06, 0.005);
   pointing.at_px = cv::Point(5, 5);
@@ -52,7 +52,7 @@ TEST(ObjectChoice, TakesNoTurntableForTheObject) {
   ShownScene scene;
   scene.box = {0.06, 0.06, 0.10};
   scene.disc = {0.26, 0.26, 0.016};
-  const Choice choice = select_object(frame_of(scene), {});
+  const ObjectSelection choice = select_object(frame_of(scene), {});
   ASSERT_TRUE(choice.object) << choice.reason;
   EXPECT_NEAR(choice.object->height_m, 0.10, 0.005);
   EXPECT_LT(choice.object->radius_m, 0.065);
@@ -66,7 +66,7 @@ TEST(ObjectChoice, SaysWhyThereIsNone) {
   RgbdFrame blind = frame_of({});
   blind.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   EXPECT_NE(select_object(blind, {}).reason.find("no table"), std::string::npos);
-  ChoiceSettings outside;
+  SelectionSettings outside;
   outside.box_px = cv::Rect(300, 200, 100, 100);
   EXPECT_NE(select_object(frame_of({}), outside).reason.find("320x240"), std::string::npos);
   ShownScene huge;

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/model/model_agreement.hpp"
+#include "pose/reconstruction/model/model_deviation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -92,7 +92,7 @@ double free_space_violation(const Mesh& mesh, const Take& take, const std::vecto
   return sum.all > 0.0 ? sum.through / sum.all : 0.0;
 }
 
-double disagreement(const Mesh& mesh, const std::vector<ViewsOfTake>& of_takes, int threads) {
+double surface_deviation(const Mesh& mesh, const std::vector<ViewsOfTake>& of_takes, int threads) {
   std::vector<float> all;
   for (const ViewsOfTake& of_take : of_takes) {
     std::vector<std::vector<float>> distances(of_take.views->size());

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/choice/object_selection.hpp"
+#include "pose/reconstruction/selection/object_selection.hpp"
 
 #include <fmt/format.h>
 
@@ -11,19 +11,19 @@
 #include <utility>
 #include <vector>
 
-#include "pose/reconstruction/choice/support_clusters.hpp"
+#include "pose/reconstruction/selection/support_clusters.hpp"
 
 namespace houghstream::reconstruction {
 namespace {
 
-cv::Point2d meant_place(const RgbdFrame& frame, const ChoiceSettings& settings) {
+cv::Point2d meant_place(const RgbdFrame& frame, const SelectionSettings& settings) {
   if (settings.box_px) return (settings.box_px->tl() + settings.box_px->br()) * 0.5;
   if (settings.at_px) return *settings.at_px;
   return {0.5 * frame.depth.cols, 0.5 * frame.depth.rows};
 }
 
 /// The cluster that is meant; 0 = none.
-int meant_cluster(const Clusters& clusters, const RgbdFrame& frame, const ChoiceSettings& settings) {
+int meant_cluster(const Clusters& clusters, const RgbdFrame& frame, const SelectionSettings& settings) {
   constexpr int kMinPixels = 60;
   constexpr double kMaxFoot_m = 0.035;
   int best = 0;
@@ -41,12 +41,12 @@ int meant_cluster(const Clusters& clusters, const RgbdFrame& frame, const Choice
 }
 
 /// Why the chosen cluster cannot be taught; empty where it can.
-std::string fault_of(const ChosenObject& object, const RgbdFrame& frame, const ChoiceSettings& settings) {
+std::string fault_of(const ChosenObject& object, const RgbdFrame& frame, const SelectionSettings& settings) {
   const double widest = std::max(2.0 * object.radius_m, object.height_m);
-  if (widest > settings.largest_m)
+  if (widest > settings.max_m)
     return fmt::format(
         "what is meant is {:.0f} cm large, expected at most {:.0f} cm that stand apart from other things", 1e2 * widest,
-        1e2 * settings.largest_m);
+        1e2 * settings.max_m);
   if (std::max(object.radius_m, object.height_m) < settings.min_m)
     return fmt::format("what is meant is {:.0f} mm large, expected at least {:.0f} mm", 1e3 * widest,
                        1e3 * settings.min_m);
@@ -95,7 +95,7 @@ std::optional<Plane> carried_by(const RgbdFrame& frame, const ChosenObject& obje
   constexpr double kBin_m = 0.002;
   constexpr double kMax_m = 0.06;
   constexpr double kAbove_m = 0.012;
-  constexpr double kLeastShare = 0.25;
+  constexpr double kMinFraction = 0.25;
   std::array<int, 31> levels{};
   int all = 0;
   for (int y = 0; y < object.mask.rows; ++y) {
@@ -109,7 +109,7 @@ std::optional<Plane> carried_by(const RgbdFrame& frame, const ChosenObject& obje
   std::size_t best = 1;
   const auto about = [&](std::size_t i) { return levels[i - 1] + levels[i] + levels[i + 1]; };
   for (std::size_t i = 1; i + 1 < levels.size(); ++i) best = about(i) > about(best) ? i : best;
-  if (about(best) < kLeastShare * all) return std::nullopt;
+  if (about(best) < kMinFraction * all) return std::nullopt;
   const double level = kBin_m * (static_cast<double>(best) + 0.5);
   cv::Mat on_level = cv::Mat::zeros(object.mask.size(), CV_8UC1);
   Eigen::AlignedBox2d level_box, above_box;
@@ -133,7 +133,7 @@ std::optional<Plane> carried_by(const RgbdFrame& frame, const ChosenObject& obje
   return refine_plane(frame, elsewhere, plane, object.T_camera_stand.translation(), 0.5);
 }
 
-std::string nothing_there(const ChoiceSettings& settings) {
+std::string nothing_there(const SelectionSettings& settings) {
   if (settings.box_px) return "nothing with depth stands in the box, expected an object on the table there";
   if (settings.at_px)
     return fmt::format("nothing with depth stands near {},{}, expected an object on the table there", settings.at_px->x,
@@ -143,7 +143,7 @@ std::string nothing_there(const ChoiceSettings& settings) {
 }
 
 /// What stands on this plane and is meant.
-Choice choose_on(const RgbdFrame& frame, const Plane& plane, const ChoiceSettings& settings) {
+ObjectSelection choose_on(const RgbdFrame& frame, const Plane& plane, const SelectionSettings& settings) {
   const cv::Point2d meant = meant_place(frame, settings);
   const PlaneAxes axes(plane, frame.camera.backproject(meant.x, meant.y, 1.0));
   const cv::Rect whole({0, 0}, frame.depth.size());
@@ -154,7 +154,7 @@ Choice choose_on(const RgbdFrame& frame, const Plane& plane, const ChoiceSetting
   ChosenObject object = make_object(frame, plane, axes, clusters, chosen);
   object.boxed = settings.box_px.has_value();
   if (const std::optional<Plane> carrier = carried_by(frame, object)) {
-    if (Choice carried = choose_on(frame, *carrier, settings); carried.object) return carried;
+    if (ObjectSelection carried = choose_on(frame, *carrier, settings); carried.object) return carried;
   }
   std::string fault = fault_of(object, frame, settings);
   if (!fault.empty()) return {{}, std::move(fault)};
@@ -170,7 +170,7 @@ cv::Mat skin_pixels(const cv::Mat& colour) {
   return skin;
 }
 
-Choice select_object(const RgbdFrame& frame, const ChoiceSettings& settings) {
+ObjectSelection select_object(const RgbdFrame& frame, const SelectionSettings& settings) {
   const cv::Rect whole({0, 0}, frame.depth.size());
   if (settings.box_px && (*settings.box_px & whole) != *settings.box_px)
     return {{}, fmt::format("the box lies not within the picture, which has {}x{} pixels", whole.width, whole.height)};
@@ -180,16 +180,16 @@ Choice select_object(const RgbdFrame& frame, const ChoiceSettings& settings) {
                         settings.at_px->y, whole.width, whole.height)};
   const std::vector<Plane> planes = find_planes(frame, settings.max_distance_m, settings.seed);
   if (planes.empty()) return {{}, "no table or other level surface is seen, expected one on which the object stands"};
-  Choice first;
+  ObjectSelection first;
   for (const Plane& plane : planes) {
-    Choice choice = choose_on(frame, plane, settings);
+    ObjectSelection choice = choose_on(frame, plane, settings);
     if (choice.object) return choice;
     if (first.reason.empty()) first = std::move(choice);
   }
   return first;
 }
 
-std::string describe_choice(const ChosenObject& object) {
+std::string describe_selection(const ChosenObject& object) {
   const cv::Point middle = (object.box_px.tl() + object.box_px.br()) / 2;
   return fmt::format("meant is what stands at {},{} in the picture, {:.0f} cm across and {:.0f} cm high", middle.x,
                      middle.y, 2e2 * object.radius_m, 1e2 * object.height_m);

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/choice/support_planes.hpp"
+#include "pose/reconstruction/selection/support_planes.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

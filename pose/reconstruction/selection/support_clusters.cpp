@@ -1,4 +1,4 @@
-#include "pose/reconstruction/choice/support_clusters.hpp"
+#include "pose/reconstruction/selection/support_clusters.hpp"
 
 #include <algorithm>
 #include <cmath>
