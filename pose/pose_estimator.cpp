@@ -86,7 +86,7 @@ void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, E
 }
 
 void choose_one(const PoseSettings& settings, Estimation& it) {
-  it.chosen = select_poses(*it.seen, it.registered, it.rotations, choice_settings_of(settings));
+  it.chosen = select_poses(*it.seen, it.registered, it.rotations, pose_selection_settings(settings));
   copy_registration_evidence(it.chosen.front(), it.pose);
   if (it.chosen.front().inliers == 0) it.pose.status = PoseStatus::kNotConverged;
 }
@@ -161,7 +161,8 @@ void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
   published_evidence.print_probability = print_probability(print->margin, learnt);
   ObjectPose judged = judged_pose(it, published, published_evidence, settings);
   if (print->better) {
-    const RegistrationResult other = refine_pose(*it.seen, *print->better, it.rotations, choice_settings_of(settings));
+    const RegistrationResult other =
+        refine_pose(*it.seen, *print->better, it.rotations, pose_selection_settings(settings));
     const std::optional<PrintComparison> there =
         compare_print(*it.seen, other.T_camera_object, tolerance, settings.registration);
     PoseEvidence evidence = gather_evidence(*it.seen, other.T_camera_object, it.detection.score, settings.verification);
@@ -200,7 +201,7 @@ PoseEstimator::PoseEstimator(std::map<std::string, Mesh> models, PoseSettings se
   state_->settings = std::move(settings);
 }
 
-PoseEstimator PoseEstimator::of_models(std::map<std::string, ObjectModel> models, PoseSettings settings) {
+PoseEstimator PoseEstimator::from_models(std::map<std::string, ObjectModel> models, PoseSettings settings) {
   PoseEstimator estimator(std::map<std::string, Mesh>(), std::move(settings));
   estimator.state_->models = std::move(models);
   return estimator;
@@ -266,13 +267,13 @@ Eigen::Vector3d PoseEstimator::vote_centre(const PlacedObject& object) const {
   return object.T_camera_object * model->second.vote_centre.cast<double>();
 }
 
-bool PoseEstimator::are_one(const PlacedObject& a, const PlacedObject& b, double apart) const {
+bool PoseEstimator::is_duplicate(const PlacedObject& a, const PlacedObject& b, double max_distance_ratio) const {
   const auto model_a = state_->models.find(a.class_name);
   const auto model_b = state_->models.find(b.class_name);
   if (model_a == state_->models.end() || model_b == state_->models.end()) return false;
   const Eigen::Vector3d middle_a = a.T_camera_object * model_a->second.centre.cast<double>();
   const Eigen::Vector3d middle_b = b.T_camera_object * model_b->second.centre.cast<double>();
-  return (middle_a - middle_b).norm() < apart * std::min(model_a->second.radius, model_b->second.radius);
+  return (middle_a - middle_b).norm() < max_distance_ratio * std::min(model_a->second.radius, model_b->second.radius);
 }
 
 }  // namespace houghstream

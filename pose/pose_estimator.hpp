@@ -33,7 +33,7 @@ class PoseEstimator {
   /// settings out of their range.
   PoseEstimator(std::map<std::string, Mesh> models, PoseSettings settings, int threads = 1);
   /// Of models that were made before, with settings.model.
-  static PoseEstimator of_models(std::map<std::string, ObjectModel> models, PoseSettings settings);
+  static PoseEstimator from_models(std::map<std::string, ObjectModel> models, PoseSettings settings);
   ~PoseEstimator();
   PoseEstimator(PoseEstimator&&) noexcept;
 
@@ -59,7 +59,7 @@ class PoseEstimator {
 
   /// Whether the middles of two objects are closer together than `apart` of the smaller one's radius: both cannot be
   /// there. False where a class has no model.
-  bool are_one(const PlacedObject& a, const PlacedObject& b, double apart) const;
+  bool is_duplicate(const PlacedObject& a, const PlacedObject& b, double max_distance_ratio) const;
 
  private:
   struct State;

@@ -64,18 +64,20 @@ inline const QualitySettings& class_quality_of(const PoseSettings& settings, con
 }
 
 /// The settings of all stages that the choice among registered candidates reads.
-inline ChoiceSettings choice_settings_of(const PoseSettings& settings) {
-  ChoiceSettings choice;
-  choice.initial = settings.initial;
-  choice.registration = settings.registration;
-  choice.turn = settings.turn;
-  choice.tolerance_m = settings.verification.tolerance_m;
-  return choice;
+inline PoseSelectionSettings pose_selection_settings(const PoseSettings& settings) {
+  PoseSelectionSettings selection;
+  selection.initial = settings.initial;
+  selection.registration = settings.registration;
+  selection.turn = settings.turn;
+  selection.tolerance_m = settings.verification.tolerance_m;
+  return selection;
 }
 
 /// Publishes poses from this quality on, whatever their detections and their classes are.
-inline void publish_from(float quality, PoseSettings& settings) {
-  const auto publish = [&](QualitySettings& judged_by) { judged_by.least = judged_by.min_candidate_quality = quality; };
+inline void set_min_quality(float quality, PoseSettings& settings) {
+  const auto publish = [&](QualitySettings& judged_by) {
+    judged_by.min_quality = judged_by.min_candidate_quality = quality;
+  };
   publish(settings.quality);
   for (auto& [name, learnt] : settings.class_quality) publish(learnt);
 }

@@ -25,9 +25,9 @@ Eigen::Vector3d middle_of(const ObjectModel& model, const Eigen::Isometry3d& T_c
 /// The box about the points that should be seen; empty where none is.
 cv::Rect2f expected_box(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object) {
   constexpr int kPoints = 150;
-  const ProjectedView look = look_at_view(frame, model, T_camera_object, kPoints);
+  const ProjectedView look = project_view(frame, model, T_camera_object, kPoints);
   cv::Rect2f box;
-  for (std::size_t i = 0; i < look.looks.size(); ++i) {
+  for (std::size_t i = 0; i < look.points.size(); ++i) {
     const Eigen::Vector3f point = look.T * look.view.points[i];
     if (!(point.z() > 0.0F)) continue;
     const Eigen::Vector2f pixel = frame.camera.project_single(point);
@@ -58,11 +58,11 @@ RegistrationResult register_near(const ObjectObservation& seen, const Eigen::Iso
   coarse.max_correspondence_start_m = start_m;
   coarse.max_correspondence_end_m = end_m;
   RegistrationResult result = settings.registration.engine(seen, start, coarse, settings.registration);
-  if (expected.settle && result.inliers > 0) {
-    const HillClimb climb{follow.settle_step_deg * kRadPerDeg, follow.settle_step_m, follow.settle_rounds,
-                          follow.settle_points};
+  if (expected.refine_by_texture && result.inliers > 0) {
+    const HillClimb hill_climb{follow.refine_step_deg * kRadPerDeg, follow.refine_step_m, follow.refine_rounds,
+                               follow.refine_points};
     const DepthTolerance tolerance{settings.verification.tolerance_m, seen.noise};
-    result.T_camera_object = hill_climb_pose(seen, result.T_camera_object, climb, tolerance).T_camera_object;
+    result.T_camera_object = hill_climb_pose(seen, result.T_camera_object, hill_climb, tolerance).T_camera_object;
   }
   RegistrationStage fine;
   fine.iterations = follow.fine_iterations;
@@ -77,19 +77,19 @@ RegistrationResult register_near(const ObjectObservation& seen, const Eigen::Iso
 
 /// Judges the pose, of an object that was reported before, by points of the view and the outline of an earlier frame,
 /// where there is one and that suffices; else the model is rendered.
-void judge_followed(const ObjectObservation& seen, const ExpectedObject& expected, const FollowerInput& input,
-                    FollowedPose& followed) {
+void decide_followed(const ObjectObservation& seen, const ExpectedObject& expected, const FollowerInput& input,
+                     FollowedPose& followed) {
   const PoseSettings& settings = input.pose;
   const DepthTolerance tolerance{settings.verification.tolerance_m, seen.noise};
   const QualitySettings& quality = class_quality_of(settings, followed.pose.class_name);
   const Eigen::Isometry3d& T = followed.T_camera_object;
-  const ProjectedView look = look_at_view(seen.frame, seen.model, T, settings.verification.points);
+  const ProjectedView look = project_view(seen.frame, seen.model, T, settings.verification.points);
   PoseEvidence evidence{expected.score, {}, compare_texture(seen, look, tolerance), expected.print_probability};
   bring_to_camera(expected.camera_colours, evidence);
   followed.pose.camera_colours = expected.camera_colours;
   if (expected.verified) {
     evidence.depth = verify_projected_view(look, tolerance);
-    evidence.depth.outline = expected.verified->outline;
+    evidence.depth.boundary_samples = expected.verified->boundary_samples;
     evidence.depth.boundary_continuations = expected.verified->boundary_continuations;
     followed.verified = expected.verified;
     followed.pose.chroma = chroma_pair(followed.pose.class_name, evidence, quality);
@@ -109,7 +109,7 @@ FollowedPose unposed(const ExpectedObject& expected) {
   followed.pose.class_name = expected.class_name;
   followed.pose.detection_score = expected.score;
   followed.pose.residual = std::numeric_limits<float>::quiet_NaN();
-  followed.T_camera_object = expected.starts.front();
+  followed.T_camera_object = expected.initial_poses.front();
   return followed;
 }
 
@@ -133,7 +133,7 @@ FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, co
     return followed;
   }
   followed.T_camera_object = result.T_camera_object;
-  judge_followed(seen, expected, input, followed);
+  decide_followed(seen, expected, input, followed);
   return followed;
 }
 
@@ -144,19 +144,19 @@ bool is_hidden(const FrameContext& frame, const ObjectModel& model, const Eigen:
   const Verification seen = verify_pose(frame.frame, model.mesh, T_camera_object, tolerance);
   const auto rendered = static_cast<float>(seen.rendered);
   const auto hidden = static_cast<float>(seen.occluded);
-  return hidden > input.follow.hidden_share * rendered &&
-         static_cast<float>(seen.violating) <= input.follow.max_free_space_violation * (rendered - hidden);
+  return hidden > input.follow.max_occluded_fraction * rendered &&
+         static_cast<float>(seen.free_space_violations) <= input.follow.max_free_space_violation * (rendered - hidden);
 }
 
 FollowedPose follow_object(const FrameContext& frame, const ObjectModel& model, const ExpectedObject& expected,
                            const FollowerInput& input) {
   FollowedPose best;
-  for (std::size_t i = 0; i < expected.starts.size(); ++i) {
-    FollowedPose here = follow_from(frame, model, expected, expected.starts[i], input);
+  for (std::size_t i = 0; i < expected.initial_poses.size(); ++i) {
+    FollowedPose here = follow_from(frame, model, expected, expected.initial_poses[i], input);
     if (i == 0 || here.pose.shape_quality > best.pose.shape_quality) best = std::move(here);
     if (has_pose(best.pose.status)) return best;
   }
-  if (expected.check_occlusion && is_hidden(frame, model, expected.starts.front(), input))
+  if (expected.check_occlusion && is_hidden(frame, model, expected.initial_poses.front(), input))
     best.pose.status = PoseStatus::kOccluded;
   return best;
 }

@@ -23,12 +23,12 @@ struct FollowSettings {
   double max_jump_m = 0.04;  ///< of the middle, from where it was expected: what ended farther away is something else
 
   // The print turns a round thing back, which depth alone lets drift.
-  double settle_step_deg = 2.0;
-  double settle_step_m = 0.002;
-  int settle_rounds = 4;
-  int settle_points = 250;
+  double refine_step_deg = 2.0;
+  double refine_step_m = 0.002;
+  int refine_rounds = 4;
+  int refine_points = 250;
 
-  float hidden_share = 0.5F;              ///< of the rendered pixels, behind something: it is hidden rather than gone
+  float max_occluded_fraction = 0.5F;     ///< of the rendered pixels, behind something: it is hidden rather than gone
   float max_free_space_violation = 0.3F;  ///< of the others, seen through: it is gone even so
 };
 
@@ -41,11 +41,11 @@ void fields(const FollowSettings& /*settings*/, const Visit& visit) {
   visit(number("fine_iterations", &S::fine_iterations, 0, 1000));
   visit(number("fine_points", &S::fine_points, 1, 100000));
   visit(number("max_jump_m", &S::max_jump_m, 0, 10, "m"));
-  visit(number("settle_step_deg", &S::settle_step_deg, 0, 180, "degrees"));
-  visit(number("settle_step_m", &S::settle_step_m, 0, 1, "m"));
-  visit(number("settle_rounds", &S::settle_rounds, 0, 1000));
-  visit(number("settle_points", &S::settle_points, 1, 100000));
-  visit(number("hidden_share", &S::hidden_share, 0, 1));
+  visit(number("refine_step_deg", &S::refine_step_deg, 0, 180, "degrees"));
+  visit(number("refine_step_m", &S::refine_step_m, 0, 1, "m"));
+  visit(number("refine_rounds", &S::refine_rounds, 0, 1000));
+  visit(number("refine_points", &S::refine_points, 1, 100000));
+  visit(number("max_occluded_fraction", &S::max_occluded_fraction, 0, 1));
   visit(number("max_free_space_violation", &S::max_free_space_violation, 0, 1));
 }
 
@@ -53,10 +53,10 @@ void fields(const FollowSettings& /*settings*/, const Visit& visit) {
 struct ExpectedObject {
   int class_id = 0;
   std::string class_name;
-  float score = 0.0F;                     ///< of the detections that it was found by
-  std::vector<Eigen::Isometry3d> starts;  ///< T_camera_object, the likeliest first; at least one
-  bool settle = false;                    ///< its print may move it a little too, at some cost
-  bool is_lost = false;                   ///< it is looked for as far away as a detection's pose is
+  float score = 0.0F;                            ///< of the detections that it was found by
+  std::vector<Eigen::Isometry3d> initial_poses;  ///< T_camera_object, the likeliest first; at least one
+  bool refine_by_texture = false;                ///< its print may move it a little too, at some cost
+  bool is_lost = false;                          ///< it is looked for as far away as a detection's pose is
   bool check_occlusion = true;           ///< whether it is hidden where it is expected first: that renders it once more
   std::optional<Verification> verified;  ///< of an earlier frame: its outline is taken for this one's
   float print_probability = 1.0F;  ///< PoseEvidence::print_probability of the detection's pose that it goes on from

@@ -22,8 +22,8 @@ ExpectedObject expected_at(const Eigen::Isometry3d& T_camera_object, const Follo
   ExpectedObject expected;
   expected.class_id = object.class_id;
   expected.class_name = object.class_name;
-  expected.score = probability(object.remembered_score);
-  expected.starts = {T_camera_object};
+  expected.score = probability(object.score_logit);
+  expected.initial_poses = {T_camera_object};
   expected.print_probability = object.print_probability;
   return expected;
 }
@@ -31,8 +31,8 @@ ExpectedObject expected_at(const Eigen::Isometry3d& T_camera_object, const Follo
 /// Whether newer frames have overtaken this one on its way. Where the one before it seemed so too, and was older, it is
 /// the clock that was set back.
 bool is_overtaken(std::int64_t utime, FollowedCamera& camera) {
-  if (camera.shown.empty()) return false;
-  const double passed_s = seconds_between(camera.shown.back().utime, utime);
+  if (camera.recent_frames.empty()) return false;
+  const double passed_s = seconds_between(camera.recent_frames.back().utime, utime);
   const bool is_older = passed_s < 0.0 && passed_s >= -kMaxOvertakenS;
   const bool goes_on = camera.overtaken_utime && *camera.overtaken_utime < utime;
   camera.overtaken_utime.reset();
@@ -46,8 +46,8 @@ std::int64_t clock_of(std::int64_t utime, const FollowedCamera& camera) {
 
 /// Where utimes jump, the camera's clock advances as it did from the frame before to the last one.
 void follow_clock(std::int64_t utime, FollowedCamera& camera) {
-  if (camera.shown.empty()) return;
-  const FollowedFrame& last = camera.shown.back();
+  if (camera.recent_frames.empty()) return;
+  const FollowedFrame& last = camera.recent_frames.back();
   const std::int64_t passed_us = microseconds_between(last.utime, utime);
   if (passed_us >= 0 && passed_us <= kJumpUs) {
     camera.interval_us = std::min(passed_us, kMaxIntervalUs);
@@ -58,11 +58,11 @@ void follow_clock(std::int64_t utime, FollowedCamera& camera) {
 
 /// A frame's detections beside what was followed in it.
 struct DetectionAssociation {
-  FollowedFrame shown;
+  FollowedFrame followed_frame;
   std::vector<int> matches;  ///< each detection's followed object: its place in `shown`, or -1
-  int doubted = -1;          ///< the place in `shown` of what is looked for as if it were not followed
+  int recheck = -1;          ///< the place in `shown` of what is looked for as if it were not followed
 
-  bool needs_estimate(std::size_t detection) const { return matches[detection] < 0 || matches[detection] == doubted; }
+  bool needs_estimate(std::size_t detection) const { return matches[detection] < 0 || matches[detection] == recheck; }
 };
 
 /// The object of a number; null where it is not followed any more.
@@ -75,7 +75,7 @@ FollowedObject* find_followed(std::int64_t number, FollowedCamera& camera) {
 /// Each detection's place in `shown`, or -1. The nearest ones first, each pose of one detection; withheld ones are
 /// nobody's.
 std::vector<int> match_detections(const PoseEstimator& estimator, const Detections& detections,
-                                  const FollowedFrame& shown, double reach_m) {
+                                  const FollowedFrame& followed_frame, double reach_m) {
   struct Pair {
     double distance = 0.0;
     std::size_t detection = 0;
@@ -83,8 +83,8 @@ std::vector<int> match_detections(const PoseEstimator& estimator, const Detectio
   };
   std::vector<Pair> pairs;
   for (std::size_t d = 0; d < detections.detections.size(); ++d) {
-    for (std::size_t p = 0; p < shown.poses.size(); ++p) {
-      const ObjectPose& pose = shown.poses[p].pose;
+    for (std::size_t p = 0; p < followed_frame.poses.size(); ++p) {
+      const ObjectPose& pose = followed_frame.poses[p].pose;
       const Detection& detection = detections.detections[d];
       if (!pose.T_camera_object || pose.class_name != detection.class_name) continue;
       const Eigen::Vector3d centre = estimator.vote_centre({pose.class_name, *pose.T_camera_object});
@@ -94,7 +94,7 @@ std::vector<int> match_detections(const PoseEstimator& estimator, const Detectio
   }
   std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
   std::vector<int> matches(detections.detections.size(), -1);
-  std::vector<bool> taken(shown.poses.size());
+  std::vector<bool> taken(followed_frame.poses.size());
   for (const Pair& pair : pairs) {
     if (matches[pair.detection] >= 0 || taken[pair.pose]) continue;
     matches[pair.detection] = static_cast<int>(pair.pose);
@@ -107,38 +107,38 @@ std::vector<int> match_detections(const PoseEstimator& estimator, const Detectio
 void update_from_detections(const Detections& detections, const DetectionAssociation& look,
                             const FollowerSettings& settings, FollowedCamera& camera) {
   constexpr float kFullView = 0.7F;  // visible fraction
-  const FollowedFrame& shown = look.shown;
-  for (std::size_t p = 0; p < shown.poses.size(); ++p) {
-    FollowedObject* object = find_followed(shown.numbers[p], camera);
+  const FollowedFrame& followed_frame = look.followed_frame;
+  for (std::size_t p = 0; p < followed_frame.poses.size(); ++p) {
+    FollowedObject* object = find_followed(followed_frame.numbers[p], camera);
     if (object == nullptr) continue;
     const auto found = std::find(look.matches.begin(), look.matches.end(), static_cast<int>(p));
     double score = settings.miss_score;
     if (found != look.matches.end()) {
       score = detections.detections[static_cast<std::size_t>(found - look.matches.begin())].score;
-      object->found_us = shown.clock_us;
-    } else if (shown.poses[p].pose.visible_fraction < kFullView ||
-               seconds_between(object->found_us, shown.clock_us) < settings.missed_after_s) {
+      object->found_us = followed_frame.clock_us;
+    } else if (followed_frame.poses[p].pose.visible_fraction < kFullView ||
+               seconds_between(object->found_us, followed_frame.clock_us) < settings.missed_after_s) {
       continue;
     }
-    object->remembered_score += settings.logit_gain * (logit(score) - object->remembered_score);
+    object->score_logit += settings.logit_gain * (logit(score) - object->score_logit);
   }
 }
 
 /// The place in `shown` of the detected object whose last doubt lies farthest back, if it is time; else -1.
 int choose_recheck(const DetectionAssociation& look, const FollowerSettings& settings, FollowedCamera& camera) {
-  const FollowedFrame& shown = look.shown;
+  const FollowedFrame& followed_frame = look.followed_frame;
   FollowedObject* chosen = nullptr;
   int place = -1;
   for (const int match : look.matches) {
     FollowedObject* object =
-        match >= 0 ? find_followed(shown.numbers[static_cast<std::size_t>(match)], camera) : nullptr;
-    if (object == nullptr || seconds_between(object->doubted_us, shown.clock_us) < settings.recheck_interval_s)
+        match >= 0 ? find_followed(followed_frame.numbers[static_cast<std::size_t>(match)], camera) : nullptr;
+    if (object == nullptr || seconds_between(object->recheck_us, followed_frame.clock_us) < settings.recheck_interval_s)
       continue;
-    if (chosen != nullptr && chosen->doubted_us <= object->doubted_us) continue;
+    if (chosen != nullptr && chosen->recheck_us <= object->recheck_us) continue;
     chosen = object;
     place = match;
   }
-  if (chosen != nullptr) chosen->doubted_us = shown.clock_us;
+  if (chosen != nullptr) chosen->recheck_us = followed_frame.clock_us;
   return place;
 }
 
@@ -147,13 +147,13 @@ int choose_recheck(const DetectionAssociation& look, const FollowerSettings& set
 DetectionAssociation associate_detections(const PoseEstimator& estimator, const Detections& detections,
                                           const FollowerSettings& settings, FollowedCamera& camera) {
   DetectionAssociation look{{}, std::vector<int>(detections.detections.size(), -1), -1};
-  const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
+  const auto then = std::find_if(camera.recent_frames.rbegin(), camera.recent_frames.rend(),
                                  [&](const FollowedFrame& one) { return one.utime == detections.frame.utime; });
-  if (then == camera.shown.rend()) return look;
-  look.shown = *then;
-  look.matches = match_detections(estimator, detections, look.shown, settings.reach_m);
+  if (then == camera.recent_frames.rend()) return look;
+  look.followed_frame = *then;
+  look.matches = match_detections(estimator, detections, look.followed_frame, settings.reach_m);
   update_from_detections(detections, look, settings, camera);
-  look.doubted = choose_recheck(look, settings, camera);
+  look.recheck = choose_recheck(look, settings, camera);
   return look;
 }
 
@@ -195,7 +195,7 @@ CameraChroma ObjectFollower::camera_colours(const std::string& channel) {
 }
 
 std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator, const RgbdFrame& frame) {
-  constexpr std::size_t kShown = 32;  // frames; a detector's answer takes a few
+  constexpr std::size_t kRecentFrames = 32;  // frames; a detector's answer takes a few
   const std::lock_guard<std::mutex> lock(mutex_);
   StageClock clock;
   FollowedCamera& camera = cameras_[frame.id.channel];
@@ -203,18 +203,18 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
   follow_clock(frame.id.utime, camera);
   const std::int64_t clock_us = clock_of(frame.id.utime, camera);
   camera.is_colourless = is_colourless(frame.colour);
-  FollowedFrame shown{frame.id.utime, clock_us, {}, follow_all(estimator, frame, camera)};
+  FollowedFrame followed_frame{frame.id.utime, clock_us, {}, follow_all(estimator, frame, camera)};
   for (std::size_t i = 0; i < camera.objects.size(); ++i) {
-    note_result(shown.poses[i], clock_us, camera.objects[i]);
-    shown.numbers.push_back(camera.objects[i].number);
+    note_result(followed_frame.poses[i], clock_us, camera.objects[i]);
+    followed_frame.numbers.push_back(camera.objects[i].number);
   }
-  give_up(estimator, camera, shown);
+  remove_lost(estimator, camera, followed_frame);
   ++camera.frames;
   ObjectPoses result{frame.id, {}, frame.stages};
-  for (const FollowedPose& followed : shown.poses) result.poses.push_back(followed.pose);
+  for (const FollowedPose& followed : followed_frame.poses) result.poses.push_back(followed.pose);
   if (!camera.is_colourless) camera.colours.update(result);
-  camera.shown.push_back(std::move(shown));
-  if (camera.shown.size() > kShown) camera.shown.pop_front();
+  camera.recent_frames.push_back(std::move(followed_frame));
+  if (camera.recent_frames.size() > kRecentFrames) camera.recent_frames.pop_front();
   clock.mark(kFollowingStage);
   result.stages.push_back(clock.times().front());
   return result;
@@ -229,11 +229,11 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
   for (const FollowedObject& object : camera.objects) {
     const double dt = seconds_between(object.clock_us, clock_of(frame.id.utime, camera));
     const double used = dt <= kMaxLength ? dt : 0.0;
-    const bool settle = (camera.frames + object.number) % kSettle == 0;
+    const bool refine_by_texture = (camera.frames + object.number) % kSettle == 0;
     ExpectedObject& it =
         expected.emplace_back(expected_at(object.velocity.predict(object.T_camera_object, used), object));
-    it.settle = settle;
-    if (!settle) it.verified = object.verified;
+    it.refine_by_texture = refine_by_texture;
+    if (!refine_by_texture) it.verified = object.verified;
     it.camera_colours = colours_for(object, estimator, camera);
   }
   std::vector<FollowedPose> poses = follow_objects(estimator, settings_.follow, frame, expected);
@@ -258,11 +258,11 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
   for (const std::size_t i : failed) {
     const FollowedObject& object = camera.objects[i];
     ExpectedObject again = expected_at(object.T_camera_object, object);
-    again.settle = true;
+    again.refine_by_texture = true;
     again.is_lost = true;
     again.camera_colours = colours_for(object, estimator, camera);
     const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(object.T_camera_object, motions);
-    if (carried) again.starts.insert(again.starts.begin(), *carried);
+    if (carried) again.initial_poses.insert(again.initial_poses.begin(), *carried);
     // What stands was expected there the first time too, and it has been told whether it is hidden there.
     again.check_occlusion = carried || !object.velocity.is_zero();
     expected.push_back(std::move(again));
@@ -277,7 +277,7 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
     if (before == PoseStatus::kOccluded || (!better && found[k].pose.status == PoseStatus::kOccluded)) {
       pose.pose.status = PoseStatus::kOccluded;
     }
-    if (pose.pose.shape_quality < settings_.min_kept_quality) pose.T_camera_object = expected[k].starts.front();
+    if (pose.pose.shape_quality < settings_.min_kept_quality) pose.T_camera_object = expected[k].initial_poses.front();
   }
 }
 
@@ -287,7 +287,7 @@ void ObjectFollower::note_result(const FollowedPose& result, std::int64_t clock_
   const bool kept = valid || result.pose.shape_quality >= settings_.min_kept_quality;
   const double dt = seconds_between(object.clock_us, clock_us);
   if (valid && dt > 0.0)
-    object.velocity.update(object.T_camera_object, result.T_camera_object, dt, settings_.speed_gain);
+    object.velocity.update(object.T_camera_object, result.T_camera_object, dt, settings_.velocity_gain);
   if (!kept) object.velocity.reset();
   object.failures = kept || result.pose.status == PoseStatus::kOccluded ? 0 : object.failures + 1;
   object.T_camera_object = result.T_camera_object;
@@ -298,26 +298,29 @@ void ObjectFollower::note_result(const FollowedPose& result, std::int64_t clock_
 
 bool ObjectFollower::is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const {
   const bool hidden = result.pose.status == PoseStatus::kOccluded;
-  const double longest = hidden ? settings_.max_hidden_s : settings_.max_withheld_s;
+  const double longest = hidden ? settings_.max_hidden_s : settings_.max_rejected_s;
   return object.failures >= settings_.max_failures || result.pose.status == PoseStatus::kNoModel ||
          seconds_between(object.valid_us, clock_us) > longest;
 }
 
 /// What is lost, and the weaker of two that have become one.
-void ObjectFollower::give_up(const PoseEstimator& estimator, FollowedCamera& camera, FollowedFrame& shown) const {
+void ObjectFollower::remove_lost(const PoseEstimator& estimator, FollowedCamera& camera,
+                                 FollowedFrame& followed_frame) const {
   std::vector<bool> lost(camera.objects.size());
-  for (std::size_t i = 0; i < lost.size(); ++i) lost[i] = is_lost(camera.objects[i], shown.poses[i], shown.clock_us);
+  for (std::size_t i = 0; i < lost.size(); ++i)
+    lost[i] = is_lost(camera.objects[i], followed_frame.poses[i], followed_frame.clock_us);
   for (std::size_t i = 0; i < lost.size(); ++i) {
     for (std::size_t j = i + 1; j < lost.size(); ++j) {
-      const FollowedPose& a = shown.poses[i];
-      const FollowedPose& b = shown.poses[j];
+      const FollowedPose& a = followed_frame.poses[i];
+      const FollowedPose& b = followed_frame.poses[j];
       if (lost[i] || lost[j] || !a.pose.T_camera_object || !b.pose.T_camera_object) continue;
       const PlacedObject here{a.pose.class_name, a.T_camera_object};
-      if (!estimator.are_one(here, {b.pose.class_name, b.T_camera_object}, settings_.apart)) continue;
+      if (!estimator.is_duplicate(here, {b.pose.class_name, b.T_camera_object}, settings_.duplicate_distance_ratio))
+        continue;
       const std::size_t weaker = a.pose.shape_quality < b.pose.shape_quality ? i : j;
       lost[weaker] = true;
-      shown.poses[weaker].pose.T_camera_object.reset();
-      shown.poses[weaker].pose.status = PoseStatus::kLowScore;
+      followed_frame.poses[weaker].pose.T_camera_object.reset();
+      followed_frame.poses[weaker].pose.status = PoseStatus::kLowScore;
     }
   }
   for (std::size_t i = lost.size(); i-- > 0;) {
@@ -348,10 +351,10 @@ ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, c
     ObjectPose pose = look.needs_estimate(i) ? std::move(found.poses[next++]) : ObjectPose();
     if (look.matches[i] >= 0) {
       const auto place = static_cast<std::size_t>(look.matches[i]);
-      FollowedObject* object = find_followed(look.shown.numbers[place], camera);
+      FollowedObject* object = find_followed(look.followed_frame.numbers[place], camera);
       if (pose.T_camera_object && object != nullptr)
-        adopt_better_pose(pose, look.shown.poses[place], settings_, *object);
-      pose = look.shown.poses[place].pose;
+        adopt_better_pose(pose, look.followed_frame.poses[place], settings_, *object);
+      pose = look.followed_frame.poses[place].pose;
     } else if (pose.T_camera_object) {
       add_object(estimator, detections.frame, pose, camera);
     }
@@ -370,18 +373,20 @@ void ObjectFollower::add_object(const PoseEstimator& estimator, const FrameId& f
   found.number = found_++;
   found.class_id = pose.class_id;
   found.class_name = pose.class_name;
-  found.remembered_score = logit(pose.detection_score);
+  found.score_logit = logit(pose.detection_score);
   found.print_probability = print_probability_of(pose);
   found.T_camera_object = *pose.T_camera_object;
-  const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
-                                 [&](const FollowedFrame& shown) { return shown.utime == frame.utime; });
-  found.clock_us = then == camera.shown.rend() ? clock_of(frame.utime, camera) : then->clock_us;
-  found.valid_us = found.found_us = found.doubted_us = found.clock_us;
+  const auto then =
+      std::find_if(camera.recent_frames.rbegin(), camera.recent_frames.rend(),
+                   [&](const FollowedFrame& followed_frame) { return followed_frame.utime == frame.utime; });
+  found.clock_us = then == camera.recent_frames.rend() ? clock_of(frame.utime, camera) : then->clock_us;
+  found.valid_us = found.found_us = found.recheck_us = found.clock_us;
   propagate_to_latest(frame.utime, camera, found);
   const PlacedObject here{found.class_name, found.T_camera_object};
   std::vector<FollowedObject> others;
   for (const FollowedObject& object : camera.objects) {
-    const bool is_here = estimator.are_one(here, {object.class_name, object.T_camera_object}, settings_.apart);
+    const bool is_here =
+        estimator.is_duplicate(here, {object.class_name, object.T_camera_object}, settings_.duplicate_distance_ratio);
     const bool is_valid = object.valid_us == object.clock_us;
     if (is_here && is_valid && object.class_name == found.class_name) return;
     if (!is_here || is_valid) others.push_back(object);  // of two valid ones follow() gives the weaker one up
@@ -392,10 +397,10 @@ void ObjectFollower::add_object(const PoseEstimator& estimator, const FrameId& f
 
 /// Moves what was found in an earlier frame as the camera has moved since, as far as that can be told.
 void ObjectFollower::propagate_to_latest(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found) {
-  const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
+  const auto then = std::find_if(camera.recent_frames.rbegin(), camera.recent_frames.rend(),
                                  [&](const FollowedFrame& one) { return one.utime == utime; });
-  if (then == camera.shown.rend() || then == camera.shown.rbegin()) return;
-  const FollowedFrame& now = camera.shown.back();
+  if (then == camera.recent_frames.rend() || then == camera.recent_frames.rbegin()) return;
+  const FollowedFrame& now = camera.recent_frames.back();
   std::vector<Eigen::Isometry3d> motions;
   for (std::size_t i = 0; i < now.poses.size(); ++i) {
     const auto place = std::find(then->numbers.begin(), then->numbers.end(), now.numbers[i]);

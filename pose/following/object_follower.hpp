@@ -22,16 +22,16 @@ struct FollowerSettings {
   FollowSettings follow;          ///< how one object is found again in one frame
   int max_failures = 3;           ///< frames one after the other without evidence: it is lost
   float min_kept_quality = 0.3F;  ///< a pose that is withheld is followed on from this quality on
-  double max_withheld_s = 1.0;    ///< but no longer without a valid pose
+  double max_rejected_s = 1.0;    ///< but no longer without a valid pose
   double max_hidden_s = 2.0;      ///< the same while it is hidden
   double reach_m = 0.07;          ///< between a detection's centre and a followed pose of its class: it is of that one
-  double apart = 0.5;             ///< of the smaller radius: closer together two objects are one
-  double logit_gain = 0.3;        ///< how much one look moves the score's log odds
-  float miss_score = 0.3F;        ///< what a look is worth that does not find an object in full view...
-  double missed_after_s = 1.0;    ///< ...once none has found it for so long
-  double recheck_interval_s = 0.15;  ///< a detection's pose is looked for anew, beside the followed one...
-  double better_log_odds = 0.3;      ///< ...and takes its place where its quality is so much better
-  double speed_gain = 0.5;           ///< how much the last step moves the speed
+  double duplicate_distance_ratio = 0.5;  ///< of the smaller radius: closer together two objects are one
+  double logit_gain = 0.3;                ///< how much one look moves the score's log odds
+  float miss_score = 0.3F;                ///< what a look is worth that does not find an object in full view...
+  double missed_after_s = 1.0;            ///< ...once none has found it for so long
+  double recheck_interval_s = 0.15;       ///< a detection's pose is looked for anew, beside the followed one...
+  double better_log_odds = 0.3;           ///< ...and takes its place where its quality is so much better
+  double velocity_gain = 0.5;             ///< how much the last step moves the speed
 };
 
 template <typename Visit>
@@ -40,16 +40,16 @@ void fields(const FollowerSettings& /*settings*/, const Visit& visit) {
   visit(group("follow", &S::follow));
   visit(number("max_failures", &S::max_failures, 0, 100000));
   visit(number("min_kept_quality", &S::min_kept_quality, 0, 1));
-  visit(number("max_withheld_s", &S::max_withheld_s, 0, 3600, "s"));
+  visit(number("max_rejected_s", &S::max_rejected_s, 0, 3600, "s"));
   visit(number("max_hidden_s", &S::max_hidden_s, 0, 3600, "s"));
   visit(number("reach_m", &S::reach_m, 0, 10, "m"));
-  visit(number("apart", &S::apart, 0, 10));
+  visit(number("duplicate_distance_ratio", &S::duplicate_distance_ratio, 0, 10));
   visit(number("logit_gain", &S::logit_gain, 0, 1));
   visit(number("miss_score", &S::miss_score, 0, 1));
   visit(number("missed_after_s", &S::missed_after_s, 0, 3600, "s"));
   visit(number("recheck_interval_s", &S::recheck_interval_s, 0, 3600, "s"));
   visit(number("better_log_odds", &S::better_log_odds, 0, 100));
-  visit(number("speed_gain", &S::speed_gain, 0, 1));
+  visit(number("velocity_gain", &S::velocity_gain, 0, 1));
 }
 
 /// An object that is followed from frame to frame of one camera. Its times are on the camera's clock
@@ -58,14 +58,14 @@ struct FollowedObject {
   std::int64_t number = 0;  ///< in the order in which they were found
   int class_id = 0;
   std::string class_name;
-  double remembered_score = 0.0;   ///< log odds of its detections' scores
+  double score_logit = 0.0;        ///< log odds of its detections' scores
   float print_probability = 1.0F;  ///< of the detection's pose that it goes on from: PoseEvidence::print_probability
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres
   std::int64_t clock_us = 0;                                          ///< of the frame in which it was there
   SmoothedVelocity velocity;
   std::int64_t valid_us = 0;    ///< of its last valid pose
   std::int64_t found_us = 0;    ///< of its last detection
-  std::int64_t doubted_us = 0;  ///< when it was last looked for as if it were not followed
+  std::int64_t recheck_us = 0;  ///< when it was last looked for as if it were not followed
   int failures = 0;
   std::optional<Verification> verified;  ///< of the last rendering
 };
@@ -81,9 +81,9 @@ struct FollowedFrame {
 /// What is remembered of a camera.
 struct FollowedCamera {
   std::vector<FollowedObject> objects;
-  std::deque<FollowedFrame> shown;  ///< the last ones
-  CameraColours colours;            ///< that its objects are judged by
-  bool is_colourless = false;       ///< of the last frame: they say nothing
+  std::deque<FollowedFrame> recent_frames;  ///< the last ones
+  CameraColours colours;                    ///< that its objects are judged by
+  bool is_colourless = false;               ///< of the last frame: they say nothing
   std::int64_t frames = 0;
   /// The camera's clock minus its frames' utimes, which jump where the host's clock is set or a stamp is wrong. The
   /// camera's clock does not.
@@ -124,7 +124,7 @@ class ObjectFollower {
                   std::vector<FollowedPose>& poses) const;
   void note_result(const FollowedPose& result, std::int64_t clock_us, FollowedObject& object) const;
   bool is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const;
-  void give_up(const PoseEstimator& estimator, FollowedCamera& camera, FollowedFrame& shown) const;
+  void remove_lost(const PoseEstimator& estimator, FollowedCamera& camera, FollowedFrame& followed_frame) const;
   void add_object(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose, FollowedCamera& camera);
   static void propagate_to_latest(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found);
 

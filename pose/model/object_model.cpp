@@ -106,7 +106,7 @@ class ViewMaker {
   /// The colours of all that is seen from one direction.
   void add_print(const Eigen::Vector3f& direction, SurfacePrintMaker& print) const;
 
-  bool has_colours() const { return colour_.known(); }
+  bool has_colours() const { return colour_.has_colour(); }
 
  private:
   std::vector<SeenPoint> seen_from(const Eigen::Vector3f& direction, float& area_px) const;
@@ -156,7 +156,7 @@ ModelView ViewMaker::make(const Eigen::Vector3f& direction, std::uint64_t seed) 
     std::swap(seen[i], seen[i + random.below(static_cast<int>(seen.size() - i))]);
     view.points.push_back(seen[i].point);
     view.normals.push_back(seen[i].normal);
-    if (colour_.known()) view.colours.push_back(colour_.at(seen[i].triangle, seen[i].bary));
+    if (colour_.has_colour()) view.colours.push_back(colour_.at(seen[i].triangle, seen[i].bary));
   }
   return view;
 }
@@ -212,13 +212,13 @@ double moved_by(const Eigen::Isometry3d& motion, const std::vector<Eigen::Vector
 std::vector<Eigen::Isometry3d> near_symmetries(const MeasuredMesh& measured, const ObjectModel& model) {
   SymmetrySearch search;
   search.tolerance = 0.1;  // with which BOP finds candidates (Hodan et al. 2020)
-  const RotationSymmetryTest check(measured, model.middle.cast<double>(), search);
+  const RotationSymmetryTest check(measured, model.surface_median.cast<double>(), search);
   std::vector<Eigen::Isometry3d> turns;
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d axis = model.axes.col(i).cast<double>();
     for (const double angle : {0.5 * M_PI, M_PI}) {
-      if (!check.fits(axis, angle)) continue;
-      turns.push_back(check.turn(axis, angle));
+      if (!check.is_symmetric_under(axis, angle)) continue;
+      turns.push_back(check.rotation_about_axis(axis, angle));
       break;
     }
   }
@@ -320,7 +320,7 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
           "model {}: radius {} m, expected 0.001 to 10 m", name, model.radius);
   if (const auto known = settings.vote_centres.find(name); known != settings.vote_centres.end())
     model.vote_centre = known->second;
-  model.middle = surface_median(model.mesh);
+  model.surface_median = surface_median(model.mesh);
   model.axes = principal_axes(model.mesh);
   const MeasuredMesh measured(model.mesh);
   const auto shape = settings.shape_symmetries.find(name);

@@ -57,7 +57,7 @@ struct ObjectModel {
   /// The point for which its detections' votes are, and where their centre is: object frame, metres.
   Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();
   /// Median of the surface along each axis, object frame: a handle does not move it.
-  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+  Eigen::Vector3f surface_median = Eigen::Vector3f::Zero();
   Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();  ///< columns: principal axes of the surface, object frame
   float radius = 0.0F;                                 ///< of the sphere about the centre that holds the mesh, metres
   Symmetries shape_symmetries;  ///< rotations after which a depth camera measures the same, object frame

@@ -46,7 +46,7 @@ SurfaceColour::SurfaceColour(const Mesh& mesh, double detail_m) : mesh_(mesh) {
   cv::cvtColor(texture_, texture_, cv::COLOR_BGR2Lab);
 }
 
-bool SurfaceColour::known() const {
+bool SurfaceColour::has_colour() const {
   return !texture_.empty() || mesh_.colours.size() == mesh_.vertices.size();
 }
 

@@ -20,7 +20,7 @@ class SurfaceColour {
   SurfaceColour(const Mesh& mesh, double detail_m);
 
   /// Whether the mesh has a texture or vertex colours.
-  bool known() const;
+  bool has_colour() const;
 
   /// Colour at a point of a triangle: `bary` holds the weights of its second and third vertex.
   LabColour at(std::size_t triangle, const cv::Vec2f& bary) const;

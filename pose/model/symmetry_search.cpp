@@ -97,8 +97,9 @@ constexpr std::array<double, 8> kAngles_deg = {23, 37, 53, 71, 97, 113, 139, 163
 
 bool fits_any_angle(const RotationSymmetryTest& check, const ContinuousSymmetry& axis) {
   constexpr double kRms = 0.5;  // over all angles what a square bar's edges deviate is halved
-  return std::all_of(kAngles_deg.begin(), kAngles_deg.end(),
-                     [&](double angle) { return check.fits(rotation_about(axis, angle * kRadPerDeg), kRms); });
+  return std::all_of(kAngles_deg.begin(), kAngles_deg.end(), [&](double angle) {
+    return check.is_symmetric_under(rotation_about(axis, angle * kRadPerDeg), kRms);
+  });
 }
 
 std::vector<ContinuousSymmetry> continuous_axes(const RotationSymmetryTest& check, const Moments& moments,
@@ -127,8 +128,8 @@ std::vector<Eigen::Isometry3d> min_turns(const RotationSymmetryTest& check, cons
     const auto same = [&](const Eigen::Vector3d& other) { return std::abs(other.dot(axis)) > kSameDirection; };
     if (std::any_of(known.begin(), known.end(), same)) continue;
     for (int fold = kMaxFold; fold >= 2; --fold) {
-      if (!check.fits(check.turn(axis, 2.0 * M_PI / fold), kExactRms)) continue;
-      turns.push_back(check.turn(axis, 2.0 * M_PI / fold));
+      if (!check.is_symmetric_under(check.rotation_about_axis(axis, 2.0 * M_PI / fold), kExactRms)) continue;
+      turns.push_back(check.rotation_about_axis(axis, 2.0 * M_PI / fold));
       known.push_back(axis);
       break;
     }
@@ -147,7 +148,8 @@ struct FoldedTurn {
 std::vector<FoldedTurn> possible_turns(const RotationSymmetryTest& check, const Moments& moments) {
   std::vector<FoldedTurn> turns;
   const auto add = [&](const Eigen::Vector3d& axis, int max_fold) {
-    for (int fold = 2; fold <= max_fold; ++fold) turns.push_back({check.turn(axis, 2.0 * M_PI / fold), 0.0});
+    for (int fold = 2; fold <= max_fold; ++fold)
+      turns.push_back({check.rotation_about_axis(axis, 2.0 * M_PI / fold), 0.0});
   };
   const auto alike = [&](Eigen::Index i, Eigen::Index j) {
     return moments.spread[j] - moments.spread[i] <= check.tolerance_m();
@@ -201,9 +203,10 @@ bool close_under_composition(const RotationSymmetryTest& check, const std::vecto
       Eigen::Isometry3d product = generator * group[i];
       if (group.size() == kMaxGroup || is_near_any(product, group, kMaxError_rad)) continue;
       if (is_near_any(product, group, kSameTurn_rad)) return false;  // neither an element nor another one
-      if (!check.fits(product, kRmsOfProduct)) {
+      if (!check.is_symmetric_under(product, kRmsOfProduct)) {
         const Eigen::Isometry3d refined = folded(check.registered(product), check.centre());
-        if (angle_between(refined, product) > kMaxCorrection_rad || !check.fits(refined, kRmsOfProduct)) return false;
+        if (angle_between(refined, product) > kMaxCorrection_rad || !check.is_symmetric_under(refined, kRmsOfProduct))
+          return false;
         product = refined;
       }
       group.push_back(product);
@@ -225,7 +228,7 @@ std::vector<Eigen::Isometry3d> registered_group(const RotationSymmetryTest& chec
     if (is_near_any(start.T, group, kBasin_rad) || is_near_any(start.T, tried, kBasin_rad)) continue;
     tried.push_back(start.T);
     const Eigen::Isometry3d turn = folded(check.registered(start.T), check.centre());
-    if (is_near_any(turn, group, kSameTurn_rad) || !check.fits(turn)) continue;
+    if (is_near_any(turn, group, kSameTurn_rad) || !check.is_symmetric_under(turn)) continue;
     turns.push_back(turn);
     std::vector<Eigen::Isometry3d> larger = group;
     if (close_under_composition(check, turns, larger)) {
@@ -242,12 +245,12 @@ std::vector<Eigen::Isometry3d> registered_group(const RotationSymmetryTest& chec
 std::vector<Eigen::Isometry3d> end_over_end(const RotationSymmetryTest& check, const ContinuousSymmetry& round) {
   const Eigen::Vector3d across = round.axis.unitOrthogonal();
   const Eigen::Isometry3d plain = rotation_about({across, round.offset}, M_PI);
-  if (check.fits(plain)) return {plain};
+  if (check.is_symmetric_under(plain)) return {plain};
   const Eigen::Vector3d& centre = check.centre();
   const Eigen::Vector3d middle = 0.5 * (centre + check.registered(plain) * centre);
   const Eigen::Vector3d offset = round.offset + round.axis.dot(middle - round.offset) * round.axis;
   const Eigen::Isometry3d turn = rotation_about({across, offset}, M_PI);
-  return check.fits(turn) ? std::vector<Eigen::Isometry3d>{turn} : std::vector<Eigen::Isometry3d>{};
+  return check.is_symmetric_under(turn) ? std::vector<Eigen::Isometry3d>{turn} : std::vector<Eigen::Isometry3d>{};
 }
 
 Symmetries symmetries_by(const RotationSymmetryTest& check, const Moments& moments,
@@ -315,11 +318,11 @@ RotationSymmetryTest::RotationSymmetryTest(const MeasuredMesh& measured, const E
     colours_.push_back(colour_at(mesh, measured.tree.nearest(point)));
 }
 
-Eigen::Isometry3d RotationSymmetryTest::turn(const Eigen::Vector3d& axis, double angle_rad) const {
+Eigen::Isometry3d RotationSymmetryTest::rotation_about_axis(const Eigen::Vector3d& axis, double angle_rad) const {
   return rotation_about({axis, centre_}, angle_rad);
 }
 
-bool RotationSymmetryTest::fits(const Eigen::Isometry3d& T_exact, double rms) const {
+bool RotationSymmetryTest::is_symmetric_under(const Eigen::Isometry3d& T_exact, double rms) const {
   const Eigen::Isometry3f T = T_exact.cast<float>();
   const float max_m = static_cast<float>(settings_.max_deviation) * tolerance_m_;
   const float beyond_m = std::nextafter(max_m, std::numeric_limits<float>::infinity());
@@ -332,7 +335,7 @@ bool RotationSymmetryTest::fits(const Eigen::Isometry3d& T_exact, double rms) co
     left -= distance_m * distance_m;
     if (distance_m > static_cast<double>(max_m) || left < 0.0) return false;
   }
-  return differing_fraction(T) <= settings_.largest_differing;
+  return differing_fraction(T) <= settings_.max_differing_fraction;
 }
 
 double RotationSymmetryTest::deviation(const Eigen::Isometry3d& T_exact) const {

@@ -32,8 +32,8 @@ struct SymmetrySearch {
   /// Shape only, or colours too: a printed box has a shape whose symmetries its print breaks. A mesh without colours
   /// has nothing to compare.
   bool compare_colours = false;
-  double colour_difference = 0.1;   ///< points differ from here on, mean of the channels, 1 = black against white
-  double largest_differing = 0.05;  ///< share of the surface that may differ: sensor noise, grain, seams
+  double colour_difference = 0.1;        ///< points differ from here on, mean of the channels, 1 = black against white
+  double max_differing_fraction = 0.05;  ///< share of the surface that may differ: sensor noise, grain, seams
 };
 
 /// The symmetries of a mesh, metres: continuous where any angle about an axis fits, with half a turn about one
@@ -65,10 +65,12 @@ class RotationSymmetryTest {
   RotationSymmetryTest(const MeasuredMesh& measured, const Eigen::Vector3d& centre, const SymmetrySearch& settings);
 
   /// The rotation about an axis through the centre.
-  Eigen::Isometry3d turn(const Eigen::Vector3d& axis, double angle_rad) const;
+  Eigen::Isometry3d rotation_about_axis(const Eigen::Vector3d& axis, double angle_rad) const;
   /// The root mean square of the deviation may be as large as `rms` tolerances.
-  bool fits(const Eigen::Isometry3d& T, double rms = 1.0) const;
-  bool fits(const Eigen::Vector3d& axis, double angle_rad) const { return fits(turn(axis, angle_rad)); }
+  bool is_symmetric_under(const Eigen::Isometry3d& T, double rms = 1.0) const;
+  bool is_symmetric_under(const Eigen::Vector3d& axis, double angle_rad) const {
+    return is_symmetric_under(rotation_about_axis(axis, angle_rad));
+  }
   /// Mean distance, metres, of a hundred moved points from the surface.
   double deviation(const Eigen::Isometry3d& T) const;
   /// The motion near `T` that lays the moved surface on the surface (point-to-plane ICP, Chen and Medioni 1992, with

@@ -22,7 +22,7 @@ std::vector<RotationVote> usable_votes(const std::vector<RotationVote>& votes) {
 }
 
 /// |a.b| is the cosine of half the angle between two rotations.
-float likeness(const RotationVote& a, const RotationVote& b) {
+float rotation_kernel(const RotationVote& a, const RotationVote& b) {
   return std::abs(a.R_camera_object.dot(b.R_camera_object));
 }
 
@@ -42,12 +42,13 @@ RotationCandidate mean_rotation(const std::vector<RotationVote>& votes) {
 }
 
 /// The vote with most weight within the radius; ties go to the first.
-std::size_t densest(const std::vector<RotationVote>& votes, float min_likeness) {
+std::size_t densest(const std::vector<RotationVote>& votes, float min_kernel) {
   std::size_t best = 0;
   float best_weight = -1.0F;
   for (std::size_t i = 0; i < votes.size(); ++i) {
     float weight = 0.0F;
-    for (const RotationVote& other : votes) weight += likeness(votes[i], other) >= min_likeness ? other.weight : 0.0F;
+    for (const RotationVote& other : votes)
+      weight += rotation_kernel(votes[i], other) >= min_kernel ? other.weight : 0.0F;
     if (weight > best_weight) {
       best_weight = weight;
       best = i;
@@ -91,11 +92,11 @@ std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>
   std::vector<RotationVote> left = usable_votes(votes);
   constexpr double kSelf = 0.9999;  // a vote is always in its own cluster
   const double limit = std::cos(0.5 * settings.cluster_radius_deg * kRadPerDeg);
-  const auto min_likeness = static_cast<float>(std::min(limit, kSelf));
+  const auto min_kernel = static_cast<float>(std::min(limit, kSelf));
   std::vector<RotationCandidate> candidates;
   while (!left.empty() && static_cast<int>(candidates.size()) < settings.clusters) {
-    const RotationVote centre = left[densest(left, min_likeness)];
-    const auto far = [&](const RotationVote& vote) { return likeness(vote, centre) < min_likeness; };
+    const RotationVote centre = left[densest(left, min_kernel)];
+    const auto far = [&](const RotationVote& vote) { return rotation_kernel(vote, centre) < min_kernel; };
     const auto near_begin = std::stable_partition(left.begin(), left.end(), far);
     candidates.push_back(mean_rotation({near_begin, left.end()}));
     left.erase(near_begin, left.end());

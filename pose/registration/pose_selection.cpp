@@ -15,9 +15,10 @@ struct Scored {
 };
 
 /// The steps of the choice for one object, with what they share.
-class Choice {
+class PoseSelector {
  public:
-  Choice(const ObjectObservation& seen, const std::vector<RotationCandidate>& votes, const ChoiceSettings& settings)
+  PoseSelector(const ObjectObservation& seen, const std::vector<RotationCandidate>& votes,
+               const PoseSelectionSettings& settings)
       : seen_(seen),
         votes_(votes),
         settings_(settings),
@@ -50,7 +51,7 @@ class Choice {
   /// then, and only its print tells. The best first, and none that ends elsewhere.
   std::vector<Scored> flips_of(const RegistrationResult& result) const {
     std::vector<Scored> flips = {{result, score_of(result)}};
-    const Eigen::Vector3d middle = seen_.model.middle.cast<double>();
+    const Eigen::Vector3d middle = seen_.model.surface_median.cast<double>();
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::AngleAxisd half_turn(M_PI, seen_.model.axes.col(axis).cast<double>());
       const Eigen::Isometry3d flipped =
@@ -75,8 +76,9 @@ class Choice {
 
   RegistrationResult uphill(RegistrationResult result) const {
     const RotationSearchSettings& turn = settings_.turn;
-    const HillClimb climb{turn.fine_step_deg * kRadPerDeg, turn.climb_step_m, turn.hill_climb_rounds, turn.points};
-    result.T_camera_object = hill_climb_pose(seen_, result.T_camera_object, climb, tolerance_).T_camera_object;
+    const HillClimb hill_climb{turn.fine_step_deg * kRadPerDeg, turn.hill_climb_step_m, turn.hill_climb_rounds,
+                               turn.points};
+    result.T_camera_object = hill_climb_pose(seen_, result.T_camera_object, hill_climb, tolerance_).T_camera_object;
     return result;
   }
 
@@ -90,46 +92,46 @@ class Choice {
 
   const ObjectObservation& seen_;
   const std::vector<RotationCandidate>& votes_;
-  const ChoiceSettings& settings_;
+  const PoseSelectionSettings& settings_;
   DepthTolerance tolerance_;
   CorrespondenceDistances distances_;
 };
 
 /// The last steps of a choice: turned a little to where all speaks most for it, and registered.
-RegistrationResult settle(const Choice& choice, const ObjectObservation& seen, const RegistrationResult& result,
-                          const ChoiceSettings& settings) {
+RegistrationResult refine_fully(const PoseSelector& selector, const ObjectObservation& seen,
+                                const RegistrationResult& result, const PoseSelectionSettings& settings) {
   const RotationSearchSettings& turn = settings.turn;
-  return register_finely(seen, choice.best_turn(result, turn.fine_step_deg, turn.step_deg, 1), settings.registration);
+  return register_finely(seen, selector.best_turn(result, turn.fine_step_deg, turn.step_deg, 1), settings.registration);
 }
 
 }  // namespace
 
 RegistrationResult refine_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
-                               const std::vector<RotationCandidate>& votes, const ChoiceSettings& settings) {
+                               const std::vector<RotationCandidate>& votes, const PoseSelectionSettings& settings) {
   RegistrationResult start;
   start.T_camera_object = T_camera_object;
   const RegistrationResult registered = register_finely(seen, start, settings.registration);
-  return settle(Choice(seen, votes, settings), seen, registered, settings);
+  return refine_fully(PoseSelector(seen, votes, settings), seen, registered, settings);
 }
 
 std::vector<RegistrationResult> select_poses(const ObjectObservation& seen,
                                              const std::vector<RegistrationResult>& registered,
                                              const std::vector<RotationCandidate>& votes,
-                                             const ChoiceSettings& settings) {
-  const Choice choice(seen, votes, settings);
+                                             const PoseSelectionSettings& settings) {
+  const PoseSelector selector(seen, votes, settings);
   const RotationSearchSettings& turn = settings.turn;
   const RegistrationSettings& registration = settings.registration;
-  RegistrationResult best = choice.best_of(registered);
+  RegistrationResult best = selector.best_of(registered);
   if (best.inliers == 0) return {best};
   const RegistrationResult settled = register_finely(seen, best, registration);
-  const std::vector<Scored> flips = choice.flips_of(settled);
-  const RegistrationResult turned = choice.best_turn(flips.front().result, turn.step_deg, 180.0, turn.registered);
+  const std::vector<Scored> flips = selector.flips_of(settled);
+  const RegistrationResult turned = selector.best_turn(flips.front().result, turn.step_deg, 180.0, turn.registered);
   std::vector<RegistrationResult> fine = {register_finely(seen, turned, registration)};
-  for (std::size_t i = 1; i < flips.size() && fine.size() <= turn.rivals; ++i) {
+  for (std::size_t i = 1; i < flips.size() && fine.size() <= turn.alternatives; ++i) {
     if (flips[i].score < turn.min_alternative_ratio * flips.front().score) break;
     fine.push_back(register_finely(seen, flips[i].result, registration));
   }
-  for (RegistrationResult& result : fine) result = settle(choice, seen, result, settings);
+  for (RegistrationResult& result : fine) result = refine_fully(selector, seen, result, settings);
   return fine;
 }
 

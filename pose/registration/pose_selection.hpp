@@ -13,11 +13,11 @@ namespace houghstream {
 struct RotationSearchSettings {
   double step_deg = 15.0;              ///< all the way round
   double fine_step_deg = 3.0;          ///< up to one step to each side
-  double climb_step_m = 0.004;         ///< shifts along the object's axes that are tried with small turns
+  double hill_climb_step_m = 0.004;    ///< shifts along the object's axes that are tried with small turns
   int hill_climb_rounds = 4;           ///< of those, to each side
   int points = 250;                    ///< of a view
   std::size_t registered = 3;          ///< the best turns all round are registered again
-  std::size_t rivals = 1;              ///< flips beside the best one that are chosen too,
+  std::size_t alternatives = 1;        ///< flips beside the best one that are chosen too,
   float min_alternative_ratio = 0.8F;  ///< where they score at least so much of it
 };
 
@@ -26,16 +26,16 @@ void fields(const RotationSearchSettings& /*settings*/, const Visit& visit) {
   using S = RotationSearchSettings;
   visit(number("step_deg", &S::step_deg, 0.1, 360, "degrees"));
   visit(number("fine_step_deg", &S::fine_step_deg, 0.1, 180, "degrees"));
-  visit(number("climb_step_m", &S::climb_step_m, 0, 1, "m"));
+  visit(number("hill_climb_step_m", &S::hill_climb_step_m, 0, 1, "m"));
   visit(number("hill_climb_rounds", &S::hill_climb_rounds, 0, 1000));
   visit(number("points", &S::points, 1, 100000));
   visit(number("registered", &S::registered, 0, 1000));
-  visit(number("rivals", &S::rivals, 0, 1000));
+  visit(number("alternatives", &S::alternatives, 0, 1000));
   visit(number("min_alternative_ratio", &S::min_alternative_ratio, 0, 1));
 }
 
 /// The settings that the choice reads; each stands beside its stage.
-struct ChoiceSettings {
+struct PoseSelectionSettings {
   InitialSettings initial;
   RegistrationSettings registration;
   RotationSearchSettings turn;
@@ -51,14 +51,15 @@ struct ChoiceSettings {
 std::vector<RegistrationResult> select_poses(const ObjectObservation& seen,
                                              const std::vector<RegistrationResult>& registered,
                                              const std::vector<RotationCandidate>& votes,
-                                             const ChoiceSettings& settings);
+                                             const PoseSelectionSettings& settings);
 
 /// A pose that was found otherwise, registered finely and turned a little about its z axis to where depth, colour and
 /// votes speak most for it, as select_poses() ends.
 RegistrationResult refine_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
-                               const std::vector<RotationCandidate>& votes, const ChoiceSettings& settings);
+                               const std::vector<RotationCandidate>& votes, const PoseSelectionSettings& settings);
 
 // The names of before, for one release.
 using TurnSettings [[deprecated("is RotationSearchSettings now")]] = RotationSearchSettings;
+using ChoiceSettings [[deprecated("is PoseSelectionSettings now")]] = PoseSelectionSettings;
 
 }  // namespace houghstream

@@ -10,7 +10,7 @@ namespace houghstream {
 namespace {
 
 /// Those that are better than both neighbours; `ring`: the last one's next is the first.
-std::vector<ScoredPose> summits(const std::vector<ScoredPose>& turns, bool ring) {
+std::vector<ScoredPose> local_maxima(const std::vector<ScoredPose>& turns, bool ring) {
   std::vector<ScoredPose> best;
   const std::size_t count = turns.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -22,7 +22,7 @@ std::vector<ScoredPose> summits(const std::vector<ScoredPose>& turns, bool ring)
 }
 
 Eigen::Isometry3d turned(const Eigen::Isometry3d& T_camera_object, const ObjectModel& model, double angle_rad) {
-  const Eigen::Vector3d middle = model.middle.cast<double>();
+  const Eigen::Vector3d middle = model.surface_median.cast<double>();
   const Eigen::AngleAxisd turn(angle_rad, Eigen::Vector3d::UnitZ());
   return T_camera_object * Eigen::Translation3d(middle) * turn * Eigen::Translation3d(-middle);
 }
@@ -31,28 +31,28 @@ Eigen::Isometry3d turned(const Eigen::Isometry3d& T_camera_object, const ObjectM
 
 ScoredPose score_pose_jointly(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, int points,
                               const DepthTolerance& tolerance) {
-  const ProjectedView look = look_at_view(seen.frame, seen.model, T_camera_object, points);
+  const ProjectedView look = project_view(seen.frame, seen.model, T_camera_object, points);
   const float depth = score_projected_view(look, tolerance).value;
   return {T_camera_object, joint_score(depth, compare_colours(seen.colours, look, tolerance))};
 }
 
 ScoredPose hill_climb_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
-                           const HillClimb& climb, const DepthTolerance& tolerance) {
-  ScoredPose best = score_pose_jointly(seen, T_camera_object, climb.points, tolerance);
+                           const HillClimb& hill_climb, const DepthTolerance& tolerance) {
+  ScoredPose best = score_pose_jointly(seen, T_camera_object, hill_climb.points, tolerance);
   constexpr int kMotions = 8;
   double size = 1.0;
   int failed = 0;  // one after the other, of this size
-  for (int round = 0; round < climb.rounds; ++round) {
+  for (int round = 0; round < hill_climb.rounds; ++round) {
     bool improved = false;
     for (int motion = 0; motion < kMotions && failed < kMotions; ++motion) {  // a ninth would repeat the first
       const double way = (motion % 2 == 0 ? 1.0 : -1.0) * size;
       Eigen::Isometry3d moved = best.T_camera_object;
       if (motion < 2) {
-        moved = turned(moved, seen.model, way * climb.step_rad);
+        moved = turned(moved, seen.model, way * hill_climb.step_rad);
       } else {
-        moved.translate(way * climb.step_m * Eigen::Vector3d::Unit(motion / 2 - 1));
+        moved.translate(way * hill_climb.step_m * Eigen::Vector3d::Unit(motion / 2 - 1));
       }
-      const ScoredPose next = score_pose_jointly(seen, moved, climb.points, tolerance);
+      const ScoredPose next = score_pose_jointly(seen, moved, hill_climb.points, tolerance);
       ++failed;
       if (!(next.score > best.score)) continue;
       best = next;
@@ -75,7 +75,7 @@ std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& seen, co
     const Eigen::Isometry3d turn = turned(T_camera_object, seen.model, i * range.step_rad);
     turns.push_back(score_pose_jointly(seen, turn, range.points, tolerance));
   }
-  std::vector<ScoredPose> best = summits(turns, all_round);
+  std::vector<ScoredPose> best = local_maxima(turns, all_round);
   std::stable_sort(best.begin(), best.end(),
                    [](const ScoredPose& a, const ScoredPose& b) { return a.score > b.score; });
   best.resize(std::min(best.size(), range.most));

@@ -43,6 +43,6 @@ struct HillClimb {
 /// From the pose uphill by such steps: what neither depth alone nor a coarse turn settles, such as how far a printed
 /// round thing stands along its axis.
 ScoredPose hill_climb_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
-                           const HillClimb& climb, const DepthTolerance& tolerance);
+                           const HillClimb& hill_climb, const DepthTolerance& tolerance);
 
 }  // namespace houghstream

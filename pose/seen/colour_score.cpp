@@ -41,14 +41,14 @@ double lightness_left_over(const ColourProducts& products) {
   using Terms = Eigen::Matrix<double, kTerms, 1>;
   Eigen::Matrix<double, kTerms, kTerms> curvature = products.topLeftCorner<kTerms, kTerms>();
   curvature.diagonal().array() += kRidge;
-  const Terms with_seen = products.block<kTerms, 1>(0, kSeenLightness);
+  const Terms with_seen = products.block<kTerms, 1>(0, kObservedLightness);
   Terms weights = curvature.ldlt().solve(with_seen);
   const double gain = std::clamp(weights[0], kMinGain, kMaxGain);
   if (gain != weights[0]) {
     const Eigen::Matrix<double, kOthers, 1> rest = with_seen.tail<kOthers>() - gain * curvature.block<kOthers, 1>(1, 0);
     weights << gain, curvature.bottomRightCorner<kOthers, kOthers>().ldlt().solve(rest);
   }
-  const double seen_sq = products(kSeenLightness, kSeenLightness);
+  const double seen_sq = products(kObservedLightness, kObservedLightness);
   return std::max(0.0, seen_sq - 2.0 * weights.dot(with_seen) + weights.dot(curvature * weights));
 }
 
@@ -57,9 +57,9 @@ ChromaMeans chroma_means(const ColourProducts& products) {
   constexpr double kUnit = 100.0 / 255.0;  // of 8-bit lightness
   ChromaMeans means;
   means.model = {products(kA, kOne), products(kB, kOne)};
-  means.measured = {products(kSeenA, kOne), products(kSeenB, kOne)};
-  means.lightness = kUnit * (products(kSeenLightness, kOne) + kOffset);
-  means.variance = {variance(products, kSeenA), variance(products, kSeenB)};
+  means.measured = {products(kObservedA, kOne), products(kObservedB, kOne)};
+  means.lightness = kUnit * (products(kObservedLightness, kOne) + kOffset);
+  means.variance = {variance(products, kObservedA), variance(products, kObservedB)};
   return means;
 }
 
@@ -84,17 +84,17 @@ ColourComparison compare(const SummedColours& sums) {
   };
   const ColourProducts products = sums.compared.means();
   const double seen =
-      weighted(variance(products, kSeenLightness), variance(products, kSeenA), variance(products, kSeenB));
+      weighted(variance(products, kObservedLightness), variance(products, kObservedA), variance(products, kObservedB));
   const double own = weighted(variance(products, kLightness), variance(products, kA), variance(products, kB));
-  const double left = weighted(lightness_left_over(products), chroma_left_over(products, kA, kSeenA),
-                               chroma_left_over(products, kB, kSeenB));
+  const double left = weighted(lightness_left_over(products), chroma_left_over(products, kA, kObservedA),
+                               chroma_left_over(products, kB, kObservedB));
   ColourComparison comparison;
   comparison.points = sums.compared.count();
   comparison.agreement = static_cast<float>(1.0 - left / (kUntexturedVariance + seen));
-  comparison.left_over = static_cast<float>(std::sqrt(left));
+  comparison.residual_stddev = static_cast<float>(std::sqrt(left));
   comparison.chroma = chroma_means(sums.all_means(products));
   comparison.unclipped_chroma = chroma_means(products);
-  comparison.chroma_conflict = chroma_conflict(comparison.chroma, kAsTaught);
+  comparison.chroma_difference = chroma_difference(comparison.chroma, kAsTaught);
   comparison.clipped = sums.clipped.count();
   comparison.observed_contrast = static_cast<float>(std::sqrt(std::max(0.0, seen)));
   comparison.model_contrast = static_cast<float>(std::sqrt(std::max(0.0, own)));
@@ -103,7 +103,7 @@ ColourComparison compare(const SummedColours& sums) {
 
 }  // namespace
 
-float chroma_conflict(const ChromaMeans& means, const ChromaMap& camera) {
+float chroma_difference(const ChromaMeans& means, const ChromaMap& camera) {
   constexpr double kPlain = 100.0;  // variance that plain surfaces have in changing light
   constexpr double kPalest = 0.5;   // strengths over the expected one
   constexpr double kStrongest = 2.5;
@@ -125,10 +125,10 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
   SummedColours sums;
   std::array<ComparedPoint, 64> points;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < seen.looks.size(); ++i) {
-    const Look& look = seen.looks[i];
+  for (std::size_t i = 0; i < seen.points.size(); ++i) {
+    const ProjectedPoint& look = seen.points[i];
     const cv::Point inside = cv::Point(look.x, look.y) - colours.origin_px;
-    if (!(std::abs(look.beyond) <= width) || !part.contains(inside)) continue;
+    if (!(std::abs(look.depth_difference) <= width) || !part.contains(inside)) continue;
     const Eigen::Vector3f normal = kNormalUnits * (seen.T.linear() * seen.view.normals[i]);
     points[count] = {about_grey(seen.view.colours[i]),
                      about_grey(colours.lab.at<cv::Vec3b>(inside)),

@@ -30,20 +30,21 @@ struct ColourComparison {
   /// as exposure and the light's colour decide them, and lightness also free to follow the surface's normals, as
   /// shading does. Near 0, or below, for unrelated prints.
   float agreement = 0.0F;
-  float left_over = 0.0F;  ///< standard deviation of the seen colours that is left over, 8-bit CIE L*a*b*
+  float residual_stddev = 0.0F;  ///< standard deviation of the seen colours that is left over, 8-bit CIE L*a*b*
   /// How far the mean a* and b* that are seen are from the remembered ones, at any strength (within limits) that haze
   /// or a camera gives these: over the spread of those seen, at most 4. Where the camera was at its limit too: what is
   /// left without is edges and shade, of another hue.
-  float chroma_conflict = 0.0F;
-  int clipped = 0;                 ///< not compared: the camera was at its limit
-  float observed_contrast = 0.0F;  ///< standard deviation of the seen colours, the channels weighted as in `left_over`
-  float model_contrast = 0.0F;     ///< the same of the model's
-  ChromaMeans chroma;              ///< of all points: what chroma_conflict compares
-  ChromaMeans unclipped_chroma;    ///< of those where the camera was not at its limit
+  float chroma_difference = 0.0F;
+  int clipped = 0;  ///< not compared: the camera was at its limit
+  /// Standard deviation of the seen colours, the channels weighted as in `residual_stddev`.
+  float observed_contrast = 0.0F;
+  float model_contrast = 0.0F;   ///< the same of the model's
+  ChromaMeans chroma;            ///< of all points: what chroma_conflict compares
+  ChromaMeans unclipped_chroma;  ///< of those where the camera was not at its limit
 };
 
 /// ColourComparison::chroma_conflict with the model's colours brought to the camera's.
-float chroma_conflict(const ChromaMeans& means, const ChromaMap& camera);
+float chroma_difference(const ChromaMeans& means, const ChromaMap& camera);
 
 /// Compares the points that were looked at. Nothing where the model has no colours or too few points agree.
 std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ProjectedView& seen,
@@ -69,17 +70,17 @@ enum ColourColumn : Eigen::Index {
   kOne = kNormal + 3,
   kA,
   kB,
-  kSeenLightness,
-  kSeenA,
-  kSeenB,
+  kObservedLightness,
+  kObservedA,
+  kObservedB,
   kColourColumns
 };
 using ColourProducts = Eigen::Matrix<double, kColourColumns, kColourColumns>;  ///< of the columns' mean values
 
 /// A compared point, in vectors of four.
 struct ComparedPoint {
-  Eigen::Array4f own, seen;  ///< L*, a*, b* and 1
-  Eigen::Array4f normal;     ///< its coordinates and 1
+  Eigen::Array4f model, observed;  ///< L*, a*, b* and 1
+  Eigen::Array4f normal;           ///< its coordinates and 1
 };
 
 /// Sums of those products that are asked for. Only sums of normals are ever rounded: colours are whole numbers.
@@ -96,13 +97,13 @@ class ColourSums {
   int count() const { return count_; }
 
   ColourSums& operator+=(const ColourSums& other) {
-    own_ += other.own_;
-    seen_ += other.seen_;
-    own_own_ += other.own_own_;
-    own_seen_ += other.own_seen_;
-    seen_seen_ += other.seen_seen_;
-    normal_own_ += other.normal_own_;
-    normal_seen_ += other.normal_seen_;
+    model_ += other.model_;
+    observed_ += other.observed_;
+    model_model_ += other.model_model_;
+    model_observed_ += other.model_observed_;
+    observed_observed_ += other.observed_observed_;
+    normal_model_ += other.normal_model_;
+    normal_observed_ += other.normal_observed_;
     normal_x_ += other.normal_x_;
     normal_y_ += other.normal_y_;
     normal_z_ += other.normal_z_;
@@ -116,18 +117,18 @@ class ColourSums {
     const auto set = [&](Eigen::Index a, Eigen::Index b, float sum) {
       products(a, b) = products(b, a) = static_cast<double>(sum) / static_cast<double>(count_);
     };
-    constexpr std::array<Eigen::Index, 3> kOwn = {kLightness, kA, kB};
-    constexpr std::array<Eigen::Index, 3> kSeen = {kSeenLightness, kSeenA, kSeenB};
+    constexpr std::array<Eigen::Index, 3> kModel = {kLightness, kA, kB};
+    constexpr std::array<Eigen::Index, 3> kObserved = {kObservedLightness, kObservedA, kObservedB};
     const std::array<const Eigen::Array4f*, 3> normals = {&normal_x_, &normal_y_, &normal_z_};
     for (std::size_t c = 0; c < 3; ++c) {
       const auto i = static_cast<Eigen::Index>(c);
-      set(kOwn[c], kOne, own_[i]);
-      set(kSeen[c], kOne, seen_[i]);
-      set(kOwn[c], kOwn[c], own_own_[i]);
-      set(kOwn[c], kSeen[c], own_seen_[i]);
-      set(kSeen[c], kSeen[c], seen_seen_[i]);
-      set(kNormal + i, kLightness, normal_own_[i]);
-      set(kNormal + i, kSeenLightness, normal_seen_[i]);
+      set(kModel[c], kOne, model_[i]);
+      set(kObserved[c], kOne, observed_[i]);
+      set(kModel[c], kModel[c], model_model_[i]);
+      set(kModel[c], kObserved[c], model_observed_[i]);
+      set(kObserved[c], kObserved[c], observed_observed_[i]);
+      set(kNormal + i, kLightness, normal_model_[i]);
+      set(kNormal + i, kObservedLightness, normal_observed_[i]);
       set(kNormal + i, kOne, (*normals[c])[3]);
       for (Eigen::Index j = 0; j <= i; ++j) set(kNormal + i, kNormal + j, (*normals[c])[j]);
     }
@@ -137,26 +138,26 @@ class ColourSums {
 
  private:
   void add(const ComparedPoint& point) {
-    own_ += point.own;
-    seen_ += point.seen;
-    own_own_ += point.own * point.own;
-    own_seen_ += point.own * point.seen;
-    seen_seen_ += point.seen * point.seen;
-    normal_own_ += point.own[0] * point.normal;
-    normal_seen_ += point.seen[0] * point.normal;
+    model_ += point.model;
+    observed_ += point.observed;
+    model_model_ += point.model * point.model;
+    model_observed_ += point.model * point.observed;
+    observed_observed_ += point.observed * point.observed;
+    normal_model_ += point.model[0] * point.normal;
+    normal_observed_ += point.observed[0] * point.normal;
     normal_x_ += point.normal[0] * point.normal;
     normal_y_ += point.normal[1] * point.normal;
     normal_z_ += point.normal[2] * point.normal;
     ++count_;
   }
 
-  Eigen::Array4f own_ = Eigen::Array4f::Zero();
-  Eigen::Array4f seen_ = Eigen::Array4f::Zero();
-  Eigen::Array4f own_own_ = Eigen::Array4f::Zero();
-  Eigen::Array4f own_seen_ = Eigen::Array4f::Zero();
-  Eigen::Array4f seen_seen_ = Eigen::Array4f::Zero();
-  Eigen::Array4f normal_own_ = Eigen::Array4f::Zero();   // times the own lightness
-  Eigen::Array4f normal_seen_ = Eigen::Array4f::Zero();  // times the seen lightness
+  Eigen::Array4f model_ = Eigen::Array4f::Zero();
+  Eigen::Array4f observed_ = Eigen::Array4f::Zero();
+  Eigen::Array4f model_model_ = Eigen::Array4f::Zero();
+  Eigen::Array4f model_observed_ = Eigen::Array4f::Zero();
+  Eigen::Array4f observed_observed_ = Eigen::Array4f::Zero();
+  Eigen::Array4f normal_model_ = Eigen::Array4f::Zero();     // times the own lightness
+  Eigen::Array4f normal_observed_ = Eigen::Array4f::Zero();  // times the seen lightness
   Eigen::Array4f normal_x_ = Eigen::Array4f::Zero();
   Eigen::Array4f normal_y_ = Eigen::Array4f::Zero();
   Eigen::Array4f normal_z_ = Eigen::Array4f::Zero();

@@ -11,15 +11,15 @@ namespace {
 /// `width` is the tolerance at the object's depth.
 DepthScore score_of(const ProjectedView& seen, float shift, float width) {
   DepthScore score;
-  for (const Look& look : seen.looks) {
-    const float ratio = (look.beyond - shift) / width;
+  for (const ProjectedPoint& look : seen.points) {
+    const float ratio = (look.depth_difference - shift) / width;
     // Without branches, as the case changes from point to point: NaN is not above 0 and adds nothing.
-    score.agreeing += std::max(0.0F, 1.0F - ratio * ratio);
-    score.violating += std::min(1.0F, std::max(0.0F, ratio - 1.0F));
+    score.inlier_fraction += std::max(0.0F, 1.0F - ratio * ratio);
+    score.free_space_violation += std::min(1.0F, std::max(0.0F, ratio - 1.0F));
   }
-  score.agreeing /= static_cast<float>(seen.looks.size());
-  score.violating /= static_cast<float>(seen.looks.size());
-  score.value = (score.agreeing - score.violating) * seen.view.area;
+  score.inlier_fraction /= static_cast<float>(seen.points.size());
+  score.free_space_violation /= static_cast<float>(seen.points.size());
+  score.value = (score.inlier_fraction - score.free_space_violation) * seen.view.area;
   return score;
 }
 
@@ -42,22 +42,22 @@ float densest_mean(const std::vector<float>& sorted, float width) {
 
 }  // namespace
 
-ProjectedView look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+ProjectedView project_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                            int points) {
   const double depth = (T_camera_object * model.centre.cast<double>()).z();
   ProjectedView result{nearest_view(model, T_camera_object), T_camera_object.cast<float>(), depth, {}};
   const auto columns = static_cast<float>(frame.depth.cols);
   const auto rows = static_cast<float>(frame.depth.rows);
-  result.looks.resize(std::min<std::size_t>(static_cast<std::size_t>(std::max(0, points)), result.view.points.size()));
-  for (std::size_t i = 0; i < result.looks.size(); ++i) {
+  result.points.resize(std::min<std::size_t>(static_cast<std::size_t>(std::max(0, points)), result.view.points.size()));
+  for (std::size_t i = 0; i < result.points.size(); ++i) {
     const Eigen::Vector3f point = result.T * result.view.points[i];
     if (!(point.z() > 0.0F)) continue;
     const Eigen::Vector2f pixel = frame.camera.project_single(point) + Eigen::Vector2f::Constant(0.5F);
     if (!(pixel.x() >= 0.0F && pixel.y() >= 0.0F && pixel.x() < columns && pixel.y() < rows)) continue;
-    Look& look = result.looks[i];
+    ProjectedPoint& look = result.points[i];
     look.x = static_cast<int>(pixel.x());
     look.y = static_cast<int>(pixel.y());
-    look.beyond = frame.depth.ptr<float>(look.y)[look.x] - point.z();
+    look.depth_difference = frame.depth.ptr<float>(look.y)[look.x] - point.z();
   }
   return result;
 }
@@ -68,17 +68,17 @@ DepthScore score_projected_view(const ProjectedView& seen, const DepthTolerance&
 
 DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                       int points, const DepthTolerance& tolerance) {
-  return score_projected_view(look_at_view(frame, model, T_camera_object, points), tolerance);
+  return score_projected_view(project_view(frame, model, T_camera_object, points), tolerance);
 }
 
 DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                             const ShiftSearch& search) {
-  const ProjectedView seen = look_at_view(frame, model, T_camera_object, search.points);
+  const ProjectedView seen = project_view(frame, model, T_camera_object, search.points);
   const auto width = static_cast<float>(search.tolerance.at(seen.depth));
   std::vector<float> within;
-  within.reserve(seen.looks.size());
-  for (const Look& look : seen.looks) {
-    if (std::abs(look.beyond) <= search.reach_m) within.push_back(look.beyond);  // false for NaN
+  within.reserve(seen.points.size());
+  for (const ProjectedPoint& look : seen.points) {
+    if (std::abs(look.depth_difference) <= search.reach_m) within.push_back(look.depth_difference);  // false for NaN
   }
   std::sort(within.begin(), within.end());
   const float shift = densest_mean(within, width);

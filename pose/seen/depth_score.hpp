@@ -14,28 +14,28 @@ namespace houghstream {
 constexpr double kDepthTolerance_m = 0.008;
 
 /// Where a model's point falls in a frame, and what was measured there.
-struct Look {
+struct ProjectedPoint {
   /// Measured minus model depth along the ray, metres; NaN where nothing was measured or the image ends.
-  float beyond = std::numeric_limits<float>::quiet_NaN();
+  float depth_difference = std::numeric_limits<float>::quiet_NaN();
   int x = 0;  ///< pixel; meaningless where the image ends
   int y = 0;
 };
 
 /// A model's view at a pose, against a frame.
 struct ProjectedView {
-  const ModelView& view;    ///< nearest to the pose
-  Eigen::Isometry3f T;      ///< camera from object
-  double depth = 0.0;       ///< of the model's middle, metres: tolerances are those of there
-  std::vector<Look> looks;  ///< of the first points of the view
+  const ModelView& view;               ///< nearest to the pose
+  Eigen::Isometry3f T;                 ///< camera from object
+  double depth = 0.0;                  ///< of the model's middle, metres: tolerances are those of there
+  std::vector<ProjectedPoint> points;  ///< of the first points of the view
 };
-ProjectedView look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+ProjectedView project_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                            int points);
 
 /// How the measured depth speaks for a pose, judged at the visible points of the model.
 struct DepthScore {
-  float agreeing = 0.0F;   ///< fraction of the points where measured and model depth agree
-  float violating = 0.0F;  ///< fraction in front of what was measured: the camera saw through them
-  float value = 0.0F;      ///< (agreeing - violating) times the view's silhouette: explained minus contradicted area
+  float inlier_fraction = 0.0F;       ///< fraction of the points where measured and model depth agree
+  float free_space_violation = 0.0F;  ///< fraction in front of what was measured: the camera saw through them
+  float value = 0.0F;  ///< (agreeing - violating) times the view's silhouette: explained minus contradicted area
 };
 
 /// Judges the points that were looked at. Points behind what was measured (occluded),
@@ -65,5 +65,6 @@ DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, co
 
 // The names of before, for one release.
 using ViewLook [[deprecated("is ProjectedView now")]] = ProjectedView;
+using Look [[deprecated("is ProjectedPoint now")]] = ProjectedPoint;
 
 }  // namespace houghstream

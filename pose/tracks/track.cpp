@@ -109,11 +109,12 @@ VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model
   if (pixel.x() < 0.0 || pixel.y() < 0.0 || pixel.x() >= frame.camera.width || pixel.y() >= frame.camera.height)
     return {};
   const Verification seen = verify_pose(frame, model.mesh, T_camera_object, {kToleranceM, DepthNoise{}});
-  const int judged = seen.agreeing + seen.violating + seen.occluded;
+  const int judged = seen.depth_inliers + seen.free_space_violations + seen.occluded;
   if (seen.rendered < kMinPx || judged < kMeasured * seen.rendered) return {};
   VisibilityCheck look;
-  visibility.free_space_violation = static_cast<double>(seen.violating) / std::max(1, seen.agreeing + seen.violating);
-  look.is_boundary_continued = seen.boundary_continuations > 0.5F * static_cast<float>(seen.outline);
+  visibility.free_space_violation =
+      static_cast<double>(seen.free_space_violations) / std::max(1, seen.depth_inliers + seen.free_space_violations);
+  look.is_boundary_continued = seen.boundary_continuations > 0.5F * static_cast<float>(seen.boundary_samples);
   visibility.state = TrackState::kUnrecognised;
   if (visibility.free_space_violation > kThrough) visibility.state = TrackState::kGone;
   if (seen.occluded > kHidden * judged) visibility.state = TrackState::kHidden;

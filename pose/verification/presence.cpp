@@ -27,7 +27,7 @@ PresenceSettings fit_presence(const std::vector<PresenceExample>& examples, cons
   std::vector<LogisticExample<3>> judged;
   judged.reserve(examples.size());
   for (const PresenceExample& example : examples)
-    judged.push_back({terms_of(example.score, example.quality), example.is_there});
+    judged.push_back({terms_of(example.score, example.quality), example.is_present});
   const PresenceWeights weights = fit_logistic<3>(judged, {weights_of(prior), precision});
   return {weights[0], weights[1], weights[2]};
 }

@@ -31,7 +31,7 @@ float presence_probability(float score, float quality, const PresenceSettings& s
 struct PresenceExample {
   float score = 0.0F;
   float quality = 0.0F;
-  bool is_there = false;
+  bool is_present = false;
 };
 
 /// The settings that explain the examples best; `prior` and `stiffness` as for fit_quality_settings().

@@ -150,8 +150,8 @@ Face visible_face(const ObjectObservation& seen, const Eigen::Isometry3d& T_came
       const cv::Point at = middle_px({x, y}, face);
       const float model = rendered.depth.at<float>(at - rendered.region_px.tl());
       const float beyond = seen.frame.depth.at<float>(at) - model;  // NaN where nothing is rendered or measured
-      const bool agreeing = std::abs(beyond) <= tolerance.at(model);
-      agrees.at<std::uint8_t>(y, x) = agreeing && !is_overexposed(seen.frame.colour.at<cv::Vec3b>(at)) ? 1 : 0;
+      const bool depth_inliers = std::abs(beyond) <= tolerance.at(model);
+      agrees.at<std::uint8_t>(y, x) = depth_inliers && !is_overexposed(seen.frame.colour.at<cv::Vec3b>(at)) ? 1 : 0;
     }
   }
   cv::erode(agrees, agrees, cv::Mat(), cv::Point(-1, -1), 1, cv::BORDER_CONSTANT, cv::Scalar(0));
@@ -224,8 +224,8 @@ double best_log_likelihood(const Print& model, const std::vector<Print>& seen) {
 
 /// How what breaks a nearly round shape, a handle, is seen at a pose.
 struct HandleCounts {
-  int agreeing = 0;
-  int seen_through = 0;
+  int depth_inliers = 0;
+  int free_space_violations = 0;
   int all = 0;
 };
 
@@ -244,8 +244,8 @@ HandleCounts look_at_handle(const ObjectObservation& seen, const Eigen::Isometry
     if (!image.contains(nearest)) continue;
     const double beyond = static_cast<double>(seen.frame.depth.at<float>(nearest)) - at.z();  // NaN where not measured
     const double limit = tolerance.at(at.z());
-    counts.agreeing += std::abs(beyond) <= limit ? 1 : 0;
-    counts.seen_through += beyond > limit ? 1 : 0;
+    counts.depth_inliers += std::abs(beyond) <= limit ? 1 : 0;
+    counts.free_space_violations += beyond > limit ? 1 : 0;
   }
   return counts;
 }
@@ -254,14 +254,14 @@ bool is_handle_seen(const ObjectObservation& seen, const Eigen::Isometry3d& T_ca
                     const DepthTolerance& tolerance) {
   constexpr double kSome = 0.1;
   const HandleCounts counts = look_at_handle(seen, T_camera_object, tolerance);
-  return counts.agreeing > kSome * counts.all;
+  return counts.depth_inliers > kSome * counts.all;
 }
 
 bool may_handle_be_hidden(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
                           const DepthTolerance& tolerance) {
   constexpr double kFew = 0.1;
   const HandleCounts counts = look_at_handle(seen, T_camera_object, tolerance);
-  return counts.seen_through <= kFew * counts.all && counts.agreeing <= kFew * counts.all;
+  return counts.free_space_violations <= kFew * counts.all && counts.depth_inliers <= kFew * counts.all;
 }
 
 /// The poses that only the print tells from this one: those whose depth agrees as well, nearly alike ones

@@ -12,9 +12,9 @@ double texture_agreement(const ColourComparison& colour) {
   constexpr double kShading = 250.0;  // variance that highlights, shade and noise make on a plain surface
   constexpr double kPlain = 0.7;      // agreement of most plain surfaces
   constexpr double kMin = -0.5;
-  const auto left_over = static_cast<double>(colour.left_over);
+  const auto residual_stddev = static_cast<double>(colour.residual_stddev);
   const auto seen = static_cast<double>(colour.observed_contrast);
-  const double agreement = 1.0 - left_over * left_over / (kShading + seen * seen);
+  const double agreement = 1.0 - residual_stddev * residual_stddev / (kShading + seen * seen);
   const double compared = static_cast<double>(colour.points) / static_cast<double>(colour.points + colour.clipped);
   return compared * std::max(kMin, agreement) + (1.0 - compared) * kPlain;
 }
@@ -24,13 +24,13 @@ double texture_agreement(const ColourComparison& colour) {
 PoseEvidence gather_evidence(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
                              float detection_score, const VerificationSettings& settings) {
   const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
-  const ProjectedView look = look_at_view(seen.frame, seen.model, T_camera_object, settings.points);
+  const ProjectedView look = project_view(seen.frame, seen.model, T_camera_object, settings.points);
   return {detection_score, verify_pose(seen.frame, seen.model.mesh, T_camera_object, tolerance, &seen.colours),
           compare_texture(seen, look, tolerance)};
 }
 
 void bring_to_camera(const ChromaMap& camera, PoseEvidence& evidence) {
-  if (evidence.colour) evidence.colour->chroma_conflict = chroma_conflict(evidence.colour->chroma, camera);
+  if (evidence.colour) evidence.colour->chroma_difference = chroma_difference(evidence.colour->chroma, camera);
 }
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings) {
@@ -41,22 +41,23 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   constexpr double kEven = 0.5;           // an outline that is not seen speaks neither for a pose nor against it
   constexpr double kUnknownColour = 0.8;  // of the usual agreement: no colours are no proof
   const Verification& depth = evidence.depth;
-  const double judged = std::max(1, depth.agreeing + depth.violating);
-  QualityTerms terms = settings.typical;
-  terms.detection_log_odds = logit(static_cast<double>(evidence.detection_score));
-  terms.seen_through = -std::log(depth.violating / judged + kShare);
+  const double judged = std::max(1, depth.depth_inliers + depth.free_space_violations);
+  QualityTerms terms = settings.mean_of_correct;
+  terms.detection_logit = logit(static_cast<double>(evidence.detection_score));
+  terms.free_space_violation = -std::log(depth.free_space_violations / judged + kShare);
   terms.visible = std::log(static_cast<double>(depth.visible_fraction()) + kFraction);
-  const double goes_on = depth.outline > 0 ? static_cast<double>(depth.boundary_continuations) / depth.outline : kEven;
+  const double goes_on =
+      depth.boundary_samples > 0 ? static_cast<double>(depth.boundary_continuations) / depth.boundary_samples : kEven;
   terms.outline = std::log((1.0 - goes_on + kFraction) / (goes_on + kFraction));
   if (evidence.colour) {
-    terms.chroma_conflict = -static_cast<double>(evidence.colour->chroma_conflict);
-    terms.print = texture_agreement(*evidence.colour);
-    const auto left_over = static_cast<double>(evidence.colour->left_over);
-    terms.left_over = -std::log(left_over * left_over + kUntexturedVariance);
+    terms.chroma_difference = -static_cast<double>(evidence.colour->chroma_difference);
+    terms.texture = texture_agreement(*evidence.colour);
+    const auto residual_stddev = static_cast<double>(evidence.colour->residual_stddev);
+    terms.unexplained_variance = -std::log(residual_stddev * residual_stddev + kUntexturedVariance);
     const auto contrast = static_cast<double>(evidence.colour->model_contrast);
-    terms.contrast = -std::log(kCameraContrastSq * contrast * contrast + kUntexturedVariance);
+    terms.model_contrast = -std::log(kCameraContrastSq * contrast * contrast + kUntexturedVariance);
   } else {
-    terms.print *= kUnknownColour;
+    terms.texture *= kUnknownColour;
   }
   return terms;
 }
@@ -76,7 +77,7 @@ std::optional<ChromaPair> chroma_pair(const std::string& class_name, const PoseE
                                       const QualitySettings& settings) {
   if (!evidence.colour) return std::nullopt;
   QualityTerms terms = quality_terms(evidence, settings);
-  terms.chroma_conflict = settings.typical.chroma_conflict;
+  terms.chroma_difference = settings.mean_of_correct.chroma_difference;
   const ChromaMeans& chroma = evidence.colour->unclipped_chroma;
   ChromaPair pair;
   pair.class_name = class_name;
@@ -94,7 +95,7 @@ PoseStatus find_rejection_reason(const QualityTerms& terms, const QualitySetting
       PoseStatus::kRejectedByColour,  PoseStatus::kRejectedByColour};
   const auto against = [&](std::size_t i) {
     const auto term = kQualityTerms[i];
-    return settings.weights.*term * (settings.typical.*term - terms.*term);
+    return settings.weights.*term * (settings.mean_of_correct.*term - terms.*term);
   };
   std::size_t worst = 0;
   for (std::size_t i = 1; i < kReasons.size(); ++i) {

@@ -31,22 +31,29 @@ void bring_to_camera(const ChromaMap& camera, PoseEvidence& evidence);
 
 /// A number for each term of the regression: a pose's evidence, the larger the better, or a weight of it.
 struct QualityTerms {
-  double detection_log_odds = 0.0;  ///< log odds of the detection's score
-  double seen_through = 0.0;  ///< log of the share that was seen through, of what agrees or was seen through (negated)
-  double visible = 0.0;       ///< log of the visible fraction
-  double outline = 0.0;       ///< log of how much of the outline ends what is seen over how much does not
-  double chroma_conflict = 0.0;  ///< see ColourComparison (negated)
+  double detection_logit = 0.0;  ///< log odds of the detection's score
+  /// Log of the share that was seen through, of what agrees or was seen through (negated).
+  double free_space_violation = 0.0;
+  double visible = 0.0;            ///< log of the visible fraction
+  double outline = 0.0;            ///< log of how much of the outline ends what is seen over how much does not
+  double chroma_difference = 0.0;  ///< see ColourComparison (negated)
   /// Share of the seen colours' variance that is not left over, of as much as shading alone can make of it and more:
   /// plain things agree with little. What the camera was at its limit for counts as plain. At least -0.5.
-  double print = 0.0;
-  double left_over = 0.0;  ///< log of the variance of the seen colours that is left over (negated)
-  double contrast = 0.0;   ///< log of the variance of the model's colours there (negated): what there was to agree with
+  double texture = 0.0;
+  double unexplained_variance = 0.0;  ///< log of the variance of the seen colours that is left over (negated)
+  /// Log of the variance of the model's colours there (negated): what there was to agree with.
+  double model_contrast = 0.0;
 };
 
 /// The terms in the order in which they are summed, and their names.
-inline constexpr std::array<double QualityTerms::*, 8> kQualityTerms = {
-    &QualityTerms::detection_log_odds, &QualityTerms::seen_through, &QualityTerms::visible,   &QualityTerms::outline,
-    &QualityTerms::chroma_conflict,    &QualityTerms::print,        &QualityTerms::left_over, &QualityTerms::contrast};
+inline constexpr std::array<double QualityTerms::*, 8> kQualityTerms = {&QualityTerms::detection_logit,
+                                                                        &QualityTerms::free_space_violation,
+                                                                        &QualityTerms::visible,
+                                                                        &QualityTerms::outline,
+                                                                        &QualityTerms::chroma_difference,
+                                                                        &QualityTerms::texture,
+                                                                        &QualityTerms::unexplained_variance,
+                                                                        &QualityTerms::model_contrast};
 inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames = {
     "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "print", "left_over", "contrast"};
 
@@ -92,8 +99,8 @@ struct QualitySettings {
   QualityTerms weights = terms_of({1.56, 0.45, 1.18, 2.87, 2.79, 7.25, 1.42, -0.27});
   /// Means of right poses: what is farthest below them is the reason for "no pose". Those of colour stand for a model
   /// without colours.
-  QualityTerms typical = terms_of({1.95, 3.06, -0.17, 2.89, -0.23, 0.80, -5.29, -5.29});
-  float least = 0.75F;                  ///< poses of lower quality are not published...
+  QualityTerms mean_of_correct = terms_of({1.95, 3.06, -0.17, 2.89, -0.23, 0.80, -5.29, -5.29});
+  float min_quality = 0.75F;            ///< poses of lower quality are not published...
   float min_candidate_quality = 0.75F;  ///< ...nor are these of candidates (Detection::reported): most are false
   PresenceSettings presence;            ///< what this says of whether the object is there at all
   PrintSettings print;                  ///< which of the poses that look alike by their shape is right
@@ -104,8 +111,8 @@ void fields(const QualitySettings& /*settings*/, const Visit& visit) {
   using S = QualitySettings;
   visit(number("bias", &S::bias, -1e6, 1e6));
   visit(group("weights", &S::weights));
-  visit(group("typical", &S::typical));
-  visit(number("least", &S::least, 0, 1));
+  visit(group("typical", &S::mean_of_correct));
+  visit(number("least", &S::min_quality, 0, 1));
   visit(number("min_candidate_quality", &S::min_candidate_quality, 0, 1));
   visit(group("presence", &S::presence));
   visit(group("print", &S::print));

@@ -21,11 +21,11 @@ Weights to_vector(double bias, const QualityTerms& terms) {
 }
 
 /// Those of `otherwise` where no pose is right.
-QualityTerms mean_of_right(const std::vector<QualityExample>& examples, const QualityTerms& otherwise) {
+QualityTerms average_correct(const std::vector<QualityExample>& examples, const QualityTerms& otherwise) {
   QualityTerms sum;
   int count = 0;
   for (const QualityExample& example : examples) {
-    if (!example.is_right_up_to_shape) continue;
+    if (!example.is_correct_up_to_shape) continue;
     ++count;
     for (const auto term : kQualityTerms) sum.*term += example.terms.*term;
   }
@@ -66,7 +66,7 @@ std::map<std::string, std::vector<PresenceExample>> presence_examples(const Exam
     const std::map<std::string, QualitySettings> fitted = fit_each(of_half(1 - half, examples));
     for (const auto& [name, own] : of_half(half, examples)) {
       for (const QualityExample& example : own)
-        out[name].push_back({example.score, shape_quality(example.terms, fitted.at(name)), example.is_there});
+        out[name].push_back({example.score, shape_quality(example.terms, fitted.at(name)), example.is_present});
     }
   }
   return out;
@@ -80,8 +80,8 @@ PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, co
   constexpr double kMax = 8.0;
   std::vector<LogisticExample<2>> judged;
   for (const QualityExample& example : examples) {
-    if (!example.is_right_up_to_shape || !example.print_margin) continue;
-    judged.push_back({{1.0, std::clamp(*example.print_margin, -kMax, kMax)}, example.is_right});
+    if (!example.is_correct_up_to_shape || !example.print_margin) continue;
+    judged.push_back({{1.0, std::clamp(*example.print_margin, -kMax, kMax)}, example.is_correct});
   }
   const Eigen::Vector2d weights = fit_logistic<2>(judged, {{prior.bias, prior.margin_weight}, precision});
   return {weights[0], weights[1]};
@@ -92,21 +92,21 @@ QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples
   std::vector<LogisticExample<kWeights>> judged;
   judged.reserve(examples.size());
   for (const QualityExample& example : examples) {
-    judged.push_back({to_vector(1.0, example.terms), example.is_right_up_to_shape});
+    judged.push_back({to_vector(1.0, example.terms), example.is_correct_up_to_shape});
     // Which of the two is right, not how likely that is: all else is the same, and drops out.
     if (example.with_swapped_texture)
       judged.push_back({to_vector(1.0, example.terms) - to_vector(1.0, *example.with_swapped_texture), true});
   }
   // In scenes where nothing is taken away hardly a pose that was found is seen through: what they say of it is chance.
-  constexpr int kSeenThrough = 2;
-  static_assert(kQualityTerms[kSeenThrough - 1] == &QualityTerms::seen_through);
-  const LogisticPrior<kWeights> pull{to_vector(prior.bias, prior.weights), precision, kSeenThrough};
+  constexpr int kFreeSpaceViolation = 2;
+  static_assert(kQualityTerms[kFreeSpaceViolation - 1] == &QualityTerms::free_space_violation);
+  const LogisticPrior<kWeights> pull{to_vector(prior.bias, prior.weights), precision, kFreeSpaceViolation};
   const Weights weights = fit_logistic<kWeights>(judged, pull);
   QualitySettings settings = prior;
   settings.bias = weights[0];
   for (std::size_t i = 0; i < kQualityTerms.size(); ++i)
     settings.weights.*kQualityTerms[i] = weights[static_cast<Eigen::Index>(i) + 1];
-  settings.typical = mean_of_right(examples, prior.typical);
+  settings.mean_of_correct = average_correct(examples, prior.mean_of_correct);
   return settings;
 }
 

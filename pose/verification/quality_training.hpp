@@ -12,15 +12,15 @@ namespace houghstream {
 /// A judged pose.
 struct QualityExample {
   QualityTerms terms;
-  bool is_right = false;              ///< the object that was detected, MSSD (or ADD) below a tenth of the diameter
-  bool is_right_up_to_shape = false;  ///< the same by ADD-S: right but for what the shape cannot tell
+  bool is_correct = false;              ///< the object that was detected, MSSD (or ADD) below a tenth of the diameter
+  bool is_correct_up_to_shape = false;  ///< the same by ADD-S: right but for what the shape cannot tell
   /// Of a pose that is right up to its shape, what speaks for it if the object had another print: the fit tells the two
   /// apart.
   std::optional<QualityTerms> with_swapped_texture = std::nullopt;
   std::optional<double> print_margin = std::nullopt;  ///< PrintComparison::margin, where the pose has alternatives
   float score = 0.0F;                                 ///< of the detection
-  bool is_there = false;  ///< the object that was detected, whether the pose is right or not
-  int half = 0;           ///< 0 or 1: of which half of all that was practised
+  bool is_present = false;  ///< the object that was detected, whether the pose is right or not
+  int half = 0;             ///< 0 or 1: of which half of all that was practised
 };
 
 /// What the print's margins say of which of the poses that look alike by their shape is right: of the examples that are

@@ -53,12 +53,12 @@ std::optional<PoseEvidence> evidence_with_swapped_texture(const ObjectObservatio
                                                           const PoseEvidence& own,
                                                           const VerificationSettings& settings) {
   constexpr double kMaxTextureCorrelation = 0.5;
-  const ProjectedView look = look_at_view(seen.frame, seen.model, T_camera_object, settings.points);
+  const ProjectedView look = project_view(seen.frame, seen.model, T_camera_object, settings.points);
   if (look.view.colours.empty()) return std::nullopt;
   const ModelView view = with_opposite_colours(look.view);
   if (correlation(look.view.colours, view.colours) > kMaxTextureCorrelation) return std::nullopt;
   const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
-  const ProjectedView other{view, look.T, look.depth, look.looks};
+  const ProjectedView other{view, look.T, look.depth, look.points};
   PoseEvidence evidence = own;
   evidence.colour = compare_texture(seen, other, tolerance);
   if (!evidence.colour) return std::nullopt;

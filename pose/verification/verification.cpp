@@ -77,7 +77,7 @@ void compare_boundary(const BoundaryView& view, const DepthTolerance& tolerance,
         if (view.is_model(at + side)) continue;
         const std::optional<BoundarySample> seen = sample_boundary(view, at, side, tolerance);
         if (!seen || is_foreground_step(*seen, limit)) continue;
-        ++result.outline;
+        ++result.boundary_samples;
         result.boundary_continuations += surface_continuation(*seen, limit) * textured_colour_continuation(*seen);
       }
     }
@@ -87,25 +87,25 @@ void compare_boundary(const BoundaryView& view, const DepthTolerance& tolerance,
 }  // namespace
 
 float Verification::visible_fraction() const {
-  return rendered == 0 ? 0.0F : static_cast<float>(agreeing) / static_cast<float>(rendered);
+  return rendered == 0 ? 0.0F : static_cast<float>(depth_inliers) / static_cast<float>(rendered);
 }
 
 float Verification::free_space_violation() const {
-  return rendered == 0 ? 0.0F : static_cast<float>(violating) / static_cast<float>(rendered);
+  return rendered == 0 ? 0.0F : static_cast<float>(free_space_violations) / static_cast<float>(rendered);
 }
 
 Verification verify_projected_view(const ProjectedView& look, const DepthTolerance& tolerance) {
   constexpr float kEdge = 0.3F;  // cosine between normal and line of sight
   Verification result;
-  for (std::size_t i = 0; i < look.looks.size(); ++i) {
+  for (std::size_t i = 0; i < look.points.size(); ++i) {
     const Eigen::Vector3f point = look.T * look.view.points[i];
     const Eigen::Vector3f normal = look.T.linear() * look.view.normals[i];
     if (!(-normal.dot(point) > kEdge * point.norm())) continue;
     ++result.rendered;
     const auto limit = static_cast<float>(tolerance.at(point.z()));
-    const float beyond = look.looks[i].beyond;  // NaN where nothing was measured: no comparison holds
-    result.agreeing += std::abs(beyond) <= limit ? 1 : 0;
-    result.violating += beyond > limit ? 1 : 0;
+    const float beyond = look.points[i].depth_difference;  // NaN where nothing was measured: no comparison holds
+    result.depth_inliers += std::abs(beyond) <= limit ? 1 : 0;
+    result.free_space_violations += beyond > limit ? 1 : 0;
     result.occluded += beyond < -limit ? 1 : 0;
   }
   return result;
@@ -126,8 +126,8 @@ Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::
       ++result.rendered;
       const auto limit = static_cast<float>(tolerance.at(model[x]));
       const float beyond = measured[x] - model[x];  // NaN where nothing was measured: no comparison holds
-      result.agreeing += std::abs(beyond) <= limit ? 1 : 0;
-      result.violating += beyond > limit ? 1 : 0;
+      result.depth_inliers += std::abs(beyond) <= limit ? 1 : 0;
+      result.free_space_violations += beyond > limit ? 1 : 0;
       result.occluded += beyond < -limit ? 1 : 0;
     }
   }

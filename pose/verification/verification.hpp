@@ -26,10 +26,10 @@ void fields(const VerificationSettings& /*settings*/, const Visit& visit) {
 /// The rendered model against the measured depth, pixel by pixel.
 struct Verification {
   int rendered = 0;                     ///< pixels of the model inside the image
-  int agreeing = 0;                     ///< measured within the tolerance
-  int violating = 0;                    ///< measured behind the model: the camera saw through it
+  int depth_inliers = 0;                ///< measured within the tolerance
+  int free_space_violations = 0;        ///< measured behind the model: the camera saw through it
   int occluded = 0;                     ///< measured in front of the model; says nothing about the pose
-  int outline = 0;                      ///< places where the model's outline was looked across
+  int boundary_samples = 0;             ///< places where the model's outline was looked across
   float boundary_continuations = 0.0F;  ///< those where the scene continues across it, see BoundarySample
   float visible_fraction() const;       ///< agreeing of rendered, 0 if nothing is rendered
   float free_space_violation() const;   ///< violating of rendered, 0 if nothing is rendered

@@ -12,12 +12,12 @@ import rule_command
 QUALITY = "pose/verification/quality.hpp"
 STORED = "tools/finder/stored_quality.hpp"
 ROWS = (
-    ("pose/README.md", r"A pose is published from quality ([\d.]+) on", QUALITY, r"float least = ([\d.]+)F"),
+    ("pose/README.md", r"A pose is published from quality ([\d.]+) on", QUALITY, r"float min_quality = ([\d.]+)F"),
     ("pose/README.md", r"learnt per object: ([\d.]+)\)", STORED, r"kStoreQuality = ([\d.]+)F"),
     ("pose/README.md", r"so a pose of quality ([\d.]+) \(", QUALITY, r"float min_candidate_quality = ([\d.]+)F"),
     ("pose/README.md", r"of a store's\s+objects ([\d.]+), as most", STORED, r"kStoreCandidateQuality = ([\d.]+)F"),
-    ("pose/README.md", r"not seen \(([\d.]+) is in use", QUALITY, r"float least = ([\d.]+)F"),
-    ("tools/studies/README.md", r"from its limit of ([\d.]+) on", QUALITY, r"float least = ([\d.]+)F"),
+    ("pose/README.md", r"not seen \(([\d.]+) is in use", QUALITY, r"float min_quality = ([\d.]+)F"),
+    ("tools/studies/README.md", r"from its limit of ([\d.]+) on", QUALITY, r"float min_quality = ([\d.]+)F"),
 )
 
 

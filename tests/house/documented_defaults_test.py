@@ -15,13 +15,13 @@ def faults_of(document, source):
 
 class DocumentedDefaults(unittest.TestCase):
     def test_the_same_number_is_no_fault(self):
-        self.assertEqual(faults_of("from quality 0.75 on\n", "float least = 0.75F;\n"), [])
+        self.assertEqual(faults_of("from quality 0.75 on\n", "float min_quality = 0.75F;\n"), [])
 
     def test_another_number_is_named(self):
-        self.assertEqual(faults_of("from quality 0.8 on\n", "float least = 0.75F;\n"), ["pose/README.md: says 0.8, but pose/quality.hpp has 0.75"])
+        self.assertEqual(faults_of("from quality 0.8 on\n", "float min_quality = 0.75F;\n"), ["pose/README.md: says 0.8, but pose/quality.hpp has 0.75"])
 
     def test_other_words_and_other_code_are_named(self):
-        self.assertIn("no words like", faults_of("from there on\n", "float least = 0.75F;\n")[0])
+        self.assertIn("no words like", faults_of("from there on\n", "float min_quality = 0.75F;\n")[0])
         self.assertIn("no default like", faults_of("from quality 0.8 on\n", "float fewest = 0.75F;\n")[0])
 
 

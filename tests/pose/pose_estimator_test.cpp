@@ -147,7 +147,7 @@ TEST(PoseEstimator, WhatIsHardlyAnObjectIsNotLookedAt) {
   weak.score = 0.99F * settings.min_score;
   EXPECT_EQ(estimator_for("mug", mug()).estimate(scene.frame, only(weak)).poses.at(0).status, PoseStatus::kLowScore);
   settings.min_score = 0.0F;
-  publish_from(0.0F, settings);
+  set_min_quality(0.0F, settings);
   const ObjectPose found = estimator_for("mug", mug(), settings).estimate(scene.frame, only(weak)).poses.at(0);
   EXPECT_EQ(found.status, PoseStatus::kValid);
 }
@@ -165,8 +165,8 @@ TEST(PoseEstimator, AClassThatHasAQualityOfItsOwnIsJudgedByThat) {
   QualitySettings doubtful;
   doubtful.bias -= 50.0;
   doubtful.weights = {};
-  doubtful.weights.detection_log_odds = 1.0;
-  doubtful.typical.detection_log_odds = 5.0;
+  doubtful.weights.detection_logit = 1.0;
+  doubtful.mean_of_correct.detection_logit = 5.0;
   doubtful.presence.bias = 100.0;
   const ObjectPose withheld = found("mug", doubtful);
   EXPECT_LT(withheld.quality, 0.01F);
@@ -187,7 +187,7 @@ TEST(PoseEstimator, AReportedDetectionIsRefutedWhereItsObjectIsLessProbablyThere
     return estimator_for("mug", mug(), settings).estimate(scene.frame, only(detection)).poses.at(0).status;
   };
   EXPECT_EQ(found(), PoseStatus::kValid) << "what is published refutes nothing";
-  publish_from(1.0F, settings);
+  set_min_quality(1.0F, settings);
   EXPECT_EQ(found(), PoseStatus::kRefuted);
   learnt.presence.bias = 0.1;
   const PoseStatus withheld = found();
@@ -203,8 +203,8 @@ ObjectPose found_from_turned_votes(const Mesh& taught, const Eigen::Isometry3d& 
   for (RotationVote& vote : detection.rotations)
     vote.R_camera_object = vote.R_camera_object * Eigen::AngleAxisf(static_cast<float>(M_PI), Eigen::Vector3f::UnitZ());
   PoseSettings settings;
-  settings.turn.rivals = 0;
-  publish_from(0.3F, settings);
+  settings.turn.alternatives = 0;
+  set_min_quality(0.3F, settings);
   return estimator_for("box", taught, settings).estimate(frame, only(detection)).poses.at(0);
 }
 
@@ -227,9 +227,9 @@ TEST(PoseEstimator, WhatHasNoPrintIsValidUpToTheSymmetryOfItsShape) {
 TEST(PublishFrom, IsTheLimitOfEachClassAndOfCandidates) {
   PoseSettings settings;
   settings.class_quality["mug"].bias = -1.0;
-  publish_from(0.3F, settings);
+  set_min_quality(0.3F, settings);
   for (const QualitySettings& judged_by : {settings.quality, settings.class_quality["mug"]}) {
-    EXPECT_EQ(judged_by.least, 0.3F);
+    EXPECT_EQ(judged_by.min_quality, 0.3F);
     EXPECT_EQ(judged_by.min_candidate_quality, 0.3F);
   }
   EXPECT_EQ(settings.class_quality["mug"].bias, -1.0);
@@ -245,7 +245,7 @@ TEST(PoseEstimator, ACandidateHasALimitOfItsOwn) {
   detection.reported = false;
   const ObjectPose withheld = estimator.estimate(scene.frame, only(detection)).poses.at(0);
   EXPECT_NE(withheld.status, PoseStatus::kValid);
-  EXPECT_GT(withheld.quality, settings.quality.least);
+  EXPECT_GT(withheld.quality, settings.quality.min_quality);
 }
 
 TEST(PoseEstimator, MissingInputGivesAReasonAndNoPose) {

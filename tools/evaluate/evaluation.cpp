@@ -67,11 +67,11 @@ void judge_qualities(const std::vector<EvaluatedFrame>& frames, const std::map<s
     for (const PosePrediction& published : pose_predictions(frames, result, model->second)) {
       ++out.published->count;
       out.published->right += published.is_true ? 1 : 0;
-      out.published->right_up_to_shape += published.is_right_up_to_shape ? 1 : 0;
+      out.published->right_up_to_shape += published.is_correct_up_to_shape ? 1 : 0;
     }
     for (const PosePrediction& known : pose_predictions(all, result, model->second)) {
       of_right.push_back(known);
-      of_shape.push_back({known.stated_up_to_shape, known.is_right_up_to_shape});
+      of_shape.push_back({known.stated_up_to_shape, known.is_correct_up_to_shape});
     }
   }
   out.pose_calibration = calibrate_all(of_right);

@@ -32,7 +32,7 @@ struct OperatingPoint {
 /// The poses that were published of listed classes with a model, but those of ignored detections.
 struct PublishedPoses {
   int count = 0;
-  int right = 0;              ///< of true detections, by is_right()
+  int right = 0;              ///< of true detections, by is_correct()
   int right_up_to_shape = 0;  ///< of true detections, ADD-S below 10 % of the diameter
 };
 

@@ -58,7 +58,7 @@ PrintSettings print_from(const nlohmann::json& entry, const PrintSettings& other
 nlohmann::json quality_to_json(const QualitySettings& settings) {
   return {{"bias", settings.bias},
           {"weights", numbers_to_json(settings.weights)},
-          {"typical", numbers_to_json(settings.typical)},
+          {"typical", numbers_to_json(settings.mean_of_correct)},
           {"presence", numbers_to_json(settings.presence)},
           {"print", numbers_to_json(settings.print)}};
 }
@@ -71,7 +71,7 @@ std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& 
     QualitySettings settings = others;
     settings.bias = json_number(entry, "bias", where);
     settings.weights = terms_from(entry, "weights", where);
-    settings.typical = terms_from(entry, "typical", where);
+    settings.mean_of_correct = terms_from(entry, "typical", where);
     settings.presence = presence_from(entry, others.presence, where);
     settings.print = print_from(entry, others.print, where);
     check_settings(settings, where + ": quality");
@@ -84,7 +84,7 @@ PoseSettings pose_settings_of(PoseSettings common, const std::optional<store::Ob
                               std::optional<float> min_quality) {
   PoseSettings settings = std::move(common);
   if (objects) {
-    settings.quality.least = kStoreQuality;
+    settings.quality.min_quality = kStoreQuality;
     settings.quality.min_candidate_quality = kStoreCandidateQuality;
     settings.class_quality = stored_quality(*objects, settings.quality);
     settings.model.vote_centres = objects->vote_centres();
@@ -92,7 +92,7 @@ PoseSettings pose_settings_of(PoseSettings common, const std::optional<store::Ob
     settings.model.shape_symmetries = objects->shape_symmetries();
     settings.region.tone = objects->tone;
   }
-  if (min_quality) publish_from(*min_quality, settings);
+  if (min_quality) set_min_quality(*min_quality, settings);
   return settings;
 }
 

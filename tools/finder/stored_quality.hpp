@@ -33,7 +33,7 @@ PoseSettings pose_settings_of(PoseSettings common, const std::optional<store::Ob
 
 /// The same, but that every pose is published: for who judges them all.
 inline PoseSettings without_rejection(PoseSettings settings) {
-  publish_from(0.0F, settings);
+  set_min_quality(0.0F, settings);
   return settings;
 }
 

@@ -122,7 +122,7 @@ struct ModelFiles {
 /// Of models that were kept at an earlier start, else of the meshes.
 PoseEstimator estimator_of(const ModelFiles& files, const PoseSettings& settings, const ModelCache& kept, int threads) {
   const std::string state = kept.state_of(files.stamp(), settings.model);
-  if (auto models = kept.find(files.folder, state)) return PoseEstimator::of_models(std::move(*models), settings);
+  if (auto models = kept.find(files.folder, state)) return PoseEstimator::from_models(std::move(*models), settings);
   PoseEstimator made(files.load(), settings, threads);
   if (kept.state_of(files.stamp(), settings.model) == state) kept.keep(files.folder, state, made.models());
   return made;

@@ -37,7 +37,7 @@ void archive_model(Archive& archive, ModelType& model) {
   archive(model.mesh.texture);
   archive(model.centre);
   archive(model.vote_centre);
-  archive(model.middle);
+  archive(model.surface_median);
   archive(model.axes);
   archive(model.radius);
   archive(model.shape_symmetries.discrete);

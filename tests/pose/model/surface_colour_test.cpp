@@ -26,7 +26,7 @@ TEST(SurfaceColour, VertexColoursAreMixed) {
   Mesh mesh = square();
   mesh.colours = {{0, 0, 200}, {0, 200, 0}, {200, 0, 0}, {0, 0, 0}};
   const SurfaceColour colour(mesh, 0.002);
-  ASSERT_TRUE(colour.known());
+  ASSERT_TRUE(colour.has_colour());
   EXPECT_EQ(colour.at(0, {0.0F, 0.0F}), lab_of({0, 0, 200}));
   EXPECT_EQ(colour.at(0, {1.0F, 0.0F}), lab_of({0, 200, 0}));
   EXPECT_EQ(colour.at(0, {0.0F, 0.5F}), lab_of({100, 0, 100}));

@@ -290,17 +290,19 @@ TEST(RotationSymmetryTest, DeviationsUpToTheToleranceFit) {
   const double deviation = 0.002 / mesh_diameter(mesh);
   SymmetrySearch settings;
   settings.tolerance = deviation * 1.01;
-  EXPECT_TRUE(RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).fits(kUp, M_PI / 2));
+  EXPECT_TRUE(RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).is_symmetric_under(kUp, M_PI / 2));
   settings.tolerance = deviation * 0.99;
-  EXPECT_FALSE(RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).fits(kUp, M_PI / 2));
-  EXPECT_TRUE(RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).fits(kUp, M_PI));
+  EXPECT_FALSE(RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).is_symmetric_under(kUp, M_PI / 2));
+  EXPECT_TRUE(RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).is_symmetric_under(kUp, M_PI));
 }
 
 TEST(RotationSymmetryTest, TurnsGoThroughTheCentre) {
   const Mesh mesh = box(Eigen::Vector3d(0.1, 0.2, 0.3), plain(128));
   const Eigen::Vector3d beside(0.01, 0.0, 0.0);
-  EXPECT_FALSE(RotationSymmetryTest(MeasuredMesh(mesh), beside, {}).fits(kUp, M_PI)) << "moves the box by 0.02 m";
-  EXPECT_TRUE((RotationSymmetryTest(MeasuredMesh(mesh), beside, {}).turn(kUp, M_PI) * kOrigin).isApprox(2.0 * beside));
+  EXPECT_FALSE(RotationSymmetryTest(MeasuredMesh(mesh), beside, {}).is_symmetric_under(kUp, M_PI))
+      << "moves the box by 0.02 m";
+  EXPECT_TRUE((RotationSymmetryTest(MeasuredMesh(mesh), beside, {}).rotation_about_axis(kUp, M_PI) * kOrigin)
+                  .isApprox(2.0 * beside));
 }
 
 TEST(RotationSymmetryTest, ColoursMayDifferALittleOnMostOrMuchOnFewPoints) {
@@ -310,13 +312,16 @@ TEST(RotationSymmetryTest, ColoursMayDifferALittleOnMostOrMuchOnFewPoints) {
   const Mesh mesh = box(Eigen::Vector3d(0.1, 0.1, 0.1), faces);
   SymmetrySearch settings;
   settings.compare_colours = true;
-  EXPECT_TRUE(RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).fits(kUp, M_PI)) << "20 of 255 levels";
+  EXPECT_TRUE(RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).is_symmetric_under(kUp, M_PI))
+      << "20 of 255 levels";
   settings.colour_difference = 0.07;
-  EXPECT_FALSE(RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).fits(kUp, M_PI)) << "on two of six faces";
-  settings.largest_differing = 0.4;
-  EXPECT_TRUE(RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).fits(kUp, M_PI));
-  settings.largest_differing = 0.05;
-  EXPECT_TRUE(RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).fits(Eigen::Vector3d::UnitY(), M_PI))
+  EXPECT_FALSE(RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).is_symmetric_under(kUp, M_PI))
+      << "on two of six faces";
+  settings.max_differing_fraction = 0.4;
+  EXPECT_TRUE(RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).is_symmetric_under(kUp, M_PI));
+  settings.max_differing_fraction = 0.05;
+  EXPECT_TRUE(
+      RotationSymmetryTest(MeasuredMesh(mesh), kOrigin, settings).is_symmetric_under(Eigen::Vector3d::UnitY(), M_PI))
       << "the back stays the back";
 }
 

@@ -50,7 +50,7 @@ TEST(TurnSearch, TheBestComesFirstAndNeighboursOfABetterOneAreLeftOut) {
 }
 
 TEST(TurnSearch, AHandleDoesNotMoveTheAxis) {
-  EXPECT_LT(make_object_model("mug", mug(), {}).middle.head<2>().norm(), 0.004F);
+  EXPECT_LT(make_object_model("mug", mug(), {}).surface_median.head<2>().norm(), 0.004F);
   EXPECT_GT(make_object_model("mug", mug(), {}).centre.head<2>().norm(), 0.01F);
 }
 
@@ -58,8 +58,8 @@ TEST(TurnSearch, ClimbsBackFromASmallTurnAndShift) {
   const SeenBox box;
   Eigen::Isometry3d start = turned(box.truth, 5.0);
   start.translate(Eigen::Vector3d(0.0, 0.0, 0.004));
-  const HillClimb climb{3.0 * kRadPerDeg, 0.004, 5, 250};
-  const ScoredPose top = hill_climb_pose(box.seen, start, climb, kTolerance);
+  const HillClimb hill_climb{3.0 * kRadPerDeg, 0.004, 5, 250};
+  const ScoredPose top = hill_climb_pose(box.seen, start, hill_climb, kTolerance);
   EXPECT_GT(top.score, score_pose_jointly(box.seen, start, 250, kTolerance).score);
   EXPECT_LT(turn_between_deg(top.T_camera_object, box.truth), 3.0);
 }

@@ -20,7 +20,7 @@ std::optional<ColourComparison> compare(const RgbdFrame& frame, const Mesh& mesh
                                         const Eigen::Isometry3d& T_camera_object) {
   const ObjectModel model = make_object_model("box", mesh, {});
   const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480), {});
-  return compare_colours(colours, look_at_view(frame, model, T_camera_object, 400), kColourTolerance);
+  return compare_colours(colours, project_view(frame, model, T_camera_object, 400), kColourTolerance);
 }
 
 float agreement(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object) {
@@ -40,8 +40,8 @@ TEST(ColourScore, TheRightSideExplainsWhatIsSeenAndTheOppositeDoesNot) {
   EXPECT_GT(right, 0.8F);
   EXPECT_LT(agreement(frame, box, turned(kPose, 180.0)), right - 0.4F);
   const ColourComparison front = compare(frame, box, kPose).value();
-  EXPECT_LT(front.left_over, 0.6F * compare(frame, box, turned(kPose, 180.0))->left_over);
-  EXPECT_LT(front.chroma_conflict, 0.4F);
+  EXPECT_LT(front.residual_stddev, 0.6F * compare(frame, box, turned(kPose, 180.0))->residual_stddev);
+  EXPECT_LT(front.chroma_difference, 0.4F);
   EXPECT_GT(front.points, 200);
 }
 
@@ -80,14 +80,14 @@ TEST(ColourScore, PalerColoursAreNoConflictAndOthersAre) {
   for (cv::Vec3b& colour : box.colours) colour = cv::Vec3b(40, colour[1] / 3, 200);  // all sides reddish
   RgbdFrame frame = coloured_frame(box, kPose, 1);
   frame.colour *= 1.4;  // as bright as the model, on the whole
-  EXPECT_LT(compare(frame, box, kPose)->chroma_conflict, 0.4F);
-  EXPECT_LT(compare(with_saturation(frame, 0.75), box, kPose)->chroma_conflict, 0.4F);
+  EXPECT_LT(compare(frame, box, kPose)->chroma_difference, 0.4F);
+  EXPECT_LT(compare(with_saturation(frame, 0.75), box, kPose)->chroma_difference, 0.4F);
   RgbdFrame blue = frame;
   cv::cvtColor(frame.colour, blue.colour, cv::COLOR_BGR2RGB);
-  const float other = compare(blue, box, kPose)->chroma_conflict;
+  const float other = compare(blue, box, kPose)->chroma_difference;
   EXPECT_GT(other, 2.0F);
   EXPECT_LE(other, 4.0F);
-  EXPECT_GT(compare(with_saturation(frame, 0.0), box, kPose)->chroma_conflict, 1.0F) << "grey is not pale red";
+  EXPECT_GT(compare(with_saturation(frame, 0.0), box, kPose)->chroma_difference, 1.0F) << "grey is not pale red";
 }
 
 TEST(ColourScore, TheMeanChromaIsOfWhatTheCameraWasAtItsLimitForToo) {
@@ -95,11 +95,11 @@ TEST(ColourScore, TheMeanChromaIsOfWhatTheCameraWasAtItsLimitForToo) {
   for (cv::Vec3b& colour : box.colours) colour = cv::Vec3b(40, 200, 220);  // yellow
   RgbdFrame frame = coloured_frame(box, kPose, 1);
   frame.colour.rowRange(265, 480).setTo(cv::Scalar(40, 60, 180));  // its lower edge beside something red
-  const float in_full_sight = compare(frame, box, kPose)->chroma_conflict;
+  const float in_full_sight = compare(frame, box, kPose)->chroma_difference;
   frame.colour.rowRange(0, 260).setTo(cv::Scalar(60, 220, 255));  // all of the rest at the limit
   const ColourComparison after = compare(frame, box, kPose).value();
   EXPECT_GT(after.clipped, after.points);
-  EXPECT_LT(after.chroma_conflict, in_full_sight + 0.3F);
+  EXPECT_LT(after.chroma_difference, in_full_sight + 0.3F);
 }
 
 TEST(ColourScore, ContrastsAreOfWhatIsCompared) {
@@ -107,7 +107,7 @@ TEST(ColourScore, ContrastsAreOfWhatIsCompared) {
   RgbdFrame frame = coloured_frame(box, kPose, 1);
   const ColourComparison printed = compare(frame, box, kPose).value();
   EXPECT_GT(printed.model_contrast, 20.0F);
-  EXPECT_GT(printed.observed_contrast, printed.left_over);
+  EXPECT_GT(printed.observed_contrast, printed.residual_stddev);
   frame.colour.setTo(cv::Scalar(90, 90, 90));
   const ColourComparison plain = compare(frame, box, kPose).value();
   EXPECT_LT(plain.observed_contrast, 2.0F);
@@ -123,7 +123,7 @@ TEST(ColourScore, APrintIsJudgedWhereItAgreesBestWithinTwoPixels) {
     cv::warpAffine(frame.colour, frame.colour, move, frame.colour.size());
     ObjectObservation seen{frame, model};
     seen.colours = lab_region(frame, cv::Rect(0, 0, 640, 480), {});
-    return compare_texture(seen, look_at_view(frame, model, T_camera_object, 400), kColourTolerance)->agreement;
+    return compare_texture(seen, project_view(frame, model, T_camera_object, 400), kColourTolerance)->agreement;
   };
   EXPECT_GT(judged(kPose, 2.0), judged(kPose, 0.0) - 0.02F);
   EXPECT_LT(judged(kPose, 12.0), judged(kPose, 0.0) - 0.1F);
@@ -136,7 +136,7 @@ TEST(ColourScore, JudgingAPrintLeavesThePictureAsItIs) {
   const RgbdFrame frame = coloured_frame(box, kPose, 1);
   ObjectObservation seen{frame, model};
   seen.colours = lab_region(frame, cv::Rect(0, 0, 640, 480), {});
-  const ProjectedView look = look_at_view(frame, model, kPose, 400);
+  const ProjectedView look = project_view(frame, model, kPose, 400);
   const float first = compare_texture(seen, look, kColourTolerance)->agreement;
   EXPECT_EQ(compare_texture(seen, look, kColourTolerance)->agreement, first);
 }
@@ -154,7 +154,7 @@ TEST(ColourScore, OnlyThePartThatIsGivenIsLookedAt) {
   const RgbdFrame frame = coloured_frame(box, kPose, 1);
   const ObjectModel model = make_object_model("box", box, {});
   const LabRegion corner = lab_region(frame, cv::Rect(0, 0, 20, 20), {});
-  EXPECT_FALSE(compare_colours(corner, look_at_view(frame, model, kPose, 400), kColourTolerance).has_value());
+  EXPECT_FALSE(compare_colours(corner, project_view(frame, model, kPose, 400), kColourTolerance).has_value());
 }
 
 TEST(ColourScore, ColourLowersOnlyWhatDepthSpeaksFor) {
@@ -170,8 +170,8 @@ std::vector<ComparedPoint> random_points(std::size_t count) {
   for (ComparedPoint& point : points) {
     const auto colour = [&] { return static_cast<float>(random.below(256) - 128); };
     const auto along = [&] { return static_cast<float>(random.uniform(-100.0, 100.0)); };
-    point.own = {colour(), colour(), colour(), 1.0F};
-    point.seen = {colour(), colour(), colour(), 1.0F};
+    point.model = {colour(), colour(), colour(), 1.0F};
+    point.observed = {colour(), colour(), colour(), 1.0F};
     point.normal = {along(), along(), along(), 1.0F};
   }
   return points;
@@ -182,8 +182,8 @@ ColourProducts reference_means(const std::vector<ComparedPoint>& points) {
   ColourProducts means = ColourProducts::Zero();
   for (const ComparedPoint& point : points) {
     Eigen::Matrix<double, kColourColumns, 1> row;
-    row << point.own[0], point.normal[0], point.normal[1], point.normal[2], 1.0, point.own[1], point.own[2],
-        point.seen[0], point.seen[1], point.seen[2];
+    row << point.model[0], point.normal[0], point.normal[1], point.normal[2], 1.0, point.model[1], point.model[2],
+        point.observed[0], point.observed[1], point.observed[2];
     means += row * row.transpose() / static_cast<double>(points.size());
   }
   return means;
@@ -204,14 +204,14 @@ TEST(ColourSums, MeansAreThoseOfAllProductsWhereTheyAreSummed) {
   };
   for (Eigen::Index a = 0; a < kTerms; ++a) {
     for (Eigen::Index b = 0; b < kTerms; ++b) near(a, b);
-    near(a, kSeenLightness);
+    near(a, kObservedLightness);
   }
-  for (const Eigen::Index column : {kA, kB, kSeenLightness, kSeenA, kSeenB}) {
+  for (const Eigen::Index column : {kA, kB, kObservedLightness, kObservedA, kObservedB}) {
     near(column, column);
     near(column, kOne);
   }
-  near(kA, kSeenA);
-  near(kB, kSeenB);
+  near(kA, kObservedA);
+  near(kB, kObservedB);
 }
 
 }  // namespace

@@ -24,8 +24,8 @@ struct MugOnTable {
 TEST(DepthScore, TruthScoresHighestAndMovesLowerIt) {
   const MugOnTable scene;
   const DepthScore truth = score_pose(scene.frame, scene.model, scene.truth, 400, kEightMillimetres);
-  EXPECT_GT(truth.agreeing, 0.7F);
-  EXPECT_LT(truth.violating, 0.05F);
+  EXPECT_GT(truth.inlier_fraction, 0.7F);
+  EXPECT_LT(truth.free_space_violation, 0.05F);
   Random random(2);
   for (int i = 0; i < 20; ++i) {
     const Eigen::Isometry3d moved = perturbed(scene.truth, 10.0, 0.02, random);
@@ -37,12 +37,12 @@ TEST(DepthScore, InFrontViolatesBehindAndUnknownAreNeutral) {
   const MugOnTable scene;
   Eigen::Isometry3d nearer = scene.truth;
   nearer.translation() *= 0.8;
-  EXPECT_GT(score_pose(scene.frame, scene.model, nearer, 400, kEightMillimetres).violating, 0.9F);
+  EXPECT_GT(score_pose(scene.frame, scene.model, nearer, 400, kEightMillimetres).free_space_violation, 0.9F);
   Eigen::Isometry3d farther = scene.truth;
   farther.translation() *= 1.2;
   const DepthScore behind = score_pose(scene.frame, scene.model, farther, 400, kEightMillimetres);
-  EXPECT_LT(behind.violating, 0.1F);
-  EXPECT_LT(behind.agreeing, 0.1F);
+  EXPECT_LT(behind.free_space_violation, 0.1F);
+  EXPECT_LT(behind.inlier_fraction, 0.1F);
   RgbdFrame blind = scene.frame;
   blind.depth.setTo(std::nanf(""));
   EXPECT_EQ(score_pose(blind, scene.model, scene.truth, 400, kEightMillimetres).value, 0.0F);
@@ -58,7 +58,7 @@ TEST(DepthScore, ShiftAlongTheRayIsFound) {
     moved.translation() *= (moved.translation().z() + off) / moved.translation().z();
     const DepthShift found = best_depth_shift(scene.frame, scene.model, moved, {200, 0.06, kEightMillimetres});
     EXPECT_NEAR(found.shift_m, -off, 0.006);
-    EXPECT_GT(found.score.agreeing, 0.6F);
+    EXPECT_GT(found.score.inlier_fraction, 0.6F);
   }
   RgbdFrame blind = scene.frame;
   blind.depth.setTo(std::nanf(""));
@@ -71,12 +71,12 @@ TEST(ProjectedView, AtTheTruePoseDepthIsThatOfTheModel) {
   const Mesh box = printed_box();
   const ObjectModel model = make_object_model("box", box, {});
   const RgbdFrame frame = coloured_frame(box, kStanding, 1);
-  const ProjectedView seen = look_at_view(frame, model, kStanding, 300);
-  ASSERT_EQ(seen.looks.size(), 300U);
+  const ProjectedView seen = project_view(frame, model, kStanding, 300);
+  ASSERT_EQ(seen.points.size(), 300U);
   int near = 0;
-  for (std::size_t i = 0; i < seen.looks.size(); ++i) {
-    const Look& look = seen.looks[i];
-    near += std::abs(look.beyond) < 0.01F ? 1 : 0;
+  for (std::size_t i = 0; i < seen.points.size(); ++i) {
+    const ProjectedPoint& look = seen.points[i];
+    near += std::abs(look.depth_difference) < 0.01F ? 1 : 0;
     const Eigen::Vector2d pixel = frame.camera.project(kStanding * seen.view.points[i].cast<double>());
     EXPECT_LE(std::abs(pixel.x() - look.x), 0.501);
     EXPECT_LE(std::abs(pixel.y() - look.y), 0.501);
@@ -89,9 +89,11 @@ TEST(ProjectedView, OutsideTheImageAndWithoutDepthNothingIsKnown) {
   const ObjectModel model = make_object_model("box", box, {});
   RgbdFrame frame = coloured_frame(box, kStanding, 1);
   const Eigen::Isometry3d aside = Eigen::Translation3d(5.0, 0.0, 0.0) * kStanding;
-  for (const Look& look : look_at_view(frame, model, aside, 50).looks) EXPECT_TRUE(std::isnan(look.beyond));
+  for (const ProjectedPoint& look : project_view(frame, model, aside, 50).points)
+    EXPECT_TRUE(std::isnan(look.depth_difference));
   frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
-  for (const Look& look : look_at_view(frame, model, kStanding, 50).looks) EXPECT_TRUE(std::isnan(look.beyond));
+  for (const ProjectedPoint& look : project_view(frame, model, kStanding, 50).points)
+    EXPECT_TRUE(std::isnan(look.depth_difference));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ std::vector<PresenceExample> drawn_by(const PresenceSettings& truth, int count) 
   for (PresenceExample& example : examples) {
     example.score = static_cast<float>(random.uniform());
     example.quality = static_cast<float>(random.uniform());
-    example.is_there = random.uniform() < presence_probability(example.score, example.quality, truth);
+    example.is_present = random.uniform() < presence_probability(example.score, example.quality, truth);
   }
   return examples;
 }

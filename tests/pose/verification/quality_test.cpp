@@ -10,15 +10,15 @@ PoseEvidence good() {
   PoseEvidence evidence;
   evidence.detection_score = 0.9F;
   evidence.depth.rendered = 2000;
-  evidence.depth.agreeing = 1800;
-  evidence.depth.violating = 20;
-  evidence.depth.outline = 165;
+  evidence.depth.depth_inliers = 1800;
+  evidence.depth.free_space_violations = 20;
+  evidence.depth.boundary_samples = 165;
   evidence.depth.boundary_continuations = 2.0F;
   ColourComparison& colour = evidence.colour.emplace();
   colour.points = 400;
   colour.agreement = 0.6F;
-  colour.left_over = 14.0F;
-  colour.chroma_conflict = 0.5F;
+  colour.residual_stddev = 14.0F;
+  colour.chroma_difference = 0.5F;
   colour.observed_contrast = 24.0F;
   colour.model_contrast = 40.0F;
   return evidence;
@@ -42,8 +42,8 @@ TEST(PoseQuality, IsAProbabilityThatIsHighWhereNothingIsWrong) {
 
 TEST(PoseQuality, WhatWasSeenThroughSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
-  evidence.depth.violating = 900;
-  evidence.depth.agreeing = 900;
+  evidence.depth.free_space_violations = 900;
+  evidence.depth.depth_inliers = 900;
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByDepth);
   PoseEvidence before = good();
   before.detection_score = evidence.detection_score = 0.5F;  // a sure detection leaves little room below 1
@@ -58,57 +58,57 @@ TEST(PoseQuality, ASurfaceThatGoesOnSpeaksAgainstAPose) {
 }
 
 /// A right pose as most are.
-QualityTerms typical() {
-  return QualitySettings{}.typical;
+QualityTerms mean_of_correct() {
+  return QualitySettings{}.mean_of_correct;
 }
 
 TEST(PoseQuality, AnotherPrintSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
-  evidence.colour->left_over = evidence.colour->observed_contrast;
+  evidence.colour->residual_stddev = evidence.colour->observed_contrast;
   EXPECT_LT(quality(evidence), quality(good()));
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByColour);
-  QualityTerms before = typical();
-  before.detection_log_odds = 0.0;  // a sure detection leaves little room below 1
+  QualityTerms before = mean_of_correct();
+  before.detection_logit = 0.0;  // a sure detection leaves little room below 1
   QualityTerms terms = before;
-  terms.print = quality_terms(evidence, {}).print;
+  terms.texture = quality_terms(evidence, {}).texture;
   EXPECT_LT(shape_quality(terms, {}), shape_quality(before, {}) - 0.1F);
 }
 
 TEST(PoseQuality, AnotherColourSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
-  evidence.colour->chroma_conflict = 3.0F;
+  evidence.colour->chroma_difference = 3.0F;
   EXPECT_LT(quality(evidence), quality(good()));
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByColour);
-  QualityTerms terms = typical();
-  terms.chroma_conflict = quality_terms(evidence, {}).chroma_conflict;
-  EXPECT_LT(shape_quality(terms, {}), shape_quality(typical(), {}) - 0.1F);
+  QualityTerms terms = mean_of_correct();
+  terms.chroma_difference = quality_terms(evidence, {}).chroma_difference;
+  EXPECT_LT(shape_quality(terms, {}), shape_quality(mean_of_correct(), {}) - 0.1F);
 }
 
 TEST(PoseQuality, ColoursThatContradictCountNoMoreThanAsMuch) {
   PoseEvidence evidence = good();
-  evidence.colour->left_over = 50.0F;
-  const double contradicted = quality_terms(evidence, {}).print;
+  evidence.colour->residual_stddev = 50.0F;
+  const double contradicted = quality_terms(evidence, {}).texture;
   EXPECT_LT(contradicted, 0.0);
-  evidence.colour->left_over = 500.0F;
-  EXPECT_EQ(quality_terms(evidence, {}).print, contradicted);
+  evidence.colour->residual_stddev = 500.0F;
+  EXPECT_EQ(quality_terms(evidence, {}).texture, contradicted);
 }
 
 TEST(PoseQuality, PlainThingsAgreeWithLittle) {
   PoseEvidence evidence = good();
   evidence.colour->observed_contrast = 12.0F;
-  evidence.colour->left_over = 10.0F;  // of shade and highlights, most is
+  evidence.colour->residual_stddev = 10.0F;  // of shade and highlights, most is
   evidence.colour->model_contrast = 5.0F;
   const QualityTerms plain = quality_terms(evidence, {});
-  EXPECT_GT(plain.print, 0.7);
-  EXPECT_GT(plain.contrast, quality_terms(good(), {}).contrast + 1.0) << "there was little to agree with";
+  EXPECT_GT(plain.texture, 0.7);
+  EXPECT_GT(plain.model_contrast, quality_terms(good(), {}).model_contrast + 1.0) << "there was little to agree with";
 }
 
 TEST(PoseQuality, WhatTheCameraWasAtItsLimitForIsNoProofOfAnotherPrint) {
   PoseEvidence evidence = good();
-  evidence.colour->left_over = evidence.colour->observed_contrast;
-  const double compared = quality_terms(evidence, {}).print;
+  evidence.colour->residual_stddev = evidence.colour->observed_contrast;
+  const double compared = quality_terms(evidence, {}).texture;
   evidence.colour->clipped = 3 * evidence.colour->points;
-  const double mostly_clipped = quality_terms(evidence, {}).print;
+  const double mostly_clipped = quality_terms(evidence, {}).texture;
   EXPECT_GT(mostly_clipped, compared + 0.2);
   EXPECT_LT(mostly_clipped, 0.7) << "nor of this one";
 }
@@ -125,8 +125,8 @@ TEST(PoseQuality, AModelWithoutColoursIsJudgedByTheRest) {
   evidence.colour.reset();
   EXPECT_GT(quality(evidence), 0.9F);
   evidence.detection_score = 0.5F;  // a sure detection leaves little room below 1
-  evidence.depth.violating = 900;
-  evidence.depth.agreeing = 900;
+  evidence.depth.free_space_violations = 900;
+  evidence.depth.depth_inliers = 900;
   EXPECT_LT(quality(evidence), 0.9F) << "no colours are no proof";
 }
 

@@ -24,7 +24,7 @@ std::vector<QualityExample> drawn(int count) {
   std::vector<QualityExample> examples(static_cast<std::size_t>(count));
   for (QualityExample& example : examples) {
     for (const auto term : kQualityTerms) example.terms.*term = random.normal();
-    example.is_right_up_to_shape = random.uniform() < static_cast<double>(shape_quality(example.terms, truth));
+    example.is_correct_up_to_shape = random.uniform() < static_cast<double>(shape_quality(example.terms, truth));
   }
   return examples;
 }
@@ -57,50 +57,52 @@ TEST(QualityTraining, AnotherPrintMovesTheWeightsOfColourBeyondAllOthers) {
   std::vector<QualityExample> examples = drawn(2000);
   const QualitySettings alone = fit_quality_settings(examples, QualitySettings{}, 1.0);
   for (QualityExample& example : examples) {
-    if (!example.is_right_up_to_shape) continue;
+    if (!example.is_correct_up_to_shape) continue;
     example.with_swapped_texture = example.terms;
-    example.with_swapped_texture->print = example.terms.print - 0.3;
+    example.with_swapped_texture->texture = example.terms.texture - 0.3;
   }
   const QualitySettings told_apart = fit_quality_settings(examples, QualitySettings{}, 1.0);
-  EXPECT_GT(told_apart.weights.print, alone.weights.print + 0.5);
+  EXPECT_GT(told_apart.weights.texture, alone.weights.texture + 0.5);
   EXPECT_NEAR(told_apart.weights.outline, alone.weights.outline, 0.25);
 }
 
 TEST(QualityTraining, WhatIsSeenThroughWeighsAsItDid) {
   std::vector<QualityExample> examples = drawn(2000);
-  for (QualityExample& example : examples) example.terms.seen_through = example.is_right_up_to_shape ? -1.0 : 1.0;
+  for (QualityExample& example : examples)
+    example.terms.free_space_violation = example.is_correct_up_to_shape ? -1.0 : 1.0;
   QualitySettings prior;
-  EXPECT_EQ(fit_quality_settings(examples, prior, 1.0).weights.seen_through, prior.weights.seen_through);
+  EXPECT_EQ(fit_quality_settings(examples, prior, 1.0).weights.free_space_violation,
+            prior.weights.free_space_violation);
 }
 
 TEST(QualityTraining, NoExamplesGiveThePrior) {
   QualitySettings prior;
   prior.bias = 0.5;
   prior.weights.outline = 3.0;
-  prior.typical.outline = 7.0;
+  prior.mean_of_correct.outline = 7.0;
   const QualitySettings found = fit_quality_settings({}, prior, 1.0);
   EXPECT_DOUBLE_EQ(found.bias, 0.5);
   for (const auto term : kQualityTerms) {
     EXPECT_DOUBLE_EQ(found.weights.*term, prior.weights.*term);
-    EXPECT_DOUBLE_EQ(found.typical.*term, prior.typical.*term);
+    EXPECT_DOUBLE_EQ(found.mean_of_correct.*term, prior.mean_of_correct.*term);
   }
 }
 
 TEST(QualityTraining, TypicalValuesAreTheMeansOfRightPosesAndTheLeastQualityIsThePriors) {
   std::vector<QualityExample> examples(3);
   examples[0].terms.outline = 2.0;
-  examples[0].is_right_up_to_shape = true;
+  examples[0].is_correct_up_to_shape = true;
   examples[1].terms.outline = 4.0;
-  examples[1].is_right_up_to_shape = true;
+  examples[1].is_correct_up_to_shape = true;
   examples[2].terms.outline = -2.0;
   QualitySettings prior;
   prior.least = 0.77F;
   const QualitySettings found = fit_quality_settings(examples, prior, 1.0);
-  EXPECT_DOUBLE_EQ(found.typical.outline, 3.0);
-  EXPECT_DOUBLE_EQ(found.typical.visible, 0.0);
+  EXPECT_DOUBLE_EQ(found.mean_of_correct.outline, 3.0);
+  EXPECT_DOUBLE_EQ(found.mean_of_correct.visible, 0.0);
   EXPECT_EQ(found.least, 0.77F);
   const QualitySettings none_right = fit_quality_settings({examples[2]}, prior, 1.0);
-  EXPECT_DOUBLE_EQ(none_right.typical.outline, prior.typical.outline);
+  EXPECT_DOUBLE_EQ(none_right.mean_of_correct.outline, prior.mean_of_correct.outline);
   EXPECT_LT(none_right.bias, prior.bias) << "a wrong pose speaks against all";
 }
 
@@ -111,7 +113,7 @@ std::vector<QualityExample> practised(double there_anyway) {
   Random random(11);
   for (QualityExample& example : examples) {
     example.score = 0.5F;
-    example.is_there = example.is_right_up_to_shape || random.uniform() < there_anyway;
+    example.is_present = example.is_correct_up_to_shape || random.uniform() < there_anyway;
   }
   const std::vector<QualityExample> again = examples;
   examples.insert(examples.end(), again.begin(), again.end());
@@ -124,9 +126,9 @@ std::vector<QualityExample> with_print(double bias, double weight) {
   std::vector<QualityExample> examples(2000);
   Random random(5);
   for (QualityExample& example : examples) {
-    example.is_right_up_to_shape = example.is_there = true;
+    example.is_correct_up_to_shape = example.is_present = true;
     example.print_margin = -4.0 + 8.0 * random.uniform();
-    example.is_right = random.uniform() < logistic(bias + weight * *example.print_margin);
+    example.is_correct = random.uniform() < logistic(bias + weight * *example.print_margin);
   }
   return examples;
 }
@@ -143,7 +145,7 @@ TEST(FitPrintSettings, LooksOnlyAtPosesThatAreRightUpToTheirShapeAndHaveAlternat
   QualityExample other;
   other.print_margin = 3.0;
   examples.insert(examples.end(), 500, other);  // wrong by its shape
-  other.is_right_up_to_shape = true;
+  other.is_correct_up_to_shape = true;
   other.print_margin.reset();
   examples.insert(examples.end(), 500, other);
   const PrintSettings again = fit_print_settings(examples, PrintSettings{}, 1.0);
@@ -184,9 +186,9 @@ TEST(LearnQualities, PresenceIsLearntFromQualitiesThatDidNotKnowTheExamples) {
   for (std::size_t i = 0; i < examples.size(); ++i) {
     QualityExample& example = examples[i];
     example.half = i < examples.size() / 2 ? 0 : 1;
-    example.is_right_up_to_shape = example.is_there = i % 2 == 0;
+    example.is_correct_up_to_shape = example.is_present = i % 2 == 0;
     example.score = 0.5F;
-    example.terms.detection_log_odds = example.is_right_up_to_shape == (example.half == 0) ? 1.0 : -1.0;
+    example.terms.detection_logit = example.is_correct_up_to_shape == (example.half == 0) ? 1.0 : -1.0;
   }
   EXPECT_LT(learn_qualities({{"mug", examples}}).at("mug").presence.quality_weight, 0.0);
 }

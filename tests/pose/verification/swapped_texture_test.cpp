@@ -21,7 +21,7 @@ std::optional<PoseEvidence> with_swapped_texture(const Mesh& box) {
   const PoseEvidence own = gather_evidence(seen, pose, 0.9F, {});
   const std::optional<PoseEvidence> other = evidence_with_swapped_texture(seen, pose, own, {});
   if (other) {
-    EXPECT_EQ(other->depth.agreeing, own.depth.agreeing) << "the surface is the same";
+    EXPECT_EQ(other->depth.depth_inliers, own.depth.depth_inliers) << "the surface is the same";
     EXPECT_LT(other->colour->agreement, own.colour->agreement - 0.2F);
   }
   return other;

@@ -26,8 +26,8 @@ TEST(Verification, TruePoseAgreesAlmostEverywhere) {
   EXPECT_GT(found.visible_fraction(), 0.95F);  // 2 % of the depth is lost
   EXPECT_LT(found.free_space_violation(), 0.01F);
   EXPECT_EQ(found.occluded, 0);
-  EXPECT_GT(found.outline, 200);
-  EXPECT_LT(found.boundary_continuations, 0.15F * static_cast<float>(found.outline));
+  EXPECT_GT(found.boundary_samples, 200);
+  EXPECT_LT(found.boundary_continuations, 0.15F * static_cast<float>(found.boundary_samples));
 }
 
 TEST(Verification, ModelInFrontOfWhatWasSeenViolatesFreeSpace) {
@@ -54,11 +54,11 @@ TEST(Verification, PointsOfAViewTellWhatRenderedPixelsTell) {
     Eigen::Isometry3d pose = scene.truth;
     pose.translation() *= scale;
     const Verification pixels = verify_pose(scene.frame, scene.object, pose, kDepthTolerance);
-    const Verification points = verify_projected_view(look_at_view(scene.frame, model, pose, 600), kDepthTolerance);
+    const Verification points = verify_projected_view(project_view(scene.frame, model, pose, 600), kDepthTolerance);
     EXPECT_GT(points.rendered, 300);
     EXPECT_NEAR(points.visible_fraction(), pixels.visible_fraction(), 0.06) << scale;
     EXPECT_NEAR(points.free_space_violation(), pixels.free_space_violation(), 0.06) << scale;
-    EXPECT_EQ(points.outline, 0);
+    EXPECT_EQ(points.boundary_samples, 0);
   }
 }
 
@@ -74,8 +74,8 @@ TEST(Verification, FaceSunkIntoTheTableAgreesButHasNoOutline) {
   const Verification found = verify_pose(scene.frame, scene.object, sunk_into_the_table(scene), kDepthTolerance);
   EXPECT_GT(found.visible_fraction(), 0.4F);
   EXPECT_LT(found.free_space_violation(), 0.01F);
-  EXPECT_GT(found.outline, 200);
-  EXPECT_GT(found.boundary_continuations, 0.8F * static_cast<float>(found.outline));
+  EXPECT_GT(found.boundary_samples, 200);
+  EXPECT_GT(found.boundary_continuations, 0.8F * static_cast<float>(found.boundary_samples));
 }
 
 TEST(Verification, WhatIsFlushWithTheTableEndsWhereItsColourDoes) {
@@ -84,7 +84,7 @@ TEST(Verification, WhatIsFlushWithTheTableEndsWhereItsColourDoes) {
   const auto goes_on = [&](const cv::Mat& lab) {
     const LabRegion colours{lab, {}, {}};
     const Verification found = verify_pose(scene.frame, scene.object, pose, kDepthTolerance, &colours);
-    return found.boundary_continuations / static_cast<float>(found.outline);
+    return found.boundary_continuations / static_cast<float>(found.boundary_samples);
   };
   cv::Mat lab(scene.frame.depth.size(), CV_8UC3, cv::Scalar(120, 128, 128));
   EXPECT_GT(goes_on(lab), 0.7F) << "all of one colour";

@@ -243,11 +243,11 @@ TEST(PoseMetrics, ABoxThatIsTurnedFrontForBackIsRightUpToItsShapeOnly) {
   const Eigen::Isometry3d truth = Eigen::Isometry3d::Identity();
   const PoseModel printed{kCorners, 0.2};
   EXPECT_NEAR(strict_error(printed, turned(M_PI), truth), 0.2, 1e-6);
-  EXPECT_FALSE(is_right(printed, turned(M_PI), truth));
-  EXPECT_TRUE(is_right_up_to_shape(printed, turned(M_PI), truth));
+  EXPECT_FALSE(is_correct(printed, turned(M_PI), truth));
+  EXPECT_TRUE(is_correct_up_to_shape(printed, turned(M_PI), truth));
   const PoseModel plain{kCorners, 0.2, {truth, turned(M_PI)}};
   EXPECT_NEAR(strict_error(plain, turned(M_PI), truth), 0.0, 1e-6);
-  EXPECT_TRUE(is_right(plain, turned(M_PI), truth)) << "the dataset says that it is the same pose";
+  EXPECT_TRUE(is_correct(plain, turned(M_PI), truth)) << "the dataset says that it is the same pose";
 }
 
 TEST(PoseMetrics, OfASymmetricObjectThePointThatIsFarthestOffCounts) {
@@ -255,10 +255,10 @@ TEST(PoseMetrics, OfASymmetricObjectThePointThatIsFarthestOffCounts) {
   const Eigen::Isometry3d truth = Eigen::Isometry3d::Identity();
   const PoseModel printed{kCorners, 0.2};
   EXPECT_NEAR(strict_error(printed, tilted, truth), 0.1 * std::sin(0.15), 1e-6) << "ADD";
-  EXPECT_TRUE(is_right(printed, tilted, truth));
+  EXPECT_TRUE(is_correct(printed, tilted, truth));
   const PoseModel plain{kCorners, 0.2, {truth, turned(M_PI)}};
   EXPECT_NEAR(strict_error(plain, tilted, truth), 0.2 * std::sin(0.15), 1e-6) << "MSSD";
-  EXPECT_FALSE(is_right(plain, tilted, truth));
+  EXPECT_FALSE(is_correct(plain, tilted, truth));
 }
 
 TEST(PoseMetrics, TheSymmetriesOfTheDatasetAreExpanded) {
@@ -268,7 +268,7 @@ TEST(PoseMetrics, TheSymmetriesOfTheDatasetAreExpanded) {
   EXPECT_FALSE(make_pose_model(mesh, {}).is_symmetric());
   Symmetries quarter;
   quarter.continuous.push_back({});
-  EXPECT_TRUE(is_right(make_pose_model(mesh, quarter), turned(1.234), Eigen::Isometry3d::Identity()));
+  EXPECT_TRUE(is_correct(make_pose_model(mesh, quarter), turned(1.234), Eigen::Isometry3d::Identity()));
 }
 
 TEST(PoseMetrics, ATurnedPoseIsPublishedWrongAndRightUpToItsShape) {

@@ -73,7 +73,7 @@ TEST(InProcess, PosesOfWeakDetectionsAreKnownButNotPublished) {
   const BopScene scene = two_tiles("in_process_weak");
   PublishingRules rules;
   rules.score = 0.5F;
-  publish_from(0.0F, rules.pose);
+  set_min_quality(0.0F, rules.pose);
   rules.pose.min_score = 0.0F;
   const std::vector<EvaluatedFrame> ranked = run(scene, 0.0F, rules);
   const std::vector<EvaluatedFrame> usual = run(scene, 0.5F, rules);
@@ -109,9 +109,9 @@ TEST(InProcess, PosesOfLowQualityAreKnownButNotPublished) {
   const BopScene scene = two_tiles("in_process_quality");
   PublishingRules rules;
   rules.score = 0.5F;
-  publish_from(0.0F, rules.pose);
+  set_min_quality(0.0F, rules.pose);
   const std::vector<EvaluatedFrame> all = run(scene, 0.5F, rules);
-  publish_from(1.0F, rules.pose);
+  set_min_quality(1.0F, rules.pose);
   const std::vector<EvaluatedFrame> none = run(scene, 0.5F, rules);
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(count_poses(none[i].poses), 0);
@@ -125,7 +125,7 @@ TEST(InProcess, CandidatesHavePosesThatArePublishedByALimitOfTheirOwn) {
   const BopScene scene = two_tiles("in_process_candidates");
   PublishingRules rules{0.5F, 0.0F, {}};
   rules.pose.min_score = 0.0F;
-  publish_from(0.0F, rules.pose);
+  set_min_quality(0.0F, rules.pose);
   const std::vector<EvaluatedFrame> all = run(scene, 0.5F, rules);
   rules.pose.quality.min_candidate_quality = 1.0F;
   const std::vector<EvaluatedFrame> none = run(scene, 0.5F, rules);

@@ -13,10 +13,10 @@ QualitySettings learnt() {
   double value = 0.0;
   for (const auto term : kQualityTerms) {
     settings.weights.*term = value += 0.1;
-    settings.typical.*term = -(value / 3.0);
+    settings.mean_of_correct.*term = -(value / 3.0);
   }
   settings.presence = {1.5, 0.25, -0.5};
-  settings.least = 0.9F;
+  settings.min_quality = 0.9F;
   return settings;
 }
 
@@ -39,7 +39,7 @@ TEST(StoredQuality, ComesBackFromJsonAsItWas) {
   EXPECT_EQ(mug.bias, learnt().bias);
   for (const auto term : kQualityTerms) {
     EXPECT_EQ(mug.weights.*term, learnt().weights.*term);
-    EXPECT_EQ(mug.typical.*term, learnt().typical.*term);
+    EXPECT_EQ(mug.mean_of_correct.*term, learnt().mean_of_correct.*term);
   }
   EXPECT_EQ(mug.presence.bias, learnt().presence.bias);
   EXPECT_EQ(mug.presence.score_weight, learnt().presence.score_weight);
@@ -67,7 +67,7 @@ TEST(StoredQuality, PosesAreMadeWithTheShapeSymmetriesThatTheStoreKnows) {
 TEST(StoredQuality, TermsAreHeldByTheirNames) {
   nlohmann::json json = quality_to_json(learnt());
   EXPECT_EQ(json["weights"]["outline"], learnt().weights.outline);
-  EXPECT_EQ(json["typical"]["print"], learnt().typical.print);
+  EXPECT_EQ(json["typical"]["print"], learnt().mean_of_correct.texture);
 }
 
 /// One line that names the store, the object and `part`.

@@ -24,7 +24,7 @@ double recall(const std::vector<JudgedPose>& poses, double JudgedPose::*error, d
   for (const JudgedPose& pose : poses) {
     if (pose.visible_fraction < min_visible) continue;
     ++counted;
-    good += pose.*error < kRightBelow * diameter ? 1 : 0;  // false for NaN
+    good += pose.*error < kCorrectBelow * diameter ? 1 : 0;  // false for NaN
   }
   return counted > 0 ? static_cast<double>(good) / counted : std::numeric_limits<double>::quiet_NaN();
 }
@@ -61,13 +61,13 @@ double strict_error(const PoseModel& model, const Eigen::Isometry3d& T_estimated
                               : add_error(model.points, T_estimated, T_true);
 }
 
-bool is_right(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true) {
-  return strict_error(model, T_estimated, T_true) < kRightBelow * model.diameter;
+bool is_correct(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true) {
+  return strict_error(model, T_estimated, T_true) < kCorrectBelow * model.diameter;
 }
 
-bool is_right_up_to_shape(const PoseModel& model, const Eigen::Isometry3d& T_estimated,
-                          const Eigen::Isometry3d& T_true) {
-  return add_s_error(model.points, T_estimated, T_true) < kRightBelow * model.diameter;
+bool is_correct_up_to_shape(const PoseModel& model, const Eigen::Isometry3d& T_estimated,
+                            const Eigen::Isometry3d& T_true) {
+  return add_s_error(model.points, T_estimated, T_true) < kCorrectBelow * model.diameter;
 }
 
 std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
@@ -116,8 +116,8 @@ std::vector<PosePrediction> pose_predictions(const std::vector<EvaluatedFrame>& 
     if (detection.verdict == Verdict::kTrue) {
       const GroundTruthObject& truth = frame.objects[detection.object].truth;
       if (!truth.has_pose) continue;
-      statement.is_true = is_right(model, *pose->T_camera_object, truth.T_camera_object);
-      statement.is_right_up_to_shape = is_right_up_to_shape(model, *pose->T_camera_object, truth.T_camera_object);
+      statement.is_true = is_correct(model, *pose->T_camera_object, truth.T_camera_object);
+      statement.is_correct_up_to_shape = is_correct_up_to_shape(model, *pose->T_camera_object, truth.T_camera_object);
     }
     statements.push_back(statement);
   }

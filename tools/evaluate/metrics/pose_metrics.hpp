@@ -17,7 +17,7 @@ using Points = std::vector<Eigen::Vector3f>;
 // A pose is right where its strict error is below a tenth of the diameter: print counts. Where ADD-S alone is, the pose
 // is right up to what the shape cannot tell: a box turned front for back.
 
-constexpr double kRightBelow = 0.1;  ///< error of a right pose, diameters (Hinterstoisser et al. 2012)
+constexpr double kCorrectBelow = 0.1;  ///< error of a right pose, diameters (Hinterstoisser et al. 2012)
 
 /// ADD (Hinterstoisser et al. 2012): mean distance in metres of the model's points under the two poses.
 double add_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
@@ -43,10 +43,10 @@ PoseModel make_pose_model(const Mesh& mesh, const Symmetries& symmetries);
 /// The error by which a pose is right or not, metres: MSSD (Hodan et al. 2020) over the model's points where the
 /// dataset lists symmetries of the object, else ADD.
 double strict_error(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
-bool is_right(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
+bool is_correct(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
 /// By ADD-S.
-bool is_right_up_to_shape(const PoseModel& model, const Eigen::Isometry3d& T_estimated,
-                          const Eigen::Isometry3d& T_true);
+bool is_correct_up_to_shape(const PoseModel& model, const Eigen::Isometry3d& T_estimated,
+                            const Eigen::Isometry3d& T_true);
 
 /// A true detection and the pose that was published for it.
 struct JudgedPose {
@@ -71,7 +71,7 @@ std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, c
 
 /// What is said of a pose: how probably it is right, and right up to its shape.
 struct PosePrediction : Prediction {
-  bool is_right_up_to_shape = false;
+  bool is_correct_up_to_shape = false;
   double stated_up_to_shape = 0.0;  ///< ObjectPose::shape_quality
 };
 

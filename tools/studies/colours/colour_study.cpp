@@ -35,7 +35,7 @@ struct Found {
 struct JudgedColours {
   std::size_t frame = 0;
   const ObjectPose* pose = nullptr;
-  bool is_right = false;
+  bool is_correct = false;
 };
 
 class Study {
@@ -197,7 +197,7 @@ class Study {
         const bool is_true = match.verdict == Verdict::kTrue;
         judged.push_back(
             {match.frame, &pose,
-             is_true && is_right(model, *pose.T_camera_object, frame.objects[match.object].truth.T_camera_object)});
+             is_true && is_correct(model, *pose.T_camera_object, frame.objects[match.object].truth.T_camera_object)});
       }
     }
     return judged;
@@ -226,14 +226,14 @@ class Study {
     int right = 0;
     for (std::size_t i = 0; i < judged.size(); ++i) {
       const JudgedColours& it = judged[i];
-      right += it.is_right ? 1 : 0;
-      if (it.is_right) out.pose_auc += static_cast<double>(right) / static_cast<double>(i + 1) / out.objects;
+      right += it.is_correct ? 1 : 0;
+      if (it.is_correct) out.pose_auc += static_cast<double>(right) / static_cast<double>(i + 1) / out.objects;
       if (is_published(it, frames)) ++out.published;
-      if (is_published(it, frames) && it.is_right) ++out.right;
-      qualities.push_back({it.pose->quality, it.is_right});
+      if (is_published(it, frames) && it.is_correct) ++out.right;
+      qualities.push_back({it.pose->quality, it.is_correct});
       if (!it.pose->chroma) continue;
       const ChromaPair& pair = *it.pose->chroma;
-      (it.is_right ? off : wrong_off)
+      (it.is_correct ? off : wrong_off)
           .push_back((pair.measured - it.pose->camera_colours.apply(pair.model, pair.lightness)).norm());
     }
     out.ece = calibrate(qualities, right).ece;
@@ -257,7 +257,7 @@ class Study {
       if (!it.pose->chroma) continue;
       const ChromaPair& pair = *it.pose->chroma;
       lines += fmt::format("{},{},{},{},{},{:.3f},{:.4f},{:.4f},{:.2f},{:.2f},{:.2f},{:.2f},{:.1f}\n", camera, learnt,
-                           it.frame, pair.class_name, it.is_right ? 1 : 0, it.pose->detection_score, it.pose->quality,
+                           it.frame, pair.class_name, it.is_correct ? 1 : 0, it.pose->detection_score, it.pose->quality,
                            pair.probability, pair.model.x(), pair.model.y(), pair.measured.x(), pair.measured.y(),
                            pair.lightness);
     }

@@ -41,9 +41,9 @@ PoseRecall pose_recall(const std::vector<PoseTrial>& trials, float min_score) {
   for (const PoseTrial& trial : trials) {
     if (trial.verdict != Verdict::kTrue || trial.score < min_score || trial.visible_fraction < kMinVisible) continue;
     ++out.detections;
-    right += trial.is_right() ? 1 : 0;
-    by_add_s += trial.is_right_up_to_shape() ? 1 : 0;
-    by_add += (trial.symmetric ? trial.add_s : trial.add) < kRightBelow ? 1 : 0;  // false for NaN
+    right += trial.is_correct() ? 1 : 0;
+    by_add_s += trial.is_correct_up_to_shape() ? 1 : 0;
+    by_add += (trial.symmetric ? trial.add_s : trial.add) < kCorrectBelow ? 1 : 0;  // false for NaN
   }
   out.right = ratio(right, out.detections);
   out.add_s = ratio(by_add_s, out.detections);
@@ -61,8 +61,8 @@ PoseFigures pose_figures(const std::vector<PoseTrial>& trials) {
     ms.push_back(trial.ms);
     judged += trial.verdict == Verdict::kIgnored ? 0 : 1;
     if (trial.verdict != Verdict::kTrue) continue;
-    right += trial.is_right() ? 1 : 0;
-    right_up_to_shape += trial.is_right_up_to_shape() ? 1 : 0;
+    right += trial.is_correct() ? 1 : 0;
+    right_up_to_shape += trial.is_correct_up_to_shape() ? 1 : 0;
     mm.push_back(1e3 * trial.shift_m);
     mm_per_m_sq.push_back(1e3 * trial.shift_m / (trial.distance_m * trial.distance_m));
     if (!trial.symmetric) deg.push_back(trial.turn_deg);
@@ -95,8 +95,8 @@ std::map<std::string, WithheldPoses> count_withheld(const std::vector<PoseTrial>
       case Verdict::kFalse: ++counts.of_false; break;
       case Verdict::kIgnored: ++counts.of_ignored; break;
     }
-    counts.right += unchecked[i].is_right() ? 1 : 0;
-    counts.right_up_to_shape += unchecked[i].is_right_up_to_shape() ? 1 : 0;
+    counts.right += unchecked[i].is_correct() ? 1 : 0;
+    counts.right_up_to_shape += unchecked[i].is_correct_up_to_shape() ? 1 : 0;
   }
   return out;
 }

@@ -13,7 +13,7 @@ namespace houghstream {
 /// is no such detection.
 struct PoseRecall {
   int detections = 0;
-  double right = 0.0;  ///< PoseTrial::is_right()
+  double right = 0.0;  ///< PoseTrial::is_correct()
   double add_s = 0.0;  ///< right up to what the shape cannot tell: ADD-S below 10 % of the diameter
   double add = 0.0;    ///< ADD below it, ADD-S for objects that are symmetric
 };

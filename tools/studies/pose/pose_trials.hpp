@@ -45,8 +45,8 @@ struct PoseTrial {
   double turn_deg = kUnknown;  ///< the smallest over the object's symmetries
 
   /// The pose of a true detection.
-  bool is_right() const { return verdict == Verdict::kTrue && strict < kRightBelow; }
-  bool is_right_up_to_shape() const { return verdict == Verdict::kTrue && add_s < kRightBelow; }
+  bool is_correct() const { return verdict == Verdict::kTrue && strict < kCorrectBelow; }
+  bool is_correct_up_to_shape() const { return verdict == Verdict::kTrue && add_s < kCorrectBelow; }
 };
 
 /// What the poses of a class are compared with the truth by.

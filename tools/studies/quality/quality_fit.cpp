@@ -15,7 +15,7 @@ namespace houghstream::quality {
 namespace {
 
 constexpr double kPriorPrecision = 10.0;  // of the numbers in use, see fit_quality()
-constexpr double kRightShare = 0.98;
+constexpr double kCorrectFraction = 0.98;
 constexpr int kRoundSteps = 20;  // thresholds are multiples of one over this
 
 std::vector<std::string> scenes_of(const std::vector<Example>& examples) {
@@ -28,7 +28,7 @@ std::vector<std::string> scenes_of(const std::vector<Example>& examples) {
 
 int count_right(const std::vector<Example>& examples) {
   return static_cast<int>(std::count_if(examples.begin(), examples.end(),
-                                        [](const Example& example) { return example.is_right_up_to_shape; }));
+                                        [](const Example& example) { return example.is_correct_up_to_shape; }));
 }
 
 std::string to_braces(const QualityTerms& terms) {
@@ -38,8 +38,9 @@ std::string to_braces(const QualityTerms& terms) {
 }
 
 OrderedJson to_json(const Published& published) {
-  return {
-      {"poses", published.poses}, {"right", published.right}, {"right_share", finite_or_null(published.right_share())}};
+  return {{"poses", published.poses},
+          {"right", published.right},
+          {"right_share", finite_or_null(published.correct_fraction())}};
 }
 
 OrderedJson to_json(const QualityTerms& terms) {
@@ -63,7 +64,7 @@ QualitySettings fit_quality(const std::vector<Example>& examples) {
   for (const Example& example : examples) {
     judged.emplace_back();
     judged.back().terms = example.terms;
-    judged.back().is_right_up_to_shape = example.is_right_up_to_shape;
+    judged.back().is_correct_up_to_shape = example.is_correct_up_to_shape;
   }
   return fit_quality_settings(judged, QualitySettings{}, kPriorPrecision);
 }
@@ -72,7 +73,7 @@ std::vector<CheckedPose> check_by(const QualitySettings& settings, const std::ve
   std::vector<CheckedPose> checked;
   checked.reserve(examples.size());
   for (const Example& example : examples) {
-    checked.push_back({shape_quality(example.terms, settings), example.is_right_up_to_shape});
+    checked.push_back({shape_quality(example.terms, settings), example.is_correct_up_to_shape});
   }
   return checked;
 }
@@ -97,7 +98,7 @@ std::vector<CheckedPose> check_by_scene(const std::vector<Example>& examples, in
   return checked;
 }
 
-double Published::right_share() const {
+double Published::correct_fraction() const {
   return poses > 0 ? static_cast<double>(right) / poses : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -106,14 +107,14 @@ Published published_from(const std::vector<CheckedPose>& checked, float least) {
   for (const CheckedPose& pose : checked) {
     if (pose.quality < least) continue;
     ++out.poses;
-    out.right += pose.is_right ? 1 : 0;
+    out.right += pose.is_correct ? 1 : 0;
   }
   return out;
 }
 
-std::optional<float> min_quality(const std::vector<CheckedPose>& checked, double right_share) {
+std::optional<float> min_quality(const std::vector<CheckedPose>& checked, double correct_fraction) {
   for (int step = 1; step < kRoundSteps; ++step) {
-    if (published_from(checked, round_quality(step)).right_share() >= right_share) return round_quality(step);
+    if (published_from(checked, round_quality(step)).correct_fraction() >= correct_fraction) return round_quality(step);
   }
   return std::nullopt;
 }
@@ -125,10 +126,10 @@ Learnt learn_quality(const std::vector<Example>& examples) {
   learnt.right = count_right(examples);
   learnt.settings = fit_quality(examples);
   learnt.checked = check_by_scene(examples, kMinScenes);
-  const std::optional<float> least = min_quality(learnt.checked, kRightShare);
+  const std::optional<float> least = min_quality(learnt.checked, kCorrectFraction);
   require(least.has_value(), "{} poses: from no quality are {:.0f} % of those in unseen scenes right", examples.size(),
-          100.0 * kRightShare);
-  learnt.settings.least = *least;
+          100.0 * kCorrectFraction);
+  learnt.settings.min_quality = *least;
   const QualitySettings in_use;
   learnt.in_use = published_from(check_by(in_use, examples), in_use.least);
   return learnt;
@@ -137,15 +138,15 @@ Learnt learn_quality(const std::vector<Example>& examples) {
 std::string to_initialisers(const QualitySettings& settings) {
   return fmt::format(
       "double bias = {:.2f};\nQualityTerms weights = {};\nQualityTerms typical = {};\nfloat least = {:.2f}F;\n",
-      settings.bias, to_braces(settings.weights), to_braces(settings.typical), settings.least);
+      settings.bias, to_braces(settings.weights), to_braces(settings.mean_of_correct), settings.min_quality);
 }
 
 OrderedJson to_json(const Learnt& learnt) {
   OrderedJson out = {{"scenes", learnt.scenes}, {"examples", learnt.examples}, {"right", learnt.right}};
   out["bias"] = learnt.settings.bias;
   out["weights"] = to_json(learnt.settings.weights);
-  out["typical"] = to_json(learnt.settings.typical);
-  out["least"] = std::round(static_cast<double>(learnt.settings.least) * kRoundSteps) / kRoundSteps;
+  out["typical"] = to_json(learnt.settings.mean_of_correct);
+  out["least"] = std::round(static_cast<double>(learnt.settings.min_quality) * kRoundSteps) / kRoundSteps;
   out["in_use"] = to_json(learnt.in_use);
   out["published"] = OrderedJson::array();
   for (int step = 1; step < kRoundSteps; ++step) {

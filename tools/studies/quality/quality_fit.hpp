@@ -18,7 +18,7 @@ QualitySettings fit_quality(const std::vector<Example>& examples);
 /// A pose with the quality that a fit gives it.
 struct CheckedPose {
   float quality = 0.0F;
-  bool is_right = false;  ///< up to what the shape cannot tell, which is what the fit learns
+  bool is_correct = false;  ///< up to what the shape cannot tell, which is what the fit learns
 };
 
 /// The examples as these settings judge them, in their order.
@@ -32,12 +32,12 @@ std::vector<CheckedPose> check_by_scene(const std::vector<Example>& examples, in
 struct Published {
   int poses = 0;
   int right = 0;
-  double right_share() const;  ///< NaN without poses
+  double correct_fraction() const;  ///< NaN without poses
 };
 Published published_from(const std::vector<CheckedPose>& checked, float least);
 
 /// The smallest of 0.05, 0.1, ... 0.95 from which at least this share of the poses is right; nothing where none is.
-std::optional<float> min_quality(const std::vector<CheckedPose>& checked, double right_share);
+std::optional<float> min_quality(const std::vector<CheckedPose>& checked, double correct_fraction);
 
 /// What hs-study quality learnt.
 struct Learnt {
@@ -60,8 +60,8 @@ Learnt learn_quality(const std::vector<Example>& examples);
 std::string to_initialisers(const QualitySettings& settings);
 
 /// {"scenes", "examples", "right", "bias", "weights": {TERM: }, "typical": {TERM: }, "least", "in_use": {"poses",
-/// "right", "right_share"}, "published": [{"from", "poses", "right", "right_share"}]}; the last in scenes that the fit
-/// has not seen.
+/// "right", "correct_fraction"}, "published": [{"from", "poses", "right", "correct_fraction"}]}; the last in scenes
+/// that the fit has not seen.
 OrderedJson to_json(const Learnt& learnt);
 
 }  // namespace houghstream::quality

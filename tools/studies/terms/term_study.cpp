@@ -185,11 +185,11 @@ std::string table(const std::vector<Group>& groups, const StudyRules& rules) {
   text += fmt::format("{:<28}", "sum: log odds of the score");
   for (const std::vector<TermFigures>& column : columns) text += cell(log_odds(column), 14);
   text += "\n";
-  constexpr std::size_t kShown = 6;
+  constexpr std::size_t kRecentFrames = 6;
   for (std::size_t i = 1; i < groups.size(); ++i) {
     text += fmt::format("true ones of {} against {}:", groups[i].name, groups[0].name);
     const std::vector<TermShift> shifts = shifts_between(groups[0].true_ones, groups[i].true_ones);
-    for (std::size_t k = 0; k < std::min(kShown, shifts.size()); ++k)
+    for (std::size_t k = 0; k < std::min(kRecentFrames, shifts.size()); ++k)
       text += fmt::format(" {} {:+.2f}", shifts[k].term, shifts[k].shift);
     text += "\n";
   }

@@ -72,7 +72,7 @@ bool same_shape(const Shape& one, const Eigen::Matrix3f& map, const Shape& other
 }
 
 bool same_colours(const Shape& one, const Eigen::Matrix3f& map, const Shape& other) {
-  if (!one.colour.known() || !other.colour.known()) return true;
+  if (!one.colour.has_colour() || !other.colour.has_colour()) return true;
   int alike = 0;
   for (const Eigen::Vector3f& point : one.points) {
     const LabColour a = one.colour_at(point);

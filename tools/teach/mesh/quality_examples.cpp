@@ -41,12 +41,12 @@ std::vector<Example> label_examples(const FoundPoses& found, const std::map<std:
         const EvaluatedFrame& frame = found.frames[judged.frame];
         const GroundTruthObject& truth = frame.objects[judged.object].truth;
         if (!truth.has_pose) continue;
-        example.is_there = true;
+        example.is_present = true;
         const Eigen::Isometry3d& T_camera_object = *frame.poses->poses[judged.index].T_camera_object;
-        example.is_right = is_right(model, T_camera_object, truth.T_camera_object);
-        example.is_right_up_to_shape = is_right_up_to_shape(model, T_camera_object, truth.T_camera_object);
+        example.is_correct = is_correct(model, T_camera_object, truth.T_camera_object);
+        example.is_correct_up_to_shape = is_correct_up_to_shape(model, T_camera_object, truth.T_camera_object);
       }
-      if (example.is_right_up_to_shape) example.with_swapped_texture = terms->with_swapped_texture;
+      if (example.is_correct_up_to_shape) example.with_swapped_texture = terms->with_swapped_texture;
       examples.push_back(std::move(example));
     }
   }

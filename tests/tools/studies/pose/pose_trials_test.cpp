@@ -66,12 +66,12 @@ TEST(PoseTrials, ErrorsAreOfTheTrueObjectOrOfTheNearest) {
   EXPECT_NEAR(trials[0].shift_m, 0.01, 1e-9);
   EXPECT_NEAR(trials[0].turn_deg, 0.0, 1e-6);
   EXPECT_NEAR(trials[0].distance_m, 2.0, 1e-9);
-  EXPECT_TRUE(trials[0].is_right());
+  EXPECT_TRUE(trials[0].is_correct());
   EXPECT_GE(trials[0].ms, 0.0);
   EXPECT_EQ(trials[1].verdict, Verdict::kFalse);
   EXPECT_NEAR(trials[1].add, 0.05, 1e-6);
   EXPECT_TRUE(std::isnan(trials[1].visible_fraction));
-  EXPECT_FALSE(trials[1].is_right());
+  EXPECT_FALSE(trials[1].is_correct());
 }
 
 TEST(PoseTrials, ATurnedPoseIsRightUpToItsShapeOnly) {
@@ -82,8 +82,8 @@ TEST(PoseTrials, ATurnedPoseIsRightUpToItsShapeOnly) {
     if (is_listed) bar.surface.symmetries.push_back(turn);
     const std::vector<PoseTrial> trials =
         judge_run(one_frame(baseline_maker(std::make_unique<FixedRival>(at(0.0, 2.0) * turn))), {{"corner", bar}});
-    EXPECT_EQ(trials.at(0).is_right(), is_listed);
-    EXPECT_TRUE(trials.at(0).is_right_up_to_shape());
+    EXPECT_EQ(trials.at(0).is_correct(), is_listed);
+    EXPECT_TRUE(trials.at(0).is_correct_up_to_shape());
     EXPECT_NEAR(trials.at(0).strict, is_listed ? 0.0 : 1.0, 1e-6);
   }
 }
@@ -96,7 +96,7 @@ TEST(PoseTrials, WithoutAPoseNoErrorIsKnown) {
   EXPECT_FALSE(trials[0].T_camera_object.has_value());
   EXPECT_TRUE(std::isnan(trials[0].add_s));
   EXPECT_TRUE(std::isnan(trials[0].strict));
-  EXPECT_FALSE(trials[0].is_right());
+  EXPECT_FALSE(trials[0].is_correct());
 }
 
 }  // namespace

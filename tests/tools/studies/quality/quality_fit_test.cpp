@@ -25,7 +25,7 @@ std::vector<Example> drawn(int count, int scenes, double certainty = 1.0) {
     Example& example = examples[i];
     example.scene = std::to_string(i % scenes);
     for (const auto term : kQualityTerms) example.terms.*term = random.normal();
-    example.is_right_up_to_shape = random.uniform() < static_cast<double>(shape_quality(example.terms, truth));
+    example.is_correct_up_to_shape = random.uniform() < static_cast<double>(shape_quality(example.terms, truth));
   }
   return examples;
 }
@@ -39,21 +39,21 @@ TEST(QualityFit, TheWeightsThatDrewTheExamplesComeBackUnderTheirNames) {
 TEST(QualityFit, TypicalValuesAreTheMeansOfRightPoses) {
   std::vector<Example> examples(3);
   examples[0].terms.outline = 2.0;
-  examples[0].is_right_up_to_shape = true;
+  examples[0].is_correct_up_to_shape = true;
   examples[1].terms.outline = 4.0;
-  examples[1].terms.print = -1.0;
-  examples[1].is_right_up_to_shape = true;
+  examples[1].terms.texture = -1.0;
+  examples[1].is_correct_up_to_shape = true;
   examples[2].terms.outline = -50.0;
-  const QualityTerms typical = fit_quality(examples).typical;
-  EXPECT_DOUBLE_EQ(typical.outline, 3.0);
-  EXPECT_DOUBLE_EQ(typical.print, -0.5);
-  EXPECT_DOUBLE_EQ(typical.visible, 0.0);
+  const QualityTerms mean_of_correct = fit_quality(examples).mean_of_correct;
+  EXPECT_DOUBLE_EQ(mean_of_correct.outline, 3.0);
+  EXPECT_DOUBLE_EQ(mean_of_correct.texture, -0.5);
+  EXPECT_DOUBLE_EQ(mean_of_correct.visible, 0.0);
 }
 
 TEST(QualityFit, OneKindAloneIsRefused) {
   std::vector<Example> examples(3);
   EXPECT_THROW(fit_quality(examples), InputError);
-  for (Example& example : examples) example.is_right_up_to_shape = true;
+  for (Example& example : examples) example.is_correct_up_to_shape = true;
   EXPECT_THROW(fit_quality(examples), InputError);
   EXPECT_THROW(fit_quality({}), InputError);
 }
@@ -62,7 +62,7 @@ TEST(QualityFit, APoseIsCheckedByAFitThatHasNotSeenItsScene) {
   std::vector<Example> examples = drawn(4000, 4);
   for (Example& example : examples) {
     if (example.scene == "2")
-      example.is_right_up_to_shape = example.terms.outline > 0.0;  // the others do not know that
+      example.is_correct_up_to_shape = example.terms.outline > 0.0;  // the others do not know that
   }
   const std::vector<CheckedPose> checked = check_by_scene(examples, 4);
   ASSERT_EQ(checked.size(), examples.size());
@@ -76,7 +76,7 @@ TEST(QualityFit, APoseIsCheckedByAFitThatHasNotSeenItsScene) {
   for (std::size_t i = 0, n = 0; i < examples.size(); ++i) {
     if (examples[i].scene != "2") continue;
     EXPECT_EQ((first + static_cast<std::ptrdiff_t>(n))->quality, shape_quality(examples[i].terms, others));
-    EXPECT_EQ((first + static_cast<std::ptrdiff_t>(n++))->is_right, examples[i].is_right_up_to_shape);
+    EXPECT_EQ((first + static_cast<std::ptrdiff_t>(n++))->is_correct, examples[i].is_correct_up_to_shape);
   }
   EXPECT_THROW(check_by_scene(drawn(300, 3), 4), InputError);
 }
@@ -89,14 +89,14 @@ TEST(QualityFit, TheLeastQualityIsTheFirstRoundOneFromWhichEnoughAreRight) {
   EXPECT_EQ(min_quality(checked, 0.99), 0.75F);
   EXPECT_EQ(published_from(checked, 0.7F).poses, 100);
   EXPECT_EQ(published_from(checked, 0.7F).right, 98);
-  EXPECT_TRUE(std::isnan(published_from(checked, 0.95F).right_share()));
+  EXPECT_TRUE(std::isnan(published_from(checked, 0.95F).correct_fraction()));
   EXPECT_EQ(min_quality({{0.9F, false}}, 0.98), std::nullopt);
 }
 
 TEST(QualityFit, ExamplesAreJudgedByTheSettingsGiven) {
   std::vector<Example> examples(2);
   examples[1].terms.outline = 3.0;
-  examples[1].is_right_up_to_shape = true;
+  examples[1].is_correct_up_to_shape = true;
   QualitySettings settings;
   settings.bias = 0.0;
   settings.weights = {};
@@ -104,8 +104,8 @@ TEST(QualityFit, ExamplesAreJudgedByTheSettingsGiven) {
   const std::vector<CheckedPose> checked = check_by(settings, examples);
   EXPECT_EQ(checked[0].quality, 0.5F);
   EXPECT_NEAR(checked[1].quality, 0.9526F, 1e-4F);
-  EXPECT_TRUE(checked[1].is_right);
-  EXPECT_FALSE(checked[0].is_right);
+  EXPECT_TRUE(checked[1].is_correct);
+  EXPECT_FALSE(checked[0].is_correct);
 }
 
 TEST(QualityFit, NumbersAreWrittenAsInitialisersAndJson) {
@@ -114,8 +114,8 @@ TEST(QualityFit, NumbersAreWrittenAsInitialisersAndJson) {
   EXPECT_EQ(std::tuple(learnt.scenes, learnt.examples), std::tuple(4, 8000));
   learnt.settings.weights = kWeights;
   learnt.settings.bias = -3.711;
-  learnt.settings.least = 0.6F;
-  learnt.settings.typical = {};
+  learnt.settings.min_quality = 0.6F;
+  learnt.settings.mean_of_correct = {};
   EXPECT_EQ(to_initialisers(learnt.settings),
             "double bias = -3.71;\n"
             "QualityTerms weights = {1.50, 0.50, 1.00, -0.50, 2.00, 1.00, 0.00, 0.00};\n"

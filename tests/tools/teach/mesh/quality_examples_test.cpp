@@ -61,9 +61,9 @@ TEST(QualityExamples, APoseIsRightWithinATenthOfTheDiameter) {
     ASSERT_EQ(examples.size(), 1U);
     EXPECT_EQ(examples[0].scene, "desk");
     EXPECT_EQ(examples[0].score, 0.9F);
-    EXPECT_TRUE(examples[0].is_there) << "whether its pose is right or not";
-    EXPECT_EQ(examples[0].is_right, x < 0.02) << x;
-    EXPECT_EQ(examples[0].is_right_up_to_shape, x < 0.02) << x;
+    EXPECT_TRUE(examples[0].is_present) << "whether its pose is right or not";
+    EXPECT_EQ(examples[0].is_correct, x < 0.02) << x;
+    EXPECT_EQ(examples[0].is_correct_up_to_shape, x < 0.02) << x;
     EXPECT_EQ(examples[0].with_swapped_texture.has_value(), x < 0.02) << "of a wrong pose another print says nothing";
   }
 }
@@ -78,8 +78,8 @@ TEST(QualityExamples, APoseThatIsTurnedByItsShapeIsRightUpToThatOnlyUnlessTheDat
     if (is_listed) bar.symmetries.push_back(turn);
     const std::vector<Example> examples = label_examples(found, {{"corner", bar}});
     ASSERT_EQ(examples.size(), 1U);
-    EXPECT_EQ(examples[0].is_right, is_listed);
-    EXPECT_TRUE(examples[0].is_right_up_to_shape);
+    EXPECT_EQ(examples[0].is_correct, is_listed);
+    EXPECT_TRUE(examples[0].is_correct_up_to_shape);
     EXPECT_TRUE(examples[0].with_swapped_texture.has_value()) << "which is what today's fit learns from";
   }
 }
@@ -91,10 +91,10 @@ TEST(QualityExamples, OfFalseDetectionsEveryPoseIsWrong) {
   add(found, "mug", kBox, 0.0);           // has no model: nobody's
   const std::vector<Example> examples = label_examples(found, corner());
   ASSERT_EQ(examples.size(), 2U);
-  EXPECT_TRUE(examples[0].is_right);
-  EXPECT_FALSE(examples[1].is_right);
-  EXPECT_FALSE(examples[1].is_right_up_to_shape);
-  EXPECT_FALSE(examples[1].is_there);
+  EXPECT_TRUE(examples[0].is_correct);
+  EXPECT_FALSE(examples[1].is_correct);
+  EXPECT_FALSE(examples[1].is_correct_up_to_shape);
+  EXPECT_FALSE(examples[1].is_present);
   EXPECT_EQ(examples[1].terms.visible, 1.0) << "with its own evidence";
 }
 
