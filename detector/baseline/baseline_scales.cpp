@@ -5,7 +5,7 @@
 
 #include "detector/baseline/scale_space_search.hpp"
 #include "detector/baseline/surface_planes.hpp"
-#include "detector/training/pictures/sensor_errors.hpp"
+#include "detector/training/augmentation/sensor_errors.hpp"
 
 namespace houghstream::baseline {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "detector/training/pictures/scales.hpp"
+#include "detector/training/augmentation/scales.hpp"
 
 namespace houghstream::baseline {
 

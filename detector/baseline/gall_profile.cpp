@@ -34,9 +34,9 @@ Profile gall_profile(std::size_t objects) {
   profile.features.families = kIntensity;
   profile.features.image_scale = 1.0F;
   profile.patch.radius = 8;
-  profile.training.alone_share = 0.0;  // differences only
-  profile.training.spare_background = 0;
-  profile.training.sharpened_share = 0.0;  // the original sees its views as they were taken
+  profile.training.single_pixel_fraction = 0.0;  // differences only
+  profile.training.negative_pool = 0;
+  profile.training.sharpened_fraction = 0.0;  // the original sees its views as they were taken
   profile.training.max_background_weight = std::numeric_limits<float>::infinity();
   profile.training.scoring = Scoring::kVotes;
   profile.training.max_leaf_votes = 32;

@@ -10,7 +10,7 @@ namespace houghstream::baseline {
 void reference_leaves(const LeafInput& input, int threads, const LeafVisitor& visit) {
   const Forest& forest = input.index.forest();
   const PatchGrid& patches = input.patches;
-  const EarlyRejection& early_end = input.early_end;
+  const EarlyRejection& early_rejection = input.early_rejection;
   const int trees = static_cast<int>(forest.roots.size());
   parallel_for_workers(threads, static_cast<int>(input.runs.size()), [&](int worker, int r) {
     const PatchRun& run = input.runs[static_cast<std::size_t>(r)];
@@ -19,10 +19,10 @@ void reference_leaves(const LeafInput& input, int threads, const LeafVisitor& vi
     for (std::size_t p = run.first; p < run.first + run.count; ++p) {
       const PatchView patch = input.features[patches.level[p]].patch(patches.x[p], patches.y[p], patches.scale[p]);
       float certainty = 0.0F;
-      for (int tree = 0; early_end.is_enabled(forest) && tree < early_end.trees; ++tree) {
-        certainty += input.index.leaf_summaries()[find_leaf(forest, tree, patch)].certainty;
+      for (int tree = 0; early_rejection.is_enabled(forest) && tree < early_rejection.trees; ++tree) {
+        certainty += input.index.leaf_summaries()[find_leaf(forest, tree, patch)].max_posterior;
       }
-      if (early_end.is_enabled(forest) && !early_end.goes_on(certainty)) continue;
+      if (early_rejection.is_enabled(forest) && !early_rejection.is_accepted(certainty)) continue;
       left.push_back(static_cast<std::uint32_t>(p));
       for (int tree = 0; tree < trees; ++tree) by_tree[tree].push_back(find_leaf(forest, tree, patch));
     }
@@ -57,7 +57,7 @@ void find_posteriors_by(Way way, const PosteriorInput& input, LeafWorkspace& wor
   if (way == Way::kFast) return find_posteriors(input, workspace, posteriors);
   list_runs(input.patches, workspace.runs);
   LeafInput leaves{input.index, input.features, input.patches, workspace.runs};
-  leaves.early_end = {input.settings.first_trees, input.settings.min_first_posterior};
+  leaves.early_rejection = {input.settings.first_trees, input.settings.min_first_posterior};
   posteriors.reset(input.index, workspace.runs.size(), input.settings.min_class_share, input.threads);
   reference_leaves(leaves, input.threads, [&](const RunLeaves& seen) { posteriors.note(seen); });
 }

@@ -111,7 +111,7 @@ Evidence HypothesisScorer::evidence_of_votes(const Hypothesis& hypothesis) const
   const ObjectClass& object = forest_.classes[hypothesis.class_index];
   const Camera& camera = input_.frame.frame.camera;
   Evidence evidence;
-  evidence.relative_vote_mass = hypothesis.mass / object.nominal_vote_mass;
+  evidence.relative_vote_mass = hypothesis.vote_mass / object.nominal_vote_mass;
   evidence.certainty = hypothesis.weight / static_cast<float>(std::max<std::size_t>(hypothesis.patches.size(), 1));
   evidence.distance = hypothesis.centre_camera.norm();
   evidence.radius_px = focal_octave_scale(camera) * static_cast<float>(camera.fx) * object.radius / evidence.distance;

@@ -29,7 +29,7 @@ FeatureBlock block_of(FeatureFamily family) {
 }
 
 PlaneKind kind_of(FeatureFamily family, ScaleHandling handling) {
-  if (family == kIntensity) return PlaneKind::kLight;
+  if (family == kIntensity) return PlaneKind::kIntensity;
   if (family == kPointHistogram || family == kFastHistogram) return PlaneKind::kHistogram;
   if (family != kDepthValue) return PlaneKind::kSurface;
   return handling == ScaleHandling::kDepthNormalised ? PlaneKind::kWrappedDepth : PlaneKind::kScaledDepth;

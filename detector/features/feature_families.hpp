@@ -66,7 +66,7 @@ struct FeatureBlock {
 
 /// What a plane holds, as far as the tests on it care.
 enum class PlaneKind : std::uint8_t {
-  kLight,         ///< lightness, colour and their changes: another light, other values
+  kIntensity,     ///< lightness, colour and their changes: another light, other values
   kWrappedDepth,  ///< depth / kWrapStep modulo 256: only differences mean something, and they wrap too
   kScaledDepth,   ///< depth * object scale / kScaledStep: the same for an object at every distance (Section 3.2)
   kSurface,       ///< shape of the surface

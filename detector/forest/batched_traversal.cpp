@@ -57,7 +57,7 @@ Batch gather_batch(const PatchBatch& patches, std::size_t first) {
   return batch;
 }
 
-void set_out(const Batch& batch, std::int32_t root, Walkers& w) {
+void start(const Batch& batch, std::int32_t root, Walkers& w) {
   w.count = batch.count;
   w.centre = batch.centre;
   w.scale = batch.scale;
@@ -66,7 +66,7 @@ void set_out(const Batch& batch, std::int32_t root, Walkers& w) {
 }
 
 /// Notes the leaves that some of a vector's patches have reached; `way` holds their numbers.
-HWY_INLINE void arrive(hn::Mask<Int> arrived, Ints who, Ints way, std::int32_t* leaves) {
+HWY_INLINE void retire(hn::Mask<Int> arrived, Ints who, Ints way, std::int32_t* leaves) {
   const Int d;
   std::array<std::int32_t, hn::MaxLanes(Int())> patches;
   std::array<std::int32_t, hn::MaxLanes(Int())> numbers;
@@ -101,7 +101,7 @@ void compact(Walkers& w, std::int32_t* leaves) {
       left += std::min(hn::Lanes(d), w.count - i);
       continue;
     }
-    arrive(arrived, who, way, leaves);
+    retire(arrived, who, way, leaves);
     const auto stays = hn::AndNot(arrived, present);  // what is stored behind them has been read
     hn::StoreU(hn::Compress(test, stays), d, w.test.data() + left);
     hn::StoreU(hn::Compress(way, stays), d, w.way.data() + left);
@@ -143,7 +143,7 @@ void find_pixels(const FeatureImage& image, Walkers& w) {
 void take_step(Walkers& w) {
   const Int d;
   const hn::Rebind<std::uint8_t, Int> bytes;
-  const Ints alone = hn::Set(d, packed::kAlone);
+  const Ints alone = hn::Set(d, packed::kSinglePixel);
   const Ints wraps = hn::Set(d, packed::kWraps);
   const Ints child_mask = hn::Set(d, (1 << packed::kLimitShift) - 1);
   for (std::size_t i = 0; i < w.count; i += hn::Lanes(d)) {
@@ -160,7 +160,7 @@ void take_step(Walkers& w) {
 }
 
 void walk_tree(const PackedTrees& trees, std::size_t tree, const Batch& batch, Walkers& w, std::int32_t* leaves) {
-  set_out(batch, trees.roots[tree], w);
+  start(batch, trees.roots[tree], w);
   for (;;) {
     fetch_nodes(trees.nodes.data(), w.at.data(), w.count, w.nodes.data());
     compact(w, leaves);

@@ -96,9 +96,10 @@ void check_indices(const Forest& forest, const std::string& source) {
     const int reach = forest.patch.radius;
     const PixelTest& t = node.test;
     const bool inside = std::max({std::abs(t.dx1), std::abs(t.dy1), std::abs(t.dx2), std::abs(t.dy2)}) <= reach;
-    require(inside && t.plane < planes &&
-                (t.kind == PixelTest::kDifference || t.kind == PixelTest::kWrapping || t.kind == PixelTest::kAlone),
-            "{}: node {} tests plane {}, expected one of {} planes within {} steps", source, n, t.plane, planes, reach);
+    require(
+        inside && t.plane < planes &&
+            (t.kind == PixelTest::kDifference || t.kind == PixelTest::kWrapping || t.kind == PixelTest::kSinglePixel),
+        "{}: node {} tests plane {}, expected one of {} planes within {} steps", source, n, t.plane, planes, reach);
   }
 }
 

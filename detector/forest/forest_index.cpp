@@ -13,7 +13,7 @@ std::vector<LeafSummary> make_leaf_heads(const Forest& forest) {
     LeafSummary& head = heads[leaf];
     head.first_class = forest.leaves[leaf];
     for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
-      head.certainty = std::max(head.certainty, forest.leaf_classes[e].probability);
+      head.max_posterior = std::max(head.max_posterior, forest.leaf_classes[e].probability);
     }
   }
   if (!heads.empty()) heads.back().first_class = forest.leaves.back();

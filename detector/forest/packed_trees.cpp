@@ -26,11 +26,11 @@ std::int32_t pack_way(std::size_t left, int limit) {
 
 /// A pixel that is looked at alone is looked at twice: a second one would have to come into the cache for nothing.
 PackedNode pack_node(const PixelTest& test, std::size_t left) {
-  const bool alone = test.kind == PixelTest::kAlone;
+  const bool alone = test.kind == PixelTest::kSinglePixel;
   std::uint32_t bits = step_bits(test.dx1, 0) | step_bits(test.dy1, 1);
   bits |= step_bits(alone ? test.dx1 : test.dx2, 2) | step_bits(alone ? test.dy1 : test.dy2, 3);
   bits |= static_cast<std::uint32_t>(test.plane) << packed::kPlaneShift;
-  if (alone) bits |= packed::kAlone;
+  if (alone) bits |= packed::kSinglePixel;
   if (test.kind == PixelTest::kWrapping) bits |= packed::kWraps;
   return {bits, pack_way(left, std::clamp(test.threshold - 1, -kMaxLimit - 1, kMaxLimit))};
 }

@@ -25,7 +25,7 @@ struct PackedTrees {
 namespace packed {
 constexpr int kStepBits = 5;  ///< of dx1, dy1, dx2 and dy2 each, with sign
 constexpr int kPlaneShift = 20;
-constexpr std::uint32_t kAlone = 1U << 28;
+constexpr std::uint32_t kSinglePixel = 1U << 28;
 constexpr std::uint32_t kWraps = 1U << 29;
 constexpr std::uint32_t kLeaf = 1U << 30;  ///< nothing else: the way is the leaf's number
 constexpr int kLimitShift = 23;            ///< of the way: below lies the left child, above it the limit, with sign

@@ -14,8 +14,8 @@ namespace houghstream {
 /// (depth normalisation, paper Section 5.1.2).
 struct PixelTest {
   static constexpr std::uint8_t kDifference = 0;
-  static constexpr std::uint8_t kWrapping = 24;  ///< the difference is taken modulo 256: bits to shift out
-  static constexpr std::uint8_t kAlone = 128;    ///< p1 alone, where p2 counts as 0: which colour, which slope
+  static constexpr std::uint8_t kWrapping = 24;      ///< the difference is taken modulo 256: bits to shift out
+  static constexpr std::uint8_t kSinglePixel = 128;  ///< p1 alone, where p2 counts as 0: which colour, which slope
 
   std::int8_t dx1 = 0;
   std::int8_t dy1 = 0;

@@ -14,7 +14,7 @@ void sum_certainties(const ForestIndex& index, const RunLeaves& seen, std::vecto
   sums.assign(seen.count, 0.0F);
   const std::int32_t* leaves = seen.leaves;
   for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree, leaves += seen.count) {
-    for (std::size_t i = 0; i < seen.count; ++i) sums[i] += heads[leaves[i]].certainty;
+    for (std::size_t i = 0; i < seen.count; ++i) sums[i] += heads[leaves[i]].max_posterior;
   }
 }
 
@@ -97,7 +97,7 @@ void find_posteriors(const PosteriorInput& input, LeafWorkspace& workspace, Patc
   std::vector<PatchRun>& runs = workspace.runs;
   list_runs(input.patches, runs);
   LeafInput leaves{input.index, input.features, input.patches, runs};
-  leaves.early_end = {input.settings.first_trees, input.settings.min_first_posterior};
+  leaves.early_rejection = {input.settings.first_trees, input.settings.min_first_posterior};
   posteriors.reset(input.index, runs.size(), input.settings.min_class_share, input.threads);
   find_leaves(leaves, input.threads, workspace, [&](const RunLeaves& seen) { posteriors.note(seen); });
 }

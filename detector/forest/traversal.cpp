@@ -8,7 +8,7 @@ namespace houghstream {
 namespace {
 
 /// Leaves of patches of one level in some of the trees.
-void walk_trees(const ForestIndex& index, const PatchBatch& walking, TreeRange trees, std::int32_t* leaves) {
+void traverse_trees(const ForestIndex& index, const PatchBatch& walking, TreeRange trees, std::int32_t* leaves) {
   if (traverse_batched(index.packed(), trees, walking, leaves)) return;
   for (std::size_t tree = trees.first; tree < trees.last; ++tree, leaves += walking.count) {
     for (int p = 0; p < walking.count; ++p) {
@@ -19,26 +19,27 @@ void walk_trees(const ForestIndex& index, const PatchBatch& walking, TreeRange t
 }
 
 /// Gives patches up and closes the gaps that they leave in the leaves of the first trees.
-void give_up(const ForestIndex& index, const EarlyRejection& early_end, const PatchRun& run,
-             LeafWorkspace::Worker& workspace) {
+void reject_patches(const ForestIndex& index, const EarlyRejection& early_rejection, const PatchRun& run,
+                    LeafWorkspace::Worker& workspace) {
   workspace.sums.assign(run.count, 0.0F);
   const std::int32_t* leaves = workspace.leaves.data();
-  for (int tree = 0; tree < early_end.trees; ++tree, leaves += run.count) {
-    for (std::size_t i = 0; i < run.count; ++i) workspace.sums[i] += index.leaf_summaries()[leaves[i]].certainty;
+  for (int tree = 0; tree < early_rejection.trees; ++tree, leaves += run.count) {
+    for (std::size_t i = 0; i < run.count; ++i) workspace.sums[i] += index.leaf_summaries()[leaves[i]].max_posterior;
   }
   workspace.patches.clear();
   for (std::size_t i = 0; i < run.count; ++i) {
-    if (early_end.goes_on(workspace.sums[i])) workspace.patches.push_back(static_cast<std::uint32_t>(run.first + i));
+    if (early_rejection.is_accepted(workspace.sums[i]))
+      workspace.patches.push_back(static_cast<std::uint32_t>(run.first + i));
   }
   std::int32_t* to = workspace.leaves.data();
-  for (int tree = 0; tree < early_end.trees; ++tree) {
+  for (int tree = 0; tree < early_rejection.trees; ++tree) {
     const std::int32_t* from = workspace.leaves.data() + static_cast<std::size_t>(tree) * run.count;
     for (const std::uint32_t p : workspace.patches) *to++ = from[p - run.first];
   }
 }
 
 /// The patches that are left, side by side.
-PatchBatch gather_left(const FeatureImage& image, const PatchGrid& patches, LeafWorkspace::Worker& workspace) {
+PatchBatch gather_accepted(const FeatureImage& image, const PatchGrid& patches, LeafWorkspace::Worker& workspace) {
   workspace.x.clear();
   workspace.y.clear();
   workspace.scale.clear();
@@ -57,13 +58,13 @@ PatchBatch gather_left(const FeatureImage& image, const PatchGrid& patches, Leaf
 }
 
 /// Leaves of one run.
-void walk_run(const LeafInput& input, const PatchRun& run, LeafWorkspace::Worker& workspace) {
+void traverse_run(const LeafInput& input, const PatchRun& run, LeafWorkspace::Worker& workspace) {
   const ForestIndex& index = input.index;
   const PatchGrid& patches = input.patches;
   const FeatureImage& image = input.features[patches.level[run.first]];
   const std::size_t trees = index.forest().roots.size();
-  const bool may_end = input.early_end.is_enabled(index.forest());
-  const std::size_t first = may_end ? static_cast<std::size_t>(input.early_end.trees) : trees;
+  const bool may_end = input.early_rejection.is_enabled(index.forest());
+  const std::size_t first = may_end ? static_cast<std::size_t>(input.early_rejection.trees) : trees;
   workspace.leaves.resize(run.count * trees);
   PatchBatch all;
   all.image = &image;
@@ -71,15 +72,15 @@ void walk_run(const LeafInput& input, const PatchRun& run, LeafWorkspace::Worker
   all.y = patches.y.data() + run.first;
   all.scale = patches.scale.data() + run.first;
   all.count = static_cast<int>(run.count);
-  walk_trees(index, all, {0, first}, workspace.leaves.data());
+  traverse_trees(index, all, {0, first}, workspace.leaves.data());
   if (!may_end) {
     workspace.patches.resize(run.count);
     std::iota(workspace.patches.begin(), workspace.patches.end(), static_cast<std::uint32_t>(run.first));
     return;
   }
-  give_up(index, input.early_end, run, workspace);
-  const PatchBatch left = gather_left(image, patches, workspace);
-  walk_trees(index, left, {first, trees}, workspace.leaves.data() + first * workspace.patches.size());
+  reject_patches(index, input.early_rejection, run, workspace);
+  const PatchBatch left = gather_accepted(image, patches, workspace);
+  traverse_trees(index, left, {first, trees}, workspace.leaves.data() + first * workspace.patches.size());
 }
 
 }  // namespace
@@ -89,7 +90,7 @@ void find_leaves(const LeafInput& input, int threads, LeafWorkspace& workspaces,
   parallel_for_workers(threads, static_cast<int>(input.runs.size()), [&](int worker, int r) {
     LeafWorkspace::Worker& workspace = workspaces.workers[worker];
     const auto run = static_cast<std::size_t>(r);
-    walk_run(input, input.runs[run], workspace);
+    traverse_run(input, input.runs[run], workspace);
     visit({run, workspace.patches.size(), workspace.patches.data(), workspace.leaves.data(), worker});
   });
 }

@@ -13,12 +13,12 @@ namespace houghstream {
 
 /// After how many trees a patch may be given up, and when, see LeafSettings.
 struct EarlyRejection {
-  int trees = 0;       ///< 0 = no patch is given up
-  float share = 0.0F;  ///< mean of LeafSummary::certainty that must be reached
+  int trees = 0;                    ///< 0 = no patch is given up
+  float min_mean_posterior = 0.0F;  ///< mean of LeafSummary::max_posterior that must be reached
 
   bool is_enabled(const Forest& forest) const { return trees > 0 && trees < static_cast<int>(forest.roots.size()); }
   /// `sum`: of the certainties, added in the trees' order.
-  bool goes_on(float sum) const { return sum >= share * static_cast<float>(trees); }
+  bool is_accepted(float sum) const { return sum >= min_mean_posterior * static_cast<float>(trees); }
 };
 
 /// Which patches walk down which trees.
@@ -27,7 +27,7 @@ struct LeafInput {
   const std::vector<FeatureImage>& features;  ///< one image for each level
   const PatchGrid& patches;
   const std::vector<PatchRun>& runs;
-  EarlyRejection early_end = {};
+  EarlyRejection early_rejection = {};
 };
 
 /// The leaves of those patches of a run that were not given up.

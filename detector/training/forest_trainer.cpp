@@ -146,14 +146,15 @@ void learn_scores(const Rooms& rooms, const Profile& profile, const Scales& scal
   for (const TrainingView* view : rooms.objects) class_ids.insert(view->class_id);
   const auto first_view = static_cast<std::uint32_t>(forest.views.size() - rooms.objects.size());
   const ValidationSource plain = composed_frames(rooms.objects, rooms.for_score, profile.training);
-  const ValidationSource strangers = compose_hard_negative_frames(rooms.objects, rooms.for_score, profile.training);
-  Counted counted(plain.count + strangers.count, progress);
+  const ValidationSource hard_negatives =
+      compose_hard_negative_frames(rooms.objects, rooms.for_score, profile.training);
+  Counted counted(plain.count + hard_negatives.count, progress);
   const auto examples = [&](const ValidationSource& source) {
     return find_score_examples(counted.through(source), first_view, profile, forest, scales);
   };
   fit_scores(examples(plain), class_ids, forest);
-  calibrate_scores(examples(strangers), class_ids, forest);
-  progress(fmt::format("score from {} composed pictures of {} rooms", plain.count + strangers.count,
+  calibrate_scores(examples(hard_negatives), class_ids, forest);
+  progress(fmt::format("score from {} composed pictures of {} rooms", plain.count + hard_negatives.count,
                        rooms.for_score.size()));
 }
 
@@ -161,7 +162,7 @@ void learn_scores(const Rooms& rooms, const Profile& profile, const Scales& scal
 TrainingSet make_set(const Rooms& rooms, const Profile& profile, const Scales& scales,
                      std::vector<TrainingView>& views) {
   const bool keep = learns_scores(profile.training);
-  const PictureInput input{profile.features, profile.patch, profile.training, scales};
+  const ImageInput input{profile.features, profile.patch, profile.training, scales};
   return make_training_set(rooms.for_trees, input, [&](const TrainingView* done) {
     if (keep) return;
     TrainingView& view = views[static_cast<std::size_t>(done - views.data())];

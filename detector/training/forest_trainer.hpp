@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "detector/forest/forest.hpp"
-#include "detector/training/pictures/scales.hpp"
+#include "detector/training/augmentation/scales.hpp"
 #include "detector/training/profiles.hpp"
 #include "pipeline/types/training_view.hpp"
 

@@ -37,13 +37,13 @@ float object_probability(const TrainingSet& set, const std::vector<Forest>& scou
 
 void add_hard_negatives(const PatchSettings& patch, const TrainingSettings& settings, TrainingSet& set) {
   const std::vector<Forest> scouts = grow_scouts(set, patch, settings);
-  const std::size_t count = set.spare_background.size();
+  const std::size_t count = set.negative_pool.size();
   std::vector<float> mistake(count);
   constexpr std::size_t kBlock = 4096;
   parallel_for(settings.threads, static_cast<int>((count + kBlock - 1) / kBlock), [&](int block) {
     const std::size_t begin = static_cast<std::size_t>(block) * kBlock;
     for (std::size_t i = begin; i < std::min(begin + kBlock, count); ++i) {
-      mistake[i] = object_probability(set, scouts, set.spare_background[i]);
+      mistake[i] = object_probability(set, scouts, set.negative_pool[i]);
     }
   });
   std::vector<std::uint32_t> order;
@@ -55,8 +55,8 @@ void add_hard_negatives(const PatchSettings& patch, const TrainingSettings& sett
   const auto background = static_cast<std::size_t>(std::count_if(
       set.samples.begin(), set.samples.end(), [](const TrainingSample& sample) { return sample.label == 0; }));
   order.resize(std::min(order.size(), background));
-  for (const std::uint32_t i : order) set.samples.push_back(set.spare_background[i]);
-  set.spare_background.clear();
+  for (const std::uint32_t i : order) set.samples.push_back(set.negative_pool[i]);
+  set.negative_pool.clear();
 }
 
 }  // namespace houghstream::training

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "detector/training/pictures/training_set.hpp"
+#include "detector/training/augmentation/training_set.hpp"
 #include "detector/training/training_settings.hpp"
 
 namespace houghstream::training {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "detector/forest/forest.hpp"
-#include "detector/training/pictures/training_set.hpp"
+#include "detector/training/augmentation/training_set.hpp"
 #include "detector/training/training_settings.hpp"
 
 namespace houghstream::training {

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "detector/stages.hpp"
-#include "detector/training/pictures/sensor_errors.hpp"
-#include "detector/training/pictures/validation_frames.hpp"
+#include "detector/training/augmentation/sensor_errors.hpp"
+#include "detector/training/augmentation/validation_frames.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/logistic_regression.hpp"
 #include "pipeline/base/parallel.hpp"
@@ -138,7 +138,7 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
   workspaces.resize(threads);
   parallel_for_workers(threads, source.count, [&](int worker, int f) {
     const ValidationFrame validation = source.frame(f);
-    std::vector<std::uint32_t> shown = validation.others;
+    std::vector<std::uint32_t> shown = validation.distractor_views;
     for (const ValidationFrame::Object& object : validation.objects) {
       if (object.view) shown.push_back(*object.view);
     }

@@ -8,8 +8,8 @@
 
 #include "detector/evidence/score.hpp"
 #include "detector/forest/forest.hpp"
-#include "detector/training/pictures/scales.hpp"
-#include "detector/training/pictures/validation_frames.hpp"
+#include "detector/training/augmentation/scales.hpp"
+#include "detector/training/augmentation/validation_frames.hpp"
 #include "detector/training/profiles.hpp"
 #include "pipeline/types/training_view.hpp"
 

@@ -13,7 +13,7 @@ SplitSearch::SplitSearch(const TrainingSet& set, const PatchSettings& patch, con
       patch_(patch),
       settings_(settings),
       label_weights_(std::move(label_weights)),
-      trusts_light_(allow_single_pixel_intensity) {
+      allow_single_pixel_intensity_(allow_single_pixel_intensity) {
   for (int plane = 0; plane < set.layout.planes(); ++plane) {
     const bool is_histogram = set.layout.kind(plane) == PlaneKind::kHistogram;
     (is_histogram ? histograms_ : others_).push_back(static_cast<std::uint8_t>(plane));
@@ -43,11 +43,11 @@ void SplitSearch::draw_tests(std::size_t test_count, Random& random) {
   }
 }
 
-double SplitSearch::alone_share(PlaneKind kind) const {
-  const double of_shape = std::max(settings_.alone_share, settings_.shape_alone_share);
+double SplitSearch::single_pixel_fraction(PlaneKind kind) const {
+  const double of_shape = std::max(settings_.single_pixel_fraction, settings_.shape_single_pixel_fraction);
   if (kind == PlaneKind::kSurface) return of_shape;
   // The scaled depth rules out what has the wrong size for its distance, which a difference cannot do.
-  return kind == PlaneKind::kScaledDepth ? std::max(of_shape, 0.5) : settings_.alone_share;
+  return kind == PlaneKind::kScaledDepth ? std::max(of_shape, 0.5) : settings_.single_pixel_fraction;
 }
 
 PixelTest SplitSearch::random_test(const Planes& planes, PlacePair& pair, Random& random) const {
@@ -56,8 +56,9 @@ PixelTest SplitSearch::random_test(const Planes& planes, PlacePair& pair, Random
   const PlaneKind kind = set_.layout.kind(test.plane);
   if (kind == PlaneKind::kWrappedDepth) {
     test.kind = PixelTest::kWrapping;
-  } else if ((trusts_light_ || kind != PlaneKind::kLight) && random.uniform() < alone_share(kind)) {
-    test.kind = PixelTest::kAlone;
+  } else if ((allow_single_pixel_intensity_ || kind != PlaneKind::kIntensity) &&
+             random.uniform() < single_pixel_fraction(kind)) {
+    test.kind = PixelTest::kSinglePixel;
     pair.second = pair.first;
   }
   test.dx1 = places_[pair.first].dx;
@@ -270,8 +271,8 @@ std::optional<PixelTest> SplitSearch::best_test(const std::vector<std::uint32_t>
   // Few samples are told apart by few tests; trying more would only fit their noise.
   std::size_t test_count = std::min(tests_.size(), std::max<std::size_t>(64, samples.size()));
   draw_tests(test_count, random);
-  if (samples.size() >= 2 * kFirstLook && test_count > kFinalists) {
-    const std::vector<Judged> first = judge_tests(test_count, thinned(samples, kFirstLook), objective, 2);
+  if (samples.size() >= 2 * kPrescreenSamples && test_count > kFinalists) {
+    const std::vector<Judged> first = judge_tests(test_count, thinned(samples, kPrescreenSamples), objective, 2);
     test_count = std::min(first.size(), kFinalists);
     keep_finalists(first, test_count);
   }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "detector/training/pictures/training_set.hpp"
+#include "detector/training/augmentation/training_set.hpp"
 #include "detector/training/training_settings.hpp"
 #include "pipeline/base/random.hpp"
 
@@ -28,9 +28,9 @@ class SplitSearch {
 
   static constexpr int kMinSide = 10;
   static constexpr int kBins = 16;
-  static constexpr std::size_t kFirstLook = 128;  ///< samples on which all tests are judged
-  static constexpr int kPlaces = 64;              ///< pixels of a patch among which a node's tests choose
-  static constexpr std::size_t kFinalists = 64;   ///< tests that are judged on all samples
+  static constexpr std::size_t kPrescreenSamples = 128;  ///< samples on which all tests are judged
+  static constexpr int kPlaces = 64;                     ///< pixels of a patch among which a node's tests choose
+  static constexpr std::size_t kFinalists = 64;          ///< tests that are judged on all samples
 
  private:
   /// Weighted sums of some samples of one label: of 1 and of the offset's coordinates.
@@ -78,7 +78,7 @@ class SplitSearch {
   const Planes& draw_planes(Random& random) const;
   void draw_tests(std::size_t test_count, Random& random);
   /// Of the tests on a plane of this kind look at one pixel, see TrainingSettings.
-  double alone_share(PlaneKind kind) const;
+  double single_pixel_fraction(PlaneKind kind) const;
   PixelTest random_test(const Planes& planes, PlacePair& pair, Random& random) const;
   void prepare_tests(std::size_t test_count, int pixel_stride);
   void load_pixels(const PatchView& patch, const PatchView& next);
@@ -100,7 +100,7 @@ class SplitSearch {
   std::vector<float> label_weights_;
   Planes histograms_;
   Planes others_;
-  bool trusts_light_;  // whether a single pixel's lightness and colour may decide
+  bool allow_single_pixel_intensity_;  // whether a single pixel's lightness and colour may decide
   std::vector<PixelTest> tests_;
   std::vector<Prepared> prepared_;
   std::vector<PlacePair> drawn_;  // per test

@@ -3,13 +3,13 @@
 #include <limits>
 
 #include "detector/forest/forest.hpp"
-#include "detector/training/pictures/picture_settings.hpp"
+#include "detector/training/augmentation/augmentation_settings.hpp"
 #include "pipeline/base/settings_fields.hpp"
 
 namespace houghstream::training {
 
 /// How a forest is trained: the pictures, and what is learnt from them.
-struct TrainingSettings : PictureSettings {
+struct TrainingSettings : AugmentationSettings {
   int trees = 15;
   int max_depth = 25;         ///< levels
   int min_samples = 20;       ///< a node with fewer becomes a leaf
@@ -17,10 +17,10 @@ struct TrainingSettings : PictureSettings {
   /// Of the nodes are split so that offsets agree, the others so that labels do; Gall et al. 2011 draw one or the other
   /// alike. It is always offsets where there is one label only, and labels where nearly all is background.
   double offset_share = 0.5;
-  double alone_share = 0.3;  ///< of the tests look at one pixel alone, see PixelTest::kAlone
+  double single_pixel_fraction = 0.3;  ///< of the tests look at one pixel alone, see PixelTest::kSinglePixel
   /// At least so many of the tests on depth and on the surface, point histograms aside: these are the same in any
   /// light, without a comparison.
-  double shape_alone_share = 0.0;
+  double shape_single_pixel_fraction = 0.0;
   /// Of the nodes look at point feature histograms, and only at those; the others never. What is shaped like an object
   /// stands in no room that is learnt from: they would win nearly every node, and the object's colours go unlearnt.
   double histogram_share = 0.3;
@@ -39,14 +39,14 @@ struct TrainingSettings : PictureSettings {
 template <typename Visit>
 void fields(const TrainingSettings& settings, const Visit& visit) {
   using S = TrainingSettings;
-  fields(static_cast<const PictureSettings&>(settings), visit);
+  fields(static_cast<const AugmentationSettings&>(settings), visit);
   visit(number("trees", &S::trees, 1, 1000));
   visit(number("max_depth", &S::max_depth, 1, 60, "levels"));
   visit(number("min_samples", &S::min_samples, 1, 1000000));
   visit(number("tests_per_node", &S::tests_per_node, 1, 100000));
   visit(number("offset_share", &S::offset_share, 0, 1));
-  visit(number("alone_share", &S::alone_share, 0, 1));
-  visit(number("shape_alone_share", &S::shape_alone_share, 0, 1));
+  visit(number("single_pixel_fraction", &S::single_pixel_fraction, 0, 1));
+  visit(number("shape_single_pixel_fraction", &S::shape_single_pixel_fraction, 0, 1));
   visit(number("histogram_share", &S::histogram_share, 0, 1));
   visit(number("node_samples", &S::node_samples, 1, 1000000));
   visit(number("max_background_weight", &S::max_background_weight, 0, std::numeric_limits<double>::infinity()));

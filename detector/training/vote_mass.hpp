@@ -1,7 +1,7 @@
 #pragma once
 
 #include "detector/forest/forest.hpp"
-#include "detector/training/pictures/training_set.hpp"
+#include "detector/training/augmentation/training_set.hpp"
 #include "detector/training/training_settings.hpp"
 
 namespace houghstream::training {

@@ -70,7 +70,7 @@ Hypothesis score_maximum(const VotingInput& input, const Eigen::Vector3f& centre
   hypothesis.vote_count = sum_by_voter(input, centre, workspace, by_voter);
   for (const auto& [index, weight] : by_voter) {
     hypothesis.weight += weight;
-    hypothesis.mass += weight * input.patches.area[workspace.space.voters[index].patch];
+    hypothesis.vote_mass += weight * input.patches.area[workspace.space.voters[index].patch];
   }
   return hypothesis;
 }
@@ -132,23 +132,24 @@ std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t c
   const float min_mass = settings.min_mass_share * input.forest.classes[class_index].nominal_vote_mass;
   const std::vector<Eigen::Vector3f> maxima = find_maxima(
       workspace.space, input.camera, settings, per_class_budget(classes, settings.maxima_per_class), workspace.maxima);
-  std::vector<Hypothesis> weighed;
+  std::vector<Hypothesis> scored_maxima;
   std::vector<std::size_t> order;
-  weighed.reserve(maxima.size());
+  scored_maxima.reserve(maxima.size());
   order.reserve(maxima.size());
   workspace.by_voter.resize(std::max(workspace.by_voter.size(), maxima.size()));
   for (std::size_t i = 0; i < maxima.size(); ++i) {
-    weighed.push_back(score_maximum(input, maxima[i], workspace, workspace.by_voter[i]));
-    if (weighed.back().mass >= min_mass) order.push_back(i);
+    scored_maxima.push_back(score_maximum(input, maxima[i], workspace, workspace.by_voter[i]));
+    if (scored_maxima.back().vote_mass >= min_mass) order.push_back(i);
   }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return weighed[a].mass > weighed[b].mass; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return scored_maxima[a].vote_mass > scored_maxima[b].vote_mass;
+  });
   const auto most = static_cast<std::size_t>(per_class_budget(classes, settings.candidates_per_class));
   if (order.size() > most) order.resize(most);
   std::vector<Hypothesis> hypotheses;
   hypotheses.reserve(order.size());
   for (const std::size_t i : order) {
-    hypotheses.push_back(std::move(weighed[i]));
+    hypotheses.push_back(std::move(scored_maxima[i]));
     hypotheses.back().class_index = class_index;
     add_support(input.forest, workspace.by_voter[i], workspace, hypotheses.back());
   }

@@ -13,8 +13,8 @@ namespace houghstream {
 struct Hypothesis {
   std::size_t class_index = 0;                              ///< into Forest::classes
   Eigen::Vector3f centre_camera = Eigen::Vector3f::Zero();  ///< metres
-  float mass = 0.0F;    ///< votes' weight times the area of their patches, square metres: what is seen of the object
-  float weight = 0.0F;  ///< votes' weight
+  float vote_mass = 0.0F;  ///< votes' weight times the area of their patches, square metres: what is seen of the object
+  float weight = 0.0F;     ///< votes' weight
   int vote_count = 0;
   std::vector<std::pair<std::uint32_t, float>> patches;  ///< supporting patch and its weight, by patch
   std::vector<std::pair<std::uint32_t, float>> views;    ///< remembered training view and its weight, heaviest first

@@ -71,7 +71,7 @@ std::vector<Eigen::Vector3f> find_maxima(const HoughSpace& space, const Camera& 
     const double u = (cell.x + 0.5) * space.cell_px - 0.5;
     const double v = (cell.y + 0.5) * space.cell_px - 0.5;
     const Eigen::Vector3f start = camera.backproject(u, v, z).cast<float>();
-    const Eigen::Vector3f centre = climb(space, camera, start, settings.vote_sigma, workspace.ranges);
+    const Eigen::Vector3f centre = seek_mode(space, camera, start, settings.vote_sigma, workspace.ranges);
     const auto meets = [&](const Eigen::Vector3f& other) {
       return (other - centre).norm() < 2.0F * settings.vote_sigma;
     };

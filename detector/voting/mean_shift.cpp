@@ -119,8 +119,8 @@ VoteSupport sum_support(const HoughSpace& space, const std::vector<VoteRange>& r
   return support_of(lanes);
 }
 
-Eigen::Vector3f climb(const HoughSpace& space, const Camera& camera, Eigen::Vector3f centre, float vote_sigma,
-                      std::vector<VoteRange>& ranges) {
+Eigen::Vector3f seek_mode(const HoughSpace& space, const Camera& camera, Eigen::Vector3f centre, float vote_sigma,
+                          std::vector<VoteRange>& ranges) {
   constexpr int kSteps = 8;
   constexpr float kArrived = 0.0005F;  // metres
   for (int step = 0; step < kSteps; ++step) {

@@ -38,7 +38,7 @@ VoteSupport sum_support(const HoughSpace& space, const std::vector<VoteRange>& r
                         float vote_sigma);
 
 /// Moves a centre to the nearest maximum of the votes (mean shift, Comaniciu & Meer 2002). `ranges` is overwritten.
-Eigen::Vector3f climb(const HoughSpace& space, const Camera& camera, Eigen::Vector3f centre, float vote_sigma,
-                      std::vector<VoteRange>& ranges);
+Eigen::Vector3f seek_mode(const HoughSpace& space, const Camera& camera, Eigen::Vector3f centre, float vote_sigma,
+                          std::vector<VoteRange>& ranges);
 
 }  // namespace houghstream

@@ -21,7 +21,7 @@ using Int = hn::Rebind<std::int32_t, Float>;
 static_assert(sizeof(LeafVote) == 4 * sizeof(float) && sizeof(Vote) == 4 * sizeof(float));
 
 /// From the frame of a patch's ray to that of the camera: a rotation and the patch's point.
-struct Motion {
+struct VoteTransform {
   struct Row {
     Floats x, y, z, origin;
   };
@@ -30,16 +30,16 @@ struct Motion {
   Row z;
 };
 
-HWY_INLINE Motion vote_transform(const Eigen::Vector3f& point) {
+HWY_INLINE VoteTransform vote_transform(const Eigen::Vector3f& point) {
   const Float d;
   const Eigen::Matrix3f r = ray_rotation(point);
   const auto row = [&](int i) HWY_ATTR {
-    return Motion::Row{hn::Set(d, r(i, 0)), hn::Set(d, r(i, 1)), hn::Set(d, r(i, 2)), hn::Set(d, point[i])};
+    return VoteTransform::Row{hn::Set(d, r(i, 0)), hn::Set(d, r(i, 1)), hn::Set(d, r(i, 2)), hn::Set(d, point[i])};
   };
   return {row(0), row(1), row(2)};
 }
 
-HWY_INLINE Floats moved(const Motion::Row& to, Floats x, Floats y, Floats z) {
+HWY_INLINE Floats transformed(const VoteTransform::Row& to, Floats x, Floats y, Floats z) {
   return hn::Add(to.origin, hn::Add(hn::Mul(to.x, x), hn::Add(hn::Mul(to.y, y), hn::Mul(to.z, z))));
 }
 
@@ -67,15 +67,15 @@ struct VoteBatch {
 };
 
 /// Writes the votes of one vector's leaf votes to the place `at`.
-HWY_INLINE void cast_some(const float* leaf_votes, const Motion& m, const VoteBatch& ballot, std::size_t at,
+HWY_INLINE void cast_some(const float* leaf_votes, const VoteTransform& m, const VoteBatch& ballot, std::size_t at,
                           CastVotes& cast) {
   const Float d;
   const Int di;
   Floats x, y, z, weight;
   hn::LoadInterleaved4(d, leaf_votes, x, y, z, weight);
-  const Floats cx = moved(m.x, x, y, z);
-  const Floats cy = moved(m.y, x, y, z);
-  const Floats cz = moved(m.z, x, y, z);
+  const Floats cx = transformed(m.x, x, y, z);
+  const Floats cy = transformed(m.y, x, y, z);
+  const Floats cz = transformed(m.z, x, y, z);
   const Floats w = hn::Mul(hn::Mul(hn::Set(d, ballot.probability), weight), hn::Set(d, ballot.share));
   hn::StoreInterleaved4(cx, cy, cz, w, d, cast.votes[at].centre_camera.data());
   hn::StoreU(cells_of(cx, cy, cz, ballot.grid), di, reinterpret_cast<std::int32_t*>(cast.cells.data() + at));
@@ -101,7 +101,7 @@ std::size_t cast_from(const CastInput& input, std::size_t first, CastVotes& cast
   static_assert(kLanes <= CastVotes::kSlack);
   const float share = 1.0F / static_cast<float>(forest.roots.size());
   std::uint32_t patch = voters[first].patch;
-  Motion motion = vote_transform(input.patches.point_camera[patch]);
+  VoteTransform transform = vote_transform(input.patches.point_camera[patch]);
   std::size_t count = cast.count;
   const std::size_t room = cast.votes.size() - CastVotes::kSlack;
   std::size_t i = first;
@@ -109,7 +109,7 @@ std::size_t cast_from(const CastInput& input, std::size_t first, CastVotes& cast
     prefetch_ahead(forest, voters, i);
     const LeafClass& entry = forest.leaf_classes[voters[i].leaf_class];
     if (count + entry.vote_count > room) break;
-    if (voters[i].patch != patch) motion = vote_transform(input.patches.point_camera[patch = voters[i].patch]);
+    if (voters[i].patch != patch) transform = vote_transform(input.patches.point_camera[patch = voters[i].patch]);
     const VoteBatch ballot{entry.probability, share, static_cast<std::uint32_t>(i), input.grid};
     for (std::size_t v = 0; v < entry.vote_count; v += kLanes) {
       const LeafVote* votes = forest.votes.data() + entry.first_vote + v;
@@ -118,7 +118,7 @@ std::size_t cast_from(const CastInput& input, std::size_t first, CastVotes& cast
         std::copy(votes, forest.votes.data() + forest.votes.size(), last.begin());
         votes = last.data();
       }
-      cast_some(votes->offset.data(), motion, ballot, count + v, cast);
+      cast_some(votes->offset.data(), transform, ballot, count + v, cast);
     }
     count += entry.vote_count;
   }

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "detector/training/pictures/training_set.hpp"
+#include "detector/training/augmentation/training_set.hpp"
 #include "pipeline/base/random.hpp"
 
 namespace houghstream::toy {

@@ -27,8 +27,8 @@ struct Overrides {
   std::optional<int> max_depth;
   std::optional<int> tests;
   std::optional<double> offset_share;
-  std::optional<double> alone_share;
-  std::optional<double> shape_alone_share;
+  std::optional<double> single_pixel_fraction;
+  std::optional<double> shape_single_pixel_fraction;
   std::optional<int> patches;
   std::optional<int> composites;
   std::optional<float> min_distance;
@@ -57,10 +57,11 @@ void add_overrides(CommandLine& app, const TrainProgram& program, Overrides& ove
       .range(range_of(&TrainingSettings::tests_per_node));
   app.add_option("--offset-share", overrides.offset_share, "of the nodes are split by offsets, not by labels")
       .range(range_of(&TrainingSettings::offset_share));
-  app.add_option("--alone-share", overrides.alone_share, "of the tests look at one pixel, not at two")
-      .range(range_of(&TrainingSettings::alone_share));
-  app.add_option("--shape-alone-share", overrides.shape_alone_share, "at least so many of those on depth features")
-      .range(range_of(&TrainingSettings::shape_alone_share));
+  app.add_option("--alone-share", overrides.single_pixel_fraction, "of the tests look at one pixel, not at two")
+      .range(range_of(&TrainingSettings::single_pixel_fraction));
+  app.add_option("--shape-alone-share", overrides.shape_single_pixel_fraction,
+                 "at least so many of those on depth features")
+      .range(range_of(&TrainingSettings::shape_single_pixel_fraction));
   app.add_option("--patches", overrides.patches, "patches per training view")
       .range(range_of(&TrainingSettings::patches_per_view));
   app.add_option("--composites", overrides.composites, "pictures made of one view")
@@ -87,8 +88,8 @@ Profile overridden(const TrainProgram& program, const Overrides& overrides) {
   take(overrides.max_depth, training.max_depth);
   take(overrides.tests, training.tests_per_node);
   take(overrides.offset_share, training.offset_share);
-  take(overrides.alone_share, training.alone_share);
-  take(overrides.shape_alone_share, training.shape_alone_share);
+  take(overrides.single_pixel_fraction, training.single_pixel_fraction);
+  take(overrides.shape_single_pixel_fraction, training.shape_single_pixel_fraction);
   take(overrides.patches, training.patches_per_view);
   take(overrides.patches, training.patches_per_background);
   take(overrides.composites, training.composites_per_view);

@@ -40,7 +40,7 @@ TEST(GallProfile, IsTheOriginalHoughForest) {
   EXPECT_EQ(gall.patch.radius, 8);  // patches of 16x16 pixels, whatever their depth
   EXPECT_EQ(limited_scale(gall.patch, gall.patch.unit), 256);
   EXPECT_EQ(gall.training.scoring, Scoring::kVotes);
-  EXPECT_EQ(gall.training.alone_share, 0.0);
+  EXPECT_EQ(gall.training.single_pixel_fraction, 0.0);
   EXPECT_EQ(gall.detection.spacing.stride, 1);
   EXPECT_EQ(gall.detection.leaves.first_trees, 0);
   std::vector<float> sizes;

@@ -90,7 +90,7 @@ Evidence evidence_among(std::size_t views, const RgbdFrame& frame) {
   const ForestIndex index(forest);
   Hypothesis hypothesis;
   hypothesis.centre_camera = {0.0F, 0.0F, toy::kDistance};
-  hypothesis.mass = 1.0F;
+  hypothesis.vote_mass = 1.0F;
   hypothesis.weight = 1.0F;
   hypothesis.views = {{0, 0.5F}, {1, 0.5F}};
   ScoringWorkspace workspace;

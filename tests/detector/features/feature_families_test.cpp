@@ -81,7 +81,7 @@ TEST(FeatureLayout, DepthWrapsUnlessTheImageIsSearchedInSizes) {
     const PlaneKind depth = handling == ScaleHandling::kScaleSpace ? PlaneKind::kScaledDepth : PlaneKind::kWrappedDepth;
     for (const FeatureBlock& block : layout.blocks()) {
       PlaneKind expected = PlaneKind::kSurface;
-      if (block.family == kIntensity) expected = PlaneKind::kLight;
+      if (block.family == kIntensity) expected = PlaneKind::kIntensity;
       if (block.family == kDepthValue) expected = depth;
       if (block.family == kPointHistogram || block.family == kFastHistogram) expected = PlaneKind::kHistogram;
       for (int p = block.first; p < block.first + block.planes(); ++p) ASSERT_EQ(layout.kind(p), expected) << p;

@@ -18,7 +18,7 @@ TEST(ForestIndex, LeafHeadsTellWhatALeafKnowsBestAndWhereItsClassesBegin) {
   std::vector<float> certainties;
   std::vector<std::uint32_t> firsts;
   for (const LeafSummary& head : index.leaf_summaries()) {
-    certainties.push_back(head.certainty);
+    certainties.push_back(head.max_posterior);
     firsts.push_back(head.first_class);
   }
   EXPECT_EQ(certainties, (std::vector<float>{0.7F, 0.0F, 0.1F, 0.0F}));

@@ -50,7 +50,7 @@ TEST(PixelTest, AloneItComparesOnePixelOnly) {
   test.dx1 = -2;
   test.dx2 = 2;
   test.plane = 3;
-  test.kind = PixelTest::kAlone;
+  test.kind = PixelTest::kSinglePixel;
   EXPECT_EQ(test_value(test, image.patch(10, 10, 256)), 200);
 }
 

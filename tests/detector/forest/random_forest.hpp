@@ -19,7 +19,7 @@ inline FeatureImage random_image(int width, int height, int pixel_stride, Random
 }
 
 inline PixelTest random_test(int planes, Random& random) {
-  constexpr std::uint8_t kKinds[] = {PixelTest::kDifference, PixelTest::kWrapping, PixelTest::kAlone};
+  constexpr std::uint8_t kKinds[] = {PixelTest::kDifference, PixelTest::kWrapping, PixelTest::kSinglePixel};
   const auto step = [&] {
     return static_cast<std::int8_t>(random.between(-PatchSettings{}.radius, PatchSettings{}.radius));
   };
@@ -30,7 +30,7 @@ inline PixelTest random_test(int planes, Random& random) {
   test.dy2 = step();
   test.kind = kKinds[random.below(3)];
   test.plane = static_cast<std::uint8_t>(random.uniform() < 0.2 ? planes - 1 : random.below(planes));
-  const int middle = test.kind == PixelTest::kAlone ? 128 : 0;
+  const int middle = test.kind == PixelTest::kSinglePixel ? 128 : 0;
   const int spread = random.uniform() < 0.1 ? 400 : 60;  // some thresholds are out of every difference's reach
   test.threshold = static_cast<std::int16_t>(middle + random.between(-spread, spread));
   return test;

@@ -16,7 +16,7 @@ namespace {
 /// All leaves of a grid, patch by patch, as find_leaves and, with a number of threads below 0, reference_leaves
 /// tell them. -1 for patches that were given up.
 std::vector<std::int32_t> leaves_of(const ForestIndex& index, const std::vector<FeatureImage>& features,
-                                    const PatchGrid& patches, int threads, const EarlyRejection& early_end = {}) {
+                                    const PatchGrid& patches, int threads, const EarlyRejection& early_rejection = {}) {
   const std::size_t trees = index.forest().roots.size();
   std::vector<PatchRun> runs;
   list_runs(patches, runs);
@@ -31,7 +31,7 @@ std::vector<std::int32_t> leaves_of(const ForestIndex& index, const std::vector<
     }
   };
   LeafInput input{index, features, patches, runs};
-  input.early_end = early_end;
+  input.early_rejection = early_rejection;
   LeafWorkspace workspace;
   if (threads > 0) {
     find_leaves(input, threads, workspace, visit);
@@ -70,7 +70,7 @@ class Traversal : public ::testing::Test {
     std::size_t given_up = 0;
     for (std::size_t p = 0; p < patches.size(); ++p) {
       float sum = 0.0F;
-      for (int tree = 0; tree < trees; ++tree) sum += index.leaf_summaries()[expected[p * all + tree]].certainty;
+      for (int tree = 0; tree < trees; ++tree) sum += index.leaf_summaries()[expected[p * all + tree]].max_posterior;
       if (sum >= share * static_cast<float>(trees)) continue;
       ++given_up;
       std::fill_n(expected.begin() + static_cast<std::ptrdiff_t>(p * all), all, -1);

@@ -23,9 +23,9 @@ TrainingSet spare_set(std::size_t mistaken) {
   for (const TrainingSample& sample : set.samples) {
     TrainingSample spare = sample;
     spare.label = 0;
-    (sample.label == 0 ? set.spare_background : like_object).push_back(spare);
+    (sample.label == 0 ? set.negative_pool : like_object).push_back(spare);
   }
-  for (std::size_t i = 0; i < mistaken; ++i) set.spare_background.push_back(like_object[i % like_object.size()]);
+  for (std::size_t i = 0; i < mistaken; ++i) set.negative_pool.push_back(like_object[i % like_object.size()]);
   return set;
 }
 
@@ -42,7 +42,7 @@ TEST(HardNegatives, OnlyWhatIsMistakenForAnObjectIsAdded) {
     EXPECT_EQ(set.samples[i].label, 0);
     EXPECT_TRUE(looks_like_object(set.samples[i]));
   }
-  EXPECT_TRUE(set.spare_background.empty());
+  EXPECT_TRUE(set.negative_pool.empty());
 }
 
 TEST(HardNegatives, AtMostAsManyAsThereIsBackground) {

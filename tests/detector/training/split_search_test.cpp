@@ -83,7 +83,7 @@ TEST(SplitSearch, WithoutTrustInTheLightNoSinglePixelOfIntensityDecides) {
   const TrainingSet set = toy::planted_set();
   TrainingSettings settings;
   settings.tests_per_node = 800;
-  settings.alone_share = 1.0;
+  settings.single_pixel_fraction = 1.0;
   const PatchSettings patch;
   for (const std::uint64_t seed : {1, 2, 3}) {
     Random random(seed);
@@ -95,7 +95,7 @@ TEST(SplitSearch, WithoutTrustInTheLightNoSinglePixelOfIntensityDecides) {
     const auto trusting =
         SplitSearch(set, patch, settings, {1.0F, 1.0F}, true).best_test(every_sample(set), Objective::kClass, random);
     ASSERT_TRUE(trusting);
-    EXPECT_EQ(trusting->kind, PixelTest::kAlone);
+    EXPECT_EQ(trusting->kind, PixelTest::kSinglePixel);
   }
 }
 
@@ -109,14 +109,14 @@ void swap_planes(TrainingSet& set, int one, int other) {
 }
 
 /// In how many of ten searches the best test looks at one pixel, where `plane` alone separates the labels.
-int alone_of_ten(const FeatureLayout& layout, int plane, double shape_alone_share) {
+int alone_of_ten(const FeatureLayout& layout, int plane, double shape_single_pixel_fraction) {
   TrainingSet set = toy::planted_set();
   set.layout = layout;
   swap_planes(set, toy::kClassPlane, plane);
   TrainingSettings settings;
   settings.tests_per_node = 800;
-  settings.alone_share = 0.0;
-  settings.shape_alone_share = shape_alone_share;
+  settings.single_pixel_fraction = 0.0;
+  settings.shape_single_pixel_fraction = shape_single_pixel_fraction;
   const PatchSettings patch;
   SplitSearch search(set, patch, settings, {1.0F, 1.0F}, true);
   Random random(4);
@@ -124,7 +124,7 @@ int alone_of_ten(const FeatureLayout& layout, int plane, double shape_alone_shar
   for (int i = 0; i < 10; ++i) {
     const auto test = search.best_test(every_sample(set), Objective::kClass, random);
     EXPECT_TRUE(test && test->plane == plane);
-    alone += test && test->kind == PixelTest::kAlone ? 1 : 0;
+    alone += test && test->kind == PixelTest::kSinglePixel ? 1 : 0;
   }
   return alone;
 }
@@ -188,10 +188,10 @@ int misplaced(const TrainingSet& set, const PixelTest& test) {
   return std::min(half - object_right + background_right, half - background_right + object_right);
 }
 
-std::optional<PixelTest> search_for_class(const TrainingSet& set, double alone_share) {
+std::optional<PixelTest> search_for_class(const TrainingSet& set, double single_pixel_fraction) {
   TrainingSettings settings;
   settings.tests_per_node = 800;
-  settings.alone_share = alone_share;
+  settings.single_pixel_fraction = single_pixel_fraction;
   const PatchSettings patch;
   Random random(4);
   return SplitSearch(set, patch, settings, {1.0F, 1.0F}, true).best_test(every_sample(set), Objective::kClass, random);
@@ -217,7 +217,7 @@ TEST(SplitSearch, OnePixelAloneSeparatesByASingleStepOfGrey) {
   const auto test = search_for_class(set, 1.0);
   ASSERT_TRUE(test);
   EXPECT_EQ(test->plane, toy::kClassPlane);
-  EXPECT_EQ(test->kind, PixelTest::kAlone);
+  EXPECT_EQ(test->kind, PixelTest::kSinglePixel);
   EXPECT_EQ(test->threshold, 101);
   EXPECT_EQ(misplaced(set, *test), 0);
 }

@@ -71,7 +71,7 @@ TEST(Hypotheses, TwoClustersGiveTwoMaximaAtTheirMeans) {
   EXPECT_LT((found[1].centre_camera - left).norm(), 0.001F) << found[1].centre_camera.transpose();
   EXPECT_EQ(found[0].vote_count, 4);
   const float kernel = vote_kernel(0.004F * 0.004F, VotingSettings{}.vote_sigma);
-  EXPECT_NEAR(found[0].mass, 4 * 0.0002F * kernel, 1e-6F);
+  EXPECT_NEAR(found[0].vote_mass, 4 * 0.0002F * kernel, 1e-6F);
   EXPECT_NEAR(found[0].weight, 4 * kernel, 0.01F);
   ASSERT_EQ(found[0].patches.size(), 4U);
   EXPECT_EQ(found[0].patches[0].first, 4U);

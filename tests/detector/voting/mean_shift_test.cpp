@@ -111,10 +111,10 @@ TEST(MeanShift, ClimbsToTheMiddleOfACluster) {
   std::fill(space.first_vote.begin() + 30 * 80 + 41, space.first_vote.end(), 2U);  // both in cell (40, 30)
   space.votes.resize(2 + kSpareVotes);
   std::vector<VoteRange> ranges;
-  const Eigen::Vector3f top = climb(space, toy::kSmallCamera, {0.015F, 0.01F, 1.01F}, kSigma, ranges);
+  const Eigen::Vector3f top = seek_mode(space, toy::kSmallCamera, {0.015F, 0.01F, 1.01F}, kSigma, ranges);
   EXPECT_LT((top - Eigen::Vector3f(0.002F, 0.0F, 1.0F)).norm(), 0.001F) << top.transpose();
   const Eigen::Vector3f alone(-0.3F, 0.1F, 1.0F);
-  EXPECT_EQ(climb(space, toy::kSmallCamera, alone, kSigma, ranges), alone);
+  EXPECT_EQ(seek_mode(space, toy::kSmallCamera, alone, kSigma, ranges), alone);
 }
 
 }  // namespace

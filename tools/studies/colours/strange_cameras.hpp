@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "detector/training/pictures/camera_randomisation.hpp"
+#include "detector/training/augmentation/camera_randomisation.hpp"
 
 namespace houghstream::colours {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "detector/training/pictures/validation_frames.hpp"
+#include "detector/training/augmentation/validation_frames.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/bus/percentiles.hpp"
 #include "tools/evaluate/metrics/detection_metrics.hpp"
@@ -125,7 +125,7 @@ ComposedExamples compose_examples(const std::vector<TrainingView>& views, float 
   }
   require(!shown.empty() && !rooms.empty(), "{} views to show in {} background views, expected some of each",
           shown.size(), rooms.size());
-  training::PictureSettings settings;
+  training::AugmentationSettings settings;
   settings.min_distance = min_distance;
   settings.max_distance = max_distance;
   for (std::size_t f = 0; f < static_cast<std::size_t>(pictures); ++f) {

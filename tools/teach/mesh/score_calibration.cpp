@@ -5,9 +5,9 @@
 
 #include "detector/detector.hpp"
 #include "detector/stages.hpp"
+#include "detector/training/augmentation/camera_randomisation.hpp"
+#include "detector/training/augmentation/sensor_errors.hpp"
 #include "detector/training/forest_trainer.hpp"
-#include "detector/training/pictures/camera_randomisation.hpp"
-#include "detector/training/pictures/sensor_errors.hpp"
 #include "detector/training/score_training.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
@@ -38,10 +38,10 @@ std::vector<world::RenderedFrame> render_frames(const std::vector<CalibrationObj
       for (const cv::Mat& mask : frame.visible_masks) {
         const cv::Rect part = cv::boundingRect(mask);
         cv::Mat colour = frame.frame.colour(part);
-        training::resurface(mask(part), settings.surface_variation, random, colour);
+        training::perturb_appearance_in(mask(part), settings.surface_variation, random, colour);
       }
       frame.visible_masks.clear();
-      training::randomise_camera(settings.camera_share, settings.camera_variation, frame.frame, random);
+      training::randomise_camera(settings.camera_fraction, settings.camera_randomisation, frame.frame, random);
       frames[static_cast<std::size_t>(index)] = std::move(frame);
       ++index;
     }

@@ -29,9 +29,9 @@ struct CalibrationSettings {
 
   std::optional<int>
       rooms;  ///< each is looked at world::CalibrationScenes::kFramesPerRoom times; default: scene_count_for()
-  double surface_variation = 0.6;  ///< strength of the changes of objects' colours, see training::resurface
-  double camera_share = 0.8;       ///< of the frames, that another camera sees than the one that taught
-  double camera_variation = 0.8;   ///< see detector/training/pictures/camera_randomisation.hpp
+  double surface_variation = 0.6;     ///< strength of the changes of objects' colours, see training::resurface
+  double camera_fraction = 0.8;       ///< of the frames, that another camera sees than the one that taught
+  double camera_randomisation = 0.8;  ///< see detector/training/augmentation/camera_randomisation.hpp
   std::uint64_t seed = 1;
   int threads = 2;
 };

@@ -136,7 +136,7 @@ Forest train_store_forest(std::vector<TrainingView> views, const std::optional<F
   constexpr int kPatches = 26000;     // of an object: what trees are grown of, and how long that takes
   constexpr int kMinPatches = 100;
   constexpr int kMaxPatches = 250;
-  constexpr int kViewsPerPicture = 2;  // a remembered view costs a tenth of one that trees learn from
+  constexpr int kViewsPerImage = 2;  // a remembered view costs a tenth of one that trees learn from
   // Many attitudes want many patches and small leaves; that fewer of them choose a test pays for it.
   constexpr int kNodeSamples = 700;
   constexpr int kTestsPerNode = 1000;
@@ -154,8 +154,8 @@ Forest train_store_forest(std::vector<TrainingView> views, const std::optional<F
   profile.training.composites_per_view = 1;  // another view tells more than another room
   profile.training.tone_jitter_fraction = kToneShare;
   if (!old) profile.features.tone = kCalibrationBrightness;
-  profile.training.views_per_picture = kViewsPerPicture;
-  const int pictures = std::max(max_views(views) / kViewsPerPicture, 1);
+  profile.training.views_per_image = kViewsPerImage;
+  const int pictures = std::max(max_views(views) / kViewsPerImage, 1);
   profile.training.patches_per_view = std::clamp(kPatches / pictures, kMinPatches, kMaxPatches);
   profile.training.node_samples = kNodeSamples;
   profile.training.tests_per_node = kTestsPerNode;

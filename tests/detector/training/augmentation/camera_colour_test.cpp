@@ -3,7 +3,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/training/pictures/camera_randomisation.hpp"
+#include "detector/training/augmentation/camera_randomisation.hpp"
 
 namespace houghstream::training {
 namespace {
@@ -121,7 +121,7 @@ TEST(CameraColour, GammaAndContrastKeepTheOrderOfGreys) {
   for (int v = 0; v < 256; ++v) ramp.at<cv::Vec3b>(0, v) = cv::Vec3b::all(static_cast<std::uint8_t>(v));
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     Random random(seed);
-    const ColourVariation drawn = draw_camera(1.0, random).colour;
+    const ColourVariation drawn = sample_camera(1.0, random).colour;
     ColourVariation camera;
     camera.gamma = drawn.gamma;
     camera.contrast = drawn.contrast;

@@ -1,4 +1,4 @@
-#include "detector/training/pictures/sensor_errors.hpp"
+#include "detector/training/augmentation/sensor_errors.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/training/pictures/composites.hpp"
+#include "detector/training/augmentation/composites.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream::training {
@@ -66,7 +66,7 @@ TEST(Misregistration, WithoutStrengthDepthStaysAsItIs) {
   misregister(0.0, depth, random);
   EXPECT_EQ(cv::countNonZero(depth == near_square()), 50 * kSide) << "a hole is not equal to itself";
   const TrainingView view = toy::training_views().front();
-  const TrainingView same = bent(view, 0.0, random);
+  const TrainingView same = perturb_shape(view, 0.0, random);
   EXPECT_EQ(cv::norm(same.frame.depth, view.frame.depth, cv::NORM_INF, view.mask), 0.0);
 }
 
@@ -74,7 +74,7 @@ TEST(Misregistration, ABentViewKeepsColourAndOutlineAndItsOwnDepthIsLeftAlone) {
   const TrainingView view = toy::training_views().front();
   const cv::Mat before = view.frame.depth.clone();
   Random random(2);
-  const TrainingView out = bent(view, 1.0, random);
+  const TrainingView out = perturb_shape(view, 1.0, random);
   EXPECT_EQ(out.frame.colour.data, view.frame.colour.data);
   EXPECT_EQ(out.mask.data, view.mask.data);
   EXPECT_EQ(cv::norm(view.frame.depth, before, cv::NORM_INF, view.mask), 0.0);
@@ -88,7 +88,7 @@ TEST(Misregistration, ABentViewLeansWithinItsLimits) {
   double most = 0.0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Random random(seed);
-    const TrainingView out = bent(view, 1.0, random);
+    const TrainingView out = perturb_shape(view, 1.0, random);
     const double change = cv::norm(out.frame.depth, view.frame.depth, cv::NORM_INF, view.mask);
     EXPECT_LT(change, 0.1 * reach + 5 * 0.002);
     most = std::max(most, change);
@@ -103,7 +103,8 @@ TEST(Misregistration, TheSameSeedMisfitsAlike) {
   const TrainingView view = toy::training_views().front();
   Random random(8);
   Random again(8);
-  EXPECT_EQ(cv::norm(bent(view, 1.0, random).frame.depth, bent(view, 1.0, again).frame.depth, cv::NORM_INF, view.mask),
+  EXPECT_EQ(cv::norm(perturb_shape(view, 1.0, random).frame.depth, perturb_shape(view, 1.0, again).frame.depth,
+                     cv::NORM_INF, view.mask),
             0.0);
 }
 
@@ -213,7 +214,7 @@ TEST(FarNoise, NothingIsAddedAtTheOwnDistanceAndNothingMissingIsMadeUp) {
 TEST(Resurfaced, WithoutStrengthColoursStayAsTheyAre) {
   const TrainingView view = toy::training_views().front();
   Random random(1);
-  const TrainingView same = resurfaced(view, 0.0, random);
+  const TrainingView same = perturb_appearance(view, 0.0, random);
   EXPECT_EQ(cv::norm(same.frame.colour, view.frame.colour, cv::NORM_INF), 0.0);
   EXPECT_EQ(random.bits(), Random(1).bits()) << "nothing is drawn";
 }
@@ -223,7 +224,7 @@ TEST(Resurfaced, OnlyTheObjectsColoursChange) {
   const TrainingView untouched = toy::training_views().front();
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Random random(seed);
-    const TrainingView other = resurfaced(view, 1.0, random);
+    const TrainingView other = perturb_appearance(view, 1.0, random);
     EXPECT_GT(cv::norm(other.frame.colour, view.frame.colour, cv::NORM_INF, view.mask), 0.0);
     EXPECT_EQ(cv::norm(other.frame.colour, view.frame.colour, cv::NORM_INF, ~view.mask), 0.0) << "seed " << seed;
     EXPECT_EQ(cv::norm(other.mask, view.mask, cv::NORM_INF), 0.0);
@@ -238,8 +239,9 @@ double change_by(double strength) {
   double sum = 0.0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Random random(seed);
-    sum += cv::norm(resurfaced(view, strength, random).frame.colour, view.frame.colour, cv::NORM_L1, view.mask) /
-           cv::countNonZero(view.mask);
+    sum +=
+        cv::norm(perturb_appearance(view, strength, random).frame.colour, view.frame.colour, cv::NORM_L1, view.mask) /
+        cv::countNonZero(view.mask);
   }
   return sum / 20.0;
 }
@@ -253,7 +255,7 @@ TEST(Resurfaced, TheSameSeedIsTheSameSurface) {
   const TrainingView view = toy::training_views().front();
   const auto surface = [&](std::uint64_t seed) {
     Random random(seed);
-    return resurfaced(view, 1.0, random).frame.colour;
+    return perturb_appearance(view, 1.0, random).frame.colour;
   };
   EXPECT_EQ(cv::norm(surface(3), surface(3), cv::NORM_INF), 0.0);
   EXPECT_GT(cv::norm(surface(3), surface(4), cv::NORM_INF), 0.0);

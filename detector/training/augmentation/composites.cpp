@@ -1,4 +1,4 @@
-#include "detector/training/pictures/composites.hpp"
+#include "detector/training/augmentation/composites.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/forest/off_axis_slope.hpp"
-#include "detector/training/pictures/dehazing.hpp"
+#include "detector/training/augmentation/dehazing.hpp"
 
 namespace houghstream::training {
 namespace {
@@ -103,7 +103,7 @@ Patchwork resized_object(const TrainingView& view, double scale, double sharpnes
   part.box_px = cv::boundingRect(view.mask);
   const cv::Size size(std::max(1, static_cast<int>(std::lround(part.box_px.width * scale))),
                       std::max(1, static_cast<int>(std::lround(part.box_px.height * scale))));
-  cv::resize(sharpened(view.frame.colour(part.box_px), sharpness), part.colour, size, 0, 0,
+  cv::resize(apply_unsharp_mask(view.frame.colour(part.box_px), sharpness), part.colour, size, 0, 0,
              scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
   cv::resize(view.frame.depth(part.box_px), part.depth, size, 0, 0, cv::INTER_NEAREST);
   cv::resize(view.mask(part.box_px), part.mask, size, 0, 0, cv::INTER_NEAREST);
@@ -198,13 +198,13 @@ void jitter_exposure(cv::Mat& colour, double strength, Random& random) {
 }
 
 std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
-                                        const PictureSettings& settings, Random& random) {
+                                        const AugmentationSettings& settings, Random& random) {
   constexpr double kMaxSharpness = 1.5;
   constexpr int kMargin = 48;  // frame pixels around the object: patches at its edge see the room
   const double view_distance = view.T_camera_object.translation().z();
   Composite out;
   out.scale = view_distance / distance * background.camera.fx / view.frame.camera.fx;
-  const bool sharpen = settings.sharpened_share > 0.0 && random.uniform() < settings.sharpened_share;
+  const bool sharpen = settings.sharpened_fraction > 0.0 && random.uniform() < settings.sharpened_fraction;
   const Patchwork part = resized_object(view, out.scale, sharpen ? kMaxSharpness * random.uniform() : 0.0);
   const cv::Size window(part.mask.cols + 2 * kMargin, part.mask.rows + 2 * kMargin);
   if (window.width > background.colour.cols || window.height > background.colour.rows) return std::nullopt;
@@ -220,12 +220,12 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
 
   Patchwork lit = part;
   if (random.uniform() < settings.dehazed_fraction) remove_haze(lit.mask, lit.colour, random);
-  jitter_lighting(lit.colour, settings.light_variation, -0.4, 0.4, random);
+  jitter_lighting(lit.colour, settings.lighting_variation, -0.4, 0.4, random);
   out.depth_change = depth_change(view, distance, out);
   paste(lit, cv::Point(kMargin, kMargin), out, random);
   out.whole_px = cv::countNonZero(out.mask);
-  if (random.uniform() < settings.occluded_share) add_occluder(background, distance, out, random);
-  jitter_exposure(out.frame.colour, settings.light_variation, random);
+  if (random.uniform() < settings.occluded_fraction) add_occluder(background, distance, out, random);
+  jitter_exposure(out.frame.colour, settings.lighting_variation, random);
   return out;
 }
 

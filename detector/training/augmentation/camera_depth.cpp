@@ -3,8 +3,8 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/training/pictures/camera_randomisation.hpp"
-#include "detector/training/pictures/composites.hpp"
+#include "detector/training/augmentation/camera_randomisation.hpp"
+#include "detector/training/augmentation/composites.hpp"
 #include "pipeline/base/no_value.hpp"
 
 namespace houghstream::training {
@@ -84,7 +84,7 @@ void grow(const std::array<int, 2>& by_px, cv::Mat& depth) {
 
 /// Outlines that waver, and pixels that see both surfaces of an edge.
 void blur_edges(const DepthVariation& camera, const Edges& edges, cv::Mat& depth, Random& random) {
-  if (camera.jitter_px <= 0.0 && camera.flying_share <= 0.0) return;
+  if (camera.jitter_px <= 0.0 && camera.flying_pixel_fraction <= 0.0) return;
   const cv::Mat before = depth.clone();
   const int reach_px = static_cast<int>(std::ceil(2.0 * camera.jitter_px));
   cv::Mat wavering = edges.mask;
@@ -101,7 +101,7 @@ void blur_edges(const DepthVariation& camera, const Edges& edges, cv::Mat& depth
       const int from_y = std::clamp(y + std::clamp(down, -reach_px, reach_px), 0, depth.rows - 1);
       const float other = before.at<float>(from_y, from_x);
       if (!std::isnan(other)) row[x] = other;
-      if (is_edge[x] == 0 || random.uniform() >= camera.flying_share) continue;
+      if (is_edge[x] == 0 || random.uniform() >= camera.flying_pixel_fraction) continue;
       const auto share = static_cast<float>(random.uniform());
       const float nearest = edges.nearest.at<float>(y, x);
       row[x] = nearest + share * (edges.farthest.at<float>(y, x) - nearest);
@@ -280,8 +280,8 @@ void make_holes(const DepthVariation& camera, const Edges& edges, const Surfaces
 }
 
 bool needs_edges(const DepthVariation& camera) {
-  return camera.jitter_px > 0.0 || camera.flying_share > 0.0 || camera.edge_loss > 0.0 || camera.min_cosine > 0.0 ||
-         camera.min_signal > 0.0;
+  return camera.jitter_px > 0.0 || camera.flying_pixel_fraction > 0.0 || camera.edge_loss > 0.0 ||
+         camera.min_cosine > 0.0 || camera.min_signal > 0.0;
 }
 
 }  // namespace

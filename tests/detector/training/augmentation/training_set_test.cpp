@@ -1,4 +1,4 @@
-#include "detector/training/pictures/training_set.hpp"
+#include "detector/training/augmentation/training_set.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ std::vector<TrainingView> flat_tile() {
 
 const auto kKeepAll = [](const TrainingView*) {};
 
-PictureInput set_input(const Profile& profile) {
+ImageInput set_input(const Profile& profile) {
   return {profile.features, profile.patch, profile.training, depth_normalised_scales()};
 }
 
@@ -100,7 +100,7 @@ TEST(TrainingSet, EachLevelLearnsBackgroundOfItsOwnDistances) {
   const TrainingSet set = teach(views, 0.7F);
   const TrainingSettings settings = toy::quick_profile().training;
   std::array<int, 2> counts{};
-  for (const auto* list : {&set.samples, &set.spare_background}) {
+  for (const auto* list : {&set.samples, &set.negative_pool}) {
     for (const TrainingSample& sample : *list) {
       if (sample.picture < settings.composites_per_view) continue;
       const auto level = static_cast<std::size_t>((sample.picture - settings.composites_per_view) % 2);
@@ -111,7 +111,7 @@ TEST(TrainingSet, EachLevelLearnsBackgroundOfItsOwnDistances) {
   }
   EXPECT_GT(counts[0], 0);
   EXPECT_GT(counts[1], 0);
-  EXPECT_FALSE(set.spare_background.empty());
+  EXPECT_FALSE(set.negative_pool.empty());
 }
 
 TEST(TrainingSet, AnyNumberOfThreadsGivesTheSameSamples) {
@@ -130,7 +130,7 @@ TEST(TrainingSet, AnyNumberOfThreadsGivesTheSameSamples) {
 TEST(TrainingSet, ViewsWithoutAPictureAreRememberedAllTheSame) {
   const std::vector<TrainingView> views = toy::training_views();
   Profile profile = toy::quick_profile();
-  profile.training.views_per_picture = 2;
+  profile.training.views_per_image = 2;
   std::vector<const TrainingView*> pointers;
   pointers.reserve(views.size());
   for (const TrainingView& view : views) pointers.push_back(&view);
@@ -149,7 +149,7 @@ TEST(TrainingSet, ViewsWithoutAPictureAreRememberedAllTheSame) {
 TEST(TrainingSet, ViewsThatAreDoneMayLetTheirPicturesGo) {
   std::vector<TrainingView> views = toy::training_views();
   Profile profile = toy::quick_profile();
-  profile.training.views_per_picture = 2;
+  profile.training.views_per_image = 2;
   profile.training.composites_per_view = 1;
   std::vector<const TrainingView*> pointers;
   pointers.reserve(views.size());

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "detector/training/pictures/picture_settings.hpp"
+#include "detector/training/augmentation/augmentation_settings.hpp"
 #include "pipeline/base/random.hpp"
 #include "pipeline/types/training_view.hpp"
 
@@ -18,21 +18,22 @@ struct ValidationFrame {
     double visible_fraction = 0.0;
   };
   RgbdFrame frame;
-  std::vector<Object> objects;        ///< those of which anything is seen
-  std::vector<std::uint32_t> others;  ///< training views of which altered copies stand there too: not objects
+  std::vector<Object> objects;                  ///< those of which anything is seen
+  std::vector<std::uint32_t> distractor_views;  ///< training views of which altered copies stand there too: not objects
 };
 
 /// How many things are put into a room.
 struct ComposedThings {
-  int objects = 0;      ///< at most 255
-  int look_alikes = 0;  ///< of either sort: an object's shape and pattern in other colours, and in another size
+  int objects = 0;          ///< at most 255
+  int near_duplicates = 0;  ///< of either sort: an object's shape and pattern in other colours, and in another size
   /// Of either sort: an object's colours and pattern in another width, and its shape with those of another object.
-  int strangers = 0;
+  int hard_negatives = 0;
 };
 
 /// Random views in one room, each as in a composite: other distance, light, half of them partly hidden; behind them
 /// what is none. Depth has the errors of sensor_errors.hpp.
 ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
-                                      const ComposedThings& things, const PictureSettings& settings, Random& random);
+                                      const ComposedThings& things, const AugmentationSettings& settings,
+                                      Random& random);
 
 }  // namespace houghstream::training

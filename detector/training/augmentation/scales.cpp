@@ -1,4 +1,4 @@
-#include "detector/training/pictures/scales.hpp"
+#include "detector/training/augmentation/scales.hpp"
 
 namespace houghstream::training {
 

@@ -1,4 +1,4 @@
-#include "detector/training/pictures/composites.hpp"
+#include "detector/training/augmentation/composites.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +11,12 @@
 namespace houghstream::training {
 namespace {
 
-PictureSettings plain() {
-  PictureSettings settings;
-  settings.light_variation = 0.0;
-  settings.occluded_share = 0.0;
+AugmentationSettings plain() {
+  AugmentationSettings settings;
+  settings.lighting_variation = 0.0;
+  settings.occluded_fraction = 0.0;
   settings.dehazed_fraction = 0.0;
-  settings.sharpened_share = 0.0;
+  settings.sharpened_fraction = 0.0;
   return settings;
 }
 
@@ -26,7 +26,7 @@ TrainingView tile_view() {
 }
 
 std::optional<Composite> compose(const TrainingView& view, double distance, std::uint64_t seed,
-                                 const PictureSettings& settings) {
+                                 const AugmentationSettings& settings) {
   Random random(seed);
   return make_composite(view, toy::room(5), distance, settings, random);
 }
@@ -144,8 +144,8 @@ TEST(Composites, TheSameSeedGivesTheSamePicture) {
 }
 
 TEST(Composites, SharpenedAreOnlyObjectsAndOnlyIfAsked) {
-  PictureSettings settings = plain();
-  settings.sharpened_share = 1.0;
+  AugmentationSettings settings = plain();
+  settings.sharpened_fraction = 1.0;
   const TrainingView view = tile_view();
   const auto as_taught = compose(view, 0.7, 3, plain());
   for (std::uint64_t seed = 0; seed < 5; ++seed) {

@@ -1,4 +1,4 @@
-#include "detector/training/pictures/training_set.hpp"
+#include "detector/training/augmentation/training_set.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "detector/training/pictures/camera_randomisation.hpp"
-#include "detector/training/pictures/composites.hpp"
-#include "detector/training/pictures/sensor_errors.hpp"
+#include "detector/training/augmentation/camera_randomisation.hpp"
+#include "detector/training/augmentation/composites.hpp"
+#include "detector/training/augmentation/sensor_errors.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
 
@@ -16,8 +16,8 @@ namespace houghstream::training {
 namespace {
 
 /// Where the object is put.
-double draw_distance(const TrainingView& view, const PictureInput& input, Random& random) {
-  const PictureSettings& settings = input.settings;
+double draw_distance(const TrainingView& view, const ImageInput& input, Random& random) {
+  const AugmentationSettings& settings = input.settings;
   const DistanceRange range =
       input.scales.distances(view.T_camera_object.translation().z(), {settings.min_distance, settings.max_distance});
   return std::exp(random.uniform(std::log(range.nearest), std::log(range.farthest)));
@@ -41,7 +41,7 @@ std::vector<cv::Point> draw_pixels(cv::Size size, int count, Random& random, con
   return all;
 }
 
-TrainingSample sample_at(cv::Point at, const WorkingFrame& frame, const PictureInput& input) {
+TrainingSample sample_at(cv::Point at, const WorkingFrame& frame, const ImageInput& input) {
   TrainingSample sample;
   sample.x = static_cast<std::int16_t>(at.x);
   sample.y = static_cast<std::int16_t>(at.y);
@@ -70,7 +70,7 @@ struct Canvas {
   cv::Point2d frame_px(cv::Point at) const { return {(at.x + 0.5) * to_frame - 0.5, (at.y + 0.5) * to_frame - 0.5}; }
 };
 
-Canvas make_canvas(const Composite& composite, const FeatureLevel& level, const PictureInput& input) {
+Canvas make_canvas(const Composite& composite, const FeatureLevel& level, const ImageInput& input) {
   Canvas canvas;
   canvas.frame = input.scales.working_frame(composite.frame, level, input.features);
   const cv::Size size = canvas.frame.colour.size();
@@ -81,7 +81,7 @@ Canvas make_canvas(const Composite& composite, const FeatureLevel& level, const 
 }
 
 /// All features of a picture; they stay until the next one.
-const FeatureImage& all_features(const WorkingFrame& frame, const PictureInput& input, PictureWorkspace& workspace) {
+const FeatureImage& all_features(const WorkingFrame& frame, const ImageInput& input, ImageWorkspace& workspace) {
   workspace.tiles.want_all(frame.colour.size());
   const ExtraPlanes extra = input.scales.extra_planes(frame, input.features);
   compute_features({frame, input.features, workspace.tiles, &extra}, 1, workspace.feature_workspace,
@@ -90,9 +90,9 @@ const FeatureImage& all_features(const WorkingFrame& frame, const PictureInput& 
 }
 
 /// What the patches of a picture look at.
-cv::Rect seen_by(const TrainingPicture& picture, const PatchSettings& patch) {
+cv::Rect seen_by(const TrainingImage& picture, const PatchSettings& patch) {
   cv::Rect seen;
-  for (const auto* list : {&picture.samples, &picture.spare_background}) {
+  for (const auto* list : {&picture.samples, &picture.negative_pool}) {
     for (const TrainingSample& sample : *list) {
       const int reach = max_offset(patch, sample.scale);
       seen |= cv::Rect(sample.x - reach, sample.y - reach, 2 * reach + 1, 2 * reach + 1);
@@ -125,11 +125,11 @@ cv::Rect background_window(const RgbdFrame& background, const FeatureLevel& leve
 
 }  // namespace
 
-TrainingPicture object_picture(const LabelledView& taught, const RgbdFrame& background, const PictureInput& input,
-                               Random& random, PictureWorkspace& workspace) {
+TrainingImage object_image(const LabelledView& taught, const RgbdFrame& background, const ImageInput& input,
+                           Random& random, ImageWorkspace& workspace) {
   const TrainingView& view = taught.view;
-  const PictureSettings& settings = input.settings;
-  TrainingPicture picture;
+  const AugmentationSettings& settings = input.settings;
+  TrainingImage picture;
   double distance = draw_distance(view, input, random);
   std::optional<Composite> composite = make_composite(view, background, distance, settings, random);
   if (!composite) {
@@ -138,7 +138,7 @@ TrainingPicture object_picture(const LabelledView& taught, const RgbdFrame& back
   }
   if (!composite) return picture;
 
-  jitter_tone(settings.tone_jitter_fraction, settings.camera_variation, composite->frame.colour, random);
+  jitter_tone(settings.tone_jitter_fraction, settings.camera_randomisation, composite->frame.colour, random);
   input.scales.vary_depth(distance, input.features, composite->frame.depth, random);
   const FeatureLevel level = input.scales.level_for(distance, composite->frame.camera, input.features, random);
   const Canvas canvas = make_canvas(*composite, level, input);
@@ -169,24 +169,24 @@ TrainingPicture object_picture(const LabelledView& taught, const RgbdFrame& back
   return picture;
 }
 
-TrainingPicture background_picture(const RgbdFrame& background, const FeatureLevel& level, const PictureInput& input,
-                                   Random& random, PictureWorkspace& workspace) {
-  const PictureSettings& settings = input.settings;
+TrainingImage background_image(const RgbdFrame& background, const FeatureLevel& level, const ImageInput& input,
+                               Random& random, ImageWorkspace& workspace) {
+  const AugmentationSettings& settings = input.settings;
   const cv::Rect place = background_window(background, level, input.scales, random);
   RgbdFrame part;
   part.colour = background.colour(place).clone();
   part.depth = background.depth(place);
   part.camera = background.camera.cropped(place.x, place.y, place.width, place.height);
-  jitter_exposure(part.colour, settings.light_variation, random);
-  jitter_tone(settings.tone_jitter_fraction, settings.camera_variation, part.colour, random);
+  jitter_exposure(part.colour, settings.lighting_variation, random);
+  jitter_tone(settings.tone_jitter_fraction, settings.camera_randomisation, part.colour, random);
 
   const WorkingFrame frame = input.scales.working_frame(part, level, input.features);
-  TrainingPicture picture;
+  TrainingImage picture;
   const auto known = [&](int x, int y) { return input.scales.teaches(level, frame.filled_depth.at<float>(y, x)); };
-  const auto count = static_cast<std::size_t>(settings.patches_per_background / kBackgroundPictures);
-  const int drawn = static_cast<int>(count) * (1 + settings.spare_background);
+  const auto count = static_cast<std::size_t>(settings.patches_per_background / kBackgroundImages);
+  const int drawn = static_cast<int>(count) * (1 + settings.negative_pool);
   for (const cv::Point at : draw_pixels(frame.colour.size(), drawn, random, known)) {
-    auto& list = picture.samples.size() < count ? picture.samples : picture.spare_background;
+    auto& list = picture.samples.size() < count ? picture.samples : picture.negative_pool;
     list.push_back(sample_at(at, frame, input));
   }
   picture.features = all_features(frame, input, workspace).cut_out(seen_by(picture, input.patch));
@@ -234,7 +234,7 @@ std::vector<ObjectClass> list_classes(const std::vector<const TrainingView*>& vi
 }
 
 /// One of `every` views of each class, whose labels these are, in ascending order.
-std::vector<std::size_t> views_in_pictures(const std::vector<int>& labels, int every) {
+std::vector<std::size_t> views_in_images(const std::vector<int>& labels, int every) {
   std::map<int, int> counts;
   std::vector<std::size_t> chosen;
   for (std::size_t v = 0; v < labels.size(); ++v) {
@@ -243,12 +243,12 @@ std::vector<std::size_t> views_in_pictures(const std::vector<int>& labels, int e
   return chosen;
 }
 
-void measure_classes(const std::vector<TrainingPicture>& pictures, TrainingSet& set) {
+void measure_classes(const std::vector<TrainingImage>& pictures, TrainingSet& set) {
   for (std::size_t c = 0; c < set.classes.size(); ++c) {
     std::vector<float> distances;
     double area = 0.0;
     int count = 0;
-    for (const TrainingPicture& picture : pictures) {
+    for (const TrainingImage& picture : pictures) {
       bool shows_class = false;
       for (const TrainingSample& sample : picture.samples) {
         if (sample.label != c + 1) continue;
@@ -267,15 +267,15 @@ void measure_classes(const std::vector<TrainingPicture>& pictures, TrainingSet& 
 }
 
 /// Moves the pictures and their samples to the set.
-void take_samples(std::vector<TrainingPicture>& pictures, TrainingSet& set) {
+void take_samples(std::vector<TrainingImage>& pictures, TrainingSet& set) {
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     for (TrainingSample& sample : pictures[i].samples) {
       sample.picture = static_cast<std::int32_t>(i);
       set.samples.push_back(sample);
     }
-    for (TrainingSample& sample : pictures[i].spare_background) {
+    for (TrainingSample& sample : pictures[i].negative_pool) {
       sample.picture = static_cast<std::int32_t>(i);
-      set.spare_background.push_back(sample);
+      set.negative_pool.push_back(sample);
     }
     set.pictures.push_back(std::move(pictures[i].features));
   }
@@ -283,9 +283,9 @@ void take_samples(std::vector<TrainingPicture>& pictures, TrainingSet& set) {
 
 }  // namespace
 
-TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const PictureInput& input,
+TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const ImageInput& input,
                               const std::function<void(const TrainingView*)>& is_done) {
-  const PictureSettings& settings = input.settings;
+  const AugmentationSettings& settings = input.settings;
   TrainingSet set;
   set.layout = FeatureLayout(input.features);
   set.classes = list_classes(views);
@@ -302,14 +302,14 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
     set.views.push_back(trained_view(*view, static_cast<std::uint32_t>(index), input.scales));
   }
   const int copies = settings.composites_per_view;
-  const std::vector<std::size_t> pictured = views_in_pictures(labels, settings.views_per_picture);
+  const std::vector<std::size_t> pictured = views_in_images(labels, settings.views_per_image);
   for (std::size_t v = 0; v < objects.size(); ++v) {
     if (!std::binary_search(pictured.begin(), pictured.end(), v)) is_done(objects[v]);
   }
   const int object_count = static_cast<int>(pictured.size()) * copies;
-  const int total = object_count + static_cast<int>(backgrounds.size()) * kBackgroundPictures;
-  std::vector<TrainingPicture> pictures(static_cast<std::size_t>(total));
-  PerWorker<PictureWorkspace> workspaces;
+  const int total = object_count + static_cast<int>(backgrounds.size()) * kBackgroundImages;
+  std::vector<TrainingImage> pictures(static_cast<std::size_t>(total));
+  PerWorker<ImageWorkspace> workspaces;
   workspaces.resize(settings.threads);
   parallel_for_workers(settings.threads, total, [&](int worker, int i) {
     Random random = Random::for_item(settings.seed, static_cast<std::uint64_t>(i));
@@ -317,15 +317,15 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
     if (i < object_count) {
       const std::size_t v = pictured[static_cast<std::size_t>(i / copies)];
       const auto b = static_cast<std::size_t>(random.below(static_cast<int>(backgrounds.size())));
-      picture = object_picture({*objects[v], labels[v], static_cast<std::uint32_t>(v)}, backgrounds[b]->frame, input,
-                               random, workspaces[worker]);
+      picture = object_image({*objects[v], labels[v], static_cast<std::uint32_t>(v)}, backgrounds[b]->frame, input,
+                             random, workspaces[worker]);
       if (copies == 1) is_done(objects[v]);
     } else {
       const int b = i - object_count;
-      const RgbdFrame& background = backgrounds[static_cast<std::size_t>(b / kBackgroundPictures)]->frame;
+      const RgbdFrame& background = backgrounds[static_cast<std::size_t>(b / kBackgroundImages)]->frame;
       const std::vector<FeatureLevel> levels = input.scales.levels(input.features, background.camera);
       const FeatureLevel& level = levels[static_cast<std::size_t>(b) % levels.size()];
-      picture = background_picture(background, level, input, random, workspaces[worker]);
+      picture = background_image(background, level, input, random, workspaces[worker]);
     }
   });
   measure_classes(pictures, set);

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "detector/training/pictures/picture_settings.hpp"
+#include "detector/training/augmentation/augmentation_settings.hpp"
 #include "pipeline/base/random.hpp"
 #include "pipeline/types/training_view.hpp"
 
@@ -34,7 +34,7 @@ struct Composite {
 /// Nothing where the object would not fit the frame. `background` is a whole frame, of any camera: the composite is as
 /// that camera would see it.
 std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
-                                        const PictureSettings& settings, Random& random);
+                                        const AugmentationSettings& settings, Random& random);
 
 /// Standard deviation of a structured-light camera's depth at depth z, metres (Nguyen, Izadi & Lovell 2012, axial
 /// noise).

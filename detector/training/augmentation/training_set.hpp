@@ -11,8 +11,8 @@
 #include "detector/features/features.hpp"
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/forest.hpp"
-#include "detector/training/pictures/picture_settings.hpp"
-#include "detector/training/pictures/scales.hpp"
+#include "detector/training/augmentation/augmentation_settings.hpp"
+#include "detector/training/augmentation/scales.hpp"
 #include "pipeline/base/random.hpp"
 #include "pipeline/types/training_view.hpp"
 
@@ -33,9 +33,9 @@ struct TrainingSample {
 struct TrainingSet {
   FeatureLayout layout;  ///< of the pictures
   std::vector<FeatureImage> pictures;
-  std::vector<TrainingSample> samples;           ///< grouped by picture
-  std::vector<TrainingSample> spare_background;  ///< more background patches, from which the hard ones are chosen
-  std::vector<ObjectClass> classes;              ///< by class id
+  std::vector<TrainingSample> samples;        ///< grouped by picture
+  std::vector<TrainingSample> negative_pool;  ///< more background patches, from which the hard ones are chosen
+  std::vector<ObjectClass> classes;           ///< by class id
   std::vector<ViewTemplate> views;
   std::uint16_t first_class = 0;  ///< classes and views that the forest has already
   std::uint32_t first_view = 0;
@@ -43,10 +43,10 @@ struct TrainingSet {
 };
 
 /// How pictures are made.
-struct PictureInput {
+struct ImageInput {
   const FeatureSettings& features;
   const PatchSettings& patch;
-  const PictureSettings& settings;
+  const AugmentationSettings& settings;
   const Scales& scales;
 };
 
@@ -54,14 +54,14 @@ struct PictureInput {
 /// Throws InputError when a class or the background is missing or a mask is empty. `is_done` is called, from any
 /// thread, when what an object's view shows is needed no more: it may be let go, as all views together are a third as
 /// large as the set. It is not called for views of several composites.
-TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const PictureInput& input,
+TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const ImageInput& input,
                               const std::function<void(const TrainingView*)>& is_done);
 
 /// A picture that trees learn from.
-struct TrainingPicture {
+struct TrainingImage {
   FeatureImage features;
   std::vector<TrainingSample> samples;
-  std::vector<TrainingSample> spare_background;
+  std::vector<TrainingSample> negative_pool;
   float whole_area = 0.0F;  ///< of the object, square metres; 0 in a background picture
 };
 
@@ -74,20 +74,20 @@ struct LabelledView {
 
 /// Memory that pictures share, one after another: it is written to much faster than new memory, which the system has to
 /// clear first.
-struct PictureWorkspace {
+struct ImageWorkspace {
   FeatureTiles tiles;
   FeatureWorkspace feature_workspace;
   FeatureImage features;
 };
 
 /// An object put into a background: patches on it and some beside it. Empty where the background is too small.
-TrainingPicture object_picture(const LabelledView& taught, const RgbdFrame& background, const PictureInput& input,
-                               Random& random, PictureWorkspace& workspace);
+TrainingImage object_image(const LabelledView& taught, const RgbdFrame& background, const ImageInput& input,
+                           Random& random, ImageWorkspace& workspace);
 
-constexpr int kBackgroundPictures = 4;  ///< per background frame, spread over the levels
+constexpr int kBackgroundImages = 4;  ///< per background frame, spread over the levels
 
 /// A part of a background as one level sees it.
-TrainingPicture background_picture(const RgbdFrame& background, const FeatureLevel& level, const PictureInput& input,
-                                   Random& random, PictureWorkspace& workspace);
+TrainingImage background_image(const RgbdFrame& background, const FeatureLevel& level, const ImageInput& input,
+                               Random& random, ImageWorkspace& workspace);
 
 }  // namespace houghstream::training

@@ -1,4 +1,4 @@
-#include "detector/training/pictures/dehazing.hpp"
+#include "detector/training/augmentation/dehazing.hpp"
 
 #include <algorithm>
 #include <array>
@@ -50,7 +50,7 @@ void remove_haze(const cv::Mat& mask, cv::Mat& colour, Random& random) {
   }
 }
 
-cv::Mat sharpened(const cv::Mat& colour, double sharpness) {
+cv::Mat apply_unsharp_mask(const cv::Mat& colour, double sharpness) {
   constexpr double kSigma = 1.5;  // pixels
   if (sharpness <= 0.0) return colour;
   cv::Mat soft;

@@ -65,7 +65,7 @@ struct DepthVariation {
   std::array<int, 2> offset_px{0, 0};                ///< depth lies by so much to the right and down of colour
   std::array<int, 2> grown_px{0, 0};                 ///< nearer surfaces, to both sides, up and down
   double jitter_px = 0.0;                            ///< deviation of outlines
-  double flying_share = 0.0;                         ///< of the pixels at edges that get a depth in between
+  double flying_pixel_fraction = 0.0;                ///< of the pixels at edges that get a depth in between
   double noise = 0.0;                                ///< structured light: in axial deviations (Nguyen et al.)
   double noise_floor = 0.0;                          ///< time of flight: deviation however much light returns, metres
   double noise_light = 0.0;                          ///< deviation where 1 m^-2 returns, inverse to it, metres
@@ -88,7 +88,7 @@ struct CameraRandomisation {
 };
 
 /// A camera. `strength` 0 = one that changes nothing, 1 = as widely as real ones differ; more is allowed.
-CameraRandomisation draw_camera(double strength, Random& random);
+CameraRandomisation sample_camera(double strength, Random& random);
 
 /// Another camera looks, in a share of all pictures: one that differs by anything up to `strength`.
 void randomise_camera(double share, double strength, RgbdFrame& frame, Random& random);
@@ -102,7 +102,7 @@ void apply_depth(const CameraRandomisation& camera, const Camera& view, cv::Mat&
                  const cv::Mat& colour = cv::Mat());
 
 /// Of the colours of a camera alone what it does to coded values: gamma, contrast, levels, saturation, hue. More widely
-/// than draw_camera(): what trees have learnt from may be stranger than what scores are learnt from, which would only
+/// than sample_camera(): what trees have learnt from may be stranger than what scores are learnt from, which would only
 /// trust colours less.
 void jitter_tone(double share, double strength, cv::Mat& colour, Random& random);
 

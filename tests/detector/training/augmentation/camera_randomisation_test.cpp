@@ -1,4 +1,4 @@
-#include "detector/training/pictures/camera_randomisation.hpp"
+#include "detector/training/augmentation/camera_randomisation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,14 +15,14 @@ constexpr int kSeeds = 60;
 
 CameraRandomisation camera(double strength, std::uint64_t seed) {
   Random random(seed);
-  return draw_camera(strength, random);
+  return sample_camera(strength, random);
 }
 
 TEST(CameraRandomisation, StrengthZeroChangesNothing) {
   const RgbdFrame room = toy::room(3);
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     Random random(seed);
-    const CameraRandomisation none = draw_camera(0.0, random);
+    const CameraRandomisation none = sample_camera(0.0, random);
     cv::Mat colour = room.colour.clone();
     cv::Mat depth = room.depth.clone();
     apply_colour(none, colour, random);
@@ -39,7 +39,7 @@ TEST(CameraRandomisation, TheSameSeedIsTheSameCameraAndTakesTheSamePicture) {
     cv::Mat depths[2];
     for (int i = 0; i < 2; ++i) {
       Random random(seed);
-      const CameraRandomisation drawn = draw_camera(1.0, random);
+      const CameraRandomisation drawn = sample_camera(1.0, random);
       colours[i] = room.colour.clone();
       depths[i] = room.depth.clone();
       apply_colour(drawn, colours[i], random);
@@ -73,8 +73,8 @@ TEST(CameraRandomisation, DrawnCamerasStayWithinTheirRangesAndReachThem) {
     EXPECT_NEAR(depth.scale, 1.0, 0.01);
     offsets.insert(depth.offset_px[0]);
     growths.insert(depth.grown_px[1]);
-    EXPECT_GE(depth.flying_share, 0.0);
-    EXPECT_LE(depth.flying_share, 1.0);
+    EXPECT_GE(depth.flying_pixel_fraction, 0.0);
+    EXPECT_LE(depth.flying_pixel_fraction, 1.0);
     EXPECT_LE(depth.edge_loss, 1.0);
     const bool is_time_of_flight = depth.kind == DepthKind::kTimeOfFlight;
     time_of_flight += is_time_of_flight ? 1 : 0;
@@ -97,7 +97,7 @@ TEST(CameraRandomisation, LessStrengthChangesLess) {
   for (int i = 0; i < 3; ++i) {
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
       Random random(seed);
-      const CameraRandomisation drawn = draw_camera(strengths[i], random);
+      const CameraRandomisation drawn = sample_camera(strengths[i], random);
       cv::Mat colour = room.colour.clone();
       apply_colour(drawn, colour, random);
       changes[i] += cv::norm(colour, room.colour, cv::NORM_L1) / static_cast<double>(colour.total() * kSeeds);
@@ -111,7 +111,7 @@ TEST(CameraRandomisation, AnySizeAndAnyStrengthIsTaken) {
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(3, 2), cv::Size(7, 9), cv::Size(33, 17)}) {
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
       Random random(seed);
-      const CameraRandomisation drawn = draw_camera(2.0, random);
+      const CameraRandomisation drawn = sample_camera(2.0, random);
       cv::Mat colour(size, CV_8UC3, cv::Scalar(10, 120, 250));
       cv::Mat depth(size, CV_32FC1, cv::Scalar(0.8));
       const cv::Mat before = colour.clone();

@@ -1,4 +1,4 @@
-#include "detector/training/pictures/dehazing.hpp"
+#include "detector/training/augmentation/dehazing.hpp"
 
 #include <gtest/gtest.h>
 
@@ -70,8 +70,8 @@ int steepest_step(const cv::Mat& colour) {
 
 TEST(Sharpened, ASoftEdgeGetsSteeperWithSharpness) {
   const int as_taught = steepest_step(soft_step(1.5));
-  const int half = steepest_step(sharpened(soft_step(1.5), 0.75));
-  const int full = steepest_step(sharpened(soft_step(1.5), 1.5));
+  const int half = steepest_step(apply_unsharp_mask(soft_step(1.5), 0.75));
+  const int full = steepest_step(apply_unsharp_mask(soft_step(1.5), 1.5));
   EXPECT_GT(half, 1.1 * as_taught);
   EXPECT_GT(full, 1.1 * half);
   EXPECT_LT(full, steepest_step(soft_step(0.0)));
@@ -79,9 +79,9 @@ TEST(Sharpened, ASoftEdgeGetsSteeperWithSharpness) {
 
 TEST(Sharpened, WhatIsEvenStaysAndZeroChangesNothing) {
   const cv::Mat even(20, 20, CV_8UC3, cv::Scalar(10, 120, 250));
-  EXPECT_EQ(cv::norm(sharpened(even, 1.5), even, cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(apply_unsharp_mask(even, 1.5), even, cv::NORM_INF), 0.0);
   const cv::Mat step = soft_step(1.0);
-  EXPECT_EQ(sharpened(step, 0.0).data, step.data);
+  EXPECT_EQ(apply_unsharp_mask(step, 0.0).data, step.data);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
-#include "detector/training/pictures/camera_randomisation.hpp"
+#include "detector/training/augmentation/camera_randomisation.hpp"
 
 namespace houghstream::training {
 namespace {
@@ -56,7 +56,7 @@ TEST(CameraDepth, HolesNeverFillUp) {
   const cv::Mat before = near_square();
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
-    CameraRandomisation camera = draw_camera(1.0, random);
+    CameraRandomisation camera = sample_camera(1.0, random);
     camera.depth.offset_px = {0, 0};
     cv::Mat after = before.clone();
     apply_depth(camera, kView, after, random);
@@ -108,7 +108,7 @@ TEST(CameraDepth, NearSurfacesGrowAndDepthMovesByWholePixels) {
 TEST(CameraDepth, FlyingPixelsLieBetweenTheSurfacesOfAnEdge) {
   DepthVariation camera;
   camera.kind = DepthKind::kTimeOfFlight;
-  camera.flying_share = 0.5;
+  camera.flying_pixel_fraction = 0.5;
   const cv::Mat after = measured(camera, near_square());
   const cv::Mat between = (after > 0.801F) & (after < 1.199F);
   EXPECT_NEAR(cv::countNonZero(between), 0.5 * cv::countNonZero(outline(1)), 0.1 * cv::countNonZero(outline(1)));

@@ -18,15 +18,15 @@ void misregister(double strength, cv::Mat& depth, Random& random);
 
 /// The view as of a thing that leans by up to 4 degrees to any side, and whose depth is wrong by up to a few
 /// millimetres here and there; its colours and its outline stay. Less or more with `strength`, 0 = none.
-TrainingView bent(const TrainingView& view, double strength, Random& random);
+TrainingView perturb_shape(const TrainingView& view, double strength, Random& random);
 
 /// The view as of the next thing of its kind, in a light of its own: a taught picture's colours are what one camera,
 /// lamp and printer made of the object. Light varies smoothly over it; a cast, tone and strength of its colours change,
 /// and it may be less sharp. More or less with `strength`, 0 = none.
-TrainingView resurfaced(const TrainingView& view, double strength, Random& random);
+TrainingView perturb_appearance(const TrainingView& view, double strength, Random& random);
 
 /// The same, in a picture: `colour` is CV_8UC3, `mask` CV_8UC1 of its size and not 0 on the object.
-void resurface(const cv::Mat& mask, double strength, Random& random, cv::Mat& colour);
+void perturb_appearance_in(const cv::Mat& mask, double strength, Random& random, cv::Mat& colour);
 
 /// What a structured-light camera makes of what stands too near: its own pattern dazzles it. Surfaces nearer than
 /// `limit` metres keep their depth in patches only, of random size and together a share of `kept`, 0 to 1. `depth` is

@@ -1,4 +1,4 @@
-#include "detector/training/pictures/sensor_errors.hpp"
+#include "detector/training/augmentation/sensor_errors.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "detector/training/pictures/composites.hpp"
+#include "detector/training/augmentation/composites.hpp"
 
 namespace houghstream::training {
 namespace {
@@ -66,7 +66,7 @@ void misregister(double strength, cv::Mat& depth, Random& random) {
   depth = moved(grown(depth, wider, higher), right, down, max_px);
 }
 
-TrainingView bent(const TrainingView& view, double strength, Random& random) {
+TrainingView perturb_shape(const TrainingView& view, double strength, Random& random) {
   constexpr double kMaxSlope = 0.07;    // metres of depth a metre to the side
   constexpr double kMaxRipple = 0.002;  // metres, standard deviation
   if (strength <= 0.0) return view;
@@ -87,7 +87,7 @@ TrainingView bent(const TrainingView& view, double strength, Random& random) {
   return out;
 }
 
-void resurface(const cv::Mat& mask, double strength, Random& random, cv::Mat& colour) {
+void perturb_appearance_in(const cv::Mat& mask, double strength, Random& random, cv::Mat& colour) {
   constexpr double kCast = 0.15;       // stops, each channel
   constexpr double kGamma = 0.3;       // powers of two
   constexpr double kUneven = 0.35;     // stops, deviation
@@ -126,10 +126,10 @@ void resurface(const cv::Mat& mask, double strength, Random& random, cv::Mat& co
   }
 }
 
-TrainingView resurfaced(const TrainingView& view, double strength, Random& random) {
+TrainingView perturb_appearance(const TrainingView& view, double strength, Random& random) {
   TrainingView out = view;
   out.frame.colour = view.frame.colour.clone();  // the view's own pixels stay as they are
-  resurface(out.mask, strength, random, out.frame.colour);
+  perturb_appearance_in(out.mask, strength, random, out.frame.colour);
   return out;
 }
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "detector/training/pictures/composites.hpp"
+#include "detector/training/augmentation/composites.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream::training {
@@ -14,9 +14,9 @@ namespace {
 constexpr double kDistance = 0.9;
 
 Composite bare_tile(std::uint64_t seed) {
-  PictureSettings settings;
-  settings.light_variation = 0.0;
-  settings.occluded_share = 0.0;
+  AugmentationSettings settings;
+  settings.lighting_variation = 0.0;
+  settings.occluded_fraction = 0.0;
   Random random(seed);
   return make_composite(toy::training_views().front(), toy::room(5), kDistance, settings, random).value();
 }

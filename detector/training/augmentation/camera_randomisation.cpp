@@ -1,4 +1,4 @@
-#include "detector/training/pictures/camera_randomisation.hpp"
+#include "detector/training/augmentation/camera_randomisation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -60,13 +60,13 @@ DepthVariation draw_depth(Draw draw) {
   if (depth.kind == DepthKind::kStructuredLight) {
     depth.grown_px = {std::max(0, draw.whole(0, 2)), std::max(0, draw.whole(0, 2))};
     depth.jitter_px = draw.part(0.0, 1.0);
-    depth.flying_share = std::min(1.0, draw.part(0.0, 0.3));
+    depth.flying_pixel_fraction = std::min(1.0, draw.part(0.0, 0.3));
     depth.noise = draw.part(0.0, 1.3);
     depth.disparity_step_px =
         draw.part(0.0, 1.0) < 0.15 ? 0.0 : draw.part(1.0, 1.0) * std::exp2(random.uniform(-4.0, -1.5));
     if (draw.happens(0.5)) depth.shadow_m = draw.part(-0.075, 0.075);
   } else {
-    depth.flying_share = std::min(1.0, draw.part(0.1, 0.8));
+    depth.flying_pixel_fraction = std::min(1.0, draw.part(0.1, 0.8));
     depth.noise_floor = draw.part(0.0, 0.0015);
     depth.noise_light = draw.part(0.0, 0.0008);
     depth.wiggle = draw.part(0.0, 0.004);
@@ -86,7 +86,7 @@ DepthVariation draw_depth(Draw draw) {
 
 }  // namespace
 
-CameraRandomisation draw_camera(double strength, Random& random) {
+CameraRandomisation sample_camera(double strength, Random& random) {
   if (strength <= 0.0) return {};
   const Draw draw(strength, random);
   CameraRandomisation camera;
@@ -98,7 +98,7 @@ CameraRandomisation draw_camera(double strength, Random& random) {
 void randomise_camera(double share, double strength, RgbdFrame& frame, Random& random) {
   if (share <= 0.0 || strength <= 0.0 || random.uniform() >= share) return;
   const double own = random.uniform();  // most cameras differ little
-  const CameraRandomisation camera = draw_camera(strength * own, random);
+  const CameraRandomisation camera = sample_camera(strength * own, random);
   apply_depth(camera, frame.camera, frame.depth, random, frame.colour);
   apply_colour(camera, frame.colour, random);
 }

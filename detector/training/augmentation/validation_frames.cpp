@@ -1,18 +1,18 @@
-#include "detector/training/pictures/validation_frames.hpp"
+#include "detector/training/augmentation/validation_frames.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "detector/training/pictures/camera_randomisation.hpp"
-#include "detector/training/pictures/composites.hpp"
-#include "detector/training/pictures/sensor_errors.hpp"
+#include "detector/training/augmentation/camera_randomisation.hpp"
+#include "detector/training/augmentation/composites.hpp"
+#include "detector/training/augmentation/sensor_errors.hpp"
 
 namespace houghstream::training {
 namespace {
 
-double draw_distance(const PictureSettings& settings, Random& random) {
+double draw_distance(const AugmentationSettings& settings, Random& random) {
   return std::exp(random.uniform(std::log(settings.min_distance), std::log(settings.max_distance)));
 }
 
@@ -20,7 +20,7 @@ double draw_distance(const PictureSettings& settings, Random& random) {
 struct Stage {
   RgbdFrame& frame;
   cv::Mat labels;  // CV_8UC1: which object each pixel shows, 0 = none
-  const PictureSettings& settings;
+  const AugmentationSettings& settings;
   Random& random;
 };
 
@@ -39,7 +39,7 @@ void put_back(const Composite& composite, std::uint8_t label, Stage& stage) {
 
 /// Returns how many pixels it has as a whole; 1 where there is no room for it.
 int put(const TrainingView& thing, double distance, std::uint8_t label, Stage& stage) {
-  const TrainingView bent_view = bent(thing, stage.settings.depth_error, stage.random);
+  const TrainingView bent_view = perturb_shape(thing, stage.settings.depth_error, stage.random);
   const std::optional<Composite> composite =
       make_composite(bent_view, stage.frame, distance, stage.settings, stage.random);
   if (!composite) return 1;
@@ -125,12 +125,12 @@ class Others {
  public:
   Others(const std::vector<const TrainingView*>& objects, Stage& stage) : objects_(objects), stage_(stage) {}
 
-  void add_look_alike(bool in_other_colours) {
+  void add_near_duplicate(bool in_other_colours) {
     const TrainingView& view = draw();
     put_none(in_other_colours ? recoloured(view, stage_.random) : resized(view, stage_.random));
   }
 
-  void add_stranger(bool in_other_paint) {
+  void add_hard_negative(bool in_other_paint) {
     const TrainingView& view = draw();
     if (!in_other_paint) return put_none(squeezed(view, stage_.random));
     const TrainingView& paint = draw();
@@ -157,11 +157,12 @@ class Others {
 }  // namespace
 
 ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
-                                      const ComposedThings& things, const PictureSettings& settings, Random& random) {
+                                      const ComposedThings& things, const AugmentationSettings& settings,
+                                      Random& random) {
   constexpr double kOtherLight = 2.0;  // colours must not be trusted further than light lets them
-  PictureSettings even_light = settings;
-  even_light.light_variation = 0.0;  // one light for the whole frame
-  even_light.sharpened_share = 0.0;  // and one camera, as blind to detail as the one that taught
+  AugmentationSettings even_light = settings;
+  even_light.lighting_variation = 0.0;  // one light for the whole frame
+  even_light.sharpened_fraction = 0.0;  // and one camera, as blind to detail as the one that taught
   ValidationFrame out;
   out.frame = room;
   out.frame.colour = room.colour.clone();
@@ -169,14 +170,14 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   Stage stage{out.frame, cv::Mat::zeros(room.colour.size(), CV_8UC1), even_light, random};
   std::vector<int> whole_px;
   Others others(objects, stage);
-  for (int i = 0; i < 2 * things.look_alikes; ++i) others.add_look_alike(i % 2 == 0);
-  for (int i = 0; i < 2 * things.strangers; ++i) others.add_stranger(i % 2 == 0);
-  out.others = std::move(others).views();
+  for (int i = 0; i < 2 * things.near_duplicates; ++i) others.add_near_duplicate(i % 2 == 0);
+  for (int i = 0; i < 2 * things.hard_negatives; ++i) others.add_hard_negative(i % 2 == 0);
+  out.distractor_views = std::move(others).views();
   for (int label = 1; label <= things.objects; ++label) {
     const std::uint32_t index = draw_view(objects, random);
     const TrainingView& view = *objects[index];
     const double distance = draw_distance(settings, random);
-    const TrainingView object = resurfaced(view, settings.surface_variation, random);
+    const TrainingView object = perturb_appearance(view, settings.surface_variation, random);
     whole_px.push_back(put(object, distance, static_cast<std::uint8_t>(label), stage));
     out.objects.push_back({view.class_id, index, {}, 0.0});
   }
@@ -190,8 +191,8 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   const auto unseen = [](const ValidationFrame::Object& object) { return object.box_visible_px.empty(); };
   out.objects.erase(std::remove_if(out.objects.begin(), out.objects.end(), unseen), out.objects.end());
   misregister(settings.depth_error, out.frame.depth, random);
-  jitter_exposure(out.frame.colour, kOtherLight * settings.light_variation, random);
-  randomise_camera(settings.camera_share, settings.camera_variation, out.frame, random);
+  jitter_exposure(out.frame.colour, kOtherLight * settings.lighting_variation, random);
+  randomise_camera(settings.camera_fraction, settings.camera_randomisation, out.frame, random);
   return out;
 }
 

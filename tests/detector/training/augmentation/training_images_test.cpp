@@ -8,7 +8,7 @@
 #include "detector/baseline/baseline_scales.hpp"
 #include "detector/baseline/gall_profile.hpp"
 #include "detector/baseline/scale_space_search.hpp"
-#include "detector/training/pictures/training_set.hpp"
+#include "detector/training/augmentation/training_set.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream::training {
@@ -30,36 +30,36 @@ TrainingView round_view() {
 
 Profile open_profile(const std::string& name) {
   Profile profile = baseline::make_profile(name);
-  profile.training.occluded_share = 0.0;
-  profile.training.light_variation = 0.0;
+  profile.training.occluded_fraction = 0.0;
+  profile.training.lighting_variation = 0.0;
   profile.training.patches_per_view = 120;
   profile.training.patches_per_background = 80;
   profile.training.composites_per_view = 1;
   return profile;
 }
 
-PictureInput input_of(const Profile& profile) {
+ImageInput input_of(const Profile& profile) {
   return {profile.features, profile.patch, profile.training, baseline::scales_of(profile.features)};
 }
 
-TrainingPicture picture_of(const TrainingView& view, const Profile& profile, std::uint64_t seed) {
+TrainingImage picture_of(const TrainingView& view, const Profile& profile, std::uint64_t seed) {
   Random random(seed);
-  PictureWorkspace workspace;
-  return object_picture({view, 2, 5}, toy::room(3), input_of(profile), random, workspace);
+  ImageWorkspace workspace;
+  return object_image({view, 2, 5}, toy::room(3), input_of(profile), random, workspace);
 }
 
 /// How much larger the picture shows the object than the view does, `image_scale` aside.
-double size_of(const TrainingPicture& picture, double image_scale) {
+double size_of(const TrainingImage& picture, double image_scale) {
   return (picture.features.width() / image_scale - 2 * kMargin) / (2 * kRadius + 1);
 }
 
-TEST(TrainingPictures, OffsetsOfAScaleSpaceLeadToTheCentresPixel) {
+TEST(TrainingImages, OffsetsOfAScaleSpaceLeadToTheCentresPixel) {
   const TrainingView view = round_view();
   for (const float image_scale : {1.0F, 0.5F}) {
     Profile profile = open_profile("gall");
     profile.features.image_scale = image_scale;
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
-      const TrainingPicture picture = picture_of(view, profile, seed);
+      const TrainingImage picture = picture_of(view, profile, seed);
       const double size = size_of(picture, image_scale);
       // the mask's middle is the picture's; the object's centre lies half a pixel of the view beside it
       const double x = 0.5 * (picture.features.width() - 1) - 0.5 * size * image_scale;
@@ -75,10 +75,10 @@ TEST(TrainingPictures, OffsetsOfAScaleSpaceLeadToTheCentresPixel) {
   }
 }
 
-TEST(TrainingPictures, SamplesOfTheObjectLieOnItsMaskAndTheOthersBeside) {
+TEST(TrainingImages, SamplesOfTheObjectLieOnItsMaskAndTheOthersBeside) {
   const TrainingView view = round_view();
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
-    const TrainingPicture picture = picture_of(view, open_profile("gall"), seed);
+    const TrainingImage picture = picture_of(view, open_profile("gall"), seed);
     const double radius = kRadius * size_of(picture, 1.0);
     int on_object = 0;
     int beside = 0;
@@ -97,12 +97,12 @@ TEST(TrainingPictures, SamplesOfTheObjectLieOnItsMaskAndTheOthersBeside) {
     }
     EXPECT_EQ(on_object, 120);
     EXPECT_EQ(beside, 30);
-    EXPECT_TRUE(picture.spare_background.empty());
+    EXPECT_TRUE(picture.negative_pool.empty());
   }
 }
 
 /// How unevenly steep the middle of the object seems, 0 to 127; the derivatives are the first planes.
-double unevenness(const TrainingPicture& picture) {
+double unevenness(const TrainingImage& picture) {
   constexpr int kReach = 8;  // pixels
   const cv::Point middle(picture.features.width() / 2, picture.features.height() / 2);
   std::vector<double> slopes;
@@ -117,7 +117,7 @@ double unevenness(const TrainingPicture& picture) {
   return deviation[0];
 }
 
-TEST(TrainingPictures, AScaleSpaceIsTaughtTheNoiseOfTheDistancesItSearches) {
+TEST(TrainingImages, AScaleSpaceIsTaughtTheNoiseOfTheDistancesItSearches) {
   Profile five = open_profile("gall");
   five.features.families = kDepthDerivatives;
   Profile single = five;
@@ -132,9 +132,9 @@ TEST(TrainingPictures, AScaleSpaceIsTaughtTheNoiseOfTheDistancesItSearches) {
 }
 
 /// Whether a picture holds all that its patches look at, and how much more it could hold.
-void expect_held(const TrainingPicture& picture, const PatchSettings& patch) {
+void expect_held(const TrainingImage& picture, const PatchSettings& patch) {
   const cv::Rect held = picture.features.held();
-  for (const auto* list : {&picture.samples, &picture.spare_background}) {
+  for (const auto* list : {&picture.samples, &picture.negative_pool}) {
     for (const TrainingSample& sample : *list) {
       const int reach = max_offset(patch, sample.scale);
       const cv::Rect seen(sample.x - reach, sample.y - reach, 2 * reach + 1, 2 * reach + 1);
@@ -145,31 +145,31 @@ void expect_held(const TrainingPicture& picture, const PatchSettings& patch) {
   EXPECT_LT(held.height, picture.features.height() + 2 * FeatureImage::kPad);
 }
 
-TEST(TrainingPictures, PicturesHoldWhatTheirPatchesLookAtOnly) {
+TEST(TrainingImages, PicturesHoldWhatTheirPatchesLookAtOnly) {
   const Profile profile = open_profile("realtime");
-  PictureWorkspace workspace;
+  ImageWorkspace workspace;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     expect_held(picture_of(round_view(), profile, seed), profile.patch);
     Random random(seed);
     for (const FeatureLevel& level : feature_levels(profile.features)) {
-      expect_held(background_picture(toy::room(3), level, input_of(profile), random, workspace), profile.patch);
+      expect_held(background_image(toy::room(3), level, input_of(profile), random, workspace), profile.patch);
     }
   }
 }
 
-TEST(TrainingPictures, NoPixelIsDrawnTwice) {
-  const TrainingPicture picture = picture_of(round_view(), open_profile("gall"), 4);
+TEST(TrainingImages, NoPixelIsDrawnTwice) {
+  const TrainingImage picture = picture_of(round_view(), open_profile("gall"), 4);
   std::vector<std::pair<int, int>> places;
   for (const TrainingSample& sample : picture.samples) places.emplace_back(sample.x, sample.y);
   std::sort(places.begin(), places.end());
   EXPECT_EQ(std::adjacent_find(places.begin(), places.end()), places.end());
 }
 
-TEST(TrainingPictures, AScaleSpaceIsTaughtTheSizesBetweenThoseThatAreSearched) {
+TEST(TrainingImages, AScaleSpaceIsTaughtTheSizesBetweenThoseThatAreSearched) {
   const TrainingView view = round_view();
   std::vector<double> sizes;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
-    const TrainingPicture picture = picture_of(view, open_profile("gall"), seed);
+    const TrainingImage picture = picture_of(view, open_profile("gall"), seed);
     sizes.push_back(size_of(picture, 1.0));
     const double area = M_PI * kRadius * kRadius * sizes.back() * sizes.back() / kFocal / kFocal;  // as at 1 m
     EXPECT_NEAR(picture.whole_area, area, 0.06 * area);
@@ -179,7 +179,7 @@ TEST(TrainingPictures, AScaleSpaceIsTaughtTheSizesBetweenThoseThatAreSearched) {
   EXPECT_NEAR(*largest, 1.25, 0.05);
 }
 
-TEST(TrainingPictures, WithDepthTheAreaIsThatOfTheSurfaceAtAnyDistance) {
+TEST(TrainingImages, WithDepthTheAreaIsThatOfTheSurfaceAtAnyDistance) {
   const TrainingView view = round_view();
   const double area = M_PI * kRadius * kRadius * kTaught * kTaught / kFocal / kFocal;
   Profile profile = open_profile("realtime");
@@ -187,7 +187,7 @@ TEST(TrainingPictures, WithDepthTheAreaIsThatOfTheSurfaceAtAnyDistance) {
   for (const float distance : {0.5F, 0.7F, 1.1F}) {
     profile.training.min_distance = distance;
     profile.training.max_distance = distance;
-    const TrainingPicture picture = picture_of(view, profile, 1);
+    const TrainingImage picture = picture_of(view, profile, 1);
     EXPECT_NEAR(picture.whole_area, area, 0.08 * area) << distance;
     for (const TrainingSample& sample : picture.samples) {
       if (sample.label == 0) continue;
@@ -196,11 +196,11 @@ TEST(TrainingPictures, WithDepthTheAreaIsThatOfTheSurfaceAtAnyDistance) {
   }
 }
 
-TEST(TrainingPictures, OnlyWithoutScaleSpaceMustDepthBeKnown) {
+TEST(TrainingImages, OnlyWithoutScaleSpaceMustDepthBeKnown) {
   TrainingView view = round_view();
   view.frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   const auto objects = [&](const std::string& name) {
-    const TrainingPicture picture = picture_of(view, open_profile(name), 1);
+    const TrainingImage picture = picture_of(view, open_profile(name), 1);
     return std::count_if(picture.samples.begin(), picture.samples.end(),
                          [](const TrainingSample& sample) { return sample.label != 0; });
   };
@@ -208,21 +208,21 @@ TEST(TrainingPictures, OnlyWithoutScaleSpaceMustDepthBeKnown) {
   EXPECT_EQ(objects("realtime"), 0);
 }
 
-TEST(TrainingPictures, ATooSmallBackgroundGivesNothing) {
+TEST(TrainingImages, ATooSmallBackgroundGivesNothing) {
   RgbdFrame corner = toy::room(3);
   corner.colour = corner.colour(cv::Rect(0, 0, 120, 120)).clone();
   corner.depth = corner.depth(cv::Rect(0, 0, 120, 120)).clone();
   corner.camera = corner.camera.cropped(0, 0, 120, 120);
   Random random(1);
-  PictureWorkspace workspace;
+  ImageWorkspace workspace;
   const TrainingView view = round_view();
   const Profile gall = open_profile("gall");
-  const TrainingPicture picture = object_picture({view, 1, 0}, corner, input_of(gall), random, workspace);
+  const TrainingImage picture = object_image({view, 1, 0}, corner, input_of(gall), random, workspace);
   EXPECT_TRUE(picture.samples.empty());
   EXPECT_EQ(picture.whole_area, 0.0F);
 }
 
-TEST(TrainingPictures, ABackgroundIsDrawnFromWhereItsLevelSees) {
+TEST(TrainingImages, ABackgroundIsDrawnFromWhereItsLevelSees) {
   RgbdFrame room = toy::room(3);
   room.depth.setTo(0.8F);
   room.depth.colRange(0, 160).setTo(2.0F);
@@ -232,12 +232,12 @@ TEST(TrainingPictures, ABackgroundIsDrawnFromWhereItsLevelSees) {
   for (const FeatureLevel& level : levels) {
     const float seen = level.min_distance > 0.0F ? 2.0F : 0.8F;
     Random random(7);
-    PictureWorkspace workspace;
-    const TrainingPicture picture = background_picture(room, level, input_of(profile), random, workspace);
-    const auto drawn = static_cast<std::size_t>(profile.training.patches_per_background / kBackgroundPictures);
+    ImageWorkspace workspace;
+    const TrainingImage picture = background_image(room, level, input_of(profile), random, workspace);
+    const auto drawn = static_cast<std::size_t>(profile.training.patches_per_background / kBackgroundImages);
     EXPECT_EQ(picture.samples.size(), drawn);
-    EXPECT_EQ(picture.spare_background.size(), drawn * static_cast<std::size_t>(profile.training.spare_background));
-    for (const auto* list : {&picture.samples, &picture.spare_background}) {
+    EXPECT_EQ(picture.negative_pool.size(), drawn * static_cast<std::size_t>(profile.training.negative_pool));
+    for (const auto* list : {&picture.samples, &picture.negative_pool}) {
       for (const TrainingSample& sample : *list) {
         ASSERT_EQ(sample.label, 0);
         ASSERT_EQ(sample.scale, patch_scale(profile.patch, kFocal * level.scale, seen));
@@ -246,16 +246,16 @@ TEST(TrainingPictures, ABackgroundIsDrawnFromWhereItsLevelSees) {
   }
 }
 
-TEST(TrainingPictures, ABackgroundOfAScaleSpaceNeedsNoDepth) {
+TEST(TrainingImages, ABackgroundOfAScaleSpaceNeedsNoDepth) {
   RgbdFrame room = toy::room(3);
   room.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   const Profile profile = open_profile("gall");
   for (const FeatureLevel& level : baseline::scale_space_levels(profile.features)) {
     Random random(7);
-    PictureWorkspace workspace;
-    const TrainingPicture picture = background_picture(room, level, input_of(profile), random, workspace);
+    ImageWorkspace workspace;
+    const TrainingImage picture = background_image(room, level, input_of(profile), random, workspace);
     EXPECT_EQ(picture.samples.size(), 20U) << level.size_ratio;
-    EXPECT_TRUE(picture.spare_background.empty());
+    EXPECT_TRUE(picture.negative_pool.empty());
     for (const TrainingSample& sample : picture.samples) ASSERT_EQ(sample.scale, 256);
   }
 }

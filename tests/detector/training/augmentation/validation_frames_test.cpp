@@ -1,4 +1,4 @@
-#include "detector/training/pictures/validation_frames.hpp"
+#include "detector/training/augmentation/validation_frames.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,11 +22,11 @@ struct TilesAndRooms {
 constexpr ComposedThings kThings = {4, 2, 0};
 
 /// By the camera that taught: another one's depth has other holes and lies a few pixels beside.
-ValidationFrame compose(const TilesAndRooms& toys, std::uint64_t seed, double occluded_share,
-                        double camera_share = 0.0) {
+ValidationFrame compose(const TilesAndRooms& toys, std::uint64_t seed, double occluded_fraction,
+                        double camera_fraction = 0.0) {
   TrainingSettings settings = toy::quick_profile().training;
-  settings.occluded_share = occluded_share;
-  settings.camera_share = camera_share;
+  settings.occluded_fraction = occluded_fraction;
+  settings.camera_fraction = camera_fraction;
   Random random(seed);
   return make_validation_frame(toys.objects, toy::room(9), kThings, settings, random);
 }
@@ -66,13 +66,13 @@ TEST(ValidationFrames, OccludersLeaveLessOfTheObjects) {
 
 TEST(ValidationFrames, AsManyLookAlikesAndStrangersOfEachSortAsAskedForStandThereToo) {
   const TilesAndRooms toys;
-  EXPECT_EQ(compose(toys, 1, 0.0).others.size(), 2U * 2U);
+  EXPECT_EQ(compose(toys, 1, 0.0).distractor_views.size(), 2U * 2U);
   TrainingSettings settings = toy::quick_profile().training;
   Random random(1);
   const ComposedThings things{0, 0, 4};
-  const ValidationFrame strangers = make_validation_frame(toys.objects, toy::room(9), things, settings, random);
-  EXPECT_EQ(strangers.others.size(), 4U + 2U * 4U);  // each of the second sort is made of two views
-  EXPECT_TRUE(strangers.objects.empty());
+  const ValidationFrame hard_negatives = make_validation_frame(toys.objects, toy::room(9), things, settings, random);
+  EXPECT_EQ(hard_negatives.distractor_views.size(), 4U + 2U * 4U);  // each of the second sort is made of two views
+  EXPECT_TRUE(hard_negatives.objects.empty());
 }
 
 /// Width over height of what stands before the room, which is flat.
@@ -95,9 +95,9 @@ TEST(ValidationFrames, AStrangerIsNarrowerOrWiderThanAnyObjectOrHasItsShape) {
   const TilesAndRooms toys;  // all are square
   const RgbdFrame room = toy::room(9);
   TrainingSettings settings = toy::quick_profile().training;
-  settings.occluded_share = 0.0;
+  settings.occluded_fraction = 0.0;
   settings.depth_error = {};
-  settings.camera_share = 0.0;
+  settings.camera_fraction = 0.0;
   int other = 0;
   int square = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -124,7 +124,7 @@ TEST(ValidationFrames, AnotherCameraChangesThePictureAndNotTheTruth) {
       EXPECT_EQ(same.objects[i].box_visible_px, other.objects[i].box_visible_px);
       EXPECT_EQ(same.objects[i].visible_fraction, other.objects[i].visible_fraction);
     }
-    EXPECT_EQ(same.others, other.others);
+    EXPECT_EQ(same.distractor_views, other.distractor_views);
   }
 }
 
