@@ -36,8 +36,8 @@ std::vector<TaughtObject> taught_objects(const std::vector<int>& ids) {
 // The demo's classes, or all twenty where the truth names one of the others.
 std::vector<int> classes_of(const Scene& scene) {
   const auto& items = scene.world.items;
-  const bool further =
-      std::any_of(items.begin(), items.end(), [](const Placed& item) { return item.object_id >= kFirstFurtherId; });
+  const bool further = std::any_of(items.begin(), items.end(),
+                                   [](const PlacedAsset& item) { return item.object_id >= kFirstFurtherId; });
   return object_ids({further ? "all_20" : "all"});
 }
 
@@ -71,7 +71,7 @@ std::filesystem::path fresh_scene(const RenderOptions& options, const std::files
 void render_training(const RenderOptions& options, const std::vector<std::string>& objects,
                      const TurntableSettings& turntable) {
   const std::vector<TaughtObject> taught = taught_objects(object_ids(objects));
-  const Turntable table(turntable, options.seed);
+  const TurntableWorld table(turntable, options.seed);
   const bool all_upright = turntable.attitudes == std::vector<Attitude>{Attitude::kUpright};
   const auto folder_of = [&](const TaughtObject& object) { return options.out / fmt::format("{:06d}", object.id); };
   for (const TaughtObject& object : taught) fresh_scene(options, folder_of(object));

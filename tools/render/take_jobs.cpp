@@ -52,7 +52,7 @@ std::filesystem::path folder_of(const RenderOptions& options, const NumberedTake
 }
 
 void render_take(const RenderOptions& options, const NumberedTake& numbered, int frames) {
-  const Take take(numbered.plan, frames, options.threads);
+  const RenderedTake take(numbered.plan, frames, options.threads);
   BopWriter writer(folder_of(options, numbered));
   render_in_order(
       fmt::format("{} {}", numbered.object, numbered.take), options.threads, frames,

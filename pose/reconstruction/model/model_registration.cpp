@@ -160,28 +160,28 @@ std::optional<ModelRegistration> register_models(const PartlySeen& a, const Part
   const Points many = sample(b, lab, kFine);
   const Points of_a = sample(a, target.lab(), kCoarse);
   const std::vector<Eigen::Quaterniond> rotations = starts(upright);
-  struct Candidate {
+  struct RegistrationStart {
     double cost = 1e9;
     ModelRegistration found;
   };
-  std::vector<Candidate> candidates(rotations.size());
+  std::vector<RegistrationStart> candidates(rotations.size());
   parallel_for(threads, static_cast<int>(rotations.size()), [&](int i) {
-    Candidate& c = candidates[static_cast<std::size_t>(i)];
+    RegistrationStart& c = candidates[static_cast<std::size_t>(i)];
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.linear() = rotations[static_cast<std::size_t>(i)].toRotationMatrix();
     T.translation() = of_a.middle.cast<double>() - T.linear() * few.middle.cast<double>();
     c.found.T_a_b = refine(target, few, T, 8, 0.05);
     c.cost = cost_of(target, few, c.found.T_a_b, c.found.median_m);
   });
-  const auto better = [](const Candidate& x, const Candidate& y) { return x.cost < y.cost; };
+  const auto better = [](const RegistrationStart& x, const RegistrationStart& y) { return x.cost < y.cost; };
   std::stable_sort(candidates.begin(), candidates.end(), better);
   if (candidates.size() > kKept) candidates.resize(kKept);
   parallel_for(threads, static_cast<int>(candidates.size()), [&](int i) {
-    Candidate& c = candidates[static_cast<std::size_t>(i)];
+    RegistrationStart& c = candidates[static_cast<std::size_t>(i)];
     c.found.T_a_b = refine(target, many, c.found.T_a_b, 15, 0.02);
     c.cost = cost_of(target, many, c.found.T_a_b, c.found.median_m);
   });
-  const Candidate& best = *std::min_element(candidates.begin(), candidates.end(), better);
+  const RegistrationStart& best = *std::min_element(candidates.begin(), candidates.end(), better);
   if (best.found.median_m > kMax_m) return std::nullopt;
   return best.found;
 }

@@ -22,13 +22,13 @@ constexpr int kMaxLookAlikes = 3;
 constexpr double kTaughtColours = 0.3;  // share of the distractors' surfaces
 
 /// Of its box, in its own frame.
-Eigen::Vector3d middle_of(const Thing& thing) {
+Eigen::Vector3d middle_of(const Asset& thing) {
   return mesh_bounds(thing.mesh).center().cast<double>();
 }
 
 /// On the table in one of its attitudes, sometimes leaning. The middle of its box stands over the group's origin,
 /// wherever its own origin lies: the place on the table is reserved about that.
-Group put_down(const CalibrationSceneObject& object, const ThingPtr& thing, int id, Random& random) {
+AssetGroup put_down(const CalibrationSceneObject& object, const AssetPtr& thing, int id, Random& random) {
   constexpr double kLeaning = 0.2;
   Eigen::Matrix3d R = random_rotation(random);
   if (!object.ups.empty()) {
@@ -39,7 +39,7 @@ Group put_down(const CalibrationSceneObject& object, const ThingPtr& thing, int 
       R = Eigen::AngleAxisd(random.uniform(0.15, 0.7), axis) * R;
     }
   }
-  Placed placed{thing, Eigen::Isometry3d::Identity(), id, true};
+  PlacedAsset placed{thing, Eigen::Isometry3d::Identity(), id, true};
   const Eigen::Vector3d beside = R * middle_of(*thing);
   placed.T_world_object.translate(Eigen::Vector3d(-beside.x(), -beside.y(), height_above_table(thing->mesh, R)));
   placed.T_world_object.rotate(R);
@@ -57,7 +57,7 @@ Camera draw_camera(Random& random) {
 /// Looks at one of the objects, from anywhere above the table.
 Eigen::Isometry3d draw_viewpoint(const World& world, Random& random) {
   std::vector<Eigen::Vector3d> places;
-  for (const Placed& item : world.items) {
+  for (const PlacedAsset& item : world.items) {
     if (item.object_id != 0) places.push_back(item.T_world_object * middle_of(*item.thing));
   }
   Eigen::Vector3d target = places.empty() ? Eigen::Vector3d(0.0, 0.0, 0.05) : pick(random, places);
@@ -84,7 +84,7 @@ int draw_practised(const std::vector<CalibrationSceneObject>& objects, Random& r
 
 }  // namespace
 
-World CalibrationScenes::furnished(int room) const {
+World CalibrationScenes::make_furnished_world(int room) const {
   const std::uint64_t own =
       aspect_seed(world_seed(DatasetSplit::kTraining, kFirstRoom + static_cast<std::uint64_t>(room)), seed_);
   World world;
@@ -102,7 +102,7 @@ World CalibrationScenes::furnished(int room) const {
   const int count = std::min(static_cast<int>(objects_.size()), random.between(3, kMaxObjects));
   for (int i = 0; i < count; ++i) {
     const CalibrationSceneObject& object = objects_[static_cast<std::size_t>(first + i) % objects_.size()];
-    const ThingPtr painted = object.has_colour ? object.thing : plainly_painted(*object.thing, random);
+    const AssetPtr painted = object.has_colour ? object.thing : plainly_painted(*object.thing, random);
     Random shape(aspect_seed(own, 50U + static_cast<std::uint64_t>(i)));
     setter.put(put_down(object, make_instance_variant(*painted, shape), object.id, random), middle);
   }
@@ -120,7 +120,7 @@ World CalibrationScenes::furnished(int room) const {
 }
 
 std::array<RenderedFrame, CalibrationScenes::kFramesPerRoom> CalibrationScenes::render(int room) const {
-  const LitWorld lit_world = light_world(furnished(room));  // takes as long as a frame
+  const LitWorld lit_world = light_world(make_furnished_world(room));  // takes as long as a frame
   std::array<RenderedFrame, kFramesPerRoom> frames;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::uint64_t index = frames.size() * static_cast<std::uint64_t>(room) + i;

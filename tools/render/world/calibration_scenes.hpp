@@ -11,7 +11,7 @@ namespace houghstream::world {
 /// A mesh that stands about in practice scenes.
 struct CalibrationSceneObject {
   int id = 0;
-  ThingPtr thing;
+  AssetPtr thing;
   std::vector<Eigen::Vector3d> ups;  ///< object frame, see up_directions(); empty = any attitude
   bool has_colour = true;            ///< false: another plain colour in every room
   bool is_calibrated = true;         ///< one of these stands in each room; others are company
@@ -34,7 +34,7 @@ class CalibrationScenes {
   std::array<RenderedFrame, kFramesPerRoom> render(int room) const;
 
  private:
-  World furnished(int room) const;
+  World make_furnished_world(int room) const;
 
   std::vector<CalibrationSceneObject> objects_;
   std::uint64_t seed_;

@@ -47,9 +47,9 @@ Mesh about_its_middle(Mesh mesh) {
 }
 
 /// What stands firmest comes first; what differs by less than kSameAttitudeDeg is left out.
-std::vector<Eigen::Vector3d> resting_ups(const Mesh& mesh) {
+std::vector<Eigen::Vector3d> stable_ups(const Mesh& mesh) {
   std::vector<StablePose> all;
-  for (const RestingFamily& family : find_stable_poses(about_its_middle(mesh), kNearlyFlat_m))
+  for (const StablePoseFamily& family : find_stable_poses(about_its_middle(mesh), kNearlyFlat_m))
     all.insert(all.end(), family.begin(), family.end());
   std::stable_sort(all.begin(), all.end(), [](const StablePose& a, const StablePose& b) {
     return a.steepest_slope_rad() > b.steepest_slope_rad();
@@ -66,12 +66,12 @@ std::vector<Eigen::Vector3d> resting_ups(const Mesh& mesh) {
 }
 
 /// A table whose top is at `height`.
-Placed table_top(double height, Random& random) {
+PlacedAsset table_top(double height, Random& random) {
   constexpr double kThickness = 0.02;
   const cv::Mat cover =
       plain({256, 256}, hsv(random.uniform(0, 360), random.uniform(0.0, 0.5), random.uniform(0.2, 0.9)), 0.05, random);
-  Placed table{make_asset("table", turned_mesh({{0.6, 0.0}, {0.6, kThickness}}, cover), 0.08F),
-               Eigen::Isometry3d::Identity(), 0, true};
+  PlacedAsset table{make_asset("table", turned_mesh({{0.6, 0.0}, {0.6, kThickness}}, cover), 0.08F),
+                    Eigen::Isometry3d::Identity(), 0, true};
   table.T_world_object.translate(Eigen::Vector3d(0.0, 0.0, height - 0.5 * kThickness));  // its origin is its middle
   return table;
 }
@@ -111,7 +111,7 @@ std::vector<Eigen::Vector3d> up_directions(const Mesh& mesh, MeshAttitudes attit
   if (attitudes == MeshAttitudes::kAny) return {};
   if (attitudes == MeshAttitudes::kUpright) return {Eigen::Vector3d::UnitZ()};
   try {
-    return resting_ups(mesh);
+    return stable_ups(mesh);
   } catch (const InputError&) {  // without a volume
     std::vector<Eigen::Vector3d> sides;
     for (int axis = 0; axis < 3; ++axis) {
@@ -131,19 +131,19 @@ Eigen::Matrix3d random_rotation(Random& random) {
       .toRotationMatrix();
 }
 
-ThingPtr make_taught_thing(Mesh mesh, bool has_colour) {
+AssetPtr make_taught_thing(Mesh mesh, bool has_colour) {
   if (!has_colour) mesh.texture.release();
   if (mesh.texture.empty()) mesh.uvs.clear();
   if (!has_colour) mesh.colours.assign(mesh.vertices.size(), cv::Vec3b(128, 128, 128));
   return make_asset("taught", std::move(mesh), 0.15F);
 }
 
-ThingPtr plainly_painted(const Thing& thing, Random& random) {
-  Thing painted = thing;
+AssetPtr plainly_painted(const Asset& thing, Random& random) {
+  Asset painted = thing;
   const cv::Scalar colour = hsv(random.uniform(0, 360), random.uniform(0.0, 0.8), random.uniform(0.15, 0.95));
   painted.mesh.colours.assign(thing.mesh.vertices.size(), cv::Vec3b(colour[0], colour[1], colour[2]));
-  painted.gloss = static_cast<float>(random.uniform(0.0, 0.3));
-  return std::make_shared<const Thing>(std::move(painted));
+  painted.specular = static_cast<float>(random.uniform(0.0, 0.3));
+  return std::make_shared<const Asset>(std::move(painted));
 }
 
 MeshViews::MeshViews(Mesh mesh, const MeshViewSettings& settings, std::uint64_t seed)
@@ -202,8 +202,8 @@ TrainingView MeshViews::render(int index) const {
   World world;
   set_lighting(world, chance(random, 0.25) ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, 3));
   world.focus_radius_m = std::max(0.3, 1.5 * radius_);
-  Placed object{settings_.has_colour ? thing_ : plainly_painted(*thing_, random), Eigen::Isometry3d::Identity(), 1,
-                true};
+  PlacedAsset object{settings_.has_colour ? thing_ : plainly_painted(*thing_, random), Eigen::Isometry3d::Identity(), 1,
+                     true};
   object.T_world_object.rotate(pose.R_level_object);
   object.T_world_object.translate(-centre_);
   world.items = {object};
@@ -225,7 +225,7 @@ TrainingView MeshViews::render(int index) const {
   TrainingView view;
   view.frame.camera = camera;
   view.frame.colour = simulate_colour_camera(seen.radiance, world.photo, aspect_seed(own, 4));
-  view.frame.depth = measure_depth({seen.geometry.depth, seen.cos_incidence, seen.reflectance, seen.gloss}, camera,
+  view.frame.depth = measure_depth({seen.geometry.depth, seen.cos_incidence, seen.reflectance, seen.specular}, camera,
                                    DepthSensorSettings{}, aspect_seed(own, 5));
   view.mask = seen.geometry.id == 1;
   view.T_camera_object = T_camera_world * object.T_world_object;

@@ -6,7 +6,7 @@
 
 #include "pipeline/base/random.hpp"
 #include "pipeline/types/training_view.hpp"
-#include "tools/render/world/objects/thing.hpp"
+#include "tools/render/world/objects/asset.hpp"
 
 namespace houghstream::world {
 
@@ -41,10 +41,10 @@ struct MeshViewSettings {
 
 /// A mesh as it is rendered: with colour unknown, plain grey. Its symmetries do not matter. See MeshViews for what it
 /// must have.
-ThingPtr make_taught_thing(Mesh mesh, bool has_colour);
+AssetPtr make_taught_thing(Mesh mesh, bool has_colour);
 
 /// The thing, whose vertices have colours, in one colour.
-ThingPtr plainly_painted(const Thing& thing, Random& random);
+AssetPtr plainly_painted(const Asset& thing, Random& random);
 
 /// Training views of a mesh: each in a light of its own, as a structured-light camera sees it. Neither axis nor origin
 /// of the mesh mean anything. Same arguments, same views; const calls are thread-safe.
@@ -56,7 +56,7 @@ class MeshViews {
   int count() const { return static_cast<int>(poses_.size()); }
   /// See up_directions().
   const std::vector<Eigen::Vector3d>& ups() const { return ups_; }
-  const ThingPtr& thing() const { return thing_; }
+  const AssetPtr& thing() const { return thing_; }
 
   /// View `index`, cropped around the object; names, ids and source are left empty.
   TrainingView render(int index) const;
@@ -74,7 +74,7 @@ class MeshViews {
 
   MeshViewSettings settings_;
   std::uint64_t seed_;
-  ThingPtr thing_;
+  AssetPtr thing_;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  ///< of the bounding box
   double radius_ = 0.0;                               ///< of the sphere about it, metres
   std::vector<Eigen::Vector3d> ups_;

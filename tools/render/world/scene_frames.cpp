@@ -33,7 +33,7 @@ int silhouette_px(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, co
 void add_truth(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, const cv::Mat& ids,
                RenderedFrame& result) {
   for (std::size_t i = 0; i < lit_world.world.items.size(); ++i) {
-    const Placed& placed = lit_world.world.items[i];
+    const PlacedAsset& placed = lit_world.world.items[i];
     if (placed.object_id == 0) continue;
     const cv::Mat mask = ids == static_cast<double>(i + 1);
     const int visible = cv::countNonZero(mask);
@@ -68,7 +68,7 @@ RenderedFrame record_view(const LitWorld& lit_world, const Eigen::Isometry3d& T_
   RenderedFrame result;
   result.frame.camera = lit_world.world.camera;
   result.frame.colour = simulate_colour_camera(view.radiance, lit_world.world.photo, aspect_seed(noise_seed, 1));
-  const SensorView seen{view.geometry.depth, view.cos_incidence, view.reflectance, view.gloss};
+  const SensorView seen{view.geometry.depth, view.cos_incidence, view.reflectance, view.specular};
   const std::uint64_t depth_seed = aspect_seed(noise_seed, 2);
   if (sensor == SensorKind::kTimeOfFlight) {
     result.frame.colour = apply_camera_response(result.frame.colour, other_colour_camera());

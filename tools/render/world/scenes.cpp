@@ -24,7 +24,7 @@ void add_other_instances(TableSetter& setter, const Clutter& clutter, std::uint6
   const int first = Random(aspect_seed(seed, kFirstInstance - 1)).below(kClassCount);
   const Eigen::AlignedBox2d where = setter.region(-0.95, 0.95, -0.85, 0.95);
   for (int i = 0; i < clutter.other_instances; ++i) {
-    const ThingPtr thing = make_other_instance(1 + (first + i) % kClassCount,
+    const AssetPtr thing = make_other_instance(1 + (first + i) % kClassCount,
                                                aspect_seed(seed, kFirstInstance + static_cast<std::uint64_t>(i)));
     const bool lies =
         clutter.handling == ObjectPlacement::kLying || (clutter.handling == ObjectPlacement::kTilted && i % 2 == 1);
@@ -40,7 +40,7 @@ void add_distractors(TableSetter& setter, RoomStyle style, const Clutter& clutte
     int kind = setter.random().below(kDistractorKinds);
     if (kind == kMonitor && style != RoomStyle::kDesk) kind = kBook;
     const std::uint64_t own = aspect_seed(seed, kFirstDistractor + static_cast<std::uint64_t>(i));
-    const ThingPtr thing = make_distractor(kind, own, clutter.taught_colours);
+    const AssetPtr thing = make_distractor(kind, own, clutter.taught_colours);
     // Large things stand at the back, as people put them.
     const bool large = kind == kMonitor || thing->mesh.vertices.empty() || thing->name == "lamp";
     const double front = large ? 0.3 : -0.98;
@@ -121,7 +121,7 @@ void add_objects(TableSetter& setter, const Clutter& clutter, const Trajectory& 
     for (int id = 1; clutter.taught_objects && id <= kClassCount; ++id) setter.stand_object(id, where);
   }
   const int first = setter.random().below(kClassCount);
-  for (int i = 0; i < clutter.look_alikes; ++i) {
+  for (int i = 0; i < clutter.hard_negatives; ++i) {
     const int id = kClassCount + 1 + (first + i) % kClassCount;
     if (clutter.handling == ObjectPlacement::kLying)
       setter.lay_object(id, where);
@@ -239,7 +239,7 @@ Plan development_plan(int number) {
   plan.style = static_cast<RoomStyle>(number % kRoomStyles);
   plan.time = number % 3 == 2 ? kEvening : kDay;
   plan.clutter.taught_objects = true;
-  plan.clutter.look_alikes = 1 + number % 2;
+  plan.clutter.hard_negatives = 1 + number % 2;
   plan.clutter.other_instances = 8;
   plan.clutter.distractors = 8 + 2 * (number % 4);
   plan.clutter.taught_colours = number % 2 == 0 ? kAlike : 0.0;

@@ -32,7 +32,7 @@ enum class ObjectPlacement : std::uint8_t {
 /// What stands on the table.
 struct Clutter {
   bool taught_objects = false;                     ///< the four classes, once each
-  int look_alikes = 0;                             ///< how many of the second instances (ids 5-8)
+  int hard_negatives = 0;                          ///< how many of the second instances (ids 5-8)
   int other_instances = 0;                         ///< never taught, of the kinds of the four (make_other_instance)
   int distractors = 10;                            ///< how many things are tried; those that find no place are left out
   FurtherClasses further = FurtherClasses::kNone;  ///< eight of them, once each

@@ -15,7 +15,7 @@ constexpr double kTopM = 0.02;
 constexpr std::uint64_t kAttitudeViews = 100000;  // numbers of one attitude's views, more than there can be
 constexpr std::uint64_t kFirstViewRoom = 900000;  // numbers of training worlds that backgrounds do not use
 
-ThingPtr make_turntable_disc(Random& random) {
+AssetPtr make_turntable_disc(Random& random) {
   const cv::Mat cover = plain({256, 256}, hsv(random.uniform(0, 360), 0.1, random.uniform(0.3, 0.8)), 0.05, random);
   return make_asset("turntable", turned_mesh({{0.17, 0.0}, {0.17, kTopM}}, cover), 0.08F);
 }
@@ -26,7 +26,8 @@ double degrees(double value) {
 
 }  // namespace
 
-Turntable::Turntable(const TurntableSettings& settings, std::uint64_t seed) : settings_(settings), seed_(seed) {
+TurntableWorld::TurntableWorld(const TurntableSettings& settings, std::uint64_t seed)
+    : settings_(settings), seed_(seed) {
   require(settings.azimuths >= 1 && settings.azimuths <= 720, "turntable: {} azimuths, expected 1 to 720",
           settings.azimuths);
   require(settings.pitches >= 1 && settings.pitches <= 90, "turntable: {} pitches, expected 1 to 90", settings.pitches);
@@ -41,26 +42,26 @@ Turntable::Turntable(const TurntableSettings& settings, std::uint64_t seed) : se
     set_lighting(world, TimeOfDay::kDay, aspect_seed(own, 2));
     world.focus_radius_m = 0.5;
     Random random(aspect_seed(own, 3));
-    Placed disc{make_turntable_disc(random), Eigen::Isometry3d::Identity(), 0, true};
+    PlacedAsset disc{make_turntable_disc(random), Eigen::Isometry3d::Identity(), 0, true};
     disc.T_world_object.translate(Eigen::Vector3d(0, 0, 0.5 * kTopM));
     world.items.push_back(disc);
     worlds_.push_back(std::move(world));
   }
 }
 
-int Turntable::azimuths(Attitude attitude, const AttitudeChoice* choice) const {
+int TurntableWorld::azimuths(Attitude attitude, const AttitudeChoice* choice) const {
   if (attitude != Attitude::kLying) return settings_.azimuths;
   require(choice != nullptr, "turntable: lying views wanted, and no attitudes to choose from");
   return choice->lying_count() * ((settings_.azimuths + 1) / 2);
 }
 
-int Turntable::view_count(const AttitudeChoice* choice) const {
+int TurntableWorld::view_count(const AttitudeChoice* choice) const {
   int count = 0;
   for (const Attitude attitude : settings_.attitudes) count += azimuths(attitude, choice) * settings_.pitches;
   return count;
 }
 
-RenderedFrame Turntable::render(const TaughtObject& object, const AttitudeChoice* choice, int index) const {
+RenderedFrame TurntableWorld::render(const TaughtObject& object, const AttitudeChoice* choice, int index) const {
   std::size_t block = 0;
   while (index >= azimuths(settings_.attitudes.at(block), choice) * settings_.pitches)
     index -= azimuths(settings_.attitudes.at(block++), choice) * settings_.pitches;
@@ -78,7 +79,7 @@ RenderedFrame Turntable::render(const TaughtObject& object, const AttitudeChoice
   }
 
   World world = worlds_[static_cast<std::size_t>(pitch_index)];
-  Placed placed{object.thing, Eigen::Isometry3d::Identity(), object.id, true};
+  PlacedAsset placed{object.thing, Eigen::Isometry3d::Identity(), object.id, true};
   const double centre = kTopM + height_above_table(object.thing->mesh, R_table_object);
   placed.T_world_object.translate(Eigen::Vector3d(0, 0, centre));
   placed.T_world_object.rotate(Eigen::AngleAxisd(2.0 * M_PI * azimuth_index / azimuths_here, Eigen::Vector3d::UnitZ()));

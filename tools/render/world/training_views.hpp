@@ -20,9 +20,9 @@ struct TurntableSettings {
 };
 
 /// A training room with an empty turntable; one for each pitch, since light changes between recordings.
-class Turntable {
+class TurntableWorld {
  public:
-  Turntable(const TurntableSettings& settings, std::uint64_t seed);
+  TurntableWorld(const TurntableSettings& settings, std::uint64_t seed);
 
   /// Of an object with these attitudes; may be null where none of them is lying.
   int view_count(const AttitudeChoice* choice) const;

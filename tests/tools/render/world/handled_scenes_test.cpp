@@ -26,7 +26,7 @@ std::vector<const char*> handled_scenes() {
   return names;
 }
 
-double lowest(const Placed& placed) {
+double lowest(const PlacedAsset& placed) {
   double z = 1e9;
   for (const Eigen::Vector3f& vertex : placed.thing->mesh.vertices)
     z = std::min(z, (placed.T_world_object * vertex.cast<double>()).z());
@@ -34,19 +34,19 @@ double lowest(const Placed& placed) {
 }
 
 /// What the item behind this one in the list is carried by: "block", "hand", or nothing.
-std::string carrier(const std::vector<Placed>& items, std::size_t index) {
+std::string carrier(const std::vector<PlacedAsset>& items, std::size_t index) {
   const std::string name = index > 0 ? items[index - 1].thing->name : "";
   return name == "block" || name == "hand" ? name : "";
 }
 
-double upright_cosine(const Placed& placed) {
+double upright_cosine(const PlacedAsset& placed) {
   return placed.T_world_object.linear()(2, 2);
 }
 
 TEST(HandledScenes, TiltedOnesHoldEachClassStandingLyingAndLeaning) {
   for (const char* name : {kHandledScenes[0], kHandledDevelopmentScenes[0]}) {
     SCOPED_TRACE(name);
-    const std::vector<Placed>& items = handled_scene(name).world.items;
+    const std::vector<PlacedAsset>& items = handled_scene(name).world.items;
     std::map<int, int> standing;
     std::map<int, int> lying;
     std::map<int, int> leaning;
@@ -69,7 +69,7 @@ TEST(HandledScenes, TiltedOnesHoldEachClassStandingLyingAndLeaning) {
 TEST(HandledScenes, HeldOnesHoldEachClassInAHandAndOnTheTable) {
   for (const char* name : {kHandledScenes[1], kHandledDevelopmentScenes[1]}) {
     SCOPED_TRACE(name);
-    const std::vector<Placed>& items = handled_scene(name).world.items;
+    const std::vector<PlacedAsset>& items = handled_scene(name).world.items;
     std::map<int, int> held;
     std::map<int, int> put;
     for (std::size_t i = 0; i < items.size(); ++i) {
@@ -101,7 +101,7 @@ double hidden_by(const Scene& scene, std::size_t index, std::size_t other) {
   for (int i = 0; i < kViews; ++i) {
     const Eigen::Isometry3d T_camera_world = camera_at(scene.trajectory, (i + 0.5) / kViews);
     const auto depth_of = [&](std::size_t item) {
-      const Placed& placed = scene.world.items[item];
+      const PlacedAsset& placed = scene.world.items[item];
       return render_depth(placed.thing->mesh, T_camera_world * placed.T_world_object, camera, image);
     };
     const cv::Mat object = depth_of(index);

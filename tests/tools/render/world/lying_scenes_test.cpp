@@ -24,7 +24,7 @@ const Scene& lying_scene(const std::string& name) {
   return found != scenes.end() ? found->second : scenes.emplace(name, make_named_scene(name)).first->second;
 }
 
-std::vector<Eigen::Vector3d> corners_world(const Placed& placed) {
+std::vector<Eigen::Vector3d> corners_world(const PlacedAsset& placed) {
   std::vector<Eigen::Vector3d> corners;
   for (const Eigen::Vector3f& vertex : placed.thing->mesh.vertices)
     corners.push_back(placed.T_world_object * vertex.cast<double>());
@@ -32,7 +32,7 @@ std::vector<Eigen::Vector3d> corners_world(const Placed& placed) {
 }
 
 // Depth to which `corners` reach into the wedge's upper side, metres; the wedge's is its steepest normal upwards.
-double depth_in_wedge(const Placed& wedge, const std::vector<Eigen::Vector3d>& corners) {
+double depth_in_wedge(const PlacedAsset& wedge, const std::vector<Eigen::Vector3d>& corners) {
   const Mesh& mesh = wedge.thing->mesh;
   double deepest = -1.0;
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -47,9 +47,9 @@ double depth_in_wedge(const Placed& wedge, const std::vector<Eigen::Vector3d>& c
 }
 
 // Everything movable on the table: what lies wholly above z = -1 mm and within arm's reach of the origin.
-std::vector<const Placed*> on_table(const World& world) {
-  std::vector<const Placed*> things;
-  for (const Placed& placed : world.items) {
+std::vector<const PlacedAsset*> on_table(const World& world) {
+  std::vector<const PlacedAsset*> things;
+  for (const PlacedAsset& placed : world.items) {
     const std::vector<Eigen::Vector3d> corners = corners_world(placed);
     const bool here = std::all_of(corners.begin(), corners.end(), [](const Eigen::Vector3d& corner) {
       return corner.z() > -1e-3 && corner.head<2>().norm() < 1.2;
@@ -60,7 +60,7 @@ std::vector<const Placed*> on_table(const World& world) {
 }
 
 // Rectangle along the thing's own turn about the vertical round all of it.
-Footprint footprint_of(const Placed& placed) {
+Footprint footprint_of(const PlacedAsset& placed) {
   const Eigen::Matrix3d R = placed.T_world_object.rotation();
   const int column = R.col(0).head<2>().norm() > 0.5 ? 0 : 1;
   Footprint footprint;
@@ -77,7 +77,7 @@ TEST(LyingScenes, NameEachClassTwiceAndNoneUpright) {
   for (const char* name : lying_scenes()) {
     SCOPED_TRACE(name);
     std::map<int, int> counts;
-    for (const Placed& placed : lying_scene(name).world.items) {
+    for (const PlacedAsset& placed : lying_scene(name).world.items) {
       if (placed.object_id == 0) continue;
       ++counts[placed.object_id];
       EXPECT_LT(placed.T_world_object.linear()(2, 2), std::cos(11.9 * M_PI / 180.0));
@@ -89,7 +89,7 @@ TEST(LyingScenes, NameEachClassTwiceAndNoneUpright) {
 TEST(LyingScenes, LyingObjectsTouchTheTableAndTiltedOnesTheirWedge) {
   for (const char* name : lying_scenes()) {
     SCOPED_TRACE(name);
-    const std::vector<Placed>& items = lying_scene(name).world.items;
+    const std::vector<PlacedAsset>& items = lying_scene(name).world.items;
     for (std::size_t i = 1; i < items.size(); ++i) {
       if (items[i].object_id == 0) continue;
       const std::vector<Eigen::Vector3d> corners = corners_world(items[i]);
@@ -108,7 +108,7 @@ TEST(LyingScenes, LyingObjectsTouchTheTableAndTiltedOnesTheirWedge) {
 TEST(LyingScenes, ThingsDoNotTouchEachOther) {
   for (const char* name : lying_scenes()) {
     SCOPED_TRACE(name);
-    const std::vector<const Placed*> things = on_table(lying_scene(name).world);
+    const std::vector<const PlacedAsset*> things = on_table(lying_scene(name).world);
     EXPECT_GE(things.size(), 16U);
     for (std::size_t i = 0; i < things.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {

@@ -27,7 +27,7 @@ double yaw_of(const Eigen::Isometry3d& T) {
 
 std::multiset<int> ids_in_truth(const Scene& scene) {
   std::multiset<int> ids;
-  for (const Placed& placed : scene.world.items) {
+  for (const PlacedAsset& placed : scene.world.items) {
     if (placed.object_id != 0) ids.insert(placed.object_id);
   }
   return ids;
@@ -36,7 +36,7 @@ std::multiset<int> ids_in_truth(const Scene& scene) {
 // Footprints of what stands on the table: its lowest point is at the table's height.
 std::vector<Footprint> standing(const World& world) {
   std::vector<Footprint> footprints;
-  for (const Placed& placed : world.items) {
+  for (const PlacedAsset& placed : world.items) {
     const Eigen::AlignedBox3d bounds = mesh_bounds(placed.thing->mesh).cast<double>();
     if (std::abs(placed.T_world_object.translation().z() + bounds.min().z()) > 1e-6) continue;
     footprints.push_back(
@@ -88,7 +88,7 @@ TEST(Scenes, HoldTheFourClassesAmongClutterThatDoesNotTouch) {
 TEST(Scenes, HoldOtherInstancesThatTheTruthDoesNotName) {
   for (const char* name : kTestScenes) {
     int others = 0;
-    for (const Placed& placed : test_scene(name).world.items) {
+    for (const PlacedAsset& placed : test_scene(name).world.items) {
       if (placed.thing->name.rfind("other_", 0) != 0) continue;
       ++others;
       EXPECT_EQ(placed.object_id, 0) << name;
@@ -126,7 +126,7 @@ TEST(Scenes, ObjectsAreBetween60CentimetresAnd250FromTheCamera) {
     const Scene& scene = test_scene(name);
     for (int i = 0; i <= 100; ++i) {
       const Eigen::Isometry3d T_camera_world = camera_at(scene.trajectory, i / 100.0);
-      for (const Placed& placed : scene.world.items) {
+      for (const PlacedAsset& placed : scene.world.items) {
         if (placed.object_id == 0) continue;
         const double z = (T_camera_world * placed.T_world_object).translation().z();
         EXPECT_GT(z, 0.55);
@@ -150,7 +150,7 @@ TEST(Scenes, BackgroundsHoldNoTaughtObject) {
   for (int id = 1; id <= kTaughtObjectCount; ++id) taught.insert(make_taught_object(id).name);
   for (const int id : twenty_class_ids()) taught.insert(make_taught_object(id).name);
   for (int i = 0; i < kRoomStyles; ++i) {
-    for (const Placed& placed : make_background_scene(i, 1).world.items)
+    for (const PlacedAsset& placed : make_background_scene(i, 1).world.items)
       EXPECT_EQ(taught.count(placed.thing->name), 0U);
   }
 }

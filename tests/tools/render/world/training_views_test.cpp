@@ -17,7 +17,7 @@ TEST(TrainingViews, ShowOneObjectFromAllRoundAtSeveralPitches) {
   TurntableSettings settings;
   settings.azimuths = 4;
   settings.pitches = 2;
-  const Turntable turntable(settings, 1);
+  const TurntableWorld turntable(settings, 1);
   ASSERT_EQ(turntable.view_count(nullptr), 8);
   const TaughtObject mug = make_taught_object(3);
   for (const int index : {0, 1, 5}) {
@@ -39,7 +39,7 @@ TEST(TrainingViews, ShowOneObjectFromAllRoundAtSeveralPitches) {
 TEST(TrainingViews, TheCameraStandsAsFarAwayAsAsked) {
   TurntableSettings settings;
   settings.distance_m = 1.3;
-  const RenderedFrame view = Turntable(settings, 1).render(make_taught_object(3), nullptr, 0);
+  const RenderedFrame view = TurntableWorld(settings, 1).render(make_taught_object(3), nullptr, 0);
   EXPECT_NEAR(view.objects.at(0).T_camera_object.translation().norm(), 1.3, 0.08);
 }
 
@@ -69,7 +69,7 @@ double agreeing_share(const RenderedFrame& view, const Mesh& mesh) {
 }
 
 TEST(TrainingViews, LyingAndTiltedOnesMatchTheirTruth) {
-  const Turntable turntable(few_views({Attitude::kLying, Attitude::kTilted}), 1);
+  const TurntableWorld turntable(few_views({Attitude::kLying, Attitude::kTilted}), 1);
   for (int id = 1; id <= kClassCount; ++id) {
     const TaughtObject object = make_taught_object(id);
     SCOPED_TRACE(object.name);
@@ -100,9 +100,9 @@ TEST(TrainingViews, LyingOnesShowEverySideOfABox) {
 TEST(TrainingViews, UprightOnesDoNotDependOnTheOthers) {
   const TaughtObject mug = make_taught_object(3);
   const AttitudeChoice choice(mug.thing->mesh);
-  const RenderedFrame alone = Turntable(few_views({Attitude::kUpright}), 1).render(mug, nullptr, 2);
+  const RenderedFrame alone = TurntableWorld(few_views({Attitude::kUpright}), 1).render(mug, nullptr, 2);
   const RenderedFrame second =
-      Turntable(few_views({Attitude::kTilted, Attitude::kUpright}), 1).render(mug, &choice, 5 + 2);
+      TurntableWorld(few_views({Attitude::kTilted, Attitude::kUpright}), 1).render(mug, &choice, 5 + 2);
   EXPECT_EQ(cv::norm(alone.frame.colour, second.frame.colour, cv::NORM_INF), 0.0);
   EXPECT_TRUE(alone.objects[0].T_camera_object.matrix() == second.objects[0].T_camera_object.matrix());
 }
@@ -110,10 +110,10 @@ TEST(TrainingViews, UprightOnesDoNotDependOnTheOthers) {
 TEST(TrainingViews, RefusesAbsurdSettings) {
   TurntableSettings settings;
   settings.azimuths = 0;
-  EXPECT_THROW(Turntable(settings, 1), InputError);
-  EXPECT_THROW(Turntable(few_views({}), 1), InputError);
-  EXPECT_THROW(Turntable(few_views({Attitude::kLying, Attitude::kLying}), 1), InputError);
-  EXPECT_THROW(Turntable(few_views({Attitude::kLying}), 1).render(make_taught_object(3), nullptr, 0), InputError);
+  EXPECT_THROW(TurntableWorld(settings, 1), InputError);
+  EXPECT_THROW(TurntableWorld(few_views({}), 1), InputError);
+  EXPECT_THROW(TurntableWorld(few_views({Attitude::kLying, Attitude::kLying}), 1), InputError);
+  EXPECT_THROW(TurntableWorld(few_views({Attitude::kLying}), 1).render(make_taught_object(3), nullptr, 0), InputError);
   EXPECT_THROW(parse_attitude("floating"), InputError);
 }
 

@@ -52,7 +52,7 @@ cv::Mat banana_skin(Random& random) {
 
 }  // namespace
 
-ThingPtr make_milk_carton(Random& random) {
+AssetPtr make_milk_carton(Random& random) {
   constexpr double kWidth = 0.074;
   constexpr double kBody = 0.15;
   constexpr double kRoof = 0.036;
@@ -77,12 +77,12 @@ ThingPtr make_milk_carton(Random& random) {
                     0.12F);
 }
 
-ThingPtr make_tea_box(Random& random) {
+AssetPtr make_tea_box(Random& random) {
   const Palette palette{hsv(142, 0.7, 0.34), hsv(44, 0.75, 0.85), hsv(46, 0.35, 0.95), hsv(150, 0.8, 0.14)};
   return make_asset("tea_box", carton_mesh({0.138, 0.068, 0.082}, palette, random), 0.12F);
 }
 
-ThingPtr make_sponge(Random& random) {
+AssetPtr make_sponge(Random& random) {
   const cv::Mat foam = pores({512, 384}, hsv(50, 0.72, 0.9), random);
   const cv::Mat scourer = pores({512, 384}, hsv(135, 0.7, 0.36), random);
   return make_asset("sponge",
@@ -91,7 +91,7 @@ ThingPtr make_sponge(Random& random) {
                     0.03F);
 }
 
-ThingPtr make_office_stapler(Random& random) {
+AssetPtr make_office_stapler(Random& random) {
   cv::Mat shell = plain({512, 96}, hsv(2, 0.82, 0.62), 0.06, random);
   const cv::Mat rubber = plain({128, 64}, hsv(220, 0.1, 0.14), 0.08, random);
   const cv::Mat steel = metal({128, 64}, random);
@@ -107,7 +107,7 @@ ThingPtr make_office_stapler(Random& random) {
                     0.25F);
 }
 
-ThingPtr make_beach_ball(Random& random) {
+AssetPtr make_beach_ball(Random& random) {
   constexpr double r = 0.058;
   constexpr int kSteps = 20;
   std::vector<ProfilePoint> profile;
@@ -125,7 +125,7 @@ ThingPtr make_beach_ball(Random& random) {
   return make_asset("beach_ball", finish_object(lathe(with_arc_length(profile), texture)), 0.25F);
 }
 
-ThingPtr make_toy_truck(Random& random) {
+AssetPtr make_toy_truck(Random& random) {
   const cv::Mat red = plain({128, 128}, hsv(356, 0.85, 0.7), 0.04, random);
   const cv::Mat yellow = plain({128, 128}, hsv(46, 0.9, 0.92), 0.04, random);
   const cv::Mat dark = plain({64, 64}, hsv(220, 0.2, 0.2), 0.05, random);
@@ -151,7 +151,7 @@ ThingPtr make_toy_truck(Random& random) {
   return make_asset("toy_truck", finish_object(compose(parts)), 0.25F);
 }
 
-ThingPtr make_banana(Random& random) {
+AssetPtr make_banana(Random& random) {
   constexpr int kSteps = 24;
   constexpr double kBend = 0.095;  // radius of the arc it follows
   std::vector<Eigen::Vector3d> path;
@@ -166,7 +166,7 @@ ThingPtr make_banana(Random& random) {
   return make_asset("banana", finish_object(tapered_tube(path, radii, banana_skin(random), 12)), 0.12F);
 }
 
-ThingPtr make_flashlight(Random& random) {
+AssetPtr make_flashlight(Random& random) {
   cv::Mat shell = plain({256, 768}, hsv(214, 0.6, 0.3), 0.05, random);
   const cv::Scalar yellow = hsv(50, 0.9, 0.92);
   const cv::Mat lens = plain({64, 64}, hsv(55, 0.08, 0.95), 0.03, random);

@@ -73,7 +73,7 @@ cv::Mat gingham(const cv::Size& size, const cv::Scalar& colour, int squares, Ran
 
 }  // namespace
 
-ThingPtr make_plate(Random& random) {
+AssetPtr make_plate(Random& random) {
   cv::Mat glaze = plain({512, 512}, hsv(45, 0.05, 0.9), 0.03, random);
   // Rows run from the middle of the upper side to the rim (about 0.49) and on to the middle of the lower side.
   draw_ring(glaze, 0.41, 0.52, hsv(222, 0.75, 0.5));
@@ -85,7 +85,7 @@ ThingPtr make_plate(Random& random) {
   return make_asset("plate", finish_object(lathe(with_arc_length(profile), glaze)), 0.3F);
 }
 
-ThingPtr make_teapot(Random& random) {
+AssetPtr make_teapot(Random& random) {
   const cv::Mat glaze = plain({256, 256}, hsv(168, 0.62, 0.42), 0.06, random);
   const cv::Mat knob_glaze = plain({64, 64}, hsv(40, 0.35, 0.85), 0.05, random);
   const std::vector<ProfilePoint> profile = {{0.0, 0.0},       {0.042, 0.0},    {0.042, 0.0},   {0.044, 0.005},
@@ -105,7 +105,7 @@ ThingPtr make_teapot(Random& random) {
                     0.35F);
 }
 
-ThingPtr make_pitcher(Random& random) {
+AssetPtr make_pitcher(Random& random) {
   cv::Mat enamel = plain({512, 512}, hsv(48, 0.1, 0.88), 0.04, random);
   const cv::Scalar red = hsv(4, 0.78, 0.62);
   draw_ring(enamel, 0.46, 0.52, red);  // the rim, both sides
@@ -119,7 +119,7 @@ ThingPtr make_pitcher(Random& random) {
   return make_asset("pitcher", finish_object(compose({at(jug, kOrigin), at(handle, kOrigin)})), 0.3F);
 }
 
-ThingPtr make_tumbler(Random& random) {
+AssetPtr make_tumbler(Random& random) {
   cv::Mat glass = plain({256, 512}, hsv(196, 0.5, 0.72), 0.05, random);
   const cv::Scalar orange = hsv(24, 0.85, 0.92);
   draw_ring(glass, 0.53, 0.56, orange);
@@ -128,7 +128,7 @@ ThingPtr make_tumbler(Random& random) {
   return make_asset("tumbler", cup_mesh({0.039, 0.029, 0.148, 0.0025}, glass), 0.4F);
 }
 
-ThingPtr make_water_bottle(Random& random) {
+AssetPtr make_water_bottle(Random& random) {
   constexpr double r = 0.034;
   cv::Mat plastic = plain({1024, 768}, hsv(188, 0.32, 0.78), 0.04, random);
   Palette palette{hsv(214, 0.85, 0.55), hsv(190, 0.6, 0.9), hsv(0, 0.0, 0.97), hsv(220, 0.8, 0.25)};
@@ -149,7 +149,7 @@ ThingPtr make_water_bottle(Random& random) {
   return make_asset("water_bottle", finish_object(compose({at(body, {0, 0, 0.1}), at(cap, {0, 0, 0.209})})), 0.4F);
 }
 
-ThingPtr make_shampoo_bottle(Random& random) {
+AssetPtr make_shampoo_bottle(Random& random) {
   Palette palette{hsv(276, 0.5, 0.6), hsv(64, 0.6, 0.88), hsv(280, 0.05, 0.97), hsv(276, 0.7, 0.22)};
   cv::Mat plastic = plain({1024, 640}, palette.base, 0.04, random);
   can_label({1024, 330}, palette, random).copyTo(plastic.rowRange(210, 540));
@@ -161,7 +161,7 @@ ThingPtr make_shampoo_bottle(Random& random) {
   return make_asset("shampoo_bottle", finish_object(scaled(joined, {1.0, 0.62, 1.0})), 0.3F);
 }
 
-ThingPtr make_jam_jar(Random& random) {
+AssetPtr make_jam_jar(Random& random) {
   Palette palette{hsv(50, 0.12, 0.95), hsv(350, 0.8, 0.65), hsv(50, 0.1, 0.97), hsv(352, 0.85, 0.3)};
   cv::Mat jam = plain({1024, 512}, hsv(352, 0.85, 0.34), 0.2, random);
   cv::Mat paper = plain({400, 190}, palette.base, 0.03, random);
@@ -176,7 +176,7 @@ ThingPtr make_jam_jar(Random& random) {
   return make_asset("jam_jar", finish_object(compose({at(pot, {0, 0, 0.042}), at(lid, {0, 0, 0.0905})})), 0.35F);
 }
 
-ThingPtr make_food_tin(Random& random) {
+AssetPtr make_food_tin(Random& random) {
   constexpr double r = 0.0435;
   constexpr double h = 0.112;
   Palette palette{hsv(112, 0.65, 0.42), hsv(14, 0.9, 0.88), hsv(52, 0.25, 0.97), hsv(120, 0.8, 0.18)};

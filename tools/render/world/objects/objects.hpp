@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/render/world/objects/thing.hpp"
+#include "tools/render/world/objects/asset.hpp"
 
 // The objects. Frame of each: origin at the centre of its bounding box, z up, front to -y.
 
@@ -18,7 +18,7 @@ struct TaughtObject {
   int id = 0;
   std::string name;
   bool symmetric_about_z = false;  ///< of its shape; its print may differ all round
-  ThingPtr thing;
+  AssetPtr thing;
 };
 
 inline constexpr int kClassCount = 4;         ///< ids 1 to 4
@@ -43,11 +43,11 @@ int taught_object_id(const std::string& name);
 
 /// An instance of class 1 to 4 that is never taught: of the taught one's colours in another size, or of its size in
 /// other colours. Shape and print follow the seed. Throws InputError for another class.
-ThingPtr make_other_instance(int class_id, std::uint64_t seed);
+AssetPtr make_other_instance(int class_id, std::uint64_t seed);
 
 /// Household things that are never taught. `kind` 0 to kDistractorKinds-1; shape and print follow the seed.
 /// `taught_colours`: probability that a surface has a colour of the four classes.
 inline constexpr int kDistractorKinds = 16;
-ThingPtr make_distractor(int kind, std::uint64_t seed, double taught_colours = 0.0);
+AssetPtr make_distractor(int kind, std::uint64_t seed, double taught_colours = 0.0);
 
 }  // namespace houghstream::world

@@ -95,7 +95,7 @@ void repaint(bool other_print, Random& random, Mesh& mesh) {
 
 }  // namespace
 
-ThingPtr make_hard_negative(const Thing& thing, Random& random) {
+AssetPtr make_hard_negative(const Asset& thing, Random& random) {
   Mesh mesh = thing.mesh;
   const double sort = random.uniform();
   if (sort < 0.25) {
@@ -110,10 +110,10 @@ ThingPtr make_hard_negative(const Thing& thing, Random& random) {
   } else {
     repaint(chance(random, 0.6), random, mesh);
   }
-  return make_asset(thing.name, std::move(mesh), thing.gloss);
+  return make_asset(thing.name, std::move(mesh), thing.specular);
 }
 
-ThingPtr make_instance_variant(const Thing& thing, Random& random) {
+AssetPtr make_instance_variant(const Asset& thing, Random& random) {
   constexpr double kMaxScale = 0.015;
   constexpr double kMaxBent_m = 0.003;
   constexpr double kMaxBent = 0.02;  // of what it measures across
@@ -127,9 +127,9 @@ ThingPtr make_instance_variant(const Thing& thing, Random& random) {
     const Eigen::Vector3d point = vertex.cast<double>() - middle;
     vertex = (middle + scale * point + bending.at(point)).cast<float>();
   }
-  Thing next = thing;
+  Asset next = thing;
   next.mesh = std::move(mesh);
-  return std::make_shared<const Thing>(std::move(next));
+  return std::make_shared<const Asset>(std::move(next));
 }
 
 }  // namespace houghstream::world

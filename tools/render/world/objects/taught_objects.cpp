@@ -23,7 +23,7 @@ const std::array<const char*, kTaughtObjectCount> kNames = {"bowl",   "cereal_bo
 struct FurtherClass {
   const char* name;
   bool symmetric_about_z;
-  ThingPtr (*make)(Random&);
+  AssetPtr (*make)(Random&);
 };
 
 // By id, from kFirstFurtherId on.
@@ -44,13 +44,13 @@ constexpr std::array<FurtherClass, kFurtherClassCount> kFurther = {{{"plate", tr
                                                                     {"banana", false, make_banana},
                                                                     {"flashlight", false, make_flashlight}}};
 
-ThingPtr bowl(bool second, Random& random) {
+AssetPtr bowl(bool second, Random& random) {
   const BowlShape shape = second ? BowlShape{0.084, 0.045, 0.056, 0.0035} : BowlShape{0.074, 0.036, 0.066, 0.004};
   const cv::Scalar colour = second ? hsv(205, 0.22, 0.72) : bgr(class_colours(1).base);
   return make_asset(second ? "bowl_2" : "bowl", bowl_mesh(shape, plain({256, 256}, colour, 0.03, random)), 0.25F);
 }
 
-ThingPtr cereal_box(bool second, Random& random) {
+AssetPtr cereal_box(bool second, Random& random) {
   const Eigen::Vector3d size = second ? Eigen::Vector3d(0.165, 0.068, 0.245) : Eigen::Vector3d(0.192, 0.058, 0.285);
   Palette palette = random_palette(random);
   palette.base = second ? hsv(28, 0.8, 0.85) : bgr(class_colours(2).base);
@@ -58,7 +58,7 @@ ThingPtr cereal_box(bool second, Random& random) {
   return make_asset(second ? "cereal_box_2" : "cereal_box", carton_mesh(size, palette, random), 0.12F);
 }
 
-ThingPtr coffee_mug(bool second, Random& random) {
+AssetPtr coffee_mug(bool second, Random& random) {
   const MugShape shape = second ? MugShape{0.046, 0.039, 0.102, 0.004} : MugShape{0.0405, 0.0405, 0.094, 0.0038};
   Palette palette = random_palette(random);
   palette.base = second ? hsv(150, 0.35, 0.5) : bgr(class_colours(3).base);
@@ -66,7 +66,7 @@ ThingPtr coffee_mug(bool second, Random& random) {
   return make_asset(second ? "coffee_mug_2" : "coffee_mug", mug_mesh(shape, palette, random), 0.3F);
 }
 
-ThingPtr soda_can(bool second, Random& random) {
+AssetPtr soda_can(bool second, Random& random) {
   Palette palette = random_palette(random);
   palette.base = second ? hsv(212, 0.7, 0.55) : bgr(class_colours(4).base);
   palette.accent = second ? hsv(200, 0.15, 0.88) : bgr(class_colours(4).accent);
@@ -85,7 +85,7 @@ TaughtObject make_further_object(int id) {
 TaughtObject make_instance(int id) {
   const int number = id - kFirstInstanceId;
   const int kind = number % kClassCount;
-  const ThingPtr thing = make_other_instance(1 + kind, kObjectSeed + static_cast<std::uint64_t>(id));
+  const AssetPtr thing = make_other_instance(1 + kind, kObjectSeed + static_cast<std::uint64_t>(id));
   return {id, fmt::format("{}_{}", thing->name, number + 1), kind == 0 || kind == 3, thing};
 }
 

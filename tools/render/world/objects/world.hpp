@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "pipeline/types/camera.hpp"
-#include "tools/render/world/objects/thing.hpp"
+#include "tools/render/world/objects/asset.hpp"
 
 // A world to be photographed. World frame: z up, metres, origin on the middle of the table top (or turntable).
 
 namespace houghstream::world {
 
 /// A thing in its place.
-struct Placed {
-  ThingPtr thing;
+struct PlacedAsset {
+  AssetPtr thing;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
   int object_id = 0;         ///< TaughtObject::id where the truth is to name it, else 0
   bool casts_shadow = true;  ///< false for walls: lamps may stand behind them
@@ -43,7 +43,7 @@ struct ColourCameraSettings {
 Camera synthetic_camera();
 
 struct World {
-  std::vector<Placed> items;
+  std::vector<PlacedAsset> items;
   std::vector<Light> lights;
   Eigen::Vector3f ambient_bgr = Eigen::Vector3f::Constant(0.3F);  ///< linear light from everywhere
   double focus_radius_m = 1.2;  ///< shadows are kept within this distance of the origin

@@ -73,13 +73,13 @@ class Sensor {
   bool lost(int x, int y, double z) const {
     const double wobble = std::max(0.2, 1.0 + 0.25 * loss_noise_.at<float>(y, x));
     const double cosine = view_.cos_incidence.at<float>(y, x);
-    const double gloss = view_.gloss.at<float>(y, x);
-    const double signal = view_.reflectance.at<float>(y, x) * (1.0 - 0.6 * gloss) * cosine / (z * z);
+    const double specular = view_.specular.at<float>(y, x);
+    const double signal = view_.reflectance.at<float>(y, x) * (1.0 - 0.6 * specular) * cosine / (z * z);
     if (cosine < settings_.min_cosine * wobble || signal < settings_.min_signal * wobble) return true;
     const double cosine_sq = cosine * cosine;
     const double cosine_8 = cosine_sq * cosine_sq * cosine_sq * cosine_sq;
     const double cosine_32 = cosine_8 * cosine_8 * cosine_8 * cosine_8;
-    const double mirrored = gloss * cosine_32 * cosine_32;
+    const double mirrored = specular * cosine_32 * cosine_32;
     if (mirrored > settings_.glare * wobble) return true;
     const auto index = static_cast<std::uint64_t>(y) * 4096U + static_cast<std::uint64_t>(x);
     return edges_.at<std::uint8_t>(y, x) != 0 && pixel_uniform(seed_ + 5, index) < settings_.edge_loss;

@@ -35,7 +35,7 @@ struct SensorView {
   cv::Mat depth;          ///< CV_32FC1, metres, NaN = nothing
   cv::Mat cos_incidence;  ///< CV_32FC1, 0 to 1
   cv::Mat reflectance;    ///< CV_32FC1, 0 to 1
-  cv::Mat gloss;          ///< CV_32FC1, 0 to 1
+  cv::Mat specular;       ///< CV_32FC1, 0 to 1
 };
 
 /// Axial deviation of measurements at depth z (m) and incidence cosine, metres (Nguyen et al. 2012).

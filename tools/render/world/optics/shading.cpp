@@ -63,7 +63,7 @@ Eigen::Vector3f sample_level(const cv::Mat& level, const Eigen::Vector2f& uv) {
 }
 
 // The level whose texels are about as large as the pixel on the surface.
-const cv::Mat& mip_level(const Thing& thing, int triangle, float pixel_on_surface_m) {
+const cv::Mat& mip_level(const Asset& thing, int triangle, float pixel_on_surface_m) {
   const float texels = std::max(1.0F, thing.texels_per_m[static_cast<std::size_t>(triangle)] * pixel_on_surface_m);
   const int level = std::ilogb(1.23F * texels);  // rounds log2 up from seven tenths
   return thing.mip_levels[std::min(static_cast<std::size_t>(level), thing.mip_levels.size() - 1)];
@@ -80,7 +80,7 @@ struct Point {
   Eigen::Vector3f normal;
   Eigen::Vector3f to_eye;
   Eigen::Vector3f reflectance_bgr;
-  float gloss;
+  float specular;
   float turn;
 };
 
@@ -96,7 +96,7 @@ Eigen::Vector3f reflected(const Point& point, const std::vector<LightInView>& li
     const float half = std::max(0.0F, point.normal.dot((to_light + point.to_eye).normalized()));
     const float half_4 = half * half * half * half;
     const float half_16 = half_4 * half_4 * half_4 * half_4;
-    const float mirror = 1.2F * point.gloss * half_16 * half_16 * half_16;
+    const float mirror = 1.2F * point.specular * half_16 * half_16 * half_16;
     sum += lit * light.colour_bgr.cwiseProduct(facing * point.reflectance_bgr + Eigen::Vector3f::Constant(mirror));
   }
   return sum;
@@ -115,7 +115,7 @@ class Shader {
       lights_.push_back({(T_camera_world * light.position_world).cast<float>(), light.colour_bgr,
                          ShadowLookup(lit_world.shadows[i], T_camera_world.inverse(), light.penumbra_m)});
     }
-    for (const Placed& placed : world_.items)
+    for (const PlacedAsset& placed : world_.items)
       R_camera_object_.push_back((T_camera_world * placed.T_world_object).linear().cast<float>());
   }
 
@@ -124,7 +124,7 @@ class Shader {
     const std::uint16_t id = view.geometry.id.at<std::uint16_t>(y, x);
     if (id == 0) return;
     const std::size_t item = id - 1U;
-    const Thing& thing = *world_.items[item].thing;
+    const Asset& thing = *world_.items[item].thing;
     const int triangle = view.geometry.triangle.at<std::int32_t>(y, x);
     const auto& [a, b, c] = thing.mesh.triangles[static_cast<std::size_t>(triangle)];
     const cv::Vec2f bary = view.geometry.bary.at<cv::Vec2f>(y, x);
@@ -148,18 +148,18 @@ class Shader {
       const float pixel_m = static_cast<float>(camera_.metres_per_px(z)) / std::sqrt(std::max(incidence, 0.05F));
       point.reflectance_bgr = sample_level(mip_level(thing, triangle, pixel_m), uv);
     }
-    point.gloss = thing.gloss;
+    point.specular = thing.specular;
     const auto number = static_cast<std::uint64_t>(image_y) * 4096U + static_cast<std::uint64_t>(image_x);
     point.turn = pixel_uniform(kPatternSeed, number);
 
     // More of the light from everywhere comes from above.
     const Eigen::Vector3f ambient = world_.ambient_bgr * (0.72F + 0.28F * point.normal.dot(up_));
     const Eigen::Vector3f light =
-        (1.0F - thing.glow) * reflected(point, lights_, ambient) + thing.glow * point.reflectance_bgr;
+        (1.0F - thing.emission) * reflected(point, lights_, ambient) + thing.emission * point.reflectance_bgr;
     view.radiance.at<cv::Vec3f>(y, x) = {light.x(), light.y(), light.z()};
     view.cos_incidence.at<float>(y, x) = incidence;
     view.reflectance.at<float>(y, x) = point.reflectance_bgr.mean();
-    view.gloss.at<float>(y, x) = thing.gloss;
+    view.specular.at<float>(y, x) = thing.specular;
   }
 
  private:
@@ -184,7 +184,7 @@ ShadowMap make_shadow_map(const World& world, const Light& light) {
   map.T_light_world = look_at(light.position_world, Eigen::Vector3d::Zero());
   map.inverse_depth = cv::Mat::zeros(size, size, CV_32FC1);
   std::vector<RenderItem> items;
-  for (const Placed& placed : world.items) {
+  for (const PlacedAsset& placed : world.items) {
     if (placed.casts_shadow) items.push_back({&placed.thing->mesh, map.T_light_world * placed.T_world_object, 1});
   }
   const cv::Mat depth = render_depth(items, map.camera, {0, 0, size, size});
@@ -244,7 +244,7 @@ ShadedView shade_view(const LitWorld& lit_world, const Camera& camera, const Eig
                       const cv::Rect& region_px) {
   std::vector<RenderItem> items;
   for (std::size_t i = 0; i < lit_world.world.items.size(); ++i) {
-    const Placed& placed = lit_world.world.items[i];
+    const PlacedAsset& placed = lit_world.world.items[i];
     items.push_back({&placed.thing->mesh, T_camera_world * placed.T_world_object, static_cast<int>(i) + 1});
   }
   ShadedView view;
@@ -253,7 +253,7 @@ ShadedView shade_view(const LitWorld& lit_world, const Camera& camera, const Eig
   view.radiance = cv::Mat::zeros(size, CV_32FC3);
   view.cos_incidence = cv::Mat::zeros(size, CV_32FC1);
   view.reflectance = cv::Mat::zeros(size, CV_32FC1);
-  view.gloss = cv::Mat::zeros(size, CV_32FC1);
+  view.specular = cv::Mat::zeros(size, CV_32FC1);
   const Shader shader(lit_world, camera, T_camera_world, region_px.tl());
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) shader.shade_pixel(x, y, view);

@@ -81,8 +81,8 @@ class TimeOfFlight {
 
 double returned_amplitude(const SensorView& view, const cv::Point& pixel) {
   const double z = view.depth.at<float>(pixel);
-  const double gloss = view.gloss.at<float>(pixel);
-  return view.reflectance.at<float>(pixel) * (1.0 - 0.6 * gloss) * view.cos_incidence.at<float>(pixel) / (z * z);
+  const double specular = view.specular.at<float>(pixel);
+  return view.reflectance.at<float>(pixel) * (1.0 - 0.6 * specular) * view.cos_incidence.at<float>(pixel) / (z * z);
 }
 
 double time_of_flight_sigma(double amplitude, const TimeOfFlightSettings& settings) {

@@ -17,12 +17,12 @@ Attitude parse_attitude(const std::string& name) {
 }
 
 AttitudeChoice::AttitudeChoice(const Mesh& mesh) {
-  for (const RestingFamily& family : lying_families(find_stable_poses(mesh)))
+  for (const StablePoseFamily& family : lying_families(find_stable_poses(mesh)))
     turns_.insert(turns_.end(), family.size() > 1 ? 2 : 1, family);
 }
 
 Eigen::Matrix3d AttitudeChoice::lying(int index, Random& random) const {
-  const RestingFamily& family = turns_[static_cast<std::size_t>(index) % turns_.size()];
+  const StablePoseFamily& family = turns_[static_cast<std::size_t>(index) % turns_.size()];
   return family[static_cast<std::size_t>(random.below(static_cast<int>(family.size())))].R_table_object;
 }
 

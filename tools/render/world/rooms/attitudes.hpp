@@ -38,7 +38,7 @@ class AttitudeChoice {
  private:
   Eigen::Matrix3d lying(int index, Random& random) const;
 
-  std::vector<RestingFamily> turns_;  ///< those without upright, in the order in which they are shown
+  std::vector<StablePoseFamily> turns_;  ///< those without upright, in the order in which they are shown
 };
 
 /// Height of the object frame's origin over a table that the mesh's lowest point touches, metres.

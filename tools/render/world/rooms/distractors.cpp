@@ -42,7 +42,7 @@ class Dyes {
   double taught_share_;
 };
 
-ThingPtr bottle(Random& random, const Dyes& dyes) {
+AssetPtr bottle(Random& random, const Dyes& dyes) {
   const double r = random.uniform(0.028, 0.042);
   const double h = random.uniform(0.19, 0.29);
   cv::Mat texture = plain({768, 512}, dyes.plain(random), 0.05, random);
@@ -58,7 +58,7 @@ ThingPtr bottle(Random& random, const Dyes& dyes) {
   return make_asset("bottle", mesh, 0.4F);
 }
 
-ThingPtr book(Random& random, const Dyes& dyes) {
+AssetPtr book(Random& random, const Dyes& dyes) {
   const Palette palette = dyes.print(random);
   const Eigen::Vector3d size(random.uniform(0.13, 0.2), random.uniform(0.19, 0.27), random.uniform(0.015, 0.05));
   BoxFaces faces;
@@ -70,7 +70,7 @@ ThingPtr book(Random& random, const Dyes& dyes) {
   return make_asset("book", finish_object(box(size, faces)), 0.08F);
 }
 
-ThingPtr jug(Random& random, const Dyes& dyes) {
+AssetPtr jug(Random& random, const Dyes& dyes) {
   const double r = random.uniform(0.055, 0.075);
   const double h = random.uniform(0.14, 0.2);
   const cv::Mat glaze = plain({128, 128}, dyes.plain(random), 0.05, random);
@@ -92,7 +92,7 @@ ThingPtr jug(Random& random, const Dyes& dyes) {
   return make_asset("jug", finish_object(compose({at(body, origin), at(handle, origin), at(spout, origin)})), 0.35F);
 }
 
-ThingPtr plates(Random& random, const Dyes& /*dyes*/) {
+AssetPtr plates(Random& random, const Dyes& /*dyes*/) {
   const double r = random.uniform(0.085, 0.13);
   const cv::Mat glaze = plain({256, 128}, hsv(random.uniform(0, 360), random.uniform(0, 0.3), 0.85), 0.04, random);
   const Mesh plate = lathe(
@@ -106,7 +106,7 @@ ThingPtr plates(Random& random, const Dyes& /*dyes*/) {
   return make_asset("plates", finish_object(compose(parts)), 0.3F);
 }
 
-ThingPtr lamp(Random& random, const Dyes& dyes) {
+AssetPtr lamp(Random& random, const Dyes& dyes) {
   const cv::Mat shade = fabric({256, 128}, dyes.plain(random), random);
   const cv::Mat stand = metal({64, 64}, random);
   const double h = random.uniform(0.3, 0.42);
@@ -121,7 +121,7 @@ ThingPtr lamp(Random& random, const Dyes& dyes) {
   return make_asset("lamp", finish_object(compose({at(foot, {0, 0, 0}), at(hood, {0, 0, 0})})), 0.1F);
 }
 
-ThingPtr plant(Random& random, const Dyes& /*dyes*/) {
+AssetPtr plant(Random& random, const Dyes& /*dyes*/) {
   const double r = random.uniform(0.045, 0.07);
   const cv::Mat clay = plain({128, 128}, hsv(random.uniform(8, 40), 0.5, random.uniform(0.4, 0.8)), 0.1, random);
   const cv::Mat leaf = plain({64, 64}, hsv(random.uniform(80, 140), 0.6, random.uniform(0.25, 0.55)), 0.2, random);
@@ -139,7 +139,7 @@ ThingPtr plant(Random& random, const Dyes& /*dyes*/) {
   return make_asset("plant", finish_object(compose(parts)), 0.08F);
 }
 
-ThingPtr stapler(Random& random, const Dyes& dyes) {
+AssetPtr stapler(Random& random, const Dyes& dyes) {
   const cv::Mat shell = plain({128, 64}, dyes.plain(random), 0.08, random);
   const cv::Mat steel = metal({64, 64}, random);
   return make_asset("stapler",
@@ -149,14 +149,14 @@ ThingPtr stapler(Random& random, const Dyes& dyes) {
                     0.2F);
 }
 
-ThingPtr cup(Random& random, const Dyes& dyes) {
+AssetPtr cup(Random& random, const Dyes& dyes) {
   const cv::Mat texture = mug_print({512, 256}, dyes.print(random), random);
   const double r = random.uniform(0.033, 0.045);
   return make_asset("cup", cup_mesh({r, random.uniform(0.7, 1.0) * r, random.uniform(0.08, 0.14), 0.003}, texture),
                     0.35F);
 }
 
-ThingPtr fruit(Random& random, const Dyes& /*dyes*/) {
+AssetPtr fruit(Random& random, const Dyes& /*dyes*/) {
   const double r = random.uniform(0.03, 0.05);
   const double flat = random.uniform(0.8, 1.1);
   std::vector<Eigen::Vector2d> outline;
@@ -168,14 +168,14 @@ ThingPtr fruit(Random& random, const Dyes& /*dyes*/) {
   return make_asset("fruit", turned_mesh(outline, skin), 0.2F);
 }
 
-ThingPtr keyboard(Random& random, const Dyes& /*dyes*/) {
+AssetPtr keyboard(Random& random, const Dyes& /*dyes*/) {
   BoxFaces faces;
   faces.top = keyboard_top({900, 280}, random);
   faces.front = faces.top.rowRange(0, 12).clone();
   return make_asset("keyboard", finish_object(box({0.42, 0.135, 0.018}, faces)), 0.08F);
 }
 
-ThingPtr tissue_box(Random& random, const Dyes& dyes) {
+AssetPtr tissue_box(Random& random, const Dyes& dyes) {
   const Palette palette = dyes.print(random);
   BoxFaces faces;
   faces.front = chance(random, 0.5) ? poster({460, 180}, random) : carton_front({460, 180}, palette, random);
@@ -184,7 +184,7 @@ ThingPtr tissue_box(Random& random, const Dyes& dyes) {
   return make_asset("tissue_box", finish_object(box({0.23, 0.115, random.uniform(0.06, 0.11)}, faces)), 0.06F);
 }
 
-ThingPtr tin(Random& random, const Dyes& dyes) {
+AssetPtr tin(Random& random, const Dyes& dyes) {
   const double r = random.uniform(0.036, 0.052);
   const double h = random.uniform(0.07, 0.15);
   cv::Mat texture = metal({768, 512}, random);
@@ -195,7 +195,7 @@ ThingPtr tin(Random& random, const Dyes& dyes) {
       0.4F);
 }
 
-ThingPtr vase(Random& random, const Dyes& dyes) {
+AssetPtr vase(Random& random, const Dyes& dyes) {
   const double r = random.uniform(0.04, 0.065);
   const double h = random.uniform(0.16, 0.26);
   const cv::Mat glaze = mug_print({512, 384}, dyes.print(random), random);
@@ -207,7 +207,7 @@ ThingPtr vase(Random& random, const Dyes& dyes) {
       0.35F);
 }
 
-ThingPtr monitor(Random& random, const Dyes& /*dyes*/) {
+AssetPtr monitor(Random& random, const Dyes& /*dyes*/) {
   BoxFaces faces;
   faces.back = plain({128, 96}, {40, 40, 40}, 0.05, random);
   faces.left = faces.right = faces.top = faces.bottom = faces.back;
@@ -221,12 +221,12 @@ ThingPtr monitor(Random& random, const Dyes& /*dyes*/) {
                     0.25F, 0.35F);
 }
 
-ThingPtr small_carton(Random& random, const Dyes& dyes) {
+AssetPtr small_carton(Random& random, const Dyes& dyes) {
   const Eigen::Vector3d size(random.uniform(0.06, 0.16), random.uniform(0.04, 0.08), random.uniform(0.08, 0.22));
   return make_asset("carton", carton_mesh(size, dyes.print(random), random), 0.12F);
 }
 
-ThingPtr jar(Random& random, const Dyes& dyes) {
+AssetPtr jar(Random& random, const Dyes& dyes) {
   const double r = random.uniform(0.035, 0.055);
   const double h = random.uniform(0.08, 0.15);
   const cv::Mat body = plain({256, 256}, dyes.plain(random), 0.08, random);
@@ -238,8 +238,8 @@ ThingPtr jar(Random& random, const Dyes& dyes) {
 
 }  // namespace
 
-ThingPtr make_distractor(int kind, std::uint64_t seed, double taught_colours) {
-  constexpr std::array<ThingPtr (*)(Random&, const Dyes&), kDistractorKinds> kMakers = {
+AssetPtr make_distractor(int kind, std::uint64_t seed, double taught_colours) {
+  constexpr std::array<AssetPtr (*)(Random&, const Dyes&), kDistractorKinds> kMakers = {
       bottle, book,     jug,        plates, lamp, plant,   stapler,      cup,
       fruit,  keyboard, tissue_box, tin,    vase, monitor, small_carton, jar};
   require(kind >= 0 && kind < kDistractorKinds, "distractor: kind {}, expected 0 to {}", kind, kDistractorKinds - 1);

@@ -78,7 +78,7 @@ Mesh finger(const std::vector<Eigen::Vector3d>& points, const FingerPlace& place
   return tapered_tube(path, {1.2 * r, 1.1 * r, 1.05 * r, r, 0.8 * r}, skin);
 }
 
-ThingPtr make_hand(const std::vector<Eigen::Vector3d>& points, const Grip& grip, const cv::Mat& skin,
+AssetPtr make_hand(const std::vector<Eigen::Vector3d>& points, const Grip& grip, const cv::Mat& skin,
                    const cv::Mat& sleeve) {
   double palm = 0.0;  // where it touches the thing, along `back`
   for (const Eigen::Vector3d& point : points) {
@@ -111,7 +111,7 @@ ThingPtr make_hand(const std::vector<Eigen::Vector3d>& points, const Grip& grip,
 }
 
 /// The share of the thing's silhouette that the hand hides in a view.
-double hidden_share(const Placed& hand, const Placed& thing, const Eigen::Isometry3d& T_camera_world) {
+double hidden_share(const PlacedAsset& hand, const PlacedAsset& thing, const Eigen::Isometry3d& T_camera_world) {
   const Camera camera{320, 240, 262.5, 262.5, 159.5, 119.5};
   const Eigen::Isometry3d T_camera_object = T_camera_world * thing.T_world_object;
   Eigen::AlignedBox2d extent;
@@ -127,13 +127,13 @@ double hidden_share(const Placed& hand, const Placed& thing, const Eigen::Isomet
   return all == 0 ? 0.0 : static_cast<double>(cv::countNonZero(before < object)) / all;
 }
 
-double mean_hidden_share(const Placed& hand, const Placed& thing, const HeldPlace& place) {
+double mean_hidden_share(const PlacedAsset& hand, const PlacedAsset& thing, const HeldPlace& place) {
   double sum = 0.0;
   for (const Eigen::Isometry3d& T_camera_world : place.views) sum += hidden_share(hand, thing, T_camera_world);
   return sum / static_cast<double>(place.views.size());
 }
 
-double lowest_point(const Placed& placed) {
+double lowest_point(const PlacedAsset& placed) {
   double lowest = 1e9;
   for (const Eigen::Vector3f& vertex : placed.thing->mesh.vertices) {
     lowest = std::min(lowest, (placed.T_world_object * vertex.cast<double>()).z());
@@ -168,7 +168,7 @@ Eigen::Matrix3d any_attitude(Random& random) {
       .toRotationMatrix();
 }
 
-Placed take_hold(const Placed& placed, const HeldPlace& place, Random& random) {
+PlacedAsset take_hold(const PlacedAsset& placed, const HeldPlace& place, Random& random) {
   constexpr int kTries = 400;
   const Eigen::Matrix3d R_world_object = placed.T_world_object.linear();
   const cv::Mat skin =
@@ -178,7 +178,7 @@ Placed take_hold(const Placed& placed, const HeldPlace& place, Random& random) {
   for (int i = 0; i < kTries; ++i) {
     const Grip grip = draw_grip(place.arm_azimuth_rad, static_cast<double>(i) / kTries, random);
     const auto points = surface_points(placed.thing->mesh, grip.axes.transpose() * R_world_object);
-    Placed hand{make_hand(points, grip, skin, sleeve), Eigen::Isometry3d::Identity(), 0, true};
+    PlacedAsset hand{make_hand(points, grip, skin, sleeve), Eigen::Isometry3d::Identity(), 0, true};
     hand.T_world_object.linear() = grip.axes;
     hand.T_world_object.translation() = placed.T_world_object.translation();
     if (lowest_point(hand) < kOverTableM) continue;
@@ -189,13 +189,13 @@ Placed take_hold(const Placed& placed, const HeldPlace& place, Random& random) {
        kTries);
 }
 
-Group hold(const ThingPtr& thing, int object_id, const HeldPlace& place, Random& random) {
-  Placed placed{thing, Eigen::Isometry3d::Identity(), object_id, true};
+AssetGroup hold(const AssetPtr& thing, int object_id, const HeldPlace& place, Random& random) {
+  PlacedAsset placed{thing, Eigen::Isometry3d::Identity(), object_id, true};
   const Eigen::Matrix3d R_world_object = any_attitude(random);
   placed.T_world_object.linear() = R_world_object;
   const double height_m = random.uniform(kMinHeldM, kMaxHeldM);
   placed.T_world_object.translation() << place.over, height_m + height_above_table(thing->mesh, R_world_object);
-  const Placed hand = take_hold(placed, place, random);
+  const PlacedAsset hand = take_hold(placed, place, random);
   return {hand, placed};
 }
 

@@ -24,10 +24,10 @@ Eigen::Matrix3d any_attitude(Random& random);
 
 /// A hand at the end of an arm that holds a placed thing: it hides 10 to 35 % of it over the views. Its axes are its
 /// `T_world_object`'s columns, the first from the thing towards the arm. Throws InputError where no such grip is found.
-Placed take_hold(const Placed& placed, const HeldPlace& place, Random& random);
+PlacedAsset take_hold(const PlacedAsset& placed, const HeldPlace& place, Random& random);
 
 /// Held over the table in any attitude by a hand at the end of an arm; the group's first member is the hand. The group
 /// frame is the world's. Throws InputError where no grip is found that hides 10 to 35 % of it.
-Group hold(const ThingPtr& thing, int object_id, const HeldPlace& place, Random& random);
+AssetGroup hold(const AssetPtr& thing, int object_id, const HeldPlace& place, Random& random);
 
 }  // namespace houghstream::world

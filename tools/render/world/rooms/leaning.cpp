@@ -51,7 +51,7 @@ std::optional<Leaning> lean(const Mesh& mesh, const std::vector<Eigen::Vector3d>
   return Leaning{edge_m, height_m};
 }
 
-Placed make_block(const Leaning& leaning, const Eigen::AlignedBox3d& object, Random& random) {
+PlacedAsset make_block(const Leaning& leaning, const Eigen::AlignedBox3d& object, Random& random) {
   const double thick = random.uniform(0.03, 0.09);
   const double beside = random.uniform(0.0, 0.03);
   const Eigen::Vector3d size(thick, object.sizes().y() + beside, leaning.height_m);
@@ -60,27 +60,27 @@ Placed make_block(const Leaning& leaning, const Eigen::AlignedBox3d& object, Ran
           ? wood({256, 256}, random)
           : plain({256, 256}, hsv(random.uniform(0, 360), random.uniform(0.1, 0.7), random.uniform(0.3, 0.9)), 0.05,
                   random);
-  Placed block{make_asset("block", finish_object(box(size, cover)), 0.1F), Eigen::Isometry3d::Identity(), 0, true};
+  PlacedAsset block{make_asset("block", finish_object(box(size, cover)), 0.1F), Eigen::Isometry3d::Identity(), 0, true};
   block.T_world_object.translation() << leaning.edge_m + 0.5 * size.x() + 1e-5, object.center().y(), 0.5 * size.z();
   return block;
 }
 
 /// Moved to the middle of the group.
-Group centred(Group group) {
+AssetGroup centred(AssetGroup group) {
   Eigen::AlignedBox2d extent;
-  for (const Placed& placed : group) {
+  for (const PlacedAsset& placed : group) {
     for (const Eigen::Vector3f& vertex : placed.thing->mesh.vertices) {
       extent.extend((placed.T_world_object * vertex.cast<double>()).head<2>().eval());
     }
   }
   const Eigen::Vector3d to_middle(-extent.center().x(), -extent.center().y(), 0.0);
-  for (Placed& placed : group) placed.T_world_object = Eigen::Translation3d(to_middle) * placed.T_world_object;
+  for (PlacedAsset& placed : group) placed.T_world_object = Eigen::Translation3d(to_middle) * placed.T_world_object;
   return group;
 }
 
 }  // namespace
 
-Group put_leaning(const ThingPtr& thing, int object_id, Random& random) {
+AssetGroup put_leaning(const AssetPtr& thing, int object_id, Random& random) {
   constexpr int kTries = 400;
   const Mesh& mesh = thing->mesh;
   const AttitudeChoice choice(mesh);
@@ -93,7 +93,7 @@ Group put_leaning(const ThingPtr& thing, int object_id, Random& random) {
     const double towards = random.uniform(-M_PI, M_PI);
     // Either over its lower edge towards the block, or back onto its base, one end of which lies on the block.
     const double sign = chance(random, 0.5) ? 1.0 : -1.0;
-    Placed placed{thing, Eigen::Isometry3d::Identity(), object_id, true};
+    PlacedAsset placed{thing, Eigen::Isometry3d::Identity(), object_id, true};
     placed.T_world_object.linear() = Eigen::AngleAxisd(sign * slant_rad, Eigen::Vector3d::UnitY()) *
                                      Eigen::AngleAxisd(towards, Eigen::Vector3d::UnitZ()) * R_rest;
     placed.T_world_object.translation().z() = height_above_table(mesh, placed.T_world_object.linear());

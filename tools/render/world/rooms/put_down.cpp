@@ -22,25 +22,25 @@ double radians(double degrees) {
 }
 
 // An attitude that stays on the slope; first the family, since a can has many sides and two ends.
-StablePose steady_attitude(const Thing& thing, double slope_rad, Random& random) {
-  std::vector<RestingFamily> steady;
-  for (const RestingFamily& family : find_stable_poses(thing.mesh)) {
+StablePose steady_attitude(const Asset& thing, double slope_rad, Random& random) {
+  std::vector<StablePoseFamily> steady;
+  for (const StablePoseFamily& family : find_stable_poses(thing.mesh)) {
     if (family.front().steepest_slope_rad() >= slope_rad + kReserveRad) steady.push_back(family);
   }
   require(!steady.empty(), "{}: no attitude that stays on a slope of {:.2f} rad", thing.name, slope_rad);
-  const RestingFamily& family = steady[static_cast<std::size_t>(random.below(static_cast<int>(steady.size())))];
+  const StablePoseFamily& family = steady[static_cast<std::size_t>(random.below(static_cast<int>(steady.size())))];
   return family[static_cast<std::size_t>(random.below(static_cast<int>(family.size())))];
 }
 
-Placed on_plane(const ThingPtr& thing, int object_id, const Eigen::Matrix3d& R_plane_object) {
-  Placed placed{thing, Eigen::Isometry3d::Identity(), object_id, true};
+PlacedAsset on_plane(const AssetPtr& thing, int object_id, const Eigen::Matrix3d& R_plane_object) {
+  PlacedAsset placed{thing, Eigen::Isometry3d::Identity(), object_id, true};
   placed.T_world_object.translate(Eigen::Vector3d(0, 0, height_above_table(thing->mesh, R_plane_object)));
   placed.T_world_object.rotate(R_plane_object);
   return placed;
 }
 
 // Rises towards +x; `half`: what its upper side holds, along the slope and across it.
-ThingPtr make_wedge(const Eigen::Vector2d& half, double slope_rad, Random& random) {
+AssetPtr make_wedge(const Eigen::Vector2d& half, double slope_rad, Random& random) {
   const double x = half.x() * std::cos(slope_rad);
   const double rise = 2.0 * half.x() * std::sin(slope_rad);
   const cv::Mat cover =
@@ -51,18 +51,18 @@ ThingPtr make_wedge(const Eigen::Vector2d& half, double slope_rad, Random& rando
 
 }  // namespace
 
-Group put_lying(const ThingPtr& thing, int object_id, Random& random) {
+AssetGroup put_lying(const AssetPtr& thing, int object_id, Random& random) {
   const int index = random.below(1 << 20);
   return {on_plane(thing, object_id, AttitudeChoice(thing->mesh).R_table_object(Attitude::kLying, index, random))};
 }
 
-Group put_on_wedge(const ThingPtr& thing, int object_id, Random& random) {
+AssetGroup put_on_wedge(const AssetPtr& thing, int object_id, Random& random) {
   const double slope_rad = radians(random.uniform(kMinSlopeDeg, kMaxSlopeDeg));
   const StablePose attitude = steady_attitude(*thing, slope_rad, random);
   const Eigen::AngleAxisd turn(random.uniform(-M_PI, M_PI), Eigen::Vector3d::UnitZ());
-  Placed placed = on_plane(thing, object_id, turn * attitude.R_table_object);
+  PlacedAsset placed = on_plane(thing, object_id, turn * attitude.R_table_object);
   const Eigen::Vector2d half = half_extent({placed}) + Eigen::Vector2d::Constant(kBesideM);
-  Placed wedge{make_wedge(half, slope_rad, random), Eigen::Isometry3d::Identity(), 0, true};
+  PlacedAsset wedge{make_wedge(half, slope_rad, random), Eigen::Isometry3d::Identity(), 0, true};
   const double middle_height = kThinEndM + half.x() * std::sin(slope_rad);
   wedge.T_world_object.translate(Eigen::Vector3d(0, 0, 0.5 * mesh_bounds(wedge.thing->mesh).sizes().z()));
   placed.T_world_object = Eigen::Translation3d(0, 0, middle_height) *
@@ -70,9 +70,9 @@ Group put_on_wedge(const ThingPtr& thing, int object_id, Random& random) {
   return {wedge, placed};
 }
 
-Eigen::Vector2d half_extent(const Group& group) {
+Eigen::Vector2d half_extent(const AssetGroup& group) {
   Eigen::Vector2d half = Eigen::Vector2d::Zero();
-  for (const Placed& placed : group) {
+  for (const PlacedAsset& placed : group) {
     for (const Eigen::Vector3f& vertex : placed.thing->mesh.vertices) {
       const Eigen::Vector3d point = placed.T_world_object * vertex.cast<double>();
       half = half.cwiseMax(point.head<2>().cwiseAbs());

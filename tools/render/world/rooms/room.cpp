@@ -25,12 +25,12 @@ cv::Mat wood_or_paint(Random& random) {
   return chance(random, 0.6) ? wood({512, 256}, random) : plain({512, 256}, paint(random), 0.06, random);
 }
 
-ThingPtr from_parts(const char* name, const std::vector<Part>& parts, float gloss, float glow = 0.0F) {
-  return make_asset(name, compose(parts), gloss, glow);
+AssetPtr from_parts(const char* name, const std::vector<Part>& parts, float specular, float emission = 0.0F) {
+  return make_asset(name, compose(parts), specular, emission);
 }
 
 /// The top is at z = 0.
-ThingPtr make_table(const Eigen::Vector2d& half, double height, const cv::Mat& top, Random& random) {
+AssetPtr make_table(const Eigen::Vector2d& half, double height, const cv::Mat& top, Random& random) {
   constexpr double kThickness = 0.03;
   const cv::Mat frame = wood_or_paint(random);
   BoxFaces faces;
@@ -46,7 +46,7 @@ ThingPtr make_table(const Eigen::Vector2d& half, double height, const cv::Mat& t
   return from_parts("table", parts, 0.12F);
 }
 
-ThingPtr make_chair(Random& random) {
+AssetPtr make_chair(Random& random) {
   const cv::Mat frame = wood_or_paint(random);
   const cv::Mat seat = fabric({256, 256}, paint(random), random);
   std::vector<Part> parts = {at(box({0.44, 0.42, 0.05}, seat), {0, 0, 0.45}),
@@ -58,7 +58,7 @@ ThingPtr make_chair(Random& random) {
   return from_parts("chair", parts, 0.1F);
 }
 
-ThingPtr make_bookshelf(Random& random) {
+AssetPtr make_bookshelf(Random& random) {
   const cv::Mat board = wood_or_paint(random);
   const double width = random.uniform(0.7, 1.1);
   constexpr double kDepth = 0.28;
@@ -88,7 +88,7 @@ ThingPtr make_bookshelf(Random& random) {
 }
 
 /// With doors and handles; the origin is at its centre.
-ThingPtr make_cabinet(const Eigen::Vector3d& size, Random& random) {
+AssetPtr make_cabinet(const Eigen::Vector3d& size, Random& random) {
   const cv::Mat side = wood_or_paint(random);
   cv::Mat door;
   cv::resize(side, door, {512, 512});
@@ -106,7 +106,7 @@ ThingPtr make_cabinet(const Eigen::Vector3d& size, Random& random) {
 }
 
 /// A poster to hang; the origin is at its centre.
-ThingPtr make_picture(Random& random) {
+AssetPtr make_picture(Random& random) {
   const double width = random.uniform(0.3, 0.7);
   const double height = random.uniform(0.3, 0.8);
   BoxFaces faces;
@@ -116,7 +116,7 @@ ThingPtr make_picture(Random& random) {
 }
 
 /// Bright, with a frame; the origin is at its centre.
-ThingPtr make_window(Random& random) {
+AssetPtr make_window(Random& random) {
   const double width = random.uniform(0.8, 1.4);
   const double height = random.uniform(0.8, 1.2);
   cv::Mat view = plain({256, 256}, {250, 240, 228}, 0.12, random);
@@ -127,7 +127,7 @@ ThingPtr make_window(Random& random) {
   return make_asset("window", box({width, 0.03, height}, view), 0.1F, 0.95F);
 }
 
-ThingPtr make_bin(Random& random) {
+AssetPtr make_bin(Random& random) {
   return make_asset("bin", cup_mesh({0.14, 0.11, 0.32, 0.006}, plain({128, 128}, paint(random), 0.06, random)), 0.1F);
 }
 
@@ -140,8 +140,8 @@ struct Walls {
   double side = 2.2;  // +-x
 };
 
-Placed place(ThingPtr thing, const Eigen::Vector3d& position, double yaw_rad = 0.0) {
-  Placed placed{std::move(thing), Eigen::Isometry3d::Identity(), 0, true};
+PlacedAsset place(AssetPtr thing, const Eigen::Vector3d& position, double yaw_rad = 0.0) {
+  PlacedAsset placed{std::move(thing), Eigen::Isometry3d::Identity(), 0, true};
   placed.T_world_object.translate(position);
   placed.T_world_object.rotate(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()));
   return placed;
@@ -196,7 +196,7 @@ void add_shell(Room& room, RoomStyle style, const Walls& walls, Random& random) 
 }
 
 void add_pictures(Room& room, const Walls& walls, Random& random) {
-  const auto hang = [&](ThingPtr thing, const Eigen::Vector3d& position, double yaw) {
+  const auto hang = [&](AssetPtr thing, const Eigen::Vector3d& position, double yaw) {
     room.items.push_back(place(std::move(thing), position, yaw));
     room.items.back().casts_shadow = false;
   };

@@ -10,7 +10,7 @@ inline constexpr int kRoomStyles = 4;
 
 /// A furnished room with a surface to put things on.
 struct Room {
-  std::vector<Placed> items;
+  std::vector<PlacedAsset> items;
   Eigen::Vector2d table_half = Eigen::Vector2d(0.5, 0.4);  ///< half the extent of the surface in x and y, metres
 };
 

@@ -52,9 +52,9 @@ bool akin(const StablePose& a, const StablePose& b) {
          std::abs(up_of(a).z() - up_of(b).z()) < kSameUpright;
 }
 
-void add_to_family(const StablePose& attitude, std::vector<RestingFamily>& families) {
+void add_to_family(const StablePose& attitude, std::vector<StablePoseFamily>& families) {
   const auto own = std::find_if(families.begin(), families.end(),
-                                [&](const RestingFamily& family) { return akin(family.front(), attitude); });
+                                [&](const StablePoseFamily& family) { return akin(family.front(), attitude); });
   if (own == families.end()) {
     families.push_back({attitude});
     return;
@@ -70,9 +70,9 @@ double StablePose::steepest_slope_rad() const {
   return std::atan2(margin_m, centre_height_m);
 }
 
-std::vector<RestingFamily> find_stable_poses(const Mesh& mesh, double nearly_m) {
+std::vector<StablePoseFamily> find_stable_poses(const Mesh& mesh, double nearly_m) {
   const TippingBody body(mesh);
-  std::vector<RestingFamily> families;
+  std::vector<StablePoseFamily> families;
   for (int i = 0; i < kDrops; ++i) {
     const StablePose attitude = attitude_of(body, body.settled(spread_direction(i, kDrops)), nearly_m);
     if (attitude.steepest_slope_rad() >= kMinSlopeRad) add_to_family(attitude, families);
@@ -80,10 +80,10 @@ std::vector<RestingFamily> find_stable_poses(const Mesh& mesh, double nearly_m) 
   return families;
 }
 
-std::vector<RestingFamily> lying_families(const std::vector<RestingFamily>& families) {
-  std::vector<RestingFamily> lying;
+std::vector<StablePoseFamily> lying_families(const std::vector<StablePoseFamily>& families) {
+  std::vector<StablePoseFamily> lying;
   std::copy_if(families.begin(), families.end(), std::back_inserter(lying),
-               [](const RestingFamily& family) { return up_of(family.front()).z() < kSame; });
+               [](const StablePoseFamily& family) { return up_of(family.front()).z() < kSame; });
   require(!lying.empty(), "resting attitudes: {} families, expected one that does not stand upright", families.size());
   return lying;
 }

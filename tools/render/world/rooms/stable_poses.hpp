@@ -19,14 +19,14 @@ struct StablePose {
 };
 
 /// Attitudes that differ by a turn or a reflection only: a can's side is a family, its lid another. Never empty.
-using RestingFamily = std::vector<StablePose>;
+using StablePoseFamily = std::vector<StablePose>;
 
 /// All families that a thing of even density, dropped in any attitude, is found in; each attitude once. What tips over
 /// on a slope of 1 degree does not rest. Surface within `nearly_m` of the table carries it too: that of a scan is never
 /// quite flat. Same result on every call. Throws InputError for a mesh without volume.
-std::vector<RestingFamily> find_stable_poses(const Mesh& mesh, double nearly_m = 0.0);
+std::vector<StablePoseFamily> find_stable_poses(const Mesh& mesh, double nearly_m = 0.0);
 
 /// Those without the family that stands upright, z up. Throws InputError where nothing is left.
-std::vector<RestingFamily> lying_families(const std::vector<RestingFamily>& families);
+std::vector<StablePoseFamily> lying_families(const std::vector<StablePoseFamily>& families);
 
 }  // namespace houghstream::world

@@ -68,7 +68,7 @@ std::optional<Footprint> TableLayout::claim(const Eigen::Vector2d& half, const E
   return std::nullopt;
 }
 
-std::optional<Eigen::Isometry3d> TableLayout::place(const Thing& thing, const Eigen::AlignedBox2d& region,
+std::optional<Eigen::Isometry3d> TableLayout::place(const Asset& thing, const Eigen::AlignedBox2d& region,
                                                     double turn_rad, Random& random) {
   const Eigen::AlignedBox3d bounds = mesh_bounds(thing.mesh).cast<double>();
   const auto footprint = claim(0.5 * bounds.sizes().head<2>(), region, turn_rad, random);
@@ -79,19 +79,19 @@ std::optional<Eigen::Isometry3d> TableLayout::place(const Thing& thing, const Ei
   return T_world_object;
 }
 
-bool TableSetter::stand(const ThingPtr& thing, const Eigen::AlignedBox2d& region, double turn_rad, int object_id) {
+bool TableSetter::stand(const AssetPtr& thing, const Eigen::AlignedBox2d& region, double turn_rad, int object_id) {
   const auto T_world_object = layout_.place(*thing, region, turn_rad, random_);
   if (T_world_object) world_.items.push_back({thing, *T_world_object, object_id, true});
   return T_world_object.has_value();
 }
 
-bool TableSetter::put(const Group& group, const Eigen::AlignedBox2d& region) {
+bool TableSetter::put(const AssetGroup& group, const Eigen::AlignedBox2d& region) {
   const auto footprint = layout_.claim(half_extent(group), region, M_PI, random_);
   if (!footprint) return false;
   Eigen::Isometry3d T_world_group = Eigen::Isometry3d::Identity();
   T_world_group.translate(Eigen::Vector3d(footprint->centre.x(), footprint->centre.y(), 0.0));
   T_world_group.rotate(Eigen::AngleAxisd(footprint->yaw_rad, Eigen::Vector3d::UnitZ()));
-  for (Placed placed : group) {
+  for (PlacedAsset placed : group) {
     placed.T_world_object = T_world_group * placed.T_world_object;
     world_.items.push_back(placed);
   }
@@ -119,7 +119,7 @@ void TableSetter::lean_object(int id, const Eigen::AlignedBox2d& where) {
 }
 
 void TableSetter::hold_object(int id, const HeldPlace& place) {
-  for (const Placed& placed : hold(make_taught_object(id).thing, true_id(id), place, random_)) {
+  for (const PlacedAsset& placed : hold(make_taught_object(id).thing, true_id(id), place, random_)) {
     const Eigen::Vector3d towards = placed.T_world_object.linear().col(0);
     Footprint footprint;
     footprint.yaw_rad = std::atan2(towards.y(), towards.x());

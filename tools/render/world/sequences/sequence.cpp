@@ -91,7 +91,7 @@ void Sequence::furnish() {
   setter.stand(make_taught_object(alike).thing, setter.region(0.6, 0.95, -0.3, 0.9), M_PI, 0);
   for (int i = 0; i < 9; ++i) {
     const std::uint64_t own = aspect_seed(seed_, sequence_aspect::kFirstThing + static_cast<std::uint64_t>(i));
-    const ThingPtr thing =
+    const AssetPtr thing =
         i < 3 ? make_other_instance(1 + i, own) : make_distractor(setter.random().below(kDistractorKinds), own);
     const bool behind = i % 3 == 0;
     if (thing_height(*thing) > (behind ? 0.3 : kTallestBesideM)) continue;
@@ -119,13 +119,13 @@ void Sequence::add_hands() {
       if (stops[k].place == stops[k - 1].place && stops[k].turn_rad == stops[k - 1].turn_rad) continue;
       const bool comes_back = is_away(stops[k - 1].place);
       const Stop& on_table = comes_back ? stops[k] : stops[k - 1];
-      Placed object = lit_.world.items[items_[i]];
+      PlacedAsset object = lit_.world.items[items_[i]];
       object.T_world_object = at_stop(on_table.place, on_table.turn_rad, thing_height(*object.thing));
       HeldPlace place;
       for (int camera = 0; camera < cameras(); ++camera) place.views.push_back(T_camera_world(camera, on_table.at_s));
       place.over = on_table.place.head<2>();
       place.arm_azimuth_rad = on_table.place.x() < 0.0 ? M_PI : 0.0;
-      Placed hand = take_hold(object, place, random);
+      PlacedAsset hand = take_hold(object, place, random);
       hand.casts_shadow = false;
       carries_.push_back({i, lit_.world.items.size(), object.T_world_object.inverse() * hand.T_world_object,
                           stops[k - 1].at_s, stops[k].at_s});
@@ -136,11 +136,11 @@ void Sequence::add_hands() {
 
 void Sequence::add_passing_arm() {
   Random random(aspect_seed(seed_, sequence_aspect::kHands));
-  Placed object{make_taught_object(4).thing, at_stop({0.35, -0.36, 0.2}, 0.0, 0.12), 0, false};
+  PlacedAsset object{make_taught_object(4).thing, at_stop({0.35, -0.36, 0.2}, 0.0, 0.12), 0, false};
   HeldPlace place;
   place.views = {T_camera_world(0, 0.0)};
   place.arm_azimuth_rad = 0.2;
-  Placed hand = take_hold(object, place, random);
+  PlacedAsset hand = take_hold(object, place, random);
   hand.casts_shadow = false;
   T_world_arm_ = hand.T_world_object;
   arm_ = lit_.world.items.size();

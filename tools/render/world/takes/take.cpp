@@ -18,11 +18,11 @@ constexpr double kStillPx = 0.25;  // less is not seen
 constexpr int kMaxTaps = 12;       // on each side
 
 /// Where each thing is seen: T_camera_object.
-std::vector<Eigen::Isometry3d> places(World& world, const Motion& motion, double seconds) {
+std::vector<Eigen::Isometry3d> places(World& world, const SceneMotion& motion, double seconds) {
   const Eigen::Isometry3d T_camera_world = motion(world, seconds);
   std::vector<Eigen::Isometry3d> result;
   result.reserve(world.items.size());
-  for (const Placed& placed : world.items) result.push_back(T_camera_world * placed.T_world_object);
+  for (const PlacedAsset& placed : world.items) result.push_back(T_camera_world * placed.T_world_object);
   return result;
 }
 
@@ -75,7 +75,7 @@ ShadedView empty_view(const cv::Size& size) {
   view.radiance.create(size, CV_32FC3);
   view.cos_incidence.create(size, CV_32FC1);
   view.reflectance.create(size, CV_32FC1);
-  view.gloss.create(size, CV_32FC1);
+  view.specular.create(size, CV_32FC1);
   return view;
 }
 
@@ -87,7 +87,7 @@ void copy_band(const ShadedView& band, const cv::Range& rows, const ShadedView& 
   band.radiance.copyTo(whole.radiance.rowRange(rows));
   band.cos_incidence.copyTo(whole.cos_incidence.rowRange(rows));
   band.reflectance.copyTo(whole.reflectance.rowRange(rows));
-  band.gloss.copyTo(whole.gloss.rowRange(rows));
+  band.specular.copyTo(whole.specular.rowRange(rows));
 }
 
 constexpr int kMeterEvery = 4;  // frames
@@ -114,7 +114,7 @@ constexpr std::array<std::pair<const char*, TakeKind>, 12> kShown = {{{"bowl", T
 
 }  // namespace
 
-ShadedView expose(LitWorld lit_world, const Camera& camera, const Motion& motion, double seconds,
+ShadedView expose(LitWorld lit_world, const Camera& camera, const SceneMotion& motion, double seconds,
                   const Shutter& shutter) {
   ShadedView whole = empty_view({camera.width, camera.height});
   cv::Mat ways(whole.radiance.size(), CV_32FC2);
@@ -136,20 +136,20 @@ ShadedView expose(LitWorld lit_world, const Camera& camera, const Motion& motion
   return whole;
 }
 
-Take::Take(const TakePlan& plan, int frames, int threads)
+RenderedTake::RenderedTake(const TakePlan& plan, int frames, int threads)
     : stage_(plan), seconds_(plan.seconds), frames_(frames), lit_world_(light_world(stage_.world())) {
   require(frames >= 2, "take: {} frames, expected at least 2", frames);
   meter_light(threads);
 }
 
-LitWorld Take::lit_at(double seconds) const {
+LitWorld RenderedTake::lit_at(double seconds) const {
   LitWorld lit_world = lit_world_;
   stage_.move(lit_world.world, seconds);
   return stage_.things_move() ? light_world(std::move(lit_world.world)) : lit_world;
 }
 
 // Automatic exposure sees a small picture of the room and follows it with a delay, proportionally.
-void Take::meter_light(int threads) {
+void RenderedTake::meter_light(int threads) {
   const int count = (frames_ - 1) / kMeterEvery + 2;
   std::vector<double> metered(static_cast<std::size_t>(count));
   const Camera camera = synthetic_camera().scaled(kMeterScale);
@@ -170,7 +170,7 @@ void Take::meter_light(int threads) {
   }
 }
 
-RenderedFrame Take::render(int index) const {
+RenderedFrame RenderedTake::render(int index) const {
   const double now = time_of(index);
   const double exposure = exposures_.at(static_cast<std::size_t>(index));
   LitWorld lit_world = lit_at(now);

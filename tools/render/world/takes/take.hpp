@@ -18,20 +18,20 @@ struct Shutter {
 
 /// What moves, at a time in seconds: puts the world's things where they are then, and says where the camera is
 /// (T_camera_world).
-using Motion = std::function<Eigen::Isometry3d(World& world, double seconds)>;
+using SceneMotion = std::function<Eigen::Isometry3d(World& world, double seconds)>;
 
 /// What each pixel sees of a world in motion while the frame of time `seconds` is exposed. Geometry is that of the
 /// middle of each row's exposure; radiance is smeared along each pixel's own way. Rows are exposed in bands, within
 /// which motion stays below a pixel. `lit_world`: shadows are kept as they are, things are moved.
-ShadedView expose(LitWorld lit_world, const Camera& camera, const Motion& motion, double seconds,
+ShadedView expose(LitWorld lit_world, const Camera& camera, const SceneMotion& motion, double seconds,
                   const Shutter& shutter);
 
 /// A recording of an object being shown, with the truth of every frame: a rolling shutter, motion blur, automatic
 /// exposure that lags behind.
-class Take {
+class RenderedTake {
  public:
   /// `frames` over the plan's seconds, at least 2.
-  Take(const TakePlan& plan, int frames, int threads);
+  RenderedTake(const TakePlan& plan, int frames, int threads);
 
   /// Frame `index`, with its truth at the time of its middle row. The utime is left 0. const calls are thread-safe.
   RenderedFrame render(int index) const;

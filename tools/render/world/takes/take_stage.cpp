@@ -75,7 +75,7 @@ void TakeStage::furnish(const TakePlan& plan) {
   world_.focus_radius_m = kShadowRadiusM;
   TableSetter setter(world_, room.table_half, aspect_seed(own, take_aspect::kTable));
   for (int i = 0; i < 5; ++i) {
-    const ThingPtr thing =
+    const AssetPtr thing =
         make_distractor(random.below(kDistractorKinds), aspect_seed(own, take_aspect::kFirstThing + i));
     if (thing_height(*thing) > kTallestBesideShownM) continue;
     const double side = i % 2 == 0 ? 1.0 : -1.0;
@@ -87,7 +87,7 @@ void TakeStage::furnish(const TakePlan& plan) {
 void TakeStage::put_object(const TakePlan& plan) {
   const TaughtObject object = make_taught_object(plan.object_id);
   Random random(aspect_seed(seed_, take_aspect::kPlace));
-  Placed placed{object.thing, Eigen::Isometry3d::Identity(), object.id, true};
+  PlacedAsset placed{object.thing, Eigen::Isometry3d::Identity(), object.id, true};
   if (plan.laid_down) {
     placed = put_lying(object.thing, object.id, random).front();
   } else {
@@ -107,14 +107,14 @@ void TakeStage::put_object(const TakePlan& plan) {
 void TakeStage::add_turntable(const TakePlan& plan) {
   Random random(aspect_seed(world_seed(plan.use, kFirstTakeWorld + plan.number), take_aspect::kTurning));
   const cv::Mat cover = plain({256, 256}, hsv(random.uniform(0, 360), 0.1, random.uniform(0.3, 0.8)), 0.05, random);
-  const ThingPtr disc = make_asset("turntable", turned_mesh({{0.16, 0.0}, {0.16, kDiscM}}, cover), 0.08F);
+  const AssetPtr disc = make_asset("turntable", turned_mesh({{0.16, 0.0}, {0.16, kDiscM}}, cover), 0.08F);
   turntable_ = world_.items.size();
   world_.items.push_back({disc, Eigen::Isometry3d::Identity(), 0, true});
   world_.items.back().T_world_object.translate(Eigen::Vector3d(0.0, 0.0, 0.5 * kDiscM));
 }
 
 void TakeStage::choose_camera(const TakePlan& plan) {
-  const Placed& object = world_.items[object_];
+  const PlacedAsset& object = world_.items[object_];
   HandPathSettings settings;
   settings.seconds = plan.seconds;
   settings.turn_rad = kTurnRad;
@@ -146,12 +146,12 @@ void TakeStage::add_hands() {
     stroke.start_s = seconds_ * i / kStrokes;
     stroke.seconds = seconds_ / kStrokes;
     stroke.start_rad = kTurnRad * i / kStrokes;
-    Placed object = world_.items[object_];
+    PlacedAsset object = world_.items[object_];
     object.T_world_object = object_at(stroke.start_rad);
     // From the camera's right, or its left.
     place.arm_azimuth_rad = std::atan2(eye.y(), eye.x()) + (i % 2 == 0 ? 1.2 : -1.2);
     Random random(aspect_seed(seed_, take_aspect::kTurning));  // the same skin and sleeve each time
-    const Placed hand = take_hold(object, place, random);
+    const PlacedAsset hand = take_hold(object, place, random);
     stroke.T_object_hand = object.T_world_object.inverse() * hand.T_world_object;
     stroke.hand = world_.items.size();
     world_.items.push_back(hand);

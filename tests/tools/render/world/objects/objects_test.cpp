@@ -88,8 +88,8 @@ TEST(Objects, SodaCanHasTheSizeOfACan) {
 
 TEST(Objects, AreTheSameOnEveryCall) {
   for (const int id : {2, 101, 111, 116}) {
-    const ThingPtr first = make_taught_object(id).thing;
-    const ThingPtr second = make_taught_object(id).thing;
+    const AssetPtr first = make_taught_object(id).thing;
+    const AssetPtr second = make_taught_object(id).thing;
     EXPECT_EQ(cv::norm(first->mesh.texture, second->mesh.texture, cv::NORM_INF), 0.0);
   }
 }
@@ -107,7 +107,7 @@ TEST(Objects, PrintsAreNotFlatButTheBowlIsPlain) {
 
 TEST(Objects, DistractorsAreClosedAndDifferFromSeedToSeed) {
   for (int kind = 0; kind < kDistractorKinds; ++kind) {
-    const ThingPtr thing = make_distractor(kind, 2);
+    const AssetPtr thing = make_distractor(kind, 2);
     SCOPED_TRACE(thing->name);
     EXPECT_TRUE(is_closed(thing->mesh));
     EXPECT_GT(signed_volume(thing->mesh), 0.0);

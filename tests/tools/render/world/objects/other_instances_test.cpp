@@ -11,13 +11,13 @@
 namespace houghstream::world {
 namespace {
 
-double height_ratio(const Thing& other, const Thing& taught) {
+double height_ratio(const Asset& other, const Asset& taught) {
   return mesh_bounds(other.mesh).sizes().z() / mesh_bounds(taught.mesh).sizes().z();
 }
 
 /// Distance of the mean colours in the a*b* plane.
-double colour_distance(const Thing& a, const Thing& b) {
-  const auto mean = [](const Thing& thing) {
+double colour_distance(const Asset& a, const Asset& b) {
+  const auto mean = [](const Asset& thing) {
     cv::Mat lab;
     cv::cvtColor(thing.mip_levels.front(), lab, cv::COLOR_BGR2Lab);
     return cv::mean(lab);
@@ -28,10 +28,10 @@ double colour_distance(const Thing& a, const Thing& b) {
 
 TEST(OtherInstances, DifferFromTheTaughtOneInSizeOrInColour) {
   for (int id = 1; id <= kClassCount; ++id) {
-    const ThingPtr taught = make_taught_object(id).thing;
+    const AssetPtr taught = make_taught_object(id).thing;
     int of_other_size = 0;
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
-      const ThingPtr other = make_other_instance(id, seed);
+      const AssetPtr other = make_other_instance(id, seed);
       const double ratio = height_ratio(*other, *taught);
       const bool other_size = ratio < 0.86 || ratio > 1.18;
       of_other_size += other_size ? 1 : 0;
@@ -44,7 +44,7 @@ TEST(OtherInstances, DifferFromTheTaughtOneInSizeOrInColour) {
 
 TEST(OtherInstances, AreClosedAndFollowTheSeed) {
   for (int id = 1; id <= kClassCount; ++id) {
-    const ThingPtr first = make_other_instance(id, 5);
+    const AssetPtr first = make_other_instance(id, 5);
     EXPECT_TRUE(is_closed(first->mesh)) << first->name;
     EXPECT_EQ(first->mesh.vertices, make_other_instance(id, 5)->mesh.vertices);
     EXPECT_NE(first->mesh.vertices, make_other_instance(id, 6)->mesh.vertices);

@@ -36,7 +36,7 @@ TEST(NearlyAlike, TheNextOfItsKindIsAFewMillimetresOff) {
   double sum_m = 0.0;
   for (int seed = 0; seed < kSeeds; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
-    const ThingPtr next = make_instance_variant(*box.thing, random);
+    const AssetPtr next = make_instance_variant(*box.thing, random);
     ASSERT_EQ(next->mesh.vertices.size(), box.thing->mesh.vertices.size());
     EXPECT_EQ(next->mesh.triangles.size(), box.thing->mesh.triangles.size());
     const double bent_m = std::sqrt(bent_by_m2(box.thing->mesh, next->mesh));
@@ -55,7 +55,7 @@ TEST(NearlyAlike, TheSameSeedGivesTheSameShapeAndTheColoursStay) {
   Random a(7);
   Random b(7);
   Random other(8);
-  const ThingPtr first = make_instance_variant(*box.thing, a);
+  const AssetPtr first = make_instance_variant(*box.thing, a);
   EXPECT_EQ(first->mesh.vertices, make_instance_variant(*box.thing, b)->mesh.vertices);
   EXPECT_NE(first->mesh.vertices, make_instance_variant(*box.thing, other)->mesh.vertices);
   EXPECT_EQ(first->mesh.colours, box.thing->mesh.colours);
@@ -67,7 +67,7 @@ TEST(NearlyAlike, ALookAlikeDiffersInSizeOrColours) {
   const TaughtObject box = make_taught_object(2);
   for (int seed = 0; seed < kSeeds; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
-    const ThingPtr other = make_hard_negative(*box.thing, random);
+    const AssetPtr other = make_hard_negative(*box.thing, random);
     const Eigen::Vector3f sizes = mesh_bounds(other->mesh).sizes().cwiseQuotient(mesh_bounds(box.thing->mesh).sizes());
     const bool other_size = (sizes - Eigen::Vector3f::Ones()).cwiseAbs().maxCoeff() > 0.05F;
     const bool other_colours =

@@ -68,7 +68,7 @@ TEST(DepthSensor, DarkGrazingAndShinySurfacesGiveHoles) {
   grazing.cos_incidence.setTo(0.05);
   EXPECT_LT(count_valid(measure_depth(grazing, kCamera, kSettings, 1)), all / 10);
   SensorView shiny = wall(1.0);
-  shiny.gloss.setTo(0.45);
+  shiny.specular.setTo(0.45);
   EXPECT_LT(count_valid(measure_depth(shiny, kCamera, kSettings, 1)), all / 10);
 }
 

@@ -13,9 +13,9 @@ const Camera kShadingCamera{160, 120, 150.0, 150.0, 79.5, 59.5};
 World floor_under_a_plate() {
   World world;
   const cv::Mat white(32, 32, CV_8UC3, cv::Scalar::all(255));
-  Placed floor{make_asset("floor", box({2, 2, 0.1}, white), 0.0F), Eigen::Isometry3d::Identity(), 0, true};
+  PlacedAsset floor{make_asset("floor", box({2, 2, 0.1}, white), 0.0F), Eigen::Isometry3d::Identity(), 0, true};
   floor.T_world_object.translate(Eigen::Vector3d(0, 0, -0.05));
-  Placed plate{make_asset("plate", box({0.2, 0.2, 0.01}, white), 0.0F), Eigen::Isometry3d::Identity(), 0, true};
+  PlacedAsset plate{make_asset("plate", box({0.2, 0.2, 0.01}, white), 0.0F), Eigen::Isometry3d::Identity(), 0, true};
   plate.T_world_object.translate(Eigen::Vector3d(0.3, 0, 0.3));
   world.items = {floor, plate};
   world.lights = {Light{{2.0, 0.0, 2.0}, Eigen::Vector3f::Ones(), 0.01, true}};
@@ -51,7 +51,7 @@ TEST(Shading, TextureIsWhereItBelongs) {
   EXPECT_NEAR(view.cos_incidence.at<float>(60, 80), 1.0F, 0.01F);
 }
 
-ShadedView seen_from_a_corner(const ThingPtr& thing) {
+ShadedView seen_from_a_corner(const AssetPtr& thing) {
   World world;
   world.items = {{thing, Eigen::Isometry3d::Identity(), 0, true}};
   world.lights = {Light{{1.0, -2.0, 2.0}, Eigen::Vector3f::Ones(), 0.01, true}};
@@ -74,7 +74,7 @@ TEST(Shading, ColoursOfVerticesShadeAsATextureOfTheSameColour) {
   EXPECT_GT(brightest, 0.1);
   EXPECT_LT(cv::norm(by_texture.radiance, by_vertex.radiance, cv::NORM_INF), 1e-5);
   EXPECT_LT(cv::norm(by_texture.reflectance, by_vertex.reflectance, cv::NORM_INF), 1e-5);
-  EXPECT_EQ(cv::norm(by_texture.gloss, by_vertex.gloss, cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(by_texture.specular, by_vertex.specular, cv::NORM_INF), 0.0);
 }
 
 TEST(Shading, ColoursOfVerticesBlendBetweenThem) {

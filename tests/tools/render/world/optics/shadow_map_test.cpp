@@ -14,7 +14,7 @@ World shaded_floor() {
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   mesh.texture = cv::Mat(4, 4, CV_8UC3, cv::Scalar::all(100));
   World world;
-  Placed plate;
+  PlacedAsset plate;
   plate.thing = make_asset("plate", mesh, 0.0F);
   world.items.push_back(plate);
   return world;

@@ -19,7 +19,7 @@ HeldPlace place() {
   return place;
 }
 
-double lowest(const Placed& placed) {
+double lowest(const PlacedAsset& placed) {
   double z = 1e9;
   for (const Eigen::Vector3f& vertex : placed.thing->mesh.vertices)
     z = std::min(z, (placed.T_world_object * vertex.cast<double>()).z());
@@ -48,7 +48,7 @@ TEST(Held, ThingsFloatBetween5And30CentimetresAboveTheirPlaceAndTheHandDoesNotTo
   for (int id = 1; id <= kClassCount; ++id) {
     for (std::uint64_t seed = 0; seed < 4; ++seed) {
       Random random(seed);
-      const Group group = hold(make_taught_object(id).thing, id, place(), random);
+      const AssetGroup group = hold(make_taught_object(id).thing, id, place(), random);
       ASSERT_EQ(group.size(), 2U);
       EXPECT_EQ(group[0].thing->name, "hand");
       EXPECT_EQ(group[0].object_id, 0);
@@ -63,7 +63,7 @@ TEST(Held, ThingsFloatBetween5And30CentimetresAboveTheirPlaceAndTheHandDoesNotTo
 
 TEST(Held, TheArmComesFromItsSideAndReachesFar) {
   Random random(3);
-  const Group group = hold(make_taught_object(4).thing, 4, place(), random);
+  const AssetGroup group = hold(make_taught_object(4).thing, 4, place(), random);
   double farthest = 0.0;
   for (const Eigen::Vector3f& vertex : group[0].thing->mesh.vertices) {
     farthest = std::max(farthest, (group[0].T_world_object * vertex.cast<double>()).x());
@@ -73,7 +73,7 @@ TEST(Held, TheArmComesFromItsSideAndReachesFar) {
 
 TEST(Held, HandsHaveSurfacesThatFaceOutwards) {
   Random random(3);
-  const Group group = hold(make_taught_object(3).thing, 3, place(), random);
+  const AssetGroup group = hold(make_taught_object(3).thing, 3, place(), random);
   EXPECT_TRUE(is_closed(group[0].thing->mesh));
   EXPECT_GT(signed_volume(group[0].thing->mesh), 0.0);
   EXPECT_GT(agreeing_normals(group[0].thing->mesh), 0.95);

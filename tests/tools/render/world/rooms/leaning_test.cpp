@@ -16,16 +16,16 @@ namespace {
 constexpr int kSeeds = 6;
 
 /// Block and leaning object.
-Group leaning(int id, std::uint64_t seed) {
+AssetGroup leaning(int id, std::uint64_t seed) {
   Random random(seed);
   return put_leaning(make_taught_object(id).thing, id, random);
 }
 
 /// From the attitude nearest to which the thing would rest to that in which it leans, degrees.
-double least_lean_deg(const Placed& placed, const std::vector<RestingFamily>& families) {
+double least_lean_deg(const PlacedAsset& placed, const std::vector<StablePoseFamily>& families) {
   const Eigen::Vector3d up = placed.T_world_object.linear().row(2);
   double max_cosine = -1.0;
-  for (const RestingFamily& family : families) {
+  for (const StablePoseFamily& family : families) {
     for (const StablePose& attitude : family) {
       max_cosine = std::max(max_cosine, up.dot(attitude.R_table_object.row(2)));
     }
@@ -36,7 +36,7 @@ double least_lean_deg(const Placed& placed, const std::vector<RestingFamily>& fa
 TEST(Leaning, ThingsTouchTheTableAndTheirBlockAndReachIntoNeither) {
   for (int id = 1; id <= kClassCount; ++id) {
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-      const Group group = leaning(id, seed);
+      const AssetGroup group = leaning(id, seed);
       ASSERT_EQ(group.size(), 2U);
       EXPECT_EQ(group[0].thing->name, "block");
       EXPECT_EQ(group[0].object_id, 0);
@@ -68,7 +68,7 @@ TEST(Leaning, ThingsTouchTheTableAndTheirBlockAndReachIntoNeither) {
 TEST(Leaning, TheCentreOfMassIsBetweenTableAndBlock) {
   for (int id = 1; id <= kClassCount; ++id) {
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-      const Group group = leaning(id, seed);
+      const AssetGroup group = leaning(id, seed);
       const double near_side =
           group[0].T_world_object.translation().x() + static_cast<double>(mesh_bounds(group[0].thing->mesh).min().x());
       const double centre = (group[1].T_world_object * TippingBody(group[1].thing->mesh).centre_of_mass()).x();
@@ -94,9 +94,9 @@ TEST(Leaning, NothingLeansAsItWouldRestAndSlantsDiffer) {
 }
 
 TEST(Leaning, GroupsAreAboutTheirOrigin) {
-  const Group group = leaning(2, 3);
+  const AssetGroup group = leaning(2, 3);
   Eigen::AlignedBox2d extent;
-  for (const Placed& placed : group) {
+  for (const PlacedAsset& placed : group) {
     for (const Eigen::Vector3f& vertex : placed.thing->mesh.vertices) {
       extent.extend((placed.T_world_object * vertex.cast<double>()).head<2>().eval());
     }

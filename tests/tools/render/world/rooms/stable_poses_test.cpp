@@ -12,9 +12,9 @@
 namespace houghstream::world {
 namespace {
 
-std::size_t count(const std::vector<RestingFamily>& families) {
+std::size_t count(const std::vector<StablePoseFamily>& families) {
   std::size_t sum = 0;
-  for (const RestingFamily& family : families) sum += family.size();
+  for (const StablePoseFamily& family : families) sum += family.size();
   return sum;
 }
 
@@ -23,8 +23,8 @@ Eigen::Vector3d up_of(const StablePose& attitude) {
 }
 
 // The family of an attitude in which `up`, object frame, points upwards; null where there is none.
-const RestingFamily* family_with(const std::vector<RestingFamily>& families, const Eigen::Vector3d& up) {
-  for (const RestingFamily& family : families) {
+const StablePoseFamily* family_with(const std::vector<StablePoseFamily>& families, const Eigen::Vector3d& up) {
+  for (const StablePoseFamily& family : families) {
     for (const StablePose& attitude : family) {
       if (up_of(attitude).dot(up) > 0.9999) return &family;
     }
@@ -63,7 +63,7 @@ TEST(Resting, StandOnTheTableWithTheirWeightOverWhatTouchesIt) {
     const TaughtObject object = make_taught_object(id);
     const Mesh& mesh = object.thing->mesh;
     SCOPED_TRACE(object.name);
-    for (const RestingFamily& family : find_stable_poses(mesh)) {
+    for (const StablePoseFamily& family : find_stable_poses(mesh)) {
       for (const StablePose& attitude : family) {
         EXPECT_NEAR(lowest_point(mesh, attitude), 0.0, 1e-6);
         EXPECT_NEAR(attitude.R_table_object.determinant(), 1.0, 1e-9);
@@ -75,10 +75,10 @@ TEST(Resting, StandOnTheTableWithTheirWeightOverWhatTouchesIt) {
 
 TEST(Resting, BoxRestsOnItsSixSides) {
   const Mesh mesh = box({0.1, 0.2, 0.3}, cv::Mat(8, 8, CV_8UC3, cv::Scalar::all(128)));
-  const std::vector<RestingFamily> families = find_stable_poses(mesh);
+  const std::vector<StablePoseFamily> families = find_stable_poses(mesh);
   EXPECT_EQ(count(families), 6U);
   for (int axis = 0; axis < 3; ++axis) {
-    const RestingFamily* family = family_with(families, Eigen::Vector3d::Unit(axis));
+    const StablePoseFamily* family = family_with(families, Eigen::Vector3d::Unit(axis));
     ASSERT_NE(family, nullptr);
     EXPECT_NEAR(family->front().centre_height_m, 0.05 * (axis + 1), 1e-6);
     EXPECT_NEAR(family->front().margin_m, axis == 0 ? 0.1 : 0.05, 1e-6);
@@ -87,7 +87,7 @@ TEST(Resting, BoxRestsOnItsSixSides) {
 }
 
 TEST(Resting, CanStandsOnBothEndsAndLiesOnAllOfItsSide) {
-  const std::vector<RestingFamily> families = find_stable_poses(make_taught_object(4).thing->mesh);
+  const std::vector<StablePoseFamily> families = find_stable_poses(make_taught_object(4).thing->mesh);
   ASSERT_EQ(families.size(), 3U);
   EXPECT_NE(family_with(families, Eigen::Vector3d::UnitZ()), nullptr);
   EXPECT_NE(family_with(families, -Eigen::Vector3d::UnitZ()), nullptr);
@@ -95,9 +95,9 @@ TEST(Resting, CanStandsOnBothEndsAndLiesOnAllOfItsSide) {
 }
 
 TEST(Resting, MugLiesOnEitherSideOfItsHandle) {
-  const std::vector<RestingFamily> families = find_stable_poses(make_taught_object(3).thing->mesh);
+  const std::vector<StablePoseFamily> families = find_stable_poses(make_taught_object(3).thing->mesh);
   ASSERT_EQ(families.size(), 3U);
-  for (const RestingFamily& family : families) {
+  for (const StablePoseFamily& family : families) {
     if (std::abs(up_of(family.front()).z()) > 0.9) continue;
     ASSERT_EQ(family.size(), 2U);
     EXPECT_LT(up_of(family[0]).x(), -0.3);  // its handle, to +x, points downwards

@@ -19,7 +19,7 @@ TEST(TableLayout, RectanglesTouchAsTheirSidesSay) {
 TEST(TableLayout, ThingsStandApartUntilTheTableIsFull) {
   TableLayout layout({0.3, 0.2});
   Random random(1);
-  const ThingPtr mug = make_taught_object(3).thing;
+  const AssetPtr mug = make_taught_object(3).thing;
   const Eigen::AlignedBox2d everywhere(Eigen::Vector2d(-0.3, -0.2), Eigen::Vector2d(0.3, 0.2));
   int placed = 0;
   while (placed < 100 && layout.place(*mug, everywhere, M_PI, random)) ++placed;

@@ -25,8 +25,8 @@ double turned_between(const RenderedFrame& a, const RenderedFrame& b) {
   return Eigen::AngleAxisd(R).angle();
 }
 
-TEST(Take, TheTruthIsWhereTheObjectIsSeen) {
-  const Take take(short_plan(TakeKind::kHandHeld), 61, 1);
+TEST(RenderedTake, TheTruthIsWhereTheObjectIsSeen) {
+  const RenderedTake take(short_plan(TakeKind::kHandHeld), 61, 1);
   const RenderedFrame frame = take.render(23);
   ASSERT_EQ(frame.objects.size(), 1U);
   EXPECT_EQ(frame.objects[0].object_id, 108);
@@ -38,24 +38,24 @@ TEST(Take, TheTruthIsWhereTheObjectIsSeen) {
   EXPECT_GT(both / either, 0.97) << "but for the rolling shutter";
 }
 
-TEST(Take, SameArgumentsSameFrameAndOtherThreads) {
-  const RenderedFrame one = Take(short_plan(TakeKind::kTurntable), 31, 1).render(9);
-  const RenderedFrame other = Take(short_plan(TakeKind::kTurntable), 31, 2).render(9);
+TEST(RenderedTake, SameArgumentsSameFrameAndOtherThreads) {
+  const RenderedFrame one = RenderedTake(short_plan(TakeKind::kTurntable), 31, 1).render(9);
+  const RenderedFrame other = RenderedTake(short_plan(TakeKind::kTurntable), 31, 2).render(9);
   EXPECT_EQ(cv::norm(one.frame.colour, other.frame.colour, cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::norm(one.frame.depth, other.frame.depth, cv::NORM_INF), 0.0);
 }
 
-TEST(Take, ATurntableTurnsTheObjectALittleMoreThanOnceBeforeACameraThatStands) {
+TEST(RenderedTake, ATurntableTurnsTheObjectALittleMoreThanOnceBeforeACameraThatStands) {
   const TakeStage stage(short_plan(TakeKind::kTurntable));
   World world = stage.world();
   const Eigen::Isometry3d T_camera_world = stage.move(world, 0.0);
   EXPECT_TRUE(stage.move(world, 4.0).isApprox(T_camera_world));
-  const Take take(short_plan(TakeKind::kTurntable), 31, 1);
+  const RenderedTake take(short_plan(TakeKind::kTurntable), 31, 1);
   EXPECT_NEAR(turned_between(take.render(0), take.render(30)), 0.25, 1e-6);
   EXPECT_GT(turned_between(take.render(0), take.render(15)), 1.5);
 }
 
-TEST(Take, AHandTurnsTheObjectAndIsAwayBetween) {
+TEST(RenderedTake, AHandTurnsTheObjectAndIsAwayBetween) {
   const TakeStage stage(short_plan(TakeKind::kHandTurns));
   const auto hidden_and_turn = [&](double seconds) {
     World world = stage.world();
@@ -73,7 +73,7 @@ TEST(Take, AHandTurnsTheObjectAndIsAwayBetween) {
   EXPECT_TRUE(hidden_and_turn(0.4)) << "in the middle of the first of six strokes of a second";
   EXPECT_FALSE(hidden_and_turn(0.95));
   EXPECT_TRUE(hidden_and_turn(1.4));
-  const Take take(short_plan(TakeKind::kHandTurns), 31, 1);
+  const RenderedTake take(short_plan(TakeKind::kHandTurns), 31, 1);
   EXPECT_NEAR(turned_between(take.render(0), take.render(30)), 0.25, 1e-6);
 }
 
@@ -94,8 +94,8 @@ TEST(TakeStage, TheSecondTakeIsOfTheSameRoomWithTheObjectLaidDown) {
   plan.laid_down = true;
   const TakeStage lying(plan);
   ASSERT_EQ(upright.world().items.size(), lying.world().items.size());
-  const Placed& first = upright.world().items.back();
-  const Placed& second = lying.world().items.back();
+  const PlacedAsset& first = upright.world().items.back();
+  const PlacedAsset& second = lying.world().items.back();
   EXPECT_EQ(first.object_id, 108);
   EXPECT_NEAR(first.T_world_object.linear()(2, 2), 1.0, 1e-9);
   EXPECT_LT(second.T_world_object.linear()(2, 2), 0.5);
@@ -114,7 +114,7 @@ LitWorld post() {
 }
 
 /// The camera looks along the world's z axis and moves along its x axis.
-Motion sideways(double metres_per_s) {
+SceneMotion sideways(double metres_per_s) {
   return [=](World&, double seconds) {
     return Eigen::Isometry3d(Eigen::Translation3d(-metres_per_s * seconds, 0.0, 1.01));
   };

@@ -1,4 +1,4 @@
-#include "tools/render/world/objects/thing.hpp"
+#include "tools/render/world/objects/asset.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -23,16 +23,16 @@ float texel_density(const Mesh& mesh, const std::array<std::uint32_t, 3>& triang
 
 }  // namespace
 
-std::shared_ptr<const Thing> make_asset(std::string name, Mesh mesh, float gloss, float glow) {
+std::shared_ptr<const Asset> make_asset(std::string name, Mesh mesh, float specular, float emission) {
   const bool textured = mesh.uvs.size() == mesh.vertices.size() && !mesh.texture.empty();
   const bool coloured = mesh.texture.empty() && mesh.colours.size() == mesh.vertices.size();
   require(mesh.normals.size() == mesh.vertices.size() && (textured || coloured),
           "{}: mesh without normals, or with neither texture (and its coordinates) nor colours", name);
-  auto thing = std::make_shared<Thing>();
+  auto thing = std::make_shared<Asset>();
   thing->name = std::move(name);
   thing->mesh = std::move(mesh);
-  thing->gloss = gloss;
-  thing->glow = glow;
+  thing->specular = specular;
+  thing->emission = emission;
   if (coloured) return thing;
   thing->mip_levels = {thing->mesh.texture};
   while (std::min(thing->mip_levels.back().cols, thing->mip_levels.back().rows) >= 2 * kMinMipPx) {
@@ -46,7 +46,7 @@ std::shared_ptr<const Thing> make_asset(std::string name, Mesh mesh, float gloss
   return thing;
 }
 
-double thing_height(const Thing& thing) {
+double thing_height(const Asset& thing) {
   return mesh_bounds(thing.mesh).sizes().z();
 }
 
