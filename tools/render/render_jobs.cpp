@@ -14,7 +14,7 @@ using namespace world;
 namespace {
 
 constexpr int kMaxFrames = 100000;
-constexpr int kFramesPerRoom = 5;
+constexpr int kFramesPerScene = 5;
 
 std::vector<int> object_ids(const std::vector<std::string>& names) {
   if (names == std::vector<std::string>{"all_40"}) return forty_object_ids();
@@ -92,14 +92,14 @@ void render_training(const RenderOptions& options, const std::vector<std::string
 void render_background(const RenderOptions& options, int count) {
   require(count >= 1 && count <= kMaxFrames, "background: {} frames, expected 1 to {}", count, kMaxFrames);
   BopWriter writer(fresh_scene(options, options.out));
-  const int rooms = (count + kFramesPerRoom - 1) / kFramesPerRoom;
+  const int rooms = (count + kFramesPerScene - 1) / kFramesPerScene;
   for (int room = 0; room < rooms; ++room) {
-    const int here = std::min(kFramesPerRoom, count - room * kFramesPerRoom);
+    const int here = std::min(kFramesPerScene, count - room * kFramesPerScene);
     const Scene scene = make_background_scene(room, options.seed);
     const LitWorld lit_world = light_world(scene.world);
     render_in_order(
         fmt::format("background room {}/{}", room + 1, rooms), options.threads, here,
-        [&](int index) { return render_scene_frame(scene, lit_world, index, kFramesPerRoom); },
+        [&](int index) { return render_scene_frame(scene, lit_world, index, kFramesPerScene); },
         [&](const RenderedFrame& view) { writer.add(view.frame, {}, {}); });
   }
   writer.finish();

@@ -29,13 +29,13 @@ std::vector<std::string> split(const std::string& list) {
   return parts;
 }
 
-void add_practice_options(CommandLine& command, TeachOptions& options) {
+void add_calibration_options(CommandLine& command, TeachOptions& options) {
   command
-      .add_option("--practice-rooms", options.practice.rooms,
+      .add_option("--practice-rooms", options.calibration.rooms,
                   fmt::format("rendered rooms in which scores and qualities are learnt, two pictures of each; 4.3 MB "
                               "of memory a room; default {}, with each further new object more, {} of seven",
                               scene_count_for(1), scene_count_for(7)))
-      .range(3, CalibrationSettings::kMaxRooms);
+      .range(3, CalibrationSettings::kMaxScenes);
   command.add_option("--seed", options.seed, "same seed, same meshes: same store").capture_default_str();
   command.add_option("--threads", options.threads, "any number gives the same store")
       .range(1, 256)
@@ -67,7 +67,7 @@ CommandLine add_mesh(CommandLine& app, TeachOptions& options, Lists& lists) {
                   "own pictures without the objects, beside the rendered rooms: bop:DIR or images:DIR");
   mesh.add_option("--camera", options.rooms.camera, "WIDTHxHEIGHT,fx,fy,cx,cy of images:DIR");
   mesh.add_option("--cache", options.rooms.cache, "where rendered rooms are kept; default ~/.cache/houghstream");
-  add_practice_options(mesh, options);
+  add_calibration_options(mesh, options);
   mesh.add_option("--dump-views", options.dump_views, "writes the training views as a BOP training folder too");
   mesh.add_example("hs-teach mesh mug.ply drill.glb --out my.store");
   return mesh;
@@ -121,7 +121,7 @@ CommandLine add_show(CommandLine& app, ShowOptions& options, ShowWords& words) {
   show.add_option("--seconds", options.max_duration_s, "that a take of a camera lasts at most")
       .range(0.1, 86400.0)
       .capture_default_str();
-  show.add_option("--cache", options.rooms_cache, "where rendered rooms are kept; default ~/.cache/houghstream");
+  show.add_option("--cache", options.backgrounds_cache, "where rendered rooms are kept; default ~/.cache/houghstream");
   show.add_option("--seed", options.seed, "same seed, same take: same store").capture_default_str();
   show.add_option("--threads", options.threads, "any number gives the same store").range(1, 256).capture_default_str();
   add_lcm_url_option(show, words.lcm_url);
@@ -172,7 +172,7 @@ int main(int argc, char** argv) {
   CommandLine practise = app.add_subcommand("practise", "learns anew what detections and poses of a store are worth");
   practise.add_option("store", folder, "object store").required();
   practise.add_option("--names", lists.names, "MUG,DRILL: these only; default: all");
-  add_practice_options(practise, options);
+  add_calibration_options(practise, options);
   practise.add_example("hs-teach practise my.store --names mug");
   const int failed = run_tool(app, argc, argv, [&] {
     options.meshes.names = split(lists.names);
@@ -184,9 +184,9 @@ int main(int argc, char** argv) {
     } else if (mesh.given()) {
       teach_meshes(options);
     } else if (practise.given()) {
-      options.practice.seed = options.seed;
-      options.practice.threads = options.threads;
-      practise_store(folder, options.practice, split(lists.names));
+      options.calibration.seed = options.seed;
+      options.calibration.threads = options.threads;
+      calibrate_store(folder, options.calibration, split(lists.names));
     } else if (list.given()) {
       list_store(folder);
     } else if (rename.given()) {

@@ -260,7 +260,7 @@ ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSetti
     if (cv::countNonZero(view.mask) > 0) model.views.push_back(std::move(view));
   }
   model.agreement_m = surface_deviation(model.mesh, {{&take, &model.views}}, settings.threads);
-  model.seen_through = free_space_violation(model.mesh, take, model.views, settings.threads);
+  model.free_space_violation = free_space_violation(model.mesh, take, model.views, settings.threads);
   return model;
 }
 
@@ -406,10 +406,10 @@ bool merge_takes(const Take& first, ReconstructedModel& model, const Take& secon
   std::move(more.begin(), more.end(), std::back_inserter(views.views));
   views.lighting_ids.resize(views.views.size(), lighting_of(second, 1));
   ModelOfViews fused = fuse_masked_views("both takes", views, both, std::nullopt, settings);
-  moved.seen_through = std::max(free_space_violation(fused.mesh, first, model.views, settings.threads),
-                                free_space_violation(fused.mesh, second, moved.views, settings.threads));
-  if (moved.seen_through > kMaxFreeSpaceViolation) return false;
-  model.seen_through = moved.seen_through;
+  moved.free_space_violation = std::max(free_space_violation(fused.mesh, first, model.views, settings.threads),
+                                        free_space_violation(fused.mesh, second, moved.views, settings.threads));
+  if (moved.free_space_violation > kMaxFreeSpaceViolation) return false;
+  model.free_space_violation = moved.free_space_violation;
   model.mesh = std::move(fused.mesh);
   model.seen = std::move(fused.seen);
   moved.mesh = model.mesh;

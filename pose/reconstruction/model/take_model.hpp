@@ -16,8 +16,8 @@ struct ReconstructedModel {
   std::vector<bool> seen;  ///< per vertex: some view shows it; the others close the surface
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();  ///< world: of the take
   std::vector<MaskedKeyframe> views;                                 ///< those that show it, in the keyframes' order
-  double agreement_m = 0.0;   ///< see disagreement(), of all views that the model is made of
-  double seen_through = 0.0;  ///< see free_space_violation()
+  double agreement_m = 0.0;           ///< see disagreement(), of all views that the model is made of
+  double free_space_violation = 0.0;  ///< see free_space_violation()
 };
 
 struct ReconstructionSettings {

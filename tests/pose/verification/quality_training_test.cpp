@@ -108,7 +108,7 @@ TEST(QualityTraining, TypicalValuesAreTheMeansOfRightPosesAndTheLeastQualityIsTh
 
 /// Of each of two halves the same examples. The object is there where the pose is right, and where it is not in
 /// `there_anyway` of all cases.
-std::vector<QualityExample> practised(double there_anyway) {
+std::vector<QualityExample> calibrated(double there_anyway) {
   std::vector<QualityExample> examples = drawn(600);
   Random random(11);
   for (QualityExample& example : examples) {
@@ -173,7 +173,7 @@ TEST(LearnQualities, WhatAMarginIsWorthIsEachObjectsOwn) {
 
 TEST(LearnQualities, WhatABadPoseSaysOfPresenceIsEachObjectsOwn) {
   const std::map<std::string, QualitySettings> learnt =
-      learn_qualities({{"easily posed", practised(0.0)}, {"hardly posed", practised(0.8)}});
+      learn_qualities({{"easily posed", calibrated(0.0)}, {"hardly posed", calibrated(0.8)}});
   ASSERT_EQ(learnt.size(), 2U);
   EXPECT_LT(presence_probability(0.5F, 0.02F, learnt.at("easily posed").presence), 0.2F);
   EXPECT_GT(presence_probability(0.5F, 0.02F, learnt.at("hardly posed").presence), 0.5F);

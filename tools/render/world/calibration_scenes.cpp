@@ -74,12 +74,12 @@ Eigen::Isometry3d draw_viewpoint(const World& world, Random& random) {
   return Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()) * look_at(eye, target);
 }
 
-int draw_practised(const std::vector<CalibrationSceneObject>& objects, Random& random) {
-  std::vector<int> practised;
+int draw_calibrated(const std::vector<CalibrationSceneObject>& objects, Random& random) {
+  std::vector<int> calibrated;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (objects[i].is_calibrated) practised.push_back(static_cast<int>(i));
+    if (objects[i].is_calibrated) calibrated.push_back(static_cast<int>(i));
   }
-  return pick(random, practised);
+  return pick(random, calibrated);
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ World CalibrationScenes::make_furnished_world(int room) const {
   const double reach = random.uniform(0.35, 0.8);  // near together they hide one another
   const Eigen::AlignedBox2d middle = setter.region(-reach, reach, -reach, 0.8 * reach);
   const Eigen::AlignedBox2d all = setter.region(-0.95, 0.95, -0.95, 0.95);
-  const int first = draw_practised(objects_, random);
+  const int first = draw_calibrated(objects_, random);
   const int count = std::min(static_cast<int>(objects_.size()), random.between(3, kMaxObjects));
   for (int i = 0; i < count; ++i) {
     const CalibrationSceneObject& object = objects_[static_cast<std::size_t>(first + i) % objects_.size()];
@@ -119,9 +119,9 @@ World CalibrationScenes::make_furnished_world(int room) const {
   return world;
 }
 
-std::array<RenderedFrame, CalibrationScenes::kFramesPerRoom> CalibrationScenes::render(int room) const {
+std::array<RenderedFrame, CalibrationScenes::kFramesPerScene> CalibrationScenes::render(int room) const {
   const LitWorld lit_world = light_world(make_furnished_world(room));  // takes as long as a frame
-  std::array<RenderedFrame, kFramesPerRoom> frames;
+  std::array<RenderedFrame, kFramesPerScene> frames;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::uint64_t index = frames.size() * static_cast<std::uint64_t>(room) + i;
     const std::uint64_t own = aspect_seed(world_seed(DatasetSplit::kTraining, seed_), kFirstRoom + index);

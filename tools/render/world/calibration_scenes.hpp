@@ -23,7 +23,7 @@ struct CalibrationSceneObject {
 /// from views never are. Rooms of training seeds that neither views nor backgrounds use.
 class CalibrationScenes {
  public:
-  static constexpr int kFramesPerRoom = 2;
+  static constexpr int kFramesPerScene = 2;
 
   /// One of the `objects` at least is practised.
   CalibrationScenes(std::vector<CalibrationSceneObject> objects, std::uint64_t seed)
@@ -31,7 +31,7 @@ class CalibrationScenes {
 
   /// Looks at room `room`, from 0, from different sides and distances. The truth names objects by
   /// CalibrationSceneObject::id. Same arguments, same frames; thread-safe.
-  std::array<RenderedFrame, kFramesPerRoom> render(int room) const;
+  std::array<RenderedFrame, kFramesPerScene> render(int room) const;
 
  private:
   World make_furnished_world(int room) const;

@@ -24,11 +24,11 @@ constexpr std::uint64_t kCameras = 0x63616D657261ULL;
 /// Rendered once, looked at twice. The objects are not quite those that were taught: light, wear and printer differ.
 std::vector<world::RenderedFrame> render_frames(const std::vector<CalibrationObject>& objects,
                                                 const CalibrationSettings& settings, int rooms) {
-  std::vector<world::CalibrationSceneObject> in_room;
-  in_room.reserve(objects.size());
-  for (const CalibrationObject& object : objects) in_room.push_back(object.in_room);
-  const world::CalibrationScenes scenes(std::move(in_room), settings.seed);
-  constexpr int kEach = world::CalibrationScenes::kFramesPerRoom;
+  std::vector<world::CalibrationSceneObject> in_scene;
+  in_scene.reserve(objects.size());
+  for (const CalibrationObject& object : objects) in_scene.push_back(object.in_scene);
+  const world::CalibrationScenes scenes(std::move(in_scene), settings.seed);
+  constexpr int kEach = world::CalibrationScenes::kFramesPerScene;
   std::vector<world::RenderedFrame> frames(static_cast<std::size_t>(rooms * kEach));
   ProgressLine progress("practice rooms", rooms);
   parallel_for(settings.threads, rooms, [&](int room) {
@@ -73,37 +73,37 @@ training::ValidationSource validation_source(const std::vector<world::RenderedFr
 constexpr int kHalves = 2;
 
 int half_of(std::size_t frame) {
-  return static_cast<int>(frame) / world::CalibrationScenes::kFramesPerRoom % kHalves;
+  return static_cast<int>(frame) / world::CalibrationScenes::kFramesPerScene % kHalves;
 }
 
 /// What practice has seen, and of which classes it is to learn.
-struct Practised {
+struct Calibrated {
   const std::vector<world::RenderedFrame>& frames;
   const std::vector<training::ScoreExamples>& examples;  ///< of each frame
   const std::set<int>& new_ids;
   int threads;
 };
 
-std::vector<std::size_t> frames_of(int half, const Practised& practised) {
+std::vector<std::size_t> frames_of(int half, const Calibrated& calibrated) {
   std::vector<std::size_t> of_half;
-  for (std::size_t f = 0; f < practised.frames.size(); ++f) {
+  for (std::size_t f = 0; f < calibrated.frames.size(); ++f) {
     if (half_of(f) == half) of_half.push_back(f);
   }
   return of_half;
 }
 
-void fit_scores_without(int half, const Practised& practised, Forest& forest) {
+void fit_scores_without(int half, const Calibrated& calibrated, Forest& forest) {
   std::vector<training::ScoreExamples> others;
-  for (std::size_t f = 0; f < practised.examples.size(); ++f) {
-    if (half_of(f) != half) others.push_back(practised.examples[f]);
+  for (std::size_t f = 0; f < calibrated.examples.size(); ++f) {
+    if (half_of(f) != half) others.push_back(calibrated.examples[f]);
   }
-  training::fit_scores(others, practised.new_ids, forest);
+  training::fit_scores(others, calibrated.new_ids, forest);
 }
 
 /// Each half of the rooms is searched with scores that were fitted without it: what a score is worth to a pose is
 /// learnt where the score is as uncertain as it will be. The forest, which may be too large to be in memory twice,
 /// takes the scores of one half after the other, and is left with those of the last.
-quality::FoundPoses find_poses(const Practised& practised, const quality::PosedModels& models, Forest& forest) {
+quality::FoundPoses find_poses(const Calibrated& calibrated, const quality::PosedModels& models, Forest& forest) {
   DetectionSettings detection = detection_settings(forest);
   detection.threads = 1;
   detection.evidence.threshold = PoseSettings{}.min_score;
@@ -112,18 +112,18 @@ quality::FoundPoses find_poses(const Practised& practised, const quality::PosedM
   for (const ObjectClass& known : forest.classes) names[known.class_id] = known.name;
   const quality::UnfilteredPoseFinder finder(models, 1);
   quality::FoundPoses found;
-  found.frames.resize(practised.frames.size());
-  found.terms.resize(practised.frames.size());
+  found.frames.resize(calibrated.frames.size());
+  found.terms.resize(calibrated.frames.size());
   PerWorker<DetectorWorkspace> workspaces;
-  workspaces.resize(practised.threads);
-  ProgressLine progress("search in practice rooms", static_cast<double>(practised.frames.size()));
+  workspaces.resize(calibrated.threads);
+  ProgressLine progress("search in practice rooms", static_cast<double>(calibrated.frames.size()));
   for (int half = 0; half < kHalves; ++half) {
-    fit_scores_without(half, practised, forest);
+    fit_scores_without(half, calibrated, forest);
     Detector detector(std::move(forest), detection);
-    const std::vector<std::size_t> searched = frames_of(half, practised);
-    parallel_for_workers(practised.threads, static_cast<int>(searched.size()), [&](int worker, int i) {
+    const std::vector<std::size_t> searched = frames_of(half, calibrated);
+    parallel_for_workers(calibrated.threads, static_cast<int>(searched.size()), [&](int worker, int i) {
       const std::size_t index = searched[static_cast<std::size_t>(i)];
-      const world::RenderedFrame& seen = practised.frames[index];
+      const world::RenderedFrame& seen = calibrated.frames[index];
       EvaluatedFrame& frame = found.frames[index];
       for (const GroundTruthObject& object : seen.objects)
         frame.objects.push_back({names.at(object.object_id), object, std::nullopt});
@@ -167,18 +167,18 @@ std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFra
   }
   std::vector<std::string> names;
   for (const CalibrationObject& object : objects) {
-    const int id = object.in_room.id;
+    const int id = object.in_scene.id;
     if (new_ids.count(id) > 0 && seen.count(id) == 0) names.push_back(object.name);
   }
   return names;
 }
 
-std::map<std::string, QualitySettings> practise(const std::vector<CalibrationObject>& objects,
-                                                const std::set<int>& new_ids, const CalibrationSettings& settings,
-                                                Forest& forest) {
+std::map<std::string, QualitySettings> calibrate_on_scenes(const std::vector<CalibrationObject>& objects,
+                                                           const std::set<int>& new_ids,
+                                                           const CalibrationSettings& settings, Forest& forest) {
   const int rooms = scene_count_for(new_ids.size(), settings);
-  require(rooms <= CalibrationSettings::kMaxRooms, "{} practice rooms, expected at most {}: all are in memory", rooms,
-          CalibrationSettings::kMaxRooms);
+  require(rooms <= CalibrationSettings::kMaxScenes, "{} practice rooms, expected at most {}: all are in memory", rooms,
+          CalibrationSettings::kMaxScenes);
   const std::vector<world::RenderedFrame> frames = render_frames(objects, settings, rooms);
   warn_of(unobserved_objects(frames, objects, new_ids), rooms);
   Profile profile = training::profile_of(forest);
@@ -201,7 +201,7 @@ std::map<std::string, QualitySettings> practise(const std::vector<CalibrationObj
   std::map<std::string, QualitySettings> all = learn_qualities(quality_examples(found, judged_by));
   std::map<std::string, QualitySettings> learnt;
   for (const CalibrationObject& object : objects) {
-    if (new_ids.count(object.in_room.id) > 0) learnt[object.name] = all.at(object.name);
+    if (new_ids.count(object.in_scene.id) > 0) learnt[object.name] = all.at(object.name);
   }
   return learnt;
 }

@@ -21,11 +21,11 @@ struct CalibrationObject {
   Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();  ///< see store::StoredObject
   Symmetries symmetries;                                  ///< of models_info.json: the same pose, print included
   ShapeSymmetry shape_symmetry;                           ///< see store::StoredObject
-  world::CalibrationSceneObject in_room;                  ///< its id is the class's
+  world::CalibrationSceneObject in_scene;                 ///< its id is the class's
 };
 
 struct CalibrationSettings {
-  static constexpr int kMaxRooms = 500;  ///< whose pictures, 4.3 MB a room, are all in memory at once: 2 GB
+  static constexpr int kMaxScenes = 500;  ///< whose pictures, 4.3 MB a room, are all in memory at once: 2 GB
 
   std::optional<int>
       rooms;  ///< each is looked at world::CalibrationScenes::kFramesPerRoom times; default: scene_count_for()
@@ -49,8 +49,8 @@ std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFra
 /// its detections and poses are worth: the scores' weights in `forest`, and the qualities, by name; both of the classes
 /// in `new_ids` only. A line of the log names those of them that stand in no room. Same result for any number of
 /// threads. Throws InputError for more rooms than CalibrationSettings::kMaxRooms.
-std::map<std::string, QualitySettings> practise(const std::vector<CalibrationObject>& objects,
-                                                const std::set<int>& new_ids, const CalibrationSettings& settings,
-                                                Forest& forest);
+std::map<std::string, QualitySettings> calibrate_on_scenes(const std::vector<CalibrationObject>& objects,
+                                                           const std::set<int>& new_ids,
+                                                           const CalibrationSettings& settings, Forest& forest);
 
 }  // namespace houghstream::teach

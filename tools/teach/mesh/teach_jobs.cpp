@@ -83,8 +83,8 @@ void require_new(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) 
 }
 
 /// The objects of the finished store, looked for in rooms; what is learnt of the new ones goes into forest and store.
-void practise_all(const std::vector<NamedModel>& models, const std::set<int>& new_ids,
-                  const CalibrationSettings& settings, Forest& forest, ObjectStore& made) {
+void calibrate_all(const std::vector<NamedModel>& models, const std::set<int>& new_ids,
+                   const CalibrationSettings& settings, Forest& forest, ObjectStore& made) {
   std::vector<CalibrationObject> objects(models.size());
   parallel_for(settings.threads, static_cast<int>(models.size()), [&](int i) {
     const NamedModel& model = models[static_cast<std::size_t>(i)];
@@ -96,20 +96,20 @@ void practise_all(const std::vector<NamedModel>& models, const std::set<int>& ne
     object.vote_centre = stored.vote_centre;
     object.symmetries = model.symmetries;
     object.shape_symmetry = *stored.shape_symmetry;
-    object.in_room.id = model.object_id;
-    object.in_room.thing = world::make_taught_thing(model.mesh, stored.coloured);
-    object.in_room.ups = world::up_directions(model.mesh, world::parse_mesh_attitudes(stored.attitudes));
-    object.in_room.has_colour = stored.coloured;
-    object.in_room.is_calibrated = new_ids.count(model.object_id) > 0;
+    object.in_scene.id = model.object_id;
+    object.in_scene.thing = world::make_taught_thing(model.mesh, stored.coloured);
+    object.in_scene.ups = world::up_directions(model.mesh, world::parse_mesh_attitudes(stored.attitudes));
+    object.in_scene.has_colour = stored.coloured;
+    object.in_scene.is_calibrated = new_ids.count(model.object_id) > 0;
   });
-  const std::map<std::string, QualitySettings> learnt = practise(objects, new_ids, settings, forest);
+  const std::map<std::string, QualitySettings> learnt = calibrate_on_scenes(objects, new_ids, settings, forest);
   for (StoredObject& object : made.objects) {
     if (const auto found = learnt.find(object.name); found != learnt.end())
       object.quality = quality_to_json(found->second);
   }
 }
 
-std::string practice_step(const CalibrationSettings& settings, std::size_t new_objects) {
+std::string calibration_step(const CalibrationSettings& settings, std::size_t new_objects) {
   return fmt::format("looked for in {} rendered rooms, of which scores and qualities are learnt",
                      scene_count_for(new_objects, settings));
 }
@@ -241,11 +241,11 @@ void teach_meshes(const TeachOptions& options) {
     new_ids.insert(model.object_id);
     models.push_back(std::move(model));
   }
-  CalibrationSettings practice = options.practice;
-  practice.seed = options.seed;
-  practice.threads = options.threads;
-  progress(practice_step(practice, new_ids.size()));
-  practise_all(models, new_ids, practice, forest, made);
+  CalibrationSettings calibration = options.calibration;
+  calibration.seed = options.seed;
+  calibration.threads = options.threads;
+  progress(calibration_step(calibration, new_ids.size()));
+  calibrate_all(models, new_ids, calibration, forest, made);
   progress("scores and qualities learnt");
   made.settings = {{"attitudes", options.attitudes}, {"seed", options.seed}, {"profile", forest.profile}};
   write_store(made, models, forest);
@@ -275,8 +275,8 @@ void remove_from_store(const fs::path& folder, const std::string& name) {
   build.commit();
 }
 
-void practise_store(const fs::path& folder, const CalibrationSettings& settings,
-                    const std::vector<std::string>& names) {
+void calibrate_store(const fs::path& folder, const CalibrationSettings& settings,
+                     const std::vector<std::string>& names) {
   const Progress progress;
   require_store(folder);
   store::StoreTransaction build(folder);
@@ -287,8 +287,8 @@ void practise_store(const fs::path& folder, const CalibrationSettings& settings,
   std::vector<NamedModel> models;
   keep(old, "", made, models);
   Forest forest = *old.forest;
-  progress(practice_step(settings, ids.size()));
-  practise_all(models, ids, settings, forest, made);
+  progress(calibration_step(settings, ids.size()));
+  calibrate_all(models, ids, settings, forest, made);
   write_store(made, models, forest);
   build.commit();
   progress("scores and qualities learnt");

@@ -22,8 +22,8 @@ void list_store(const std::filesystem::path& folder);
 
 /// Learns scores and qualities of a store's objects anew: of all, or of those of the `names`. Throws InputError for a
 /// name that is not there.
-void practise_store(const std::filesystem::path& folder, const CalibrationSettings& settings,
-                    const std::vector<std::string>& names = {});
+void calibrate_store(const std::filesystem::path& folder, const CalibrationSettings& settings,
+                     const std::vector<std::string>& names = {});
 
 /// Takes an object out of the store. Throws InputError where it is not there, or the only one.
 void remove_from_store(const std::filesystem::path& folder, const std::string& name);

@@ -29,7 +29,7 @@ struct TeachOptions {
   std::filesystem::path dump_views;            ///< BOP training folder to write the views to as well; empty = none
   world::MeshViewSettings views;               ///< attitudes and colour are those of the object
   Profile profile = make_profile("realtime");  ///< with `add` its training only, the rest is the forest's
-  CalibrationSettings practice;                ///< seed and threads are those below
+  CalibrationSettings calibration;             ///< seed and threads are those below
   std::uint64_t seed = 1;
   int threads = 2;
 };

@@ -53,7 +53,7 @@ void write_poses(const ShowResult& shown, const fs::path& file) {
   require(out.good(), "{}: cannot be written", file.string());
 }
 
-OrderedJson report_json(const ShowResult& shown, const Verdict& verdict) {
+OrderedJson report_json(const ShowResult& shown, const ModelAssessment& assessment) {
   OrderedJson json;
   int frames = 0, tracked = 0, keyframes = 0;
   double hz = 1e9;
@@ -71,8 +71,8 @@ OrderedJson report_json(const ShowResult& shown, const Verdict& verdict) {
     drift_deg = std::max(degrees_of(*take.gap), drift_deg.is_null() ? 0.0 : drift_deg.get<double>());
   }
   json["name"] = shown.name;
-  json["verdict"] = verdict.good ? "good" : "poor";
-  json["reasons"] = verdict.reasons;
+  json["verdict"] = assessment.good ? "good" : "poor";
+  json["reasons"] = assessment.reasons;
   json["frames"] = frames;
   json["used_frames"] = tracked;
   json["keyframes"] = keyframes;
@@ -81,7 +81,7 @@ OrderedJson report_json(const ShowResult& shown, const Verdict& verdict) {
   json["drift_mm"] = drift_mm;
   json["drift_deg"] = drift_deg;
   json["agreement_mm"] = 1e3 * shown.agreement_m;
-  json["seen_through"] = shown.seen_through;
+  json["seen_through"] = shown.free_space_violation;
   json["outline_overlap"] = shown.silhouette_iou ? OrderedJson(*shown.silhouette_iou) : OrderedJson();
   json["seen_share"] =
       static_cast<double>(reconstruction::count_covered(seen_by_all(shown))) / reconstruction::kSphereDirections;
@@ -175,7 +175,7 @@ bool is_kept_entry(const fs::path& relative) {
   return *second == "000001" || *second == "models";
 }
 
-void write_page(const ShowResult& shown, const Verdict& verdict, const fs::path& folder) {
+void write_page(const ShowResult& shown, const ModelAssessment& assessment, const fs::path& folder) {
   ShownPictures pictures;
   for (const char* name : {"chosen.png", "chosen_2.png"}) {
     if (fs::exists(folder / name)) pictures.chosen.emplace_back(name);
@@ -184,17 +184,17 @@ void write_page(const ShowResult& shown, const Verdict& verdict, const fs::path&
     pictures.outlines.push_back("outlines/" + entry.path().filename().string());
   std::sort(pictures.outlines.begin(), pictures.outlines.end());
   std::ofstream out(folder / "report.html");
-  out << report_page(shown, verdict, pictures);
+  out << report_page(shown, assessment, pictures);
   out.close();
   require(out.good(), "{}: cannot be written", (folder / "report.html").string());
 }
 
 }  // namespace
 
-std::string report_page(const ShowResult& shown, const Verdict& verdict, const ShownPictures& pictures) {
+std::string report_page(const ShowResult& shown, const ModelAssessment& assessment, const ShownPictures& pictures) {
   std::string page =
       fmt::format("<!doctype html><meta charset=\"utf-8\"><title>{0}</title>\n<h1>{0}: {1}</h1>\n<pre>{2}</pre>\n",
-                  escape_html(shown.name), verdict.good ? "good" : "poor", escape_html(describe(shown, verdict)));
+                  escape_html(shown.name), assessment.good ? "good" : "poor", escape_html(describe(shown, assessment)));
   for (const std::string& file : pictures.chosen)
     page += fmt::format("<p>Taken for the object in the first frame:</p>\n<img src=\"{}\" width=\"50%\">\n",
                         escape_html(file));
@@ -216,7 +216,7 @@ void require_keepable(const fs::path& folder) {
   require_exchangeable(whole, is_kept_entry);
 }
 
-void archive_session(const ShowResult& shown, const Verdict& verdict, const fs::path& folder) {
+void archive_session(const ShowResult& shown, const ModelAssessment& assessment, const fs::path& folder) {
   require_keepable(folder);
   const fs::path whole = kept_folder(folder);
   const fs::path partial = whole.parent_path() / fmt::format(".{}.partial-{}", whole.filename().string(), getpid());
@@ -227,8 +227,8 @@ void archive_session(const ShowResult& shown, const Verdict& verdict, const fs::
     write_views(shown, views, partial / "views");
     write_pictures(shown, views, partial);
     write_poses(shown, partial / "camera_poses.csv");
-    write_json(report_json(shown, verdict), partial / "report.json");
-    write_page(shown, verdict, partial);
+    write_json(report_json(shown, assessment), partial / "report.json");
+    write_page(shown, assessment, partial);
     restore_replaced(whole, is_kept_entry);
     exchange_folder(partial, whole, is_kept_entry);
   } catch (const std::exception& error) {

@@ -15,7 +15,7 @@ void require_keepable(const std::filesystem::path& folder);
 /// What was asked to be kept, in a folder that appears as a whole: model.ply, views/ (BOP: the keyframes with poses and
 /// masks), contact_sheet.jpg, chosen.png, outlines/, camera_poses.csv, report.json and report.html. One of an earlier
 /// time is replaced, anything else is not. Throws InputError where it cannot be written.
-void archive_session(const ShowResult& shown, const Verdict& verdict, const std::filesystem::path& folder);
+void archive_session(const ShowResult& shown, const ModelAssessment& assessment, const std::filesystem::path& folder);
 
 /// Files beside report.html that it shows.
 struct ShownPictures {
@@ -24,6 +24,6 @@ struct ShownPictures {
 };
 
 /// report.html. Names are shown as they are, whatever they hold.
-std::string report_page(const ShowResult& shown, const Verdict& verdict, const ShownPictures& pictures);
+std::string report_page(const ShowResult& shown, const ModelAssessment& assessment, const ShownPictures& pictures);
 
 }  // namespace houghstream::teach

@@ -86,7 +86,7 @@ TeachOptions options_to_teach(const ShowOptions& options, const ShowResult& show
   teach.out = options.out;
   teach.add = options.add;
   teach.replace = options.replace;
-  teach.rooms.cache = options.rooms_cache;
+  teach.rooms.cache = options.backgrounds_cache;
   teach.rooms.threads = options.threads;
   teach.seed = options.seed;
   teach.threads = options.threads;
@@ -156,7 +156,7 @@ struct ModelledTake {
   ReconstructedModel model;
 };
 
-Take follow(const TakeSource& source, const ShowOptions& options, ProgressReporter& telling) {
+Take follow(const TakeSource& source, const ShowOptions& options, ProgressReporter& reporter) {
   constexpr std::size_t kMin = 20;
   constexpr int kAwake = 90;   // frames after which a camera has found its exposure
   constexpr int kAimed = 300;  // and in which somebody has pointed it at the object
@@ -175,24 +175,24 @@ Take follow(const TakeSource& source, const ShowOptions& options, ProgressReport
       waiting.message = lack_of(*frame);
       if (!waiting.message.empty()) {
         require(live && ++blank < kAwake, "{}", waiting.message);
-        telling.frame(frame->id, waiting);
+        reporter.frame(frame->id, waiting);
         continue;
       }
     }
-    telling.frame(frame->id, placer.process(*frame));
+    reporter.frame(frame->id, placer.process(*frame));
   }
-  telling.step(ShowState::kFusing, 0.0, "all keyframes are laid on one another");
+  reporter.step(ShowState::kFusing, 0.0, "all keyframes are laid on one another");
   Take take = placer.finish();
   require(take.frames.size() >= kMin, "{} frames, expected at least {}, of a whole turn", take.frames.size(), kMin);
   return take;
 }
 
 /// Errors name the take, of which there may be two.
-ModelledTake follow_and_model(const TakeSource& source, const ShowOptions& options, ProgressReporter& telling) {
+ModelledTake follow_and_model(const TakeSource& source, const ShowOptions& options, ProgressReporter& reporter) {
   try {
     ModelledTake made;
-    made.take = follow(source, options, telling);
-    telling.step(ShowState::kFusing, 0.3, "the model is made");
+    made.take = follow(source, options, reporter);
+    reporter.step(ShowState::kFusing, 0.3, "the model is made");
     made.model = reconstruct_model(made.take, making_of(options));
     return made;
   } catch (const InputError& error) {
@@ -202,17 +202,17 @@ ModelledTake follow_and_model(const TakeSource& source, const ShowOptions& optio
 
 /// Follows one or two takes and makes a model of them.
 ShowResult show_takes(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second,
-                      ProgressReporter& telling) {
+                      ProgressReporter& reporter) {
   const auto begin = std::chrono::steady_clock::now();
   ShowResult shown;
   shown.name = options.name;
-  ModelledTake first = follow_and_model({options.source, frames, options.box, options.at}, options, telling);
+  ModelledTake first = follow_and_model({options.source, frames, options.box, options.at}, options, reporter);
   ReconstructedModel& model = first.model;
   shown.takes.push_back(std::move(first.take));
   if (second) {
     const std::string name = options.second.empty() ? "the second take" : options.second;
-    ModelledTake other = follow_and_model({name, second, std::nullopt, std::nullopt}, options, telling);
-    telling.step(ShowState::kFusing, 0.4, "the second take is laid on the first");
+    ModelledTake other = follow_and_model({name, second, std::nullopt, std::nullopt}, options, reporter);
+    reporter.step(ShowState::kFusing, 0.4, "the second take is laid on the first");
     shown.second_fits = merge_takes(shown.takes.front(), model, other.take, other.model, making_of(options));
     if (shown.second_fits) {
       shown.takes.push_back(std::move(other.take));
@@ -220,56 +220,56 @@ ShowResult show_takes(const ShowOptions& options, const ShownFrames& frames, con
     }
   }
   shown.views.insert(shown.views.begin(), std::move(model.views));
-  shown.seen_surface = share_of_seen(model.seen);
+  shown.seen_surface = covered_fraction(model.seen);
   shown.mesh = fusion::remove_unobserved(model.mesh, model.seen, making_of(options).foot_m);
   shown.agreement_m = model.agreement_m;
-  shown.seen_through = model.seen_through;
+  shown.free_space_violation = model.free_space_violation;
   shown.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return shown;
 }
 
 /// Into the store twice: with scores and qualities of a little practice, so that a stream that runs finds the object
 /// soon, and again when they were learnt as thoroughly as those of any other.
-void teach_shown(const ShowOptions& options, const ShowResult& shown, ProgressReporter& telling) {
-  constexpr int kFirstRooms = 18;
+void teach_shown(const ShowOptions& options, const ShowResult& shown, ProgressReporter& reporter) {
+  constexpr int kFirstScenes = 18;
   TeachOptions teach = options_to_teach(options, shown);
-  CalibrationSettings thorough = teach.practice;
+  CalibrationSettings thorough = teach.calibration;
   thorough.seed = options.seed;
   thorough.threads = options.threads;
-  teach.practice.rooms = kFirstRooms;
-  telling.step(ShowState::kTraining, 0.5, "the model is taught");
+  teach.calibration.rooms = kFirstScenes;
+  reporter.step(ShowState::kTraining, 0.5, "the model is taught");
   teach_meshes(teach);
-  telling.step(ShowState::kTraining, 0.8,
-               fmt::format("{} is known, and what its detections are worth is learnt in more rooms", options.name));
-  practise_store(options.out, thorough, {options.name});
+  reporter.step(ShowState::kTraining, 0.8,
+                fmt::format("{} is known, and what its detections are worth is learnt in more rooms", options.name));
+  calibrate_store(options.out, thorough, {options.name});
 }
 
 /// Judges what was shown, writes what is to be kept, and teaches it. Returns the exit status.
-int conclude(const ShowOptions& options, const ShowResult& shown, ProgressReporter& telling) {
+int conclude(const ShowOptions& options, const ShowResult& shown, ProgressReporter& reporter) {
   constexpr int kPoor = 3;
-  const Verdict verdict = judge(shown);
-  fmt::print("{}", describe(shown, verdict));
-  if (!options.keep.empty()) archive_session(shown, verdict, options.keep);
-  if (!verdict.good && !options.accept_poor_model) {
-    telling.step(ShowState::kFailed, 1.0,
-                 fmt::format("poor: {}{}", verdict.reasons.front(),
-                             options.teach ? "; not taught (--go-on teaches it all the same)" : ""));
+  const ModelAssessment assessment = assess_model(shown);
+  fmt::print("{}", describe(shown, assessment));
+  if (!options.keep.empty()) archive_session(shown, assessment, options.keep);
+  if (!assessment.good && !options.accept_poor_model) {
+    reporter.step(ShowState::kFailed, 1.0,
+                  fmt::format("poor: {}{}", assessment.reasons.front(),
+                              options.teach ? "; not taught (--go-on teaches it all the same)" : ""));
     return kPoor;
   }
-  if (options.teach) teach_shown(options, shown, telling);
-  telling.step(ShowState::kDone, 1.0,
-               options.teach ? fmt::format("{} is known", options.name) : fmt::format("{} has a model", options.name));
+  if (options.teach) teach_shown(options, shown, reporter);
+  reporter.step(ShowState::kDone, 1.0,
+                options.teach ? fmt::format("{} is known", options.name) : fmt::format("{} has a model", options.name));
   return 0;
 }
 
 /// Says why where it fails.
 int told(const ShowOptions& options, ShowObserver* observer, const std::function<ShowResult(ProgressReporter&)>& show) {
-  ProgressReporter telling(options.name, observer);
+  ProgressReporter reporter(options.name, observer);
   try {
     check_show_options(options);
-    return conclude(options, show(telling), telling);
+    return conclude(options, show(reporter), reporter);
   } catch (const std::exception& error) {
-    telling.fail(error.what());
+    reporter.fail(error.what());
     throw;
   }
 }
@@ -279,7 +279,7 @@ int told(const ShowOptions& options, ShowObserver* observer, const std::function
 int show_object(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second,
                 ShowObserver* observer) {
   return told(options, observer,
-              [&](ProgressReporter& telling) { return show_takes(options, frames, second, telling); });
+              [&](ProgressReporter& reporter) { return show_takes(options, frames, second, reporter); });
 }
 
 int show_sources(const ShowOptions& options, ShowObserver* observer) {

@@ -27,7 +27,7 @@ struct ShowOptions {
   double max_duration_s = 60.0;    ///< of a take from a live source
   std::string camera;              ///< WIDTHxHEIGHT,fx,fy,cx,cy of frames that come without; empty = they do not
   std::string channel;             ///< of the frames in a log; empty = the first that holds any
-  std::filesystem::path rooms_cache;  ///< see BackgroundSettings
+  std::filesystem::path backgrounds_cache;  ///< see BackgroundSettings
   std::uint64_t seed = 1;
   int threads = 2;
 };

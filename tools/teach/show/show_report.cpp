@@ -32,7 +32,7 @@ std::string unused_frames(const Take& take) {
 }
 
 /// What speaks against a take.
-void judge_take(const Take& take, std::vector<std::string>& reasons) {
+void assess_take(const Take& take, std::vector<std::string>& reasons) {
   constexpr int kNearlyRound = 300;
   constexpr int kRound = 350;
   constexpr double kMaxLost = 0.15;
@@ -59,11 +59,11 @@ void judge_take(const Take& take, std::vector<std::string>& reasons) {
 }
 
 /// What speaks against each of the takes.
-void judge_takes(const ShowResult& shown, std::vector<std::string>& reasons) {
+void assess_takes(const ShowResult& shown, std::vector<std::string>& reasons) {
   constexpr std::size_t kMinKeyframes = 8;
   for (std::size_t t = 0; t < shown.takes.size(); ++t) {
     std::vector<std::string> of_take;
-    if (shown.takes[t].motion != Motion::kTurntable) judge_take(shown.takes[t], of_take);
+    if (shown.takes[t].motion != Motion::kTurntable) assess_take(shown.takes[t], of_take);
     if (shown.views[t].size() < kMinKeyframes)
       of_take.push_back(fmt::format("only {} keyframes show it", shown.views[t].size()));
     for (const std::string& reason : of_take) reasons.push_back((t == 0 ? "" : "the second take: ") + reason);
@@ -121,42 +121,43 @@ double degrees_of(const reconstruction::LoopClosureError& gap) {
   return kDegrees * gap.angle_rad;
 }
 
-double share_of_seen(const std::vector<bool>& seen) {
+double covered_fraction(const std::vector<bool>& seen) {
   return static_cast<double>(std::count(seen.begin(), seen.end(), true)) /
          static_cast<double>(std::max<std::size_t>(1, seen.size()));
 }
 
-Verdict judge(const ShowResult& shown) {
+ModelAssessment assess_model(const ShowResult& shown) {
   constexpr double kMaxDisagreement_m = 0.003;
   constexpr double kMinSurface = 0.55;
   constexpr double kMinOverlap = 0.9;
-  Verdict verdict;
-  judge_takes(shown, verdict.reasons);
+  ModelAssessment assessment;
+  assess_takes(shown, assessment.reasons);
   if (shown.agreement_m > kMaxDisagreement_m)
-    verdict.reasons.push_back(fmt::format("the views disagree by {:.1f} mm, expected less than {:.0f}",
-                                          1e3 * shown.agreement_m, 1e3 * kMaxDisagreement_m));
+    assessment.reasons.push_back(fmt::format("the views disagree by {:.1f} mm, expected less than {:.0f}",
+                                             1e3 * shown.agreement_m, 1e3 * kMaxDisagreement_m));
   if (shown.silhouette_iou.value_or(1.0) < kMinOverlap)
-    verdict.reasons.push_back(fmt::format("the model's outline overlaps with the masks by {:.2f}, expected at least {}",
-                                          *shown.silhouette_iou, kMinOverlap));
+    assessment.reasons.push_back(
+        fmt::format("the model's outline overlaps with the masks by {:.2f}, expected at least {}",
+                    *shown.silhouette_iou, kMinOverlap));
   if (shown.seen_surface < kMinSurface)
-    verdict.reasons.push_back(fmt::format("only {:.0f} % of its surface was seen", 100.0 * shown.seen_surface));
-  if (shown.seen_through > reconstruction::kMaxFreeSpaceViolation)
-    verdict.reasons.push_back(
+    assessment.reasons.push_back(fmt::format("only {:.0f} % of its surface was seen", 100.0 * shown.seen_surface));
+  if (shown.free_space_violation > reconstruction::kMaxFreeSpaceViolation)
+    assessment.reasons.push_back(
         fmt::format("the model is seen through in {:.0f} % of its outline, expected less than {:.0f}: a hand or the "
                     "table was taken for it",
-                    100.0 * shown.seen_through, 100.0 * reconstruction::kMaxFreeSpaceViolation));
+                    100.0 * shown.free_space_violation, 100.0 * reconstruction::kMaxFreeSpaceViolation));
   if (!shown.second_fits)
-    verdict.reasons.emplace_back(
+    assessment.reasons.emplace_back(
         "the second take does not fit the first, or shows a hand or the table as if they were the object, expected the "
         "same object, another side up");
-  verdict.good = verdict.reasons.empty();
-  return verdict;
+  assessment.good = assessment.reasons.empty();
+  return assessment;
 }
 
-std::string describe(const ShowResult& shown, const Verdict& verdict) {
+std::string describe(const ShowResult& shown, const ModelAssessment& assessment) {
   const Take& take = shown.takes.front();
-  std::string text = fmt::format("{}: {}\n", shown.name, verdict.good ? "good" : "poor");
-  for (const std::string& reason : verdict.reasons) text += "  " + reason + "\n";
+  std::string text = fmt::format("{}: {}\n", shown.name, assessment.good ? "good" : "poor");
+  for (const std::string& reason : assessment.reasons) text += "  " + reason + "\n";
   const Eigen::Vector3d front = take.chosen.T_camera_stand.inverse().translation();
   text += fmt::format("  {}\n", reconstruction::describe_coverage(seen_by_all(shown), front));
   for (const Take& one : shown.takes) text += describe_take(one);

@@ -17,22 +17,22 @@ struct ShowResult {
   double seen_surface = 0.0;  ///< share of the closed surface that some view shows
   bool second_fits = true;    ///< the second take, where there was one
   double agreement_m = 0.0;
-  double seen_through = 0.0;             ///< reconstruction::free_space_violation()
+  double free_space_violation = 0.0;     ///< reconstruction::free_space_violation()
   std::optional<double> silhouette_iou;  ///< median over the views, with masks that were given
   double seconds = 0.0;                  ///< that it took until the model was there
 };
 
 /// Share of vertices.
-double share_of_seen(const std::vector<bool>& seen);
+double covered_fraction(const std::vector<bool>& seen);
 
 /// Whether a model is worth teaching.
-struct Verdict {
+struct ModelAssessment {
   bool good = true;
   std::vector<std::string> reasons;  ///< why not, a line each
 };
 
 /// Of all takes that were merged, and of the model.
-Verdict judge(const ShowResult& shown);
+ModelAssessment assess_model(const ShowResult& shown);
 
 /// Second of the take at which a frame was taken.
 double second_of(const reconstruction::Take& take, int frame);
@@ -47,6 +47,6 @@ reconstruction::ViewCoverage seen_by_all(const ShowResult& shown);
 double degrees_of(const reconstruction::LoopClosureError& gap);
 
 /// The verdict and its figures in words, a few lines.
-std::string describe(const ShowResult& shown, const Verdict& verdict);
+std::string describe(const ShowResult& shown, const ModelAssessment& assessment);
 
 }  // namespace houghstream::teach

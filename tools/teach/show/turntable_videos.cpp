@@ -199,7 +199,7 @@ ShowResult show_turntable(const ShowOptions& options) {
   shown.views.emplace_back();
   shown.takes.push_back(take_of(views, shown.views.front()));
   shown.mesh = std::move(model.mesh);
-  shown.seen_surface = share_of_seen(model.seen);
+  shown.seen_surface = covered_fraction(model.seen);
   shown.agreement_m = fused_model(options.name, views, options.threads).after.median_m;
   shown.silhouette_iou = merging.overlap();
   shown.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -10,7 +10,7 @@ namespace {
 CalibrationObject object_of(int id, const std::string& name) {
   CalibrationObject object;
   object.name = name;
-  object.in_room.id = id;
+  object.in_scene.id = id;
   return object;
 }
 
@@ -23,7 +23,7 @@ world::RenderedFrame frame_of(const std::vector<int>& ids) {
   return frame;
 }
 
-TEST(Practice, NewObjectsThatNoFrameShowsAreNamed) {
+TEST(Calibration, NewObjectsThatNoFrameShowsAreNamed) {
   const std::vector<CalibrationObject> objects = {object_of(1, "old"), object_of(2, "mug"), object_of(4, "wardrobe")};
   const std::vector<world::RenderedFrame> frames = {frame_of({}), frame_of({2}), frame_of({2, 3})};
   EXPECT_EQ(unobserved_objects(frames, objects, {2, 4}), std::vector<std::string>{"wardrobe"});
@@ -31,11 +31,11 @@ TEST(Practice, NewObjectsThatNoFrameShowsAreNamed) {
   EXPECT_EQ(unobserved_objects({}, objects, {1, 2}), (std::vector<std::string>{"old", "mug"}));
 }
 
-TEST(Practice, MoreRoomsThanMemoryHoldsAreRefused) {
+TEST(Calibration, MoreRoomsThanMemoryHoldsAreRefused) {
   CalibrationSettings settings;
-  settings.rooms = CalibrationSettings::kMaxRooms + 1;
+  settings.rooms = CalibrationSettings::kMaxScenes + 1;
   Forest forest;
-  EXPECT_EQ(error_of([&] { practise({}, {}, settings, forest); }),
+  EXPECT_EQ(error_of([&] { calibrate_on_scenes({}, {}, settings, forest); }),
             "501 practice rooms, expected at most 500: all are in memory");
 }
 

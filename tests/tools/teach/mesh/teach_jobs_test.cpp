@@ -32,7 +32,7 @@ TeachOptions quick_options(const fs::path& folder, const std::string& mesh) {
   options.profile.training.tests_per_node = 100;
   options.profile.training.patches_per_view = 60;
   options.profile.training.composites_per_view = 1;
-  options.practice.rooms = 3;
+  options.calibration.rooms = 3;
   return options;
 }
 
@@ -232,10 +232,10 @@ TEST(TeachJobs, PractisingAnewKeepsTheObjects) {
   store::ObjectStore before = store::read_store(options.out);
   before.objects[0].shape_symmetry.reset();  // taught before they were looked for
   store::write_store_json(before);
-  CalibrationSettings other = options.practice;
+  CalibrationSettings other = options.calibration;
   other.seed = 7;
   put_notes(options.out);
-  practise_store(options.out, other);
+  calibrate_store(options.out, other);
   expect_notes(options.out, "practise");
   const store::ObjectStore after = store::read_store(options.out);
   ASSERT_EQ(after.objects.size(), 1U);
@@ -245,7 +245,7 @@ TEST(TeachJobs, PractisingAnewKeepsTheObjects) {
   EXPECT_EQ(after.shape_symmetries().count("bracket"), 1U);
   EXPECT_NE(after.objects[0].quality, before.objects[0].quality) << "in other rooms";
   EXPECT_EQ(forest_names(options.out), std::vector<std::string>{"bracket"});
-  EXPECT_NE(error_of([&] { practise_store(folder / "nowhere", other); }).find("expected an object store"),
+  EXPECT_NE(error_of([&] { calibrate_store(folder / "nowhere", other); }).find("expected an object store"),
             std::string::npos);
 }
 
@@ -255,14 +255,14 @@ TEST(TeachJobs, PractisingOneLeavesTheOthers) {
   options.meshes.sources.push_back((folder / "grey.ply").string());
   teach_meshes(options);
   const store::ObjectStore before = store::read_store(options.out);
-  CalibrationSettings other = options.practice;
+  CalibrationSettings other = options.calibration;
   other.seed = 7;
-  practise_store(options.out, other, {"grey"});
+  calibrate_store(options.out, other, {"grey"});
   const store::ObjectStore after = store::read_store(options.out);
   ASSERT_EQ(after.objects.size(), 2U);
   EXPECT_EQ(after.objects[0].quality, before.objects[0].quality);
   EXPECT_NE(after.objects[1].quality, before.objects[1].quality);
-  EXPECT_EQ(error_of([&] { practise_store(options.out, other, {"drill"}); }),
+  EXPECT_EQ(error_of([&] { calibrate_store(options.out, other, {"drill"}); }),
             (options.out / "store.json").string() + ": no 'drill', expected one of bracket, grey");
 }
 

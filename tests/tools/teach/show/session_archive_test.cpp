@@ -17,8 +17,8 @@ TEST(ReportPage, NamesAndReasonsAreText) {
   shown.takes.front().chosen.T_camera_stand.translation() = Eigen::Vector3d(0.0, 0.0, 0.8);
   shown.views.emplace_back(20);
   shown.mesh = tetrahedron(0.1F);
-  const Verdict verdict{false, {"<i>too short</i>"}};
-  const std::string page = report_page(shown, verdict, {{"chosen.png"}, {"outlines/\"000001.png"}});
+  const ModelAssessment assessment{false, {"<i>too short</i>"}};
+  const std::string page = report_page(shown, assessment, {{"chosen.png"}, {"outlines/\"000001.png"}});
   for (const char* markup : {"<script", "<b>", "<i>", "\"000001"})
     EXPECT_EQ(page.find(markup), std::string::npos) << page;
   EXPECT_NE(page.find("<h1>&lt;script&gt;alert(1)&lt;/script&gt;: poor</h1>"), std::string::npos) << page;

@@ -18,23 +18,23 @@ ShowResult good_turntable() {
   return shown;
 }
 
-TEST(Verdict, OutlinesThatDoNotFitTheGivenMasksArePoor) {
+TEST(ModelAssessment, OutlinesThatDoNotFitTheGivenMasksArePoor) {
   ShowResult shown = good_turntable();
-  EXPECT_TRUE(judge(shown).good);
+  EXPECT_TRUE(assess_model(shown).good);
   shown.silhouette_iou = 0.85;
-  const Verdict verdict = judge(shown);
-  EXPECT_FALSE(verdict.good);
-  ASSERT_EQ(verdict.reasons.size(), 1U);
-  EXPECT_EQ(verdict.reasons[0], "the model's outline overlaps with the masks by 0.85, expected at least 0.9");
+  const ModelAssessment assessment = assess_model(shown);
+  EXPECT_FALSE(assessment.good);
+  ASSERT_EQ(assessment.reasons.size(), 1U);
+  EXPECT_EQ(assessment.reasons[0], "the model's outline overlaps with the masks by 0.85, expected at least 0.9");
 }
 
-TEST(Verdict, AModelThatIsSeenThroughIsPoor) {
+TEST(ModelAssessment, AModelThatIsSeenThroughIsPoor) {
   ShowResult shown = good_turntable();
-  shown.seen_through = 0.063;
-  const Verdict verdict = judge(shown);
-  ASSERT_EQ(verdict.reasons.size(), 1U);
+  shown.free_space_violation = 0.063;
+  const ModelAssessment assessment = assess_model(shown);
+  ASSERT_EQ(assessment.reasons.size(), 1U);
   EXPECT_EQ(
-      verdict.reasons[0],
+      assessment.reasons[0],
       "the model is seen through in 6 % of its outline, expected less than 2: a hand or the table was taken for it");
 }
 
@@ -47,20 +47,20 @@ reconstruction::Take closed_turn() {
   return take;
 }
 
-TEST(Verdict, EachTakeIsJudged) {
+TEST(ModelAssessment, EachTakeIsJudged) {
   ShowResult shown = good_turntable();
   shown.silhouette_iou.reset();
   shown.takes = {closed_turn(), closed_turn()};
   shown.views.emplace_back(20);
-  EXPECT_TRUE(judge(shown).good);
+  EXPECT_TRUE(assess_model(shown).good);
   shown.takes[1].degrees_round = 120;
   shown.views[1].resize(5);
-  EXPECT_EQ(judge(shown).reasons,
+  EXPECT_EQ(assess_model(shown).reasons,
             (std::vector<std::string>{"the second take: too short: seen from 120 degrees of the turn, expected all 360",
                                       "the second take: only 5 keyframes show it"}));
 }
 
-TEST(Verdict, ATakeInTheDarkIsNotCalledShortWithoutSayingWhy) {
+TEST(ModelAssessment, ATakeInTheDarkIsNotCalledShortWithoutSayingWhy) {
   ShowResult shown = good_turntable();
   shown.silhouette_iou.reset();
   shown.takes = {closed_turn()};
@@ -69,27 +69,27 @@ TEST(Verdict, ATakeInTheDarkIsNotCalledShortWithoutSayingWhy) {
   shown.takes[0].blurred = 4;
   shown.takes[0].badly_exposed = 80;
   EXPECT_EQ(
-      judge(shown).reasons,
+      assess_model(shown).reasons,
       (std::vector<std::string>{
           "too short: seen from 50 degrees of the turn, expected all 360; of 100 frames 4 were blurred and 80 too "
           "dark or burnt out, which count for nothing"}));
 }
 
-TEST(Verdict, OfATurntableNothingIsSaidThatOnlyTrackingKnows) {
+TEST(ModelAssessment, OfATurntableNothingIsSaidThatOnlyTrackingKnows) {
   ShowResult shown = good_turntable();
   shown.mesh = tetrahedron(0.1F);
   shown.takes.front().keyframes.resize(20);
   shown.takes.front().chosen.T_camera_stand.translation() = Eigen::Vector3d(0.0, 0.0, 0.8);
-  const std::string text = describe(shown, judge(shown));
+  const std::string text = describe(shown, assess_model(shown));
   EXPECT_NE(text.find("  20 pictures with masks; a turntable moved\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("tracked"), std::string::npos) << text;
   EXPECT_EQ(text.find("not closed"), std::string::npos) << text;
 }
 
-TEST(Verdict, WithoutGivenMasksTheirOverlapIsNotAsked) {
+TEST(ModelAssessment, WithoutGivenMasksTheirOverlapIsNotAsked) {
   ShowResult shown = good_turntable();
   shown.silhouette_iou.reset();
-  EXPECT_TRUE(judge(shown).good);
+  EXPECT_TRUE(assess_model(shown).good);
 }
 
 }  // namespace
