@@ -25,7 +25,7 @@ constexpr ComposedThings kThings = {6, 5, 0};
 constexpr ComposedThings kHardNegativeObjects = {6, 5, 5};
 
 /// Strongest first; one that overlaps a stronger one of its class would not be reported, so it is no example.
-ScoreExamples judge(const std::vector<ScoredHypothesis>& candidates, const ValidationFrame& truth) {
+ScoreExamples label_hypotheses(const std::vector<ScoredHypothesis>& candidates, const ValidationFrame& truth) {
   ScoreExamples examples;
   std::vector<const Detection*> kept;
   for (const ScoredHypothesis& candidate : candidates) {
@@ -145,7 +145,7 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
     for (std::uint32_t& view : shown) view += first_view;
     const SearchContext search{index, detection, shown};
     by_frame[static_cast<std::size_t>(f)] =
-        judge(scales.search(search, validation.frame, workspaces[worker]), validation);
+        label_hypotheses(scales.search(search, validation.frame, workspaces[worker]), validation);
   });
   return by_frame;
 }

@@ -55,7 +55,7 @@ std::vector<JudgedPose> counted_poses(std::vector<JudgedPose> judged, const std:
 }
 
 /// How far quality holds, and how many of the published poses are right.
-void judge_qualities(const std::vector<EvaluatedFrame>& frames, const std::map<std::string, PoseModel>& models,
+void score_qualities(const std::vector<EvaluatedFrame>& frames, const std::map<std::string, PoseModel>& models,
                      Evaluation& out) {
   const std::vector<EvaluatedFrame> all = with_unfiltered_poses(frames);
   std::vector<Prediction> of_right;
@@ -66,12 +66,12 @@ void judge_qualities(const std::vector<EvaluatedFrame>& frames, const std::map<s
     if (!out.published) out.published.emplace();
     for (const PosePrediction& published : pose_predictions(frames, result, model->second)) {
       ++out.published->count;
-      out.published->right += published.is_true ? 1 : 0;
-      out.published->right_up_to_shape += published.is_correct_up_to_shape ? 1 : 0;
+      out.published->correct += published.is_true ? 1 : 0;
+      out.published->correct_up_to_shape += published.is_correct_up_to_shape ? 1 : 0;
     }
     for (const PosePrediction& known : pose_predictions(all, result, model->second)) {
       of_right.push_back(known);
-      of_shape.push_back({known.stated_up_to_shape, known.is_correct_up_to_shape});
+      of_shape.push_back({known.confidence_up_to_shape, known.is_correct_up_to_shape});
     }
   }
   out.pose_calibration = calibrate_all(of_right);
@@ -85,7 +85,7 @@ void evaluate_poses(const std::vector<EvaluatedFrame>& frames, const std::map<st
   for (const ClassResult& result : out.classes) {
     const auto model = models.find(result.class_name);
     if (model == models.end()) continue;
-    const std::vector<JudgedPose> judged = counted_poses(judge_poses(frames, result, model->second), frames, rules);
+    const std::vector<JudgedPose> judged = counted_poses(match_poses(frames, result, model->second), frames, rules);
     if (judged.empty()) continue;
     out.strict_recall[result.class_name] = strict_recall(judged, model->second.diameter, min_visible);
     out.add_s_recall[result.class_name] = add_s_recall(judged, model->second.diameter, min_visible);
@@ -111,17 +111,17 @@ Evaluation evaluate(const std::vector<EvaluatedFrame>& all_frames, const std::ve
   int required = 0;
   for (const std::string& name : class_names) {
     out.classes.push_back(evaluate_class(frames, name, rules.detection));
-    out.operating[name] = {count_reported(out.classes.back(), Verdict::kTrue, rules.operating_score),
-                           count_reported(out.classes.back(), Verdict::kFalse, rules.operating_score)};
+    out.operating[name] = {count_reported(out.classes.back(), MatchOutcome::kTruePositive, rules.operating_score),
+                           count_reported(out.classes.back(), MatchOutcome::kFalsePositive, rules.operating_score)};
     required += out.classes.back().required;
   }
   out.detection_calibration = calibrate(score_predictions(out.classes), required);
   for (const std::string& name : detected_classes(frames)) {
     const ClassResult result = evaluate_class(frames, name, rules.detection);
-    out.false_detections += count_reported(result, Verdict::kFalse, rules.operating_score).all();
+    out.false_detections += count_reported(result, MatchOutcome::kFalsePositive, rules.operating_score).all();
   }
   evaluate_poses(frames, models, rules, out);
-  judge_qualities(frames, models, out);
+  score_qualities(frames, models, out);
   out.stage_ms = stage_medians(frames);
   return out;
 }

@@ -25,15 +25,15 @@ struct EvaluationRules {
 
 /// What was reported of one class.
 struct OperatingPoint {
-  ReportedCount right;  ///< objects that are there
-  ReportedCount wrong;
+  ReportedCount correct;  ///< objects that are there
+  ReportedCount incorrect;
 };
 
 /// The poses that were published of listed classes with a model, but those of ignored detections.
 struct PublishedPoses {
   int count = 0;
-  int right = 0;              ///< of true detections, by is_correct()
-  int right_up_to_shape = 0;  ///< of true detections, ADD-S below 10 % of the diameter
+  int correct = 0;              ///< of true detections, by is_correct()
+  int correct_up_to_shape = 0;  ///< of true detections, ADD-S below 10 % of the diameter
 };
 
 /// The figures of one scene, or of several ones together. NaN where there is nothing to measure.

@@ -47,8 +47,8 @@ void add_detection_figures(const Evaluation& evaluation, OrderedJson& json) {
     const OperatingPoint& point = evaluation.operating.at(result.class_name);
     json["auc"][result.class_name] = number(result.auc);
     json["required"][result.class_name] = result.required;
-    json["precision"][result.class_name] = ratio(point.right.all(), point.right.all() + point.wrong.all());
-    json["recall"][result.class_name] = ratio(point.right.all(), result.required);
+    json["precision"][result.class_name] = ratio(point.correct.all(), point.correct.all() + point.incorrect.all());
+    json["recall"][result.class_name] = ratio(point.correct.all(), result.required);
   }
   json["auc"]["mean"] = number(mean_auc(evaluation.classes));
   json["auc"]["weighted"] = number(weighted_auc(evaluation.classes));
@@ -62,15 +62,15 @@ OrderedJson operating_json(const Evaluation& evaluation) {
     sum.confirmed += some.confirmed;
   };
   for (const ClassResult& result : evaluation.classes) {
-    add(evaluation.operating.at(result.class_name).right, all.right);
-    add(evaluation.operating.at(result.class_name).wrong, all.wrong);
+    add(evaluation.operating.at(result.class_name).correct, all.correct);
+    add(evaluation.operating.at(result.class_name).incorrect, all.incorrect);
     required += result.required;
   }
-  return {{"precision", ratio(all.right.all(), all.right.all() + all.wrong.all())},
-          {"recall", ratio(all.right.all(), required)},
-          {"true", all.right.all()},
-          {"false", all.wrong.all()},
-          {"confirmed", {{"true", all.right.confirmed}, {"false", all.wrong.confirmed}}},
+  return {{"precision", ratio(all.correct.all(), all.correct.all() + all.incorrect.all())},
+          {"recall", ratio(all.correct.all(), required)},
+          {"true", all.correct.all()},
+          {"false", all.incorrect.all()},
+          {"confirmed", {{"true", all.correct.confirmed}, {"false", all.incorrect.confirmed}}},
           {"required", required}};
 }
 
@@ -169,9 +169,9 @@ OrderedJson summary_json(const Evaluation& evaluation, const EvaluationRules& ru
   json["pose_calibration_up_to_shape"] = calibration_json(evaluation.pose_calibration_up_to_shape);
   const std::optional<PublishedPoses>& published = evaluation.published;
   json["published"] = published ? OrderedJson(published->count) : OrderedJson(nullptr);
-  json["published_right_fraction"] = published ? ratio(published->right, published->count) : OrderedJson(nullptr);
+  json["published_right_fraction"] = published ? ratio(published->correct, published->count) : OrderedJson(nullptr);
   json["published_good_fraction"] =
-      published ? ratio(published->right_up_to_shape, published->count) : OrderedJson(nullptr);
+      published ? ratio(published->correct_up_to_shape, published->count) : OrderedJson(nullptr);
   if (evaluation.localisation) json["bop19"] = localisation_json(*evaluation.localisation);
   if (evaluation.localisation_nothing_withheld)
     json["bop19_nothing_withheld"] = localisation_json(*evaluation.localisation_nothing_withheld);
@@ -211,7 +211,7 @@ std::string summary_table(const Evaluation& evaluation, const EvaluationRules& r
   for (const ClassResult& result : evaluation.classes) {
     const OperatingPoint& point = evaluation.operating.at(result.class_name);
     text += fmt::format("{:<20}{:>8}{:>8.3f}{:>8}{:>8}{:>12}{:>12}\n", result.class_name, result.required, result.auc,
-                        point.right.all(), point.wrong.all(), show(evaluation.strict_recall, result.class_name),
+                        point.correct.all(), point.incorrect.all(), show(evaluation.strict_recall, result.class_name),
                         show(evaluation.add_s_recall, result.class_name));
   }
   text += fmt::format("{:<28}{:>8.3f}{:>28.3f}{:>12.3f}\n", "mean", mean_auc(evaluation.classes),
@@ -235,8 +235,8 @@ std::string summary_table(const Evaluation& evaluation, const EvaluationRules& r
   if (evaluation.frames_with_poses > 0) {
     text += evaluation.published
                 ? fmt::format("poses published {}, right {}, right up to what the shape cannot tell {}\n",
-                              evaluation.published->count, evaluation.published->right,
-                              evaluation.published->right_up_to_shape)
+                              evaluation.published->count, evaluation.published->correct,
+                              evaluation.published->correct_up_to_shape)
                 : "poses not judged: no models of these objects (--models)\n";
   }
   text += fmt::format("false detections {} from score {} on, or confirmed by a pose\n", evaluation.false_detections,

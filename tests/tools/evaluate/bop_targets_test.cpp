@@ -55,7 +55,7 @@ TEST(BopTargets, FoundThoughNotAskedForIsNeitherTrueNorFalse) {
   detection.class_name = "object_5";
   detection.box_px = {10, 10, 20, 20};
   kept[0].detections = Detections{{}, {detection}, {}};
-  EXPECT_EQ(match_detections(kept, "object_5", {})[0].verdict, Verdict::kIgnored);
+  EXPECT_EQ(match_detections(kept, "object_5", {})[0].outcome, MatchOutcome::kIgnored);
 }
 
 TEST(BopTargets, WhatTheTruthLacksIsRefused) {

@@ -74,8 +74,8 @@ TEST(DetectionMetrics, RepeatedDetectionsAreFalse) {
       {frame({object("mug", kLeft)}, {detection("mug", kLeft, 0.8F), detection("mug", kLeft, 0.9F)})}, "mug", {});
   ASSERT_EQ(result.judged.size(), 2U);
   EXPECT_EQ(result.judged[0].index, 1U) << "strongest first";
-  EXPECT_EQ(result.judged[0].verdict, Verdict::kTrue);
-  EXPECT_EQ(result.judged[1].verdict, Verdict::kFalse);
+  EXPECT_EQ(result.judged[0].outcome, MatchOutcome::kTruePositive);
+  EXPECT_EQ(result.judged[1].outcome, MatchOutcome::kFalsePositive);
   EXPECT_EQ(result.auc, 1.0);
 }
 
@@ -84,8 +84,8 @@ TEST(DetectionMetrics, OtherClassesDoNotCount) {
   EXPECT_EQ(evaluate_class(frames, "mug", {}).auc, 0.0);
   const ClassResult can = evaluate_class(frames, "can", {});
   EXPECT_TRUE(std::isnan(can.auc));
-  EXPECT_EQ(count_reported(can, Verdict::kFalse, 0.0F).all(), 1);
-  EXPECT_EQ(count_reported(can, Verdict::kFalse, 0.95F).all(), 0);
+  EXPECT_EQ(count_reported(can, MatchOutcome::kFalsePositive, 0.0F).all(), 1);
+  EXPECT_EQ(count_reported(can, MatchOutcome::kFalsePositive, 0.95F).all(), 0);
   ASSERT_EQ(can.curve.size(), 1U) << "it counts where another scene has cans";
   EXPECT_EQ(can.curve[0].recall, 0.0);
 }
@@ -95,7 +95,7 @@ TEST(DetectionMetrics, HardlyVisibleObjectsAreNeitherRequiredNorFalse) {
                                                     {detection("mug", kLeft, 0.9F), detection("mug", kRight, 0.8F)})};
   const ClassResult result = evaluate_class(frames, "mug", {});
   EXPECT_EQ(result.required, 1);
-  EXPECT_EQ(result.judged[0].verdict, Verdict::kIgnored);
+  EXPECT_EQ(result.judged[0].outcome, MatchOutcome::kIgnored);
   EXPECT_EQ(result.auc, 1.0);
   DetectionRules strict;
   strict.min_visible = 0.0;
@@ -226,7 +226,7 @@ std::vector<EvaluatedFrame> posed_frames(double visible) {
 TEST(PoseMetrics, RecallCountsGoodPosesOverTrueDetections) {
   const PoseModel model{kCorners, 0.2};
   const std::vector<EvaluatedFrame> frames = posed_frames(0.6);
-  const auto judged = judge_poses(frames, evaluate_class(frames, "mug", {}), model);
+  const auto judged = match_poses(frames, evaluate_class(frames, "mug", {}), model);
   ASSERT_EQ(judged.size(), 3U);
   EXPECT_NEAR(judged[1].add_s, 0.05, 1e-6);
   EXPECT_TRUE(std::isnan(judged[2].add));
@@ -277,8 +277,8 @@ TEST(PoseMetrics, ATurnedPoseIsPublishedWrongAndRightUpToItsShape) {
   frames[0].poses->poses[0].quality = frames[0].poses->poses[0].shape_quality = 0.95F;
   std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2}}};
   const Evaluation printed = evaluate(frames, {"mug"}, models, {});
-  EXPECT_EQ(printed.published->right, 0);
-  EXPECT_EQ(printed.published->right_up_to_shape, 1);
+  EXPECT_EQ(printed.published->correct, 0);
+  EXPECT_EQ(printed.published->correct_up_to_shape, 1);
   EXPECT_EQ(printed.strict_recall.at("mug"), 0.0);
   EXPECT_NEAR(printed.add_s_recall.at("mug"), 1.0 / 3.0, 1e-12);
   EXPECT_EQ(printed.pose_calibration.bins[9].true_fraction, 0.0) << "a quality of 0.95 says that it is right";
@@ -292,7 +292,7 @@ TEST(PoseMetrics, ATurnedObjectIsRightByAddOnlyWhereItIsSymmetric) {
   frames[0].poses->poses[0].T_camera_object = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
   const PoseModel plain{kCorners, 0.2};
   const PoseModel symmetric{kCorners, 0.2, {Eigen::Isometry3d::Identity(), turned(M_PI)}};
-  const auto judged = judge_poses(frames, evaluate_class(frames, "mug", {}), plain);
+  const auto judged = match_poses(frames, evaluate_class(frames, "mug", {}), plain);
   EXPECT_NEAR(add_or_add_s_recall(judged, symmetric, 0.5), 1.0 / 3.0, 1e-12);
   EXPECT_EQ(add_or_add_s_recall(judged, plain, 0.5), 0.0);
 }
@@ -300,7 +300,7 @@ TEST(PoseMetrics, ATurnedObjectIsRightByAddOnlyWhereItIsSymmetric) {
 TEST(PoseMetrics, ObjectsWithoutTruePosesAreLeftOut) {
   std::vector<EvaluatedFrame> frames = posed_frames(1.0);
   frames[2].objects[0].truth.has_pose = false;
-  EXPECT_EQ(judge_poses(frames, evaluate_class(frames, "mug", {}), {kCorners, 0.2}).size(), 2U);
+  EXPECT_EQ(match_poses(frames, evaluate_class(frames, "mug", {}), {kCorners, 0.2}).size(), 2U);
 }
 
 TEST(PoseMetrics, AFrameThatThePosesPassedOverCountsAsMissedUnlessProcessedFramesAreAskedFor) {
@@ -325,7 +325,7 @@ TEST(PoseMetrics, PublishedPosesOfFalseDetectionsAndThoseOffAreWrong) {
   const std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2}}};
   const Evaluation evaluation = evaluate(frames, {"mug"}, models, {});
   EXPECT_EQ(evaluation.published->count, 3);
-  EXPECT_EQ(evaluation.published->right, 1);
+  EXPECT_EQ(evaluation.published->correct, 1);
   EXPECT_EQ(evaluation.pose_calibration.count, 3);
 }
 
@@ -337,7 +337,7 @@ TEST(PoseMetrics, QualityIsJudgedByWithheldPosesToo) {
   const std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2}}};
   const Evaluation evaluation = evaluate(frames, {"mug"}, models, {});
   EXPECT_EQ(evaluation.published->count, 1);
-  EXPECT_EQ(evaluation.published->right, 0);
+  EXPECT_EQ(evaluation.published->correct, 0);
   EXPECT_EQ(evaluation.pose_calibration.count, 2);
   EXPECT_EQ(evaluation.pose_calibration.bins[3].true_fraction, 1.0);
   EXPECT_EQ(evaluation.add_s_recall.at("mug"), 0.0) << "as published";
@@ -352,10 +352,10 @@ TEST(PoseMetrics, CandidatesCountWhereAPoseHasConfirmedThem) {
   const std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2}}};
   const Evaluation evaluation = evaluate(frames, {"mug"}, models, rules);
   EXPECT_EQ(evaluation.add_s_recall.at("mug"), 0.5) << "the third is not reported";
-  EXPECT_EQ(evaluation.operating.at("mug").right.detections, 1);
-  EXPECT_EQ(evaluation.operating.at("mug").right.confirmed, 1);
+  EXPECT_EQ(evaluation.operating.at("mug").correct.detections, 1);
+  EXPECT_EQ(evaluation.operating.at("mug").correct.confirmed, 1);
   rules.operating_score = 0.6F;
-  EXPECT_EQ(evaluate(frames, {"mug"}, models, rules).operating.at("mug").right.all(), 1)
+  EXPECT_EQ(evaluate(frames, {"mug"}, models, rules).operating.at("mug").correct.all(), 1)
       << "confirmed, whatever its score";
 }
 

@@ -58,9 +58,9 @@ std::map<std::string, FrameErrors> measure_frame(const EvaluatedFrame& frame, co
 using ErrorOf = std::function<double(const BopErrors&)>;
 
 /// Targets of a frame that are given a right pose.
-int count_right(const FrameErrors& frame, const ErrorOf& error_of, double threshold) {
+int count_correct(const FrameErrors& frame, const ErrorOf& error_of, double threshold) {
   std::vector<bool> taken(static_cast<std::size_t>(frame.targets), false);
-  int right = 0;
+  int correct = 0;
   for (const std::vector<BopErrors>& row : frame.errors) {
     std::size_t best = row.size();
     double best_error = threshold;
@@ -72,18 +72,18 @@ int count_right(const FrameErrors& frame, const ErrorOf& error_of, double thresh
     }
     if (best == row.size()) continue;
     taken[best] = true;
-    ++right;
+    ++correct;
   }
-  return right;
+  return correct;
 }
 
 /// Mean over the ten thresholds `step` to 10 `step`.
 double mean_recall(const std::vector<FrameErrors>& frames, int targets, double step, const ErrorOf& error_of) {
-  int right = 0;
+  int correct = 0;
   for (std::size_t i = 1; i <= kBopSteps; ++i) {
-    for (const FrameErrors& frame : frames) right += count_right(frame, error_of, step * static_cast<double>(i));
+    for (const FrameErrors& frame : frames) correct += count_correct(frame, error_of, step * static_cast<double>(i));
   }
-  return targets > 0 ? static_cast<double>(right) / static_cast<double>(kBopSteps) / targets
+  return targets > 0 ? static_cast<double>(correct) / static_cast<double>(kBopSteps) / targets
                      : std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -16,9 +16,9 @@ std::vector<ReliabilityBin> bins_of(const std::vector<Prediction>& statements) {
   std::vector<ReliabilityBin> bins(kBins);
   for (int i = 0; i < kBins; ++i) bins[i] = {static_cast<double>(i) / kBins, static_cast<double>(i + 1) / kBins};
   for (const Prediction& statement : statements) {
-    ReliabilityBin& bin = bins[std::clamp(static_cast<int>(statement.stated * kBins), 0, kBins - 1)];
+    ReliabilityBin& bin = bins[std::clamp(static_cast<int>(statement.confidence * kBins), 0, kBins - 1)];
     ++bin.count;
-    bin.mean_score += statement.stated;
+    bin.mean_score += statement.confidence;
     bin.true_fraction += statement.is_true ? 1.0 : 0.0;
   }
   for (ReliabilityBin& bin : bins) {
@@ -42,9 +42,9 @@ ProposedThreshold propose(double precision, const std::vector<Prediction>& ranke
   int true_count = 0;
   for (std::size_t i = 0; i < ranked.size(); ++i) {
     true_count += ranked[i].is_true ? 1 : 0;
-    const bool last_of_equals = i + 1 == ranked.size() || ranked[i + 1].stated < ranked[i].stated;
+    const bool last_of_equals = i + 1 == ranked.size() || ranked[i + 1].confidence < ranked[i].confidence;
     if (!last_of_equals || true_count < precision * static_cast<double>(i + 1)) continue;
-    out.score = ranked[i].stated;
+    out.score = ranked[i].confidence;
     out.recall = could_be_true > 0 ? static_cast<double>(true_count) / could_be_true : kNaN;
   }
   return out;
@@ -59,7 +59,7 @@ Calibration calibrate(const std::vector<Prediction>& statements, int could_be_tr
   out.ece = expected_error(out.bins, out.count);
   std::vector<Prediction> ranked = statements;
   std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Prediction& a, const Prediction& b) { return a.stated > b.stated; });
+                   [](const Prediction& a, const Prediction& b) { return a.confidence > b.confidence; });
   for (const double precision : kPrecisions) out.proposed.push_back(propose(precision, ranked, could_be_true));
   return out;
 }

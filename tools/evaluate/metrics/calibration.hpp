@@ -7,7 +7,7 @@ namespace houghstream {
 
 /// A probability that was stated, a score or a quality, and whether it came true.
 struct Prediction {
-  double stated = 0.0;
+  double confidence = 0.0;
   bool is_true = false;
 };
 

@@ -50,8 +50,8 @@ std::vector<MatchedDetection> ranked_detections(const std::vector<EvaluatedFrame
 }
 
 /// Gives the detection its verdict, and takes the object that it finds.
-void judge(MatchedDetection& detection, const EvaluatedFrame& frame, const DetectionRules& rules,
-           std::set<ObjectKey>& taken) {
+void match_detection(MatchedDetection& detection, const EvaluatedFrame& frame, const DetectionRules& rules,
+                     std::set<ObjectKey>& taken) {
   const Detection& found = frame.detections->detections[detection.index];
   double best_iou = 0.0;
   for (std::size_t o = 0; o < frame.objects.size(); ++o) {
@@ -60,14 +60,14 @@ void judge(MatchedDetection& detection, const EvaluatedFrame& frame, const Detec
     const double iou = box_iou(found.box_px, cv::Rect2f(object.truth.box_visible_px));
     if (iou < rules.min_iou) continue;
     if (!is_required(object, rules)) {
-      if (detection.verdict == Verdict::kFalse) detection.verdict = Verdict::kIgnored;
+      if (detection.outcome == MatchOutcome::kFalsePositive) detection.outcome = MatchOutcome::kIgnored;
     } else if (iou > best_iou && taken.count({detection.frame, o}) == 0) {
-      detection.verdict = Verdict::kTrue;
+      detection.outcome = MatchOutcome::kTruePositive;
       detection.object = o;
       best_iou = iou;
     }
   }
-  if (detection.verdict == Verdict::kTrue) taken.insert({detection.frame, detection.object});
+  if (detection.outcome == MatchOutcome::kTruePositive) taken.insert({detection.frame, detection.object});
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ std::vector<MatchedDetection> match_detections(const std::vector<EvaluatedFrame>
                                                const DetectionRules& rules) {
   std::vector<MatchedDetection> judged = ranked_detections(frames, class_name, rules.max_per_class);
   std::set<ObjectKey> taken;
-  for (MatchedDetection& detection : judged) judge(detection, frames[detection.frame], rules, taken);
+  for (MatchedDetection& detection : judged) match_detection(detection, frames[detection.frame], rules, taken);
   return judged;
 }
 
@@ -95,8 +95,8 @@ std::vector<CurvePoint> precision_recall_curve(const std::vector<MatchedDetectio
   std::vector<CurvePoint> curve;
   int true_count = 0;
   for (const MatchedDetection& detection : judged) {
-    if (detection.verdict == Verdict::kIgnored) continue;
-    true_count += detection.verdict == Verdict::kTrue ? 1 : 0;
+    if (detection.outcome == MatchOutcome::kIgnored) continue;
+    true_count += detection.outcome == MatchOutcome::kTruePositive ? 1 : 0;
     const double precision = static_cast<double>(true_count) / static_cast<double>(curve.size() + 1);
     curve.push_back({detection.score, precision, required > 0 ? static_cast<double>(true_count) / required : 0.0});
   }
@@ -108,9 +108,9 @@ double average_precision(const std::vector<MatchedDetection>& judged, int requir
   int true_count = 0;
   int counted = 0;
   for (const MatchedDetection& detection : judged) {
-    if (detection.verdict == Verdict::kIgnored) continue;
+    if (detection.outcome == MatchOutcome::kIgnored) continue;
     ++counted;
-    if (detection.verdict == Verdict::kTrue) sum += static_cast<double>(++true_count) / counted;
+    if (detection.outcome == MatchOutcome::kTruePositive) sum += static_cast<double>(++true_count) / counted;
   }
   return sum / required;
 }
@@ -131,8 +131,8 @@ std::vector<Prediction> score_predictions(const std::vector<ClassResult>& classe
   std::vector<Prediction> statements;
   for (const ClassResult& result : classes) {
     for (const MatchedDetection& detection : result.judged) {
-      if (detection.verdict == Verdict::kIgnored) continue;
-      statements.push_back({static_cast<double>(detection.score), detection.verdict == Verdict::kTrue});
+      if (detection.outcome == MatchOutcome::kIgnored) continue;
+      statements.push_back({static_cast<double>(detection.score), detection.outcome == MatchOutcome::kTruePositive});
     }
   }
   return statements;
@@ -160,10 +160,10 @@ double weighted_auc(const std::vector<ClassResult>& classes) {
   return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
-ReportedCount count_reported(const ClassResult& result, Verdict verdict, float min_score) {
+ReportedCount count_reported(const ClassResult& result, MatchOutcome outcome, float min_score) {
   ReportedCount count;
   for (const MatchedDetection& it : result.judged) {
-    if (it.verdict != verdict) continue;
+    if (it.outcome != outcome) continue;
     count.detections += !it.is_candidate && it.score >= min_score ? 1 : 0;
     count.confirmed += it.is_candidate && it.has_pose ? 1 : 0;
   }

@@ -15,14 +15,14 @@ struct DetectionRules {
   int max_per_class = 250;   ///< strongest detections of a class in a frame that count
 };
 
-enum class Verdict { kTrue, kFalse, kIgnored };
+enum class MatchOutcome { kTruePositive, kFalsePositive, kIgnored };
 
 /// One detection of one class, judged.
 struct MatchedDetection {
   std::size_t frame = 0;  ///< in the evaluated frames
   std::size_t index = 0;  ///< in the frame's detections
   float score = 0.0F;
-  Verdict verdict = Verdict::kFalse;
+  MatchOutcome outcome = MatchOutcome::kFalsePositive;
   std::size_t object = 0;     ///< in the frame's objects; only meaningful where true
   bool is_candidate = false;  ///< not Detection::reported, or refuted by its pose
   bool has_pose = false;      ///< a published one
@@ -81,6 +81,6 @@ struct ReportedCount {
 };
 
 /// Detections of verdict `verdict` with at least `min_score`, and candidates with a pose whatever their score.
-ReportedCount count_reported(const ClassResult& result, Verdict verdict, float min_score);
+ReportedCount count_reported(const ClassResult& result, MatchOutcome outcome, float min_score);
 
 }  // namespace houghstream

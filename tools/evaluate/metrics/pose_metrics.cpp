@@ -70,12 +70,12 @@ bool is_correct_up_to_shape(const PoseModel& model, const Eigen::Isometry3d& T_e
   return add_s_error(model.points, T_estimated, T_true) < kCorrectBelow * model.diameter;
 }
 
-std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
+std::vector<JudgedPose> match_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
                                     const PoseModel& model) {
   std::vector<JudgedPose> judged;
   for (const MatchedDetection& detection : detections.judged) {
     const EvaluatedFrame& frame = frames[detection.frame];
-    if (detection.verdict != Verdict::kTrue) continue;
+    if (detection.outcome != MatchOutcome::kTruePositive) continue;
     const GroundTruthObject& truth = frame.objects[detection.object].truth;
     if (!truth.has_pose) continue;
     JudgedPose row;
@@ -109,11 +109,11 @@ std::vector<PosePrediction> pose_predictions(const std::vector<EvaluatedFrame>& 
   for (const MatchedDetection& detection : detections.judged) {
     const EvaluatedFrame& frame = frames[detection.frame];
     const ObjectPose* pose = frame.poses ? find_pose(*frame.poses, detection.index) : nullptr;
-    if (detection.verdict == Verdict::kIgnored || pose == nullptr || !pose->T_camera_object) continue;
+    if (detection.outcome == MatchOutcome::kIgnored || pose == nullptr || !pose->T_camera_object) continue;
     PosePrediction statement;
-    statement.stated = static_cast<double>(pose->quality);
-    statement.stated_up_to_shape = static_cast<double>(pose->shape_quality);
-    if (detection.verdict == Verdict::kTrue) {
+    statement.confidence = static_cast<double>(pose->quality);
+    statement.confidence_up_to_shape = static_cast<double>(pose->shape_quality);
+    if (detection.outcome == MatchOutcome::kTruePositive) {
       const GroundTruthObject& truth = frame.objects[detection.object].truth;
       if (!truth.has_pose) continue;
       statement.is_true = is_correct(model, *pose->T_camera_object, truth.T_camera_object);

@@ -66,13 +66,13 @@ struct JudgedPose {
 
 /// The poses of all true detections of a class; in a frame for which no poses were published, none has one. Objects
 /// whose truth has no pose are left out.
-std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
+std::vector<JudgedPose> match_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
                                     const PoseModel& model);
 
 /// What is said of a pose: how probably it is right, and right up to its shape.
 struct PosePrediction : Prediction {
   bool is_correct_up_to_shape = false;
-  double stated_up_to_shape = 0.0;  ///< ObjectPose::shape_quality
+  double confidence_up_to_shape = 0.0;  ///< ObjectPose::shape_quality
 };
 
 /// The poses of a class with their quality, those of true and of false detections: true where the detection is and the

@@ -193,8 +193,8 @@ class Study {
       for (const MatchedDetection& match : match_detections(frames, name, DetectionRules{})) {
         const EvaluatedFrame& frame = frames[match.frame];
         const ObjectPose& pose = frame.poses->poses[match.index];
-        if (match.verdict == Verdict::kIgnored || !pose.T_camera_object) continue;
-        const bool is_true = match.verdict == Verdict::kTrue;
+        if (match.outcome == MatchOutcome::kIgnored || !pose.T_camera_object) continue;
+        const bool is_true = match.outcome == MatchOutcome::kTruePositive;
         judged.push_back(
             {match.frame, &pose,
              is_true && is_correct(model, *pose.T_camera_object, frame.objects[match.object].truth.T_camera_object)});

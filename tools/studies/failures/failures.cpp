@@ -34,7 +34,7 @@ std::vector<Failure> thinned(std::vector<Failure> failures, std::size_t apart) {
 std::vector<Failure> false_ones(const std::vector<EvaluatedFrame>& frames, const ClassResult& result, float least) {
   std::vector<Failure> out;
   for (const MatchedDetection& judged : result.judged) {
-    if (judged.verdict != Verdict::kFalse || judged.score < least) continue;
+    if (judged.outcome != MatchOutcome::kFalsePositive || judged.score < least) continue;
     const Detection& detection = frames[judged.frame].detections->detections[judged.index];
     Failure& failure = out.emplace_back();
     failure.class_name = result.class_name;
@@ -54,8 +54,8 @@ std::vector<Failure> missed_ones(const std::vector<EvaluatedFrame>& frames, cons
       if (object.class_name != result.class_name || object.truth.visible_fraction < rules.detection.min_visible)
         continue;
       const auto finds = [&](const MatchedDetection& judged) {
-        return judged.verdict == Verdict::kTrue && judged.score >= rules.operating_score && judged.frame == f &&
-               judged.object == o;
+        return judged.outcome == MatchOutcome::kTruePositive && judged.score >= rules.operating_score &&
+               judged.frame == f && judged.object == o;
       };
       if (std::any_of(result.judged.begin(), result.judged.end(), finds)) continue;
       Failure& failure = out.emplace_back();

@@ -20,12 +20,13 @@ namespace {
 /// Worse ones compare less.
 std::tuple<bool, bool, double> order_of(const PoseTrial& trial) {
   const bool is_known = std::isfinite(trial.strict);
-  return {trial.verdict == Verdict::kTrue, is_known, is_known ? -trial.strict : 0.0};
+  return {trial.outcome == MatchOutcome::kTruePositive, is_known, is_known ? -trial.strict : 0.0};
 }
 
 std::string error_words(const PoseTrial& trial) {
   if (!std::isfinite(trial.add_s)) return "false: none of its kind is there";
-  if (trial.verdict != Verdict::kTrue) return fmt::format("false; the nearest: ADD-S {:.3f} diameters", trial.add_s);
+  if (trial.outcome != MatchOutcome::kTruePositive)
+    return fmt::format("false; the nearest: ADD-S {:.3f} diameters", trial.add_s);
   return fmt::format("{} {:.3f}, ADD-S {:.3f} diameters, {:.0f} mm, {:.0f} deg", trial.symmetric ? "MSSD" : "ADD",
                      trial.strict, trial.add_s, 1e3 * trial.shift_m, trial.turn_deg);
 }
@@ -55,7 +56,7 @@ fs::path worst_file(const fs::path& folder, std::size_t number) {
 std::vector<PoseTrial> worst_poses(const std::vector<PoseTrial>& trials, std::size_t count) {
   std::vector<PoseTrial> out;
   std::copy_if(trials.begin(), trials.end(), std::back_inserter(out),
-               [](const PoseTrial& trial) { return trial.T_camera_object && trial.verdict != Verdict::kIgnored; });
+               [](const PoseTrial& trial) { return trial.T_camera_object && trial.outcome != MatchOutcome::kIgnored; });
   std::stable_sort(out.begin(), out.end(),
                    [](const PoseTrial& a, const PoseTrial& b) { return order_of(a) < order_of(b); });
   out.resize(std::min(out.size(), count));
@@ -80,16 +81,16 @@ cv::Mat draw_trial(const PoseTrial& trial, const RgbdFrame& frame, const Mesh& m
 
 void write_bench(const PoseBench& bench, const fs::path& folder) {
   fs::create_directories(folder);
-  OrderedJson json = {{"frames", bench.frames}, {"rival_frames", bench.rival_frames}};
+  OrderedJson json = {{"frames", bench.frames}, {"rival_frames", bench.baseline_frames}};
   json["variants"] = to_json(bench.each_frame);
-  json["on_rival_frames"] = to_json(bench.on_rival_frames);
+  json["on_rival_frames"] = to_json(bench.on_baseline_frames);
   json["withheld"] = to_json(count_withheld(bench.each_frame.at(kOurs).trials, bench.each_frame.at(kUnchecked).trials));
   write_json(json, folder / "results.json");
   const fs::path file = folder / "poses.csv";
   std::ofstream table(file);
   table << pose_table_header();
   for (const auto& [name, result] : bench.each_frame) table << pose_table_rows(name, result.trials);
-  for (const auto& [name, result] : bench.on_rival_frames) {
+  for (const auto& [name, result] : bench.on_baseline_frames) {
     if (bench.each_frame.count(name) == 0) table << pose_table_rows(name, result.trials);
   }
   table.close();
@@ -109,17 +110,17 @@ void write_worst(const std::vector<PoseTrial>& trials, const std::map<std::strin
 
 std::string bench_summary(const PoseBench& bench) {
   std::string text = fmt::format("{} frames, rivals {}\n{:<24}{:>8}{:>9}{:>9}{:>7}{:>7}{:>7}{:>10}{:>7}{:>7}{:>7}\n",
-                                 bench.frames, bench.rival_frames, "", "poses", "ms", "p99", "right", "ADD-S", "ADD",
+                                 bench.frames, bench.baseline_frames, "", "poses", "ms", "p99", "right", "ADD-S", "ADD",
                                  "published:", "ADD-S", "mm", "AR");
   const auto add = [&](const std::string& name, const VariantResult& result) {
     const PoseFigures figures = pose_figures(result.trials);
     text += fmt::format("{:<24}{:>8}{:>9.2f}{:>9.2f}{:>7.3f}{:>7.3f}{:>7.3f}{:>10.3f}{:>7.3f}{:>7.2f}{:>7.3f}\n", name,
-                        figures.published, figures.ms_median, figures.ms_p99, figures.recall.right,
-                        figures.recall.add_s, figures.recall.add, figures.right_fraction, figures.good_fraction,
+                        figures.published, figures.ms_median, figures.ms_p99, figures.recall.correct,
+                        figures.recall.add_s, figures.recall.add, figures.correct_fraction, figures.good_fraction,
                         figures.mm_median, average_recall(result.errors).mean);
   };
   for (const auto& [name, result] : bench.each_frame) add(name, result);
-  for (const auto& [name, result] : bench.on_rival_frames) add("rivals' frames: " + name, result);
+  for (const auto& [name, result] : bench.on_baseline_frames) add("rivals' frames: " + name, result);
   return text;
 }
 

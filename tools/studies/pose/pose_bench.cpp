@@ -5,7 +5,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pose/pose_estimator.hpp"
-#include "tools/studies/rivals/frame_budget.hpp"
+#include "tools/studies/baselines/frame_budget.hpp"
 
 namespace houghstream {
 namespace {
@@ -40,23 +40,23 @@ PoseRun thin_run(const PoseRun& run, const std::vector<std::size_t>& chosen) {
 /// Frames with results of rivals.
 struct RivalRuns {
   std::vector<std::size_t> frames;  ///< of the detected ones, in rising order
-  std::map<std::string, PoseRun> by_rival;
+  std::map<std::string, PoseRun> by_baseline;
 };
 
 /// Frame by frame, all rivals in turn, while there is time.
-RivalRuns run_rivals(const DetectedScene& detected, const BenchedMakers& makers, const BenchRules& rules) {
-  const auto every = static_cast<std::size_t>(rules.rivals_every);
+RivalRuns run_baselines(const DetectedScene& detected, const BenchedMakers& makers, const BenchRules& rules) {
+  const auto every = static_cast<std::size_t>(rules.baselines_every);
   const std::size_t count = (detected.frames.size() + every - 1) / every;
   std::map<std::string, std::map<std::size_t, TimedPoses>> made;
-  const std::vector<std::size_t> visited = visit_within(rules.rivals_s, count, [&](std::size_t i) {
+  const std::vector<std::size_t> visited = visit_within(rules.baselines_s, count, [&](std::size_t i) {
     const EvaluatedFrame& frame = detected.frames[i * every];
     const RgbdFrame image = detected.scene.read_frame(frame.image);
-    for (const auto& [name, maker] : makers.rivals) made[name][i] = make_poses(maker, image, *frame.detections);
+    for (const auto& [name, maker] : makers.baselines) made[name][i] = make_poses(maker, image, *frame.detections);
   });
   RivalRuns out;
   for (const std::size_t i : visited) out.frames.push_back(i * every);
   for (auto& [name, results] : made) {
-    PoseRun& run = out.by_rival[name];
+    PoseRun& run = out.by_baseline[name];
     run.scene = detected.name;
     for (auto& [i, poses] : results) {
       run.frames.push_back(detected.frames[i * every]);
@@ -80,8 +80,8 @@ PoseMaker estimator_maker(const std::map<std::string, Mesh>& models, PoseSetting
   };
 }
 
-PoseMaker baseline_maker(std::unique_ptr<BaselineEstimator> rival) {
-  const std::shared_ptr<const BaselineEstimator> shared = std::move(rival);
+PoseMaker baseline_maker(std::unique_ptr<BaselineEstimator> baseline) {
+  const std::shared_ptr<const BaselineEstimator> shared = std::move(baseline);
   return [shared](const RgbdFrame& frame, const Detection& detection) {
     ObjectPose pose;
     pose.class_id = detection.class_id;
@@ -108,7 +108,7 @@ TimedPoses make_poses(const PoseMaker& maker, const RgbdFrame& frame, const Dete
 }
 
 void VariantResult::add(const PoseRun& run, const BopScene& scene, const SceneModels& models, int threads) {
-  const std::vector<PoseTrial> judged = judge_run(run, models.scored);
+  const std::vector<PoseTrial> judged = match_run(run, models.scored);
   trials.insert(trials.end(), judged.begin(), judged.end());
   for (const auto& [name, frames] : measure_poses(run.frames, scene, models.bop, threads))
     errors.insert(errors.end(), frames.begin(), frames.end());
@@ -117,16 +117,16 @@ void VariantResult::add(const PoseRun& run, const BopScene& scene, const SceneMo
 void bench_scene(const DetectedScene& detected, const SceneModels& models, const BenchedMakers& makers,
                  const BenchRules& rules, PoseBench& bench) {
   bench.frames += static_cast<int>(detected.frames.size());
-  const RivalRuns rivals = makers.rivals.empty() ? RivalRuns{} : run_rivals(detected, makers, rules);
-  bench.rival_frames += static_cast<int>(rivals.frames.size());
+  const RivalRuns baselines = makers.baselines.empty() ? RivalRuns{} : run_baselines(detected, makers, rules);
+  bench.baseline_frames += static_cast<int>(baselines.frames.size());
   for (const auto& [name, maker] : makers.each_frame) {
     const PoseRun run = run_maker(detected, maker);
     bench.each_frame[name].add(run, detected.scene, models, rules.threads);
-    if (!rivals.frames.empty())
-      bench.on_rival_frames[name].add(thin_run(run, rivals.frames), detected.scene, models, rules.threads);
+    if (!baselines.frames.empty())
+      bench.on_baseline_frames[name].add(thin_run(run, baselines.frames), detected.scene, models, rules.threads);
   }
-  for (const auto& [name, run] : rivals.by_rival)
-    bench.on_rival_frames[name].add(run, detected.scene, models, rules.threads);
+  for (const auto& [name, run] : baselines.by_baseline)
+    bench.on_baseline_frames[name].add(run, detected.scene, models, rules.threads);
 }
 
 }  // namespace houghstream

@@ -12,7 +12,7 @@
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
 #include "pose/pose_settings.hpp"
-#include "tools/studies/pose/pose_rivals.hpp"
+#include "tools/studies/pose/pose_baselines.hpp"
 #include "tools/studies/pose/pose_trials.hpp"
 
 namespace houghstream {
@@ -24,7 +24,7 @@ using PoseMaker = std::function<ObjectPose(const RgbdFrame&, const Detection&)>;
 PoseMaker estimator_maker(const std::map<std::string, Mesh>& models, PoseSettings settings);
 
 /// A rival; where it finds a pose, that is published, else the status is kNotConverged.
-PoseMaker baseline_maker(std::unique_ptr<BaselineEstimator> rival);
+PoseMaker baseline_maker(std::unique_ptr<BaselineEstimator> baseline);
 
 /// The poses of a frame's detections, in their order, and the CPU time that each took, milliseconds.
 struct TimedPoses {
@@ -39,7 +39,7 @@ TimedPoses make_poses(const PoseMaker& maker, const RgbdFrame& frame, const Dete
 /// The makers of poses by name; those of `rivals` are slow and try few frames.
 struct BenchedMakers {
   std::map<std::string, PoseMaker> each_frame;
-  std::map<std::string, PoseMaker> rivals;
+  std::map<std::string, PoseMaker> baselines;
 };
 
 /// What each variant made of frames: pooled over scenes by add().
@@ -53,9 +53,9 @@ struct VariantResult {
 /// By variant; `on_rival_frames` holds the rivals, and the others on the rivals' frames only, so that they compare.
 struct PoseBench {
   int frames = 0;
-  int rival_frames = 0;
+  int baseline_frames = 0;
   std::map<std::string, VariantResult> each_frame;
-  std::map<std::string, VariantResult> on_rival_frames;
+  std::map<std::string, VariantResult> on_baseline_frames;
 };
 
 /// A scene's name and its frames with detections.
@@ -67,9 +67,9 @@ struct DetectedScene {
 
 /// How a scene is benched.
 struct BenchRules {
-  int rivals_every = 10;  ///< the rivals look at frames 0, N, 2N, ... of those that were detected in
-  double rivals_s = 0.0;  ///< of those, at as many as can be done in this time, spread over the scene; 0: at all
-  int threads = 1;        ///< for measuring errors; the makers run on one
+  int baselines_every = 10;  ///< the rivals look at frames 0, N, 2N, ... of those that were detected in
+  double baselines_s = 0.0;  ///< of those, at as many as can be done in this time, spread over the scene; 0: at all
+  int threads = 1;           ///< for measuring errors; the makers run on one
 };
 
 /// Has every maker give poses to all detections, rivals to those of their frames, and adds what came of it. All rivals

@@ -27,9 +27,9 @@ struct BenchOptions {
   std::vector<std::string> scenes;
   std::filesystem::path out;
   int every = 1;
-  int rivals_every = 10;
-  double rivals_s = 0.0;
-  bool no_rivals = false;
+  int baselines_every = 10;
+  double baselines_s = 0.0;
+  bool no_baselines = false;
   SearchOptions search;
   PoseSettings pose;  ///< what a store knows
 };
@@ -44,9 +44,10 @@ BenchedMakers make_makers(const SceneModels& models, const BenchOptions& options
   makers.each_frame[kPcl] = estimator_maker(meshes, settings);
   settings.registration.engine = options.pose.registration.engine;
   makers.each_frame[kUnchecked] = estimator_maker(meshes, without_rejection(settings));
-  if (options.no_rivals) return makers;
-  makers.rivals[kPrerejective] = baseline_maker(make_prerejective_rival(meshes, options.pose, PrerejectiveSettings{}));
-  makers.rivals[kPpf] = baseline_maker(make_ppf_rival(meshes, options.pose, PpfSettings{}));
+  if (options.no_baselines) return makers;
+  makers.baselines[kPrerejective] =
+      baseline_maker(make_prerejective_baseline(meshes, options.pose, PrerejectiveSettings{}));
+  makers.baselines[kPpf] = baseline_maker(make_ppf_baseline(meshes, options.pose, PpfSettings{}));
   return makers;
 }
 
@@ -92,7 +93,8 @@ void run(const BenchOptions& options) {
       makers = make_makers(models, options);
     }
     const DetectedScene detected = detect_scene(name, scene, detector, options.every);
-    bench_scene(detected, models, makers, {options.rivals_every, options.rivals_s, options.search.threads}, bench);
+    bench_scene(detected, models, makers, {options.baselines_every, options.baselines_s, options.search.threads},
+                bench);
   }
   write_bench(bench, options.out);
   write_worst(bench.each_frame.at(kOurs).trials, scenes, meshes, options.out);
@@ -118,14 +120,14 @@ int houghstream::studies::pose_command(CommandLine& app, int argc, char** argv) 
   app.add_option("--models", options.known.models, "models/ of a BOP dataset; default: that of each scene");
   app.add_option("--out", options.out, "folder for results.json, poses.csv and worst_N.png").required();
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
-  app.add_option("--rivals-every", options.rivals_every, "of those, the rivals look at every Mth; they are slow")
+  app.add_option("--rivals-every", options.baselines_every, "of those, the rivals look at every Mth; they are slow")
       .range(1, 100000)
       .capture_default_str();
-  app.add_option("--rivals-seconds", options.rivals_s,
+  app.add_option("--rivals-seconds", options.baselines_s,
                  "the rivals look at as many frames of a scene as they can in this time; 0: no limit")
       .range(0.0, 1e6)
       .capture_default_str();
-  app.add_flag("--no-rivals", options.no_rivals, "leave the rivals out");
+  app.add_flag("--no-rivals", options.no_baselines, "leave the rivals out");
   add_search_options(app, options.search);
   add_min_mass_option(app, options.search);
   app.get_option("--threshold").description("smallest score of a detection that is tried; default: 0.1");

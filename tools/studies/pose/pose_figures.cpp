@@ -22,11 +22,11 @@ std::string known(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : std::string();
 }
 
-const char* to_word(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kTrue: return "true";
-    case Verdict::kFalse: return "false";
-    case Verdict::kIgnored: return "ignored";
+const char* to_word(MatchOutcome outcome) {
+  switch (outcome) {
+    case MatchOutcome::kTruePositive: return "true";
+    case MatchOutcome::kFalsePositive: return "false";
+    case MatchOutcome::kIgnored: return "ignored";
   }
   return "invalid";
 }
@@ -35,17 +35,18 @@ const char* to_word(Verdict verdict) {
 
 PoseRecall pose_recall(const std::vector<PoseTrial>& trials, float min_score) {
   PoseRecall out;
-  int right = 0;
+  int correct = 0;
   int by_add_s = 0;
   int by_add = 0;
   for (const PoseTrial& trial : trials) {
-    if (trial.verdict != Verdict::kTrue || trial.score < min_score || trial.visible_fraction < kMinVisible) continue;
+    if (trial.outcome != MatchOutcome::kTruePositive || trial.score < min_score || trial.visible_fraction < kMinVisible)
+      continue;
     ++out.detections;
-    right += trial.is_correct() ? 1 : 0;
+    correct += trial.is_correct() ? 1 : 0;
     by_add_s += trial.is_correct_up_to_shape() ? 1 : 0;
     by_add += (trial.symmetric ? trial.add_s : trial.add) < kCorrectBelow ? 1 : 0;  // false for NaN
   }
-  out.right = ratio(right, out.detections);
+  out.correct = ratio(correct, out.detections);
   out.add_s = ratio(by_add_s, out.detections);
   out.add = ratio(by_add, out.detections);
   return out;
@@ -54,15 +55,15 @@ PoseRecall pose_recall(const std::vector<PoseTrial>& trials, float min_score) {
 PoseFigures pose_figures(const std::vector<PoseTrial>& trials) {
   std::vector<double> ms, mm, mm_per_m_sq, deg;
   int judged = 0;
-  int right = 0;
-  int right_up_to_shape = 0;
+  int correct = 0;
+  int correct_up_to_shape = 0;
   for (const PoseTrial& trial : trials) {
     if (!trial.T_camera_object) continue;
     ms.push_back(trial.ms);
-    judged += trial.verdict == Verdict::kIgnored ? 0 : 1;
-    if (trial.verdict != Verdict::kTrue) continue;
-    right += trial.is_correct() ? 1 : 0;
-    right_up_to_shape += trial.is_correct_up_to_shape() ? 1 : 0;
+    judged += trial.outcome == MatchOutcome::kIgnored ? 0 : 1;
+    if (trial.outcome != MatchOutcome::kTruePositive) continue;
+    correct += trial.is_correct() ? 1 : 0;
+    correct_up_to_shape += trial.is_correct_up_to_shape() ? 1 : 0;
     mm.push_back(1e3 * trial.shift_m);
     mm_per_m_sq.push_back(1e3 * trial.shift_m / (trial.distance_m * trial.distance_m));
     if (!trial.symmetric) deg.push_back(trial.turn_deg);
@@ -76,8 +77,8 @@ PoseFigures pose_figures(const std::vector<PoseTrial>& trials) {
   out.mm_median = percentiles(mm).p50;
   out.mm_per_m_sq_median = percentiles(mm_per_m_sq).p50;
   out.deg_median = percentiles(deg).p50;
-  out.right_fraction = ratio(right, judged);
-  out.good_fraction = ratio(right_up_to_shape, judged);
+  out.correct_fraction = ratio(correct, judged);
+  out.good_fraction = ratio(correct_up_to_shape, judged);
   out.recall = pose_recall(trials, 0.0F);
   out.recall_strong = pose_recall(trials, kStrong);
   return out;
@@ -90,13 +91,13 @@ std::map<std::string, WithheldPoses> count_withheld(const std::vector<PoseTrial>
   for (std::size_t i = 0; i < trials.size(); ++i) {
     if (trials[i].T_camera_object) continue;
     WithheldPoses& counts = out[to_string(trials[i].status)];
-    switch (trials[i].verdict) {
-      case Verdict::kTrue: ++counts.of_true; break;
-      case Verdict::kFalse: ++counts.of_false; break;
-      case Verdict::kIgnored: ++counts.of_ignored; break;
+    switch (trials[i].outcome) {
+      case MatchOutcome::kTruePositive: ++counts.of_true; break;
+      case MatchOutcome::kFalsePositive: ++counts.of_false; break;
+      case MatchOutcome::kIgnored: ++counts.of_ignored; break;
     }
-    counts.right += unchecked[i].is_correct() ? 1 : 0;
-    counts.right_up_to_shape += unchecked[i].is_correct_up_to_shape() ? 1 : 0;
+    counts.correct += unchecked[i].is_correct() ? 1 : 0;
+    counts.correct_up_to_shape += unchecked[i].is_correct_up_to_shape() ? 1 : 0;
   }
   return out;
 }
@@ -104,7 +105,7 @@ std::map<std::string, WithheldPoses> count_withheld(const std::vector<PoseTrial>
 OrderedJson to_json(const PoseFigures& figures) {
   const auto recall = [](const PoseRecall& of) {
     return OrderedJson{{"detections", of.detections},
-                       {"mssd", finite_or_null(of.right)},
+                       {"mssd", finite_or_null(of.correct)},
                        {"add_s", finite_or_null(of.add_s)},
                        {"add", finite_or_null(of.add)}};
   };
@@ -115,7 +116,7 @@ OrderedJson to_json(const PoseFigures& figures) {
           {"mm_median", finite_or_null(figures.mm_median)},
           {"mm_per_m_sq_median", finite_or_null(figures.mm_per_m_sq_median)},
           {"deg_median", finite_or_null(figures.deg_median)},
-          {"published_right_fraction", finite_or_null(figures.right_fraction)},
+          {"published_right_fraction", finite_or_null(figures.correct_fraction)},
           {"published_good_fraction", finite_or_null(figures.good_fraction)},
           {"recall", recall(figures.recall)},
           {"recall_from_0.5", recall(figures.recall_strong)}};
@@ -127,8 +128,8 @@ OrderedJson to_json(const std::map<std::string, WithheldPoses>& withheld) {
     out[reason] = {{"true", counts.of_true},
                    {"false", counts.of_false},
                    {"ignored", counts.of_ignored},
-                   {"would_have_been_right", counts.right_up_to_shape},
-                   {"would_have_been_right_by_mssd", counts.right}};
+                   {"would_have_been_right", counts.correct_up_to_shape},
+                   {"would_have_been_right_by_mssd", counts.correct}};
   }
   return out;
 }
@@ -141,7 +142,7 @@ std::string pose_table_rows(const std::string& variant, const std::vector<PoseTr
   std::string text;
   for (const PoseTrial& trial : trials) {
     text += fmt::format("{},{},{},{},{},{},{:.4f},{},{:.4f},{},{},{},{},{},{}\n", variant, trial.scene, trial.image,
-                        trial.class_name, known(trial.visible_fraction, 3), to_word(trial.verdict), trial.score,
+                        trial.class_name, known(trial.visible_fraction, 3), to_word(trial.outcome), trial.score,
                         to_string(trial.status), trial.quality, known(trial.add, 4), known(trial.add_s, 4),
                         known(1e3 * trial.shift_m, 2), known(trial.turn_deg, 2), known(trial.ms, 3),
                         known(trial.strict, 4));

@@ -13,9 +13,9 @@ namespace houghstream {
 /// is no such detection.
 struct PoseRecall {
   int detections = 0;
-  double right = 0.0;  ///< PoseTrial::is_correct()
-  double add_s = 0.0;  ///< right up to what the shape cannot tell: ADD-S below 10 % of the diameter
-  double add = 0.0;    ///< ADD below it, ADD-S for objects that are symmetric
+  double correct = 0.0;  ///< PoseTrial::is_correct()
+  double add_s = 0.0;    ///< right up to what the shape cannot tell: ADD-S below 10 % of the diameter
+  double add = 0.0;      ///< ADD below it, ADD-S for objects that are symmetric
 };
 PoseRecall pose_recall(const std::vector<PoseTrial>& trials, float min_score);
 
@@ -28,7 +28,7 @@ struct PoseFigures {
   double mm_median = 0.0;           ///< translation error of true detections
   double mm_per_m_sq_median = 0.0;  ///< the same over the square of the distance: as depth's noise would have it at 1 m
   double deg_median = 0.0;          ///< rotation error of true detections of objects without symmetries
-  double right_fraction = 0.0;      ///< right ones of those of true and false detections; ignored ones are left out
+  double correct_fraction = 0.0;    ///< right ones of those of true and false detections; ignored ones are left out
   double good_fraction = 0.0;       ///< the same, right up to what the shape cannot tell
   PoseRecall recall;                ///< of all detections
   PoseRecall recall_strong;         ///< of detections from score 0.5 on, which are published by default
@@ -40,8 +40,8 @@ struct WithheldPoses {
   int of_true = 0;
   int of_false = 0;
   int of_ignored = 0;
-  int right = 0;              ///< of `of_true`: the pose would have been right
-  int right_up_to_shape = 0;  ///< the same, up to what the shape cannot tell
+  int correct = 0;              ///< of `of_true`: the pose would have been right
+  int correct_up_to_shape = 0;  ///< the same, up to what the shape cannot tell
 };
 
 /// By status in words. `unchecked` holds the same detections in the same order with the poses that a verification that

@@ -26,7 +26,7 @@ void measure_nearest(const EvaluatedFrame& frame, const ScoredModel& model, Pose
   }
 }
 
-PoseTrial judge_one(const PoseRun& run, const MatchedDetection& judged, const ScoredModel& model) {
+PoseTrial match_trial(const PoseRun& run, const MatchedDetection& judged, const ScoredModel& model) {
   const EvaluatedFrame& frame = run.frames[judged.frame];
   const Detection& detection = frame.detections->detections[judged.index];
   const ObjectPose& pose = frame.poses->poses[judged.index];
@@ -37,13 +37,14 @@ PoseTrial judge_one(const PoseRun& run, const MatchedDetection& judged, const Sc
   trial.class_id = detection.class_id;
   trial.score = detection.score;
   trial.box_px = detection.box_px;
-  trial.verdict = judged.verdict;
+  trial.outcome = judged.outcome;
   trial.symmetric = model.surface.is_symmetric();
   trial.ms = run.ms[judged.frame][judged.index];
   trial.status = pose.status;
   trial.quality = pose.quality;
   trial.T_camera_object = pose.T_camera_object;
-  const GroundTruthObject* truth = judged.verdict == Verdict::kTrue ? &frame.objects[judged.object].truth : nullptr;
+  const GroundTruthObject* truth =
+      judged.outcome == MatchOutcome::kTruePositive ? &frame.objects[judged.object].truth : nullptr;
   if (truth != nullptr) {
     trial.visible_fraction = truth->visible_fraction;
     trial.distance_m = truth->T_camera_object.translation().z();
@@ -75,13 +76,13 @@ SceneModels load_scene_models(const std::filesystem::path& models, const std::se
   return out;
 }
 
-std::vector<PoseTrial> judge_run(const PoseRun& run, const std::map<std::string, ScoredModel>& models) {
+std::vector<PoseTrial> match_run(const PoseRun& run, const std::map<std::string, ScoredModel>& models) {
   std::vector<PoseTrial> trials;
   for (const auto& [name, model] : models) {
     for (const MatchedDetection& judged : evaluate_class(run.frames, name, DetectionRules{}).judged) {
       const std::vector<NamedObject>& objects = run.frames[judged.frame].objects;
-      if (judged.verdict == Verdict::kTrue && !objects[judged.object].truth.has_pose) continue;
-      trials.push_back(judge_one(run, judged, model));
+      if (judged.outcome == MatchOutcome::kTruePositive && !objects[judged.object].truth.has_pose) continue;
+      trials.push_back(match_trial(run, judged, model));
     }
   }
   return trials;

@@ -27,7 +27,7 @@ struct PoseTrial {
   int class_id = 0;
   float score = 0.0F;  ///< of the detection
   cv::Rect2f box_px;   ///< of the detection
-  Verdict verdict = Verdict::kFalse;
+  MatchOutcome outcome = MatchOutcome::kFalsePositive;
   bool symmetric = false;              ///< the object looks the same in other poses
   double visible_fraction = kUnknown;  ///< of the object; known for true detections
   double distance_m = kUnknown;        ///< of the object along the optical axis; known for true detections
@@ -45,8 +45,8 @@ struct PoseTrial {
   double turn_deg = kUnknown;  ///< the smallest over the object's symmetries
 
   /// The pose of a true detection.
-  bool is_correct() const { return verdict == Verdict::kTrue && strict < kCorrectBelow; }
-  bool is_correct_up_to_shape() const { return verdict == Verdict::kTrue && add_s < kCorrectBelow; }
+  bool is_correct() const { return outcome == MatchOutcome::kTruePositive && strict < kCorrectBelow; }
+  bool is_correct_up_to_shape() const { return outcome == MatchOutcome::kTruePositive && add_s < kCorrectBelow; }
 };
 
 /// What the poses of a class are compared with the truth by.
@@ -75,6 +75,6 @@ struct PoseRun {
 
 /// All detections that count, of the classes with a model, judged; those of objects whose truth has no pose are left
 /// out. By class, then strongest first, so that the order is the same whoever made the poses.
-std::vector<PoseTrial> judge_run(const PoseRun& run, const std::map<std::string, ScoredModel>& models);
+std::vector<PoseTrial> match_run(const PoseRun& run, const std::map<std::string, ScoredModel>& models);
 
 }  // namespace houghstream

@@ -74,8 +74,8 @@ void run(const LearnOptions& options) {
   fmt::print(
       "// {} poses in {} scenes, {} right; from {:.2f} on {} of {} right in scenes that the fit has not seen\n"
       "// the numbers in use: {} of {} right\n{}",
-      learnt.examples, learnt.scenes, learnt.right, learnt.settings.least, published.right, published.poses,
-      learnt.in_use.right, learnt.in_use.poses, quality::to_initialisers(learnt.settings));
+      learnt.examples, learnt.scenes, learnt.correct, learnt.settings.least, published.correct, published.poses,
+      learnt.in_use.correct, learnt.in_use.poses, quality::to_initialisers(learnt.settings));
   if (!options.out.empty()) write_json(quality::to_json(learnt), options.out);
 }
 

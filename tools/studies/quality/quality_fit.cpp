@@ -26,7 +26,7 @@ std::vector<std::string> scenes_of(const std::vector<Example>& examples) {
   return scenes;
 }
 
-int count_right(const std::vector<Example>& examples) {
+int count_correct(const std::vector<Example>& examples) {
   return static_cast<int>(std::count_if(examples.begin(), examples.end(),
                                         [](const Example& example) { return example.is_correct_up_to_shape; }));
 }
@@ -39,7 +39,7 @@ std::string to_braces(const QualityTerms& terms) {
 
 OrderedJson to_json(const Published& published) {
   return {{"poses", published.poses},
-          {"right", published.right},
+          {"right", published.correct},
           {"right_share", finite_or_null(published.correct_fraction())}};
 }
 
@@ -56,9 +56,9 @@ float round_quality(int step) {
 }  // namespace
 
 QualitySettings fit_quality(const std::vector<Example>& examples) {
-  const int right = count_right(examples);
-  require(right > 0 && right < static_cast<int>(examples.size()), "{} poses, {} of them right, expected both kinds",
-          examples.size(), right);
+  const int correct = count_correct(examples);
+  require(correct > 0 && correct < static_cast<int>(examples.size()), "{} poses, {} of them right, expected both kinds",
+          examples.size(), correct);
   std::vector<QualityExample> judged;
   judged.reserve(examples.size());
   for (const Example& example : examples) {
@@ -99,7 +99,7 @@ std::vector<CheckedPose> check_by_scene(const std::vector<Example>& examples, in
 }
 
 double Published::correct_fraction() const {
-  return poses > 0 ? static_cast<double>(right) / poses : std::numeric_limits<double>::quiet_NaN();
+  return poses > 0 ? static_cast<double>(correct) / poses : std::numeric_limits<double>::quiet_NaN();
 }
 
 Published published_from(const std::vector<CheckedPose>& checked, float least) {
@@ -107,7 +107,7 @@ Published published_from(const std::vector<CheckedPose>& checked, float least) {
   for (const CheckedPose& pose : checked) {
     if (pose.quality < least) continue;
     ++out.poses;
-    out.right += pose.is_correct ? 1 : 0;
+    out.correct += pose.is_correct ? 1 : 0;
   }
   return out;
 }
@@ -123,7 +123,7 @@ Learnt learn_quality(const std::vector<Example>& examples) {
   Learnt learnt;
   learnt.scenes = static_cast<int>(scenes_of(examples).size());
   learnt.examples = static_cast<int>(examples.size());
-  learnt.right = count_right(examples);
+  learnt.correct = count_correct(examples);
   learnt.settings = fit_quality(examples);
   learnt.checked = check_by_scene(examples, kMinScenes);
   const std::optional<float> least = min_quality(learnt.checked, kCorrectFraction);
@@ -142,7 +142,7 @@ std::string to_initialisers(const QualitySettings& settings) {
 }
 
 OrderedJson to_json(const Learnt& learnt) {
-  OrderedJson out = {{"scenes", learnt.scenes}, {"examples", learnt.examples}, {"right", learnt.right}};
+  OrderedJson out = {{"scenes", learnt.scenes}, {"examples", learnt.examples}, {"right", learnt.correct}};
   out["bias"] = learnt.settings.bias;
   out["weights"] = to_json(learnt.settings.weights);
   out["typical"] = to_json(learnt.settings.mean_of_correct);

@@ -31,7 +31,7 @@ std::vector<CheckedPose> check_by_scene(const std::vector<Example>& examples, in
 /// What is published from a quality on.
 struct Published {
   int poses = 0;
-  int right = 0;
+  int correct = 0;
   double correct_fraction() const;  ///< NaN without poses
 };
 Published published_from(const std::vector<CheckedPose>& checked, float least);
@@ -43,7 +43,7 @@ std::optional<float> min_quality(const std::vector<CheckedPose>& checked, double
 struct Learnt {
   int scenes = 0;
   int examples = 0;
-  int right = 0;
+  int correct = 0;
   QualitySettings settings;
   std::vector<CheckedPose> checked;  ///< each by a fit that has not seen its scene
   Published in_use;                  ///< by the numbers that hs-pose uses, from their `least` on

@@ -7,10 +7,10 @@
 #include "tools/common/rounded.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/report.hpp"
+#include "tools/studies/baselines/frame_budget.hpp"
+#include "tools/studies/baselines/linemod_detector.hpp"
+#include "tools/studies/baselines/linemod_tuning.hpp"
 #include "tools/studies/commands.hpp"
-#include "tools/studies/rivals/frame_budget.hpp"
-#include "tools/studies/rivals/linemod_detector.hpp"
-#include "tools/studies/rivals/linemod_tuning.hpp"
 #include "tools/train/training_sources.hpp"
 
 namespace {

@@ -8,8 +8,8 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/studies/baselines/linemod_detector.hpp"
 #include "tools/studies/commands.hpp"
-#include "tools/studies/rivals/linemod_detector.hpp"
 #include "tools/studies/speed/speed_bench.hpp"
 #include "tools/train/training_sources.hpp"
 

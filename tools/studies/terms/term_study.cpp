@@ -133,7 +133,7 @@ void add_frame(EvaluatedFrame truth, const std::vector<ScoredHypothesis>& candid
   truth.detections = numbered_detections(candidates, rules.suppression);
   for (const auto& [name, model] : models) {
     for (const MatchedDetection& judged : match_detections({truth}, name, DetectionRules{})) {
-      if (judged.verdict != Verdict::kFalse || judged.score < rules.false_score) continue;
+      if (judged.outcome != MatchOutcome::kFalsePositive || judged.score < rules.false_score) continue;
       const int number = truth.detections->detections[judged.index].vote_count;
       group.false_ones.push_back(sample_of(candidates[static_cast<std::size_t>(number)], model));
     }

@@ -30,14 +30,14 @@ std::vector<Example> label_examples(const FoundPoses& found, const std::map<std:
   for (const auto& [name, model] : models) {
     for (const MatchedDetection& judged : match_detections(found.frames, name, DetectionRules{})) {
       const std::optional<PoseTerms>& terms = found.terms[judged.frame][judged.index];
-      if (!terms || judged.verdict == Verdict::kIgnored) continue;
+      if (!terms || judged.outcome == MatchOutcome::kIgnored) continue;
       Example example;
       example.scene = found.scene;
       example.frame = judged.frame;
       example.terms = terms->own;
       example.score = judged.score;
       example.print_margin = terms->print_margin;
-      if (judged.verdict == Verdict::kTrue) {
+      if (judged.outcome == MatchOutcome::kTruePositive) {
         const EvaluatedFrame& frame = found.frames[judged.frame];
         const GroundTruthObject& truth = frame.objects[judged.object].truth;
         if (!truth.has_pose) continue;

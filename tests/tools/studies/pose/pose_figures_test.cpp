@@ -10,12 +10,12 @@
 namespace houghstream {
 namespace {
 
-PoseTrial withheld(Verdict verdict, double visible, PoseStatus status) {
+PoseTrial withheld(MatchOutcome outcome, double visible, PoseStatus status) {
   PoseTrial trial;
   trial.scene = "desk";
   trial.class_name = "mug";
   trial.score = 0.9F;
-  trial.verdict = verdict;
+  trial.outcome = outcome;
   trial.visible_fraction = visible;
   trial.distance_m = 2.0;
   trial.ms = 100.0;
@@ -24,8 +24,8 @@ PoseTrial withheld(Verdict verdict, double visible, PoseStatus status) {
 }
 
 /// Without symmetries: ADD says whether it is right.
-PoseTrial published(Verdict verdict, double ms, double add_s, double add) {
-  PoseTrial trial = withheld(verdict, 1.0, PoseStatus::kValid);
+PoseTrial published(MatchOutcome outcome, double ms, double add_s, double add) {
+  PoseTrial trial = withheld(outcome, 1.0, PoseStatus::kValid);
   trial.T_camera_object = Eigen::Isometry3d::Identity();
   trial.ms = ms;
   trial.add_s = add_s;
@@ -37,9 +37,10 @@ PoseTrial published(Verdict verdict, double ms, double add_s, double add) {
 }
 
 TEST(PoseFigures, TimesAndErrorsAreMediansOverPublishedPoses) {
-  const std::vector<PoseTrial> trials = {
-      published(Verdict::kTrue, 1.0, 0.02, 0.02), published(Verdict::kTrue, 3.0, 0.02, 0.02),
-      published(Verdict::kTrue, 8.0, 0.02, 0.02), withheld(Verdict::kTrue, 1.0, PoseStatus::kRejectedByDepth)};
+  const std::vector<PoseTrial> trials = {published(MatchOutcome::kTruePositive, 1.0, 0.02, 0.02),
+                                         published(MatchOutcome::kTruePositive, 3.0, 0.02, 0.02),
+                                         published(MatchOutcome::kTruePositive, 8.0, 0.02, 0.02),
+                                         withheld(MatchOutcome::kTruePositive, 1.0, PoseStatus::kRejectedByDepth)};
   const PoseFigures figures = pose_figures(trials);
   EXPECT_EQ(figures.detections, 4);
   EXPECT_EQ(figures.published, 3);
@@ -51,34 +52,36 @@ TEST(PoseFigures, TimesAndErrorsAreMediansOverPublishedPoses) {
 }
 
 TEST(PoseFigures, WithheldPosesCountAsNotFound) {
-  std::vector<PoseTrial> trials = {published(Verdict::kTrue, 1.0, 0.05, 0.2), published(Verdict::kTrue, 1.0, 0.2, 0.3),
-                                   withheld(Verdict::kTrue, 0.7, PoseStatus::kRejectedByColour),
-                                   withheld(Verdict::kTrue, 0.5, PoseStatus::kRejectedByColour),  // too little visible
-                                   withheld(Verdict::kFalse, 1.0, PoseStatus::kLowScore)};
+  std::vector<PoseTrial> trials = {
+      published(MatchOutcome::kTruePositive, 1.0, 0.05, 0.2), published(MatchOutcome::kTruePositive, 1.0, 0.2, 0.3),
+      withheld(MatchOutcome::kTruePositive, 0.7, PoseStatus::kRejectedByColour),
+      withheld(MatchOutcome::kTruePositive, 0.5, PoseStatus::kRejectedByColour),  // too little visible
+      withheld(MatchOutcome::kFalsePositive, 1.0, PoseStatus::kLowScore)};
   PoseRecall recall = pose_recall(trials, 0.0F);
   EXPECT_EQ(recall.detections, 3);
   EXPECT_NEAR(recall.add_s, 1.0 / 3.0, 1e-12);
   EXPECT_NEAR(recall.add, 0.0, 1e-12);
-  EXPECT_NEAR(recall.right, 0.0, 1e-12) << "right up to its shape only";
+  EXPECT_NEAR(recall.correct, 0.0, 1e-12) << "right up to its shape only";
   trials[0].symmetric = true;  // ADD-S speaks for ADD
   trials[1].score = 0.3F;
   recall = pose_recall(trials, 0.5F);
   EXPECT_EQ(recall.detections, 2);
   EXPECT_NEAR(recall.add, 0.5, 1e-12);
-  EXPECT_NEAR(recall.right, 0.0, 1e-12) << "MSSD speaks for itself";
+  EXPECT_NEAR(recall.correct, 0.0, 1e-12) << "MSSD speaks for itself";
 }
 
 TEST(PoseFigures, GoodAreRightPosesOfTrueDetectionsAmongAllPublished) {
-  const PoseFigures figures =
-      pose_figures({published(Verdict::kTrue, 1.0, 0.05, 0.2), published(Verdict::kTrue, 1.0, 0.2, 0.2),
-                    published(Verdict::kFalse, 1.0, 0.05, 0.2), published(Verdict::kIgnored, 1.0, 0.05, 0.2),
-                    withheld(Verdict::kTrue, 1.0, PoseStatus::kLowScore), published(Verdict::kTrue, 1.0, 0.01, 0.02)});
+  const PoseFigures figures = pose_figures(
+      {published(MatchOutcome::kTruePositive, 1.0, 0.05, 0.2), published(MatchOutcome::kTruePositive, 1.0, 0.2, 0.2),
+       published(MatchOutcome::kFalsePositive, 1.0, 0.05, 0.2), published(MatchOutcome::kIgnored, 1.0, 0.05, 0.2),
+       withheld(MatchOutcome::kTruePositive, 1.0, PoseStatus::kLowScore),
+       published(MatchOutcome::kTruePositive, 1.0, 0.01, 0.02)});
   EXPECT_NEAR(figures.good_fraction, 0.5, 1e-12);
-  EXPECT_NEAR(figures.right_fraction, 0.25, 1e-12);
+  EXPECT_NEAR(figures.correct_fraction, 0.25, 1e-12);
 }
 
 TEST(PoseFigures, WhatWasNotThereIsNullAndNoNumber) {
-  const OrderedJson json = to_json(pose_figures({withheld(Verdict::kFalse, 1.0, PoseStatus::kLowScore)}));
+  const OrderedJson json = to_json(pose_figures({withheld(MatchOutcome::kFalsePositive, 1.0, PoseStatus::kLowScore)}));
   EXPECT_EQ(json["detections"], 1);
   for (const char* key :
        {"ms_median", "ms_p99", "mm_median", "deg_median", "published_right_fraction", "published_good_fraction"})
@@ -88,19 +91,21 @@ TEST(PoseFigures, WhatWasNotThereIsNullAndNoNumber) {
 }
 
 TEST(PoseFigures, WithheldPosesAreCountedByReasonAndByWhatTheyWouldHaveBeen) {
-  const std::vector<PoseTrial> trials = {
-      withheld(Verdict::kTrue, 1.0, PoseStatus::kLowScore), withheld(Verdict::kTrue, 1.0, PoseStatus::kLowScore),
-      withheld(Verdict::kFalse, 1.0, PoseStatus::kRejectedByDepth), published(Verdict::kTrue, 1.0, 0.02, 0.02)};
-  const std::vector<PoseTrial> unchecked = {
-      published(Verdict::kTrue, 1.0, 0.02, 0.5), published(Verdict::kTrue, 1.0, 0.4, 0.4),
-      published(Verdict::kFalse, 1.0, 0.02, 0.02), published(Verdict::kTrue, 1.0, 0.02, 0.02)};
+  const std::vector<PoseTrial> trials = {withheld(MatchOutcome::kTruePositive, 1.0, PoseStatus::kLowScore),
+                                         withheld(MatchOutcome::kTruePositive, 1.0, PoseStatus::kLowScore),
+                                         withheld(MatchOutcome::kFalsePositive, 1.0, PoseStatus::kRejectedByDepth),
+                                         published(MatchOutcome::kTruePositive, 1.0, 0.02, 0.02)};
+  const std::vector<PoseTrial> unchecked = {published(MatchOutcome::kTruePositive, 1.0, 0.02, 0.5),
+                                            published(MatchOutcome::kTruePositive, 1.0, 0.4, 0.4),
+                                            published(MatchOutcome::kFalsePositive, 1.0, 0.02, 0.02),
+                                            published(MatchOutcome::kTruePositive, 1.0, 0.02, 0.02)};
   const std::map<std::string, WithheldPoses> counts = count_withheld(trials, unchecked);
   ASSERT_EQ(counts.size(), 2U);
   EXPECT_EQ(counts.at("low score").of_true, 2);
-  EXPECT_EQ(counts.at("low score").right, 0);
-  EXPECT_EQ(counts.at("low score").right_up_to_shape, 1);
+  EXPECT_EQ(counts.at("low score").correct, 0);
+  EXPECT_EQ(counts.at("low score").correct_up_to_shape, 1);
   EXPECT_EQ(counts.at("rejected by depth").of_false, 1);
-  EXPECT_EQ(counts.at("rejected by depth").right_up_to_shape, 0);
+  EXPECT_EQ(counts.at("rejected by depth").correct_up_to_shape, 0);
   const OrderedJson json = to_json(counts);
   EXPECT_EQ(json["low score"]["would_have_been_right"], 1) << "an older figure, by ADD-S";
   EXPECT_EQ(json["low score"]["would_have_been_right_by_mssd"], 0);
@@ -110,9 +115,10 @@ TEST(PoseFigures, WithheldPosesAreCountedByReasonAndByWhatTheyWouldHaveBeen) {
 TEST(WorstPoses, FalseOnesComeFirstAndUnknownErrorsBeforeAll) {
   const double unknown = PoseTrial::kUnknown;
   const std::vector<PoseTrial> worst = worst_poses(
-      {published(Verdict::kTrue, 1.0, 0.02, 0.02), published(Verdict::kTrue, 2.0, 0.01, 0.9),
-       published(Verdict::kFalse, 3.0, 0.1, 0.1), published(Verdict::kIgnored, 4.0, 2.0, 2.0),
-       published(Verdict::kFalse, 5.0, unknown, unknown), withheld(Verdict::kTrue, 1.0, PoseStatus::kLowScore)},
+      {published(MatchOutcome::kTruePositive, 1.0, 0.02, 0.02), published(MatchOutcome::kTruePositive, 2.0, 0.01, 0.9),
+       published(MatchOutcome::kFalsePositive, 3.0, 0.1, 0.1), published(MatchOutcome::kIgnored, 4.0, 2.0, 2.0),
+       published(MatchOutcome::kFalsePositive, 5.0, unknown, unknown),
+       withheld(MatchOutcome::kTruePositive, 1.0, PoseStatus::kLowScore)},
       3);
   ASSERT_EQ(worst.size(), 3U);
   EXPECT_EQ(worst[0].ms, 5.0);
@@ -121,8 +127,9 @@ TEST(WorstPoses, FalseOnesComeFirstAndUnknownErrorsBeforeAll) {
 }
 
 TEST(PoseTable, WhatIsUnknownIsEmpty) {
-  EXPECT_EQ(pose_table_rows("ours", {withheld(Verdict::kFalse, PoseTrial::kUnknown, PoseStatus::kLowScore)}),
-            "ours,desk,0,mug,,false,0.9000,low score,0.0000,,,,,100.000,\n");
+  EXPECT_EQ(
+      pose_table_rows("ours", {withheld(MatchOutcome::kFalsePositive, PoseTrial::kUnknown, PoseStatus::kLowScore)}),
+      "ours,desk,0,mug,,false,0.9000,low score,0.0000,,,,,100.000,\n");
 }
 
 }  // namespace

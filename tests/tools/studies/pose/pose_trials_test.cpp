@@ -58,9 +58,9 @@ class FixedRival : public BaselineEstimator {
 
 TEST(PoseTrials, ErrorsAreOfTheTrueObjectOrOfTheNearest) {
   const std::vector<PoseTrial> trials =
-      judge_run(one_frame(baseline_maker(std::make_unique<FixedRival>(at(0.01, 2.0)))), corner());
+      match_run(one_frame(baseline_maker(std::make_unique<FixedRival>(at(0.01, 2.0)))), corner());
   ASSERT_EQ(trials.size(), 2U);
-  EXPECT_EQ(trials[0].verdict, Verdict::kTrue);
+  EXPECT_EQ(trials[0].outcome, MatchOutcome::kTruePositive);
   EXPECT_EQ(trials[0].status, PoseStatus::kValid);
   EXPECT_NEAR(trials[0].add, 0.05, 1e-6);
   EXPECT_NEAR(trials[0].shift_m, 0.01, 1e-9);
@@ -68,7 +68,7 @@ TEST(PoseTrials, ErrorsAreOfTheTrueObjectOrOfTheNearest) {
   EXPECT_NEAR(trials[0].distance_m, 2.0, 1e-9);
   EXPECT_TRUE(trials[0].is_correct());
   EXPECT_GE(trials[0].ms, 0.0);
-  EXPECT_EQ(trials[1].verdict, Verdict::kFalse);
+  EXPECT_EQ(trials[1].outcome, MatchOutcome::kFalsePositive);
   EXPECT_NEAR(trials[1].add, 0.05, 1e-6);
   EXPECT_TRUE(std::isnan(trials[1].visible_fraction));
   EXPECT_FALSE(trials[1].is_correct());
@@ -81,7 +81,7 @@ TEST(PoseTrials, ATurnedPoseIsRightUpToItsShapeOnly) {
   for (const bool is_listed : {false, true}) {
     if (is_listed) bar.surface.symmetries.push_back(turn);
     const std::vector<PoseTrial> trials =
-        judge_run(one_frame(baseline_maker(std::make_unique<FixedRival>(at(0.0, 2.0) * turn))), {{"corner", bar}});
+        match_run(one_frame(baseline_maker(std::make_unique<FixedRival>(at(0.0, 2.0) * turn))), {{"corner", bar}});
     EXPECT_EQ(trials.at(0).is_correct(), is_listed);
     EXPECT_TRUE(trials.at(0).is_correct_up_to_shape());
     EXPECT_NEAR(trials.at(0).strict, is_listed ? 0.0 : 1.0, 1e-6);
@@ -90,7 +90,7 @@ TEST(PoseTrials, ATurnedPoseIsRightUpToItsShapeOnly) {
 
 TEST(PoseTrials, WithoutAPoseNoErrorIsKnown) {
   const std::vector<PoseTrial> trials =
-      judge_run(one_frame(baseline_maker(std::make_unique<FixedRival>(std::nullopt))), corner());
+      match_run(one_frame(baseline_maker(std::make_unique<FixedRival>(std::nullopt))), corner());
   ASSERT_EQ(trials.size(), 2U);
   EXPECT_EQ(trials[0].status, PoseStatus::kNotConverged);
   EXPECT_FALSE(trials[0].T_camera_object.has_value());

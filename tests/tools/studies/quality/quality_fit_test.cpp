@@ -88,7 +88,7 @@ TEST(QualityFit, TheLeastQualityIsTheFirstRoundOneFromWhichEnoughAreRight) {
   EXPECT_EQ(min_quality(checked, 0.98), 0.45F);
   EXPECT_EQ(min_quality(checked, 0.99), 0.75F);
   EXPECT_EQ(published_from(checked, 0.7F).poses, 100);
-  EXPECT_EQ(published_from(checked, 0.7F).right, 98);
+  EXPECT_EQ(published_from(checked, 0.7F).correct, 98);
   EXPECT_TRUE(std::isnan(published_from(checked, 0.95F).correct_fraction()));
   EXPECT_EQ(min_quality({{0.9F, false}}, 0.98), std::nullopt);
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pipeline/types/training_view.hpp"
-#include "tools/studies/rivals/linemod_settings.hpp"
+#include "tools/studies/baselines/linemod_settings.hpp"
 
 namespace houghstream {
 

@@ -1,4 +1,4 @@
-#include "tools/studies/rivals/linemod_detector.hpp"
+#include "tools/studies/baselines/linemod_detector.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 
 #include "pipeline/base/checks.hpp"
 #include "tests/detector/toy_data.hpp"
-#include "tools/studies/rivals/linemod_tuning.hpp"
-#include "tools/studies/rivals/scaled_view.hpp"
+#include "tools/studies/baselines/linemod_tuning.hpp"
+#include "tools/studies/baselines/scaled_view.hpp"
 
 namespace houghstream {
 namespace {

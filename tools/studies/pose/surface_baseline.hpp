@@ -10,7 +10,7 @@
 #include "pipeline/types/frame.hpp"
 #include "pose/model/object_model.hpp"
 #include "pose/seen/region.hpp"
-#include "tools/studies/pose/pose_rivals.hpp"
+#include "tools/studies/pose/pose_baselines.hpp"
 
 namespace houghstream {
 

@@ -1,4 +1,4 @@
-#include "tools/studies/pose/surface_rival.hpp"
+#include "tools/studies/pose/surface_baseline.hpp"
 
 #include <pcl/features/normal_3d.h>
 #include <pcl/search/kdtree.h>

@@ -7,7 +7,7 @@
 
 #include "pipeline/types/training_view.hpp"
 #include "tools/evaluate/metrics/evaluated_frame.hpp"
-#include "tools/studies/rivals/linemod_settings.hpp"
+#include "tools/studies/baselines/linemod_settings.hpp"
 
 namespace houghstream {
 

@@ -1,4 +1,4 @@
-#include "tools/studies/rivals/linemod_detector.hpp"
+#include "tools/studies/baselines/linemod_detector.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tools/studies/pose/pose_rivals.hpp"
+#include "tools/studies/pose/pose_baselines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -39,17 +39,17 @@ using Make = std::unique_ptr<BaselineEstimator> (*)(const std::map<std::string, 
 
 std::unique_ptr<BaselineEstimator> prerejective(const std::map<std::string, Mesh>& models,
                                                 const PoseSettings& settings) {
-  return make_prerejective_rival(models, settings, PrerejectiveSettings());
+  return make_prerejective_baseline(models, settings, PrerejectiveSettings());
 }
 
 std::unique_ptr<BaselineEstimator> point_pairs(const std::map<std::string, Mesh>& models,
                                                const PoseSettings& settings) {
-  return make_ppf_rival(models, settings, PpfSettings());
+  return make_ppf_baseline(models, settings, PpfSettings());
 }
 
 class PoseRivals : public testing::TestWithParam<Make> {
  protected:
-  static std::unique_ptr<BaselineEstimator> rival(const Table& table, const PoseSettings& settings = {}) {
+  static std::unique_ptr<BaselineEstimator> baseline(const Table& table, const PoseSettings& settings = {}) {
     return GetParam()({{"it", table.object}}, settings);
   }
 };
@@ -57,7 +57,7 @@ class PoseRivals : public testing::TestWithParam<Make> {
 TEST_P(PoseRivals, FindAnObjectOnATableWithoutItsVotes) {
   for (Table table : {with_mug(), with_box()}) {
     table.detection.rotations.clear();
-    const auto T_camera_object = rival(table)->estimate(table.frame, table.detection);
+    const auto T_camera_object = baseline(table)->estimate(table.frame, table.detection);
     ASSERT_TRUE(T_camera_object);
     EXPECT_LT(SurfaceError(table.object)(table.truth, *T_camera_object), 0.006);
     EXPECT_NEAR(T_camera_object->linear().determinant(), 1.0, 1e-9);
@@ -69,15 +69,15 @@ TEST_P(PoseRivals, FindItWhereVotesAreNotForItsOrigin) {
   PoseSettings settings;
   settings.model.vote_centres["it"] = {0.0F, 0.0F, 0.1F};
   table.detection.centre_camera = table.truth.cast<float>() * settings.model.vote_centres["it"];
-  const auto T_camera_object = rival(table, settings)->estimate(table.frame, table.detection);
+  const auto T_camera_object = baseline(table, settings)->estimate(table.frame, table.detection);
   ASSERT_TRUE(T_camera_object);
   EXPECT_LT(SurfaceError(table.object)(table.truth, *T_camera_object), 0.006);
 }
 
 TEST_P(PoseRivals, GiveTheSameBitsAgain) {
   const Table table = with_mug();
-  const auto first = rival(table)->estimate(table.frame, table.detection);
-  const auto other = rival(table);
+  const auto first = baseline(table)->estimate(table.frame, table.detection);
+  const auto other = baseline(table);
   const auto second = other->estimate(table.frame, table.detection);
   const auto third = other->estimate(table.frame, table.detection);
   ASSERT_TRUE(first && second && third);
@@ -87,7 +87,7 @@ TEST_P(PoseRivals, GiveTheSameBitsAgain) {
 
 TEST_P(PoseRivals, GiveNothingWhereThereIsNothing) {
   Table table = with_mug();
-  const auto it = rival(table);
+  const auto it = baseline(table);
 
   Detection unknown = table.detection;
   unknown.class_name = "other";
@@ -108,7 +108,7 @@ TEST_P(PoseRivals, GiveNothingWhereThereIsNothing) {
 TEST_P(PoseRivals, StayNearTheDetectedCentre) {
   Table table = with_mug();
   table.detection.centre_camera.x() += 0.12F;
-  const auto T_camera_object = rival(table)->estimate(table.frame, table.detection);
+  const auto T_camera_object = baseline(table)->estimate(table.frame, table.detection);
   if (!T_camera_object) return;
   EXPECT_LE((T_camera_object->translation() - table.detection.centre_camera.cast<double>()).norm(),
             PoseSettings().registration.max_shift_m);
@@ -117,17 +117,17 @@ TEST_P(PoseRivals, StayNearTheDetectedCentre) {
 TEST_P(PoseRivals, RefuseAFrameWithoutDepthImage) {
   Table table = with_mug();
   table.frame.depth = cv::Mat();
-  EXPECT_THROW(rival(table)->estimate(table.frame, table.detection), InputError);
+  EXPECT_THROW(baseline(table)->estimate(table.frame, table.detection), InputError);
 }
 
 TEST(PoseRivalSettings, OutOfRangeAreRefused) {
   const std::map<std::string, Mesh> models = {{"it", mug()}};
   PrerejectiveSettings sampling;
   sampling.samples = 2;
-  EXPECT_THROW(make_prerejective_rival(models, PoseSettings(), sampling), InputError);
+  EXPECT_THROW(make_prerejective_baseline(models, PoseSettings(), sampling), InputError);
   PpfSettings pairs;
   pairs.reference_share = 0.0;
-  EXPECT_THROW(make_ppf_rival(models, PoseSettings(), pairs), InputError);
+  EXPECT_THROW(make_ppf_baseline(models, PoseSettings(), pairs), InputError);
 }
 
 INSTANTIATE_TEST_SUITE_P(Libraries, PoseRivals, testing::Values(Make(prerejective), Make(point_pairs)),

@@ -8,7 +8,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pose/baseline/register_pcl.hpp"
-#include "tools/studies/pose/surface_rival.hpp"
+#include "tools/studies/pose/surface_baseline.hpp"
 
 namespace houghstream {
 namespace {
@@ -127,9 +127,9 @@ class PrerejectiveRival final : public SurfaceRival {
 
 }  // namespace
 
-std::unique_ptr<BaselineEstimator> make_prerejective_rival(const std::map<std::string, Mesh>& models,
-                                                           const PoseSettings& pose,
-                                                           const PrerejectiveSettings& settings) {
+std::unique_ptr<BaselineEstimator> make_prerejective_baseline(const std::map<std::string, Mesh>& models,
+                                                              const PoseSettings& pose,
+                                                              const PrerejectiveSettings& settings) {
   check_settings(settings);
   return std::make_unique<PrerejectiveRival>(models, pose, settings);
 }

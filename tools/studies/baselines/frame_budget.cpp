@@ -1,4 +1,4 @@
-#include "tools/studies/rivals/frame_budget.hpp"
+#include "tools/studies/baselines/frame_budget.hpp"
 
 #include <algorithm>
 #include <chrono>

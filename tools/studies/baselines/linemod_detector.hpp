@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "pipeline/types/detection.hpp"
-#include "tools/studies/rivals/linemod_templates.hpp"
+#include "tools/studies/baselines/linemod_templates.hpp"
 
 namespace houghstream {
 

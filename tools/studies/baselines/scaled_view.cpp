@@ -1,4 +1,4 @@
-#include "tools/studies/rivals/scaled_view.hpp"
+#include "tools/studies/baselines/scaled_view.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pose/baseline/register_pcl.hpp"
-#include "tools/studies/pose/surface_rival.hpp"
+#include "tools/studies/pose/surface_baseline.hpp"
 
 namespace houghstream {
 namespace {
@@ -85,8 +85,8 @@ class PpfRival final : public SurfaceRival {
 
 }  // namespace
 
-std::unique_ptr<BaselineEstimator> make_ppf_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
-                                                  const PpfSettings& settings) {
+std::unique_ptr<BaselineEstimator> make_ppf_baseline(const std::map<std::string, Mesh>& models,
+                                                     const PoseSettings& pose, const PpfSettings& settings) {
   check_settings(settings);
   return std::make_unique<PpfRival>(models, pose, settings);
 }

@@ -1,4 +1,4 @@
-#include "tools/studies/rivals/linemod_templates.hpp"
+#include "tools/studies/baselines/linemod_templates.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
-#include "tools/studies/rivals/scaled_view.hpp"
+#include "tools/studies/baselines/scaled_view.hpp"
 
 namespace houghstream {
 namespace {

@@ -89,13 +89,13 @@ class BaselineEstimator {
 /// pcl::SampleConsensusPrerejective), then point-to-plane ICP (register_points_pcl()). Models by class name, metres.
 /// Throws InputError for settings out of range and for models as make_object_model() does. PCL draws from std::rand(),
 /// which each estimate seeds anew: one estimate runs at a time, and nothing else may draw while it does.
-std::unique_ptr<BaselineEstimator> make_prerejective_rival(const std::map<std::string, Mesh>& models,
-                                                           const PoseSettings& pose,
-                                                           const PrerejectiveSettings& settings);
+std::unique_ptr<BaselineEstimator> make_prerejective_baseline(const std::map<std::string, Mesh>& models,
+                                                              const PoseSettings& pose,
+                                                              const PrerejectiveSettings& settings);
 
 /// OpenCV: votes of point pairs (Drost et al. 2010, cv::ppf_match_3d::PPF3DDetector), then
 /// cv::ppf_match_3d::ICP of the best few poses. Models by class name, metres; throws as the other.
-std::unique_ptr<BaselineEstimator> make_ppf_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
-                                                  const PpfSettings& settings);
+std::unique_ptr<BaselineEstimator> make_ppf_baseline(const std::map<std::string, Mesh>& models,
+                                                     const PoseSettings& pose, const PpfSettings& settings);
 
 }  // namespace houghstream

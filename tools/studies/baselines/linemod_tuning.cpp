@@ -1,4 +1,4 @@
-#include "tools/studies/rivals/linemod_tuning.hpp"
+#include "tools/studies/baselines/linemod_tuning.hpp"
 
 #include <algorithm>
 #include <map>
@@ -7,7 +7,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/bus/percentiles.hpp"
 #include "tools/evaluate/metrics/detection_metrics.hpp"
-#include "tools/studies/rivals/linemod_detector.hpp"
+#include "tools/studies/baselines/linemod_detector.hpp"
 
 namespace houghstream {
 namespace {
@@ -45,7 +45,7 @@ void find_best_f1(const std::vector<ClassResult>& classes, LinemodTrial& trial) 
 
 using Matches = std::vector<std::vector<LinemodMatch>>;
 
-void judge(const ComposedExamples& examples, const Matches& matches, LinemodTrial& trial) {
+void score_trial(const ComposedExamples& examples, const Matches& matches, LinemodTrial& trial) {
   std::vector<EvaluatedFrame> frames = examples.truth;
   std::vector<double> selection_ms;
   for (std::size_t f = 0; f < frames.size(); ++f) {
@@ -151,7 +151,7 @@ void tune_linemod(const std::vector<TrainingView>& views, const LinemodTemplateS
     const Matches matches = match_all(templates, examples, trial);
     for (const LinemodSelection& selection : selections(base_selection)) {
       trial.selection = selection;
-      judge(examples, matches, trial);
+      score_trial(examples, matches, trial);
       report(trial);
     }
   }
