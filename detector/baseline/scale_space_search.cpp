@@ -93,14 +93,14 @@ cv::Mat hough_image(const SearchContext& search, int class_index, const SeenLeve
 }
 
 /// Local maxima, strongest first.
-std::vector<cv::Point> maxima_of(const cv::Mat& image, int reach_px, float least, std::size_t limit) {
+std::vector<cv::Point> maxima_of(const cv::Mat& image, int reach_px, float minimum, std::size_t limit) {
   cv::Mat around;
   cv::dilate(image, around, cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * reach_px + 1, 2 * reach_px + 1)));
   std::vector<cv::Point> maxima;
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < image.cols; ++x) {
       const float value = image.at<float>(y, x);
-      if (value >= least && value >= around.at<float>(y, x)) maxima.emplace_back(x, y);
+      if (value >= minimum && value >= around.at<float>(y, x)) maxima.emplace_back(x, y);
     }
   }
   std::stable_sort(maxima.begin(), maxima.end(),

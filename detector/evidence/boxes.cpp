@@ -18,10 +18,10 @@ Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches, B
   weights.clear();
   for (const auto& [patch, weight] : hypothesis.patches) weights.push_back(weight);
   std::nth_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
-  const float least = 0.3F * weights[weights.size() / 2];
+  const float minimum = 0.3F * weights[weights.size() / 2];
   for (std::vector<float>& side : values) side.clear();
   for (const auto& [patch, weight] : hypothesis.patches) {
-    if (weight < least) continue;
+    if (weight < minimum) continue;
     const cv::Rect2f& cell = patches.cell_px[patch];
     values[0].push_back(cell.x);
     values[1].push_back(cell.y);

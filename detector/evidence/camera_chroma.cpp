@@ -113,7 +113,7 @@ bool are_far(const std::vector<ChromaMap>& cameras, const std::vector<ChromaMap>
 void judge_again(const ScoringInput& input, int threads, std::vector<ScoredHypothesis>& candidates) {
   constexpr float kHopeless = 0.02F;  // score, if the colours were as usual
   const Forest& forest = input.index.forest();
-  const float least = std::min(input.settings.threshold, input.settings.candidates_from);
+  const float minimum = std::min(input.settings.threshold, input.settings.candidates_from);
   parallel_for(threads, static_cast<int>(candidates.size()), [&](int i) {
     ScoredHypothesis& candidate = candidates[static_cast<std::size_t>(i)];
     Evidence& evidence = candidate.evidence;
@@ -122,7 +122,7 @@ void judge_again(const ScoringInput& input, int threads, std::vector<ScoredHypot
     if (score_as_taught(model, evidence) < kHopeless) return;
     evidence.fit = match_template(forest.views[evidence.view], evidence.view_centre, input.frame);
     candidate.detection.score = score(model, evidence);
-    if (candidate.detection.score < least) candidate.detection.rotations.clear();
+    if (candidate.detection.score < minimum) candidate.detection.rotations.clear();
   });
 }
 

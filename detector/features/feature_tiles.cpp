@@ -21,12 +21,12 @@ void FeatureTiles::want_all(cv::Size image) {
   std::fill(wanted_.begin(), wanted_.end(), std::uint8_t{1});
 }
 
-void FeatureTiles::list_parts(int row, int longest, std::vector<cv::Rect>& parts) const {
+void FeatureTiles::list_parts(int row, int max_length, std::vector<cv::Rect>& parts) const {
   const int top = row * kSide;
   const int height = std::min(kSide, image_.height - top);
   for (int column = 0; column < columns_;) {
     int end = column;
-    while (end < columns_ && (end - column) * kSide < longest && wanted(row, end)) ++end;
+    while (end < columns_ && (end - column) * kSide < max_length && wanted(row, end)) ++end;
     if (end > column) {
       const int left = column * kSide;
       parts.emplace_back(left, top, std::min(end * kSide, image_.width) - left, height);

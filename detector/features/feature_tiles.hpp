@@ -32,7 +32,7 @@ class FeatureTiles {
   cv::Size image() const { return image_; }
   int rows() const { return rows_; }  ///< of tiles
   /// Wanted pixels of a row of tiles, at most `longest` (a multiple of kSide) side by side, appended to `parts`.
-  void list_parts(int row, int longest, std::vector<cv::Rect>& parts) const;
+  void list_parts(int row, int max_length, std::vector<cv::Rect>& parts) const;
 
  private:
   bool wanted(int row, int column) const { return wanted_[static_cast<std::size_t>(row * columns_ + column)] != 0; }

@@ -13,8 +13,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 template <class V>
 struct Extremes {
-  V most;
-  V least;
+  V maximum;
+  V minimum;
 };
 
 /// Of `side` vectors, `step` values apart.
@@ -23,8 +23,8 @@ HWY_INLINE Extremes<V> extremes(D d, const T* largest, const T* smallest, std::p
   Extremes<V> found{hn::LoadU(d, largest), hn::LoadU(d, smallest)};
   const int count = kSide > 0 ? kSide : side;
   for (int i = 1; i < count; ++i) {
-    found.most = hn::Max(found.most, hn::LoadU(d, largest + i * step));
-    found.least = hn::Min(found.least, hn::LoadU(d, smallest + i * step));
+    found.maximum = hn::Max(found.maximum, hn::LoadU(d, largest + i * step));
+    found.minimum = hn::Min(found.minimum, hn::LoadU(d, smallest + i * step));
   }
   return found;
 }
@@ -43,12 +43,12 @@ HWY_INLINE void for_extremes(D d, const TilePlane<T>& plane, Neighbourhood aroun
     const T* first = plane.row(y - before);
     for (int x = -before; x < plane.width() + around.after(); x += lanes) {
       const auto column = extremes<kSide>(d, first + x, first + x, plane.stride(), around.side);
-      hn::StoreU(column.most, d, largest + x);
-      hn::StoreU(column.least, d, smallest + x);
+      hn::StoreU(column.maximum, d, largest + x);
+      hn::StoreU(column.minimum, d, smallest + x);
     }
     for (int x = 0; x < plane.width(); x += lanes) {
       const auto square = extremes<kSide>(d, largest + x - before, smallest + x - before, 1, around.side);
-      store(square.most, square.least, x, y);
+      store(square.maximum, square.minimum, x, y);
     }
   }
 }
@@ -65,9 +65,9 @@ HWY_INLINE void for_all_extremes(D d, const TilePlane<T>& plane, Neighbourhood a
 
 void bytes(const TilePlane<std::uint8_t>& plane, Neighbourhood around, ExtremePlanes planes, TileRows& rows) {
   const hn::CappedTag<std::uint8_t, TilePlane<std::uint8_t>::kVector> d;
-  for_all_extremes(d, plane, around, [&](auto most, auto least, int x, int y) HWY_ATTR {
-    hn::StoreU(most, d, rows.row(y, planes.largest) + x);
-    hn::StoreU(least, d, rows.row(y, planes.smallest) + x);
+  for_all_extremes(d, plane, around, [&](auto maximum, auto minimum, int x, int y) HWY_ATTR {
+    hn::StoreU(maximum, d, rows.row(y, planes.largest) + x);
+    hn::StoreU(minimum, d, rows.row(y, planes.smallest) + x);
   });
 }
 
@@ -80,9 +80,9 @@ void steps(const TilePlane<std::uint16_t>& plane, Neighbourhood around, StepByte
     const auto limited = kind == StepBytes::kWrapped ? hn::And(value, byte) : hn::Min(value, byte);
     return hn::DemoteTo(half, hn::BitCast(hn::RebindToSigned<decltype(d)>(), limited));
   };
-  for_all_extremes(d, plane, around, [&](auto most, auto least, int x, int y) HWY_ATTR {
-    hn::StoreU(to_byte(most), half, rows.row(y, planes.largest) + x);
-    hn::StoreU(to_byte(least), half, rows.row(y, planes.smallest) + x);
+  for_all_extremes(d, plane, around, [&](auto maximum, auto minimum, int x, int y) HWY_ATTR {
+    hn::StoreU(to_byte(maximum), half, rows.row(y, planes.largest) + x);
+    hn::StoreU(to_byte(minimum), half, rows.row(y, planes.smallest) + x);
   });
 }
 

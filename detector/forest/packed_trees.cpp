@@ -37,7 +37,7 @@ PackedNode pack_node(const PixelTest& test, std::size_t left) {
 
 /// One tree, breadth first, behind the others. False where it does not fit.
 bool append_packed(const Forest& forest, std::int32_t root, PackedTrees& trees) {
-  const std::size_t most = std::min(kMaxNodes, forest.roots.size() + 2 * forest.nodes.size());
+  const std::size_t maximum = std::min(kMaxNodes, forest.roots.size() + 2 * forest.nodes.size());
   std::vector<std::int32_t> sources = {root};
   const std::size_t first = trees.nodes.size();
   for (std::size_t i = 0; i < sources.size(); ++i) {
@@ -47,7 +47,7 @@ bool append_packed(const Forest& forest, std::int32_t root, PackedTrees& trees) 
       continue;
     }
     const TreeNode& node = forest.nodes[static_cast<std::size_t>(source)];
-    if (!fits(node.test) || first + sources.size() + 2 > most) return false;
+    if (!fits(node.test) || first + sources.size() + 2 > maximum) return false;
     trees.nodes.push_back(pack_node(node.test, first + sources.size()));
     sources.push_back(node.left);
     sources.push_back(node.right);

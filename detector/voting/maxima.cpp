@@ -26,12 +26,12 @@ bool is_maximum(const HoughSpace& space, int x, int y) {
 /// Local maxima of the Hough image, strongest first.
 void list_maxima(const HoughSpace& space, float min_relative_peak, int limit, std::vector<HoughCell>& maxima) {
   const float largest = *std::max_element(space.image.begin(), space.image.end());
-  const float least = std::max(1e-4F, min_relative_peak * largest);
+  const float minimum = std::max(1e-4F, min_relative_peak * largest);
   maxima.clear();
   for (int y = 0; y < space.height; ++y) {
     const float* row = space.image.data() + static_cast<std::ptrdiff_t>(y) * space.width;
     for (int x = 0; x < space.width; ++x) {
-      if (row[x] > least && is_maximum(space, x, y)) maxima.push_back({x, y, row[x]});
+      if (row[x] > minimum && is_maximum(space, x, y)) maxima.push_back({x, y, row[x]});
     }
   }
   std::stable_sort(maxima.begin(), maxima.end(),

@@ -35,9 +35,9 @@ std::optional<OniRecordHeader> next_record(OniFile& oni, std::uint64_t at) {
     const OniRecordHeader record = oni.record(at);
     for (const OniRecordType type : {OniRecordType::kEnd, OniRecordType::kNodeRemoved, OniRecordType::kSeekTable})
       if (record.is(type)) return std::nullopt;
-    const std::uint64_t least = record.is(OniRecordType::kNodeAdded) ? kOniImages : sizeof(std::uint64_t);
+    const std::uint64_t minimum = record.is(OniRecordType::kNodeAdded) ? kOniImages : sizeof(std::uint64_t);
     const bool has_fields = record.is(OniRecordType::kNodeAdded) || record.is(OniRecordType::kNewData);
-    if (has_fields && record.fields < kOniRecordHeader + least) return std::nullopt;
+    if (has_fields && record.fields < kOniRecordHeader + minimum) return std::nullopt;
     return record;
   } catch (const InputError&) {
     return std::nullopt;

@@ -34,10 +34,10 @@ struct StreamContent {
 
 void note_record(OniFile& oni, const OniRecordHeader& record, std::uint64_t at, StreamContent& stream) {
   const auto type = static_cast<OniRecordType>(record.type);
-  const std::uint64_t least =
+  const std::uint64_t minimum =
       kOniRecordHeader + (type == OniRecordType::kNodeAdded ? kOniImages : sizeof(std::uint64_t));
-  require(record.fields >= least || (type != OniRecordType::kNodeAdded && type != OniRecordType::kNewData),
-          "{}: a record of {} bytes at byte {}, expected {} or more", oni.name(), record.fields, at, least);
+  require(record.fields >= minimum || (type != OniRecordType::kNodeAdded && type != OniRecordType::kNewData),
+          "{}: a record of {} bytes at byte {}, expected {} or more", oni.name(), record.fields, at, minimum);
   if (type == OniRecordType::kNodeAdded) stream.stated = oni.read<std::uint32_t>(at + record.fields - kOniImages);
   if (type == OniRecordType::kNewData) stream.times.push_back(oni.read<std::uint64_t>(times_in(record, at).front()));
   if (type != OniRecordType::kSeekTable) return;

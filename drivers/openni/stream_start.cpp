@@ -38,11 +38,11 @@ std::vector<StreamStart> possible_starts(const std::vector<ImageThumbnail>& reco
   }
   std::sort(starts.begin(), starts.end());
   starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
-  const std::size_t fewest = std::min(kMin, (recorded.size() + 1) / 2);
+  const std::size_t min_count = std::min(kMin, (recorded.size() + 1) / 2);
   std::vector<StreamStart> possible;
   for (const std::int64_t start_us : starts) {
     const StreamStart start = start_at(start_us, recorded, live);
-    if (start.images >= fewest) possible.push_back(start);
+    if (start.images >= min_count) possible.push_back(start);
   }
   return possible;
 }

@@ -54,12 +54,13 @@ void walk_jpeg(const std::uint8_t* jpeg, std::size_t size, const Visit& visit) {
 
 /// Of its largest frame; 0 where it has none.
 std::uint64_t jpeg_pixels(const std::uint8_t* jpeg, std::size_t size) {
-  std::uint64_t most = 0;
+  std::uint64_t maximum = 0;
   walk_jpeg(jpeg, size, [&](std::uint8_t marker, std::size_t at) {
     const bool is_frame = marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
-    if (is_frame && at + 7 <= size) most = std::max(most, big_endian(jpeg + at + 3, 2) * big_endian(jpeg + at + 5, 2));
+    if (is_frame && at + 7 <= size)
+      maximum = std::max(maximum, big_endian(jpeg + at + 3, 2) * big_endian(jpeg + at + 5, 2));
   });
-  return most;
+  return maximum;
 }
 
 /// Whether anything ends its last scan: a decoder fills up what is missing of one.

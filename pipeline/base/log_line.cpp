@@ -22,11 +22,11 @@ spdlog::level::level_enum to_spdlog(LogLevel level) {
 
 }  // namespace
 
-void start_log(const std::string& name, LogLevel least) {
+void start_log(const std::string& name, LogLevel minimum) {
   spdlog::set_default_logger(
       std::make_shared<spdlog::logger>(name, std::make_shared<spdlog::sinks::stderr_color_sink_mt>()));
   spdlog::set_pattern("%H:%M:%S.%e %n: %v");
-  spdlog::set_level(to_spdlog(least));
+  spdlog::set_level(to_spdlog(minimum));
 }
 
 void hush_log() {

@@ -42,11 +42,11 @@ std::optional<Endpoint> place_of(const std::string& url, const std::string& sche
 }
 
 /// 0 to `most`, as people write it: LCM takes 010 for 8 and 0x10 for 16.
-bool is_number(const std::string& text, int most) {
+bool is_number(const std::string& text, int maximum) {
   constexpr std::size_t kMaxDigits = 10;
   const bool digits = std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
   if (text.empty() || text.size() > kMaxDigits || !digits || (text.size() > 1 && text[0] == '0')) return false;
-  return std::atoll(text.c_str()) <= most;
+  return std::atoll(text.c_str()) <= maximum;
 }
 
 void check_group(const std::string& url) {

@@ -73,9 +73,9 @@ class FarthestPoints {
       group.distance_sq = group.distance_sq.min(x * x + (y * y + z * z));
       farthest = farthest.max(group.distance_sq);
     }
-    const float most = farthest.maxCoeff();
+    const float maximum = farthest.maxCoeff();
     std::size_t i = 0;
-    while (i + 1 < size_ && groups_[i / kLanes].distance_sq[static_cast<Eigen::Index>(i % kLanes)] != most) ++i;
+    while (i + 1 < size_ && groups_[i / kLanes].distance_sq[static_cast<Eigen::Index>(i % kLanes)] != maximum) ++i;
     return i;
   }
 

@@ -317,8 +317,8 @@ class ObjCheck {
     ++given_[part];
   }
 
-  void check_corners(const Words& words, std::size_t least, const std::string& where) {
-    require(words.size() > least, "{}: {} corners, expected {} or more", where, words.size() - 1, least);
+  void check_corners(const Words& words, std::size_t minimum, const std::string& where) {
+    require(words.size() > minimum, "{}: {} corners, expected {} or more", where, words.size() - 1, minimum);
     int parts = 0;
     std::vector<std::int64_t> corners(words.size() - 1);
     for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -374,10 +374,10 @@ class ObjCheck {
 // ---------------------------------------------------------------- MTL
 
 /// A remark may follow.
-void check_mtl_numbers(const Words& words, std::size_t most, const std::string& where) {
+void check_mtl_numbers(const Words& words, std::size_t maximum, const std::string& where) {
   const auto end = std::find_if(words.begin(), words.end(), [](std::string_view word) { return word.front() == '#'; });
   const auto count = static_cast<std::size_t>(end - words.begin()) - 1;
-  require(count >= 1 && count <= most, "{}: {} numbers, expected 1 to {}", where, count, most);
+  require(count >= 1 && count <= maximum, "{}: {} numbers, expected 1 to {}", where, count, maximum);
   for (std::size_t i = 1; i <= count; ++i) {
     const std::optional<double> number = parse_number<double>(words[i]);
     require(number && std::isfinite(*number), "{}: '{}', expected a number", where, excerpt(words[i]));

@@ -98,8 +98,8 @@ cv::Mat unpack_raw(const image_t& image, int type) {
   const std::int64_t stride = image.row_stride == 0 ? row_bytes : image.row_stride;
   require(stride >= row_bytes, "row stride of {} bytes, expected at least {} for {} pixels", image.row_stride,
           row_bytes, image.width);
-  const std::int64_t least = stride * (image.height - 1) + row_bytes;
-  require(image.size >= least && image.size <= stride * image.height,
+  const std::int64_t minimum = stride * (image.height - 1) + row_bytes;
+  require(image.size >= minimum && image.size <= stride * image.height,
           "raw image of {} bytes, expected {} for {}x{} pixels with row stride {}", image.size, stride * image.height,
           image.width, image.height, stride);
   cv::Mat out(image.height, image.width, type);

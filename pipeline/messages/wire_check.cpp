@@ -41,9 +41,10 @@ constexpr std::size_t kTeachingNumbers = 4 + 4 + 4 + 4 * 4 + 3 * 8 + 4 * 8;  // 
 constexpr std::size_t kSeenDirection = 3 * 4 + 1;
 
 /// What is kept, told and printed must not be as long as a message may be.
-std::string read_within(WireReader& reader, std::size_t most, const char* what) {
+std::string read_within(WireReader& reader, std::size_t maximum, const char* what) {
   std::string text = reader.read_string();
-  require(text.size() <= most, "{}: {} of {} bytes, expected at most {}", reader.source(), what, text.size(), most);
+  require(text.size() <= maximum, "{}: {} of {} bytes, expected at most {}", reader.source(), what, text.size(),
+          maximum);
   return text;
 }
 
@@ -170,8 +171,8 @@ void walk_teaching(WireReader& reader) {
 }
 
 WireReader open_message(ByteView bytes, std::int64_t fingerprint, const std::string& type) {
-  const std::size_t most = max_bytes(fingerprint);
-  require(bytes.size <= most, "{}: {} bytes, expected at most {}", type, bytes.size, most);
+  const std::size_t maximum = max_bytes(fingerprint);
+  require(bytes.size <= maximum, "{}: {} bytes, expected at most {}", type, bytes.size, maximum);
   WireReader reader(bytes, type);
   const std::int64_t found = reader.read_int64();
   require(found == fingerprint, "message of fingerprint {:016x}, expected {} ({:016x})",

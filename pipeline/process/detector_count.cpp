@@ -58,11 +58,11 @@ void DetectorCount::forget(const FrameId& frame) {
 }
 
 int DetectorCount::of(const std::string& channel) const {
-  int most = 1;
+  int maximum = 1;
   const auto camera = cameras_.find(channel);
-  if (camera == cameras_.end()) return most;
-  for (const Frame& frame : camera->second.frames) most = std::max(most, frame.results);
-  return most;
+  if (camera == cameras_.end()) return maximum;
+  for (const Frame& frame : camera->second.frames) maximum = std::max(maximum, frame.results);
+  return maximum;
 }
 
 }  // namespace houghstream

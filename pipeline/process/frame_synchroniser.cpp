@@ -74,10 +74,10 @@ void FrameSynchroniser::limit_frame_bytes() {
 
 void FrameSynchroniser::limit_waiting_bytes() {
   while (waiting_bytes_.total() > kAllWaitingBytes) {
-    const auto most = std::max_element(cameras_.begin(), cameras_.end(), [](const auto& a, const auto& b) {
+    const auto maximum = std::max_element(cameras_.begin(), cameras_.end(), [](const auto& a, const auto& b) {
       return a.second.waiting.size() < b.second.waiting.size();
     });
-    drop_first(most->second);
+    drop_first(maximum->second);
   }
 }
 

@@ -6,13 +6,13 @@
 namespace houghstream {
 
 std::optional<std::string> ModelCheck::note(const Detections& detections) {
-  constexpr int kEnough = 10;
+  constexpr int kMinSamples = 10;
   if (settled_ || models_.empty() || detections.detections.empty()) return std::nullopt;
   for (const Detection& detection : detections.detections) {
     detected_.insert(detection.class_name);
     settled_ = settled_ || models_.count(detection.class_name) > 0;
   }
-  return ++checked_ < kEnough ? std::nullopt : at_end();
+  return ++checked_ < kMinSamples ? std::nullopt : at_end();
 }
 
 std::optional<std::string> ModelCheck::at_end() {

@@ -190,9 +190,9 @@ bool is_colourless(const cv::Mat& picture) {
   for (int y = 0; y < picture.rows; y += kStep) {
     const auto* row = picture.ptr<cv::Vec3b>(y);
     for (int x = 0; x < picture.cols; x += kStep) {
-      const auto [least, most] = std::minmax({row[x][0], row[x][1], row[x][2]});
+      const auto [minimum, maximum] = std::minmax({row[x][0], row[x][1], row[x][2]});
       ++pixels;
-      coloured += most - least > kMaxDifference ? 1 : 0;
+      coloured += maximum - minimum > kMaxDifference ? 1 : 0;
     }
   }
   return coloured <= kMaxShare * pixels;

@@ -298,9 +298,9 @@ void ObjectFollower::note_result(const FollowedPose& result, std::int64_t clock_
 
 bool ObjectFollower::is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const {
   const bool hidden = result.pose.status == PoseStatus::kOccluded;
-  const double longest = hidden ? settings_.max_hidden_s : settings_.max_rejected_s;
+  const double max_length = hidden ? settings_.max_hidden_s : settings_.max_rejected_s;
   return object.failures >= settings_.max_failures || result.pose.status == PoseStatus::kNoModel ||
-         seconds_between(object.valid_us, clock_us) > longest;
+         seconds_between(object.valid_us, clock_us) > max_length;
 }
 
 /// What is lost, and the weaker of two that have become one.

@@ -31,7 +31,7 @@ Eigen::Vector3d direction_to_camera(const DepthView& view) {
   return view.T_camera_object.inverse().translation().normalized();
 }
 
-std::vector<std::vector<int>> find_neighbours(const std::vector<DepthView>& views, int most) {
+std::vector<std::vector<int>> find_neighbours(const std::vector<DepthView>& views, int maximum) {
   constexpr double kMinCosine = 0.7;  // farther round, too little is seen by both
   std::vector<std::vector<int>> neighbours(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -42,7 +42,7 @@ std::vector<std::vector<int>> find_neighbours(const std::vector<DepthView>& view
     }
     std::sort(by_angle.begin(), by_angle.end());
     // Next neighbours tell little about the axis, far ones much: spread over all that see the same.
-    const std::size_t count = std::min(static_cast<std::size_t>(most), by_angle.size());
+    const std::size_t count = std::min(static_cast<std::size_t>(maximum), by_angle.size());
     for (std::size_t k = 0; k < count; ++k) neighbours[i].push_back(by_angle[k * by_angle.size() / count].second);
   }
   return neighbours;

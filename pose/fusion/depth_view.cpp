@@ -128,9 +128,9 @@ DepthView make_depth_view(const TrainingView& view) {
   return out;
 }
 
-std::vector<SurfaceSample> sample_view(const DepthView& view, int most) {
+std::vector<SurfaceSample> sample_view(const DepthView& view, int maximum) {
   const int pixels = cv::countNonZero(view.depth == view.depth);
-  const int step = std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(pixels) / most))));
+  const int step = std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(pixels) / maximum))));
   std::vector<SurfaceSample> samples;
   for (int y = 0; y < view.depth.rows; y += step) {
     for (int x = 0; x < view.depth.cols; x += step) {

@@ -48,6 +48,6 @@ struct SurfaceSample {
 };
 
 /// At most about `most` points of the view, evenly over its pixels.
-std::vector<SurfaceSample> sample_view(const DepthView& view, int most);
+std::vector<SurfaceSample> sample_view(const DepthView& view, int maximum);
 
 }  // namespace houghstream::fusion

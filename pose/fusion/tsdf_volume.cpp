@@ -119,13 +119,13 @@ void fill_slice(const std::vector<DepthView>& views, const TsdfSettings& setting
 
 /// Sums become means. The unseen becomes inside, but not below the lowest and above the highest that was seen: an
 /// object stands on its base, and views from low down leave the space above it unseen.
-void finish_slice(const Extent& extent, const TsdfSettings& settings, double fewest, int k, TsdfVolume& grid) {
+void finish_slice(const Extent& extent, const TsdfSettings& settings, double min_count, int k, TsdfVolume& grid) {
   const double truncation = settings.truncation_voxels * settings.voxel;
   for (int j = 0; j < grid.ny; ++j) {
     for (int i = 0; i < grid.nx; ++i) {
       const std::size_t at = grid.index(i, j, k);
       float& distance = grid.distance[at];
-      const bool seen = grid.weight[at] >= fewest;
+      const bool seen = grid.weight[at] >= min_count;
       distance = seen ? distance / grid.weight[at] : -1.0F;
       if (!seen) grid.weight[at] = 0.0F;
       if (!extent.stands) continue;
@@ -139,10 +139,10 @@ void finish_slice(const Extent& extent, const TsdfSettings& settings, double few
 TsdfVolume fuse_extent(const std::vector<DepthView>& views, const Extent& extent, const TsdfSettings& settings) {
   require(settings.voxel > 0.0, "voxels of {} m, expected more than 0", settings.voxel);
   TsdfVolume grid = make_grid(extent, settings);
-  const double fewest = std::max(1.0, settings.min_share * static_cast<double>(views.size()));
+  const double min_count = std::max(1.0, settings.min_share * static_cast<double>(views.size()));
   parallel_for(settings.threads, grid.nz, [&](int k) {
     fill_slice(views, settings, k, grid);
-    finish_slice(extent, settings, fewest, k, grid);
+    finish_slice(extent, settings, min_count, k, grid);
   });
   return grid;
 }

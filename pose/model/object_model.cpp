@@ -195,16 +195,16 @@ std::vector<ModelView> make_views(const ViewMaker& maker, const ModelSettings& s
 /// The farthest that a point of the surface is moved by a motion, over the motions that look the same.
 double moved_by(const Eigen::Isometry3d& motion, const std::vector<Eigen::Vector3f>& points,
                 const std::vector<Eigen::Isometry3d>& same) {
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (const Eigen::Isometry3d& symmetry : same) {
     double farthest = 0.0;
     for (const Eigen::Vector3f& point : points) {
       const Eigen::Vector3d at = point.cast<double>();
       farthest = std::max(farthest, (motion * at - symmetry * at).norm());
     }
-    least = std::min(least, farthest);
+    minimum = std::min(minimum, farthest);
   }
-  return least;
+  return minimum;
 }
 
 /// Quarter and half turns about the principal axes after which the shape is nearly as before, and all that they combine

@@ -47,11 +47,11 @@ Eigen::Isometry3d best_after(const Eigen::Isometry3d& discrete, const Eigen::Qua
 
 }  // namespace
 
-std::vector<Eigen::Isometry3d> expand_symmetries(const Symmetries& symmetries, double largest_step) {
-  require(largest_step > 0.0, "symmetries: step of {} diameters, expected above 0", largest_step);
+std::vector<Eigen::Isometry3d> expand_symmetries(const Symmetries& symmetries, double max_step) {
+  require(max_step > 0.0, "symmetries: step of {} diameters, expected above 0", max_step);
   std::vector<Eigen::Isometry3d> turns;
   // A point at most half a diameter from the axis goes pi diameters in a full turn.
-  const int steps = static_cast<int>(std::ceil(M_PI / largest_step));
+  const int steps = static_cast<int>(std::ceil(M_PI / max_step));
   for (const ContinuousSymmetry& symmetry : symmetries.continuous) {
     for (int i = turns.empty() ? 0 : 1; i < steps; ++i) {
       const Eigen::AngleAxisd turn(2.0 * M_PI * i / steps, symmetry.axis);

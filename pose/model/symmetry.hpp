@@ -12,7 +12,7 @@ namespace houghstream {
 /// next; each is combined with each discrete one. Follows get_symmetry_transformations() of bop_toolkit (Hodan et al.
 /// 2020): 315 turns for its 0.01; of several axes each is turned about by itself, which for a ball is less than the
 /// whole group. Throws InputError unless `largest_step` is above 0.
-std::vector<Eigen::Isometry3d> expand_symmetries(const Symmetries& symmetries, double largest_step = 0.01);
+std::vector<Eigen::Isometry3d> expand_symmetries(const Symmetries& symmetries, double max_step = 0.01);
 
 /// The symmetry S for which R_camera_object * S is nearest to the reference, by the angle between them. Exact: nothing
 /// is discretised, and two or more continuous axes mean a ball, which can be turned to any reference. Ties go to the

@@ -14,7 +14,7 @@ std::vector<int> assign_all(const Eigen::MatrixXd& costs) {
   std::vector<double> column_price(columns + 1, 0.0);
   std::vector<int> row_of(columns + 1, 0);
   for (int row = 1; row <= rows; ++row) {
-    std::vector<double> least(columns + 1, std::numeric_limits<double>::infinity());
+    std::vector<double> minimum(columns + 1, std::numeric_limits<double>::infinity());
     std::vector<int> before(columns + 1, 0);
     std::vector<char> done(columns + 1, 0);
     int column = 0;
@@ -25,12 +25,12 @@ std::vector<int> assign_all(const Eigen::MatrixXd& costs) {
       for (int j = 1; j <= columns; ++j) {
         if (done[j]) continue;
         const double cost = costs(row_of[column] - 1, j - 1) - row_price[row_of[column]] - column_price[j];
-        if (cost < least[j]) {
-          least[j] = cost;
+        if (cost < minimum[j]) {
+          minimum[j] = cost;
           before[j] = column;
         }
-        if (least[j] < step) {
-          step = least[j];
+        if (minimum[j] < step) {
+          step = minimum[j];
           next = j;
         }
       }
@@ -39,7 +39,7 @@ std::vector<int> assign_all(const Eigen::MatrixXd& costs) {
           row_price[row_of[j]] += step;
           column_price[j] -= step;
         } else {
-          least[j] -= step;
+          minimum[j] -= step;
         }
       }
       column = next;

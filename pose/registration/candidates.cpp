@@ -110,13 +110,13 @@ float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Iso
   const double width_rad = settings.cluster_radius_deg * kRadPerDeg;
   const Eigen::Quaternionf R_camera_object(Eigen::Quaterniond(T_camera_object.linear()).cast<float>());
   float sum = 0.0F;
-  float most = 0.0F;
+  float maximum = 0.0F;
   for (const RotationCandidate& vote : votes) {
     const double ratio = static_cast<double>(R_camera_object.angularDistance(vote.R_camera_object)) / width_rad;
     sum += vote.weight * static_cast<float>(std::exp(-0.5 * ratio * ratio));
-    most = std::max(most, vote.weight);
+    maximum = std::max(maximum, vote.weight);
   }
-  return most > 0.0F ? std::min(1.0F, sum / most) : 0.0F;
+  return maximum > 0.0F ? std::min(1.0F, sum / maximum) : 0.0F;
 }
 
 std::vector<PoseCandidate> place_candidates(const ObjectObservation& seen,

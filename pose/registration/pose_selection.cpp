@@ -34,10 +34,10 @@ class PoseSelector {
 
   /// The best of `result` and of the best turns of it, registered again.
   RegistrationResult best_turn(const RegistrationResult& result, double step_deg, double reach_deg,
-                               std::size_t most) const {
+                               std::size_t maximum) const {
     RegistrationResult best = result;
     float best_score = score_of(result);
-    const RotationRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, most, settings_.turn.points};
+    const RotationRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, maximum, settings_.turn.points};
     for (const ScoredPose& turn : best_rotations_about_z(seen_, result.T_camera_object, range, tolerance_)) {
       RegistrationResult again = uphill(register_coarsely(
           seen_, turn.T_camera_object, 0.5 * (distances_.start + distances_.end), settings_.registration));

@@ -78,7 +78,7 @@ std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& seen, co
   std::vector<ScoredPose> best = local_maxima(turns, all_round);
   std::stable_sort(best.begin(), best.end(),
                    [](const ScoredPose& a, const ScoredPose& b) { return a.score > b.score; });
-  best.resize(std::min(best.size(), range.most));
+  best.resize(std::min(best.size(), range.maximum));
   return best;
 }
 

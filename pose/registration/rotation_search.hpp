@@ -22,7 +22,7 @@ ScoredPose score_pose_jointly(const ObjectObservation& seen, const Eigen::Isomet
 struct RotationRange {
   double step_rad = 0.0;
   double reach_rad = 0.0;  ///< to each side
-  std::size_t most = 1;
+  std::size_t maximum = 1;
   int points = 0;  ///< of a view
 };
 

@@ -52,9 +52,10 @@ DepthRegion find_region(const RgbdFrame& frame, const Detection& detection, cons
   return region;
 }
 
-std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRegion& region, int most) {
+std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRegion& region, int maximum) {
   std::vector<Eigen::Vector3f> points;
-  const int stride = std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(region.points) / most))));
+  const int stride =
+      std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(region.points) / maximum))));
   for (int y = region.box_px.y; y < region.box_px.br().y; y += stride) {
     const float* depth = frame.depth.ptr<float>(y);
     for (int x = region.box_px.x; x < region.box_px.br().x; x += stride) {

@@ -62,7 +62,7 @@ DepthRegion find_region(const RgbdFrame& frame, const Detection& detection, cons
                         const RegionSettings& settings);
 
 /// At most about `most` points of the region, camera frame, metres, evenly over the image.
-std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRegion& region, int most);
+std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRegion& region, int maximum);
 
 /// The colours of a part of a frame.
 struct LabRegion {

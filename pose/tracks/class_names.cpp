@@ -99,8 +99,8 @@ void rename_counts(const std::map<std::string, std::string>& renamed, std::map<s
   std::map<std::string, int> moved;
   for (const auto& [name, count] : counts) {
     const auto found = renamed.find(name);
-    int& most = moved[found == renamed.end() ? name : found->second];
-    most = std::max(most, count);
+    int& maximum = moved[found == renamed.end() ? name : found->second];
+    maximum = std::max(maximum, count);
   }
   counts = std::move(moved);
 }

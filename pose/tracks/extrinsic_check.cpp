@@ -10,7 +10,7 @@ namespace {
 constexpr std::int64_t kTogetherUs = 40000;  // of frames that are compared
 constexpr double kReachM = 0.3;              // an object that is seen farther away is another one
 constexpr std::size_t kOffsets = 300;
-constexpr std::size_t kEnough = 20;
+constexpr std::size_t kMinSamples = 20;
 constexpr std::size_t kMaxSeen = 500;  // objects of a view: each is compared with each of another camera's
 
 Eigen::Vector3d median_of(const std::deque<Eigen::Vector3d>& offsets) {
@@ -64,7 +64,7 @@ void ExtrinsicCheck::add(const ObjectPoses& poses, const Eigen::Isometry3d& T_wo
 std::vector<ExtrinsicInconsistency> ExtrinsicCheck::pairs() const {
   std::vector<ExtrinsicInconsistency> out;
   for (const auto& [cameras, offsets] : offsets_) {
-    if (offsets.size() < kEnough) continue;
+    if (offsets.size() < kMinSamples) continue;
     out.push_back({cameras.first, cameras.second, median_of(offsets), static_cast<int>(offsets.size())});
   }
   return out;

@@ -15,9 +15,9 @@ void decide_status(const PoseEvidence& evidence, const Eigen::Isometry3d& T_came
   pose.shape_quality = shape_quality(terms, quality);
   pose.quality = pose.shape_quality * evidence.print_probability;
   const float presence = presence_probability(evidence.detection_score, pose.shape_quality, quality.presence);
-  const float least = reported ? quality.min_quality : quality.min_candidate_quality;
-  if (pose.shape_quality >= least) {
-    pose.status = pose.quality >= least ? PoseStatus::kValid : PoseStatus::kValidUpToSymmetry;
+  const float minimum = reported ? quality.min_quality : quality.min_candidate_quality;
+  if (pose.shape_quality >= minimum) {
+    pose.status = pose.quality >= minimum ? PoseStatus::kValid : PoseStatus::kValidUpToSymmetry;
     pose.T_camera_object = T_camera_object;
   } else if (reported && presence < kRefutedBelow) {
     pose.status = PoseStatus::kRefuted;

@@ -33,13 +33,13 @@ void write_seeds(const std::filesystem::path& folder) {
       for (const char c : word) dictionary << fmt::format("\\x{:02X}", static_cast<unsigned char>(c));
       dictionary << "\"\n";
     }
-    fmt::print("{} {}\n", each.name, each.longest);
+    fmt::print("{} {}\n", each.name, each.max_length);
   }
 }
 
 }  // namespace
 
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t longest);
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_length);
 
 extern "C" int LLVMFuzzerInitialize(int* /*argc*/, char*** /*argv*/) {
   start_log("fuzz", LogLevel::kError);
@@ -67,9 +67,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return 0;
 }
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t longest,
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_length,
                                                unsigned /*seed*/) {
-  const std::size_t mutated = LLVMFuzzerMutate(data, size, longest);
+  const std::size_t mutated = LLVMFuzzerMutate(data, size, max_length);
   if (target->repair == nullptr) return mutated;
   fuzz::Bytes bytes(data, data + mutated);
   target->repair(bytes);

@@ -43,7 +43,7 @@ struct FuzzTarget {
   /// Words that the format is made of.
   std::vector<std::string> words;
   /// Longest input that is tried, bytes.
-  int longest = 4096;
+  int max_length = 4096;
   KnownDamage known{};
 };
 

@@ -73,12 +73,12 @@ class Panel {
 
   /// Bars as high as the logarithm of the bin's count, so that a few are seen beside many.
   void draw_counts() {
-    int most = 1;
-    for (const ReliabilityBin& bin : calibration_.bins) most = std::max(most, bin.count);
+    int maximum = 1;
+    for (const ReliabilityBin& bin : calibration_.bins) maximum = std::max(maximum, bin.count);
     const int bottom = kMargin + kSide + kGap + kCounts;
     constexpr int kTextHeight = 14;
     for (const ReliabilityBin& bin : calibration_.bins) {
-      const double share = std::log1p(bin.count) / std::log1p(most);
+      const double share = std::log1p(bin.count) / std::log1p(maximum);
       const int top = bottom - static_cast<int>(std::lround(share * (kCounts - kTextHeight)));
       cv::rectangle(picture_, {at(bin.from, 0).x + 2, top}, {at(bin.to, 0).x - 2, bottom}, kCountBar, cv::FILLED);
       text(std::to_string(bin.count), {at(bin.from, 0).x + 3, top - 3}, 0.36);

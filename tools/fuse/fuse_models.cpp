@@ -44,13 +44,13 @@ std::vector<ObjectViews> group_views(std::vector<TrainingView> views) {
   require(!frames_of_class.empty(), "{} views without any object, expected some to fuse", views.size());
   std::vector<ObjectViews> objects;
   for (auto& [id, frames] : frames_of_class) {
-    const auto most = std::max_element(frames.begin(), frames.end(), [](const ObjectViews& a, const ObjectViews& b) {
+    const auto maximum = std::max_element(frames.begin(), frames.end(), [](const ObjectViews& a, const ObjectViews& b) {
       return a.views.size() < b.views.size();
     });
     for (auto frame = frames.begin(); frame != frames.end(); ++frame) {
-      if (frame != most) most->unused.push_back(frame->views.front().object_frame);
+      if (frame != maximum) maximum->unused.push_back(frame->views.front().object_frame);
     }
-    objects.push_back(std::move(*most));
+    objects.push_back(std::move(*maximum));
   }
   return objects;
 }

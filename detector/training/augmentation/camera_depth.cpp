@@ -236,13 +236,13 @@ void cast_shadow(double baseline_m, double focal_px, cv::Mat& depth) {
   for (int y = 0; y < depth.rows; ++y) {
     auto* row = depth.ptr<float>(y);
     // Towards the projector's far side the columns at which it sees points grow, but for what something nearer hides.
-    float most = -std::numeric_limits<float>::infinity();
+    float maximum = -std::numeric_limits<float>::infinity();
     for (int i = 0; i < depth.cols; ++i) {
       float& z = row[right ? depth.cols - 1 - i : i];
       if (std::isnan(z)) continue;
       const float column = static_cast<float>(i) + shift_px / z;
-      if (column < most - 1.5F) z = kNoValue;
-      most = std::max(most, column);
+      if (column < maximum - 1.5F) z = kNoValue;
+      maximum = std::max(maximum, column);
     }
   }
 }

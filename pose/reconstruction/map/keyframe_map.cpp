@@ -38,11 +38,11 @@ bool KeyframeMap::is_good(const Alignment& alignment) const {
 
 int KeyframeMap::nearest(const Eigen::Isometry3d& T_camera_world) const {
   int best = -1;
-  double least = 1e9;
+  double minimum = 1e9;
   for (std::size_t k = 0; k < keyframes_.size(); ++k) {
     const double d = view_angle(T_camera_world, keyframes_[k].T_camera_world);
-    if (d >= least) continue;
-    least = d;
+    if (d >= minimum) continue;
+    minimum = d;
     best = static_cast<int>(k);
   }
   return best;
@@ -133,14 +133,14 @@ Alignment KeyframeMap::register_to_part(const MapPart& part, const FrameLevels& 
                                         const Eigen::Isometry3d& T_likely, const RegistrationLimits& limits) const {
   constexpr double kContradicts = 0.015;  // radians
   PoseConstraints holds{settings_.plane, {}};
-  std::size_t most = 0;
+  std::size_t maximum = 0;
   Eigen::Isometry3d T_by_corners = T_likely;
   for (const auto& [k, match] : again) {
     const Keyframe& keyframe = keyframes_[static_cast<std::size_t>(k)];
     const Eigen::Isometry3d T_world_camera = keyframe.T_camera_world.inverse();
     for (const auto& [before, now] : match.inliers) holds.corners.push_back({T_world_camera * before, now});
-    if (match.inliers.size() <= most) continue;
-    most = match.inliers.size();
+    if (match.inliers.size() <= maximum) continue;
+    maximum = match.inliers.size();
     T_by_corners = match.T_b_a * keyframe.T_camera_world;
   }
   const auto contradict =
@@ -151,11 +151,11 @@ Alignment KeyframeMap::register_to_part(const MapPart& part, const FrameLevels& 
   if (!settings_.use_landmarks) {
     const PoseConstraints plane{settings_.plane, {}};
     Alignment found = align_frame(part.points, levels, T_likely, plane, alignment);
-    if (is_good(found) || !limits.may_be_lost || most == 0) return found;
+    if (is_good(found) || !limits.may_be_lost || maximum == 0) return found;
     return align_frame(part.points, levels, T_by_corners, plane, alignment);
   }
   const bool contradicted = 2 * static_cast<std::size_t>(contradict) > holds.corners.size();
-  const bool jumps = contradicted && limits.may_be_lost && most >= settings_.sure_corners;
+  const bool jumps = contradicted && limits.may_be_lost && maximum >= settings_.sure_corners;
   if (contradicted && !jumps) holds.corners.clear();
   return align_frame(part.points, levels, jumps ? T_by_corners : T_likely, holds, alignment);
 }

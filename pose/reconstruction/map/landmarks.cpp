@@ -61,10 +61,10 @@ Pairs agreeing(const Pairs& pairs, const Eigen::Isometry3d& T) {
 }
 
 /// How many pairs fit a motion; given up with 0 as soon as they cannot be more than `most`.
-std::size_t count_fitting(const Pairs& pairs, const Eigen::Isometry3d& T, std::size_t most) {
+std::size_t count_fitting(const Pairs& pairs, const Eigen::Isometry3d& T, std::size_t maximum) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (count + (pairs.size() - i) <= most) return 0;
+    if (count + (pairs.size() - i) <= maximum) return 0;
     count += fits(pairs[i], T) ? 1 : 0;
   }
   return count;
@@ -76,18 +76,18 @@ std::optional<LandmarkMatch> max_agree_on(const Pairs& pairs) {
   if (pairs.size() < kMin) return std::nullopt;
   Random random(1);
   Pairs three(3);
-  std::size_t most = 0;
+  std::size_t maximum = 0;
   Eigen::Isometry3d T_most = Eigen::Isometry3d::Identity();
-  for (int trial = 0; trial < kTrials && most < pairs.size(); ++trial) {
+  for (int trial = 0; trial < kTrials && maximum < pairs.size(); ++trial) {
     for (auto& one : three) one = pairs[static_cast<std::size_t>(random.below(static_cast<int>(pairs.size())))];
     if ((three[0].first - three[1].first).norm() < 0.02 || (three[0].first - three[2].first).norm() < 0.02) continue;
     const Eigen::Isometry3d T = motion_between(three);
-    const std::size_t count = count_fitting(pairs, T, most);
-    if (count <= most) continue;
-    most = count;
+    const std::size_t count = count_fitting(pairs, T, maximum);
+    if (count <= maximum) continue;
+    maximum = count;
     T_most = T;
   }
-  if (most < kMin) return std::nullopt;
+  if (maximum < kMin) return std::nullopt;
   Pairs best = agreeing(pairs, T_most);
   LandmarkMatch match;
   for (int again = 0; again < 2; ++again) {

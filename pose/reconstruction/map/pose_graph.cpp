@@ -23,7 +23,7 @@ double robust_weight(const Vector6& error) {
 void optimise_pose_graph(const std::vector<PoseEdge>& edges, std::vector<Eigen::Isometry3d>& T_camera_world) {
   constexpr int kIterations = 12;
   constexpr int kPlainIterations = 4;  // first everything counts: a long loop's gap is no error of an edge
-  constexpr double kEnough = 1e-6;
+  constexpr double kConvergence = 1e-6;
   const auto n = static_cast<Eigen::Index>(T_camera_world.size());
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(6 * n, 6 * n);
@@ -49,7 +49,7 @@ void optimise_pose_graph(const std::vector<PoseEdge>& edges, std::vector<Eigen::
       Eigen::Isometry3d& T = T_camera_world[static_cast<std::size_t>(k)];
       T = retract_about_body(T, step.segment<6>(6 * k));
     }
-    if (iteration >= kPlainIterations && step.lpNorm<Eigen::Infinity>() < kEnough) return;
+    if (iteration >= kPlainIterations && step.lpNorm<Eigen::Infinity>() < kConvergence) return;
   }
 }
 

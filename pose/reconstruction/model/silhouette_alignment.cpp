@@ -30,15 +30,15 @@ double overlap_at(const cv::Mat& outline, const cv::Mat& mask, const cv::Point& 
 /// The shift of the model's outline that fits best, nearest to none among equals.
 cv::Point best_shift(const cv::Mat& outline, const cv::Mat& mask) {
   cv::Point best;
-  double most = overlap_at(outline, mask, best);
+  double maximum = overlap_at(outline, mask, best);
   for (bool moved = true; moved;) {
     moved = false;
     for (const cv::Point& step : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
       const cv::Point shift = best + step;
       if (std::max(std::abs(shift.x), std::abs(shift.y)) > kReach_px) continue;
       const double overlap = overlap_at(outline, mask, shift);
-      if (overlap <= most) continue;
-      most = overlap;
+      if (overlap <= maximum) continue;
+      maximum = overlap;
       best = shift;
       moved = true;
     }

@@ -137,8 +137,8 @@ int chosen_part(const Take& take, const TsdfVolume& grid, const std::vector<int>
     }
   }
   votes[0] = 0;
-  const auto most = std::max_element(votes.begin(), votes.end());
-  return *most > 0 ? static_cast<int>(most - votes.begin()) : 0;
+  const auto maximum = std::max_element(votes.begin(), votes.end());
+  return *maximum > 0 ? static_cast<int>(maximum - votes.begin()) : 0;
 }
 
 Filled fill(const Take& take, const Eigen::AlignedBox3d& box, const ReconstructionSettings& settings) {

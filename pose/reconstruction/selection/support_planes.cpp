@@ -62,7 +62,7 @@ std::optional<Plane> largest_plane(const std::vector<Eigen::Vector3d>& points, R
   constexpr std::size_t kCounted = 1500;
   const std::size_t step = std::max<std::size_t>(1, points.size() / kCounted);
   std::optional<Plane> best;
-  int most = 0;
+  int maximum = 0;
   for (int trial = 0; trial < kTrials; ++trial) {
     const auto pick = [&] { return points[static_cast<std::size_t>(random.below(static_cast<int>(points.size())))]; };
     const Eigen::Vector3d a = pick();
@@ -74,8 +74,8 @@ std::optional<Plane> largest_plane(const std::vector<Eigen::Vector3d>& points, R
     int count = 0;
     for (std::size_t i = 0; i < points.size(); i += step)
       count += std::abs(plane.height(points[i])) < plane_distance_limit(points[i].z()) ? 1 : 0;
-    if (count <= most) continue;
-    most = count;
+    if (count <= maximum) continue;
+    maximum = count;
     best = plane;
   }
   return best;
@@ -91,15 +91,15 @@ bool may_carry(const Plane& plane) {
 std::vector<Plane> find_planes(const RgbdFrame& frame, double max_distance_m, std::uint64_t seed) {
   constexpr int kMax = 5;
   std::vector<Eigen::Vector3d> points = scattered_points(frame, max_distance_m);
-  const auto fewest = std::max<std::size_t>(150, points.size() / 15);
+  const auto min_count = std::max<std::size_t>(150, points.size() / 15);
   Random random(seed);
   std::vector<Plane> planes;
-  for (int i = 0; i < kMax && points.size() > fewest; ++i) {
+  for (int i = 0; i < kMax && points.size() > min_count; ++i) {
     std::optional<Plane> plane = largest_plane(points, random);
     if (!plane) break;
     for (int again = 0; again < 2; ++again) {
       const std::vector<Eigen::Vector3d> inliers = inliers_of(*plane, points);
-      if (inliers.size() < fewest) return planes;
+      if (inliers.size() < min_count) return planes;
       plane = fit_plane(inliers);
     }
     if (may_carry(*plane)) planes.push_back(*plane);

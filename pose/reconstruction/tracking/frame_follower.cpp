@@ -47,10 +47,10 @@ std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const Frame
       if (agreement_of(other) > agreement_of(best)) best = other;
     }
   }
-  const double most = std::min(kMaxTurn + 2.0 * map.view_angle(T_last, step.T_before), kMaxEver);
+  const double maximum = std::min(kMaxTurn + 2.0 * map.view_angle(T_last, step.T_before), kMaxEver);
   const double shift = (T_last.inverse() * best.T_camera_world).translation().norm();
   const bool too_far = motion == Motion::kObject && shift > kMaxShift_m;
-  if (!map.is_good(best) || too_far || map.view_angle(T_last, best.T_camera_world) > most) return std::nullopt;
+  if (!map.is_good(best) || too_far || map.view_angle(T_last, best.T_camera_world) > maximum) return std::nullopt;
   usual_light_rms_ += 0.2 * (best.photometric_rms - usual_light_rms_);
   return best;
 }

@@ -5,9 +5,9 @@
 namespace houghstream {
 namespace {
 
-std::vector<cv::Rect> all_parts(const FeatureTiles& tiles, int longest) {
+std::vector<cv::Rect> all_parts(const FeatureTiles& tiles, int max_length) {
   std::vector<cv::Rect> parts;
-  for (int row = 0; row < tiles.rows(); ++row) tiles.list_parts(row, longest, parts);
+  for (int row = 0; row < tiles.rows(); ++row) tiles.list_parts(row, max_length, parts);
   return parts;
 }
 

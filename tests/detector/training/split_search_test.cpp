@@ -162,7 +162,7 @@ TEST(SplitSearch, ANodeLooksAtPointHistogramsOrAtTheRestAsOftenAsAsked) {
   }
   TrainingSettings settings;
   const PatchSettings patch;
-  for (const auto& [share, least, most] : {std::tuple{0.0, 0, 0}, {0.3, 5, 27}, {1.0, 50, 50}}) {
+  for (const auto& [share, minimum, maximum] : {std::tuple{0.0, 0, 0}, {0.3, 5, 27}, {1.0, 50, 50}}) {
     settings.histogram_share = share;
     SplitSearch search(set, patch, settings, {1.0F, 1.0F}, true);
     Random random(6);
@@ -172,8 +172,8 @@ TEST(SplitSearch, ANodeLooksAtPointHistogramsOrAtTheRestAsOftenAsAsked) {
       ASSERT_TRUE(test);
       histograms += test->plane == first ? 1 : 0;
     }
-    EXPECT_GE(histograms, least) << share;
-    EXPECT_LE(histograms, most) << share;
+    EXPECT_GE(histograms, minimum) << share;
+    EXPECT_LE(histograms, maximum) << share;
   }
 }
 

@@ -35,14 +35,14 @@ std::map<Sensor, std::map<std::int64_t, cv::Mat>> images_of(const std::filesyste
 
 /// The step of the pattern that an image shows; JPEG leaves the disc's colour where it was, roughly.
 int picture_of(const cv::Mat& image, const virtual_camera::CameraPictures& pattern) {
-  double least = 1e9;
+  double minimum = 1e9;
   int found = -1;
   for (int k = 0; k < static_cast<int>(pattern.pictures.size()); ++k) {
     cv::Mat picture = pattern.pictures[k].depth_mm;
     if (image.type() == CV_8UC3) cv::cvtColor(pattern.pictures[k].colour, picture, cv::COLOR_RGB2BGR);
     const double difference = cv::norm(image, picture, cv::NORM_L2SQR);
-    if (difference < least) found = k;
-    least = std::min(least, difference);
+    if (difference < minimum) found = k;
+    minimum = std::min(minimum, difference);
   }
   return found;
 }

@@ -30,10 +30,10 @@ TEST(LogisticRegression, NoOtherWeightsHaveLessLoss) {
   const std::vector<LogisticExample<3>> examples = drawn_by({1.0, 1.0, 0.0}, 200);
   const LogisticPrior<3> prior{Weights(0.0, 0.5, 0.0), 1.0};
   const Weights found = fit_logistic<3>(examples, prior);
-  const double least = logistic_loss<3>(examples, found, prior);
+  const double minimum = logistic_loss<3>(examples, found, prior);
   for (int axis = 0; axis < 3; ++axis) {
     for (const double step : {-0.01, 0.01}) {
-      EXPECT_GT(logistic_loss<3>(examples, found + step * Weights::Unit(axis), prior), least);
+      EXPECT_GT(logistic_loss<3>(examples, found + step * Weights::Unit(axis), prior), minimum);
     }
   }
 }

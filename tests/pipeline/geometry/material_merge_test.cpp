@@ -16,7 +16,8 @@ constexpr const char* kMaterials =
     "newmtl grey_picture\nmap_Kd grey.png\n";
 
 /// Two triangles, at z = 0 and z = 1 m, of two materials; texture coordinates of the second up to `most`.
-fs::path write_obj(const std::string& name, const std::string& first, const std::string& second, float most = 0.75F) {
+fs::path write_obj(const std::string& name, const std::string& first, const std::string& second,
+                   float maximum = 0.75F) {
   const fs::path folder = fs::temp_directory_path() / ("houghstream_mesh_paint_test_" + name);
   fs::remove_all(folder);
   fs::create_directories(folder);
@@ -24,7 +25,7 @@ fs::path write_obj(const std::string& name, const std::string& first, const std:
   cv::imwrite((folder / "green.png").string(), cv::Mat(20, 30, CV_8UC3, cv::Scalar(0, 200, 0)));
   cv::imwrite((folder / "grey.png").string(), cv::Mat(40, 10, CV_8UC3, cv::Scalar(90, 90, 90)));
   std::ofstream(folder / "two.obj") << "mtllib all.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\n"
-                                    << "vt 0.25 0.25\nvt " << most << " 0.25\nvt 0.25 0.75\nusemtl " << first
+                                    << "vt 0.25 0.25\nvt " << maximum << " 0.25\nvt 0.25 0.75\nusemtl " << first
                                     << "\nf 1/1 2/2 3/3\nusemtl " << second << "\nf 4/1 5/2 6/3\n";
   return folder / "two.obj";
 }

@@ -23,7 +23,7 @@ std::vector<const GroundTruthObject*> targets_of(const EvaluatedFrame& frame, co
 
 /// Strongest first, as many as are asked for.
 std::vector<const ObjectPose*> strongest_poses(const EvaluatedFrame& frame, const std::string& class_name,
-                                               std::size_t most) {
+                                               std::size_t maximum) {
   std::vector<const ObjectPose*> poses;
   if (!frame.poses) return poses;
   for (const ObjectPose& pose : frame.poses->poses) {
@@ -31,7 +31,7 @@ std::vector<const ObjectPose*> strongest_poses(const EvaluatedFrame& frame, cons
   }
   std::stable_sort(poses.begin(), poses.end(),
                    [](const ObjectPose* a, const ObjectPose* b) { return a->detection_score > b->detection_score; });
-  poses.resize(std::min(poses.size(), most));
+  poses.resize(std::min(poses.size(), maximum));
   return poses;
 }
 

@@ -31,10 +31,10 @@ std::vector<Failure> thinned(std::vector<Failure> failures, std::size_t apart) {
   return kept;
 }
 
-std::vector<Failure> false_ones(const std::vector<EvaluatedFrame>& frames, const ClassResult& result, float least) {
+std::vector<Failure> false_ones(const std::vector<EvaluatedFrame>& frames, const ClassResult& result, float minimum) {
   std::vector<Failure> out;
   for (const MatchedDetection& judged : result.judged) {
-    if (judged.outcome != MatchOutcome::kFalsePositive || judged.score < least) continue;
+    if (judged.outcome != MatchOutcome::kFalsePositive || judged.score < minimum) continue;
     const Detection& detection = frames[judged.frame].detections->detections[judged.index];
     Failure& failure = out.emplace_back();
     failure.class_name = result.class_name;
@@ -80,9 +80,9 @@ std::vector<Failure> choose_failures(const std::vector<EvaluatedFrame>& frames, 
     groups.push_back(thinned(missed_ones(frames, result, rules), rules.apart));
   }
   std::vector<Failure> chosen;
-  std::size_t longest = 0;
-  for (const auto& group : groups) longest = std::max(longest, group.size());
-  for (std::size_t rank = 0; rank < longest; ++rank) {
+  std::size_t max_length = 0;
+  for (const auto& group : groups) max_length = std::max(max_length, group.size());
+  for (std::size_t rank = 0; rank < max_length; ++rank) {
     for (const auto& group : groups) {
       if (rank < group.size() && chosen.size() < rules.count) chosen.push_back(group[rank]);
     }

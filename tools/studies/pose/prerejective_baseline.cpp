@@ -67,8 +67,8 @@ class PrerejectiveRival final : public SurfaceRival {
     const ObjectModel& model = models().at(name);
     const DescribedSurface& taught = described_.at(name);
     const DescribedSurface measured = describe(thinned(*seen.cloud, spacing_m(model)), feature_radius_m(model));
-    const auto least = static_cast<std::size_t>(std::max(settings_.samples, settings_.similar_features));
-    if (taught.points->size() < least || measured.points->size() < least) return {};
+    const auto minimum = static_cast<std::size_t>(std::max(settings_.samples, settings_.similar_features));
+    if (taught.points->size() < minimum || measured.points->size() < minimum) return {};
     Alignment alignment;
     configure(alignment, taught, measured, 2.0 * model.radius);
     const std::vector<Eigen::Vector3f> points = region_points(seen.frame, seen.region, settings_.icp_points);

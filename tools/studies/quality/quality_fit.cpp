@@ -102,10 +102,10 @@ double Published::correct_fraction() const {
   return poses > 0 ? static_cast<double>(correct) / poses : std::numeric_limits<double>::quiet_NaN();
 }
 
-Published published_from(const std::vector<CheckedPose>& checked, float least) {
+Published published_from(const std::vector<CheckedPose>& checked, float minimum) {
   Published out;
   for (const CheckedPose& pose : checked) {
-    if (pose.quality < least) continue;
+    if (pose.quality < minimum) continue;
     ++out.poses;
     out.correct += pose.is_correct ? 1 : 0;
   }
@@ -126,12 +126,12 @@ Learnt learn_quality(const std::vector<Example>& examples) {
   learnt.correct = count_correct(examples);
   learnt.settings = fit_quality(examples);
   learnt.checked = check_by_scene(examples, kMinScenes);
-  const std::optional<float> least = min_quality(learnt.checked, kCorrectFraction);
-  require(least.has_value(), "{} poses: from no quality are {:.0f} % of those in unseen scenes right", examples.size(),
-          100.0 * kCorrectFraction);
-  learnt.settings.min_quality = *least;
+  const std::optional<float> minimum = min_quality(learnt.checked, kCorrectFraction);
+  require(minimum.has_value(), "{} poses: from no quality are {:.0f} % of those in unseen scenes right",
+          examples.size(), 100.0 * kCorrectFraction);
+  learnt.settings.min_quality = *minimum;
   const QualitySettings in_use;
-  learnt.in_use = published_from(check_by(in_use, examples), in_use.least);
+  learnt.in_use = published_from(check_by(in_use, examples), in_use.minimum);
   return learnt;
 }
 

@@ -34,7 +34,7 @@ struct Published {
   int correct = 0;
   double correct_fraction() const;  ///< NaN without poses
 };
-Published published_from(const std::vector<CheckedPose>& checked, float least);
+Published published_from(const std::vector<CheckedPose>& checked, float minimum);
 
 /// The smallest of 0.05, 0.1, ... 0.95 from which at least this share of the poses is right; nothing where none is.
 std::optional<float> min_quality(const std::vector<CheckedPose>& checked, double correct_fraction);

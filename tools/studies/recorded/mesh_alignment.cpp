@@ -127,13 +127,13 @@ void sort_by_rms(std::vector<Fit>& fits) {
 }
 
 /// Those that are no worse copy of a better one, at most `most`. `fits` is sorted.
-std::vector<Fit> distinct(const std::vector<Fit>& fits, double apart_rad, std::size_t most) {
+std::vector<Fit> distinct(const std::vector<Fit>& fits, double apart_rad, std::size_t maximum) {
   std::vector<Fit> kept;
   for (const Fit& fit : fits) {
     const auto is_near = [&](const Fit& o) {
       return angle_between(fit.T_target_source, o.T_target_source) < apart_rad;
     };
-    if (kept.size() < most && std::none_of(kept.begin(), kept.end(), is_near)) kept.push_back(fit);
+    if (kept.size() < maximum && std::none_of(kept.begin(), kept.end(), is_near)) kept.push_back(fit);
   }
   return kept;
 }

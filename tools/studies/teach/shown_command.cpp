@@ -34,8 +34,8 @@ Mesh finely_coloured(const Mesh& mesh) {
   for (const auto& [a, b, c] : mesh.triangles) {
     const Eigen::Vector3f ab = mesh.vertices[b] - mesh.vertices[a];
     const Eigen::Vector3f ac = mesh.vertices[c] - mesh.vertices[a];
-    const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
-    const int parts = std::max(1, static_cast<int>(std::ceil(longest / kSide_m)));
+    const double max_length = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+    const int parts = std::max(1, static_cast<int>(std::ceil(max_length / kSide_m)));
     const auto first = static_cast<std::uint32_t>(fine.vertices.size());
     const auto at = [&](int i, int j) { return first + static_cast<std::uint32_t>(i * (2 * parts + 3 - i) / 2 + j); };
     for (int i = 0; i <= parts; ++i) {
@@ -66,7 +66,7 @@ void run(const CompareOptions& options) {
   write_png(draw_model(placed), options.out / "taught.png");
   write_png(draw_model(finely_coloured(takes.mesh)), options.out / "true.png");
   fmt::print("{}: {:.2f} mm from the true surface (95 %: {:.2f}), masks {:.3f}, {} views\n", options.object,
-             1e3 * comparison.taught_to_true.median, 1e3 * comparison.taught_to_true.most, comparison.mask_iou,
+             1e3 * comparison.taught_to_true.median, 1e3 * comparison.taught_to_true.maximum, comparison.mask_iou,
              comparison.views);
 }
 

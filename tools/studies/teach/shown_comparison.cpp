@@ -56,20 +56,20 @@ Eigen::Isometry3d mean_of(const std::vector<Eigen::Isometry3d>& poses, const Eig
 /// The mean of those that are near the one in their middle, so that lost frames do not count.
 Eigen::Isometry3d robust_mean(const std::vector<Eigen::Isometry3d>& poses, const Eigen::Vector3d& middle) {
   std::vector<double> best;
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (const Eigen::Isometry3d& candidate : poses) {
     std::vector<double> sizes;
     sizes.reserve(poses.size());
     for (const Eigen::Isometry3d& pose : poses) sizes.push_back(size_of(gap_between(candidate, pose, middle)));
     const double median = quantile(sizes, 0.5);
-    if (median < least) {
-      least = median;
+    if (median < minimum) {
+      minimum = median;
       best = sizes;
     }
   }
   std::vector<Eigen::Isometry3d> near;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (best[i] <= 3.0 * least) near.push_back(poses[i]);
+    if (best[i] <= 3.0 * minimum) near.push_back(poses[i]);
   }
   return mean_of(near, middle);
 }
@@ -149,7 +149,7 @@ void compare_poses(const std::vector<Eigen::Isometry3d>& poses, const Eigen::Vec
     turns.push_back(gap.turn_rad);
   }
   comparison.tracking_shift = spread_of(shifts);
-  comparison.tracking_turn_rad = spread_of(turns).most;
+  comparison.tracking_turn_rad = spread_of(turns).maximum;
 }
 
 void compare_views(const TrueTakes& takes, const std::vector<KeptView>& views, const Eigen::Vector3d& middle,
@@ -187,15 +187,15 @@ ShownComparison compare_shown(const TrueTakes& takes, const std::filesystem::pat
 OrderedJson to_json(const ShownComparison& comparison) {
   OrderedJson json;
   json["mesh_mm_median"] = 1e3 * comparison.taught_to_true.median;
-  json["mesh_mm_95"] = 1e3 * comparison.taught_to_true.most;
+  json["mesh_mm_95"] = 1e3 * comparison.taught_to_true.maximum;
   json["seen_mm_median"] = 1e3 * comparison.seen_to_taught.median;
-  json["seen_mm_95"] = 1e3 * comparison.seen_to_taught.most;
+  json["seen_mm_95"] = 1e3 * comparison.seen_to_taught.maximum;
   json["missing_share"] = comparison.missing_share;
   json["seen_surface"] = comparison.seen_surface;
   json["drift_mm"] = 1e3 * comparison.drift.shift_m;
   json["drift_deg"] = kDegrees * comparison.drift.turn_rad;
   json["tracking_mm_median"] = 1e3 * comparison.tracking_shift.median;
-  json["tracking_mm_95"] = 1e3 * comparison.tracking_shift.most;
+  json["tracking_mm_95"] = 1e3 * comparison.tracking_shift.maximum;
   json["tracking_deg_95"] = kDegrees * comparison.tracking_turn_rad;
   json["tracked"] = comparison.tracked;
   json["second_mm"] = comparison.second ? OrderedJson(1e3 * comparison.second->shift_m) : OrderedJson();

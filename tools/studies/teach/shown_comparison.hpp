@@ -16,7 +16,7 @@ struct PoseGap {
 /// Medians and 95 % points of distances, metres.
 struct Spread {
   double median = 0.0;
-  double most = 0.0;
+  double maximum = 0.0;
 };
 
 /// What was made of an object that was shown, beside the truth.

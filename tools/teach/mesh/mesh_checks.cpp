@@ -105,8 +105,7 @@ double agreement(const Mesh& mesh) {
 }
 
 /// Largest distance from the surface that the motion gives one of its points.
-double largest_distance(const std::vector<Eigen::Vector3f>& points, const MeshBvh& tree,
-                        const Eigen::Isometry3d& motion) {
+double max_distance(const std::vector<Eigen::Vector3f>& points, const MeshBvh& tree, const Eigen::Isometry3d& motion) {
   float largest = 0.0F;
   for (const Eigen::Vector3f& point : points)
     largest = std::max(largest, tree.nearest((motion * point.cast<double>()).cast<float>()).distance);
@@ -149,7 +148,7 @@ void check_symmetries(const std::string& where, const Mesh& mesh, const Symmetri
   const MeshBvh tree(mesh);
   const std::vector<Eigen::Vector3f> points = sample_surface(mesh, kPoints, 1).points;
   const auto check = [&](const std::string& which, const Eigen::Isometry3d& motion) {
-    const double off = largest_distance(points, tree, motion);
+    const double off = max_distance(points, tree, motion);
     require(off <= allowed,
             "{}: {} takes points of the mesh up to {:.1f} mm off its surface, expected at most {:.1f} mm", where, which,
             off * 1e3, allowed * 1e3);

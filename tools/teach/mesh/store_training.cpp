@@ -44,9 +44,9 @@ void vote_for(const Eigen::Vector3f& centre, std::vector<TrainingView>& views) {
 }
 
 /// Training views of a mesh; those that show no depth of it are left out.
-std::vector<TrainingView> render_views(const TaughtMesh& taught, const TeachOptions& options, int most) {
+std::vector<TrainingView> render_views(const TaughtMesh& taught, const TeachOptions& options, int maximum) {
   world::MeshViewSettings settings = options.views;
-  settings.max_views = std::min(settings.max_views, most);
+  settings.max_views = std::min(settings.max_views, maximum);
   settings.attitudes = world::parse_mesh_attitudes(options.attitudes);
   settings.has_colour = taught.coloured;
   const world::MeshViews rendered(taught.mesh, settings,
@@ -84,9 +84,9 @@ void dump_views(const std::vector<TrainingView>& views, const fs::path& folder) 
 int max_views(const std::vector<TrainingView>& views) {
   std::map<int, int> counts;
   for (const TrainingView& view : views) counts[view.class_id] += view.class_id > 0 ? 1 : 0;
-  int most = 1;
-  for (const auto& [class_id, count] : counts) most = std::max(most, count);
-  return most;
+  int maximum = 1;
+  for (const auto& [class_id, count] : counts) maximum = std::max(maximum, count);
+  return maximum;
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ class CameraTake : public ShowObserver {
  private:
   ShownFrames frames_;
   ShowObserver* observer_;
-  CoverageCriterion enough_;
+  CoverageCriterion is_covered_;
   bool is_over_ = false;
 };
 

@@ -29,13 +29,13 @@ class TakeObserver : public ShowObserver {
   void progress(const ShowProgress& now) override {
     publisher_.progress(now);
     if (now.state == ShowState::kChoosing) take_.skip_to_newest();  // until something is chosen, only now counts
-    if (now.state == ShowState::kTracking && enough_(now)) take_.end();
+    if (now.state == ShowState::kTracking && is_covered_(now)) take_.end();
   }
 
  private:
   TeachingPublisher publisher_;
   StreamTake& take_;
-  CoverageCriterion enough_;
+  CoverageCriterion is_covered_;
 };
 
 /// From here on a stop signal ends the program.

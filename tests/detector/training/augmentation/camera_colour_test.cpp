@@ -218,9 +218,9 @@ TEST(CameraColour, NoiseHasItsDeviationAndNoBias) {
 double steepest(const cv::Mat& picture) {
   cv::Mat difference;
   cv::absdiff(picture.colRange(1, picture.cols), picture.colRange(0, picture.cols - 1), difference);
-  double most = 0.0;
-  cv::minMaxLoc(difference.reshape(1), nullptr, &most);
-  return most;
+  double maximum = 0.0;
+  cv::minMaxLoc(difference.reshape(1), nullptr, &maximum);
+  return maximum;
 }
 
 TEST(CameraColour, BlurAndMotionSoftenAndSharpeningSteepens) {

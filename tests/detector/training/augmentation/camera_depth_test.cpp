@@ -61,11 +61,11 @@ TEST(CameraDepth, HolesNeverFillUp) {
     cv::Mat after = before.clone();
     apply_depth(camera, kView, after, random);
     EXPECT_EQ(cv::countNonZero(holes(before) & ~holes(after)), 0) << seed;
-    double least = 0.0;
-    double most = 0.0;
-    cv::minMaxLoc(after, &least, &most, nullptr, nullptr, ~holes(after));
-    EXPECT_GT(least, 0.7) << seed;
-    EXPECT_LT(most, 1.4) << seed;
+    double minimum = 0.0;
+    double maximum = 0.0;
+    cv::minMaxLoc(after, &minimum, &maximum, nullptr, nullptr, ~holes(after));
+    EXPECT_GT(minimum, 0.7) << seed;
+    EXPECT_LT(maximum, 1.4) << seed;
   }
 }
 

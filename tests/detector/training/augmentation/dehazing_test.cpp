@@ -31,15 +31,15 @@ double contrast(const cv::Mat& colour) {
 
 TEST(ClearHaze, GivesAHazyObjectMoreContrastAndNeverMuchLess) {
   const cv::Mat mask(20, 100, CV_8UC1, cv::Scalar(255));
-  double most = 0.0;
+  double maximum = 0.0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     cv::Mat hazy = ramp(60, 140);
     Random random(seed);
     remove_haze(mask, hazy, random);
     EXPECT_GT(contrast(hazy), 0.95 * contrast(ramp(60, 140)));
-    most = std::max(most, contrast(hazy));
+    maximum = std::max(maximum, contrast(hazy));
   }
-  EXPECT_GT(most, 1.8 * contrast(ramp(60, 140)));
+  EXPECT_GT(maximum, 1.8 * contrast(ramp(60, 140)));
 }
 
 TEST(ClearHaze, LeavesAClearObjectsRangeNearlyAsItIs) {
@@ -61,11 +61,11 @@ cv::Mat soft_step(double sigma) {
 }
 
 int steepest_step(const cv::Mat& colour) {
-  int most = 0;
+  int maximum = 0;
   for (int x = 1; x < colour.cols; ++x) {
-    most = std::max(most, colour.at<cv::Vec3b>(10, x)[1] - colour.at<cv::Vec3b>(10, x - 1)[1]);
+    maximum = std::max(maximum, colour.at<cv::Vec3b>(10, x)[1] - colour.at<cv::Vec3b>(10, x - 1)[1]);
   }
-  return most;
+  return maximum;
 }
 
 TEST(Sharpened, ASoftEdgeGetsSteeperWithSharpness) {

@@ -85,15 +85,15 @@ TEST(Misregistration, ABentViewLeansWithinItsLimits) {
   const TrainingView view = toy::training_views().front();
   const double reach = 0.5 * std::hypot(view.frame.depth.cols, view.frame.depth.rows) *
                        view.frame.camera.metres_per_px(view.T_camera_object.translation().z());
-  double most = 0.0;
+  double maximum = 0.0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Random random(seed);
     const TrainingView out = perturb_shape(view, 1.0, random);
     const double change = cv::norm(out.frame.depth, view.frame.depth, cv::NORM_INF, view.mask);
     EXPECT_LT(change, 0.1 * reach + 5 * 0.002);
-    most = std::max(most, change);
+    maximum = std::max(maximum, change);
   }
-  EXPECT_GT(most, 0.002);
+  EXPECT_GT(maximum, 0.002);
 }
 
 TEST(Misregistration, TheSameSeedMisfitsAlike) {

@@ -196,11 +196,11 @@ Eigen::Vector2d chroma(const TrainingView& view) {
 double spread_of_chroma(const MeshViews& views) {
   std::vector<Eigen::Vector2d> all;
   for (int index = 0; index < views.count(); index += 3) all.push_back(chroma(views.render(index)));
-  double most = 0.0;
+  double maximum = 0.0;
   for (const Eigen::Vector2d& a : all) {
-    for (const Eigen::Vector2d& b : all) most = std::max(most, (a - b).norm());
+    for (const Eigen::Vector2d& b : all) maximum = std::max(maximum, (a - b).norm());
   }
-  return most;
+  return maximum;
 }
 
 TEST(MeshViews, ShowTheColoursOfVertices) {

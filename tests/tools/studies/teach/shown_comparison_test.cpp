@@ -110,8 +110,8 @@ TEST(ShownComparison, APerfectMeshIsFoundPerfectWhateverItsFrame) {
   const Mesh taught = write_kept(folder / "kept");
   const ShownComparison found = compare_shown(read_true_takes(folder / "takes", "block"), folder / "kept", taught);
   EXPECT_TRUE(found.T_true_taught.isApprox(known_frame(), 1e-3));
-  EXPECT_LT(found.taught_to_true.most, 1e-4);
-  EXPECT_LT(found.seen_to_taught.most, 1e-4);
+  EXPECT_LT(found.taught_to_true.maximum, 1e-4);
+  EXPECT_LT(found.seen_to_taught.maximum, 1e-4);
   EXPECT_EQ(found.missing_share, 0.0);
   EXPECT_GT(found.seen_surface, 0.5);
   EXPECT_LT(found.seen_surface, 0.95) << "the bottom is never seen";
@@ -135,7 +135,7 @@ TEST(ShownComparison, AMeshThatIsTooLargeOrLacksASideIsTold) {
   EXPECT_GT(compare_shown(takes, folder / "kept", larger).taught_to_true.median, 0.004);
   taught.triangles.resize(taught.triangles.size() - 4);
   const ShownComparison open = compare_shown(takes, folder / "kept", taught);
-  EXPECT_LT(open.taught_to_true.most, 1e-4);
+  EXPECT_LT(open.taught_to_true.maximum, 1e-4);
   EXPECT_GT(open.missing_share, 0.05);
 }
 

@@ -125,13 +125,13 @@ cv::Mat infrared_shadow(const cv::Mat& depth, const Camera& camera, double basel
   for (int y = 0; y < depth.rows; ++y) {
     // The projector sees a point at column u - f b / z of its own image. From right to left these columns fall as long
     // as nothing is hidden; a point that falls back behind one already passed is hidden by it.
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     for (int x = depth.cols - 1; x >= 0; --x) {
       const float z = depth.at<float>(y, x);
       if (std::isnan(z)) continue;
       const double column = x - camera.fx * baseline_m / z;
-      if (column > least + kTolerancePx) shadow.at<std::uint8_t>(y, x) = 255;
-      least = std::min(least, column);
+      if (column > minimum + kTolerancePx) shadow.at<std::uint8_t>(y, x) = 255;
+      minimum = std::min(minimum, column);
     }
   }
   return shadow;

@@ -111,15 +111,15 @@ Eigen::Vector3d TippingBody::tipped(const Eigen::Vector3d& down, const Support& 
                                     const Eigen::Vector2d& towards) const {
   const Eigen::Vector3d forward = support.in_object(towards);
   const double pivot_ahead = pivot.dot(towards);
-  double steepest =
-      -std::numeric_limits<double>::infinity();  // cotangent of the turn: an angle for each point takes long
+  // Cotangent of the turn: an angle for each point takes long.
+  double steepest = -std::numeric_limits<double>::infinity();
   for (const Eigen::Vector3d& point : points_) {
     const double above = support.height_m - down.dot(point);
     const double ahead = forward.dot(point) - pivot_ahead;
     if (above > kTouchM) steepest = std::max(steepest, ahead / above);
   }
-  const double least = std::atan2(1.0, steepest);
-  return (std::cos(least) * down + std::sin(least) * forward).normalized();
+  const double minimum = std::atan2(1.0, steepest);
+  return (std::cos(minimum) * down + std::sin(minimum) * forward).normalized();
 }
 
 // Tips over as long as the centre of mass is not above what it stands on.

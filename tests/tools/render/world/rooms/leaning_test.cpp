@@ -22,7 +22,7 @@ AssetGroup leaning(int id, std::uint64_t seed) {
 }
 
 /// From the attitude nearest to which the thing would rest to that in which it leans, degrees.
-double least_lean_deg(const PlacedAsset& placed, const std::vector<StablePoseFamily>& families) {
+double min_lean_deg(const PlacedAsset& placed, const std::vector<StablePoseFamily>& families) {
   const Eigen::Vector3d up = placed.T_world_object.linear().row(2);
   double max_cosine = -1.0;
   for (const StablePoseFamily& family : families) {
@@ -80,16 +80,16 @@ TEST(Leaning, TheCentreOfMassIsBetweenTableAndBlock) {
 TEST(Leaning, NothingLeansAsItWouldRestAndSlantsDiffer) {
   for (int id = 1; id <= kClassCount; ++id) {
     const auto families = find_stable_poses(make_taught_object(id).thing->mesh);
-    double least = 90.0;
-    double most = 0.0;
+    double minimum = 90.0;
+    double maximum = 0.0;
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-      const double lean = least_lean_deg(leaning(id, seed)[1], families);
+      const double lean = min_lean_deg(leaning(id, seed)[1], families);
       EXPECT_LE(lean, kMaxLeanDeg + 1e-6);
       EXPECT_GT(lean, 2.0);
-      least = std::min(least, lean);
-      most = std::max(most, lean);
+      minimum = std::min(minimum, lean);
+      maximum = std::max(maximum, lean);
     }
-    EXPECT_GT(most - least, 10.0) << id;
+    EXPECT_GT(maximum - minimum, 10.0) << id;
   }
 }
 

@@ -36,10 +36,10 @@ TEST(Sequence, WhatIsTakenAwayIsNotThereAndComesBackElsewhere) {
 TEST(Sequence, TheArmHidesObjectsAndThreeCamerasLookFromThreeSides) {
   const Sequence arm(plan_of("arm"), DatasetSplit::kTraining);
   const auto visible = [&](double seconds) {
-    double least = 1.0;
+    double minimum = 1.0;
     const RenderedFrame view = arm.render(0, seconds, 0);
-    for (const GroundTruthObject& object : view.objects) least = std::min(least, object.visible_fraction);
-    return view.objects.size() < 4 ? 0.0 : least;
+    for (const GroundTruthObject& object : view.objects) minimum = std::min(minimum, object.visible_fraction);
+    return view.objects.size() < 4 ? 0.0 : minimum;
   };
   EXPECT_GT(visible(0.0), 0.5);
   EXPECT_LT(visible(4.7), 0.5);
