@@ -20,7 +20,7 @@ constexpr std::array<float, kMaxScales> kFiveScales = {0.33F, 0.66F, 1.0F, 1.66F
 
 /// What each of so many objects and the background would have if nothing were known: the released detector of the
 /// paper's authors lets a patch vote for an object from there on (its threshold_hierarchy is 1).
-float even_share(std::size_t objects) {
+float even_fraction(std::size_t objects) {
   return 1.0F / static_cast<float>(objects + 1);
 }
 
@@ -44,8 +44,8 @@ Profile gall_profile(std::size_t objects) {
   profile.detection.spacing.metres = 0.0F;
   profile.detection.leaves.first_trees = 0;
   profile.detection.evidence.threshold = 0.1F;
-  profile.detection.voting.min_mass_share = 0.05F;
-  profile.detection.leaves.min_class_share = even_share(objects);
+  profile.detection.voting.min_mass_fraction = 0.05F;
+  profile.detection.leaves.min_class_fraction = even_fraction(objects);
   set_scale_handling(profile, "five");
   return profile;
 }

@@ -42,12 +42,12 @@ std::vector<cv::Mat> shared_gradients(const cv::Mat& dx, const cv::Mat& dy, floa
       const float magnitude = std::sqrt(gx * gx + gy * gy) * steps;
       const float bin = orientation_bin(gx, gy);
       const int low = static_cast<int>(bin);
-      const float share = bin - static_cast<float>(low);
+      const float fraction = bin - static_cast<float>(low);
       const auto set = [&](int b, float part) {
         planes[static_cast<std::size_t>(b)].at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(part);
       };
-      set(low, magnitude * (1.0F - share) + 0.5F);
-      set(low + 1 == kBins ? 0 : low + 1, magnitude * share + 0.5F);
+      set(low, magnitude * (1.0F - fraction) + 0.5F);
+      set(low + 1 == kBins ? 0 : low + 1, magnitude * fraction + 0.5F);
     }
   }
   return planes;

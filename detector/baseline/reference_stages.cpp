@@ -58,7 +58,7 @@ void find_posteriors_by(Way way, const PosteriorInput& input, LeafWorkspace& wor
   list_runs(input.patches, workspace.runs);
   LeafInput leaves{input.index, input.features, input.patches, workspace.runs};
   leaves.early_rejection = {input.settings.first_trees, input.settings.min_first_posterior};
-  posteriors.reset(input.index, workspace.runs.size(), input.settings.min_class_share, input.threads);
+  posteriors.reset(input.index, workspace.runs.size(), input.settings.min_class_fraction, input.threads);
   reference_leaves(leaves, input.threads, [&](const RunLeaves& seen) { posteriors.note(seen); });
 }
 

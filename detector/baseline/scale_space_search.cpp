@@ -53,7 +53,7 @@ SeenLevel see_level(const SearchContext& search, Way way, const RgbdFrame& frame
 /// Calls visit(patch, x, y, weight, who) for each vote for a class that falls into the level's image, at its pixel.
 template <typename Visit>
 void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, const Visit& visit) {
-  const float share = 1.0F / static_cast<float>(forest.roots.size());
+  const float fraction = 1.0F / static_cast<float>(forest.roots.size());
   const auto width = static_cast<float>(seen.camera.width);
   const auto height = static_cast<float>(seen.camera.height);
   seen.posteriors.for_each_supporting_patch(
@@ -71,7 +71,7 @@ void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, 
             const float x = patch_x + vote.offset.x() * seen.px_per_offset + 0.5F;
             const float y = patch_y + vote.offset.y() * seen.px_per_offset + 0.5F;
             if (x < 0.0F || y < 0.0F || x >= width || y >= height) continue;
-            visit(p, static_cast<int>(x), static_cast<int>(y), entry.probability * vote.weight * share, entry);
+            visit(p, static_cast<int>(x), static_cast<int>(y), entry.probability * vote.weight * fraction, entry);
           }
         }
       });
@@ -134,14 +134,14 @@ std::vector<Hypothesis> gather_supporters(const SearchContext& search, int class
     const auto m = static_cast<std::size_t>(supported);
     const auto dx = static_cast<float>(x - maxima[m].x);
     const auto dy = static_cast<float>(y - maxima[m].y);
-    const float share = weight * vote_kernel(dx * dx + dy * dy, sigma);
+    const float fraction = weight * vote_kernel(dx * dx + dy * dy, sigma);
     Hypothesis& hypothesis = hypotheses[m];
-    hypothesis.weight += share;
+    hypothesis.weight += fraction;
     ++hypothesis.vote_count;
     if (hypothesis.patches.empty() || hypothesis.patches.back().first != p) hypothesis.patches.emplace_back(p, 0.0F);
-    hypothesis.patches.back().second += share;
+    hypothesis.patches.back().second += fraction;
     for (std::uint32_t v = entry.first_view; v < entry.first_view + entry.view_count; ++v) {
-      by_view[m][forest.leaf_views[v].view] += share * forest.leaf_views[v].weight;
+      by_view[m][forest.leaf_views[v].view] += fraction * forest.leaf_views[v].weight;
     }
   });
   for (std::size_t m = 0; m < maxima.size(); ++m) {
@@ -175,7 +175,7 @@ std::vector<ScalePeak> level_peaks(const SearchContext& search, int class_index,
   const cv::Mat image = hough_image(search, class_index, seen);
   const int reach_px = static_cast<int>(std::lround(kVoteReach * settings.vote_sigma * seen.px_per_offset));
   const auto limit = static_cast<std::size_t>(settings.maxima_per_class);
-  const std::vector<cv::Point> maxima = maxima_of(image, reach_px, settings.min_mass_share, limit);
+  const std::vector<cv::Point> maxima = maxima_of(image, reach_px, settings.min_mass_fraction, limit);
   std::vector<Hypothesis> hypotheses = gather_supporters(search, class_index, seen, maxima);
   BoxWorkspace box_workspace;
   const float to_frame = static_cast<float>(camera.width) / static_cast<float>(seen.camera.width);

@@ -21,12 +21,12 @@ std::array<float, HonvLayout::kAzimuths> azimuth_shares(const cv::Vec3f& normal,
   const float angle = std::atan2(normal[1], normal[0]) / (2.0F * kPi);
   const float bin = (angle < 0.0F ? angle + 1.0F : angle) * static_cast<float>(HonvLayout::kAzimuths);
   const int low = static_cast<int>(bin);
-  const float share = bin - static_cast<float>(low);
+  const float fraction = bin - static_cast<float>(low);
   const float known = std::clamp(zenith_bin + 1.0F, 0.5F, 1.0F) * 2.0F - 1.0F;  // 0 on the axis, 1 from 15 degrees on
   std::array<float, HonvLayout::kAzimuths> shares{};
   shares.fill((1.0F - known) / static_cast<float>(HonvLayout::kAzimuths));
-  shares[static_cast<std::size_t>(low % HonvLayout::kAzimuths)] += known * (1.0F - share);
-  shares[static_cast<std::size_t>((low + 1) % HonvLayout::kAzimuths)] += known * share;
+  shares[static_cast<std::size_t>(low % HonvLayout::kAzimuths)] += known * (1.0F - fraction);
+  shares[static_cast<std::size_t>((low + 1) % HonvLayout::kAzimuths)] += known * fraction;
   return shares;
 }
 
@@ -38,12 +38,12 @@ Votes votes_of(const cv::Vec3f& normal) {
   const auto azimuths = azimuth_shares(normal, bin);
   const float limited = std::clamp(bin, 0.0F, static_cast<float>(HonvLayout::kZeniths - 1));
   const int low = std::min(static_cast<int>(limited), HonvLayout::kZeniths - 2);
-  const float share = limited - static_cast<float>(low);
+  const float fraction = limited - static_cast<float>(low);
   Votes votes{};
   for (int a = 0; a < HonvLayout::kAzimuths; ++a) {
     const float azimuth = azimuths[static_cast<std::size_t>(a)];
-    votes[static_cast<std::size_t>(HonvLayout::plane(a, low))] = azimuth * (1.0F - share);
-    votes[static_cast<std::size_t>(HonvLayout::plane(a, low + 1))] = azimuth * share;
+    votes[static_cast<std::size_t>(HonvLayout::plane(a, low))] = azimuth * (1.0F - fraction);
+    votes[static_cast<std::size_t>(HonvLayout::plane(a, low + 1))] = azimuth * fraction;
   }
   return votes;
 }

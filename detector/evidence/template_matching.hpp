@@ -55,12 +55,12 @@ class BoundaryContinuation {
     both_ += surface * houghstream::textured_colour_continuation(seen);
   }
 
-  float surface_goes_on() const { return share(surface_); }  ///< straight on from within
-  float colour_goes_on() const { return share(colour_); }    ///< the same colour, with no step back in depth
-  float goes_on() const { return share(both_); }             ///< the surface, in the same colour
+  float surface_goes_on() const { return fraction(surface_); }  ///< straight on from within
+  float colour_goes_on() const { return fraction(colour_); }    ///< the same colour, with no step back in depth
+  float goes_on() const { return fraction(both_); }             ///< the surface, in the same colour
 
  private:
-  float share(float sum) const { return count_ > 0 ? sum / static_cast<float>(count_) : 0.0F; }
+  float fraction(float sum) const { return count_ > 0 ? sum / static_cast<float>(count_) : 0.0F; }
 
   int count_ = 0;
   float surface_ = 0.0F;

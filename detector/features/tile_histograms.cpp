@@ -54,9 +54,9 @@ void share_row(const float* dx, const float* dy, int count, float steps, RowShar
     const auto magnitude = hn::Mul(hn::Sqrt(squared), hn::Set(d, steps));
     const auto bin = orientation_bins(d, gx, gy);
     const auto low = hn::ConvertTo(whole, bin);
-    const auto share = hn::Sub(bin, hn::ConvertTo(d, low));
-    const auto to_high = hn::Add(hn::Mul(magnitude, share), rounding);
-    const auto to_low = hn::Add(hn::Mul(magnitude, hn::Sub(hn::Set(d, 1.0F), share)), rounding);
+    const auto fraction = hn::Sub(bin, hn::ConvertTo(d, low));
+    const auto to_high = hn::Add(hn::Mul(magnitude, fraction), rounding);
+    const auto to_low = hn::Add(hn::Mul(magnitude, hn::Sub(hn::Set(d, 1.0F), fraction)), rounding);
     hn::StoreU(hn::DemoteTo(narrow, low), narrow, row.low_bin + x);
     hn::StoreU(hn::DemoteTo(narrow, hn::ConvertTo(whole, to_low)), narrow, row.low + x);
     hn::StoreU(hn::DemoteTo(narrow, hn::ConvertTo(whole, to_high)), narrow, row.high + x);
@@ -81,7 +81,7 @@ void sort_row(const RowShares& row, int y, BinPlanes& bins) {
   }
 }
 
-void share(const TilePlane<float>& dx, const TilePlane<float>& dy, float gain, BinPlanes& bins) {
+void fraction(const TilePlane<float>& dx, const TilePlane<float>& dy, float gain, BinPlanes& bins) {
   RowShares row;
   const int margin = dx.margin();
   const int count = dx.width() + 2 * margin;
@@ -128,11 +128,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace houghstream {
 
-HWY_EXPORT(share);
+HWY_EXPORT(fraction);
 HWY_EXPORT(smooth);
 
 void bin_gradients(const TilePlane<float>& dx, const TilePlane<float>& dy, float gain, BinPlanes& bins) {
-  HWY_DYNAMIC_DISPATCH(share)(dx, dy, gain, bins);
+  HWY_DYNAMIC_DISPATCH(fraction)(dx, dy, gain, bins);
 }
 
 void smooth_bin(const TilePlane<std::uint16_t>& bin, TilePlane<std::uint8_t>& bytes) {

@@ -127,7 +127,7 @@ void check_leaves(const Forest& forest, const std::string& source) {
   }
 }
 
-bool is_share(float value) {
+bool is_fraction(float value) {
   return value >= 0.0F && value <= 1.001F;
 }
 
@@ -135,13 +135,13 @@ bool is_share(float value) {
 void check_numbers(const Forest& forest, const std::string& source) {
   constexpr float kFar = 100.0F;  // metres
   for (const LeafVote& vote : forest.votes) {
-    require(vote.offset.array().abs().maxCoeff() < kFar && vote.offset.allFinite() && is_share(vote.weight),
+    require(vote.offset.array().abs().maxCoeff() < kFar && vote.offset.allFinite() && is_fraction(vote.weight),
             "{}: a vote of weight {}, expected metres and 0 to 1", source, vote.weight);
   }
   for (const LeafView& view : forest.leaf_views)
-    require(is_share(view.weight), "{}: a view of weight {}, expected 0 to 1", source, view.weight);
+    require(is_fraction(view.weight), "{}: a view of weight {}, expected 0 to 1", source, view.weight);
   for (const float weight : forest.leaf_weights)
-    require(is_share(weight), "{}: a leaf of weight {}, expected 0 to 1", source, weight);
+    require(is_fraction(weight), "{}: a leaf of weight {}, expected 0 to 1", source, weight);
   for (const ViewTemplate& view : forest.views) {
     const bool has_box =
         std::all_of(view.box.begin(), view.box.end(), [](float side) { return std::abs(side) < kFar; });

@@ -60,9 +60,9 @@ void append_entries(const ForestIndex& index, std::size_t class_index, std::size
 
 }  // namespace
 
-void PatchPosteriors::reset(const ForestIndex& index, std::size_t runs, float min_share, int threads) {
+void PatchPosteriors::reset(const ForestIndex& index, std::size_t runs, float min_fraction, int threads) {
   index_ = &index;
-  min_share_ = min_share;
+  min_fraction_ = min_fraction;
   workers_.resize(threads);
   supporters_.resize(runs * index.forest().classes.size());
   for (SupportingPatches& supporters : supporters_) {
@@ -79,12 +79,12 @@ void PatchPosteriors::note(const RunLeaves& seen) {
   sum_certainties(*index_, seen, sums);
   some.clear();
   for (std::uint32_t i = 0; i < seen.count; ++i) {
-    if (sums[i] / trees >= min_share_) some.push_back(i);
+    if (sums[i] / trees >= min_fraction_) some.push_back(i);
   }
   sum_by_class(*index_, some, seen, sums);
   for (std::size_t i = 0; i < some.size(); ++i) {
     for (std::size_t c = 0; c < classes; ++c) {
-      if (sums[i * classes + c] / trees < min_share_) continue;
+      if (sums[i * classes + c] / trees < min_fraction_) continue;
       SupportingPatches& supporters = supporters_[seen.run * classes + c];
       supporters.patches.push_back(seen.patches[some[i]]);
       append_entries(*index_, c, some[i], seen, supporters.entries);
@@ -98,7 +98,7 @@ void find_posteriors(const PosteriorInput& input, LeafWorkspace& workspace, Patc
   list_runs(input.patches, runs);
   LeafInput leaves{input.index, input.features, input.patches, runs};
   leaves.early_rejection = {input.settings.first_trees, input.settings.min_first_posterior};
-  posteriors.reset(input.index, runs.size(), input.settings.min_class_share, input.threads);
+  posteriors.reset(input.index, runs.size(), input.settings.min_class_fraction, input.threads);
   find_leaves(leaves, input.threads, workspace, [&](const RunLeaves& seen) { posteriors.note(seen); });
 }
 

@@ -22,10 +22,12 @@ struct SupportingPatches {
 class PatchPosteriors {
  public:
   PatchPosteriors() = default;
-  /// A patch votes for a class from a posterior of `min_share` on. The index must outlive this.
-  PatchPosteriors(const ForestIndex& index, std::size_t runs, float min_share) { reset(index, runs, min_share, 1); }
+  /// A patch votes for a class from a posterior of `min_fraction` on. The index must outlive this.
+  PatchPosteriors(const ForestIndex& index, std::size_t runs, float min_fraction) {
+    reset(index, runs, min_fraction, 1);
+  }
   /// As if made anew, for so many workers, but the memory is used again.
-  void reset(const ForestIndex& index, std::size_t runs, float min_share, int threads);
+  void reset(const ForestIndex& index, std::size_t runs, float min_fraction, int threads);
 
   /// Notes who votes among the patches of a run. Different workers may note different runs at the same time.
   void note(const RunLeaves& seen);
@@ -52,7 +54,7 @@ class PatchPosteriors {
   };
 
   const ForestIndex* index_ = nullptr;
-  float min_share_ = 0.0F;
+  float min_fraction_ = 0.0F;
   std::vector<SupportingPatches> supporters_;  // [run * classes + class]
   PerWorker<Worker> workers_;
 };

@@ -28,7 +28,7 @@ SplitSearch::SplitSearch(const TrainingSet& set, const PatchSettings& patch, con
 const SplitSearch::Planes& SplitSearch::draw_planes(Random& random) const {
   if (histograms_.empty()) return others_;
   if (others_.empty()) return histograms_;
-  return random.uniform() < settings_.histogram_share ? histograms_ : others_;
+  return random.uniform() < settings_.histogram_fraction ? histograms_ : others_;
 }
 
 void SplitSearch::draw_tests(std::size_t test_count, Random& random) {

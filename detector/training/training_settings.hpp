@@ -16,14 +16,14 @@ struct TrainingSettings : AugmentationSettings {
   int tests_per_node = 2000;  ///< random pixel tests tried; where fewer samples choose, as many as these, or 64
   /// Of the nodes are split so that offsets agree, the others so that labels do; Gall et al. 2011 draw one or the other
   /// alike. It is always offsets where there is one label only, and labels where nearly all is background.
-  double offset_share = 0.5;
+  double offset_fraction = 0.5;
   double single_pixel_fraction = 0.3;  ///< of the tests look at one pixel alone, see PixelTest::kSinglePixel
   /// At least so many of the tests on depth and on the surface, point histograms aside: these are the same in any
   /// light, without a comparison.
   double shape_single_pixel_fraction = 0.0;
   /// Of the nodes look at point feature histograms, and only at those; the others never. What is shaped like an object
   /// stands in no room that is learnt from: they would win nearly every node, and the object's colours go unlearnt.
-  double histogram_share = 0.3;
+  double histogram_fraction = 0.3;
   int node_samples = 1500;  ///< at most so many samples choose a node's test; all are then split by it
   /// The background weighs as much as all objects together, but at most as so many: what a patch is worth to an object
   /// does not depend on how many others were taught.
@@ -44,10 +44,10 @@ void fields(const TrainingSettings& settings, const Visit& visit) {
   visit(number("max_depth", &S::max_depth, 1, 60, "levels"));
   visit(number("min_samples", &S::min_samples, 1, 1000000));
   visit(number("tests_per_node", &S::tests_per_node, 1, 100000));
-  visit(number("offset_share", &S::offset_share, 0, 1));
+  visit(number("offset_fraction", &S::offset_fraction, 0, 1));
   visit(number("single_pixel_fraction", &S::single_pixel_fraction, 0, 1));
   visit(number("shape_single_pixel_fraction", &S::shape_single_pixel_fraction, 0, 1));
-  visit(number("histogram_share", &S::histogram_share, 0, 1));
+  visit(number("histogram_fraction", &S::histogram_fraction, 0, 1));
   visit(number("node_samples", &S::node_samples, 1, 1000000));
   visit(number("max_background_weight", &S::max_background_weight, 0, std::numeric_limits<double>::infinity()));
   visit(number("in_bag", &S::in_bag, 0, 1));

@@ -81,7 +81,7 @@ class TreeGrower {
       background += set_.samples[s].label == 0 ? 1 : 0;
       several_labels = several_labels || set_.samples[s].label != set_.samples[samples[0]].label;
     }
-    const bool draw_offset = random_.uniform() < settings_.offset_share;
+    const bool draw_offset = random_.uniform() < settings_.offset_fraction;
     if (!several_labels) return Objective::kOffset;
     return draw_offset && background * 20 < samples.size() * 19 ? Objective::kOffset : Objective::kClass;
   }

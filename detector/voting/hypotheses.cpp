@@ -129,7 +129,7 @@ std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t c
                                          VotingWorkspace::Worker& workspace) {
   const VotingSettings& settings = input.settings;
   const std::size_t classes = input.forest.classes.size();
-  const float min_mass = settings.min_mass_share * input.forest.classes[class_index].nominal_vote_mass;
+  const float min_mass = settings.min_mass_fraction * input.forest.classes[class_index].nominal_vote_mass;
   const std::vector<Eigen::Vector3f> maxima = find_maxima(
       workspace.space, input.camera, settings, per_class_budget(classes, settings.maxima_per_class), workspace.maxima);
   std::vector<Hypothesis> scored_maxima;

@@ -61,7 +61,7 @@ HWY_INLINE hn::Vec<Int> cells_of(Floats x, Floats y, Floats z, const CellGrid& g
 /// What the votes of one voter have in common.
 struct VoteBatch {
   float probability;  // p(class | leaf)
-  float share;        // of one tree
+  float fraction;     // of one tree
   std::uint32_t voter;
   const CellGrid& grid;
 };
@@ -76,7 +76,7 @@ HWY_INLINE void cast_some(const float* leaf_votes, const VoteTransform& m, const
   const Floats cx = transformed(m.x, x, y, z);
   const Floats cy = transformed(m.y, x, y, z);
   const Floats cz = transformed(m.z, x, y, z);
-  const Floats w = hn::Mul(hn::Mul(hn::Set(d, ballot.probability), weight), hn::Set(d, ballot.share));
+  const Floats w = hn::Mul(hn::Mul(hn::Set(d, ballot.probability), weight), hn::Set(d, ballot.fraction));
   hn::StoreInterleaved4(cx, cy, cz, w, d, cast.votes[at].centre_camera.data());
   hn::StoreU(cells_of(cx, cy, cz, ballot.grid), di, reinterpret_cast<std::int32_t*>(cast.cells.data() + at));
   hn::StoreU(hn::Set(di, static_cast<std::int32_t>(ballot.voter)), di,
@@ -99,7 +99,7 @@ std::size_t cast_from(const CastInput& input, std::size_t first, CastVotes& cast
   const std::vector<Voter>& voters = input.voters;
   constexpr std::size_t kLanes = hn::MaxLanes(Float());
   static_assert(kLanes <= CastVotes::kSlack);
-  const float share = 1.0F / static_cast<float>(forest.roots.size());
+  const float fraction = 1.0F / static_cast<float>(forest.roots.size());
   std::uint32_t patch = voters[first].patch;
   VoteTransform transform = vote_transform(input.patches.point_camera[patch]);
   std::size_t count = cast.count;
@@ -110,7 +110,7 @@ std::size_t cast_from(const CastInput& input, std::size_t first, CastVotes& cast
     const LeafClass& entry = forest.leaf_classes[voters[i].leaf_class];
     if (count + entry.vote_count > room) break;
     if (voters[i].patch != patch) transform = vote_transform(input.patches.point_camera[patch = voters[i].patch]);
-    const VoteBatch ballot{entry.probability, share, static_cast<std::uint32_t>(i), input.grid};
+    const VoteBatch ballot{entry.probability, fraction, static_cast<std::uint32_t>(i), input.grid};
     for (std::size_t v = 0; v < entry.vote_count; v += kLanes) {
       const LeafVote* votes = forest.votes.data() + entry.first_vote + v;
       std::array<LeafVote, kLanes> last;

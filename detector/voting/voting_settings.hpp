@@ -6,7 +6,7 @@ namespace houghstream {
 
 /// How votes are cast and their maxima found.
 struct VotingSettings {
-  float min_mass_share = 0.02F;     ///< of a class's expected mass, for a maximum to be looked at
+  float min_mass_fraction = 0.02F;  ///< of a class's expected mass, for a maximum to be looked at
   int maxima_per_class = 64;        ///< highest of the Hough image that are looked at in 3-D, see per_class_budget
   int candidates_per_class = 20;    ///< heaviest of these that are compared with remembered views, see per_class_budget
   float min_relative_peak = 0.05F;  ///< of the Hough image's highest value, for a maximum to be looked at
@@ -17,7 +17,7 @@ struct VotingSettings {
 template <typename Visit>
 void fields(const VotingSettings& /*settings*/, const Visit& visit) {
   using S = VotingSettings;
-  visit(number("min_mass_share", &S::min_mass_share, 0, 1));
+  visit(number("min_mass_fraction", &S::min_mass_fraction, 0, 1));
   visit(number("maxima_per_class", &S::maxima_per_class, 1, 1000000));
   visit(number("candidates_per_class", &S::candidates_per_class, 1, 1000000));
   visit(number("min_relative_peak", &S::min_relative_peak, 0, 1));

@@ -63,7 +63,7 @@ std::vector<std::uint32_t> decode_seal(ByteView bytes, const std::string& source
 }
 
 std::int64_t seal_log(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
-                      const std::function<void(double share)>& tell) {
+                      const std::function<void(double fraction)>& tell) {
   require_other_file(out_file, log_file);
   LogReader log(log_file);
   LogWriter out(out_file);

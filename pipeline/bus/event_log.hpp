@@ -31,7 +31,7 @@ constexpr std::size_t kSealedBlock = 256;  ///< events, at most
 /// cannot be trusted is not sealed.
 /// `tell`, if any, hears after each event which share of the log is sealed.
 std::int64_t seal_log(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
-                      const std::function<void(double share)>& tell = {});
+                      const std::function<void(double fraction)>& tell = {});
 
 std::uint32_t checksum_of(const LogEvent& event);
 

@@ -22,8 +22,8 @@ namespace houghstream {
 namespace {
 
 std::uint8_t to_byte(float value) {
-  const float share = value > 0.0F ? std::min(value, 1.0F) : 0.0F;  // NaN too
-  return static_cast<std::uint8_t>(std::lround(share * 255.0F));
+  const float fraction = value > 0.0F ? std::min(value, 1.0F) : 0.0F;  // NaN too
+  return static_cast<std::uint8_t>(std::lround(fraction * 255.0F));
 }
 
 /// glTF states colours linear in the light, all else as a screen shows them (IEC 61966-2-1).

@@ -10,7 +10,7 @@
 namespace houghstream {
 namespace {
 
-bool is_share(float value) {
+bool is_fraction(float value) {
   return value >= 0.0F && value <= 1.0F;
 }
 
@@ -120,8 +120,8 @@ ObjectPose pose_from_message(const object_pose_t& message) {
   require(message.status > object_pose_t::INVALID && message.status <= object_pose_t::VALID_UP_TO_SYMMETRY,
           "{}: pose status {}, expected {} to {}", message.class_name, message.status, object_pose_t::VALID,
           object_pose_t::VALID_UP_TO_SYMMETRY);
-  const bool are_shares = is_share(message.inlier_fraction) && is_share(message.visible_fraction) &&
-                          is_share(message.free_space_violation) && is_share(message.quality);
+  const bool are_shares = is_fraction(message.inlier_fraction) && is_fraction(message.visible_fraction) &&
+                          is_fraction(message.free_space_violation) && is_fraction(message.quality);
   require(are_shares, "{}: shares {}, {}, {} and {}, expected 0 to 1", message.class_name, message.inlier_fraction,
           message.visible_fraction, message.free_space_violation, message.quality);
   ObjectPose out;
@@ -190,7 +190,7 @@ bool apply_probabilities(const pose_probabilities_t& message, ObjectPoses& poses
   }
   for (std::size_t i = 0; i < poses.poses.size(); ++i) {
     const float shape_quality = message.right_up_to_symmetry[i];
-    require(is_share(shape_quality) && shape_quality >= message.right[i],
+    require(is_fraction(shape_quality) && shape_quality >= message.right[i],
             "probabilities of the poses of frame {}: {} up to symmetry, expected {} to 1", to_string(poses.frame),
             shape_quality, message.right[i]);
     poses.poses[i].shape_quality = shape_quality;

@@ -183,7 +183,7 @@ std::vector<ChromaMap> fit_chroma_maps_without_each(const std::vector<ChromaPair
 bool is_colourless(const cv::Mat& picture) {
   constexpr int kStep = 8;
   constexpr int kMaxDifference = 6;             // between channels of a pixel: JPEG leaves some
-  constexpr double kMaxShare = 0.002;           // of pixels that differ by more
+  constexpr double kMaxFraction = 0.002;        // of pixels that differ by more
   if (picture.type() != CV_8UC3) return false;  // is refused by whoever needs the frame
   int pixels = 0;
   int coloured = 0;
@@ -195,7 +195,7 @@ bool is_colourless(const cv::Mat& picture) {
       coloured += maximum - minimum > kMaxDifference ? 1 : 0;
     }
   }
-  return coloured <= kMaxShare * pixels;
+  return coloured <= kMaxFraction * pixels;
 }
 
 ChromaMap colourless_camera() {

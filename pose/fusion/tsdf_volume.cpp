@@ -139,7 +139,7 @@ void finish_slice(const Extent& extent, const TsdfSettings& settings, double min
 TsdfVolume fuse_extent(const std::vector<DepthView>& views, const Extent& extent, const TsdfSettings& settings) {
   require(settings.voxel > 0.0, "voxels of {} m, expected more than 0", settings.voxel);
   TsdfVolume grid = make_grid(extent, settings);
-  const double min_count = std::max(1.0, settings.min_share * static_cast<double>(views.size()));
+  const double min_count = std::max(1.0, settings.min_fraction * static_cast<double>(views.size()));
   parallel_for(settings.threads, grid.nz, [&](int k) {
     fill_slice(views, settings, k, grid);
     finish_slice(extent, settings, min_count, k, grid);

@@ -26,7 +26,7 @@ struct TsdfVolume {
 struct TsdfSettings {
   double voxel = 0.0015;           ///< metres
   double truncation_voxels = 4.0;  ///< distances beyond are only "in front"
-  double min_share = 0.05;         ///< of the views: a voxel of less weight counts as never seen
+  double min_fraction = 0.05;      ///< of the views: a voxel of less weight counts as never seen
   double outline_weight = 0.5;     ///< of a view whose mask says that nothing is there
   std::size_t max_voxels = 40'000'000;
   int threads = 1;  ///< any number gives the same result

@@ -25,13 +25,13 @@ std::array<float, 3> nearest_on_edges(const Eigen::Vector3f& p, const Corners& c
   float best_sq = std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
-    const float share = along_segment(p, c[i], c[j]);
-    const float distance_sq = (c[i] + share * (c[j] - c[i]) - p).squaredNorm();
+    const float fraction = along_segment(p, c[i], c[j]);
+    const float distance_sq = (c[i] + fraction * (c[j] - c[i]) - p).squaredNorm();
     if (distance_sq >= best_sq) continue;
     best_sq = distance_sq;
     best = {0.0F, 0.0F, 0.0F};
-    best[i] = 1.0F - share;
-    best[j] = share;
+    best[i] = 1.0F - fraction;
+    best[j] = fraction;
   }
   return best;
 }

@@ -33,8 +33,8 @@ LabColour to_lab(const cv::Vec3b& bgr) {
 }  // namespace
 
 const cv::Vec3b& texel_at(const cv::Mat& texture, const Eigen::Vector2f& uv) {
-  const auto index = [](float share, int size) {
-    return std::clamp(static_cast<int>(share * static_cast<float>(size)), 0, size - 1);
+  const auto index = [](float fraction, int size) {
+    return std::clamp(static_cast<int>(fraction * static_cast<float>(size)), 0, size - 1);
   };
   return texture.at<cv::Vec3b>(index(uv.y(), texture.rows), index(uv.x(), texture.cols));
 }

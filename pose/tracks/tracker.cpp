@@ -96,11 +96,11 @@ std::vector<PoseObservation> Tracker::associate(const std::vector<PoseObservatio
 void Tracker::update_track(Track& track, const PoseObservation& pose, double seconds) {
   constexpr double kRateHz = 30.0;
   constexpr double kMax = 4.0;
-  const double share = std::clamp(seconds * kRateHz, 0.5, 1.5);
+  const double fraction = std::clamp(seconds * kRateHz, 0.5, 1.5);
   track.pose.update(pose, symmetries_of(models_, track.class_name), track.free_space_violation_s > 0.0);
-  track.log_odds =
-      std::min(settings_.existence.max_log_odds,
-               track.log_odds + share * settings_.existence.gain * std::clamp(quality_logit(pose.quality), 0.3, kMax));
+  track.log_odds = std::min(
+      settings_.existence.max_log_odds,
+      track.log_odds + fraction * settings_.existence.gain * std::clamp(quality_logit(pose.quality), 0.3, kMax));
   ++track.seen;
   track.is_observed = true;
   track.free_space_violation_s = 0.0;

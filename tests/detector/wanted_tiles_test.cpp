@@ -29,7 +29,7 @@ RgbdFrame other_frame() {
 DetectionSettings curious() {
   DetectionSettings settings;
   settings.leaves.first_trees = 0;
-  settings.leaves.min_class_share = 1e-6F;
+  settings.leaves.min_class_fraction = 1e-6F;
   return settings;
 }
 

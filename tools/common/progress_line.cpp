@@ -30,9 +30,9 @@ std::string in_words(double seconds) {
 std::string progress_words(const std::string& title, double done, double whole, double seconds) {
   if (whole <= 0.0) return fmt::format("{}: {:.0f} so far", title, done);
   if (done <= 0.0) return fmt::format("{}: 0 %", title);
-  const double share = std::min(done / whole, 1.0);
-  return fmt::format("{}: {:.0f} %, about {} left", title, std::floor(100.0 * share),
-                     in_words(seconds * (1.0 - share) / share));
+  const double fraction = std::min(done / whole, 1.0);
+  return fmt::format("{}: {:.0f} %, about {} left", title, std::floor(100.0 * fraction),
+                     in_words(seconds * (1.0 - fraction) / fraction));
 }
 
 ProgressOutput progress_on_stderr() {

@@ -53,11 +53,11 @@ class Panel {
 
   void draw_grid() {
     for (int i = 0; i <= 10; i += 2) {
-      const double share = i / 10.0;
-      cv::line(picture_, at(share, 0), at(share, 1), kGrid, 1);
-      cv::line(picture_, at(0, share), at(1, share), kGrid, 1);
-      text(fmt::format("{:.1f}", share), at(share, 0) + cv::Point(-12, 20), 0.42);
-      text(fmt::format("{:.1f}", share), at(0, share) + cv::Point(-34, 5), 0.42);
+      const double fraction = i / 10.0;
+      cv::line(picture_, at(fraction, 0), at(fraction, 1), kGrid, 1);
+      cv::line(picture_, at(0, fraction), at(1, fraction), kGrid, 1);
+      text(fmt::format("{:.1f}", fraction), at(fraction, 0) + cv::Point(-12, 20), 0.42);
+      text(fmt::format("{:.1f}", fraction), at(0, fraction) + cv::Point(-34, 5), 0.42);
     }
   }
 
@@ -78,8 +78,8 @@ class Panel {
     const int bottom = kMargin + kSide + kGap + kCounts;
     constexpr int kTextHeight = 14;
     for (const ReliabilityBin& bin : calibration_.bins) {
-      const double share = std::log1p(bin.count) / std::log1p(maximum);
-      const int top = bottom - static_cast<int>(std::lround(share * (kCounts - kTextHeight)));
+      const double fraction = std::log1p(bin.count) / std::log1p(maximum);
+      const int top = bottom - static_cast<int>(std::lround(fraction * (kCounts - kTextHeight)));
       cv::rectangle(picture_, {at(bin.from, 0).x + 2, top}, {at(bin.to, 0).x - 2, bottom}, kCountBar, cv::FILLED);
       text(std::to_string(bin.count), {at(bin.from, 0).x + 3, top - 3}, 0.36);
     }

@@ -25,9 +25,9 @@ inline void add_search_options(CommandLine& app, SearchOptions& options) {
 
 inline CommandOption add_min_mass_option(CommandLine& app, SearchOptions& options) {
   return app
-      .add_option("--min-mass", options.min_mass_share,
+      .add_option("--min-mass", options.min_mass_fraction,
                   "vote mass, over a whole object's, from which a maximum counts; default: the profile's")
-      .range(range_of(&VotingSettings::min_mass_share));
+      .range(range_of(&VotingSettings::min_mass_fraction));
 }
 
 inline CommandOption add_min_quality_option(CommandLine& app, std::optional<float>& min_quality) {

@@ -15,7 +15,7 @@ constexpr float kCandidatesFrom = 0.2F;
 struct SearchOptions {
   std::optional<int> stride;
   std::optional<float> threshold;
-  std::optional<float> min_mass_share;
+  std::optional<float> min_mass_fraction;
   float candidates_from = 1.0F;  ///< none
   bool learn_camera_colours = true;
   int threads = 2;
@@ -28,7 +28,7 @@ struct SearchOptions {
     settings.evidence.threshold = threshold.value_or(settings.evidence.threshold);
     settings.evidence.candidates_from = candidates_from;
     settings.evidence.learn_camera_colours = learn_camera_colours;
-    settings.voting.min_mass_share = min_mass_share.value_or(settings.voting.min_mass_share);
+    settings.voting.min_mass_fraction = min_mass_fraction.value_or(settings.voting.min_mass_fraction);
     settings.threads = threads;
     return settings;
   }

@@ -98,7 +98,7 @@ CommandLine add_export(CommandLine& app, const std::string& name, const std::str
 
 std::int64_t seal_with_progress(const Options& options) {
   ProgressLine progress(std::filesystem::path(options.in).filename().string(), 1.0);
-  return seal_log(options.in, options.out, [&](double share) { progress.at(share); });
+  return seal_log(options.in, options.out, [&](double fraction) { progress.at(fraction); });
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ struct Overrides {
   std::optional<int> trees;
   std::optional<int> max_depth;
   std::optional<int> tests;
-  std::optional<double> offset_share;
+  std::optional<double> offset_fraction;
   std::optional<double> single_pixel_fraction;
   std::optional<double> shape_single_pixel_fraction;
   std::optional<int> patches;
@@ -55,8 +55,8 @@ void add_overrides(CommandLine& app, const TrainProgram& program, Overrides& ove
   app.add_option("--max-depth", overrides.max_depth, "levels").range(range_of(&TrainingSettings::max_depth));
   app.add_option("--tests", overrides.tests, "random tests tried per node, at most")
       .range(range_of(&TrainingSettings::tests_per_node));
-  app.add_option("--offset-share", overrides.offset_share, "of the nodes are split by offsets, not by labels")
-      .range(range_of(&TrainingSettings::offset_share));
+  app.add_option("--offset-share", overrides.offset_fraction, "of the nodes are split by offsets, not by labels")
+      .range(range_of(&TrainingSettings::offset_fraction));
   app.add_option("--alone-share", overrides.single_pixel_fraction, "of the tests look at one pixel, not at two")
       .range(range_of(&TrainingSettings::single_pixel_fraction));
   app.add_option("--shape-alone-share", overrides.shape_single_pixel_fraction,
@@ -87,7 +87,7 @@ Profile overridden(const TrainProgram& program, const Overrides& overrides) {
   take(overrides.trees, training.trees);
   take(overrides.max_depth, training.max_depth);
   take(overrides.tests, training.tests_per_node);
-  take(overrides.offset_share, training.offset_share);
+  take(overrides.offset_fraction, training.offset_fraction);
   take(overrides.single_pixel_fraction, training.single_pixel_fraction);
   take(overrides.shape_single_pixel_fraction, training.shape_single_pixel_fraction);
   take(overrides.patches, training.patches_per_view);

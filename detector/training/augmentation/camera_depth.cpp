@@ -102,9 +102,9 @@ void blur_edges(const DepthVariation& camera, const Edges& edges, cv::Mat& depth
       const float other = before.at<float>(from_y, from_x);
       if (!std::isnan(other)) row[x] = other;
       if (is_edge[x] == 0 || random.uniform() >= camera.flying_pixel_fraction) continue;
-      const auto share = static_cast<float>(random.uniform());
+      const auto fraction = static_cast<float>(random.uniform());
       const float nearest = edges.nearest.at<float>(y, x);
-      row[x] = nearest + share * (edges.farthest.at<float>(y, x) - nearest);
+      row[x] = nearest + fraction * (edges.farthest.at<float>(y, x) - nearest);
     }
   }
 }

@@ -14,7 +14,7 @@ class Draw {
   double part(double low, double high) { return strength_ * random_.uniform(low, high); }
   double factor(double low_stops, double high_stops) { return std::exp2(part(low_stops, high_stops)); }
   int whole(int low, int high) { return static_cast<int>(std::lround(part(low - 0.49, high + 0.49))); }
-  bool happens(double share) { return random_.uniform() < share * std::min(1.0, strength_); }
+  bool happens(double fraction) { return random_.uniform() < fraction * std::min(1.0, strength_); }
   Random& random() { return random_; }
 
  private:
@@ -95,16 +95,16 @@ CameraRandomisation sample_camera(double strength, Random& random) {
   return camera;
 }
 
-void randomise_camera(double share, double strength, RgbdFrame& frame, Random& random) {
-  if (share <= 0.0 || strength <= 0.0 || random.uniform() >= share) return;
+void randomise_camera(double fraction, double strength, RgbdFrame& frame, Random& random) {
+  if (fraction <= 0.0 || strength <= 0.0 || random.uniform() >= fraction) return;
   const double own = random.uniform();  // most cameras differ little
   const CameraRandomisation camera = sample_camera(strength * own, random);
   apply_depth(camera, frame.camera, frame.depth, random, frame.colour);
   apply_colour(camera, frame.colour, random);
 }
 
-void jitter_tone(double share, double strength, cv::Mat& colour, Random& random) {
-  if (share <= 0.0 || strength <= 0.0 || random.uniform() >= share) return;
+void jitter_tone(double fraction, double strength, cv::Mat& colour, Random& random) {
+  if (fraction <= 0.0 || strength <= 0.0 || random.uniform() >= fraction) return;
   Draw draw(strength * random.uniform(), random);
   CameraRandomisation camera;
   camera.colour.gamma = draw.factor(-0.4, 0.4);

@@ -91,7 +91,7 @@ struct CameraRandomisation {
 CameraRandomisation sample_camera(double strength, Random& random);
 
 /// Another camera looks, in a share of all pictures: one that differs by anything up to `strength`.
-void randomise_camera(double share, double strength, RgbdFrame& frame, Random& random);
+void randomise_camera(double fraction, double strength, RgbdFrame& frame, Random& random);
 
 /// What the camera makes of a picture, in place: CV_8UC3 BGR. Random gives the noise.
 void apply_colour(const CameraRandomisation& camera, cv::Mat& colour, Random& random);
@@ -104,6 +104,6 @@ void apply_depth(const CameraRandomisation& camera, const Camera& view, cv::Mat&
 /// Of the colours of a camera alone what it does to coded values: gamma, contrast, levels, saturation, hue. More widely
 /// than sample_camera(): what trees have learnt from may be stranger than what scores are learnt from, which would only
 /// trust colours less.
-void jitter_tone(double share, double strength, cv::Mat& colour, Random& random);
+void jitter_tone(double fraction, double strength, cv::Mat& colour, Random& random);
 
 }  // namespace houghstream::training

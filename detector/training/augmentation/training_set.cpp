@@ -105,9 +105,9 @@ cv::Rect seen_by(const TrainingImage& picture, const PatchSettings& patch) {
 cv::Rect background_window(const RgbdFrame& background, const FeatureLevel& level, const Scales& scales,
                            Random& random) {
   constexpr int kTries = 12;
-  const float share = std::min(0.5F, 1.0F / (4.0F * level.scale));
-  const cv::Size size(static_cast<int>(static_cast<float>(background.colour.cols) * share),
-                      static_cast<int>(static_cast<float>(background.colour.rows) * share));
+  const float fraction = std::min(0.5F, 1.0F / (4.0F * level.scale));
+  const cv::Size size(static_cast<int>(static_cast<float>(background.colour.cols) * fraction),
+                      static_cast<int>(static_cast<float>(background.colour.rows) * fraction));
   cv::Rect place;
   for (int i = 0; i < kTries; ++i) {
     place = cv::Rect(random.between(0, background.colour.cols - size.width),

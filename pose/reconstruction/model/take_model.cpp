@@ -63,7 +63,7 @@ std::vector<DepthView> views_about(const Take& take, const Eigen::AlignedBox3d& 
 fusion::TsdfSettings grid_settings(double voxel, int threads) {
   fusion::TsdfSettings settings;
   settings.voxel = voxel;
-  settings.min_share = 0.02;
+  settings.min_fraction = 0.02;
   settings.outline_weight = 0.0;  // beside a crop nothing is known
   settings.threads = threads;
   return settings;
@@ -375,7 +375,7 @@ ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views
   fusion::TsdfSettings grid_settings;
   const Eigen::AlignedBox3d bounds = mesh_bounds(known).cast<double>();
   grid_settings.voxel = bounds.diagonal().norm() > 0.3 ? 2.0 * settings.voxel_m : settings.voxel_m;
-  grid_settings.min_share = 0.02;
+  grid_settings.min_fraction = 0.02;
   grid_settings.outline_weight = 0.3;
   grid_settings.threads = settings.threads;
   const Eigen::Vector3d margin = Eigen::Vector3d::Constant(settings.beside_m);

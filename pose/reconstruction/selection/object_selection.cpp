@@ -31,7 +31,7 @@ int meant_cluster(const Clusters& clusters, const RgbdFrame& frame, const Select
   for (std::size_t i = 1; i < clusters.list.size(); ++i) {
     const Cluster& cluster = clusters.list[i];
     if (cluster.pixels < kMinPixels || cluster.lowest > kMaxFoot_m) continue;
-    if (!settings.box_px && cluster.to_middle_px > settings.max_share * frame.depth.cols) continue;
+    if (!settings.box_px && cluster.to_middle_px > settings.max_fraction * frame.depth.cols) continue;
     const double rank = settings.box_px ? -cluster.pixels : cluster.to_middle_px - 1e-6 * cluster.pixels;
     if (rank >= best_rank) continue;
     best_rank = rank;

@@ -35,7 +35,7 @@ struct SelectionSettings {
   double min_m = 0.012;            ///< sides of an object
   double max_m = 0.6;
   double max_distance_m = 2.0;  ///< from the camera
-  double max_share = 0.25;      ///< of the image's width: how far from its middle or from at_px, without a box
+  double max_fraction = 0.25;   ///< of the image's width: how far from its middle or from at_px, without a box
   std::uint64_t seed = 1;
 };
 

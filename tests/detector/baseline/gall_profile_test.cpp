@@ -93,8 +93,8 @@ TEST(ForestsSettings, AreThoseItWasTrainedBy) {
       EXPECT_EQ(settings.spacing.metres, profile.detection.spacing.metres);
       EXPECT_EQ(settings.leaves.first_trees, profile.detection.leaves.first_trees);
       EXPECT_EQ(settings.evidence.threshold, profile.detection.evidence.threshold);
-      EXPECT_EQ(settings.voting.min_mass_share, profile.detection.voting.min_mass_share);
-      EXPECT_EQ(settings.leaves.min_class_share, profile.detection.leaves.min_class_share);
+      EXPECT_EQ(settings.voting.min_mass_fraction, profile.detection.voting.min_mass_fraction);
+      EXPECT_EQ(settings.leaves.min_class_fraction, profile.detection.leaves.min_class_fraction);
     }
   }
 }
@@ -113,13 +113,13 @@ TEST(ForestsSettings, OfTheProductsProfilesAreTheProducts) {
 
 TEST(ForestsSettings, GallsPatchesVoteForWhatIsLikelierThanByChance) {
   Forest forest = forest_of(make_profile("gall"));
-  EXPECT_EQ(detection_settings_of(forest).leaves.min_class_share, 0.2F);  // four objects and the background
+  EXPECT_EQ(detection_settings_of(forest).leaves.min_class_fraction, 0.2F);  // four objects and the background
   forest.classes.resize(7);
-  EXPECT_EQ(detection_settings_of(forest).leaves.min_class_share, 0.125F);
+  EXPECT_EQ(detection_settings_of(forest).leaves.min_class_fraction, 0.125F);
   forest = forest_of(make_profile("realtime"));
-  const float ours = detection_settings_of(forest).leaves.min_class_share;
+  const float ours = detection_settings_of(forest).leaves.min_class_fraction;
   forest.classes.resize(20);
-  EXPECT_EQ(detection_settings_of(forest).leaves.min_class_share, ours);
+  EXPECT_EQ(detection_settings_of(forest).leaves.min_class_fraction, ours);
 }
 
 float patch_reach(const Profile& profile) {

@@ -10,9 +10,9 @@
 namespace houghstream {
 namespace {
 
-Evidence with_mass(float share) {
+Evidence with_mass(float fraction) {
   Evidence evidence;
-  evidence.relative_vote_mass = share;
+  evidence.relative_vote_mass = fraction;
   return evidence;
 }
 
@@ -33,8 +33,8 @@ ScoreModel of_few_terms() {
 TEST(Score, IsAProbabilityThatGrowsWithTheMass) {
   const ScoreModel model = of_few_terms();
   float last = 0.0F;
-  for (const float share : {0.0F, 0.01F, 0.1F, 0.3F, 0.6F, 1.0F, 3.0F}) {
-    const float p = score(model, with_mass(share));
+  for (const float fraction : {0.0F, 0.01F, 0.1F, 0.3F, 0.6F, 1.0F, 3.0F}) {
+    const float p = score(model, with_mass(fraction));
     EXPECT_GT(p, last);
     EXPECT_LT(p, 1.0F);
     last = p;

@@ -36,10 +36,10 @@ cv::Mat borrowed_from(const cv::Mat& depth) {
 
 TEST(HoleFilling, HolesBorrowFromTheNearestPixelOrOneHardlyFartherAway) {
   Random random(51);
-  for (const double share : {0.02, 0.5, 0.98}) {
+  for (const double fraction : {0.02, 0.5, 0.98}) {
     cv::Mat depth = numbered_depth({90, 70});
     cv::Mat missing = cv::Mat::zeros(depth.size(), CV_8UC1);
-    for (int i = 0; i < 90 * 70; ++i) missing.at<std::uint8_t>(i / 90, i % 90) = random.uniform() < share ? 1 : 0;
+    for (int i = 0; i < 90 * 70; ++i) missing.at<std::uint8_t>(i / 90, i % 90) = random.uniform() < fraction ? 1 : 0;
     missing(cv::Rect(20, 20, 30, 25)).setTo(1);
     depth.setTo(kNoValue, missing);
     cv::Mat nearest;

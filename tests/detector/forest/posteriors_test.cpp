@@ -51,12 +51,12 @@ TEST(Posteriors, AShareThatIsJustReachedIsEnough) {
   const Forest forest = three_leaves();
   const ForestIndex index(forest);
   const std::vector<std::int32_t> leaves = {0, 2};
-  const float share = 0.8F / 2.0F;
-  PatchPosteriors posteriors(index, 1, share);
+  const float fraction = 0.8F / 2.0F;
+  PatchPosteriors posteriors(index, 1, fraction);
   const std::uint32_t patch = 0;
   posteriors.note({0, 1, &patch, leaves.data()});
   EXPECT_EQ(voters_for(0, posteriors).size(), 1U);
-  PatchPosteriors stricter(index, 1, std::nextafter(share, 1.0F));
+  PatchPosteriors stricter(index, 1, std::nextafter(fraction, 1.0F));
   stricter.note({0, 1, &patch, leaves.data()});
   EXPECT_TRUE(voters_for(0, stricter).empty());
 }

@@ -63,7 +63,7 @@ class Traversal : public ::testing::Test {
 
   /// Compares who goes on after `trees` trees, and where to, with the forest's leaves; some but not all do where the
   /// share is neither 0 nor large.
-  void expect_given_up_after(int trees, float share, const std::vector<FeatureImage>& features,
+  void expect_given_up_after(int trees, float fraction, const std::vector<FeatureImage>& features,
                              const PatchGrid& patches) const {
     const std::size_t all = forest.roots.size();
     std::vector<std::int32_t> expected = leaves_of(index, features, patches, 1);
@@ -71,14 +71,14 @@ class Traversal : public ::testing::Test {
     for (std::size_t p = 0; p < patches.size(); ++p) {
       float sum = 0.0F;
       for (int tree = 0; tree < trees; ++tree) sum += index.leaf_summaries()[expected[p * all + tree]].max_posterior;
-      if (sum >= share * static_cast<float>(trees)) continue;
+      if (sum >= fraction * static_cast<float>(trees)) continue;
       ++given_up;
       std::fill_n(expected.begin() + static_cast<std::ptrdiff_t>(p * all), all, -1);
     }
-    EXPECT_EQ(given_up > 0, share > 0.0F);
+    EXPECT_EQ(given_up > 0, fraction > 0.0F);
     EXPECT_LT(given_up, patches.size());
     for (const int threads : {-3, -1, 1, 2, 3}) {
-      EXPECT_EQ(leaves_of(index, features, patches, threads, {trees, share}), expected) << threads << " threads";
+      EXPECT_EQ(leaves_of(index, features, patches, threads, {trees, fraction}), expected) << threads << " threads";
     }
   }
 
@@ -102,7 +102,7 @@ TEST_F(Traversal, ManyPatchesAtOnceReachTheLeavesOfOneAtATime) {
   look_at_room(2, features, patches);
   ASSERT_GT(patches.size(), 4000U);
   expect_leaves_of_find_leaf(index, features, patches);
-  for (const float share : {0.0F, 0.02F, 0.3F}) expect_given_up_after(2, share, features, patches);
+  for (const float fraction : {0.0F, 0.02F, 0.3F}) expect_given_up_after(2, fraction, features, patches);
 }
 
 TEST_F(Traversal, SoDoPatchesAtEveryPixelAndThoseWithGaps) {
@@ -126,7 +126,7 @@ TEST_F(Traversal, SoDoPatchesAtEveryPixelWithDepth) {
   PatchGrid patches;
   look_at_room(1, features, patches);
   expect_leaves_of_find_leaf(index, features, patches);
-  for (const float share : {0.0F, 0.02F, 0.3F}) expect_given_up_after(2, share, features, patches);
+  for (const float fraction : {0.0F, 0.02F, 0.3F}) expect_given_up_after(2, fraction, features, patches);
 }
 
 TEST_F(Traversal, NobodyIsGivenUpAfterTheLastTree) {

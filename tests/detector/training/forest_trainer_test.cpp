@@ -53,11 +53,11 @@ TEST(ForestTrainer, LeavesHoldProbabilitiesAndSharesOfVotes) {
     EXPECT_LE(sum, 1.0001F);
   }
   for (const LeafClass& entry : forest.leaf_classes) {
-    float share = 0.0F;
+    float fraction = 0.0F;
     for (int v = 0; v < entry.vote_count; ++v)
-      share += forest.votes[entry.first_vote + static_cast<std::uint32_t>(v)].weight;
-    EXPECT_GT(share, 0.0F);
-    EXPECT_LE(share, 1.0001F);
+      fraction += forest.votes[entry.first_vote + static_cast<std::uint32_t>(v)].weight;
+    EXPECT_GT(fraction, 0.0F);
+    EXPECT_LE(fraction, 1.0001F);
   }
 }
 

@@ -133,7 +133,7 @@ TEST(SplitSearch, TestsOnShapeLookAtOnePixelAsOftenAsAskedAndThoseOnLightDoNot) 
   FeatureSettings features;
   features.handling = ScaleHandling::kScaleSpace;  // with planes of scaled depth
   const FeatureLayout layout(features);
-  for (const double share : {0.0, 1.0}) EXPECT_EQ(alone_of_ten(layout, toy::kClassPlane, share), 0);
+  for (const double fraction : {0.0, 1.0}) EXPECT_EQ(alone_of_ten(layout, toy::kClassPlane, fraction), 0);
   const int surface = layout.block(kDepthHog).first;
   EXPECT_EQ(alone_of_ten(layout, surface, 0.0), 0);
   EXPECT_EQ(alone_of_ten(layout, surface, 1.0), 10);
@@ -162,8 +162,8 @@ TEST(SplitSearch, ANodeLooksAtPointHistogramsOrAtTheRestAsOftenAsAsked) {
   }
   TrainingSettings settings;
   const PatchSettings patch;
-  for (const auto& [share, minimum, maximum] : {std::tuple{0.0, 0, 0}, {0.3, 5, 27}, {1.0, 50, 50}}) {
-    settings.histogram_share = share;
+  for (const auto& [fraction, minimum, maximum] : {std::tuple{0.0, 0, 0}, {0.3, 5, 27}, {1.0, 50, 50}}) {
+    settings.histogram_fraction = fraction;
     SplitSearch search(set, patch, settings, {1.0F, 1.0F}, true);
     Random random(6);
     int histograms = 0;
@@ -172,8 +172,8 @@ TEST(SplitSearch, ANodeLooksAtPointHistogramsOrAtTheRestAsOftenAsAsked) {
       ASSERT_TRUE(test);
       histograms += test->plane == first ? 1 : 0;
     }
-    EXPECT_GE(histograms, minimum) << share;
-    EXPECT_LE(histograms, maximum) << share;
+    EXPECT_GE(histograms, minimum) << fraction;
+    EXPECT_LE(histograms, maximum) << fraction;
   }
 }
 

@@ -67,9 +67,9 @@ TEST(TreeTrainer, ATreeTellsHeldOutPicturesApart) {
 }
 
 TEST(TreeTrainer, NodesAreSplitByOffsetsAsOftenAsAsked) {
-  const auto first_plane = [](double offset_share) {
+  const auto first_plane = [](double offset_fraction) {
     TrainingSettings settings = quick();
-    settings.offset_share = offset_share;
+    settings.offset_fraction = offset_fraction;
     return static_cast<int>(grow_tree(toy::planted_set(), {}, settings, 0).nodes.at(0).test.plane);
   };
   EXPECT_EQ(first_plane(0.0), toy::kClassPlane);

@@ -24,13 +24,13 @@ Forest one_leaf(const Eigen::Vector3f& offset, float probability) {
   return forest;
 }
 
-HoughSpace vote(const Forest& forest, const std::vector<Eigen::Vector3f>& points, float min_share = 0.1F) {
+HoughSpace vote(const Forest& forest, const std::vector<Eigen::Vector3f>& points, float min_fraction = 0.1F) {
   PatchGrid patches;
   patches.point_camera = points;
   patches.x.resize(points.size());
   const std::vector<std::int32_t> leaves(points.size() * forest.roots.size(), 0);
   const ForestIndex index(forest);
-  PatchPosteriors posteriors(index, 1, min_share);
+  PatchPosteriors posteriors(index, 1, min_fraction);
   std::vector<std::uint32_t> all(points.size());
   std::iota(all.begin(), all.end(), 0U);
   posteriors.note({0, all.size(), all.data(), leaves.data()});

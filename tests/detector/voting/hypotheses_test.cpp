@@ -52,7 +52,7 @@ std::vector<Hypothesis> find(const PatchGrid& patches, float min_mass) {
   const ForestIndex index(forest);
   const PatchPosteriors posteriors = all_voting(index, patches);
   VotingSettings settings;
-  settings.min_mass_share = min_mass;
+  settings.min_mass_fraction = min_mass;
   const VotingInput input{forest, patches, posteriors, toy::kSmallCamera, settings};
   VotingWorkspace::Worker workspace;
   cast_votes(input, 0, workspace.casting, workspace.space);
@@ -101,7 +101,7 @@ TEST(Hypotheses, WhatIsFarIsNotPassedOverForWhatHasMorePatches) {
   const ForestIndex index(forest);
   const PatchPosteriors posteriors = all_voting(index, patches);
   VotingSettings settings;
-  settings.min_mass_share = 0.0F;
+  settings.min_mass_fraction = 0.0F;
   settings.candidates_per_class = 1;
   const VotingInput input{forest, patches, posteriors, toy::kSmallCamera, settings};
   VotingWorkspace workspace;

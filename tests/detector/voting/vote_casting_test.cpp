@@ -30,12 +30,12 @@ Forest random_forest(Random& random) {
 
 /// One vote, as vote casting is to compute it.
 Vote vote_of(const Forest& forest, const LeafClass& entry, const LeafVote& leaf_vote, const Eigen::Vector3f& point) {
-  const float share = 1.0F / static_cast<float>(forest.roots.size());
+  const float fraction = 1.0F / static_cast<float>(forest.roots.size());
   const Eigen::Matrix3f R = ray_rotation(point);
   const Eigen::Vector3f& o = leaf_vote.offset;
   Eigen::Vector3f centre;
   for (int i = 0; i < 3; ++i) centre[i] = point[i] + (R(i, 0) * o.x() + (R(i, 1) * o.y() + R(i, 2) * o.z()));
-  return {centre, entry.probability * leaf_vote.weight * share};
+  return {centre, entry.probability * leaf_vote.weight * fraction};
 }
 
 std::uint32_t cell_of(const Eigen::Vector3f& centre, const CellGrid& grid) {

@@ -68,8 +68,8 @@ TEST(CameraColours, ALightThatJumpsIsLearntAnew) {
 TEST(CameraColours, ALightThatChangesSlowlyIsFollowed) {
   CameraColours colours;
   for (int frame = 0; frame <= 40; ++frame) {
-    const double share = frame / 40.0;
-    colours.update(four_objects((1.0 - share) * kWarm + share * kCold));
+    const double fraction = frame / 40.0;
+    colours.update(four_objects((1.0 - fraction) * kWarm + fraction * kCold));
   }
   EXPECT_LT((shift_of(colours.map()) - kCold).norm(), 10.0);
 }

@@ -27,9 +27,9 @@ float agreement(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3
   return compare(frame, mesh, T_camera_object).value().agreement;
 }
 
-ColourComparison agreeing_by(float share) {
+ColourComparison agreeing_by(float fraction) {
   ColourComparison comparison;
-  comparison.agreement = share;
+  comparison.agreement = fraction;
   return comparison;
 }
 

@@ -28,7 +28,7 @@ std::string fault(CommandLine& line, const std::vector<std::string>& words) {
 TEST(CommandLine, OptionsTakeWhatIsGivenAndKeepTheRest) {
   CommandLine line("words", "tool");
   int count = 3;
-  float share = 0.5F;
+  float fraction = 0.5F;
   std::string file = "before";
   std::optional<double> limit;
   std::optional<int> untouched;
@@ -36,7 +36,7 @@ TEST(CommandLine, OptionsTakeWhatIsGivenAndKeepTheRest) {
   bool shown = true;
   line.add_option("file", file);
   line.add_option("-c,--count", count);
-  line.add_option("--share", share);
+  line.add_option("--share", fraction);
   line.add_option("--limit", limit);
   line.add_option("--untouched", untouched);
   line.add_flag("--loud", loud, "words");
@@ -44,7 +44,7 @@ TEST(CommandLine, OptionsTakeWhatIsGivenAndKeepTheRest) {
   EXPECT_EQ(line.parse({"a.txt", "-c", "7", "--limit", "0.25", "--loud", "--no-show"}), std::nullopt);
   EXPECT_EQ(file, "a.txt");
   EXPECT_EQ(count, 7);
-  EXPECT_EQ(share, 0.5F);
+  EXPECT_EQ(fraction, 0.5F);
   EXPECT_EQ(limit, 0.25);
   EXPECT_EQ(untouched, std::nullopt);
   EXPECT_TRUE(loud);
@@ -55,12 +55,12 @@ TEST(CommandLine, WhatIsOutsideItsLimitsIsRefused) {
   CommandLine line("words", "tool");
   int whole = 1;
   double part = 1.0;
-  double share = 1.0;
+  double fraction = 1.0;
   double weight = 1.0;
   int kernel = 3;
   line.add_option("--whole", whole).range(1, 5);
   line.add_option("--part", part).range(0.5, 2.0);
-  line.add_option("--share", share).positive();
+  line.add_option("--share", fraction).positive();
   line.add_option("--weight", weight).non_negative();
   line.add_option("--kernel", kernel).one_of({3, 5});
   EXPECT_EQ(line.parse({"--whole", "5", "--part", "0.5", "--weight", "0", "--kernel", "5"}), std::nullopt);
@@ -77,11 +77,11 @@ TEST(CommandLine, WhatIsOutsideItsLimitsIsRefused) {
 
 TEST(CommandLine, NumbersAreFiniteAndFitTheirOption) {
   CommandLine line("words", "tool");
-  float share = 0.0F;
+  float fraction = 0.0F;
   std::optional<double> limit;
   int count = 0;
   std::uint64_t seed = 0;
-  line.add_option("--share", share);
+  line.add_option("--share", fraction);
   line.add_option("--limit", limit);
   line.add_option("--count", count);
   line.add_option("--seed", seed);
@@ -255,14 +255,14 @@ struct Configured {
   CommandLine line{"words", "tool"};
   int count = 3;
   std::string objects = "none";
-  std::optional<double> share;
+  std::optional<double> fraction;
   bool loud = false;
   std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "command_line_test.toml";
 
   explicit Configured(const std::string& text) {
     line.add_option("--count", count, "how many").capture_default_str();
     line.add_option("--objects", objects, "which");
-    line.add_option("--share", share, "how much").range(0.0, 1.0);
+    line.add_option("--share", fraction, "how much").range(0.0, 1.0);
     line.add_flag("--loud", loud, "how");
     line.set_version("tool 1");
     line.add_config_file();
@@ -281,7 +281,7 @@ TEST(CommandLine, BlanksOfAnyKindStandAboutKeysAndValues) {
   Configured given("\tcount\t=\t5\t# tabs\r\n  share = 0.5\n");
   EXPECT_EQ(given.line.parse({"--config", given.file.string()}), std::nullopt);
   EXPECT_EQ(given.count, 5);
-  EXPECT_EQ(given.share, 0.5);
+  EXPECT_EQ(given.fraction, 0.5);
 }
 
 TEST(CommandLine, AnUnknownKeyOfAFileIsRefusedWithTheNearestOne) {
@@ -345,7 +345,7 @@ TEST(CommandLine, ATemplateOfAFileIsSuchAFile) {
   EXPECT_EQ(second.line.parse({"--config", second.file.string()}), std::nullopt);
   EXPECT_EQ(second.count, 3);
   EXPECT_EQ(second.objects, "none") << text;
-  EXPECT_EQ(second.share, std::nullopt) << text;
+  EXPECT_EQ(second.fraction, std::nullopt) << text;
 }
 
 TEST(CommandLine, ATemplateHoldsNoOptionOfASubcommand) {

@@ -17,10 +17,10 @@ TEST(ReliabilityPicture, BarsAreAsHighAsWhatIsTrue) {
   const Calibration nothing = calibrate({}, 0);
   const cv::Mat empty = reliability_picture(nothing, nothing);
   EXPECT_EQ(coloured_pixels(empty), 0);
-  const auto pixels = [&](double share) {
+  const auto pixels = [&](double fraction) {
     std::vector<Prediction> statements;
     statements.reserve(20);
-    for (int i = 0; i < 20; ++i) statements.push_back({0.95, i < 20 * share});
+    for (int i = 0; i < 20; ++i) statements.push_back({0.95, i < 20 * fraction});
     const cv::Mat picture = reliability_picture(nothing, calibrate(statements, 20));
     const int half = picture.cols / 2;
     EXPECT_EQ(coloured_pixels(picture.colRange(0, half)), 0) << "quality stands on the right";

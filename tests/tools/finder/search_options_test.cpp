@@ -30,21 +30,21 @@ TEST(SearchOptions, WithoutOptionsAForestIsSearchedAsItsProfileSays) {
     EXPECT_EQ(settings.spacing.stride, expected.spacing.stride) << name;
     EXPECT_EQ(settings.spacing.metres, expected.spacing.metres) << name;
     EXPECT_EQ(settings.evidence.threshold, expected.evidence.threshold) << name;
-    EXPECT_EQ(settings.voting.min_mass_share, expected.voting.min_mass_share) << name;
-    EXPECT_EQ(settings.leaves.min_class_share, expected.leaves.min_class_share) << name;
+    EXPECT_EQ(settings.voting.min_mass_fraction, expected.voting.min_mass_fraction) << name;
+    EXPECT_EQ(settings.leaves.min_class_fraction, expected.leaves.min_class_fraction) << name;
     EXPECT_EQ(settings.voting.vote_sigma, expected.voting.vote_sigma) << name;
   }
 }
 
 TEST(SearchOptions, WhatIsAskedForReplacesTheProfilesOwn) {
   SearchOptions options = parsed({"--threads", "3", "--stride", "4", "--threshold", "0.25"});
-  options.min_mass_share = 0.07F;
+  options.min_mass_fraction = 0.07F;
   const DetectionSettings settings = options.settings_for(forest_of("paper"));
   EXPECT_EQ(settings.threads, 3);
   EXPECT_EQ(settings.spacing.stride, 4);
   EXPECT_EQ(settings.spacing.metres, 0.0F);
   EXPECT_EQ(settings.evidence.threshold, 0.25F);
-  EXPECT_EQ(settings.voting.min_mass_share, 0.07F);
+  EXPECT_EQ(settings.voting.min_mass_fraction, 0.07F);
 }
 
 TEST(SearchOptions, AbsurdValuesAreRefused) {

@@ -24,7 +24,7 @@ class SealLog : public testing::Test {
     for (int i = 0; i < 20; ++i) log.add("OPENNI_FRAME", to_message(numbered_frame(i), {}, i));
     for (std::size_t i = 0; i < kSealedBlock; ++i) log.add_bytes("SMALL", {static_cast<std::uint8_t>(i), 2, 3});
     log.close();
-    seal_log(original, sealed, [this](double share) { shares.push_back(share); });
+    seal_log(original, sealed, [this](double fraction) { shares.push_back(fraction); });
   }
 
   /// Events of a log that can be read, and what is said of the rest.

@@ -175,7 +175,7 @@ void MeshViews::add_level_views() {
       ViewPose pose;
       pose.pitch_rad = std::asin(low + (high - low) * (i + 0.5) / each);
       pose.roll_rad = radians(kTiltDeviationDeg) * random.normal();
-      const bool leans = settings_.attitudes == MeshAttitudes::kResting && chance(random, settings_.leaning_share);
+      const bool leans = settings_.attitudes == MeshAttitudes::kResting && chance(random, settings_.leaning_fraction);
       const double lean_deg = leans ? random.uniform(kMinLeanDeg, kMaxLeanDeg) : kTiltDeviationDeg * random.normal();
       pose.on_table = !leans;
       pose.R_level_object = tilt(radians(lean_deg), random) *

@@ -86,9 +86,9 @@ RenderedFrame TurntableWorld::render(const TaughtObject& object, const AttitudeC
   placed.T_world_object.rotate(R_table_object);
   world.items.push_back(placed);
 
-  const double share = settings_.pitches > 1 ? static_cast<double>(pitch_index) / (settings_.pitches - 1) : 0.5;
+  const double fraction = settings_.pitches > 1 ? static_cast<double>(pitch_index) / (settings_.pitches - 1) : 0.5;
   const double pitch =
-      degrees(settings_.lowest_pitch_deg + share * (settings_.highest_pitch_deg - settings_.lowest_pitch_deg));
+      degrees(settings_.lowest_pitch_deg + fraction * (settings_.highest_pitch_deg - settings_.lowest_pitch_deg));
   const double distance = settings_.distance_m * random.uniform(0.96, 1.04);
   const Eigen::Vector3d target(random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), centre);
   const Eigen::Vector3d eye = target + distance * Eigen::Vector3d(0.0, -std::cos(pitch), std::sin(pitch));

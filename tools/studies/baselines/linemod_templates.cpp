@@ -123,20 +123,20 @@ LinemodTemplates::LinemodTemplates(const std::vector<TrainingView>& views, const
   }
   for (int s = 0; s < settings.threads; ++s) shares_.emplace_back(settings);
   parallel_for(settings.threads, settings.threads, [&](int s) {
-    LinemodShare& share = shares_[static_cast<std::size_t>(s)];
+    LinemodShare& fraction = shares_[static_cast<std::size_t>(s)];
     for (auto v = static_cast<std::size_t>(s); v < objects.size(); v += shares_.size()) {
       check_view(*objects[v]);
       int made = 0;
       for (std::size_t d = 0; d < taught.size(); ++d) {
-        made += share.add(*objects[v], taught[d], static_cast<int>(v * taught.size() + d)) ? 1 : 0;
+        made += fraction.add(*objects[v], taught[d], static_cast<int>(v * taught.size() + d)) ? 1 : 0;
       }
-      if (made == 0) share.count_refused_view();
+      if (made == 0) fraction.count_refused_view();
     }
   });
-  for (const LinemodShare& share : shares_) {
-    training_.templates += share.training().templates;
-    training_.refused_templates += share.training().refused_templates;
-    training_.refused_views += share.training().refused_views;
+  for (const LinemodShare& fraction : shares_) {
+    training_.templates += fraction.training().templates;
+    training_.refused_templates += fraction.training().refused_templates;
+    training_.refused_views += fraction.training().refused_views;
   }
   require(training_.templates > 0, "linemod: no template could be made of {} views, expected at least one",
           objects.size());
@@ -148,8 +148,8 @@ LinemodTemplates::LinemodTemplates(LinemodTemplates&&) noexcept = default;
 std::vector<LinemodMatch> LinemodTemplates::match(const RgbdFrame& frame, float threshold) const {
   check_frame(frame, "linemod");
   cv::Size largest;
-  for (const LinemodShare& share : shares_) {
-    largest = {std::max(largest.width, share.largest().width), std::max(largest.height, share.largest().height)};
+  for (const LinemodShare& fraction : shares_) {
+    largest = {std::max(largest.width, fraction.largest().width), std::max(largest.height, fraction.largest().height)};
   }
   const std::vector<cv::Mat> images = linemod_images(frame, largest);
   std::vector<std::vector<LinemodMatch>> parts(shares_.size());

@@ -42,8 +42,9 @@ cv::Mat votes_over(const cv::Mat& ground, const cv::Mat& votes, double top) {
   cv::Mat image(ground.size(), CV_8UC3);
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < image.cols; ++x) {
-      const float share = top > 0.0 ? std::min(1.0F, 3.0F * votes.at<float>(y, x) / static_cast<float>(top)) : 0.0F;
-      image.at<cv::Vec3b>(y, x) = colours.at<cv::Vec3b>(y, x) * share + ground.at<cv::Vec3b>(y, x) * (1.0F - share);
+      const float fraction = top > 0.0 ? std::min(1.0F, 3.0F * votes.at<float>(y, x) / static_cast<float>(top)) : 0.0F;
+      image.at<cv::Vec3b>(y, x) =
+          colours.at<cv::Vec3b>(y, x) * fraction + ground.at<cv::Vec3b>(y, x) * (1.0F - fraction);
     }
   }
   return image;

@@ -39,14 +39,14 @@ struct SurfaceSettings {
 /// FPFH, pcl::SampleConsensusPrerejective, ICP.
 struct PrerejectiveSettings {
   SurfaceSettings surface;
-  double spacing = 0.06;        ///< of the points of model and region, a share
-  double feature_radius = 0.2;  ///< of a histogram's neighbours, a share
-  int runs = 20;                ///< each with its own draw and its own ICP
-  int iterations = 10000;       ///< of a run
-  int samples = 3;              ///< pairs that make a pose
-  int similar_features = 10;    ///< a sample's partner is drawn among so many
-  float similarity = 0.9F;      ///< of the samples' mutual distances, 0 to 1
-  float inlier_share = 0.1F;    ///< of the model's points; of poses with so many, PCL takes the one that they fit best
+  double spacing = 0.06;         ///< of the points of model and region, a share
+  double feature_radius = 0.2;   ///< of a histogram's neighbours, a share
+  int runs = 20;                 ///< each with its own draw and its own ICP
+  int iterations = 10000;        ///< of a run
+  int samples = 3;               ///< pairs that make a pose
+  int similar_features = 10;     ///< a sample's partner is drawn among so many
+  float similarity = 0.9F;       ///< of the samples' mutual distances, 0 to 1
+  float inlier_fraction = 0.1F;  ///< of the model's points; of poses with so many, PCL takes the one that they fit best
   double inlier_distance = 0.04;  ///< an inlier has a measured point so near, a share
   int icp_iterations = 30;        ///< at each of two distances
   int icp_points = 400;           ///< of the region, about
@@ -57,11 +57,11 @@ struct PrerejectiveSettings {
 /// cv::ppf_match_3d.
 struct PpfSettings {
   SurfaceSettings surface;
-  double spacing = 0.08;         ///< of the points of model and region, a share
-  double distance_step = 0.08;   ///< of the model's table, a share
-  int angles = 30;               ///< steps in a full turn
-  double reference_share = 0.1;  ///< of the region's points that vote
-  double cluster_m = 0.01;       ///< poses nearer than both limits are one
+  double spacing = 0.08;            ///< of the points of model and region, a share
+  double distance_step = 0.08;      ///< of the model's table, a share
+  int angles = 30;                  ///< steps in a full turn
+  double reference_fraction = 0.1;  ///< of the region's points that vote
+  double cluster_m = 0.01;          ///< poses nearer than both limits are one
   double cluster_rad = 0.2;
   int kept = 5;  ///< poses that ICP refines
   int icp_iterations = 100;

@@ -36,8 +36,8 @@ void check_settings(const PpfSettings& s) {
   require(s.distance_step >= 0.01 && s.distance_step <= 0.5, "ppf: distance step {}, expected 0.01 to 0.5 diameters",
           s.distance_step);
   require(s.angles >= 4 && s.angles <= 360, "ppf: {} angles, expected 4 to 360", s.angles);
-  require(s.reference_share > 0.0 && s.reference_share <= 1.0, "ppf: reference share {}, expected above 0, at most 1",
-          s.reference_share);
+  require(s.reference_fraction > 0.0 && s.reference_fraction <= 1.0,
+          "ppf: reference share {}, expected above 0, at most 1", s.reference_fraction);
   require(s.kept >= 1 && s.icp_iterations >= 1 && s.icp_levels >= 1,
           "ppf: {} poses, {} iterations of ICP in {} levels, expected at least 1 of each", s.kept, s.icp_iterations,
           s.icp_levels);
@@ -63,7 +63,7 @@ class PpfRival final : public SurfaceRival {
     const cv::Mat measured = rows_of(*seen.cloud);
     std::vector<ppf::Pose3DPtr> found;
     const cv::Mat thin = rows_of(*thinned(*seen.cloud, spacing_m(models().at(name))));
-    detectors_.at(name)->match(thin, found, settings_.reference_share, kFineStep);
+    detectors_.at(name)->match(thin, found, settings_.reference_fraction, kFineStep);
     ppf::ICP icp(settings_.icp_iterations, settings_.icp_tolerance, settings_.icp_rejection, settings_.icp_levels);
     std::vector<Eigen::Isometry3d> poses;
     for (const ppf::Pose3DPtr& pose : found) {

@@ -46,8 +46,8 @@ void check_settings(const PrerejectiveSettings& s) {
           "fpfh: {} runs of {} iterations, {} samples, {} similar features, expected at least 1, 1, 3, 1", s.runs,
           s.iterations, s.samples, s.similar_features);
   require(s.similarity >= 0.0F && s.similarity < 1.0F, "fpfh: similarity {}, expected 0 to below 1", s.similarity);
-  require(s.inlier_share > 0.0F && s.inlier_share <= 1.0F, "fpfh: inlier share {}, expected above 0, at most 1",
-          s.inlier_share);
+  require(s.inlier_fraction > 0.0F && s.inlier_fraction <= 1.0F, "fpfh: inlier share {}, expected above 0, at most 1",
+          s.inlier_fraction);
 }
 
 class PrerejectiveRival final : public SurfaceRival {
@@ -95,7 +95,7 @@ class PrerejectiveRival final : public SurfaceRival {
     alignment.setCorrespondenceRandomness(settings_.similar_features);
     alignment.setSimilarityThreshold(settings_.similarity);
     alignment.setMaxCorrespondenceDistance(settings_.inlier_distance * diameter_m);
-    alignment.setInlierFraction(settings_.inlier_share);
+    alignment.setInlierFraction(settings_.inlier_fraction);
   }
 
   static std::optional<Eigen::Isometry3d> align(Alignment& alignment, unsigned seed) {

@@ -59,11 +59,11 @@ Mesh welded(const Mesh& mesh) {
 
 double base_height(const Mesh& mesh) {
   require(!mesh.vertices.empty(), "mesh without vertices, expected one to stand on a base");
-  constexpr std::size_t kStrayShare = 500;  // one vertex in so many
+  constexpr std::size_t kStrayFraction = 500;  // one vertex in so many
   std::vector<float> heights;
   heights.reserve(mesh.vertices.size());
   for (const Eigen::Vector3f& vertex : mesh.vertices) heights.push_back(vertex.z());
-  const auto base = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / kStrayShare);
+  const auto base = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / kStrayFraction);
   std::nth_element(heights.begin(), base, heights.end());
   return *base;
 }

@@ -42,7 +42,7 @@ int positive_count(const std::string& text, const std::string& of) {
   return static_cast<int>(value);
 }
 
-float share(const std::string& text, const std::string& of) {
+float fraction(const std::string& text, const std::string& of) {
   float value = 0.0F;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   require(error == std::errc() && end == text.data() + text.size() && value >= 0.0F && value <= 1.0F,
@@ -74,9 +74,9 @@ void grant(const std::string& wish, const std::string& text, Wishes& wishes, Ben
   } else if (name == "scale") {
     contender.image_scale = positive_number(value, text);
   } else if (name == "threshold") {
-    wishes.search.threshold = share(value, text);
+    wishes.search.threshold = fraction(value, text);
   } else if (name == "min-mass") {
-    wishes.search.min_mass_share = share(value, text);
+    wishes.search.min_mass_fraction = fraction(value, text);
   } else if (name == "set") {
     contender.instruction_set = instruction_set(value);
   } else {

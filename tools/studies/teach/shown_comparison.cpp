@@ -16,8 +16,8 @@ constexpr std::uint64_t kSeed = 1;
 constexpr double kMissing_m = 0.005;
 constexpr double kDegrees = 180.0 / M_PI;
 
-double quantile(std::vector<double> values, double share) {
-  const auto rank = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+double quantile(std::vector<double> values, double fraction) {
+  const auto rank = static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank), values.end());
   return values[rank];
 }
@@ -134,7 +134,7 @@ void compare_meshes(const TrueTakes& takes, const Mesh& taught, ShownComparison&
   const std::vector<double> away = distances(seen, T_true_taught.inverse(), taught);
   comparison.seen_to_taught = spread_of(away);
   const auto missing = std::count_if(away.begin(), away.end(), [](double it) { return it > kMissing_m; });
-  comparison.missing_share = static_cast<double>(missing) / static_cast<double>(away.size());
+  comparison.missing_fraction = static_cast<double>(missing) / static_cast<double>(away.size());
 }
 
 void compare_poses(const std::vector<Eigen::Isometry3d>& poses, const Eigen::Vector3d& middle,
@@ -190,7 +190,7 @@ OrderedJson to_json(const ShownComparison& comparison) {
   json["mesh_mm_95"] = 1e3 * comparison.taught_to_true.maximum;
   json["seen_mm_median"] = 1e3 * comparison.seen_to_taught.median;
   json["seen_mm_95"] = 1e3 * comparison.seen_to_taught.maximum;
-  json["missing_share"] = comparison.missing_share;
+  json["missing_share"] = comparison.missing_fraction;
   json["seen_surface"] = comparison.seen_surface;
   json["drift_mm"] = 1e3 * comparison.drift.shift_m;
   json["drift_deg"] = kDegrees * comparison.drift.turn_rad;

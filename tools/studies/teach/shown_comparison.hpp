@@ -26,7 +26,7 @@ struct ShownComparison {
   Eigen::Isometry3d T_true_taught = Eigen::Isometry3d::Identity();
   Spread taught_to_true;           ///< from points on the taught surface to the true one
   Spread seen_to_taught;           ///< from points on the true surface that the takes saw to the taught one
-  double missing_share = 0.0;      ///< of these, farther than 5 mm
+  double missing_fraction = 0.0;   ///< of these, farther than 5 mm
   double seen_surface = 0.0;       ///< share of the true surface that the takes saw
   PoseGap drift;                   ///< by which the first and the last tracked frame of the first take disagree
   Spread tracking_shift;           ///< of the tracked frames from their average

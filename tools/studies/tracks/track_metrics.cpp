@@ -168,10 +168,10 @@ constexpr double kDegrees = 180.0 / M_PI;
 
 using Numbers = std::vector<double>;
 
-double at_share(Numbers values, double share) {
+double at_share(Numbers values, double fraction) {
   if (values.empty()) return std::nan("");
   std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
+  return values[static_cast<std::size_t>(std::lround(fraction * static_cast<double>(values.size() - 1)))];
 }
 
 /// Errors of poses in millimetres and degrees.

@@ -132,8 +132,8 @@ std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, cons
 
 Forest train_store_forest(std::vector<TrainingView> views, const std::optional<Forest>& old,
                           const TeachOptions& options, const std::function<void(const std::string&)>& report) {
-  constexpr double kToneShare = 0.7;  // see TrainingSettings
-  constexpr int kPatches = 26000;     // of an object: what trees are grown of, and how long that takes
+  constexpr double kToneFraction = 0.7;  // see TrainingSettings
+  constexpr int kPatches = 26000;        // of an object: what trees are grown of, and how long that takes
   constexpr int kMinPatches = 100;
   constexpr int kMaxPatches = 250;
   constexpr int kViewsPerImage = 2;  // a remembered view costs a tenth of one that trees learn from
@@ -152,7 +152,7 @@ Forest train_store_forest(std::vector<TrainingView> views, const std::optional<F
   }
   profile.training.validation_frames = 0;    // practice tells more
   profile.training.composites_per_view = 1;  // another view tells more than another room
-  profile.training.tone_jitter_fraction = kToneShare;
+  profile.training.tone_jitter_fraction = kToneFraction;
   if (!old) profile.features.tone = kCalibrationBrightness;
   profile.training.views_per_image = kViewsPerImage;
   const int pictures = std::max(max_views(views) / kViewsPerImage, 1);

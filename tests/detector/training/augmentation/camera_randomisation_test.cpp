@@ -126,16 +126,16 @@ TEST(CameraRandomisation, AnySizeAndAnyStrengthIsTaken) {
 }
 
 /// Whether another camera's picture of a room came out.
-bool looks_through_another(double share, double strength, std::uint64_t seed) {
+bool looks_through_another(double fraction, double strength, std::uint64_t seed) {
   const RgbdFrame room = toy::room(3);
   RgbdFrame frame = room;
   frame.colour = room.colour.clone();
   frame.depth = room.depth.clone();
   Random random(seed);
-  randomise_camera(share, strength, frame, random);
+  randomise_camera(fraction, strength, frame, random);
   const bool same_depth = cv::countNonZero(frame.depth == room.depth) == cv::countNonZero(room.depth == room.depth);
   const bool same_colour = cv::norm(frame.colour, room.colour, cv::NORM_INF) == 0.0;
-  if (share <= 0.0 || strength <= 0.0) {
+  if (fraction <= 0.0 || strength <= 0.0) {
     EXPECT_EQ(random.bits(), Random(seed).bits()) << "something was drawn";
   }
   return !same_depth || !same_colour;

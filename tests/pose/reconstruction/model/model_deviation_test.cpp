@@ -23,10 +23,10 @@ TEST(SeenThrough, WhatIsNoPartOfTheObjectIsSeenThrough) {
   EXPECT_LT(free_space_violation(box, take, views, 1), 0.002);
   Mesh with_finger = box;
   test_scene::add_side({0.5 * scene.box.x(), 0.0, 0.1}, {0.06, 0.0, 0.0}, {0.0, 0.02, 0.04}, with_finger);
-  const double share = free_space_violation(with_finger, take, views, 1);
-  EXPECT_GT(share, kMaxFreeSpaceViolation);
-  EXPECT_LT(share, 0.1);
-  EXPECT_EQ(free_space_violation(with_finger, take, views, 3), share);
+  const double fraction = free_space_violation(with_finger, take, views, 1);
+  EXPECT_GT(fraction, kMaxFreeSpaceViolation);
+  EXPECT_LT(fraction, 0.1);
+  EXPECT_EQ(free_space_violation(with_finger, take, views, 3), fraction);
 }
 
 TEST(SeenThrough, NothingIsSeenThroughBesideAPixelWithoutDepth) {

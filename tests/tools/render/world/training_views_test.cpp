@@ -52,7 +52,7 @@ TurntableSettings few_views(const std::vector<Attitude>& attitudes) {
 }
 
 // Share of the mask's pixels with depth at which the model, rendered by the truth, has the same depth.
-double agreeing_share(const RenderedFrame& view, const Mesh& mesh) {
+double agreeing_fraction(const RenderedFrame& view, const Mesh& mesh) {
   const cv::Rect frame({0, 0}, view.frame.depth.size());
   const cv::Mat rendered = render_depth(mesh, view.objects.at(0).T_camera_object, view.frame.camera, frame);
   int measured = 0;
@@ -79,7 +79,7 @@ TEST(TrainingViews, LyingAndTiltedOnesMatchTheirTruth) {
     for (const int index : {0, 1, 2, lying + 1}) {
       const RenderedFrame view = turntable.render(object, &choice, index);
       ASSERT_EQ(view.objects.size(), 1U);
-      EXPECT_GT(agreeing_share(view, object.thing->mesh), 0.9);
+      EXPECT_GT(agreeing_fraction(view, object.thing->mesh), 0.9);
     }
   }
 }

@@ -126,7 +126,7 @@ TEST(PoseRivalSettings, OutOfRangeAreRefused) {
   sampling.samples = 2;
   EXPECT_THROW(make_prerejective_baseline(models, PoseSettings(), sampling), InputError);
   PpfSettings pairs;
-  pairs.reference_share = 0.0;
+  pairs.reference_fraction = 0.0;
   EXPECT_THROW(make_ppf_baseline(models, PoseSettings(), pairs), InputError);
 }
 

@@ -112,7 +112,7 @@ TEST(ShownComparison, APerfectMeshIsFoundPerfectWhateverItsFrame) {
   EXPECT_TRUE(found.T_true_taught.isApprox(known_frame(), 1e-3));
   EXPECT_LT(found.taught_to_true.maximum, 1e-4);
   EXPECT_LT(found.seen_to_taught.maximum, 1e-4);
-  EXPECT_EQ(found.missing_share, 0.0);
+  EXPECT_EQ(found.missing_fraction, 0.0);
   EXPECT_GT(found.seen_surface, 0.5);
   EXPECT_LT(found.seen_surface, 0.95) << "the bottom is never seen";
   EXPECT_EQ(found.tracked, kFrames);
@@ -136,7 +136,7 @@ TEST(ShownComparison, AMeshThatIsTooLargeOrLacksASideIsTold) {
   taught.triangles.resize(taught.triangles.size() - 4);
   const ShownComparison open = compare_shown(takes, folder / "kept", taught);
   EXPECT_LT(open.taught_to_true.maximum, 1e-4);
-  EXPECT_GT(open.missing_share, 0.05);
+  EXPECT_GT(open.missing_fraction, 0.05);
 }
 
 TEST(ShownComparison, WhatIsMissingIsNamed) {

@@ -157,11 +157,11 @@ AssetPtr make_banana(Random& random) {
   std::vector<Eigen::Vector3d> path;
   std::vector<double> radii;
   for (int i = 0; i <= kSteps; ++i) {
-    const double share = static_cast<double>(i) / kSteps;
-    const double angle = 2.1 * (share - 0.5);
+    const double fraction = static_cast<double>(i) / kSteps;
+    const double angle = 2.1 * (fraction - 0.5);
     path.emplace_back(kBend * std::sin(angle), kBend * std::cos(angle), 0.0);
-    const double bulge = std::sqrt(std::max(0.0, 1.0 - std::pow(2.0 * share - 1.0, 4)));
-    radii.push_back(share < 0.1 ? 0.0062 : 0.005 + 0.0145 * bulge);
+    const double bulge = std::sqrt(std::max(0.0, 1.0 - std::pow(2.0 * fraction - 1.0, 4)));
+    radii.push_back(fraction < 0.1 ? 0.0062 : 0.005 + 0.0145 * bulge);
   }
   return make_asset("banana", finish_object(tapered_tube(path, radii, banana_skin(random), 12)), 0.12F);
 }

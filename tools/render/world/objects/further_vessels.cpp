@@ -62,10 +62,10 @@ cv::Mat gingham(const cv::Size& size, const cv::Scalar& colour, int squares, Ran
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {
       const int dark = (x / side) % 2 + (y / side) % 2;
-      const double share = 0.5 * dark;
+      const double fraction = 0.5 * dark;
       auto& pixel = image.at<cv::Vec3b>(y, x);
       for (int c = 0; c < 3; ++c)
-        pixel[c] = cv::saturate_cast<std::uint8_t>((1 - share) * pixel[c] + share * colour[c]);
+        pixel[c] = cv::saturate_cast<std::uint8_t>((1 - fraction) * pixel[c] + fraction * colour[c]);
     }
   }
   return image;

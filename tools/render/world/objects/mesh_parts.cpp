@@ -66,8 +66,8 @@ Mesh prism_end(const std::vector<Eigen::Vector2d>& outline, double y, const cv::
   for (const Eigen::Vector2d& point : outline) bounds.extend(point);
   Mesh mesh;
   for (const Eigen::Vector2d& point : outline) {
-    const Eigen::Vector2d share = (point - bounds.min()).cwiseQuotient(bounds.sizes());
-    add_corner(mesh, {point.x(), y, point.y()}, {y < 0.0 ? share.x() : 1.0 - share.x(), 1.0 - share.y()});
+    const Eigen::Vector2d fraction = (point - bounds.min()).cwiseQuotient(bounds.sizes());
+    add_corner(mesh, {point.x(), y, point.y()}, {y < 0.0 ? fraction.x() : 1.0 - fraction.x(), 1.0 - fraction.y()});
   }
   for (std::uint32_t i = 1; i + 1 < outline.size(); ++i) {
     if (y < 0.0)

@@ -42,7 +42,7 @@ class TimeOfFlight {
       }
     }
     if (depth(farthest) - depth(nearest) <= settings_.edge_step * depth(nearest)) return std::nullopt;
-    if (pixel_uniform(seed_ + 2, index) >= settings_.flying_share) return std::nullopt;
+    if (pixel_uniform(seed_ + 2, index) >= settings_.flying_fraction) return std::nullopt;
     const double filled = pixel_uniform(seed_ + 3, index);
     const double near_light = filled * returned_amplitude(view_, nearest);
     const double far_light = (1.0 - filled) * returned_amplitude(view_, farthest);

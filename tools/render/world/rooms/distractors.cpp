@@ -15,7 +15,7 @@ namespace {
 // What colours things have: any, or with some probability those of the taught objects.
 class Dyes {
  public:
-  explicit Dyes(double taught_share) : taught_share_(taught_share) {}
+  explicit Dyes(double taught_fraction) : taught_fraction_(taught_fraction) {}
 
   cv::Scalar plain(Random& random) const {
     if (taught(random)) return taught_colour(random);
@@ -32,14 +32,14 @@ class Dyes {
   }
 
  private:
-  bool taught(Random& random) const { return taught_share_ > 0.0 && chance(random, taught_share_); }
+  bool taught(Random& random) const { return taught_fraction_ > 0.0 && chance(random, taught_fraction_); }
 
   static cv::Scalar taught_colour(Random& random) {
     const ClassColours& colours = class_colours(1 + random.below(kClassCount));
     return near_colour(chance(random, 0.75) ? colours.base : colours.accent, random);
   }
 
-  double taught_share_;
+  double taught_fraction_;
 };
 
 AssetPtr bottle(Random& random, const Dyes& dyes) {

@@ -111,7 +111,7 @@ AssetPtr make_hand(const std::vector<Eigen::Vector3d>& points, const Grip& grip,
 }
 
 /// The share of the thing's silhouette that the hand hides in a view.
-double hidden_share(const PlacedAsset& hand, const PlacedAsset& thing, const Eigen::Isometry3d& T_camera_world) {
+double hidden_fraction(const PlacedAsset& hand, const PlacedAsset& thing, const Eigen::Isometry3d& T_camera_world) {
   const Camera camera{320, 240, 262.5, 262.5, 159.5, 119.5};
   const Eigen::Isometry3d T_camera_object = T_camera_world * thing.T_world_object;
   Eigen::AlignedBox2d extent;
@@ -127,9 +127,9 @@ double hidden_share(const PlacedAsset& hand, const PlacedAsset& thing, const Eig
   return all == 0 ? 0.0 : static_cast<double>(cv::countNonZero(before < object)) / all;
 }
 
-double mean_hidden_share(const PlacedAsset& hand, const PlacedAsset& thing, const HeldPlace& place) {
+double mean_hidden_fraction(const PlacedAsset& hand, const PlacedAsset& thing, const HeldPlace& place) {
   double sum = 0.0;
-  for (const Eigen::Isometry3d& T_camera_world : place.views) sum += hidden_share(hand, thing, T_camera_world);
+  for (const Eigen::Isometry3d& T_camera_world : place.views) sum += hidden_fraction(hand, thing, T_camera_world);
   return sum / static_cast<double>(place.views.size());
 }
 
@@ -182,7 +182,7 @@ PlacedAsset take_hold(const PlacedAsset& placed, const HeldPlace& place, Random&
     hand.T_world_object.linear() = grip.axes;
     hand.T_world_object.translation() = placed.T_world_object.translation();
     if (lowest_point(hand) < kOverTableM) continue;
-    const double hidden = mean_hidden_share(hand, placed, place);
+    const double hidden = mean_hidden_fraction(hand, placed, place);
     if (hidden >= kMinGripped && hidden <= kMaxGripped) return hand;
   }
   fail("{}: no grip that hides {:.2f} to {:.2f} of it, after {} tries", placed.thing->name, kMinGripped, kMaxGripped,

@@ -43,8 +43,8 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
 Eigen::Vector2d nearest_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Eigen::Vector2d side = b - a;
   const double length_sq = side.squaredNorm();
-  const double share = length_sq > 0.0 ? std::clamp(-a.dot(side) / length_sq, 0.0, 1.0) : 0.0;
-  return a + share * side;
+  const double fraction = length_sq > 0.0 ? std::clamp(-a.dot(side) / length_sq, 0.0, 1.0) : 0.0;
+  return a + fraction * side;
 }
 
 Eigen::Vector2d nearest_on_border(const std::vector<Eigen::Vector2d>& corners) {

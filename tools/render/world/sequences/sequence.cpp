@@ -23,8 +23,8 @@ constexpr double kComeS = 0.6;                      // how long a hand takes to 
 constexpr double kTallestBesideM = 0.16;            // what stands about must not hide the objects
 const Eigen::Vector3d kOutOfSight(0.0, 0.0, -50.0);
 
-double eased(double share) {
-  const double t = std::clamp(share, 0.0, 1.0);
+double eased(double fraction) {
+  const double t = std::clamp(fraction, 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
 }
 
@@ -45,10 +45,10 @@ bool is_away(const Eigen::Vector3d& place) {
 
 /// Between two stops; the way to a later one may be lifted.
 Eigen::Isometry3d between(const Stop& from, const Stop& to, double seconds, double height_m) {
-  const double share = eased((seconds - from.at_s) / (to.at_s - from.at_s));
-  Eigen::Vector3d place = from.place + share * (to.place - from.place);
-  place.z() += to.arc_m * std::sin(M_PI * share);
-  return at_stop(place, from.turn_rad + share * (to.turn_rad - from.turn_rad), height_m);
+  const double fraction = eased((seconds - from.at_s) / (to.at_s - from.at_s));
+  Eigen::Vector3d place = from.place + fraction * (to.place - from.place);
+  place.z() += to.arc_m * std::sin(M_PI * fraction);
+  return at_stop(place, from.turn_rad + fraction * (to.turn_rad - from.turn_rad), height_m);
 }
 
 Eigen::Isometry3d look_from(double azimuth_rad, double elevation_rad, double distance_m) {
@@ -204,8 +204,8 @@ World Sequence::world_at(double seconds) const {
   }
   if (arm_) {
     // In front of all that stands there, from the right to the left within five seconds, and back.
-    const double share = eased((seconds - 1.5) / 3.0) - eased((seconds - 5.0) / 2.5);
-    world.items[*arm_].T_world_object = Eigen::Translation3d(0.75 - 1.2 * share, 0.0, 0.0) * T_world_arm_;
+    const double fraction = eased((seconds - 1.5) / 3.0) - eased((seconds - 5.0) / 2.5);
+    world.items[*arm_].T_world_object = Eigen::Translation3d(0.75 - 1.2 * fraction, 0.0, 0.0) * T_world_arm_;
   }
   return world;
 }

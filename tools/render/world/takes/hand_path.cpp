@@ -42,8 +42,8 @@ UnevenProgress::UnevenProgress(double seconds, std::uint64_t seed) : seconds_(se
 double UnevenProgress::at(double seconds) const {
   const double step = std::clamp(seconds / seconds_, 0.0, 1.0) * static_cast<double>(done_.size() - 1);
   const std::size_t before = std::min(static_cast<std::size_t>(step), done_.size() - 2);
-  const double share = step - static_cast<double>(before);
-  return (1.0 - share) * done_[before] + share * done_[before + 1];
+  const double fraction = step - static_cast<double>(before);
+  return (1.0 - fraction) * done_[before] + fraction * done_[before + 1];
 }
 
 HandPath::HandPath(const HandPathSettings& settings, std::uint64_t seed) : HandPath(settings, seed, Random(seed)) {}

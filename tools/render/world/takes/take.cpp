@@ -51,9 +51,9 @@ cv::Vec3f smeared(const cv::Mat& radiance, int x, int y, const cv::Vec2f& way) {
   const int taps = std::min(kMaxTaps, static_cast<int>(std::ceil(length)));
   cv::Vec3f sum(0.0F, 0.0F, 0.0F);
   for (int i = -taps; i <= taps; ++i) {
-    const float share = static_cast<float>(i) / static_cast<float>(taps);
-    const int from_x = std::clamp(cvRound(static_cast<float>(x) + share * way[0]), 0, radiance.cols - 1);
-    const int from_y = std::clamp(cvRound(static_cast<float>(y) + share * way[1]), 0, radiance.rows - 1);
+    const float fraction = static_cast<float>(i) / static_cast<float>(taps);
+    const int from_x = std::clamp(cvRound(static_cast<float>(x) + fraction * way[0]), 0, radiance.cols - 1);
+    const int from_y = std::clamp(cvRound(static_cast<float>(y) + fraction * way[1]), 0, radiance.rows - 1);
     sum += radiance.at<cv::Vec3f>(from_y, from_x);
   }
   return sum * (1.0F / static_cast<float>(2 * taps + 1));
@@ -121,8 +121,8 @@ ShadedView expose(LitWorld lit_world, const Camera& camera, const SceneMotion& m
   for (int band = 0; band < kBands; ++band) {
     const int first = camera.height * band / kBands;
     const int last = camera.height * (band + 1) / kBands;
-    const double share = 0.5 * (first + last) / camera.height - 0.5;
-    const double now = seconds + share * shutter.readout_s;
+    const double fraction = 0.5 * (first + last) / camera.height - 0.5;
+    const double now = seconds + fraction * shutter.readout_s;
     std::vector<Eigen::Isometry3d> T_later_now = places(lit_world.world, motion, now + 0.5 * shutter.exposure_s);
     const Eigen::Isometry3d T_camera_world = motion(lit_world.world, now);
     for (std::size_t i = 0; i < T_later_now.size(); ++i) {
@@ -163,8 +163,8 @@ void RenderedTake::meter_light(int threads) {
   double exposure = metered.front();
   for (int i = 0; i < frames_; ++i) {
     const auto before = static_cast<std::size_t>(i / kMeterEvery);
-    const double share = static_cast<double>(i % kMeterEvery) / kMeterEvery;
-    const double wanted = (1.0 - share) * metered[before] + share * metered[before + 1];
+    const double fraction = static_cast<double>(i % kMeterEvery) / kMeterEvery;
+    const double wanted = (1.0 - fraction) * metered[before] + fraction * metered[before + 1];
     exposure *= std::pow(wanted / exposure, follow);
     exposures_.push_back(exposure);
   }

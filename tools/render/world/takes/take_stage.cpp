@@ -27,13 +27,13 @@ constexpr int kStrokes = 6;
 constexpr double kTallestBesideShownM = 0.13;  // what stands about must not hide the object
 
 // Parts of a stroke: the hand comes, turns the object, goes, and is away.
-constexpr double kComeShare = 0.15;
-constexpr double kTurnShare = 0.6;
-constexpr double kGoShare = 0.15;
+constexpr double kComeFraction = 0.15;
+constexpr double kTurnFraction = 0.6;
+constexpr double kGoFraction = 0.15;
 constexpr double kHandAwayM = 0.5;
 
-double eased_stroke(double share) {
-  const double t = std::clamp(share, 0.0, 1.0);
+double eased_stroke(double fraction) {
+  const double t = std::clamp(fraction, 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
 }
 
@@ -163,15 +163,15 @@ double TakeStage::turned_rad(double seconds) const {
   if (turning_) return kTurnRad * turning_->at(seconds);
   double turned = 0.0;
   for (const Stroke& stroke : strokes_)
-    turned +=
-        eased_stroke(((seconds - stroke.start_s) / stroke.seconds - kComeShare) / kTurnShare) * kTurnRad / kStrokes;
+    turned += eased_stroke(((seconds - stroke.start_s) / stroke.seconds - kComeFraction) / kTurnFraction) * kTurnRad /
+              kStrokes;
   return turned;
 }
 
 void TakeStage::move_hand(const Stroke& stroke, double seconds, World& world) const {
-  const double share = (seconds - stroke.start_s) / stroke.seconds;
-  const double away =
-      std::max(eased_stroke(1.0 - share / kComeShare), eased_stroke((share - kComeShare - kTurnShare) / kGoShare));
+  const double fraction = (seconds - stroke.start_s) / stroke.seconds;
+  const double away = std::max(eased_stroke(1.0 - fraction / kComeFraction),
+                               eased_stroke((fraction - kComeFraction - kTurnFraction) / kGoFraction));
   const Eigen::Isometry3d T_world_hand = world.items[object_].T_world_object * stroke.T_object_hand;
   Eigen::Isometry3d& placed = world.items[stroke.hand].T_world_object;
   placed = Eigen::Translation3d(kHandAwayM * away * (T_world_hand.linear().col(0) + Eigen::Vector3d(0.0, 0.0, 0.3))) *

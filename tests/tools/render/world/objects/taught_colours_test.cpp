@@ -14,7 +14,7 @@ namespace {
 double taught_share_of_jars(double taught_colours) {
   constexpr int kJar = 15;  // two plain surfaces
   constexpr int kJars = 20;
-  double share = 0.0;
+  double fraction = 0.0;
   for (std::uint64_t seed = 1; seed <= kJars; ++seed) {
     const cv::Mat texture = make_distractor(kJar, seed, taught_colours)->mesh.texture;
     cv::Mat taught = cv::Mat::zeros(texture.size(), CV_8UC1);
@@ -26,9 +26,9 @@ double taught_share_of_jars(double taught_colours) {
         taught |= near;
       }
     }
-    share += static_cast<double>(cv::countNonZero(taught)) / static_cast<double>(taught.total()) / kJars;
+    fraction += static_cast<double>(cv::countNonZero(taught)) / static_cast<double>(taught.total()) / kJars;
   }
-  return share;
+  return fraction;
 }
 
 TEST(TaughtColours, JarsHaveThemAsOftenAsAsked) {

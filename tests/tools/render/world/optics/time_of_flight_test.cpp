@@ -56,7 +56,7 @@ TEST(TimeOfFlight, PixelsFlyBetweenTheTwoDepthsOfAnEdge) {
   const auto flying = [&](int first, int last) {
     return cv::countNonZero((depth.rowRange(first, last) > 1.03) & (depth.rowRange(first, last) < 1.47));
   };
-  EXPECT_NEAR(flying(59, 61), 2 * 160 * kTofSettings.flying_share * 0.88, 40);
+  EXPECT_NEAR(flying(59, 61), 2 * 160 * kTofSettings.flying_fraction * 0.88, 40);
   EXPECT_EQ(flying(0, 59), 0);
   EXPECT_EQ(flying(61, 120), 0);
   // The near wall returns (1.5 / 1)^2 as much light: pixels lie nearer to it.
