@@ -168,8 +168,8 @@ void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
     PoseEvidence evidence = gather_evidence(*it.seen, other.T_camera_object, it.detection.score, settings.verification);
     bring_to_camera(it.pose.camera_colours, evidence);
     evidence.print_probability = there ? print_probability(there->margin, learnt) : 1.0F;
-    ObjectPose turned = judged_pose(it, other, evidence, settings);
-    if (other.inliers > 0 && turned.quality > judged.quality) judged = std::move(turned);
+    ObjectPose rotated = judged_pose(it, other, evidence, settings);
+    if (other.inliers > 0 && rotated.quality > judged.quality) judged = std::move(rotated);
   }
   it.pose = std::move(judged);
 }

@@ -24,7 +24,7 @@ struct PoseSettings {
   SearchSettings search;
   WarmStartSettings warm_start;
   RegistrationSettings registration;
-  RotationSearchSettings turn;
+  RotationSearchSettings rotation_search;
   VerificationSettings verification;
   bool learn_camera_colours = true;  ///< models are brought to the camera's colours before their chroma is compared
   QualitySettings quality;
@@ -43,7 +43,7 @@ void fields(const PoseSettings& /*settings*/, const Visit& visit) {
   visit(group("search", &S::search));
   visit(group("warm_start", &S::warm_start));
   visit(group("registration", &S::registration));
-  visit(group("turn", &S::turn));
+  visit(group("rotation_search", &S::rotation_search));
   visit(group("verification", &S::verification));
   visit(group("quality", &S::quality));
   visit(number("min_score", &S::min_score, 0, 1));
@@ -68,7 +68,7 @@ inline PoseSelectionSettings pose_selection_settings(const PoseSettings& setting
   PoseSelectionSettings selection;
   selection.initial = settings.initial;
   selection.registration = settings.registration;
-  selection.turn = settings.turn;
+  selection.rotation_search = settings.rotation_search;
   selection.tolerance_m = settings.verification.tolerance_m;
   return selection;
 }

@@ -62,21 +62,22 @@ HWY_INLINE void transpose_block(const std::uint8_t* planes, int plane_stride, st
 }
 
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3  // better targets have lower numbers
-constexpr int kTurned = 64;
+constexpr int kTransposed = 64;
 #elif HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
-constexpr int kTurned = 32;
+constexpr int kTransposed = 32;
 #else
-constexpr int kTurned = kTurnSide;
+constexpr int kTransposed = kTurnSide;
 #endif
 
 /// Returns how many pixels were turned, from the first one on.
-int turn_whole_blocks(const std::uint8_t* planes, int plane_stride, int count, std::uint8_t* pixels, int pixel_stride) {
+int transpose_whole_blocks(const std::uint8_t* planes, int plane_stride, int count, std::uint8_t* pixels,
+                           int pixel_stride) {
   const int whole = count / kTurnSide * kTurnSide;
   for (int x = 0; x < whole; x += kTurnSide) {
     int p = 0;
-    for (; p + kTurned <= pixel_stride; p += kTurned) {
-      transpose_block<kTurned>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p,
-                               pixel_stride);
+    for (; p + kTransposed <= pixel_stride; p += kTransposed) {
+      transpose_block<kTransposed>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p,
+                                   pixel_stride);
     }
     for (; p < pixel_stride; p += kTurnSide) {
       transpose_block<kTurnSide>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p,
@@ -86,13 +87,13 @@ int turn_whole_blocks(const std::uint8_t* planes, int plane_stride, int count, s
   return whole;
 }
 #else
-int turn_whole_blocks(const std::uint8_t*, int, int, std::uint8_t*, int) {
+int transpose_whole_blocks(const std::uint8_t*, int, int, std::uint8_t*, int) {
   return 0;
 }
 #endif
 
-void turn_row(const std::uint8_t* planes, int plane_stride, int count, std::uint8_t* pixels, int pixel_stride) {
-  for (int x = turn_whole_blocks(planes, plane_stride, count, pixels, pixel_stride); x < count; ++x) {
+void transpose_row(const std::uint8_t* planes, int plane_stride, int count, std::uint8_t* pixels, int pixel_stride) {
+  for (int x = transpose_whole_blocks(planes, plane_stride, count, pixels, pixel_stride); x < count; ++x) {
     for (int p = 0; p < pixel_stride; ++p) pixels[x * pixel_stride + p] = planes[p * plane_stride + x];
   }
 }
@@ -103,11 +104,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace houghstream {
 
-HWY_EXPORT(turn_row);
+HWY_EXPORT(transpose_row);
 
 void interleave_planes(const TileRows& rows, cv::Rect part, FeatureImage& image) {
   for (int y = 0; y < part.height; ++y) {
-    HWY_DYNAMIC_DISPATCH(turn_row)
+    HWY_DYNAMIC_DISPATCH(transpose_row)
     (rows.row(y, 0), rows.stride(), part.width, image.at(part.x, part.y + y), image.pixel_stride());
   }
   hwy::FlushStream();  // before other threads read

@@ -99,7 +99,7 @@ void require_replaceable(const fs::path& store) {
 void recover_store(const fs::path& store) {
   const fs::path place = place_of_store(store);
   if (fs::exists(place) || !has_replaced(place)) return;
-  const StoreLock turn(place.parent_path());
+  const StoreLock lock(place.parent_path());
   remove_leftovers(place);
   restore_replaced(place, is_store_entry);
 }
@@ -115,7 +115,7 @@ StoreTransaction::StoreTransaction(const fs::path& store) : store_(place_of_stor
   std::error_code error;
   fs::create_directories(store_.parent_path(), error);
   require(!error, "{}: cannot make this folder: {}", store_.parent_path().string(), error.message());
-  const StoreLock turn(store_.parent_path());
+  const StoreLock lock(store_.parent_path());
   remove_leftovers(store_);
   restore_replaced(store_, is_store_entry);
   partial_ = store_.parent_path() / (partial_prefix(store_) + std::to_string(getpid()));

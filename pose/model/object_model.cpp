@@ -213,33 +213,33 @@ std::vector<Eigen::Isometry3d> near_symmetries(const MeasuredMesh& measured, con
   SymmetrySearch search;
   search.tolerance = 0.1;  // with which BOP finds candidates (Hodan et al. 2020)
   const RotationSymmetryTest check(measured, model.surface_median.cast<double>(), search);
-  std::vector<Eigen::Isometry3d> turns;
+  std::vector<Eigen::Isometry3d> rotations;
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d axis = model.axes.col(i).cast<double>();
     for (const double angle : {0.5 * M_PI, M_PI}) {
       if (!check.is_symmetric_under(axis, angle)) continue;
-      turns.push_back(check.rotation_about_axis(axis, angle));
+      rotations.push_back(check.rotation_about_axis(axis, angle));
       break;
     }
   }
-  return group_of(turns);
+  return group_of(rotations);
 }
 
 /// Points of the surface that most turns about the axis take off it: a mug's handle.
 std::vector<Eigen::Vector3f> unround_points(const MeasuredMesh& measured, const ContinuousSymmetry& axis) {
   constexpr int kPoints = 1500;
-  constexpr int kTurns = 7;
+  constexpr int kRotations = 7;
   constexpr float kOff = 0.04F;  // diameters
   const float off_m = kOff * static_cast<float>(measured.diameter_m);
   std::vector<Eigen::Vector3f> unround;
   for (const Eigen::Vector3f& point : sample_surface(measured.mesh, kPoints, 2).points) {
     int off = 0;
-    for (int i = 1; i <= kTurns; ++i) {
-      const Eigen::AngleAxisd turn(2.0 * M_PI * i / (kTurns + 1), axis.axis);
-      const Eigen::Vector3d at = axis.offset + turn * (point.cast<double>() - axis.offset);
+    for (int i = 1; i <= kRotations; ++i) {
+      const Eigen::AngleAxisd rotation(2.0 * M_PI * i / (kRotations + 1), axis.axis);
+      const Eigen::Vector3d at = axis.offset + rotation * (point.cast<double>() - axis.offset);
       off += measured.tree.nearest(at.cast<float>()).distance > off_m ? 1 : 0;
     }
-    if (2 * off > kTurns) unround.push_back(point);
+    if (2 * off > kRotations) unround.push_back(point);
   }
   return unround;
 }

@@ -8,8 +8,8 @@
 namespace houghstream {
 namespace {
 
-Eigen::Isometry3d turn_about(const Eigen::Quaterniond& turn, const Eigen::Vector3d& offset) {
-  return Eigen::Translation3d(offset) * turn * Eigen::Translation3d(-offset);
+Eigen::Isometry3d rotate_about(const Eigen::Quaterniond& rotation_step, const Eigen::Vector3d& offset) {
+  return Eigen::Translation3d(offset) * rotation_step * Eigen::Translation3d(-offset);
 }
 
 /// Cosine of half the angle of a rotation.
@@ -39,29 +39,29 @@ bool is_ball(const Symmetries& symmetries) {
 Eigen::Isometry3d best_after(const Eigen::Isometry3d& discrete, const Eigen::Quaterniond& R_reference_object,
                              const Symmetries& symmetries) {
   if (symmetries.continuous.empty()) return discrete;
-  const ContinuousSymmetry& turns = symmetries.continuous.front();
+  const ContinuousSymmetry& rotations = symmetries.continuous.front();
   // The angle of R C D is that of D R C, because D (.) D^-1 keeps angles.
   const Eigen::Quaterniond conjugated = Eigen::Quaterniond(discrete.linear()) * R_reference_object;
-  return turn_about(untwist(conjugated, turns.axis), turns.offset) * discrete;
+  return rotate_about(untwist(conjugated, rotations.axis), rotations.offset) * discrete;
 }
 
 }  // namespace
 
 std::vector<Eigen::Isometry3d> expand_symmetries(const Symmetries& symmetries, double max_step) {
   require(max_step > 0.0, "symmetries: step of {} diameters, expected above 0", max_step);
-  std::vector<Eigen::Isometry3d> turns;
+  std::vector<Eigen::Isometry3d> rotations;
   // A point at most half a diameter from the axis goes pi diameters in a full turn.
   const int steps = static_cast<int>(std::ceil(M_PI / max_step));
   for (const ContinuousSymmetry& symmetry : symmetries.continuous) {
-    for (int i = turns.empty() ? 0 : 1; i < steps; ++i) {
-      const Eigen::AngleAxisd turn(2.0 * M_PI * i / steps, symmetry.axis);
-      turns.push_back(turn_about(Eigen::Quaterniond(turn), symmetry.offset));
+    for (int i = rotations.empty() ? 0 : 1; i < steps; ++i) {
+      const Eigen::AngleAxisd rotation_step(2.0 * M_PI * i / steps, symmetry.axis);
+      rotations.push_back(rotate_about(Eigen::Quaterniond(rotation_step), symmetry.offset));
     }
   }
-  if (turns.empty()) turns.push_back(Eigen::Isometry3d::Identity());
-  std::vector<Eigen::Isometry3d> all = turns;
+  if (rotations.empty()) rotations.push_back(Eigen::Isometry3d::Identity());
+  std::vector<Eigen::Isometry3d> all = rotations;
   for (const Eigen::Isometry3d& discrete : symmetries.discrete) {
-    for (const Eigen::Isometry3d& turn : turns) all.emplace_back(turn * discrete);
+    for (const Eigen::Isometry3d& rotation_step : rotations) all.emplace_back(rotation_step * discrete);
   }
   return all;
 }
@@ -69,7 +69,7 @@ std::vector<Eigen::Isometry3d> expand_symmetries(const Symmetries& symmetries, d
 Eigen::Isometry3d symmetry_towards(const Eigen::Quaterniond& R_camera_object, const Eigen::Quaterniond& R_reference,
                                    const Symmetries& symmetries) {
   const Eigen::Quaterniond R_reference_object = R_reference.conjugate() * R_camera_object;
-  if (is_ball(symmetries)) return turn_about(R_reference_object.conjugate(), symmetries.continuous.front().offset);
+  if (is_ball(symmetries)) return rotate_about(R_reference_object.conjugate(), symmetries.continuous.front().offset);
   Eigen::Isometry3d best = best_after(Eigen::Isometry3d::Identity(), R_reference_object, symmetries);
   const auto left_by = [&](const Eigen::Isometry3d& symmetry) {
     return nearness(R_reference_object * Eigen::Quaterniond(symmetry.linear()));

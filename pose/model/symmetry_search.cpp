@@ -14,8 +14,8 @@
 namespace houghstream {
 namespace {
 
-constexpr double kSameDirection = 0.985;             // cosine of 10 degrees
-constexpr double kSameTurn_rad = 25.0 * kRadPerDeg;  // those of a group differ by 60 degrees and more
+constexpr double kSameDirection = 0.985;                 // cosine of 10 degrees
+constexpr double kSameRotation_rad = 25.0 * kRadPerDeg;  // those of a group differ by 60 degrees and more
 constexpr int kMaxFold = 6;
 constexpr std::size_t kMaxGroup = 60;  // the icosahedron's
 
@@ -120,7 +120,7 @@ std::vector<ContinuousSymmetry> continuous_axes(const RotationSymmetryTest& chec
 
 /// One turn per axis: the smallest that fits as it is, of which the others are multiples. What fits less well is
 /// registered first: of rotations a few degrees off the products do not fit.
-std::vector<Eigen::Isometry3d> min_turns(const RotationSymmetryTest& check, const Moments& moments) {
+std::vector<Eigen::Isometry3d> min_rotations(const RotationSymmetryTest& check, const Moments& moments) {
   constexpr double kExactRms = 0.2;  // tolerances
   std::vector<Eigen::Isometry3d> turns;
   std::vector<Eigen::Vector3d> known;
@@ -138,15 +138,15 @@ std::vector<Eigen::Isometry3d> min_turns(const RotationSymmetryTest& check, cons
 }
 
 /// A rotation by a whole fraction of a full one, from which registration starts.
-struct FoldedTurn {
+struct FoldedRotation {
   Eigen::Isometry3d T;
   double deviation_m = 0.0;
 };
 
 /// Where the moments leave the axis open: the principal axes where no two spread alike, half a turn about any axis
 /// between two that do and any turn about the third, or any turn at all where all three do.
-std::vector<FoldedTurn> possible_turns(const RotationSymmetryTest& check, const Moments& moments) {
-  std::vector<FoldedTurn> turns;
+std::vector<FoldedRotation> possible_rotations(const RotationSymmetryTest& check, const Moments& moments) {
+  std::vector<FoldedRotation> turns;
   const auto add = [&](const Eigen::Vector3d& axis, int max_fold) {
     for (int fold = 2; fold <= max_fold; ++fold)
       turns.push_back({check.rotation_about_axis(axis, 2.0 * M_PI / fold), 0.0});
@@ -168,9 +168,9 @@ std::vector<FoldedTurn> possible_turns(const RotationSymmetryTest& check, const 
         add(Eigen::AngleAxisd(angle * kRadPerDeg, moments.axes.col(i)) * moments.axes.col(a), 2);
     }
   }
-  for (FoldedTurn& turn : turns) turn.deviation_m = check.deviation(turn.T);
+  for (FoldedRotation& rotation_step : turns) rotation_step.deviation_m = check.deviation(rotation_step.T);
   std::stable_sort(turns.begin(), turns.end(),
-                   [](const FoldedTurn& a, const FoldedTurn& b) { return a.deviation_m < b.deviation_m; });
+                   [](const FoldedRotation& a, const FoldedRotation& b) { return a.deviation_m < b.deviation_m; });
   return turns;
 }
 
@@ -180,7 +180,7 @@ Eigen::Isometry3d folded(const Eigen::Isometry3d& T, const Eigen::Vector3d& cent
   const Eigen::AngleAxisd rotation(T.linear());
   const Eigen::Vector3d moved = T * centre - centre;
   const Eigen::Vector3d across = moved - rotation.axis().dot(moved) * rotation.axis();
-  const double cotangent = 1.0 / std::tan(0.5 * std::max(rotation.angle(), kSameTurn_rad));
+  const double cotangent = 1.0 / std::tan(0.5 * std::max(rotation.angle(), kSameRotation_rad));
   const Eigen::Vector3d offset = centre + 0.5 * (across + cotangent * rotation.axis().cross(across));
   double nearest_deg = kFolded_deg.front();
   for (const double angle_deg : kFolded_deg) {
@@ -202,7 +202,7 @@ bool close_under_composition(const RotationSymmetryTest& check, const std::vecto
     for (const Eigen::Isometry3d& generator : generators) {
       Eigen::Isometry3d product = generator * group[i];
       if (group.size() == kMaxGroup || is_near_any(product, group, kMaxError_rad)) continue;
-      if (is_near_any(product, group, kSameTurn_rad)) return false;  // neither an element nor another one
+      if (is_near_any(product, group, kSameRotation_rad)) return false;  // neither an element nor another one
       if (!check.is_symmetric_under(product, kRmsOfProduct)) {
         const Eigen::Isometry3d refined = folded(check.registered(product), check.centre());
         if (angle_between(refined, product) > kMaxCorrection_rad || !check.is_symmetric_under(refined, kRmsOfProduct))
@@ -223,13 +223,13 @@ std::vector<Eigen::Isometry3d> registered_group(const RotationSymmetryTest& chec
   std::vector<Eigen::Isometry3d> tried;
   std::vector<Eigen::Isometry3d> group = group_of(turns);
   group.insert(group.begin(), Eigen::Isometry3d::Identity());
-  for (const FoldedTurn& start : possible_turns(check, moments)) {
+  for (const FoldedRotation& start : possible_rotations(check, moments)) {
     if (tried.size() >= kMaxTries) break;
     if (is_near_any(start.T, group, kBasin_rad) || is_near_any(start.T, tried, kBasin_rad)) continue;
     tried.push_back(start.T);
-    const Eigen::Isometry3d turn = folded(check.registered(start.T), check.centre());
-    if (is_near_any(turn, group, kSameTurn_rad) || !check.is_symmetric_under(turn)) continue;
-    turns.push_back(turn);
+    const Eigen::Isometry3d rotation_step = folded(check.registered(start.T), check.centre());
+    if (is_near_any(rotation_step, group, kSameRotation_rad) || !check.is_symmetric_under(rotation_step)) continue;
+    turns.push_back(rotation_step);
     std::vector<Eigen::Isometry3d> larger = group;
     if (close_under_composition(check, turns, larger)) {
       group = std::move(larger);
@@ -249,8 +249,9 @@ std::vector<Eigen::Isometry3d> end_over_end(const RotationSymmetryTest& check, c
   const Eigen::Vector3d& centre = check.centre();
   const Eigen::Vector3d middle = 0.5 * (centre + check.registered(plain) * centre);
   const Eigen::Vector3d offset = round.offset + round.axis.dot(middle - round.offset) * round.axis;
-  const Eigen::Isometry3d turn = rotation_about({across, offset}, M_PI);
-  return check.is_symmetric_under(turn) ? std::vector<Eigen::Isometry3d>{turn} : std::vector<Eigen::Isometry3d>{};
+  const Eigen::Isometry3d rotation_step = rotation_about({across, offset}, M_PI);
+  return check.is_symmetric_under(rotation_step) ? std::vector<Eigen::Isometry3d>{rotation_step}
+                                                 : std::vector<Eigen::Isometry3d>{};
 }
 
 Symmetries symmetries_by(const RotationSymmetryTest& check, const Moments& moments,
@@ -258,7 +259,7 @@ Symmetries symmetries_by(const RotationSymmetryTest& check, const Moments& momen
   Symmetries found;
   found.continuous = continuous_axes(check, moments, of_revolution);
   if (found.continuous.empty()) {
-    found.discrete = registered_group(check, moments, min_turns(check, moments));
+    found.discrete = registered_group(check, moments, min_rotations(check, moments));
   } else if (found.continuous.size() == 1) {
     found.discrete = end_over_end(check, found.continuous.front());
   }
@@ -291,9 +292,9 @@ bool is_near_any(const Eigen::Isometry3d& T, const std::vector<Eigen::Isometry3d
 std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& turns) {
   std::vector<Eigen::Isometry3d> group = {Eigen::Isometry3d::Identity()};
   for (std::size_t i = 0; i < group.size(); ++i) {
-    for (const Eigen::Isometry3d& turn : turns) {
-      const Eigen::Isometry3d product = turn * group[i];
-      if (!is_near_any(product, group, kSameTurn_rad) && group.size() < kMaxGroup) group.push_back(product);
+    for (const Eigen::Isometry3d& rotation_step : turns) {
+      const Eigen::Isometry3d product = rotation_step * group[i];
+      if (!is_near_any(product, group, kSameRotation_rad) && group.size() < kMaxGroup) group.push_back(product);
     }
   }
   group.erase(group.begin());
@@ -394,8 +395,8 @@ Eigen::Isometry3d RotationSymmetryTest::registered(const Eigen::Isometry3d& star
     normal_matrix.diagonal().array() += kDamping * static_cast<double>(count);
     const Vector6 change = normal_matrix.ldlt().solve(right_side);
     const Eigen::Vector3d rotation = change.head<3>() / radius_m;
-    const Eigen::AngleAxisd turned(rotation.norm(), rotation.stableNormalized());
-    T = Eigen::Translation3d(centre_ + change.tail<3>()) * turned * Eigen::Translation3d(-centre_) * T;
+    const Eigen::AngleAxisd rotated(rotation.norm(), rotation.stableNormalized());
+    T = Eigen::Translation3d(centre_ + change.tail<3>()) * rotated * Eigen::Translation3d(-centre_) * T;
     if (change.norm() < kStill_m) break;
   }
   return T;

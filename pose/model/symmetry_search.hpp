@@ -55,7 +55,7 @@ ShapeSymmetry find_shape_symmetry(const Mesh& mesh);
 bool is_near_any(const Eigen::Isometry3d& T, const std::vector<Eigen::Isometry3d>& known, double angle_rad);
 
 /// All that turns combine to, without the identity; at most 59, and none within 25 degrees of another.
-std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& turns);
+std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& rotations);
 
 /// Says of a motion of the object frame, metres, whether the object looks the same after it. Inspects 1000 evenly
 /// spread points of the surface, and up to 2000 of its vertices: corners deviate most.

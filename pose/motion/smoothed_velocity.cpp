@@ -7,15 +7,15 @@ namespace {
 
 bool is_near(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   constexpr double kNear = 0.008;  // metres
-  constexpr double kTurn = 0.04;   // radians
+  constexpr double kAngle = 0.04;  // radians
   return (a.translation() - b.translation()).norm() < kNear &&
-         rotation_vector(a.linear() * b.linear().transpose()).norm() < kTurn;
+         rotation_vector(a.linear() * b.linear().transpose()).norm() < kAngle;
 }
 
 }  // namespace
 
 Eigen::Isometry3d SmoothedVelocity::predict(const Eigen::Isometry3d& T_camera_object, double seconds) const {
-  return retract_about_point(T_camera_object, seconds * speed_, seconds * turn_rate_);
+  return retract_about_point(T_camera_object, seconds * speed_, seconds * angular_velocity_);
 }
 
 void SmoothedVelocity::update(const Eigen::Isometry3d& T_before, const Eigen::Isometry3d& T_after, double seconds,
@@ -23,15 +23,15 @@ void SmoothedVelocity::update(const Eigen::Isometry3d& T_before, const Eigen::Is
   const Eigen::Vector3d speed = (T_after.translation() - T_before.translation()) / seconds;
   const Eigen::Vector3d angular_velocity = rotation_vector(T_after.linear() * T_before.linear().transpose()) / seconds;
   speed_ += gain * (speed - speed_);
-  turn_rate_ += gain * (angular_velocity - turn_rate_);
+  angular_velocity_ += gain * (angular_velocity - angular_velocity_);
 }
 
 void SmoothedVelocity::reset() {
-  speed_ = turn_rate_ = Eigen::Vector3d::Zero();
+  speed_ = angular_velocity_ = Eigen::Vector3d::Zero();
 }
 
 bool SmoothedVelocity::is_zero() const {
-  return speed_.isZero(0.0) && turn_rate_.isZero(0.0);
+  return speed_.isZero(0.0) && angular_velocity_.isZero(0.0);
 }
 
 std::optional<Eigen::Isometry3d> predict_by_camera_motion(const Eigen::Isometry3d& T_camera_object,

@@ -22,8 +22,8 @@ class SmoothedVelocity {
   bool is_zero() const;
 
  private:
-  Eigen::Vector3d speed_ = Eigen::Vector3d::Zero();      // m/s
-  Eigen::Vector3d turn_rate_ = Eigen::Vector3d::Zero();  // rad/s
+  Eigen::Vector3d speed_ = Eigen::Vector3d::Zero();             // m/s
+  Eigen::Vector3d angular_velocity_ = Eigen::Vector3d::Zero();  // rad/s
 };
 
 /// Where the motion that two of these agree on (8 mm, 0.04 radians, at this pose) would bring it: the camera's own, as

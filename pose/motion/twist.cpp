@@ -3,14 +3,14 @@
 namespace houghstream {
 
 Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
-  const Eigen::AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
+  const Eigen::AngleAxisd rotation_step(rotation);
+  return rotation_step.angle() * rotation_step.axis();
 }
 
 Vector6 local_coordinates_about_world(const Eigen::Isometry3d& T_to, const Eigen::Isometry3d& T_from) {
-  const Eigen::AngleAxisd turn(Eigen::Quaterniond(T_to.linear() * T_from.linear().transpose()).normalized());
+  const Eigen::AngleAxisd rotation_step(Eigen::Quaterniond(T_to.linear() * T_from.linear().transpose()).normalized());
   Vector6 twist;
-  twist << T_to.translation() - T_from.translation(), turn.angle() * turn.axis();
+  twist << T_to.translation() - T_from.translation(), rotation_step.angle() * rotation_step.axis();
   return twist;
 }
 
@@ -27,9 +27,9 @@ Eigen::Isometry3d interpolate_pose(const Eigen::Isometry3d& T_first, const Eigen
 }
 
 Vector6 local_coordinates_about_body(const Eigen::Isometry3d& motion) {
-  const Eigen::AngleAxisd turn(motion.linear());
+  const Eigen::AngleAxisd rotation_step(motion.linear());
   Vector6 twist;
-  twist << motion.translation(), turn.angle() * turn.axis();
+  twist << motion.translation(), rotation_step.angle() * rotation_step.axis();
   return twist;
 }
 

@@ -57,13 +57,13 @@ std::size_t densest(const std::vector<RotationVote>& votes, float min_kernel) {
   return best;
 }
 
-void add_turned(std::vector<RotationCandidate>& candidates, int rotated_clusters) {
+void add_rotated(std::vector<RotationCandidate>& candidates, int rotated_clusters) {
   const std::size_t heaviest = std::min<std::size_t>(candidates.size(), std::max(0, rotated_clusters));
   for (std::size_t i = 0; i < heaviest; ++i) {
     const Eigen::Quaternionf R_camera_object = candidates[i].R_camera_object;
     for (const double degrees : {90.0, 180.0, 270.0}) {
-      const Eigen::AngleAxisf turn(static_cast<float>(degrees * kRadPerDeg), Eigen::Vector3f::UnitZ());
-      candidates.push_back({R_camera_object * Eigen::Quaternionf(turn), 0.0F});
+      const Eigen::AngleAxisf rotation_step(static_cast<float>(degrees * kRadPerDeg), Eigen::Vector3f::UnitZ());
+      candidates.push_back({R_camera_object * Eigen::Quaternionf(rotation_step), 0.0F});
     }
   }
 }
@@ -101,7 +101,7 @@ std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>
     candidates.push_back(mean_rotation({near_begin, left.end()}));
     left.erase(near_begin, left.end());
   }
-  add_turned(candidates, settings.rotated_clusters);
+  add_rotated(candidates, settings.rotated_clusters);
   return candidates;
 }
 

@@ -33,11 +33,11 @@ class PoseSelector {
   }
 
   /// The best of `result` and of the best turns of it, registered again.
-  RegistrationResult best_turn(const RegistrationResult& result, double step_deg, double reach_deg,
-                               std::size_t maximum) const {
+  RegistrationResult best_rotation(const RegistrationResult& result, double step_deg, double reach_deg,
+                                   std::size_t maximum) const {
     RegistrationResult best = result;
     float best_score = score_of(result);
-    const RotationRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, maximum, settings_.turn.points};
+    const RotationRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, maximum, settings_.rotation_search.points};
     for (const ScoredPose& turn : best_rotations_about_z(seen_, result.T_camera_object, range, tolerance_)) {
       RegistrationResult again = uphill(register_coarsely(
           seen_, turn.T_camera_object, 0.5 * (distances_.start + distances_.end), settings_.registration));
@@ -75,9 +75,9 @@ class PoseSelector {
   }
 
   RegistrationResult uphill(RegistrationResult result) const {
-    const RotationSearchSettings& turn = settings_.turn;
-    const HillClimb hill_climb{turn.fine_step_deg * kRadPerDeg, turn.hill_climb_step_m, turn.hill_climb_rounds,
-                               turn.points};
+    const RotationSearchSettings& search = settings_.rotation_search;
+    const HillClimb hill_climb{search.fine_step_deg * kRadPerDeg, search.hill_climb_step_m, search.hill_climb_rounds,
+                               search.points};
     result.T_camera_object = hill_climb_pose(seen_, result.T_camera_object, hill_climb, tolerance_).T_camera_object;
     return result;
   }
@@ -100,8 +100,9 @@ class PoseSelector {
 /// The last steps of a choice: turned a little to where all speaks most for it, and registered.
 RegistrationResult refine_fully(const PoseSelector& selector, const ObjectObservation& seen,
                                 const RegistrationResult& result, const PoseSelectionSettings& settings) {
-  const RotationSearchSettings& turn = settings.turn;
-  return register_finely(seen, selector.best_turn(result, turn.fine_step_deg, turn.step_deg, 1), settings.registration);
+  const RotationSearchSettings& search = settings.rotation_search;
+  return register_finely(seen, selector.best_rotation(result, search.fine_step_deg, search.step_deg, 1),
+                         settings.registration);
 }
 
 }  // namespace
@@ -119,16 +120,17 @@ std::vector<RegistrationResult> select_poses(const ObjectObservation& seen,
                                              const std::vector<RotationCandidate>& votes,
                                              const PoseSelectionSettings& settings) {
   const PoseSelector selector(seen, votes, settings);
-  const RotationSearchSettings& turn = settings.turn;
+  const RotationSearchSettings& search = settings.rotation_search;
   const RegistrationSettings& registration = settings.registration;
   RegistrationResult best = selector.best_of(registered);
   if (best.inliers == 0) return {best};
   const RegistrationResult settled = register_finely(seen, best, registration);
   const std::vector<Scored> flips = selector.flips_of(settled);
-  const RegistrationResult turned = selector.best_turn(flips.front().result, turn.step_deg, 180.0, turn.registered);
-  std::vector<RegistrationResult> fine = {register_finely(seen, turned, registration)};
-  for (std::size_t i = 1; i < flips.size() && fine.size() <= turn.alternatives; ++i) {
-    if (flips[i].score < turn.min_alternative_ratio * flips.front().score) break;
+  const RegistrationResult rotated =
+      selector.best_rotation(flips.front().result, search.step_deg, 180.0, search.registered);
+  std::vector<RegistrationResult> fine = {register_finely(seen, rotated, registration)};
+  for (std::size_t i = 1; i < flips.size() && fine.size() <= search.alternatives; ++i) {
+    if (flips[i].score < search.min_alternative_ratio * flips.front().score) break;
     fine.push_back(register_finely(seen, flips[i].result, registration));
   }
   for (RegistrationResult& result : fine) result = refine_fully(selector, seen, result, settings);

@@ -38,7 +38,7 @@ void fields(const RotationSearchSettings& /*settings*/, const Visit& visit) {
 struct PoseSelectionSettings {
   InitialSettings initial;
   RegistrationSettings registration;
-  RotationSearchSettings turn;
+  RotationSearchSettings rotation_search;
   double tolerance_m = kDepthTolerance_m;  ///< VerificationSettings::tolerance_m
 };
 

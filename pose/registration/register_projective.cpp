@@ -126,11 +126,11 @@ double apply_gauss_newton_step(LinearSystem equations, const ObjectModel& model,
   const Vector6d step = equations.hessian.selfadjointView<Eigen::Lower>().ldlt().solve(equations.gradient);
   if (!step.allFinite()) return 0.0;
   const Eigen::Vector3d centre = T_camera_object * model.centre.cast<double>();
-  const Eigen::Vector3d turn = step.head<3>() / model.radius;
-  const double angle = turn.norm();
+  const Eigen::Vector3d rotation = step.head<3>() / model.radius;
+  const double angle = rotation.norm();
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
   motion.translate(centre + step.tail<3>());
-  if (angle > 0.0) motion.rotate(Eigen::AngleAxisd(angle, turn / angle));
+  if (angle > 0.0) motion.rotate(Eigen::AngleAxisd(angle, rotation / angle));
   motion.translate(-centre);
   T_camera_object = motion * T_camera_object;
   return step.norm();

@@ -10,21 +10,21 @@ namespace houghstream {
 namespace {
 
 /// Those that are better than both neighbours; `ring`: the last one's next is the first.
-std::vector<ScoredPose> local_maxima(const std::vector<ScoredPose>& turns, bool ring) {
+std::vector<ScoredPose> local_maxima(const std::vector<ScoredPose>& rotations, bool ring) {
   std::vector<ScoredPose> best;
-  const std::size_t count = turns.size();
+  const std::size_t count = rotations.size();
   for (std::size_t i = 0; i < count; ++i) {
-    const bool above_last = (i == 0 && !ring) || turns[i].score >= turns[(i + count - 1) % count].score;
-    const bool above_next = (i + 1 == count && !ring) || turns[i].score > turns[(i + 1) % count].score;
-    if (above_last && above_next) best.push_back(turns[i]);
+    const bool above_last = (i == 0 && !ring) || rotations[i].score >= rotations[(i + count - 1) % count].score;
+    const bool above_next = (i + 1 == count && !ring) || rotations[i].score > rotations[(i + 1) % count].score;
+    if (above_last && above_next) best.push_back(rotations[i]);
   }
   return best;
 }
 
-Eigen::Isometry3d turned(const Eigen::Isometry3d& T_camera_object, const ObjectModel& model, double angle_rad) {
+Eigen::Isometry3d rotated(const Eigen::Isometry3d& T_camera_object, const ObjectModel& model, double angle_rad) {
   const Eigen::Vector3d middle = model.surface_median.cast<double>();
-  const Eigen::AngleAxisd turn(angle_rad, Eigen::Vector3d::UnitZ());
-  return T_camera_object * Eigen::Translation3d(middle) * turn * Eigen::Translation3d(-middle);
+  const Eigen::AngleAxisd rotation(angle_rad, Eigen::Vector3d::UnitZ());
+  return T_camera_object * Eigen::Translation3d(middle) * rotation * Eigen::Translation3d(-middle);
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ ScoredPose hill_climb_pose(const ObjectObservation& seen, const Eigen::Isometry3
       const double way = (motion % 2 == 0 ? 1.0 : -1.0) * size;
       Eigen::Isometry3d moved = best.T_camera_object;
       if (motion < 2) {
-        moved = turned(moved, seen.model, way * hill_climb.step_rad);
+        moved = rotated(moved, seen.model, way * hill_climb.step_rad);
       } else {
         moved.translate(way * hill_climb.step_m * Eigen::Vector3d::Unit(motion / 2 - 1));
       }
@@ -70,12 +70,12 @@ std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& seen, co
                                                const RotationRange& range, const DepthTolerance& tolerance) {
   const int steps = static_cast<int>(std::floor(range.reach_rad / range.step_rad + 1e-9));
   const bool all_round = 2.0 * range.reach_rad >= 2.0 * M_PI - 1e-9;  // then both ends are one pose
-  std::vector<ScoredPose> turns;
+  std::vector<ScoredPose> rotations;
   for (int i = -steps; i <= steps - (all_round ? 1 : 0); ++i) {
-    const Eigen::Isometry3d turn = turned(T_camera_object, seen.model, i * range.step_rad);
-    turns.push_back(score_pose_jointly(seen, turn, range.points, tolerance));
+    const Eigen::Isometry3d rotation = rotated(T_camera_object, seen.model, i * range.step_rad);
+    rotations.push_back(score_pose_jointly(seen, rotation, range.points, tolerance));
   }
-  std::vector<ScoredPose> best = local_maxima(turns, all_round);
+  std::vector<ScoredPose> best = local_maxima(rotations, all_round);
   std::stable_sort(best.begin(), best.end(),
                    [](const ScoredPose& a, const ScoredPose& b) { return a.score > b.score; });
   best.resize(std::min(best.size(), range.maximum));

@@ -21,18 +21,18 @@ Covariance6 covariance_of(const ObjectPose& pose, const Eigen::Isometry3d& T_wor
                           const Eigen::Vector3d& centre, double radius_m) {
   constexpr double kAcross = 0.0015;  // metres a metre of distance, of an object of which all is seen
   constexpr double kAlong = 0.002;
-  constexpr double kMinTurn = 0.008;  // radians
+  constexpr double kMinRotation = 0.008;  // radians
   const Eigen::Vector3d ray = *pose.T_camera_object * centre;
   const double distance = std::max(0.3, ray.norm());
   const double unclear = 1.0 / std::sqrt(std::clamp(static_cast<double>(pose.visible_fraction), 0.1, 1.0));
   const double across = kAcross * distance * unclear;
   const double along = kAlong * distance * distance * unclear;
-  const double turn = kMinTurn + across / std::max(0.02, radius_m);
+  const double angle_rad = kMinRotation + across / std::max(0.02, radius_m);
   const Eigen::Vector3d direction = T_world_camera.linear() * ray.normalized();
   const Eigen::Matrix3d beam = direction * direction.transpose();
   Covariance6 out = Covariance6::Zero();
   out.topLeftCorner<3, 3>() = across * across * (Eigen::Matrix3d::Identity() - beam) + along * along * beam;
-  out.bottomRightCorner<3, 3>().diagonal().setConstant(turn * turn);
+  out.bottomRightCorner<3, 3>().diagonal().setConstant(angle_rad * angle_rad);
   return out;
 }
 
@@ -140,14 +140,14 @@ void PoseTrack::update(const PoseObservation& pose, const Symmetries& symmetries
   const std::size_t index = hypothesis_for(pose.measured, symmetries);
   Hypothesis& hypothesis = hypotheses_[index];
   hypothesis.weight = std::min(kMaxWeight, hypothesis.weight + std::max(0.1, quality_logit(pose.quality)));
-  PoseObservation turned = pose;
-  turned.measured.T_world_object =
+  PoseObservation rotated = pose;
+  rotated.measured.T_world_object =
       nearest_equivalent(pose.measured.T_world_object, hypothesis.filter.T_world_object(), symmetries);
   hypothesis.filter.predict(pose.frame.utime);
   if (hypothesis.filter.moving()) {
-    update_moving(turned.measured, hypothesis);
+    update_moving(rotated.measured, hypothesis);
   } else {
-    update_standing(turned, has_contrary_depth, hypothesis);
+    update_standing(rotated, has_contrary_depth, hypothesis);
   }
   if (hypothesis.weight > hypotheses_[best_].weight + kLead) best_ = index;
   if (hypothesis.filter.moving() && index == best_ && hypotheses_.size() > 1) {
@@ -185,16 +185,16 @@ std::size_t PoseTrack::hypothesis_for(const PoseMeasurement& measured, const Sym
 
 void PoseTrack::update_standing(const PoseObservation& pose, bool has_contrary_depth, Hypothesis& hypothesis) {
   constexpr double kWithinS = 0.4;
-  constexpr std::size_t kPlaces = 3;  // measured apart from where it stands
-  constexpr std::size_t kTurns = 8;   // measured turned only
+  constexpr std::size_t kPlaces = 3;     // measured apart from where it stands
+  constexpr std::size_t kRotations = 8;  // measured turned only
   const Vector6 apart = local_coordinates_about_world(pose.measured.T_world_object, hypothesis.filter.T_world_object());
   const Covariance6& noise = pose.measured.covariance;
   const double place_gate =
       std::max(settings_.static_gate_m, 4.0 * std::sqrt(noise.topLeftCorner<3, 3>().trace() / 3.0));
-  const double turn_gate = std::max(settings_.static_gate_rad, 4.0 * std::sqrt(noise(5, 5)));
+  const double rotation_gate = std::max(settings_.static_gate_rad, 4.0 * std::sqrt(noise(5, 5)));
   const bool in_place = apart.head<3>().norm() < place_gate;
   ObserverHistory& observer = observers_[pose.frame.channel];
-  if (in_place && apart.tail<3>().norm() < turn_gate) {
+  if (in_place && apart.tail<3>().norm() < rotation_gate) {
     hypothesis.filter.update(pose.measured);
     observer.apart.clear();
     observer.agreed_utime = pose.frame.utime;
@@ -202,7 +202,7 @@ void PoseTrack::update_standing(const PoseObservation& pose, bool has_contrary_d
   }
   observer.apart.push_back(pose.measured);
   while (seconds_between(observer.apart.front().utime, pose.frame.utime) > kWithinS) observer.apart.pop_front();
-  const std::size_t needed = in_place ? kTurns : has_contrary_depth ? 1 : kPlaces;
+  const std::size_t needed = in_place ? kRotations : has_contrary_depth ? 1 : kPlaces;
   if (observer.apart.size() < needed || !can_trigger_motion(pose.frame.channel, pose.frame.utime)) return;
   const PoseMeasurement& first = observer.apart.front();
   const double seconds = std::max(0.02, seconds_between(first.utime, pose.frame.utime));

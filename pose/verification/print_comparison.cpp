@@ -287,8 +287,8 @@ std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& seen,
   }
   if (is_handle_seen(seen, T_camera_object, tolerance)) return poses;
   for (const Eigen::Isometry3d& motion : seen.model.partial_alternatives) {
-    const Eigen::Isometry3d turned = T_camera_object * motion;
-    if (may_handle_be_hidden(seen, turned, tolerance)) poses.push_back(turned);
+    const Eigen::Isometry3d rotated = T_camera_object * motion;
+    if (may_handle_be_hidden(seen, rotated, tolerance)) poses.push_back(rotated);
   }
   return poses;
 }

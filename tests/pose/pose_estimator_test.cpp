@@ -203,7 +203,7 @@ ObjectPose found_from_turned_votes(const Mesh& taught, const Eigen::Isometry3d& 
   for (RotationVote& vote : detection.rotations)
     vote.R_camera_object = vote.R_camera_object * Eigen::AngleAxisf(static_cast<float>(M_PI), Eigen::Vector3f::UnitZ());
   PoseSettings settings;
-  settings.turn.alternatives = 0;
+  settings.rotation_search.alternatives = 0;
   set_min_quality(0.3F, settings);
   return estimator_for("box", taught, settings).estimate(frame, only(detection)).poses.at(0);
 }

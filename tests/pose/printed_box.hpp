@@ -42,7 +42,7 @@ inline RgbdFrame coloured_frame(const Mesh& mesh, const Eigen::Isometry3d& T_cam
 }
 
 /// Turned about the object's z axis.
-inline Eigen::Isometry3d turned(const Eigen::Isometry3d& T_camera_object, double degrees) {
+inline Eigen::Isometry3d rotated(const Eigen::Isometry3d& T_camera_object, double degrees) {
   Eigen::Isometry3d out = T_camera_object;
   out.rotate(Eigen::AngleAxisd(degrees * 0.017453292519943295, Eigen::Vector3d::UnitZ()));
   return out;

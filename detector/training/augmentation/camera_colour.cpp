@@ -171,15 +171,15 @@ cv::Mat toned(const ColourVariation& camera, const cv::Mat& raw) {
 
 /// Saturation about each colour's grey (ITU-R BT.601), and all hues turned about the grey axis.
 void render_colours(const ColourVariation& camera, cv::Mat& colour) {
-  if (camera.saturation == 1.0 && camera.hue_turn == 0.0) return;
-  const double cosine = std::cos(camera.hue_turn);
-  const double sine = std::sin(camera.hue_turn) / std::sqrt(3.0);
+  if (camera.saturation == 1.0 && camera.hue_rotation == 0.0) return;
+  const double cosine = std::cos(camera.hue_rotation);
+  const double sine = std::sin(camera.hue_rotation) / std::sqrt(3.0);
   const double third = (1.0 - cosine) / 3.0;
-  const cv::Matx33d turn(cosine + third, third - sine, third + sine,  //
-                         third + sine, cosine + third, third - sine,  //
-                         third - sine, third + sine, cosine + third);
+  const cv::Matx33d rotation(cosine + third, third - sine, third + sine,  //
+                             third + sine, cosine + third, third - sine,  //
+                             third - sine, third + sine, cosine + third);
   const cv::Matx33d grey(0.114, 0.587, 0.299, 0.114, 0.587, 0.299, 0.114, 0.587, 0.299);
-  cv::transform(colour, colour, cv::Mat((grey + camera.saturation * (cv::Matx33d::eye() - grey)) * turn));
+  cv::transform(colour, colour, cv::Mat((grey + camera.saturation * (cv::Matx33d::eye() - grey)) * rotation));
 }
 
 void sharpen(const ColourVariation& camera, cv::Mat& colour) {

@@ -193,7 +193,7 @@ void add_time_of_flight_noise(const DepthVariation& camera, const Surfaces& surf
   const auto floor_sq = static_cast<float>(camera.noise_floor * camera.noise_floor);
   const auto light_sq = static_cast<float>(camera.noise_light * camera.noise_light);
   const auto wiggle = static_cast<float>(camera.wiggle);
-  const auto turns = static_cast<float>(2.0 * M_PI / camera.wiggle_wave);
+  const auto rotations = static_cast<float>(2.0 * M_PI / camera.wiggle_wave);
   const auto phase = static_cast<float>(camera.wiggle_phase);
   const auto dark_bias = static_cast<float>(camera.dark_bias);
   constexpr float kMaxSigma = 0.03F;  // more is not reported
@@ -208,7 +208,7 @@ void add_time_of_flight_noise(const DepthVariation& camera, const Surfaces& surf
       const float amplitude_sq = reflectance[x] * reflectance[x] / ((1.0F + slant_sq[x]) * z * z * z * z);
       const float sigma = std::min(kMaxSigma, std::sqrt(floor_sq + light_sq / amplitude_sq));
       const float dark = std::max(0.0F, 1.0F - reflectance[x] / kGrey);
-      row[x] += wiggle * std::sin(turns * z + phase) + dark_bias * dark + sigma * quick_normal(random);
+      row[x] += wiggle * std::sin(rotations * z + phase) + dark_bias * dark + sigma * quick_normal(random);
     }
   }
 }

@@ -43,7 +43,7 @@ ColourVariation draw_colour(Draw draw) {
   colour.gamma = draw.factor(-0.4, 0.4);
   colour.contrast = draw.part(-0.35, 0.7);
   colour.saturation = draw.factor(-0.9, 0.5);
-  colour.hue_turn = draw.part(-0.12, 0.12);
+  colour.hue_rotation = draw.part(-0.12, 0.12);
   colour.sharpening = std::max(0.0, draw.part(-0.5, 1.4));
   colour.sharpening_px = random.uniform(0.6, 1.6);
   colour.half_chroma = draw.happens(0.4);
@@ -112,7 +112,7 @@ void jitter_tone(double fraction, double strength, cv::Mat& colour, Random& rand
   camera.colour.black = draw.part(-0.06, 0.14);
   camera.colour.white = 1.0 - draw.part(-0.04, 0.22);
   camera.colour.saturation = draw.factor(-0.9, 0.9);
-  camera.colour.hue_turn = draw.part(-0.12, 0.12);
+  camera.colour.hue_rotation = draw.part(-0.12, 0.12);
   apply_colour(camera, colour, random);
 }
 

@@ -51,7 +51,7 @@ struct ColourVariation {
   double black = 0.0;          ///< coded value, 0 to 1, that becomes black; below 0 greys it
   double white = 1.0;          ///< coded value that becomes white
   double saturation = 1.0;     ///< factor on what a colour differs from its grey
-  double hue_turn = 0.0;       ///< radians, of all colours about grey
+  double hue_rotation = 0.0;   ///< radians, of all colours about grey
   double sharpening = 0.0;     ///< share of the unsharp mask that is added
   double sharpening_px = 1.0;  ///< its standard deviation
   bool half_chroma = false;    ///< one colour for two neighbours (4:2:2)

@@ -138,13 +138,13 @@ class ResidualEvaluator {
 
 void add_plane(const PlanePrior& plane, const Eigen::Isometry3d& T, NormalEquations& equations) {
   const Eigen::Vector3d up = T.linear().transpose() * plane.normal;  // should be z
-  const double turn = 1.0 / (plane.sigma_rad * plane.sigma_rad);
+  const double angle = 1.0 / (plane.sigma_rad * plane.sigma_rad);
   Vector6 row = Vector6::Zero();
   row[4] = 1.0;
-  equations.add(row, -up.x(), turn);
+  equations.add(row, -up.x(), angle);
   row.setZero();
   row[3] = -1.0;
-  equations.add(row, -up.y(), turn);
+  equations.add(row, -up.y(), angle);
   row.setZero();
   row.head<3>() = up;
   equations.add(row, plane.normal.dot(T.translation()) + plane.offset, 1.0 / (plane.sigma_m * plane.sigma_m));

@@ -11,10 +11,10 @@ namespace {
 /// Where the motion that an edge misses is large, the edge is wrong rather than the poses.
 double robust_weight(const Vector6& error) {
   constexpr double kShift_m = 0.006;
-  constexpr double kTurn = 0.02;
+  constexpr double kAngle = 0.02;
   const double shift = error.head<3>().norm() / kShift_m;
-  const double turn = error.tail<3>().norm() / kTurn;
-  const double rest = 1.0 + shift * shift + turn * turn;
+  const double angle = error.tail<3>().norm() / kAngle;
+  const double rest = 1.0 + shift * shift + angle * angle;
   return 1.0 / (rest * rest);  // Geman & McClure
 }
 

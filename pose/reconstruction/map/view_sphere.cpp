@@ -15,11 +15,11 @@ const char* part_of(const Eigen::Vector3d& direction, const Eigen::Vector3d& fro
   if (direction.z() > 0.75) return "above";
   if (direction.z() < -0.75) return "below";
   if (direction.z() < -0.2) return "low";
-  double turn = std::atan2(direction.y(), direction.x()) - std::atan2(front.y(), front.x());
-  turn = std::remainder(turn, 2.0 * kPi);
-  if (std::abs(turn) < kPi / 4) return "in front";
-  if (std::abs(turn) > 3 * kPi / 4) return "behind";
-  return turn > 0.0 ? "the right" : "the left";
+  double angle = std::atan2(direction.y(), direction.x()) - std::atan2(front.y(), front.x());
+  angle = std::remainder(angle, 2.0 * kPi);
+  if (std::abs(angle) < kPi / 4) return "in front";
+  if (std::abs(angle) > 3 * kPi / 4) return "behind";
+  return angle > 0.0 ? "the right" : "the left";
 }
 
 }  // namespace

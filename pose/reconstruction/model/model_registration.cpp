@@ -96,8 +96,8 @@ Eigen::Isometry3d refine(const Target& a, const Points& b, Eigen::Isometry3d T, 
       const Eigen::Vector3f p = (T * b.points[k].cast<double>()).cast<float>();
       const Target::Hit hit = a.nearest(p);
       const double distance = hit.distance;
-      const Eigen::Vector3d turned = T.linear() * b.normals[k].cast<double>();
-      if (!hit.seen || distance > limit || turned.dot(hit.normal.cast<double>()) < 0.3) continue;
+      const Eigen::Vector3d rotated = T.linear() * b.normals[k].cast<double>();
+      if (!hit.seen || distance > limit || rotated.dot(hit.normal.cast<double>()) < 0.3) continue;
       const double rest = 1.0 - distance * distance / (limit * limit);
       const Eigen::Vector3d n = T.linear().transpose() * hit.normal.cast<double>();
       Vector6 row;
@@ -135,14 +135,14 @@ double cost_of(const Target& a, const Points& b, const Eigen::Isometry3d& T, dou
 }
 
 std::vector<Eigen::Quaterniond> starts(bool upright) {
-  constexpr int kTurns = 12;
-  constexpr double kStep = 6.283185307179586 / kTurns;
+  constexpr int kRotations = 12;
+  constexpr double kStep = 6.283185307179586 / kRotations;
   std::vector<Eigen::Quaterniond> rotations;
   const std::vector<Eigen::Vector3f> all = sphere_directions(2);
   for (const Eigen::Vector3f& up : upright ? std::vector<Eigen::Vector3f>{Eigen::Vector3f::UnitZ()} : all) {
     const Eigen::Quaterniond tilt = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up.cast<double>());
-    for (int turn = 0; turn < (upright ? 3 : 1) * kTurns; ++turn)
-      rotations.push_back(tilt * Eigen::AngleAxisd(turn * kStep / (upright ? 3 : 1), Eigen::Vector3d::UnitZ()));
+    for (int angle = 0; angle < (upright ? 3 : 1) * kRotations; ++angle)
+      rotations.push_back(tilt * Eigen::AngleAxisd(angle * kStep / (upright ? 3 : 1), Eigen::Vector3d::UnitZ()));
   }
   return rotations;
 }

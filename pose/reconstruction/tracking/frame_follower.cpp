@@ -21,9 +21,9 @@ Alignment FrameFollower::register_to_map(const FrameLevels& levels, const Eigen:
 
 std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const FrameLevels& levels, const LastStep& step,
                                                Motion motion, KeyframeMap& map) {
-  constexpr double kMaxTurn = 0.15;     // radians a frame, from rest
-  constexpr double kMaxEver = 0.4;      // radians a frame
-  constexpr double kMaxShift_m = 0.02;  // a frame, of an object that turns where it stands
+  constexpr double kMaxRotation = 0.15;  // radians a frame, from rest
+  constexpr double kMaxEver = 0.4;       // radians a frame
+  constexpr double kMaxShift_m = 0.02;   // a frame, of an object that turns where it stands
   const Eigen::Isometry3d& T_last = step.T_last;
   const Eigen::Isometry3d T_goes_on = motion == Motion::kObject ? step.repeat_of_object() : step.repeat_of_camera();
   const int coarsest = map.settings().coarsest;
@@ -47,7 +47,7 @@ std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const Frame
       if (agreement_of(other) > agreement_of(best)) best = other;
     }
   }
-  const double maximum = std::min(kMaxTurn + 2.0 * map.view_angle(T_last, step.T_before), kMaxEver);
+  const double maximum = std::min(kMaxRotation + 2.0 * map.view_angle(T_last, step.T_before), kMaxEver);
   const double shift = (T_last.inverse() * best.T_camera_world).translation().norm();
   const bool too_far = motion == Motion::kObject && shift > kMaxShift_m;
   if (!map.is_good(best) || too_far || map.view_angle(T_last, best.T_camera_world) > maximum) return std::nullopt;

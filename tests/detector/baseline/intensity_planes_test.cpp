@@ -46,9 +46,9 @@ TEST(IntensityFeatures, AVerticalEdgeHasASlopeAcrossOnly) {
   EXPECT_EQ(across[kIyy], 0);
   EXPECT_GT(across[kFirstHog], 100);
   EXPECT_EQ(across[kFirstHog + 4], 0);
-  cv::Mat turned;
-  cv::transpose(picture, turned);
-  const std::vector<int> down = at_centre(turned);
+  cv::Mat rotated;
+  cv::transpose(picture, rotated);
+  const std::vector<int> down = at_centre(rotated);
   EXPECT_EQ(down[kIx], 0);
   EXPECT_EQ(down[kIy], across[kIx]);
   EXPECT_EQ(down[kIyy], across[kIxx]);

@@ -56,16 +56,16 @@ TEST(SurfaceCurvature, ASphereIsCurvedAlikeInAllDirections) {
 }
 
 TEST(SurfaceCurvature, ACylinderIsCurvedAcrossItsAxis) {
-  for (int turn = 0; turn < 4; ++turn) {
-    const double axis_angle = turn * M_PI / 4.0;  // in the picture; the principal direction is at right angles to it
+  for (int angle = 0; angle < 4; ++angle) {
+    const double axis_angle = angle * M_PI / 4.0;  // in the picture; the principal direction is at right angles to it
     WorkingFrame frame = round(0.08, {std::cos(axis_angle), std::sin(axis_angle), 0.0});
     scene::add_noise(frame, 0.0003, 1);
     const Values values = curvature_at_centre(frame);
     EXPECT_GT(values[Layout::kMax], 0.85 * expected_spread(0.08, 0.8));
     EXPECT_LT(values[Layout::kMin], 12);
     EXPECT_LT(values[Layout::kRatio], 40);
-    EXPECT_NEAR(values[Layout::kDirection], kFlat - 127 * std::cos(2 * axis_angle), 12) << turn;
-    EXPECT_NEAR(values[Layout::kDirection + 1], kFlat - 127 * std::sin(2 * axis_angle), 12) << turn;
+    EXPECT_NEAR(values[Layout::kDirection], kFlat - 127 * std::cos(2 * axis_angle), 12) << angle;
+    EXPECT_NEAR(values[Layout::kDirection + 1], kFlat - 127 * std::sin(2 * axis_angle), 12) << angle;
   }
 }
 

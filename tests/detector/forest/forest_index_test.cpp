@@ -26,7 +26,7 @@ TEST(ForestIndex, LeafHeadsTellWhatALeafKnowsBestAndWhereItsClassesBegin) {
 }
 
 /// A view of the class, turned by so many radians.
-ViewTemplate turned_view(std::uint32_t class_index, float angle_rad) {
+ViewTemplate rotated_view(std::uint32_t class_index, float angle_rad) {
   ViewTemplate view;
   view.class_index = class_index;
   view.R_ray_object = Eigen::AngleAxisf(angle_rad, Eigen::Vector3f::UnitY());
@@ -36,8 +36,8 @@ ViewTemplate turned_view(std::uint32_t class_index, float angle_rad) {
 TEST(ForestIndex, ViewsHaveTheNearestOfTheirClassAsNeighbours) {
   Forest forest;
   forest.classes.resize(2);
-  for (const float angle_rad : {0.0F, 0.5F, 0.2F}) forest.views.push_back(turned_view(0, angle_rad));
-  forest.views.push_back(turned_view(1, 0.1F));
+  for (const float angle_rad : {0.0F, 0.5F, 0.2F}) forest.views.push_back(rotated_view(0, angle_rad));
+  forest.views.push_back(rotated_view(1, 0.1F));
   const ForestIndex index(forest);
   const std::vector<ViewNeighbours>& neighbours = index.view_neighbours();
   ASSERT_EQ(neighbours.size(), 4U);

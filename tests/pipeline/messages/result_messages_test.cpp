@@ -22,8 +22,8 @@ Detections make_detections() {
   mug.centre_camera = {0.1F, -0.2F, 1.5F};
   mug.vote_weight = 12.5F;
   mug.vote_count = 321;
-  const Eigen::Quaternionf turned(Eigen::AngleAxisf(0.7F, Eigen::Vector3f(1, 2, 3).normalized()));
-  mug.rotations = {{turned, 2.0F}, {Eigen::Quaternionf::Identity(), 1.0F}};
+  const Eigen::Quaternionf rotated(Eigen::AngleAxisf(0.7F, Eigen::Vector3f(1, 2, 3).normalized()));
+  mug.rotations = {{rotated, 2.0F}, {Eigen::Quaternionf::Identity(), 1.0F}};
   Detections all;
   all.frame = {"OPENNI_FRAME", 77};
   all.detections = {mug};

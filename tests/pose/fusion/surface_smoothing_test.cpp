@@ -35,7 +35,7 @@ Mesh box_surface(double noise_m) {
 
 /// Of the vertices on the box's top, away from its edges: how far they are from it, and their normals from upright.
 struct Roughness {
-  double off_m = 0.0, turned = 0.0;
+  double off_m = 0.0, rotated = 0.0;
 };
 
 Roughness roughness(const Mesh& mesh) {
@@ -45,10 +45,10 @@ Roughness roughness(const Mesh& mesh) {
     const Eigen::Vector3d p = mesh.vertices[i].cast<double>();
     if (p.z() < 0.5 * kHalf_m || p.head<2>().cwiseAbs().maxCoeff() > 0.7 * kHalf_m) continue;
     sum.off_m += std::abs(p.z() - kHalf_m);
-    sum.turned += std::acos(std::min(1.0, static_cast<double>(mesh.normals[i].z())));
+    sum.rotated += std::acos(std::min(1.0, static_cast<double>(mesh.normals[i].z())));
     ++count;
   }
-  return {sum.off_m / count, sum.turned / count};
+  return {sum.off_m / count, sum.rotated / count};
 }
 
 TEST(SurfaceSmoothing, NoiseGoes) {
@@ -56,7 +56,7 @@ TEST(SurfaceSmoothing, NoiseGoes) {
   const Roughness before = roughness(mesh);
   smooth_surface(2, mesh);
   const Roughness after = roughness(mesh);
-  EXPECT_LT(after.turned, 0.3 * before.turned);
+  EXPECT_LT(after.rotated, 0.3 * before.rotated);
   EXPECT_LT(after.off_m, 0.7 * before.off_m);
 }
 

@@ -113,10 +113,10 @@ TEST(ObjectModel, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(ObjectModel, TurnedTrianglesGiveTheSameNormals) {
-  Mesh turned = cereal_box();
-  for (auto& triangle : turned.triangles) std::swap(triangle[1], triangle[2]);
+  Mesh rotated = cereal_box();
+  for (auto& triangle : rotated.triangles) std::swap(triangle[1], triangle[2]);
   const ObjectModel a = make_object_model("box", cereal_box(), ModelSettings());
-  const ObjectModel b = make_object_model("box", turned, ModelSettings());
+  const ObjectModel b = make_object_model("box", rotated, ModelSettings());
   EXPECT_NEAR((a.views[7].normals[3] - b.views[7].normals[3]).norm(), 0.0F, 1e-5F);
 }
 

@@ -47,8 +47,8 @@ Symmetries find(const Mesh& mesh, bool compare_colours = kShape) {
 /// Whole degrees of the turns, in order.
 std::multiset<int> angles(const Symmetries& symmetries) {
   std::multiset<int> out;
-  for (const Eigen::Isometry3d& turn : symmetries.discrete)
-    out.insert(static_cast<int>(std::lround(Eigen::AngleAxisd(turn.linear()).angle() * 180.0 / M_PI)));
+  for (const Eigen::Isometry3d& rotation : symmetries.discrete)
+    out.insert(static_cast<int>(std::lround(Eigen::AngleAxisd(rotation.linear()).angle() * 180.0 / M_PI)));
   return out;
 }
 
@@ -64,11 +64,11 @@ TEST(SymmetrySearch, ASquareBoxHasQuarterTurnsAboutOneAxis) {
 }
 
 TEST(SymmetrySearch, ACubeHasTheTwentyThreeTurnsOfItsGroup) {
-  const std::multiset<int> turns = angles(find(grey_box(0.1, 0.1, 0.1)));
-  EXPECT_EQ(turns.size(), 23U);
-  EXPECT_EQ(turns.count(90), 6U);
-  EXPECT_EQ(turns.count(120), 8U);
-  EXPECT_EQ(turns.count(180), 9U);
+  const std::multiset<int> rotations = angles(find(grey_box(0.1, 0.1, 0.1)));
+  EXPECT_EQ(rotations.size(), 23U);
+  EXPECT_EQ(rotations.count(90), 6U);
+  EXPECT_EQ(rotations.count(120), 8U);
+  EXPECT_EQ(rotations.count(180), 9U);
 }
 
 TEST(SymmetrySearch, ACylinderTurnsFreelyAndUpsideDownAConeOnlyFreely) {
@@ -193,11 +193,11 @@ TEST(ShapeSymmetry, OfACubeAreTheTwentyThreeOfItsGroupHoweverItLies) {
     lying.push_back(moved(cube, T));
   }
   for (const Mesh& mesh : lying) {
-    const std::multiset<int> turns = angles(find_shape_symmetry(mesh).symmetries);
-    EXPECT_EQ(turns.size(), 23U);
-    EXPECT_EQ(turns.count(90), 6U);
-    EXPECT_EQ(turns.count(120), 8U);
-    EXPECT_EQ(turns.count(180), 9U);
+    const std::multiset<int> rotations = angles(find_shape_symmetry(mesh).symmetries);
+    EXPECT_EQ(rotations.size(), 23U);
+    EXPECT_EQ(rotations.count(90), 6U);
+    EXPECT_EQ(rotations.count(120), 8U);
+    EXPECT_EQ(rotations.count(180), 9U);
   }
 }
 

@@ -7,12 +7,12 @@
 namespace houghstream {
 namespace {
 
-Eigen::Quaterniond turn(double degrees, const Eigen::Vector3d& axis) {
+Eigen::Quaterniond rotation(double degrees, const Eigen::Vector3d& axis) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(degrees * M_PI / 180.0, axis.normalized()));
 }
 
 Eigen::Isometry3d half_turn(const Eigen::Vector3d& axis) {
-  return Eigen::Isometry3d(turn(180.0, axis));
+  return Eigen::Isometry3d(rotation(180.0, axis));
 }
 
 Symmetries box_symmetries() {
@@ -21,7 +21,7 @@ Symmetries box_symmetries() {
       {}};
 }
 
-const Eigen::Quaterniond kSomeRotation = turn(70.0, {0.3, -0.8, 0.5});
+const Eigen::Quaterniond kSomeRotation = rotation(70.0, {0.3, -0.8, 0.5});
 
 TEST(Symmetry, WithoutAnyThereIsTheIdentityAlone) {
   const auto all = expand_symmetries({});
@@ -56,18 +56,18 @@ TEST(Symmetry, DiscreteAndContinuousOnesAreCombined) {
 
 TEST(Symmetry, ABoxGoesToTheNearestOfItsFourRotations) {
   for (const Eigen::Vector3d& axis : {Eigen::Vector3d(Eigen::Vector3d::UnitX()), Eigen::Vector3d(0, 0, 1)}) {
-    const Eigen::Quaterniond other = kSomeRotation * turn(170.0, axis);
+    const Eigen::Quaterniond other = kSomeRotation * rotation(170.0, axis);
     EXPECT_NEAR(nearest_equivalent(other, kSomeRotation, box_symmetries()).angularDistance(kSomeRotation),
                 10.0 * M_PI / 180.0, 1e-9);
   }
-  const Eigen::Quaterniond near = kSomeRotation * turn(80.0, Eigen::Vector3d::UnitY());
+  const Eigen::Quaterniond near = kSomeRotation * rotation(80.0, Eigen::Vector3d::UnitY());
   EXPECT_NEAR(nearest_equivalent(near, kSomeRotation, box_symmetries()).angularDistance(near), 0.0, 1e-9);
 }
 
 TEST(Symmetry, ABodyOfRevolutionKeepsOnlyTheTiltOfItsAxis) {
   const Symmetries bowl = {{}, {ContinuousSymmetry{}}};
   const Eigen::Quaterniond other =
-      kSomeRotation * turn(20.0, Eigen::Vector3d::UnitX()) * turn(133.0, Eigen::Vector3d::UnitZ());
+      kSomeRotation * rotation(20.0, Eigen::Vector3d::UnitX()) * rotation(133.0, Eigen::Vector3d::UnitZ());
   const Eigen::Quaterniond nearest = nearest_equivalent(other, kSomeRotation, bowl);
   EXPECT_NEAR(nearest.angularDistance(kSomeRotation), 20.0 * M_PI / 180.0, 1e-9);
   const Eigen::Vector3d axis = other * Eigen::Vector3d::UnitZ();
@@ -77,7 +77,7 @@ TEST(Symmetry, ABodyOfRevolutionKeepsOnlyTheTiltOfItsAxis) {
 TEST(Symmetry, NothingInTheExpansionIsNearerThanTheNearest) {
   const Symmetries cylinder = {{half_turn(Eigen::Vector3d::UnitX())},
                                {{Eigen::Vector3d(0.0, 0.6, 0.8).normalized(), Eigen::Vector3d::Zero()}}};
-  const Eigen::Quaterniond other = turn(155.0, {-0.7, 0.1, 0.4});
+  const Eigen::Quaterniond other = rotation(155.0, {-0.7, 0.1, 0.4});
   const double nearest = nearest_equivalent(other, kSomeRotation, cylinder).angularDistance(kSomeRotation);
   double nearest_listed = M_PI;
   for (const Eigen::Isometry3d& symmetry : expand_symmetries(cylinder)) {
@@ -91,7 +91,7 @@ TEST(Symmetry, NothingInTheExpansionIsNearerThanTheNearest) {
 TEST(Symmetry, ABallHasNoRotation) {
   const Symmetries ball = {
       {}, {{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()}, {Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero()}}};
-  const Eigen::Quaterniond other = turn(155.0, {-0.7, 0.1, 0.4});
+  const Eigen::Quaterniond other = rotation(155.0, {-0.7, 0.1, 0.4});
   EXPECT_NEAR(nearest_equivalent(other, kSomeRotation, ball).angularDistance(kSomeRotation), 0.0, 1e-7);
 }
 
@@ -100,13 +100,13 @@ TEST(Symmetry, APoseMovesAlongWhereTheAxisIsOffTheOrigin) {
   Eigen::Isometry3d T_true(kSomeRotation);
   T_true.pretranslate(Eigen::Vector3d(0.1, 0.2, 0.9));
   const Eigen::Translation3d offset(0.1, 0.0, 0.0);
-  const Eigen::Isometry3d turned = T_true * offset * turn(120.0, Eigen::Vector3d::UnitZ()) * offset.inverse();
-  EXPECT_TRUE(nearest_equivalent(turned, T_true, bowl).isApprox(T_true, 1e-9));
+  const Eigen::Isometry3d rotated = T_true * offset * rotation(120.0, Eigen::Vector3d::UnitZ()) * offset.inverse();
+  EXPECT_TRUE(nearest_equivalent(rotated, T_true, bowl).isApprox(T_true, 1e-9));
 }
 
 TEST(Symmetry, HalfATurnAcrossTheAxisIsNoTwist) {
   const Symmetries bowl = {{}, {ContinuousSymmetry{}}};
-  const Eigen::Quaterniond upside_down = turn(180.0, Eigen::Vector3d::UnitX());
+  const Eigen::Quaterniond upside_down = rotation(180.0, Eigen::Vector3d::UnitX());
   const Eigen::Quaterniond nearest = nearest_equivalent(upside_down, Eigen::Quaterniond::Identity(), bowl);
   EXPECT_NEAR(nearest.angularDistance(upside_down), 0.0, 1e-9);
 }

@@ -23,12 +23,12 @@ TEST(SmoothedVelocity, GoesOnAtTheVelocityOfTheLastStepsAndStandsAfterAReset) {
 }
 
 TEST(SmoothedVelocity, TurnsAboutTheObjectsOrigin) {
-  const Eigen::AngleAxisd turn(0.1, Eigen::Vector3d::UnitZ());
-  Eigen::Isometry3d turned = kStart;
-  turned.linear() = turn * kStart.linear();
+  const Eigen::AngleAxisd rotation(0.1, Eigen::Vector3d::UnitZ());
+  Eigen::Isometry3d rotated = kStart;
+  rotated.linear() = rotation * kStart.linear();
   SmoothedVelocity velocity;
-  velocity.update(kStart, turned, 0.1, 1.0);
-  EXPECT_TRUE(velocity.predict(kStart, 0.1).isApprox(turned, 1e-12));
+  velocity.update(kStart, rotated, 0.1, 1.0);
+  EXPECT_TRUE(velocity.predict(kStart, 0.1).isApprox(rotated, 1e-12));
 }
 
 TEST(SmoothedVelocity, TheMotionThatTwoAgreeOnCarriesTheRestAndOneAloneDoesNot) {

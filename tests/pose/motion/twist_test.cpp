@@ -5,8 +5,8 @@
 namespace houghstream {
 namespace {
 
-Eigen::Isometry3d pose_of(double x, double turn_rad) {
-  return Eigen::Translation3d(x, 0.2, 0.3) * Eigen::AngleAxisd(turn_rad, Eigen::Vector3d(1, 2, 3).normalized());
+Eigen::Isometry3d pose_of(double x, double angle_rad) {
+  return Eigen::Translation3d(x, 0.2, 0.3) * Eigen::AngleAxisd(angle_rad, Eigen::Vector3d(1, 2, 3).normalized());
 }
 
 TEST(Twist, AboutTheWorldsAxesItLeadsThereAndPartOfTheWay) {

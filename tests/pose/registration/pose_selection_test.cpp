@@ -35,7 +35,7 @@ struct Boxed {
 TEST(Choice, ABoxThatWasTakenForItsBackIsTurnedRound) {
   const Boxed boxed;
   const Eigen::Vector3f centre = boxed.truth.translation().cast<float>();
-  const RegistrationResult found = boxed.choose({{turned(boxed.truth, 180.0), 1.0F}}, centre);
+  const RegistrationResult found = boxed.choose({{rotated(boxed.truth, 180.0), 1.0F}}, centre);
   ASSERT_GT(found.inliers, 0);
   const double angle = Eigen::AngleAxisd(found.T_camera_object.linear().transpose() * boxed.truth.linear()).angle();
   EXPECT_LT(angle, 0.02);

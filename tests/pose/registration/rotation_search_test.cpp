@@ -12,7 +12,7 @@ using namespace test_scene;
 
 const DepthTolerance kTolerance{0.008, {}};
 
-double turn_between_deg(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+double angle_between_deg(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle() / kRadPerDeg;
 }
 
@@ -31,21 +31,21 @@ struct SeenBox {
 TEST(TurnSearch, FindsTheWayBackFromEveryQuarter) {
   const SeenBox box;
   for (const double degrees : {90.0, 180.0, 270.0}) {
-    const auto turns = best_rotations_about_z(box.seen, turned(box.truth, degrees),
-                                              {15.0 * kRadPerDeg, 180.0 * kRadPerDeg, 3, 250}, kTolerance);
-    ASSERT_FALSE(turns.empty());
-    EXPECT_LT(turn_between_deg(turns.front().T_camera_object, box.truth), 1.0) << degrees;
+    const auto rotations = best_rotations_about_z(box.seen, rotated(box.truth, degrees),
+                                                  {15.0 * kRadPerDeg, 180.0 * kRadPerDeg, 3, 250}, kTolerance);
+    ASSERT_FALSE(rotations.empty());
+    EXPECT_LT(angle_between_deg(rotations.front().T_camera_object, box.truth), 1.0) << degrees;
   }
 }
 
 TEST(TurnSearch, TheBestComesFirstAndNeighboursOfABetterOneAreLeftOut) {
   const SeenBox box;
-  const auto turns =
+  const auto rotations =
       best_rotations_about_z(box.seen, box.truth, {5.0 * kRadPerDeg, 180.0 * kRadPerDeg, 4, 250}, kTolerance);
-  ASSERT_LE(turns.size(), 4U);
-  for (std::size_t i = 1; i < turns.size(); ++i) {
-    EXPECT_GE(turns[i - 1].score, turns[i].score);
-    EXPECT_GT(turn_between_deg(turns[i - 1].T_camera_object, turns[i].T_camera_object), 6.0);
+  ASSERT_LE(rotations.size(), 4U);
+  for (std::size_t i = 1; i < rotations.size(); ++i) {
+    EXPECT_GE(rotations[i - 1].score, rotations[i].score);
+    EXPECT_GT(angle_between_deg(rotations[i - 1].T_camera_object, rotations[i].T_camera_object), 6.0);
   }
 }
 
@@ -56,12 +56,12 @@ TEST(TurnSearch, AHandleDoesNotMoveTheAxis) {
 
 TEST(TurnSearch, ClimbsBackFromASmallTurnAndShift) {
   const SeenBox box;
-  Eigen::Isometry3d start = turned(box.truth, 5.0);
+  Eigen::Isometry3d start = rotated(box.truth, 5.0);
   start.translate(Eigen::Vector3d(0.0, 0.0, 0.004));
   const HillClimb hill_climb{3.0 * kRadPerDeg, 0.004, 5, 250};
   const ScoredPose top = hill_climb_pose(box.seen, start, hill_climb, kTolerance);
   EXPECT_GT(top.score, score_pose_jointly(box.seen, start, 250, kTolerance).score);
-  EXPECT_LT(turn_between_deg(top.T_camera_object, box.truth), 3.0);
+  EXPECT_LT(angle_between_deg(top.T_camera_object, box.truth), 3.0);
 }
 
 }  // namespace

@@ -86,9 +86,9 @@ TEST(CameraColours, OneObjectOfOtherColoursIsNoJump) {
 TEST(CameraColours, AnotherSideOfAnObjectIsNoJump) {
   CameraColours colours;
   for (int frame = 0; frame < 10; ++frame) colours.update(four_objects(kWarm));
-  ObjectPoses turned;
-  turned.poses = {confirmed("cracker", {-10.0, 40.0}, kWarm), confirmed("soup", {20.0, -10.0}, kWarm)};
-  for (int frame = 0; frame < 2; ++frame) colours.update(turned);
+  ObjectPoses rotated;
+  rotated.poses = {confirmed("cracker", {-10.0, 40.0}, kWarm), confirmed("soup", {20.0, -10.0}, kWarm)};
+  for (int frame = 0; frame < 2; ++frame) colours.update(rotated);
   EXPECT_EQ(colours.pairs().size(), 4U);
 }
 

@@ -38,9 +38,9 @@ TEST(ColourScore, TheRightSideExplainsWhatIsSeenAndTheOppositeDoesNot) {
   const RgbdFrame frame = coloured_frame(box, kPose, 1);
   const float right = agreement(frame, box, kPose);
   EXPECT_GT(right, 0.8F);
-  EXPECT_LT(agreement(frame, box, turned(kPose, 180.0)), right - 0.4F);
+  EXPECT_LT(agreement(frame, box, rotated(kPose, 180.0)), right - 0.4F);
   const ColourComparison front = compare(frame, box, kPose).value();
-  EXPECT_LT(front.residual_stddev, 0.6F * compare(frame, box, turned(kPose, 180.0))->residual_stddev);
+  EXPECT_LT(front.residual_stddev, 0.6F * compare(frame, box, rotated(kPose, 180.0))->residual_stddev);
   EXPECT_LT(front.chroma_difference, 0.4F);
   EXPECT_GT(front.points, 200);
 }
@@ -127,7 +127,7 @@ TEST(ColourScore, APrintIsJudgedWhereItAgreesBestWithinTwoPixels) {
   };
   EXPECT_GT(judged(kPose, 2.0), judged(kPose, 0.0) - 0.02F);
   EXPECT_LT(judged(kPose, 12.0), judged(kPose, 0.0) - 0.1F);
-  EXPECT_LT(judged(turned(kPose, 180.0), 0.0), judged(kPose, 0.0) - 0.4F);
+  EXPECT_LT(judged(rotated(kPose, 180.0), 0.0), judged(kPose, 0.0) - 0.4F);
 }
 
 TEST(ColourScore, JudgingAPrintLeavesThePictureAsItIs) {

@@ -10,8 +10,8 @@
 namespace houghstream::tracks {
 namespace {
 
-Eigen::Isometry3d at(double x, double turn_rad = 0.0) {
-  return Eigen::Translation3d(x, 0, 0) * Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ());
+Eigen::Isometry3d at(double x, double angle_rad = 0.0) {
+  return Eigen::Translation3d(x, 0, 0) * Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ());
 }
 
 std::filesystem::path written(const std::string& name, const std::string& text) {

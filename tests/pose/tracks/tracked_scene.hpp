@@ -54,8 +54,8 @@ inline Eigen::Isometry3d camera_in_front(double x = 0.0) {
   return T_world_camera;
 }
 
-inline Eigen::Isometry3d on_table(double x, double y, double turn_rad = 0.0) {
-  return Eigen::Translation3d(x, y, 0.06) * Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ());
+inline Eigen::Isometry3d on_table(double x, double y, double angle_rad = 0.0) {
+  return Eigen::Translation3d(x, y, 0.06) * Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ());
 }
 
 /// Of a block that hides from the camera what stands in the middle of the table.

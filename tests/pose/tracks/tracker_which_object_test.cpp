@@ -88,10 +88,10 @@ TEST(TrackerWhichObject, TwoTurnsOfAnObjectAreNeverAveraged) {
     scene.show({{"can", on_table(0, 0, i % 3 == 0 ? 2.0 : 0.0)}});
     const WorldObjects world = scene.frame();
     if (world.objects.empty()) continue;
-    const Eigen::AngleAxisd turn(world.objects[0].T_world_object.linear());
-    EXPECT_TRUE(turn.angle() < 0.01 || std::abs(turn.angle() - 2.0) < 0.01) << i << ": " << turn.angle();
+    const Eigen::AngleAxisd rotation(world.objects[0].T_world_object.linear());
+    EXPECT_TRUE(rotation.angle() < 0.01 || std::abs(rotation.angle() - 2.0) < 0.01) << i << ": " << rotation.angle();
     if (i > 30) {
-      EXPECT_LT(turn.angle(), 0.01) << i;
+      EXPECT_LT(rotation.angle(), 0.01) << i;
     }
   }
 }

@@ -43,7 +43,7 @@ void expect_told(const RgbdFrame& frame, const std::string& what) {
   ASSERT_TRUE(right.has_value()) << what;
   EXPECT_GT(right->margin, 2.0) << what;
   EXPECT_FALSE(right->better.has_value()) << what;
-  const std::optional<PrintComparison> turned_over = compared_at(turned(kTruth, 180.0), printed_box(), frame);
+  const std::optional<PrintComparison> turned_over = compared_at(rotated(kTruth, 180.0), printed_box(), frame);
   ASSERT_TRUE(turned_over.has_value()) << what;
   EXPECT_LT(turned_over->margin, -2.0) << what;
   ASSERT_TRUE(turned_over->better.has_value()) << what;

@@ -235,28 +235,28 @@ TEST(PoseMetrics, RecallCountsGoodPosesOverTrueDetections) {
   EXPECT_TRUE(std::isnan(add_s_recall(judged, model.diameter, 0.7))) << "none visible enough";
 }
 
-Eigen::Isometry3d turned(double angle_rad, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) {
+Eigen::Isometry3d rotated(double angle_rad, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) {
   return Eigen::Isometry3d(Eigen::AngleAxisd(angle_rad, axis));
 }
 
 TEST(PoseMetrics, ABoxThatIsTurnedFrontForBackIsRightUpToItsShapeOnly) {
   const Eigen::Isometry3d truth = Eigen::Isometry3d::Identity();
   const PoseModel printed{kCorners, 0.2};
-  EXPECT_NEAR(strict_error(printed, turned(M_PI), truth), 0.2, 1e-6);
-  EXPECT_FALSE(is_correct(printed, turned(M_PI), truth));
-  EXPECT_TRUE(is_correct_up_to_shape(printed, turned(M_PI), truth));
-  const PoseModel plain{kCorners, 0.2, {truth, turned(M_PI)}};
-  EXPECT_NEAR(strict_error(plain, turned(M_PI), truth), 0.0, 1e-6);
-  EXPECT_TRUE(is_correct(plain, turned(M_PI), truth)) << "the dataset says that it is the same pose";
+  EXPECT_NEAR(strict_error(printed, rotated(M_PI), truth), 0.2, 1e-6);
+  EXPECT_FALSE(is_correct(printed, rotated(M_PI), truth));
+  EXPECT_TRUE(is_correct_up_to_shape(printed, rotated(M_PI), truth));
+  const PoseModel plain{kCorners, 0.2, {truth, rotated(M_PI)}};
+  EXPECT_NEAR(strict_error(plain, rotated(M_PI), truth), 0.0, 1e-6);
+  EXPECT_TRUE(is_correct(plain, rotated(M_PI), truth)) << "the dataset says that it is the same pose";
 }
 
 TEST(PoseMetrics, OfASymmetricObjectThePointThatIsFarthestOffCounts) {
-  const Eigen::Isometry3d tilted = turned(0.3, Eigen::Vector3d::UnitX());  // two corners stay, two move by 0.03 m
+  const Eigen::Isometry3d tilted = rotated(0.3, Eigen::Vector3d::UnitX());  // two corners stay, two move by 0.03 m
   const Eigen::Isometry3d truth = Eigen::Isometry3d::Identity();
   const PoseModel printed{kCorners, 0.2};
   EXPECT_NEAR(strict_error(printed, tilted, truth), 0.1 * std::sin(0.15), 1e-6) << "ADD";
   EXPECT_TRUE(is_correct(printed, tilted, truth));
-  const PoseModel plain{kCorners, 0.2, {truth, turned(M_PI)}};
+  const PoseModel plain{kCorners, 0.2, {truth, rotated(M_PI)}};
   EXPECT_NEAR(strict_error(plain, tilted, truth), 0.2 * std::sin(0.15), 1e-6) << "MSSD";
   EXPECT_FALSE(is_correct(plain, tilted, truth));
 }
@@ -268,12 +268,12 @@ TEST(PoseMetrics, TheSymmetriesOfTheDatasetAreExpanded) {
   EXPECT_FALSE(make_pose_model(mesh, {}).is_symmetric());
   Symmetries quarter;
   quarter.continuous.push_back({});
-  EXPECT_TRUE(is_correct(make_pose_model(mesh, quarter), turned(1.234), Eigen::Isometry3d::Identity()));
+  EXPECT_TRUE(is_correct(make_pose_model(mesh, quarter), rotated(1.234), Eigen::Isometry3d::Identity()));
 }
 
 TEST(PoseMetrics, ATurnedPoseIsPublishedWrongAndRightUpToItsShape) {
   std::vector<EvaluatedFrame> frames = posed_frames(1.0);  // right, wrong, none
-  frames[0].poses->poses[0].T_camera_object = turned(M_PI);
+  frames[0].poses->poses[0].T_camera_object = rotated(M_PI);
   frames[0].poses->poses[0].quality = frames[0].poses->poses[0].shape_quality = 0.95F;
   std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2}}};
   const Evaluation printed = evaluate(frames, {"mug"}, models, {});
@@ -283,7 +283,7 @@ TEST(PoseMetrics, ATurnedPoseIsPublishedWrongAndRightUpToItsShape) {
   EXPECT_NEAR(printed.add_s_recall.at("mug"), 1.0 / 3.0, 1e-12);
   EXPECT_EQ(printed.pose_calibration.bins[9].true_fraction, 0.0) << "a quality of 0.95 says that it is right";
   EXPECT_EQ(printed.pose_calibration_up_to_shape.bins[9].true_fraction, 1.0);
-  models.at("mug").symmetries.push_back(turned(M_PI));
+  models.at("mug").symmetries.push_back(rotated(M_PI));
   EXPECT_NEAR(evaluate(frames, {"mug"}, models, {}).strict_recall.at("mug"), 1.0 / 3.0, 1e-12);
 }
 
@@ -291,7 +291,7 @@ TEST(PoseMetrics, ATurnedObjectIsRightByAddOnlyWhereItIsSymmetric) {
   std::vector<EvaluatedFrame> frames = posed_frames(1.0);
   frames[0].poses->poses[0].T_camera_object = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
   const PoseModel plain{kCorners, 0.2};
-  const PoseModel symmetric{kCorners, 0.2, {Eigen::Isometry3d::Identity(), turned(M_PI)}};
+  const PoseModel symmetric{kCorners, 0.2, {Eigen::Isometry3d::Identity(), rotated(M_PI)}};
   const auto judged = match_poses(frames, evaluate_class(frames, "mug", {}), plain);
   EXPECT_NEAR(add_or_add_s_recall(judged, symmetric, 0.5), 1.0 / 3.0, 1e-12);
   EXPECT_EQ(add_or_add_s_recall(judged, plain, 0.5), 0.0);

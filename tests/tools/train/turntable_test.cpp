@@ -38,21 +38,21 @@ std::vector<ColouredPoint> see_box(const Eigen::Isometry3d& T_camera_object, Ran
   return points;
 }
 
-std::vector<TurntableView> turn_box(double elevation, double direction, const Eigen::Vector3d& t) {
+std::vector<TurntableView> rotate_box(double elevation, double direction, const Eigen::Vector3d& t) {
   Random random(11);
   std::vector<TurntableView> views;
   for (int i = 0; i < 36; ++i) {
     const double yaw = 2.0 * M_PI * i / 36;
-    const Eigen::Isometry3d turned =
+    const Eigen::Isometry3d rotated =
         axis_pose(elevation, t) * Eigen::AngleAxisd(direction * yaw, Eigen::Vector3d::UnitZ());
-    views.push_back({yaw, see_box(turned, random)});
+    views.push_back({yaw, see_box(rotated, random)});
   }
   return views;
 }
 
 void expect_found(double elevation, double direction) {
   const Eigen::Vector3d t(0.05, -0.03, 0.7);
-  const Turntable table = estimate_turntable(turn_box(elevation, direction, t));
+  const Turntable table = estimate_turntable(rotate_box(elevation, direction, t));
   EXPECT_EQ(table.direction, direction);
   const Eigen::Isometry3d truth = axis_pose(elevation, t);
   const double tilt = std::acos(table.T_camera_axis.linear().col(2).dot(truth.linear().col(2)));
@@ -68,7 +68,7 @@ TEST(Turntable, AxisElevationAndDirectionAreFound) {
 }
 
 TEST(Turntable, ViewsWithoutPointsAreIgnored) {
-  std::vector<TurntableView> views = turn_box(0.5, 1.0, {0.0, 0.0, 0.7});
+  std::vector<TurntableView> views = rotate_box(0.5, 1.0, {0.0, 0.0, 0.7});
   views[3].points.clear();
   EXPECT_LT((estimate_turntable(views).T_camera_axis.translation() - Eigen::Vector3d(0.0, 0.0, 0.7)).norm(), 0.005);
 }

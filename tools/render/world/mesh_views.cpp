@@ -70,7 +70,7 @@ PlacedAsset table_top(double height, Random& random) {
   constexpr double kThickness = 0.02;
   const cv::Mat cover =
       plain({256, 256}, hsv(random.uniform(0, 360), random.uniform(0.0, 0.5), random.uniform(0.2, 0.9)), 0.05, random);
-  PlacedAsset table{make_asset("table", turned_mesh({{0.6, 0.0}, {0.6, kThickness}}, cover), 0.08F),
+  PlacedAsset table{make_asset("table", rotated_mesh({{0.6, 0.0}, {0.6, kThickness}}, cover), 0.08F),
                     Eigen::Isometry3d::Identity(), 0, true};
   table.T_world_object.translate(Eigen::Vector3d(0.0, 0.0, height - 0.5 * kThickness));  // its origin is its middle
   return table;

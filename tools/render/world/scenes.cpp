@@ -84,8 +84,8 @@ void add_held_objects(TableSetter& setter, const Trajectory& trajectory) {
     const double x = side * (behind ? 0.35 : 0.65) + random.uniform(-0.08, 0.08);
     const double y = (behind ? 0.45 : -0.45) + random.uniform(-0.1, 0.1);
     place.over = setter.region(x, x, y, y).min();
-    const double turn = random.uniform(0.0, 0.5);  // from +x or -x, or from +y, and then outwards
-    const double azimuth = behind ? M_PI / 2 - turn : turn;
+    const double angle = random.uniform(0.0, 0.5);  // from +x or -x, or from +y, and then outwards
+    const double azimuth = behind ? M_PI / 2 - angle : angle;
     place.arm_azimuth_rad = side > 0.0 ? azimuth : M_PI - azimuth;
     setter.hold_object(1 + (first + i) % kClassCount, place);
   }

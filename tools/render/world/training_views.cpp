@@ -17,7 +17,7 @@ constexpr std::uint64_t kFirstViewRoom = 900000;  // numbers of training worlds 
 
 AssetPtr make_turntable_disc(Random& random) {
   const cv::Mat cover = plain({256, 256}, hsv(random.uniform(0, 360), 0.1, random.uniform(0.3, 0.8)), 0.05, random);
-  return make_asset("turntable", turned_mesh({{0.17, 0.0}, {0.17, kTopM}}, cover), 0.08F);
+  return make_asset("turntable", rotated_mesh({{0.17, 0.0}, {0.17, kTopM}}, cover), 0.08F);
 }
 
 double degrees(double value) {

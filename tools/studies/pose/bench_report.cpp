@@ -28,7 +28,7 @@ std::string error_words(const PoseTrial& trial) {
   if (trial.outcome != MatchOutcome::kTruePositive)
     return fmt::format("false; the nearest: ADD-S {:.3f} diameters", trial.add_s);
   return fmt::format("{} {:.3f}, ADD-S {:.3f} diameters, {:.0f} mm, {:.0f} deg", trial.symmetric ? "MSSD" : "ADD",
-                     trial.strict, trial.add_s, 1e3 * trial.shift_m, trial.turn_deg);
+                     trial.strict, trial.add_s, 1e3 * trial.shift_m, trial.angle_deg);
 }
 
 namespace fs = std::filesystem;

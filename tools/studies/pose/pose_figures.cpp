@@ -66,7 +66,7 @@ PoseFigures pose_figures(const std::vector<PoseTrial>& trials) {
     correct_up_to_shape += trial.is_correct_up_to_shape() ? 1 : 0;
     mm.push_back(1e3 * trial.shift_m);
     mm_per_m_sq.push_back(1e3 * trial.shift_m / (trial.distance_m * trial.distance_m));
-    if (!trial.symmetric) deg.push_back(trial.turn_deg);
+    if (!trial.symmetric) deg.push_back(trial.angle_deg);
   }
   PoseFigures out;
   out.detections = static_cast<int>(trials.size());
@@ -144,7 +144,7 @@ std::string pose_table_rows(const std::string& variant, const std::vector<PoseTr
     text += fmt::format("{},{},{},{},{},{},{:.4f},{},{:.4f},{},{},{},{},{},{}\n", variant, trial.scene, trial.image,
                         trial.class_name, known(trial.visible_fraction, 3), to_word(trial.outcome), trial.score,
                         to_string(trial.status), trial.quality, known(trial.add, 4), known(trial.add_s, 4),
-                        known(1e3 * trial.shift_m, 2), known(trial.turn_deg, 2), known(trial.ms, 3),
+                        known(1e3 * trial.shift_m, 2), known(trial.angle_deg, 2), known(trial.ms, 3),
                         known(trial.strict, 4));
   }
   return text;

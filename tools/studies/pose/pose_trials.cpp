@@ -13,7 +13,7 @@ void measure_errors(const ScoredModel& model, const Eigen::Isometry3d& T_true, P
   trial.add_s = add_s_error(model.surface.points, T_estimated, T_true) / model.surface.diameter;
   const PoseDifference difference = compare_poses(T_estimated, T_true, model.symmetries);
   trial.shift_m = difference.shift_m;
-  trial.turn_deg = difference.turn_deg;
+  trial.angle_deg = difference.angle_deg;
 }
 
 /// Against the object that the pose comes nearest to, if the frame has one of the class.

@@ -42,7 +42,7 @@ struct PoseTrial {
   double add = kUnknown;     ///< in diameters
   double add_s = kUnknown;   ///< in diameters
   double shift_m = kUnknown;
-  double turn_deg = kUnknown;  ///< the smallest over the object's symmetries
+  double angle_deg = kUnknown;  ///< the smallest over the object's symmetries
 
   /// The pose of a true detection.
   bool is_correct() const { return outcome == MatchOutcome::kTruePositive && strict < kCorrectBelow; }

@@ -106,13 +106,13 @@ Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3f>& points) {
 
 /// The source's middle on the target's, turned to each of evenly spread rotations about 30 degrees apart.
 std::vector<Eigen::Isometry3d> starts(const Eigen::Vector3d& source_middle, const Eigen::Vector3d& target_middle) {
-  constexpr int kTurns = 12;
+  constexpr int kRotations = 12;
   std::vector<Eigen::Isometry3d> out;
   for (const Eigen::Vector3f& direction : sphere_directions(2)) {
     const auto tilt = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction.cast<double>());
-    for (int k = 0; k < kTurns; ++k) {
-      const Eigen::AngleAxisd turn(2.0 * M_PI * k / kTurns, Eigen::Vector3d::UnitZ());
-      out.emplace_back(Eigen::Translation3d(target_middle) * tilt * turn * Eigen::Translation3d(-source_middle));
+    for (int k = 0; k < kRotations; ++k) {
+      const Eigen::AngleAxisd rotation(2.0 * M_PI * k / kRotations, Eigen::Vector3d::UnitZ());
+      out.emplace_back(Eigen::Translation3d(target_middle) * tilt * rotation * Eigen::Translation3d(-source_middle));
     }
   }
   return out;

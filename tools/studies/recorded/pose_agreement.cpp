@@ -54,26 +54,26 @@ std::map<std::string, ReferencePose> read_reference_poses(const std::filesystem:
 PoseDifference compare_poses(const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_reference,
                              const Symmetries& symmetries) {
   const Eigen::Isometry3d T = nearest_equivalent(T_estimated, T_reference, symmetries);
-  const double turn = Eigen::Quaterniond(T.linear()).angularDistance(Eigen::Quaterniond(T_reference.linear()));
-  return {(T.translation() - T_reference.translation()).norm(), turn / kRadPerDeg};
+  const double angle = Eigen::Quaterniond(T.linear()).angularDistance(Eigen::Quaterniond(T_reference.linear()));
+  return {(T.translation() - T_reference.translation()).norm(), angle / kRadPerDeg};
 }
 
 AgreementSummary summarise(const std::vector<ComparedFrame>& frames) {
   constexpr double kShift_m = 0.005;
-  constexpr double kTurn_deg = 5.0;
+  constexpr double kAngle_deg = 5.0;
   AgreementSummary summary;
   std::vector<double> shifts;
-  std::vector<double> turns;
+  std::vector<double> rotations;
   for (const ComparedFrame& frame : frames) {
     if (!frame.reliable) continue;
     ++summary.frames;
     if (!frame.difference) continue;
     shifts.push_back(frame.difference->shift_m);
-    turns.push_back(frame.difference->turn_deg);
-    summary.within_5mm_5deg += shifts.back() <= kShift_m && turns.back() <= kTurn_deg ? 1 : 0;
+    rotations.push_back(frame.difference->angle_deg);
+    summary.within_5mm_5deg += shifts.back() <= kShift_m && rotations.back() <= kAngle_deg ? 1 : 0;
   }
   summary.with_pose = static_cast<int>(shifts.size());
-  if (!shifts.empty()) summary.median = PoseDifference{percentiles(shifts).p50, percentiles(turns).p50};
+  if (!shifts.empty()) summary.median = PoseDifference{percentiles(shifts).p50, percentiles(rotations).p50};
   return summary;
 }
 

@@ -24,7 +24,7 @@ std::map<std::string, ReferencePose> read_reference_poses(const std::filesystem:
 /// How far two poses of one object are apart.
 struct PoseDifference {
   double shift_m = 0.0;  ///< between the places of the object frame's origin
-  double turn_deg = 0.0;
+  double angle_deg = 0.0;
 };
 
 /// Of the poses equivalent to `T_estimated` by symmetry, the one whose turn is nearest to the reference. The object

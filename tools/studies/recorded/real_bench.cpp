@@ -61,13 +61,13 @@ ComparedFrame compare(const std::string& frame, const ReferencePose& reference, 
 std::string title_of(const std::string& frame, const ComparedFrame* compared) {
   if (compared == nullptr || !compared->difference) return frame;
   return fmt::format("{}: {:.1f} mm {:.1f} deg{}", frame, 1e3 * compared->difference->shift_m,
-                     compared->difference->turn_deg, compared->reliable ? "" : " (unreliable reference)");
+                     compared->difference->angle_deg, compared->reliable ? "" : " (unreliable reference)");
 }
 
 OrderedJson to_json(const ComparedFrame& frame) {
   OrderedJson out = {{"frame", frame.frame}, {"reliable", frame.reliable}, {"outcome", frame.outcome}};
   out["mm"] = frame.difference ? OrderedJson(1e3 * frame.difference->shift_m) : OrderedJson(nullptr);
-  out["deg"] = frame.difference ? OrderedJson(frame.difference->turn_deg) : OrderedJson(nullptr);
+  out["deg"] = frame.difference ? OrderedJson(frame.difference->angle_deg) : OrderedJson(nullptr);
   return out;
 }
 
@@ -105,7 +105,7 @@ OrderedJson to_json(const RealBench& bench, const ComparedObject& object) {
                      {"with_pose", summary.with_pose},
                      {"within_5mm_5deg", summary.within_5mm_5deg}};
   out["median_mm"] = summary.median ? OrderedJson(1e3 * summary.median->shift_m) : OrderedJson(nullptr);
-  out["median_deg"] = summary.median ? OrderedJson(summary.median->turn_deg) : OrderedJson(nullptr);
+  out["median_deg"] = summary.median ? OrderedJson(summary.median->angle_deg) : OrderedJson(nullptr);
   out["symmetries"] = object.symmetries.continuous.size() + object.symmetries.discrete.size();
   const MeshAlignment& alignment = object.scan.alignment;
   const Eigen::Quaterniond q(alignment.T_target_source.linear());

@@ -34,7 +34,7 @@ PoseGap gap_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, cons
 
 /// A length that counts turns too: what they move at a tenth of a metre.
 double size_of(const PoseGap& gap) {
-  return gap.shift_m + 0.1 * gap.turn_rad;
+  return gap.shift_m + 0.1 * gap.angle_rad;
 }
 
 Eigen::Isometry3d mean_of(const std::vector<Eigen::Isometry3d>& poses, const Eigen::Vector3d& middle) {
@@ -142,14 +142,14 @@ void compare_poses(const std::vector<Eigen::Isometry3d>& poses, const Eigen::Vec
   comparison.tracked = static_cast<int>(poses.size());
   comparison.drift = gap_between(poses.front(), poses.back(), middle);
   std::vector<double> shifts;
-  std::vector<double> turns;
+  std::vector<double> rotations;
   for (const Eigen::Isometry3d& pose : poses) {
     const PoseGap gap = gap_between(pose, comparison.T_true_taught, middle);
     shifts.push_back(gap.shift_m);
-    turns.push_back(gap.turn_rad);
+    rotations.push_back(gap.angle_rad);
   }
   comparison.tracking_shift = spread_of(shifts);
-  comparison.tracking_turn_rad = spread_of(turns).maximum;
+  comparison.tracking_angle_rad = spread_of(rotations).maximum;
 }
 
 void compare_views(const TrueTakes& takes, const std::vector<KeptView>& views, const Eigen::Vector3d& middle,
@@ -193,13 +193,13 @@ OrderedJson to_json(const ShownComparison& comparison) {
   json["missing_share"] = comparison.missing_fraction;
   json["seen_surface"] = comparison.seen_surface;
   json["drift_mm"] = 1e3 * comparison.drift.shift_m;
-  json["drift_deg"] = kDegrees * comparison.drift.turn_rad;
+  json["drift_deg"] = kDegrees * comparison.drift.angle_rad;
   json["tracking_mm_median"] = 1e3 * comparison.tracking_shift.median;
   json["tracking_mm_95"] = 1e3 * comparison.tracking_shift.maximum;
-  json["tracking_deg_95"] = kDegrees * comparison.tracking_turn_rad;
+  json["tracking_deg_95"] = kDegrees * comparison.tracking_angle_rad;
   json["tracked"] = comparison.tracked;
   json["second_mm"] = comparison.second ? OrderedJson(1e3 * comparison.second->shift_m) : OrderedJson();
-  json["second_deg"] = comparison.second ? OrderedJson(kDegrees * comparison.second->turn_rad) : OrderedJson();
+  json["second_deg"] = comparison.second ? OrderedJson(kDegrees * comparison.second->angle_rad) : OrderedJson();
   json["mask_iou"] = comparison.mask_iou;
   json["least_mask_iou"] = comparison.min_mask_iou;
   json["views"] = comparison.views;

@@ -10,7 +10,7 @@ namespace houghstream::studies {
 /// A motion by which two poses differ.
 struct PoseGap {
   double shift_m = 0.0;  ///< of the object's middle
-  double turn_rad = 0.0;
+  double angle_rad = 0.0;
 };
 
 /// Medians and 95 % points of distances, metres.
@@ -24,16 +24,16 @@ struct ShownComparison {
   /// The taught model's frame in that of the true mesh: as the poses of the first take's frames say on average, then
   /// registered by shape.
   Eigen::Isometry3d T_true_taught = Eigen::Isometry3d::Identity();
-  Spread taught_to_true;           ///< from points on the taught surface to the true one
-  Spread seen_to_taught;           ///< from points on the true surface that the takes saw to the taught one
-  double missing_fraction = 0.0;   ///< of these, farther than 5 mm
-  double seen_surface = 0.0;       ///< share of the true surface that the takes saw
-  PoseGap drift;                   ///< by which the first and the last tracked frame of the first take disagree
-  Spread tracking_shift;           ///< of the tracked frames from their average
-  double tracking_turn_rad = 0.0;  ///< the 95 % point
-  int tracked = 0;                 ///< frames of the first take
-  std::optional<PoseGap> second;   ///< by which the second take's views disagree with the first's; without them none
-  double mask_iou = 0.0;           ///< mean over the kept views
+  Spread taught_to_true;            ///< from points on the taught surface to the true one
+  Spread seen_to_taught;            ///< from points on the true surface that the takes saw to the taught one
+  double missing_fraction = 0.0;    ///< of these, farther than 5 mm
+  double seen_surface = 0.0;        ///< share of the true surface that the takes saw
+  PoseGap drift;                    ///< by which the first and the last tracked frame of the first take disagree
+  Spread tracking_shift;            ///< of the tracked frames from their average
+  double tracking_angle_rad = 0.0;  ///< the 95 % point
+  int tracked = 0;                  ///< frames of the first take
+  std::optional<PoseGap> second;    ///< by which the second take's views disagree with the first's; without them none
+  double mask_iou = 0.0;            ///< mean over the kept views
   double min_mask_iou = 0.0;
   int views = 0;
 };

@@ -37,11 +37,11 @@ cv::Mat tile_of(const TrainingView& view) {
 }
 
 /// "3 half turns", "2 turns by 90 degrees", largest angle first.
-std::vector<std::string> turn_words(const std::vector<Eigen::Isometry3d>& turns) {
+std::vector<std::string> rotation_words(const std::vector<Eigen::Isometry3d>& rotations) {
   constexpr std::array<int, 6> kWhole_deg = {60, 72, 90, 120, 144, 180};  // a scan's products are a degree off
   std::map<int, int, std::greater<>> count_by_deg;
-  for (const Eigen::Isometry3d& turn : turns) {
-    const double angle_deg = Eigen::AngleAxisd(turn.linear()).angle() * 180.0 / M_PI;
+  for (const Eigen::Isometry3d& rotation : rotations) {
+    const double angle_deg = Eigen::AngleAxisd(rotation.linear()).angle() * 180.0 / M_PI;
     ++count_by_deg[*std::min_element(kWhole_deg.begin(), kWhole_deg.end(),
                                      [&](int a, int b) { return std::abs(a - angle_deg) < std::abs(b - angle_deg); })];
   }
@@ -60,7 +60,7 @@ std::vector<std::string> turn_words(const std::vector<Eigen::Isometry3d>& turns)
 std::string symmetry_words(const ShapeSymmetry& shape) {
   const std::size_t axes = shape.symmetries.continuous.size();
   if (axes > 1) return "any turn";
-  std::vector<std::string> words = turn_words(shape.symmetries.discrete);
+  std::vector<std::string> words = rotation_words(shape.symmetries.discrete);
   if (axes == 1) words.insert(words.begin(), "a spin");
   if (shape.nearly_round) words.emplace_back("a spin but for its handle");
   return words.empty() ? "none" : fmt::format("{}", fmt::join(words, " and "));

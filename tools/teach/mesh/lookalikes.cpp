@@ -20,7 +20,7 @@ constexpr float kMaxScale = 1.25F;
 constexpr float kSpreadTolerance = 0.08F;  // of the spread along each principal axis
 constexpr float kTolerance = 0.02F;        // mean distance between the surfaces, of the diameter
 constexpr int kFirstLook = 50;             // points that rule most ways out
-constexpr int kTurns = 36;
+constexpr int kRotations = 36;
 constexpr double kDetail_m = 0.005;       // finer print does not count
 constexpr float kColourDistance = 30.0F;  // in L*a*b* of 8 bits: the same print in another light
 constexpr float kMinAlike = 0.75F;        // share of the surface whose colours agree
@@ -107,8 +107,8 @@ std::optional<Lookalike> compare(const Shape& one, const Shape& other) {
   std::optional<Lookalike> mirrored;
   for (const Eigen::Matrix3f& along : axis_maps()) {
     for (int axis = 0; axis < 3; ++axis) {
-      for (int turn = axis == 0 ? 0 : 1; turn < kTurns; ++turn) {
-        const Eigen::AngleAxisf about(2.0F * static_cast<float>(M_PI) * static_cast<float>(turn) / kTurns,
+      for (int angle = axis == 0 ? 0 : 1; angle < kRotations; ++angle) {
+        const Eigen::AngleAxisf about(2.0F * static_cast<float>(M_PI) * static_cast<float>(angle) / kRotations,
                                       Eigen::Vector3f::Unit(axis));
         const Eigen::Matrix3f map = scale * other.axes * about.toRotationMatrix() * along * one.axes.transpose();
         const bool is_mirror = map.determinant() < 0.0F;

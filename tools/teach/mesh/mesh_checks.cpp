@@ -85,7 +85,7 @@ Topology examine(const Mesh& mesh) {
   return found;
 }
 
-void turn_faces(Mesh& mesh) {
+void flip_faces(Mesh& mesh) {
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }
 
@@ -120,7 +120,7 @@ void check_mesh(const std::string& where, double unit_m, Mesh& mesh) {
   const Topology found = examine(mesh);
   constexpr double kMinVolume = 1e-3;  // of the box's: below, a plate has no inside
   if (found.volume_m3 < -kMinVolume * found.box_volume_m3) {
-    turn_faces(mesh);
+    flip_faces(mesh);
     log_warning("{}: the surface faces inwards (volume {:.4g} cm3), expected outwards: turned around", where,
                 found.volume_m3 * 1e6);
   }

@@ -37,7 +37,7 @@ void assess_take(const Take& take, std::vector<std::string>& reasons) {
   constexpr int kRound = 350;
   constexpr double kMaxLost = 0.15;
   constexpr double kMaxGap_m = 0.03;
-  constexpr double kMaxGapTurn = 0.12;
+  constexpr double kMaxGapAngle = 0.12;
   if (take.motion == Motion::kUnknown)
     reasons.emplace_back(
         "neither the camera nor the object was seen to move, expected a turn about it (a plain round "
@@ -53,7 +53,7 @@ void assess_take(const Take& take, std::vector<std::string>& reasons) {
       if (reasons.size() < 8) reasons.push_back(span_text(take, span));
     }
   }
-  if (take.gap && (take.gap->shift_m > kMaxGap_m || take.gap->angle_rad > kMaxGapTurn))
+  if (take.gap && (take.gap->shift_m > kMaxGap_m || take.gap->angle_rad > kMaxGapAngle))
     reasons.push_back(fmt::format("the turn missed its beginning by {:.0f} mm and {:.1f} degrees",
                                   1e3 * take.gap->shift_m, degrees_of(*take.gap)));
 }

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "tools/view/drawing/rotated_view.hpp"
 #include "tools/view/drawing/teaching_view.hpp"
-#include "tools/view/drawing/turned_view.hpp"
 #include "tools/view/drawing/world_view.hpp"
 
 namespace houghstream::view {
@@ -204,7 +204,7 @@ cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const
     const WorldState world = stream.state.world.value_or(WorldState{});
     cv::hconcat(picture, draw_world_from_above(world, viewed.frame.colour.size()), picture);
   } else if (settings.show_3d) {
-    cv::hconcat(picture, draw_turned_view(viewed.frame, viewed.poses, models), picture);
+    cv::hconcat(picture, draw_rotated_view(viewed.frame, viewed.poses, models), picture);
   } else if (settings.show_depth) {
     cv::hconcat(picture, colour_depth(viewed.frame.depth, settings.depth_near, settings.depth_far), picture);
   }

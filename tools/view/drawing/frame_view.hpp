@@ -26,7 +26,7 @@ struct FrameViewSettings {
   float min_score = 0.0F;       ///< weaker detections and their poses are not drawn; 0: all that were sent
   bool show_depth = true;       ///< depth, colour-mapped, to the right
   bool show_world = false;      ///< there the world from above instead, where hs-track tells of it
-  bool show_3d = false;         ///< there the measured points, seen from elsewhere, instead (turned_view.hpp)
+  bool show_3d = false;         ///< there the measured points, seen from elsewhere, instead (rotated_view.hpp)
   float depth_near = 0.4F;      ///< metres, red end of the colour map
   float depth_far = 3.5F;       ///< metres, blue end; beyond it stays blue
   bool show_keys = false;       ///< a line that names the window's keys

@@ -6,7 +6,7 @@
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/messages/codecs.hpp"
-#include "tools/view/drawing/turned_view.hpp"
+#include "tools/view/drawing/rotated_view.hpp"
 #include "tools/view/drawing/world_view.hpp"
 #include "tools/view/http/page_json.hpp"
 
@@ -40,7 +40,7 @@ cv::Mat drawn(PageView view, const PageContent& content) {
   const ViewedFrame& viewed = content.viewed;
   switch (view) {
     case PageView::kDepth: return small_depth(viewed.frame.depth, content.settings);
-    case PageView::k3d: return draw_turned_view(viewed.frame, viewed.poses, content.models);
+    case PageView::k3d: return draw_rotated_view(viewed.frame, viewed.poses, content.models);
     case PageView::kWorld: return world_from_above(content.stream.state.world, viewed.frame.colour.size());
     case PageView::kColour: break;
   }

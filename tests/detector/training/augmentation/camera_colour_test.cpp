@@ -83,7 +83,7 @@ TEST(CameraColour, AutomaticExposureBringsPicturesCloserTogether) {
 
 TEST(CameraColour, AHueTurnIsCommonToAllColoursAndKeepsGreys) {
   ColourVariation camera;
-  camera.hue_turn = 0.2;
+  camera.hue_rotation = 0.2;
   cv::Mat before(1, 4, CV_8UC3);
   before.at<cv::Vec3b>(0, 0) = {120, 120, 120};
   before.at<cv::Vec3b>(0, 1) = {180, 90, 90};
@@ -96,8 +96,8 @@ TEST(CameraColour, AHueTurnIsCommonToAllColoursAndKeepsGreys) {
     return std::atan2(std::sqrt(3.0) * (v[1] - v[2]), 2.0 * v[0] - v[1] - v[2]);
   };
   for (int i = 1; i < 4; ++i) {
-    const double turned = angle(after.at<cv::Vec3b>(0, i)) - angle(before.at<cv::Vec3b>(0, i));
-    EXPECT_NEAR(std::remainder(turned, 2.0 * M_PI), 0.2, 0.02) << i;
+    const double rotated = angle(after.at<cv::Vec3b>(0, i)) - angle(before.at<cv::Vec3b>(0, i));
+    EXPECT_NEAR(std::remainder(rotated, 2.0 * M_PI), 0.2, 0.02) << i;
   }
 }
 

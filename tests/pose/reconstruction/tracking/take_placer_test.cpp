@@ -14,11 +14,11 @@ using test_scene::ShownScene;
 using test_scene::table_with;
 
 constexpr int kFrames = 100;
-constexpr double kTurn = 6.283185307179586;
+constexpr double kAngle = 6.283185307179586;
 
 /// The camera goes once about the box, and a little farther.
 Eigen::Isometry3d true_pose(int i) {
-  return test_scene::camera_at(0.3 + 1.04 * kTurn * i / kFrames, 0.55 + 0.1 * std::sin(0.1 * i), 0.65);
+  return test_scene::camera_at(0.3 + 1.04 * kAngle * i / kFrames, 0.55 + 0.1 * std::sin(0.1 * i), 0.65);
 }
 
 Take go_round(const Mesh& mesh, int from, int to, const std::vector<int>& black) {
@@ -88,10 +88,10 @@ TEST(TakePlacer, FollowsAnObjectThatTurnsBeforeAStillCamera) {
   TakePlacer placer{TakePlacerSettings()};
   for (int i = 0; i < 40; ++i) {
     Mesh both = table;
-    const Eigen::Matrix3f turned =
+    const Eigen::Matrix3f rotated =
         Eigen::AngleAxisf(-0.03F * static_cast<float>(i), Eigen::Vector3f::UnitZ()).toRotationMatrix();
     const auto offset = static_cast<std::uint32_t>(both.vertices.size());
-    for (const Eigen::Vector3f& vertex : box.vertices) both.vertices.push_back(turned * vertex);
+    for (const Eigen::Vector3f& vertex : box.vertices) both.vertices.push_back(rotated * vertex);
     both.colours.insert(both.colours.end(), box.colours.begin(), box.colours.end());
     for (const auto& t : box.triangles) both.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
     placer.process(photograph(both, T_camera_table, ShownScene().camera, 1 + 33000 * i));
@@ -130,7 +130,7 @@ Mesh plain_tin_among_boxes() {
   std::vector<Eigen::Vector3f> lid;
   for (int i = 0; i < kSides; ++i) {
     const auto rim = [&](int k, float z) {
-      const auto angle = static_cast<float>(kTurn * k / kSides);
+      const auto angle = static_cast<float>(kAngle * k / kSides);
       return Eigen::Vector3f(kRadius_m * std::cos(angle), kRadius_m * std::sin(angle), z);
     };
     add_face({rim(i, 0.0F), rim(i + 1, 0.0F), rim(i + 1, 0.1F), rim(i, 0.1F)}, 180);
@@ -140,11 +140,11 @@ Mesh plain_tin_among_boxes() {
   for (int i = 0; i < 6; ++i) {
     Mesh box;
     test_scene::add_box({0.1 + 0.01 * i, 0.08, 0.12 + 0.01 * i}, 0.0, box);
-    const Eigen::Matrix3f turned =
+    const Eigen::Matrix3f rotated =
         Eigen::AngleAxisf(1.047F * static_cast<float>(i), Eigen::Vector3f::UnitZ()).toRotationMatrix();
     const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
     for (const Eigen::Vector3f& vertex : box.vertices)
-      mesh.vertices.push_back(turned * (vertex + Eigen::Vector3f(0.55F, 0.0F, 0.0F)));
+      mesh.vertices.push_back(rotated * (vertex + Eigen::Vector3f(0.55F, 0.0F, 0.0F)));
     mesh.colours.insert(mesh.colours.end(), box.colours.begin(), box.colours.end());
     for (const auto& t : box.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
   }
@@ -169,7 +169,7 @@ double degrees_gone(std::size_t min_corners) {
   settings.map.min_corners = min_corners;
   TakePlacer placer(settings);
   for (int i = 0; i <= 35; ++i) {
-    const Eigen::Isometry3d T = test_scene::camera_at(0.3 + kTurn * i / 180.0, 0.5, 0.7);
+    const Eigen::Isometry3d T = test_scene::camera_at(0.3 + kAngle * i / 180.0, 0.5, 0.7);
     RgbdFrame frame = photograph(mesh, T, ShownScene().camera, 1 + 33000 * i);
     step_depth(frame);
     placer.process(frame);
@@ -177,7 +177,7 @@ double degrees_gone(std::size_t min_corners) {
   const Take take = placer.finish();
   if (!take.frames.back().tracked) return 0.0;
   const Eigen::Isometry3d gone = take.pose_of(take.frames.front()).inverse() * take.pose_of(take.frames.back());
-  return Eigen::AngleAxisd(gone.linear()).angle() * 360.0 / kTurn;
+  return Eigen::AngleAxisd(gone.linear()).angle() * 360.0 / kAngle;
 }
 
 TEST(TakePlacer, CornersSayHowFarItIsRoundSomethingPlainAndRound) {

@@ -35,8 +35,8 @@ TEST(BopErrors, TheFarthestVertexCounts) {
   const auto vertices = square().vertices;
   EXPECT_NEAR(mssd_error(vertices, kNoSymmetry, at(0.003, 0, 1.004), at(0, 0, 1)), 0.005, 1e-9);
   // A tenth of a radian about the left edge's middle moves the right edge by 2 * 0.2 sin(0.05).
-  const Eigen::Isometry3d turned = at(-0.1, 0, 1) * Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()) * at(0.1, 0, 0);
-  EXPECT_NEAR(mssd_error(vertices, kNoSymmetry, turned, at(0, 0, 1)), 0.4 * std::sin(0.05), 1e-6);
+  const Eigen::Isometry3d rotated = at(-0.1, 0, 1) * Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()) * at(0.1, 0, 0);
+  EXPECT_NEAR(mssd_error(vertices, kNoSymmetry, rotated, at(0, 0, 1)), 0.4 * std::sin(0.05), 1e-6);
 }
 
 TEST(BopErrors, InTheImageADistanceIsSmallerTheFartherItIs) {
@@ -53,10 +53,11 @@ TEST(BopErrors, TheBestOfTheEquivalentPosesCounts) {
   std::vector<Eigen::Isometry3d> quarters;
   quarters.reserve(4);
   for (int i = 0; i < 4; ++i) quarters.emplace_back(Eigen::AngleAxisd(i * M_PI / 2, Eigen::Vector3d::UnitZ()));
-  const Eigen::Isometry3d turned = at(0.01, 0, 1) * Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
-  EXPECT_NEAR(mssd_error(vertices, kNoSymmetry, turned, at(0, 0, 1)), 0.21, 2e-3) << "a corner goes to the next, 0.2 m";
-  EXPECT_NEAR(mssd_error(vertices, quarters, turned, at(0, 0, 1)), 0.01, 1e-7);
-  EXPECT_NEAR(mspd_error(vertices, quarters, turned, at(0, 0, 1), kHundredWide), 1.0, 1e-4);
+  const Eigen::Isometry3d rotated = at(0.01, 0, 1) * Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
+  EXPECT_NEAR(mssd_error(vertices, kNoSymmetry, rotated, at(0, 0, 1)), 0.21, 2e-3)
+      << "a corner goes to the next, 0.2 m";
+  EXPECT_NEAR(mssd_error(vertices, quarters, rotated, at(0, 0, 1)), 0.01, 1e-7);
+  EXPECT_NEAR(mspd_error(vertices, quarters, rotated, at(0, 0, 1), kHundredWide), 1.0, 1e-4);
 }
 
 TEST(BopErrors, VsdOfATruePoseIsNothing) {

@@ -32,7 +32,7 @@ PoseTrial published(MatchOutcome outcome, double ms, double add_s, double add) {
   trial.add = add;
   trial.strict = add;
   trial.shift_m = 0.001 * ms;
-  trial.turn_deg = 2.0 * ms;
+  trial.angle_deg = 2.0 * ms;
   return trial;
 }
 

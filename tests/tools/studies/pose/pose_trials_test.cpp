@@ -64,7 +64,7 @@ TEST(PoseTrials, ErrorsAreOfTheTrueObjectOrOfTheNearest) {
   EXPECT_EQ(trials[0].status, PoseStatus::kValid);
   EXPECT_NEAR(trials[0].add, 0.05, 1e-6);
   EXPECT_NEAR(trials[0].shift_m, 0.01, 1e-9);
-  EXPECT_NEAR(trials[0].turn_deg, 0.0, 1e-6);
+  EXPECT_NEAR(trials[0].angle_deg, 0.0, 1e-6);
   EXPECT_NEAR(trials[0].distance_m, 2.0, 1e-9);
   EXPECT_TRUE(trials[0].is_correct());
   EXPECT_GE(trials[0].ms, 0.0);
@@ -75,13 +75,13 @@ TEST(PoseTrials, ErrorsAreOfTheTrueObjectOrOfTheNearest) {
 }
 
 TEST(PoseTrials, ATurnedPoseIsRightUpToItsShapeOnly) {
-  const Eigen::Isometry3d turn(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
+  const Eigen::Isometry3d rotation(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
   ScoredModel bar;
   bar.surface = {{{0.1F, 0.0F, 0.0F}, {-0.1F, 0.0F, 0.0F}}, 0.2};
   for (const bool is_listed : {false, true}) {
-    if (is_listed) bar.surface.symmetries.push_back(turn);
+    if (is_listed) bar.surface.symmetries.push_back(rotation);
     const std::vector<PoseTrial> trials =
-        match_run(one_frame(baseline_maker(std::make_unique<FixedRival>(at(0.0, 2.0) * turn))), {{"corner", bar}});
+        match_run(one_frame(baseline_maker(std::make_unique<FixedRival>(at(0.0, 2.0) * rotation))), {{"corner", bar}});
     EXPECT_EQ(trials.at(0).is_correct(), is_listed);
     EXPECT_TRUE(trials.at(0).is_correct_up_to_shape());
     EXPECT_NEAR(trials.at(0).strict, is_listed ? 0.0 : 1.0, 1e-6);

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 
-Eigen::Isometry3d pose(double x, double turn_deg) {
-  return Eigen::Translation3d(x, 0.0, 0.7) * Eigen::AngleAxisd(turn_deg * kDegree, Eigen::Vector3d::UnitZ());
+Eigen::Isometry3d pose(double x, double angle_deg) {
+  return Eigen::Translation3d(x, 0.0, 0.7) * Eigen::AngleAxisd(angle_deg * kDegree, Eigen::Vector3d::UnitZ());
 }
 
 ComparedFrame frame(bool reliable, std::optional<PoseDifference> difference) {
@@ -21,18 +21,18 @@ ComparedFrame frame(bool reliable, std::optional<PoseDifference> difference) {
 TEST(ComparePoses, MeasuresShiftAndTurn) {
   const PoseDifference found = compare_poses(pose(0.103, 34.0), pose(0.1, 30.0), {});
   EXPECT_NEAR(found.shift_m, 0.003, 1e-9);
-  EXPECT_NEAR(found.turn_deg, 4.0, 1e-6);
-  EXPECT_NEAR(compare_poses(pose(0.1, 210.0), pose(0.1, 30.0), {}).turn_deg, 180.0, 1e-5);
+  EXPECT_NEAR(found.angle_deg, 4.0, 1e-6);
+  EXPECT_NEAR(compare_poses(pose(0.1, 210.0), pose(0.1, 30.0), {}).angle_deg, 180.0, 1e-5);
 }
 
 TEST(ComparePoses, ATurnThatLooksTheSameIsNoError) {
   Symmetries half_turn;
   half_turn.discrete.emplace_back(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
-  EXPECT_NEAR(compare_poses(pose(0.1, 213.0), pose(0.1, 30.0), half_turn).turn_deg, 3.0, 1e-5);
-  EXPECT_NEAR(compare_poses(pose(0.1, 120.0), pose(0.1, 30.0), half_turn).turn_deg, 90.0, 1e-5);
+  EXPECT_NEAR(compare_poses(pose(0.1, 213.0), pose(0.1, 30.0), half_turn).angle_deg, 3.0, 1e-5);
+  EXPECT_NEAR(compare_poses(pose(0.1, 120.0), pose(0.1, 30.0), half_turn).angle_deg, 90.0, 1e-5);
   Symmetries round;
   round.continuous.push_back({Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()});
-  EXPECT_NEAR(compare_poses(pose(0.1, 120.0), pose(0.1, 30.0), round).turn_deg, 0.0, 1e-5);
+  EXPECT_NEAR(compare_poses(pose(0.1, 120.0), pose(0.1, 30.0), round).angle_deg, 0.0, 1e-5);
 }
 
 TEST(Summarise, CountsReliableFramesAndThoseWithoutAPose) {
@@ -44,7 +44,7 @@ TEST(Summarise, CountsReliableFramesAndThoseWithoutAPose) {
   EXPECT_EQ(found.within_5mm_5deg, 1);
   ASSERT_TRUE(found.median.has_value());
   EXPECT_DOUBLE_EQ(found.median->shift_m, 0.004);
-  EXPECT_DOUBLE_EQ(found.median->turn_deg, 4.0);
+  EXPECT_DOUBLE_EQ(found.median->angle_deg, 4.0);
   EXPECT_FALSE(summarise({frame(true, std::nullopt)}).median.has_value());
 }
 

@@ -117,7 +117,7 @@ TEST(ShownComparison, APerfectMeshIsFoundPerfectWhateverItsFrame) {
   EXPECT_LT(found.seen_surface, 0.95) << "the bottom is never seen";
   EXPECT_EQ(found.tracked, kFrames);
   EXPECT_NEAR(found.drift.shift_m, 0.004, 1e-5);
-  EXPECT_NEAR(found.drift.turn_rad, 0.0, 1e-5);
+  EXPECT_NEAR(found.drift.angle_rad, 0.0, 1e-5);
   EXPECT_EQ(found.views, 3);
   EXPECT_GT(found.mask_iou, 0.35);
   EXPECT_LT(found.mask_iou, 0.65);

@@ -21,14 +21,14 @@ TEST(ContactSheet, APictureOfAnotherWidthIsNamed) {
 }
 
 TEST(ContactSheet, ShapeSymmetriesAreSaidInWords) {
-  const auto turn = [](double angle_deg, const Eigen::Vector3d& axis) {
+  const auto rotation = [](double angle_deg, const Eigen::Vector3d& axis) {
     return Eigen::Isometry3d(Eigen::AngleAxisd(angle_deg * M_PI / 180.0, axis));
   };
   ShapeSymmetry shape;
   EXPECT_EQ(symmetry_words(shape), "none");
   shape.nearly_round = ContinuousSymmetry{};
   EXPECT_EQ(symmetry_words(shape), "a spin but for its handle");
-  shape.symmetries.discrete = {turn(180, Eigen::Vector3d::UnitZ())};
+  shape.symmetries.discrete = {rotation(180, Eigen::Vector3d::UnitZ())};
   EXPECT_EQ(symmetry_words(shape), "a half turn and a spin but for its handle");
   shape.nearly_round.reset();
   shape.symmetries.continuous.push_back({});
@@ -36,8 +36,8 @@ TEST(ContactSheet, ShapeSymmetriesAreSaidInWords) {
   shape.symmetries.continuous.push_back({Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero()});
   EXPECT_EQ(symmetry_words(shape), "any turn");
   shape.symmetries.continuous.clear();
-  shape.symmetries.discrete = {turn(90, Eigen::Vector3d::UnitZ()), turn(180, Eigen::Vector3d::UnitX()),
-                               turn(180, Eigen::Vector3d::UnitY()), turn(-90, Eigen::Vector3d::UnitZ())};
+  shape.symmetries.discrete = {rotation(90, Eigen::Vector3d::UnitZ()), rotation(180, Eigen::Vector3d::UnitX()),
+                               rotation(180, Eigen::Vector3d::UnitY()), rotation(-90, Eigen::Vector3d::UnitZ())};
   EXPECT_EQ(symmetry_words(shape), "2 half turns and 2 turns by 90 degrees");
   store::StoredObject object;
   object.name = "tin";

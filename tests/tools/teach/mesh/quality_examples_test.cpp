@@ -69,13 +69,13 @@ TEST(QualityExamples, APoseIsRightWithinATenthOfTheDiameter) {
 }
 
 TEST(QualityExamples, APoseThatIsTurnedByItsShapeIsRightUpToThatOnlyUnlessTheDatasetListsIt) {
-  const Eigen::Isometry3d turn(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
+  const Eigen::Isometry3d rotation(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
   PoseModel bar{{{0.1F, 0.0F, 0.0F}, {-0.1F, 0.0F, 0.0F}}, 0.2};
   for (const bool is_listed : {false, true}) {
     FoundPoses found = one_frame();
     add(found, "corner", kBox, 0.0);
-    found.frames[0].poses->poses[0].T_camera_object = at(0.0) * turn;
-    if (is_listed) bar.symmetries.push_back(turn);
+    found.frames[0].poses->poses[0].T_camera_object = at(0.0) * rotation;
+    if (is_listed) bar.symmetries.push_back(rotation);
     const std::vector<Example> examples = label_examples(found, {{"corner", bar}});
     ASSERT_EQ(examples.size(), 1U);
     EXPECT_EQ(examples[0].is_correct, is_listed);

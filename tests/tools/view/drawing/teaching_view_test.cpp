@@ -20,9 +20,9 @@ Teaching half_seen() {
   mug.progress = 0.5F;
   for (int i = 0; i < 60; ++i) {
     const float z = (static_cast<float>(i) + 0.5F) / 30.0F - 1.0F;
-    const float turn = 2.39996F * static_cast<float>(i);  // the golden angle
+    const float angle = 2.39996F * static_cast<float>(i);  // the golden angle
     const float r = std::sqrt(1.0F - z * z);
-    mug.directions.push_back({{r * std::cos(turn), r * std::sin(turn), z}, std::cos(turn) > 0.0F});
+    mug.directions.push_back({{r * std::cos(angle), r * std::sin(angle), z}, std::cos(angle) > 0.0F});
   }
   return mug;
 }

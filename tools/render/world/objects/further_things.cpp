@@ -10,7 +10,7 @@ namespace {
 
 const Eigen::Vector3d kOrigin = Eigen::Vector3d::Zero();
 
-Part turned(Mesh mesh, const Eigen::Vector3d& translation, double angle_rad, const Eigen::Vector3d& axis) {
+Part rotated(Mesh mesh, const Eigen::Vector3d& translation, double angle_rad, const Eigen::Vector3d& axis) {
   Part part{std::move(mesh), Eigen::Isometry3d::Identity()};
   part.T_object_part.translate(translation);
   part.T_object_part.rotate(Eigen::AngleAxisd(angle_rad, axis));
@@ -102,8 +102,8 @@ AssetPtr make_office_stapler(Random& random) {
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
   return make_asset("office_stapler",
                     finish_object(compose({at(prism(foot, 0.042, rubber, rubber), kOrigin),
-                                           turned(box({0.14, 0.018, 0.012}, steel), {-0.004, 0, 0.024}, 0.12, y),
-                                           turned(prism(arm, 0.036, shell, shell), {0.0, 0, 0.032}, 0.12, y)})),
+                                           rotated(box({0.14, 0.018, 0.012}, steel), {-0.004, 0, 0.024}, 0.12, y),
+                                           rotated(prism(arm, 0.036, shell, shell), {0.0, 0, 0.032}, 0.12, y)})),
                     0.25F);
 }
 
@@ -144,7 +144,7 @@ AssetPtr make_toy_truck(Random& random) {
   cv::Mat tyre = plain({128, 128}, hsv(220, 0.1, 0.12), 0.05, random);
   tyre.rowRange(0, 36) = hsv(0, 0.0, 0.75);
   tyre.rowRange(92, 128) = hsv(0, 0.0, 0.75);
-  const Mesh wheel = turned_mesh({{0.018, 0.0}, {0.021, 0.003}, {0.021, 0.013}, {0.018, 0.016}}, tyre);
+  const Mesh wheel = rotated_mesh({{0.018, 0.0}, {0.021, 0.003}, {0.021, 0.013}, {0.018, 0.016}}, tyre);
   for (const double x : {-0.057, 0.057}) {
     for (const double y : {-0.03, 0.03}) parts.push_back(lying(wheel, {x, y, 0.021}, Eigen::Vector3d::UnitY()));
   }
@@ -174,8 +174,8 @@ AssetPtr make_flashlight(Random& random) {
   shell.rowRange(660, 690) = yellow;
   for (int y = 380; y < 620; y += 24) shell.rowRange(y, y + 8) = hsv(214, 0.5, 0.12);
   const Mesh body =
-      turned_mesh({{0.0155, 0.0}, {0.0175, 0.003}, {0.0175, 0.112}, {0.028, 0.135}, {0.0285, 0.168}}, shell);
-  const Mesh glass = turned_mesh({{0.025, 0.0}, {0.022, 0.003}}, lens);
+      rotated_mesh({{0.0155, 0.0}, {0.0175, 0.003}, {0.0175, 0.112}, {0.028, 0.135}, {0.0285, 0.168}}, shell);
+  const Mesh glass = rotated_mesh({{0.025, 0.0}, {0.022, 0.003}}, lens);
   const cv::Mat rubber = plain({64, 64}, hsv(4, 0.8, 0.7), 0.04, random);
   const Mesh button = box({0.022, 0.01, 0.008}, rubber);
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX();

@@ -52,7 +52,7 @@ Mesh with_lip(Mesh vessel, double reach, double from_z, double to_z) {
 Mesh cap_mesh(double radius, double height, const cv::Scalar& colour, Random& random) {
   cv::Mat texture = plain({256, 64}, colour, 0.03, random);
   for (int x = 0; x < texture.cols; x += 8) cv::line(texture, {x, 0}, {x, texture.rows}, colour * 0.75, 2);
-  return turned_mesh({{radius, 0.0}, {radius, 0.8 * height}, {0.9 * radius, height}}, texture);
+  return rotated_mesh({{radius, 0.0}, {radius, 0.8 * height}, {0.9 * radius, height}}, texture);
 }
 
 // Chequered cloth, closed round a lathe.
@@ -101,7 +101,7 @@ AssetPtr make_teapot(Random& random) {
   const Mesh pour = tapered_tube(spout, {0.02, 0.0175, 0.0135, 0.0105, 0.009}, glaze, 16);
   return make_asset("teapot",
                     finish_object(compose({at(body, kOrigin), at(handle, kOrigin), at(pour, kOrigin),
-                                           at(turned_mesh(knob, knob_glaze), {0, 0, 0.134})})),
+                                           at(rotated_mesh(knob, knob_glaze), {0, 0, 0.134})})),
                     0.35F);
 }
 
@@ -133,18 +133,18 @@ AssetPtr make_water_bottle(Random& random) {
   cv::Mat plastic = plain({1024, 768}, hsv(188, 0.32, 0.78), 0.04, random);
   Palette palette{hsv(214, 0.85, 0.55), hsv(190, 0.6, 0.9), hsv(0, 0.0, 0.97), hsv(220, 0.8, 0.25)};
   can_label({1024, 230}, palette, random).copyTo(plastic.rowRange(330, 560));
-  const Mesh body = turned_mesh({{0.9 * r, 0.0},
-                                 {r, 0.006},
-                                 {r, 0.03},
-                                 {0.94 * r, 0.035},
-                                 {r, 0.04},
-                                 {r, 0.13},
-                                 {0.94 * r, 0.135},
-                                 {r, 0.14},
-                                 {0.9 * r, 0.165},
-                                 {0.55 * r, 0.19},
-                                 {0.4 * r, 0.2}},
-                                plastic);
+  const Mesh body = rotated_mesh({{0.9 * r, 0.0},
+                                  {r, 0.006},
+                                  {r, 0.03},
+                                  {0.94 * r, 0.035},
+                                  {r, 0.04},
+                                  {r, 0.13},
+                                  {0.94 * r, 0.135},
+                                  {r, 0.14},
+                                  {0.9 * r, 0.165},
+                                  {0.55 * r, 0.19},
+                                  {0.4 * r, 0.2}},
+                                 plastic);
   const Mesh cap = cap_mesh(0.0155, 0.02, hsv(214, 0.85, 0.5), random);
   return make_asset("water_bottle", finish_object(compose({at(body, {0, 0, 0.1}), at(cap, {0, 0, 0.209})})), 0.4F);
 }
@@ -153,7 +153,7 @@ AssetPtr make_shampoo_bottle(Random& random) {
   Palette palette{hsv(276, 0.5, 0.6), hsv(64, 0.6, 0.88), hsv(280, 0.05, 0.97), hsv(276, 0.7, 0.22)};
   cv::Mat plastic = plain({1024, 640}, palette.base, 0.04, random);
   can_label({1024, 330}, palette, random).copyTo(plastic.rowRange(210, 540));
-  const Mesh body = turned_mesh(
+  const Mesh body = rotated_mesh(
       {{0.035, 0.0}, {0.038, 0.005}, {0.0395, 0.06}, {0.037, 0.12}, {0.031, 0.148}, {0.019, 0.16}, {0.015, 0.164}},
       plastic);
   const Mesh cap = cap_mesh(0.0185, 0.034, hsv(70, 0.1, 0.95), random);
@@ -170,9 +170,9 @@ AssetPtr make_jam_jar(Random& random) {
   draw_text_lines(paper, {150, 105, 230, 70}, palette.dark, random);
   for (const int x : {60, 572}) paper.copyTo(jam(cv::Rect(x, 190, paper.cols, paper.rows)));
   const Mesh pot =
-      turned_mesh({{0.034, 0.0}, {0.037, 0.005}, {0.0375, 0.06}, {0.036, 0.072}, {0.031, 0.08}, {0.031, 0.084}}, jam);
+      rotated_mesh({{0.034, 0.0}, {0.037, 0.005}, {0.0375, 0.06}, {0.036, 0.072}, {0.031, 0.08}, {0.031, 0.084}}, jam);
   const cv::Mat cloth = gingham({768, 192}, hsv(354, 0.8, 0.62), 16, random);
-  const Mesh lid = turned_mesh({{0.0345, 0.0}, {0.0355, 0.003}, {0.0355, 0.013}, {0.034, 0.0155}}, cloth);
+  const Mesh lid = rotated_mesh({{0.0345, 0.0}, {0.0355, 0.003}, {0.0355, 0.013}, {0.034, 0.0155}}, cloth);
   return make_asset("jam_jar", finish_object(compose({at(pot, {0, 0, 0.042}), at(lid, {0, 0, 0.0905})})), 0.35F);
 }
 
@@ -185,15 +185,15 @@ AssetPtr make_food_tin(Random& random) {
   draw_photo(label, {0, 250, 330, 140}, random);
   draw_photo(label, {512, 250, 330, 140}, random);
   label.copyTo(texture.rowRange(184, 584));
-  const Mesh tin = turned_mesh({{0.97 * r, 0.0},
-                                {r, 0.001},
-                                {r, 0.004},
-                                {0.975 * r, 0.005},
-                                {0.975 * r, h - 0.005},
-                                {r, h - 0.004},
-                                {r, h - 0.001},
-                                {0.97 * r, h}},
-                               texture);
+  const Mesh tin = rotated_mesh({{0.97 * r, 0.0},
+                                 {r, 0.001},
+                                 {r, 0.004},
+                                 {0.975 * r, 0.005},
+                                 {0.975 * r, h - 0.005},
+                                 {r, h - 0.004},
+                                 {r, h - 0.001},
+                                 {0.97 * r, h}},
+                                texture);
   return make_asset("food_tin", tin, 0.3F);
 }
 

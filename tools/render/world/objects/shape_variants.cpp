@@ -48,7 +48,7 @@ cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
   cv::Mat hsv_image;
   cv::cvtColor(bgr, hsv_image, cv::COLOR_BGR2HSV);
   const bool is_grey = chance(random, kGreyed) && cv::mean(hsv_image)[1] > kColourful;
-  const int turn = random.between(40, 140);
+  const int angle = random.between(40, 140);
   const double strength = random.uniform(0.0, 0.4);
   const double lightness = random.uniform(is_grey ? 0.15 : 0.5, 1.2);
   for (int y = 0; y < hsv_image.rows; ++y) {
@@ -57,7 +57,7 @@ cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
       if (is_grey) {
         pixel[1] = cv::saturate_cast<std::uint8_t>(strength * pixel[1]);
       } else {
-        pixel[0] = static_cast<std::uint8_t>((pixel[0] + turn) % 180);
+        pixel[0] = static_cast<std::uint8_t>((pixel[0] + angle) % 180);
         pixel[1] = std::max<std::uint8_t>(pixel[1], 60);  // what is grey takes on a colour
       }
       pixel[2] = cv::saturate_cast<std::uint8_t>(lightness * pixel[2]);

@@ -125,7 +125,7 @@ Mesh carton_mesh(const Eigen::Vector3d& size, const Palette& palette, Random& ra
   return finish_object(box(size, faces));
 }
 
-Mesh turned_mesh(const std::vector<Eigen::Vector2d>& outline, const cv::Mat& texture) {
+Mesh rotated_mesh(const std::vector<Eigen::Vector2d>& outline, const cv::Mat& texture) {
   std::vector<ProfilePoint> profile = {{0.0, outline.front().y()}, {outline.front().x(), outline.front().y()}};
   for (const Eigen::Vector2d& point : outline) profile.push_back({point.x(), point.y()});
   profile.push_back({outline.back().x(), outline.back().y()});

@@ -34,6 +34,6 @@ Mesh can_mesh(double radius, double height, const Palette& palette, Random& rand
 Mesh carton_mesh(const Eigen::Vector3d& size, const Palette& palette, Random& random);
 
 /// Solid body of revolution through (radius, z) points from bottom to top, ends closed.
-Mesh turned_mesh(const std::vector<Eigen::Vector2d>& outline, const cv::Mat& texture);
+Mesh rotated_mesh(const std::vector<Eigen::Vector2d>& outline, const cv::Mat& texture);
 
 }  // namespace houghstream::world

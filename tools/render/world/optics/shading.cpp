@@ -13,18 +13,18 @@ namespace {
 constexpr double kMapPxPerM = 430.0;  // of the part of the world that the map shows
 constexpr float kBiasM = 0.006F;
 constexpr int kTaps = 8;
-constexpr int kTurns = 64;
+constexpr int kRotations = 64;
 
-using Taps = std::array<std::array<Eigen::Vector2f, kTaps>, kTurns>;
+using Taps = std::array<std::array<Eigen::Vector2f, kTaps>, kRotations>;
 
 // Vogel's spiral in the unit disc, from the rim inwards, for each turn of the pattern.
 Taps make_taps() {
   Taps taps;
-  for (int turn = 0; turn < kTurns; ++turn) {
+  for (int angle_rad = 0; angle_rad < kRotations; ++angle_rad) {
     for (int i = 0; i < kTaps; ++i) {
       const double radius = std::sqrt((kTaps - i - 0.5) / kTaps);
-      const double angle = 2.399963 * i + 2.0 * M_PI * turn / kTurns;  // golden angle
-      taps[static_cast<std::size_t>(turn)][static_cast<std::size_t>(i)] =
+      const double angle = 2.399963 * i + 2.0 * M_PI * angle_rad / kRotations;  // golden angle
+      taps[static_cast<std::size_t>(angle_rad)][static_cast<std::size_t>(i)] =
           Eigen::Vector2d(radius * std::cos(angle), radius * std::sin(angle)).cast<float>();
     }
   }
@@ -81,7 +81,7 @@ struct Point {
   Eigen::Vector3f to_eye;
   Eigen::Vector3f reflectance_bgr;
   float specular;
-  float turn;
+  float angle_rad;
 };
 
 // Lambert's diffuse and Blinn's (1977) specular term.
@@ -91,7 +91,7 @@ Eigen::Vector3f reflected(const Point& point, const std::vector<LightInView>& li
     const Eigen::Vector3f to_light = (light.position_camera - point.position).normalized();
     const float facing = point.normal.dot(to_light);
     if (facing <= 0.0F) continue;
-    const float lit = light.shadow.lit(point.position + 0.003F * point.normal, point.turn);
+    const float lit = light.shadow.lit(point.position + 0.003F * point.normal, point.angle_rad);
     if (lit <= 0.0F) continue;
     const float half = std::max(0.0F, point.normal.dot((to_light + point.to_eye).normalized()));
     const float half_4 = half * half * half * half;
@@ -150,7 +150,7 @@ class Shader {
     }
     point.specular = thing.specular;
     const auto number = static_cast<std::uint64_t>(image_y) * 4096U + static_cast<std::uint64_t>(image_x);
-    point.turn = pixel_uniform(kPatternSeed, number);
+    point.angle_rad = pixel_uniform(kPatternSeed, number);
 
     // More of the light from everywhere comes from above.
     const Eigen::Vector3f ambient = world_.ambient_bgr * (0.72F + 0.28F * point.normal.dot(up_));
@@ -202,7 +202,7 @@ ShadowLookup::ShadowLookup(const ShadowMap& map, const Eigen::Isometry3d& T_worl
       T_light_camera_((map.T_light_world * T_world_camera).cast<float>()),
       penumbra_m_(static_cast<float>(penumbra_m)) {}
 
-float ShadowLookup::lit(const Eigen::Vector3f& point_camera, float turn) const {
+float ShadowLookup::lit(const Eigen::Vector3f& point_camera, float angle_rad) const {
   static const Taps kPatterns = make_taps();
   if (map_.camera.width == 0) return 1.0F;
   const Eigen::Vector3f point = T_light_camera_ * point_camera;
@@ -216,7 +216,7 @@ float ShadowLookup::lit(const Eigen::Vector3f& point_camera, float turn) const {
   const auto last = static_cast<float>(map_.camera.width + 1) - radius;
   if (!(u > 1.0F + radius && v > 1.0F + radius && u < last && v < last)) return 1.0F;
   const float limit = 1.0F / (point.z() - kBiasM - 0.25F * penumbra_m_);
-  const auto& taps = kPatterns[static_cast<std::size_t>(turn * kTurns) % kTurns];
+  const auto& taps = kPatterns[static_cast<std::size_t>(angle_rad * kRotations) % kRotations];
   int lit = 0;
   for (int i = 0; i < kTaps; ++i) {
     // Where the outer half agrees, the inner one will not differ.

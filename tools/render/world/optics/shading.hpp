@@ -25,7 +25,7 @@ class ShadowLookup {
 
   /// Share of the light that arrives at a point, 0 to 1. `turn` in [0,1) turns the pattern of samples, so that
   /// penumbrae show grain instead of bands (percentage-closer filtering, Reeves et al. 1987).
-  float lit(const Eigen::Vector3f& point_camera, float turn) const;
+  float lit(const Eigen::Vector3f& point_camera, float angle) const;
 
  private:
   const ShadowMap& map_;

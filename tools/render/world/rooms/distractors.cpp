@@ -47,14 +47,14 @@ AssetPtr bottle(Random& random, const Dyes& dyes) {
   const double h = random.uniform(0.19, 0.29);
   cv::Mat texture = plain({768, 512}, dyes.plain(random), 0.05, random);
   can_label({768, 190}, dyes.print(random), random).copyTo(texture.rowRange(250, 440));
-  const Mesh mesh = turned_mesh({{0.97 * r, 0.0},
-                                 {r, 0.01},
-                                 {r, 0.6 * h},
-                                 {0.85 * r, 0.7 * h},
-                                 {0.38 * r, 0.83 * h},
-                                 {0.36 * r, 0.97 * h},
-                                 {0.4 * r, h}},
-                                texture);
+  const Mesh mesh = rotated_mesh({{0.97 * r, 0.0},
+                                  {r, 0.01},
+                                  {r, 0.6 * h},
+                                  {0.85 * r, 0.7 * h},
+                                  {0.38 * r, 0.83 * h},
+                                  {0.36 * r, 0.97 * h},
+                                  {0.4 * r, h}},
+                                 texture);
   return make_asset("bottle", mesh, 0.4F);
 }
 
@@ -165,7 +165,7 @@ AssetPtr fruit(Random& random, const Dyes& /*dyes*/) {
     outline.emplace_back(r * std::cos(angle), flat * r * std::sin(angle));
   }
   const cv::Mat skin = plain({128, 128}, hsv(random.uniform(-10, 110), 0.8, random.uniform(0.5, 0.9)), 0.25, random);
-  return make_asset("fruit", turned_mesh(outline, skin), 0.2F);
+  return make_asset("fruit", rotated_mesh(outline, skin), 0.2F);
 }
 
 AssetPtr keyboard(Random& random, const Dyes& /*dyes*/) {
@@ -191,7 +191,7 @@ AssetPtr tin(Random& random, const Dyes& dyes) {
   can_label({768, 300}, dyes.print(random), random).copyTo(texture.rowRange(110, 410));
   return make_asset(
       "tin",
-      turned_mesh({{r, 0}, {r, 0.004}, {0.985 * r, 0.005}, {0.985 * r, h - 0.005}, {r, h - 0.004}, {r, h}}, texture),
+      rotated_mesh({{r, 0}, {r, 0.004}, {0.985 * r, 0.005}, {0.985 * r, h - 0.005}, {r, h - 0.004}, {r, h}}, texture),
       0.4F);
 }
 
@@ -201,7 +201,7 @@ AssetPtr vase(Random& random, const Dyes& dyes) {
   const cv::Mat glaze = mug_print({512, 384}, dyes.print(random), random);
   return make_asset(
       "vase",
-      turned_mesh(
+      rotated_mesh(
           {{0.55 * r, 0}, {0.9 * r, 0.2 * h}, {r, 0.45 * h}, {0.7 * r, 0.7 * h}, {0.4 * r, 0.88 * h}, {0.5 * r, h}},
           glaze),
       0.35F);
@@ -231,8 +231,8 @@ AssetPtr jar(Random& random, const Dyes& dyes) {
   const double h = random.uniform(0.08, 0.15);
   const cv::Mat body = plain({256, 256}, dyes.plain(random), 0.08, random);
   const cv::Mat lid = plain({64, 64}, dyes.plain(random), 0.05, random);
-  const Mesh pot = turned_mesh({{r, 0}, {r, 0.85 * h}, {0.85 * r, 0.92 * h}}, body);
-  const Mesh top = turned_mesh({{0.9 * r, 0}, {0.9 * r, 0.14 * h}}, lid);
+  const Mesh pot = rotated_mesh({{r, 0}, {r, 0.85 * h}, {0.85 * r, 0.92 * h}}, body);
+  const Mesh top = rotated_mesh({{0.9 * r, 0}, {0.9 * r, 0.14 * h}}, lid);
   return make_asset("jar", finish_object(compose({at(pot, {0, 0, 0.46 * h}), at(top, {0, 0, 0.98 * h})})), 0.3F);
 }
 

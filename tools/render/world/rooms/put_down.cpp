@@ -59,8 +59,8 @@ AssetGroup put_lying(const AssetPtr& thing, int object_id, Random& random) {
 AssetGroup put_on_wedge(const AssetPtr& thing, int object_id, Random& random) {
   const double slope_rad = radians(random.uniform(kMinSlopeDeg, kMaxSlopeDeg));
   const StablePose attitude = steady_attitude(*thing, slope_rad, random);
-  const Eigen::AngleAxisd turn(random.uniform(-M_PI, M_PI), Eigen::Vector3d::UnitZ());
-  PlacedAsset placed = on_plane(thing, object_id, turn * attitude.R_table_object);
+  const Eigen::AngleAxisd rotation(random.uniform(-M_PI, M_PI), Eigen::Vector3d::UnitZ());
+  PlacedAsset placed = on_plane(thing, object_id, rotation * attitude.R_table_object);
   const Eigen::Vector2d half = half_extent({placed}) + Eigen::Vector2d::Constant(kBesideM);
   PlacedAsset wedge{make_wedge(half, slope_rad, random), Eigen::Isometry3d::Identity(), 0, true};
   const double middle_height = kThinEndM + half.x() * std::sin(slope_rad);

@@ -25,7 +25,7 @@ Eigen::Vector3d spread_direction(int index, int count) {
 }
 
 // The shortest turn that brings `down` to -z; what stands on its head is turned over its x axis first.
-Eigen::Matrix3d turn_down(Eigen::Vector3d down) {
+Eigen::Matrix3d face_down(Eigen::Vector3d down) {
   Eigen::Matrix3d over = Eigen::Matrix3d::Identity();
   if (down.z() > 0.0) over.diagonal() = Eigen::Vector3d(1.0, -1.0, -1.0);
   down = over * down;
@@ -35,7 +35,7 @@ Eigen::Matrix3d turn_down(Eigen::Vector3d down) {
 StablePose attitude_of(const TippingBody& body, const Eigen::Vector3d& down, double nearly_m) {
   const Support support = body.support(down);
   StablePose attitude;
-  attitude.R_table_object = turn_down(down);
+  attitude.R_table_object = face_down(down);
   attitude.centre_height_m = support.height_m;
   attitude.origin_height_m = support.height_m + down.dot(body.centre_of_mass());
   attitude.margin_m = nearly_m > 0.0 ? body.support(down, nearly_m).margin_m() : support.margin_m();

@@ -16,12 +16,12 @@ constexpr double kGapM = 0.006;
 constexpr int kAttempts = 60;
 
 std::array<Eigen::Vector2d, 4> corners(const Footprint& footprint) {
-  const Eigen::Rotation2Dd turn(footprint.yaw_rad);
+  const Eigen::Rotation2Dd rotation(footprint.yaw_rad);
   const Eigen::Vector2d& h = footprint.half;
-  return {footprint.centre + turn * Eigen::Vector2d(h.x(), h.y()),
-          footprint.centre + turn * Eigen::Vector2d(-h.x(), h.y()),
-          footprint.centre + turn * Eigen::Vector2d(-h.x(), -h.y()),
-          footprint.centre + turn * Eigen::Vector2d(h.x(), -h.y())};
+  return {footprint.centre + rotation * Eigen::Vector2d(h.x(), h.y()),
+          footprint.centre + rotation * Eigen::Vector2d(-h.x(), h.y()),
+          footprint.centre + rotation * Eigen::Vector2d(-h.x(), -h.y()),
+          footprint.centre + rotation * Eigen::Vector2d(h.x(), -h.y())};
 }
 
 // Whether an axis of `a` separates the two.
@@ -52,14 +52,14 @@ bool TableLayout::on_table(const Footprint& footprint) const {
 }
 
 std::optional<Footprint> TableLayout::claim(const Eigen::Vector2d& half, const Eigen::AlignedBox2d& region,
-                                            double turn_rad, Random& random) {
+                                            double angle_rad, Random& random) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     Footprint footprint;
     const double x = random.uniform(region.min().x(), region.max().x());
     const double y = random.uniform(region.min().y(), region.max().y());
     footprint.centre = {x, y};
     footprint.half = half;
-    footprint.yaw_rad = random.uniform(-turn_rad, turn_rad);
+    footprint.yaw_rad = random.uniform(-angle_rad, angle_rad);
     const auto touches = [&footprint](const Footprint& other) { return footprints_touch(footprint, other, kGapM); };
     if (!on_table(footprint) || std::any_of(taken_.begin(), taken_.end(), touches)) continue;
     taken_.push_back(footprint);
@@ -69,9 +69,9 @@ std::optional<Footprint> TableLayout::claim(const Eigen::Vector2d& half, const E
 }
 
 std::optional<Eigen::Isometry3d> TableLayout::place(const Asset& thing, const Eigen::AlignedBox2d& region,
-                                                    double turn_rad, Random& random) {
+                                                    double angle_rad, Random& random) {
   const Eigen::AlignedBox3d bounds = mesh_bounds(thing.mesh).cast<double>();
-  const auto footprint = claim(0.5 * bounds.sizes().head<2>(), region, turn_rad, random);
+  const auto footprint = claim(0.5 * bounds.sizes().head<2>(), region, angle_rad, random);
   if (!footprint) return std::nullopt;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
   T_world_object.translate(Eigen::Vector3d(footprint->centre.x(), footprint->centre.y(), -bounds.min().z()));
@@ -79,8 +79,8 @@ std::optional<Eigen::Isometry3d> TableLayout::place(const Asset& thing, const Ei
   return T_world_object;
 }
 
-bool TableSetter::stand(const AssetPtr& thing, const Eigen::AlignedBox2d& region, double turn_rad, int object_id) {
-  const auto T_world_object = layout_.place(*thing, region, turn_rad, random_);
+bool TableSetter::stand(const AssetPtr& thing, const Eigen::AlignedBox2d& region, double angle_rad, int object_id) {
+  const auto T_world_object = layout_.place(*thing, region, angle_rad, random_);
   if (T_world_object) world_.items.push_back({thing, *T_world_object, object_id, true});
   return T_world_object.has_value();
 }

@@ -27,11 +27,11 @@ class TableLayout {
 
   /// A free place for `thing` with its centre within `low` to `high` (world x and y, metres), turned about the
   /// vertical by up to `turn_rad` either way; nothing when none is found.
-  std::optional<Eigen::Isometry3d> place(const Asset& thing, const Eigen::AlignedBox2d& region, double turn_rad,
+  std::optional<Eigen::Isometry3d> place(const Asset& thing, const Eigen::AlignedBox2d& region, double angle_rad,
                                          Random& random);
 
   /// A free footprint of that half extent, as for place(); it is taken from then on.
-  std::optional<Footprint> claim(const Eigen::Vector2d& half, const Eigen::AlignedBox2d& region, double turn_rad,
+  std::optional<Footprint> claim(const Eigen::Vector2d& half, const Eigen::AlignedBox2d& region, double angle_rad,
                                  Random& random);
 
   /// Keeps a place free of what comes after.
@@ -54,7 +54,7 @@ class TableSetter {
       : world_(world), half_(table_half.cwiseMin(Eigen::Vector2d(0.62, 0.5))), layout_(table_half), random_(seed) {}
 
   /// Upright, turned by up to `turn_rad` either way. Whether there was room.
-  bool stand(const AssetPtr& thing, const Eigen::AlignedBox2d& region, double turn_rad, int object_id);
+  bool stand(const AssetPtr& thing, const Eigen::AlignedBox2d& region, double angle_rad, int object_id);
 
   /// Turned any way. Whether there was room.
   bool put(const AssetGroup& group, const Eigen::AlignedBox2d& region);

@@ -28,10 +28,10 @@ double eased(double fraction) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-Eigen::Isometry3d at_stop(const Eigen::Vector3d& place, double turn_rad, double height_m) {
+Eigen::Isometry3d at_stop(const Eigen::Vector3d& place, double angle_rad, double height_m) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translate(place + Eigen::Vector3d(0.0, 0.0, 0.5 * height_m));
-  T.rotate(Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()));
+  T.rotate(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()));
   return T;
 }
 
@@ -48,7 +48,7 @@ Eigen::Isometry3d between(const Stop& from, const Stop& to, double seconds, doub
   const double fraction = eased((seconds - from.at_s) / (to.at_s - from.at_s));
   Eigen::Vector3d place = from.place + fraction * (to.place - from.place);
   place.z() += to.arc_m * std::sin(M_PI * fraction);
-  return at_stop(place, from.turn_rad + fraction * (to.turn_rad - from.turn_rad), height_m);
+  return at_stop(place, from.angle_rad + fraction * (to.angle_rad - from.angle_rad), height_m);
 }
 
 Eigen::Isometry3d look_from(double azimuth_rad, double elevation_rad, double distance_m) {
@@ -63,8 +63,8 @@ Eigen::Isometry3d jerked(const Eigen::Isometry3d& T_camera_world, double seconds
   const double rise = eased((seconds - start_s) / 0.12);
   const double back = 0.7 * eased((seconds - start_s - 0.12) / 0.25);
   const double amount = sign * (rise - back);
-  const Eigen::AngleAxisd turn(0.12 * amount, Eigen::Vector3d(0.3, 1.0, 0.1).normalized());
-  return Eigen::Translation3d(0.06 * amount, 0.03 * amount, 0.0) * turn * T_camera_world;
+  const Eigen::AngleAxisd rotation(0.12 * amount, Eigen::Vector3d(0.3, 1.0, 0.1).normalized());
+  return Eigen::Translation3d(0.06 * amount, 0.03 * amount, 0.0) * rotation * T_camera_world;
 }
 
 }  // namespace
@@ -116,11 +116,11 @@ void Sequence::add_hands() {
   for (std::size_t i = 0; i < plan_.actors.size(); ++i) {
     const std::vector<Stop>& stops = plan_.actors[i].stops;
     for (std::size_t k = 1; k < stops.size(); ++k) {
-      if (stops[k].place == stops[k - 1].place && stops[k].turn_rad == stops[k - 1].turn_rad) continue;
+      if (stops[k].place == stops[k - 1].place && stops[k].angle_rad == stops[k - 1].angle_rad) continue;
       const bool comes_back = is_away(stops[k - 1].place);
       const Stop& on_table = comes_back ? stops[k] : stops[k - 1];
       PlacedAsset object = lit_.world.items[items_[i]];
-      object.T_world_object = at_stop(on_table.place, on_table.turn_rad, thing_height(*object.thing));
+      object.T_world_object = at_stop(on_table.place, on_table.angle_rad, thing_height(*object.thing));
       HeldPlace place;
       for (int camera = 0; camera < cameras(); ++camera) place.views.push_back(T_camera_world(camera, on_table.at_s));
       place.over = on_table.place.head<2>();
@@ -173,8 +173,8 @@ Eigen::Isometry3d Sequence::T_world_actor(std::size_t actor, double seconds) con
   const std::vector<Stop>& stops = plan_.actors[actor].stops;
   const double height_m = thing_height(*lit_.world.items[items_[actor]].thing);
   const auto next = std::find_if(stops.begin(), stops.end(), [&](const Stop& stop) { return stop.at_s > seconds; });
-  if (next == stops.begin()) return at_stop(next->place, next->turn_rad, height_m);
-  if (next == stops.end()) return at_stop(stops.back().place, stops.back().turn_rad, height_m);
+  if (next == stops.begin()) return at_stop(next->place, next->angle_rad, height_m);
+  if (next == stops.end()) return at_stop(stops.back().place, stops.back().angle_rad, height_m);
   return between(*(next - 1), *next, seconds, height_m);
 }
 

@@ -10,7 +10,7 @@ namespace houghstream::world {
 struct Stop {
   double at_s = 0.0;                                ///< when it is there
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< world x and y, and how high it is over the table, metres
-  double turn_rad = 0.0;                            ///< about the vertical
+  double angle_rad = 0.0;                           ///< about the vertical
   double arc_m = 0.0;                               ///< how much higher it is lifted on the way to it
 };
 

@@ -64,19 +64,19 @@ HandPath::HandPath(const HandPathSettings& settings, std::uint64_t seed, Random 
       tremble_(three(2.0, 9.0, 0.0022, random)) {}
 
 Eigen::Isometry3d HandPath::T_camera_world(double seconds) const {
-  const double turned = settings_.turn_rad * progress_.at(seconds);
-  const double azimuth = start_rad_ + direction_ * turned;
+  const double rotated = settings_.angle_rad * progress_.at(seconds);
+  const double azimuth = start_rad_ + direction_ * rotated;
   // Twice up and down a turn: the end comes back to the start's height.
   const double elevation =
-      elevation_rad_ + elevation_swing_rad_ * std::sin(2.0 * turned + swing_phase_rad_) + elevation_drift_.at(seconds);
+      elevation_rad_ + elevation_swing_rad_ * std::sin(2.0 * rotated + swing_phase_rad_) + elevation_drift_.at(seconds);
   const double distance = settings_.distance_m * (1.0 + distance_drift_.at(seconds));
   const Eigen::Vector3d from_target(std::sin(azimuth) * std::cos(elevation), -std::cos(azimuth) * std::cos(elevation),
                                     std::sin(elevation));
   const Eigen::Vector3d eye = settings_.target_world + distance * from_target + along(shift_, seconds);
   const Eigen::Vector3d tremble = along(tremble_, seconds) + roll_.at(seconds) * Eigen::Vector3d::UnitZ();
-  Eigen::Isometry3d T_turned_camera = Eigen::Isometry3d::Identity();
-  if (tremble.norm() > 0.0) T_turned_camera.rotate(Eigen::AngleAxisd(tremble.norm(), tremble.normalized()));
-  return T_turned_camera * look_at(eye, settings_.target_world + along(aim_, seconds));
+  Eigen::Isometry3d T_rotated_camera = Eigen::Isometry3d::Identity();
+  if (tremble.norm() > 0.0) T_rotated_camera.rotate(Eigen::AngleAxisd(tremble.norm(), tremble.normalized()));
+  return T_rotated_camera * look_at(eye, settings_.target_world + along(aim_, seconds));
 }
 
 }  // namespace houghstream::world

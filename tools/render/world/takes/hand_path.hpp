@@ -54,7 +54,7 @@ class UnevenProgress {
 /// Where somebody walks a camera.
 struct HandPathSettings {
   double seconds = 16.0;
-  double turn_rad = 6.6;     ///< round the target; a little more than a turn, so that the end meets the start
+  double angle_rad = 6.6;    ///< round the target; a little more than a turn, so that the end meets the start
   double distance_m = 0.65;  ///< to the target, on average
   Eigen::Vector3d target_world = Eigen::Vector3d(0.0, 0.0, 0.05);
 };

@@ -37,7 +37,7 @@ double eased_stroke(double fraction) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-Eigen::Isometry3d turned_about_z(double angle_rad) {
+Eigen::Isometry3d rotated_about_z(double angle_rad) {
   return Eigen::Isometry3d(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()));
 }
 
@@ -98,7 +98,7 @@ void TakeStage::put_object(const TakePlan& plan) {
   Eigen::Isometry3d T_world_place = Eigen::Isometry3d::Identity();
   T_world_place.translate(Eigen::Vector3d(random.uniform(-aside, aside), random.uniform(-aside, aside),
                                           kind_ == TakeKind::kTurntable ? kDiscM : 0.0));
-  T_world_place.rotate(turned_about_z(random.uniform(-M_PI, M_PI)).linear());
+  T_world_place.rotate(rotated_about_z(random.uniform(-M_PI, M_PI)).linear());
   placed.T_world_object = T_world_place * placed.T_world_object;
   object_ = world_.items.size();
   world_.items.push_back(placed);
@@ -107,7 +107,7 @@ void TakeStage::put_object(const TakePlan& plan) {
 void TakeStage::add_turntable(const TakePlan& plan) {
   Random random(aspect_seed(world_seed(plan.use, kFirstTakeWorld + plan.number), take_aspect::kTurning));
   const cv::Mat cover = plain({256, 256}, hsv(random.uniform(0, 360), 0.1, random.uniform(0.3, 0.8)), 0.05, random);
-  const AssetPtr disc = make_asset("turntable", turned_mesh({{0.16, 0.0}, {0.16, kDiscM}}, cover), 0.08F);
+  const AssetPtr disc = make_asset("turntable", rotated_mesh({{0.16, 0.0}, {0.16, kDiscM}}, cover), 0.08F);
   turntable_ = world_.items.size();
   world_.items.push_back({disc, Eigen::Isometry3d::Identity(), 0, true});
   world_.items.back().T_world_object.translate(Eigen::Vector3d(0.0, 0.0, 0.5 * kDiscM));
@@ -117,24 +117,24 @@ void TakeStage::choose_camera(const TakePlan& plan) {
   const PlacedAsset& object = world_.items[object_];
   HandPathSettings settings;
   settings.seconds = plan.seconds;
-  settings.turn_rad = kTurnRad;
+  settings.angle_rad = kTurnRad;
   settings.target_world = object.T_world_object.translation();
   settings.distance_m = std::clamp(0.43 + 0.9 * mesh_diameter(object.thing->mesh), 0.5, 0.85);
   if (kind_ == TakeKind::kHandHeld) {
     path_.emplace(settings, aspect_seed(seed_, take_aspect::kPath));
     return;
   }
-  settings.turn_rad = 0.0;
+  settings.angle_rad = 0.0;
   T_still_world_ = HandPath(settings, aspect_seed(seed_, take_aspect::kPath)).T_camera_world(0.0);
   if (kind_ == TakeKind::kTurntable) turning_.emplace(plan.seconds, aspect_seed(seed_, take_aspect::kTurning));
 }
 
 // About where it stands; a turntable turns about its own middle.
-Eigen::Isometry3d TakeStage::object_at(double turned_rad) const {
+Eigen::Isometry3d TakeStage::object_at(double rotated_rad) const {
   const Eigen::Isometry3d& T_world_object = world_.items[object_].T_world_object;
   Eigen::Vector3d axis = T_world_object.translation();
   if (turntable_) axis = Eigen::Vector3d::Zero();
-  return Eigen::Translation3d(axis) * turned_about_z(turned_rad) * Eigen::Translation3d(-axis) * T_world_object;
+  return Eigen::Translation3d(axis) * rotated_about_z(rotated_rad) * Eigen::Translation3d(-axis) * T_world_object;
 }
 
 void TakeStage::add_hands() {
@@ -159,13 +159,13 @@ void TakeStage::add_hands() {
   }
 }
 
-double TakeStage::turned_rad(double seconds) const {
+double TakeStage::rotated_rad(double seconds) const {
   if (turning_) return kTurnRad * turning_->at(seconds);
-  double turned = 0.0;
+  double rotated = 0.0;
   for (const Stroke& stroke : strokes_)
-    turned += eased_stroke(((seconds - stroke.start_s) / stroke.seconds - kComeFraction) / kTurnFraction) * kTurnRad /
-              kStrokes;
-  return turned;
+    rotated += eased_stroke(((seconds - stroke.start_s) / stroke.seconds - kComeFraction) / kTurnFraction) * kTurnRad /
+               kStrokes;
+  return rotated;
 }
 
 void TakeStage::move_hand(const Stroke& stroke, double seconds, World& world) const {
@@ -182,10 +182,10 @@ void TakeStage::move_hand(const Stroke& stroke, double seconds, World& world) co
 
 Eigen::Isometry3d TakeStage::move(World& world, double seconds) const {
   if (path_) return path_->T_camera_world(seconds);
-  const double turned = turned_rad(seconds);
-  world.items[object_].T_world_object = object_at(turned);
+  const double rotated = rotated_rad(seconds);
+  world.items[object_].T_world_object = object_at(rotated);
   if (turntable_)
-    world.items[*turntable_].T_world_object = turned_about_z(turned) * world_.items[*turntable_].T_world_object;
+    world.items[*turntable_].T_world_object = rotated_about_z(rotated) * world_.items[*turntable_].T_world_object;
   for (const Stroke& stroke : strokes_) move_hand(stroke, seconds, world);
   return T_still_world_;
 }

@@ -64,8 +64,8 @@ class TakeStage {
   void add_turntable(const TakePlan& plan);
   void add_hands();
   void choose_camera(const TakePlan& plan);
-  Eigen::Isometry3d object_at(double turned_rad) const;
-  double turned_rad(double seconds) const;
+  Eigen::Isometry3d object_at(double rotated_rad) const;
+  double rotated_rad(double seconds) const;
   void move_hand(const Stroke& stroke, double seconds, World& world) const;
 
   TakeKind kind_;

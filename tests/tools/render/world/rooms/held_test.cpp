@@ -31,17 +31,17 @@ TEST(Held, AnyAttitudeIsUniformOverAllRotations) {
   Random random(5);
   Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d mean_sq = Eigen::Matrix3d::Zero();
-  int small_turns = 0;  // the share of rotations by less than a is (a - sin a) / pi
+  int small_rotations = 0;  // the share of rotations by less than a is (a - sin a) / pi
   for (int i = 0; i < kCount; ++i) {
     const Eigen::Matrix3d R = any_attitude(random);
     EXPECT_NEAR(R.determinant(), 1.0, 1e-9);
     mean += R / kCount;
     mean_sq += R.cwiseAbs2() / kCount;
-    small_turns += Eigen::AngleAxisd(R).angle() < M_PI / 2 ? 1 : 0;
+    small_rotations += Eigen::AngleAxisd(R).angle() < M_PI / 2 ? 1 : 0;
   }
   EXPECT_LT(mean.cwiseAbs().maxCoeff(), 0.04);
   EXPECT_LT((mean_sq.array() - 1.0 / 3.0).abs().maxCoeff(), 0.03);
-  EXPECT_NEAR(static_cast<double>(small_turns) / kCount, (M_PI / 2 - 1.0) / M_PI, 0.03);
+  EXPECT_NEAR(static_cast<double>(small_rotations) / kCount, (M_PI / 2 - 1.0) / M_PI, 0.03);
 }
 
 TEST(Held, ThingsFloatBetween5And30CentimetresAboveTheirPlaceAndTheHandDoesNotTouchTheTable) {

@@ -19,7 +19,7 @@ TakePlan short_plan(TakeKind kind) {
   return plan;
 }
 
-double turned_between(const RenderedFrame& a, const RenderedFrame& b) {
+double rotated_between(const RenderedFrame& a, const RenderedFrame& b) {
   const Eigen::Matrix3d R =
       a.objects.at(0).T_camera_object.linear().transpose() * b.objects.at(0).T_camera_object.linear();
   return Eigen::AngleAxisd(R).angle();
@@ -51,8 +51,8 @@ TEST(RenderedTake, ATurntableTurnsTheObjectALittleMoreThanOnceBeforeACameraThatS
   const Eigen::Isometry3d T_camera_world = stage.move(world, 0.0);
   EXPECT_TRUE(stage.move(world, 4.0).isApprox(T_camera_world));
   const RenderedTake take(short_plan(TakeKind::kTurntable), 31, 1);
-  EXPECT_NEAR(turned_between(take.render(0), take.render(30)), 0.25, 1e-6);
-  EXPECT_GT(turned_between(take.render(0), take.render(15)), 1.5);
+  EXPECT_NEAR(rotated_between(take.render(0), take.render(30)), 0.25, 1e-6);
+  EXPECT_GT(rotated_between(take.render(0), take.render(15)), 1.5);
 }
 
 TEST(RenderedTake, AHandTurnsTheObjectAndIsAwayBetween) {
@@ -74,7 +74,7 @@ TEST(RenderedTake, AHandTurnsTheObjectAndIsAwayBetween) {
   EXPECT_FALSE(hidden_and_turn(0.95));
   EXPECT_TRUE(hidden_and_turn(1.4));
   const RenderedTake take(short_plan(TakeKind::kHandTurns), 31, 1);
-  EXPECT_NEAR(turned_between(take.render(0), take.render(30)), 0.25, 1e-6);
+  EXPECT_NEAR(rotated_between(take.render(0), take.render(30)), 0.25, 1e-6);
 }
 
 TEST(TakePlans, TwelveObjectsTwiceInRoomsOfTheirOwn) {

@@ -1,4 +1,4 @@
-#include "tools/view/drawing/turned_view.hpp"
+#include "tools/view/drawing/rotated_view.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ cv::Point2d centre_of(const cv::Mat& image, const cv::Vec3b& colour) {
 }
 
 TEST(TurnedView, LooksFromTheRightAndFromAboveAtTheMiddleOfWhatWasMeasured) {
-  const Eigen::Isometry3d T = turned_camera(wall_and_square().depth);
+  const Eigen::Isometry3d T = rotated_camera(wall_and_square().depth);
   const Eigen::Vector3d pivot(0.0, 0.0, 2.0);
   EXPECT_TRUE((T * pivot).isApprox(pivot, 1e-6));
   const Eigen::Vector3d eye = T.inverse() * Eigen::Vector3d::Zero();
@@ -46,10 +46,10 @@ TEST(TurnedView, LooksFromTheRightAndFromAboveAtTheMiddleOfWhatWasMeasured) {
 
 TEST(TurnedView, PointsAreWhereTheyAreSeenFromThere) {
   const RgbdFrame frame = wall_and_square();
-  const cv::Mat image = draw_turned_view(frame, std::nullopt, {});
+  const cv::Mat image = draw_rotated_view(frame, std::nullopt, {});
   ASSERT_EQ(image.size(), frame.colour.size());
   const Eigen::Vector3d middle = frame.camera.backproject(80.0, 60.0, 1.5);
-  const Eigen::Vector2d expected = frame.camera.project(turned_camera(frame.depth) * middle);
+  const Eigen::Vector2d expected = frame.camera.project(rotated_camera(frame.depth) * middle);
   const cv::Point2d seen = centre_of(image, kRed);
   EXPECT_NEAR(seen.x, expected.x(), 1.0);
   EXPECT_NEAR(seen.y, expected.y(), 1.0);
@@ -59,15 +59,15 @@ TEST(TurnedView, PointsAreWhereTheyAreSeenFromThere) {
 
 TEST(TurnedView, WhatIsNearHidesWhatIsFar) {
   RgbdFrame frame = wall_and_square();
-  const Eigen::Vector2d at = frame.camera.project(turned_camera(frame.depth) * frame.camera.backproject(80, 60, 1.5));
-  const cv::Mat image = draw_turned_view(frame, std::nullopt, {});
+  const Eigen::Vector2d at = frame.camera.project(rotated_camera(frame.depth) * frame.camera.backproject(80, 60, 1.5));
+  const cv::Mat image = draw_rotated_view(frame, std::nullopt, {});
   EXPECT_EQ(image.at<cv::Vec3b>(static_cast<int>(at.y()), static_cast<int>(at.x())), kRed);
 }
 
 TEST(TurnedView, WhereNothingWasMeasuredThereIsNothing) {
   RgbdFrame frame = wall_and_square();
   frame.depth.setTo(kNoValue);
-  const cv::Mat image = draw_turned_view(frame, std::nullopt, {});
+  const cv::Mat image = draw_rotated_view(frame, std::nullopt, {});
   EXPECT_EQ(cv::norm(image, cv::Mat(image.size(), CV_8UC3, cv::Scalar(image.at<cv::Vec3b>(0, 0)))), 0.0);
 }
 
@@ -77,15 +77,15 @@ TEST(TurnedView, PosesAreTurnedWithTheirPoints) {
   poses.poses.resize(2);  // the second has no pose
   poses.poses[0].class_id = 1;
   poses.poses[0].T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(frame.camera.backproject(80, 60, 1.5)));
-  const cv::Mat without = draw_turned_view(frame, std::nullopt, {});
-  const cv::Mat with_axes = draw_turned_view(frame, poses, {});
+  const cv::Mat without = draw_rotated_view(frame, std::nullopt, {});
+  const cv::Mat with_axes = draw_rotated_view(frame, poses, {});
   cv::Mat changed;
   cv::absdiff(with_axes, without, changed);
   std::vector<cv::Point> pixels;
   cv::findNonZero(changed.reshape(1, changed.rows), pixels);
   ASSERT_FALSE(pixels.empty());
   const Eigen::Vector2d at =
-      frame.camera.project(turned_camera(frame.depth) * poses.poses[0].T_camera_object->translation());
+      frame.camera.project(rotated_camera(frame.depth) * poses.poses[0].T_camera_object->translation());
   for (const cv::Point& pixel : pixels) {
     EXPECT_LT(std::hypot(std::floor(pixel.x / 3.0) - at.x(), pixel.y - at.y()), 15.0) << "axes of 5 cm";
   }

@@ -1,4 +1,4 @@
-#include "tools/view/drawing/turned_view.hpp"
+#include "tools/view/drawing/rotated_view.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -62,15 +62,15 @@ class PointPicture {
 
 }  // namespace
 
-Eigen::Isometry3d turned_camera(const cv::Mat& depth) {
+Eigen::Isometry3d rotated_camera(const cv::Mat& depth) {
   const Eigen::Translation3d pivot(0.0, 0.0, middle_depth(depth));
   return Eigen::Isometry3d(pivot * Eigen::AngleAxisd(kFromAbove, Eigen::Vector3d::UnitX()) *
                            Eigen::AngleAxisd(kFromTheRight, Eigen::Vector3d::UnitY()) * pivot.inverse());
 }
 
-cv::Mat draw_turned_view(const RgbdFrame& frame, const std::optional<ObjectPoses>& poses, const ClassModels& models) {
-  const Eigen::Isometry3d T_turned_camera = turned_camera(frame.depth);
-  const Eigen::Isometry3f T = T_turned_camera.cast<float>();
+cv::Mat draw_rotated_view(const RgbdFrame& frame, const std::optional<ObjectPoses>& poses, const ClassModels& models) {
+  const Eigen::Isometry3d T_rotated_camera = rotated_camera(frame.depth);
+  const Eigen::Isometry3f T = T_rotated_camera.cast<float>();
   PointPicture picture(frame.camera);
   for (int y = 0; y < frame.depth.rows; ++y) {
     for (int x = 0; x < frame.depth.cols; ++x) {
@@ -82,7 +82,7 @@ cv::Mat draw_turned_view(const RgbdFrame& frame, const std::optional<ObjectPoses
   cv::Mat image = picture.image();
   if (!poses) return image;
   for (ObjectPose pose : poses->poses) {
-    if (pose.T_camera_object) pose.T_camera_object = T_turned_camera * *pose.T_camera_object;
+    if (pose.T_camera_object) pose.T_camera_object = T_rotated_camera * *pose.T_camera_object;
     draw_pose(image, pose, models, frame.camera);
   }
   return image;
