@@ -202,7 +202,7 @@ Forest train_forest(std::vector<TrainingView> views, const Profile& profile, con
   const TrainingSettings& settings = profile.training;
   const Rooms rooms = share_rooms(views, settings);
   TrainingSet set = make_set(rooms, profile, scales, views);
-  progress(fmt::format("{} patches of {} pictures, {} classes, {} planes", set.samples.size(), set.pictures.size(),
+  progress(fmt::format("{} patches of {} pictures, {} classes, {} planes", set.samples.size(), set.images.size(),
                        set.classes.size(), set.layout.planes()));
   const std::size_t before = set.samples.size();
   add_hard_negatives(profile.patch, settings, set);
@@ -227,7 +227,7 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   TrainingSet set = make_set(rooms, profile, scales, views);
   set.first_class = static_cast<std::uint16_t>(old.classes.size());
   set.first_view = static_cast<std::uint32_t>(old.views.size());
-  progress(fmt::format("{} patches of {} pictures, {} new classes beside {}", set.samples.size(), set.pictures.size(),
+  progress(fmt::format("{} patches of {} pictures, {} new classes beside {}", set.samples.size(), set.images.size(),
                        set.classes.size(), old.classes.size()));
   Forest forest = without_trees(profile);
   forest.seed = old.seed;

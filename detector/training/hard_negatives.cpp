@@ -22,10 +22,10 @@ std::vector<Forest> grow_scouts(const TrainingSet& set, const PatchSettings& pat
 }
 
 float object_probability(const TrainingSet& set, const std::vector<Forest>& scouts, const TrainingSample& sample) {
-  const FeatureImage& picture = set.pictures[static_cast<std::size_t>(sample.picture)];
+  const FeatureImage& image = set.images[static_cast<std::size_t>(sample.image)];
   float sum = 0.0F;
   for (const Forest& scout : scouts) {
-    const auto leaf = static_cast<std::size_t>(find_leaf(scout, 0, picture.patch(sample.x, sample.y, sample.scale)));
+    const auto leaf = static_cast<std::size_t>(find_leaf(scout, 0, image.patch(sample.x, sample.y, sample.scale)));
     for (std::uint32_t e = scout.leaves[leaf]; e < scout.leaves[leaf + 1]; ++e) {
       sum += scout.leaf_classes[e].probability;
     }

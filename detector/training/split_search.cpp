@@ -117,7 +117,7 @@ void SplitSearch::evaluate_tests(std::size_t test_count, const std::vector<std::
   block_.resize(test_count * kBlock);
   const auto patch_of = [&](std::size_t s) {
     const TrainingSample& sample = set_.samples[samples[s]];
-    return set_.pictures[static_cast<std::size_t>(sample.picture)].patch(sample.x, sample.y, sample.scale);
+    return set_.images[static_cast<std::size_t>(sample.image)].patch(sample.x, sample.y, sample.scale);
   };
   prepare_tests(test_count, patch_of(0).pixel_stride);
   for (std::size_t begin = 0; begin < count; begin += kBlock) {

@@ -42,7 +42,7 @@ class TreeGrower {
   Samples draw_bag(int tree) const {
     Samples bag;
     for (std::uint32_t s = 0; s < set_.samples.size(); ++s) {
-      if (in_bag(settings_, tree, set_.samples[s].picture)) bag.push_back(s);
+      if (in_bag(settings_, tree, set_.samples[s].image)) bag.push_back(s);
     }
     return bag;
   }
@@ -124,8 +124,8 @@ class TreeGrower {
     std::pair<Samples, Samples> sides;
     for (const std::uint32_t s : samples) {
       const TrainingSample& sample = set_.samples[s];
-      const FeatureImage& picture = set_.pictures[static_cast<std::size_t>(sample.picture)];
-      const int value = test_value(test, picture.patch(sample.x, sample.y, sample.scale));
+      const FeatureImage& image = set_.images[static_cast<std::size_t>(sample.image)];
+      const int value = test_value(test, image.patch(sample.x, sample.y, sample.scale));
       (value >= test.threshold ? sides.second : sides.first).push_back(s);
     }
     return sides;
@@ -161,9 +161,8 @@ class TreeGrower {
 
 }  // namespace
 
-bool in_bag(const TrainingSettings& settings, int tree, std::int32_t picture) {
-  Random random =
-      Random::for_item(settings.seed + static_cast<std::uint64_t>(tree), static_cast<std::uint64_t>(picture));
+bool in_bag(const TrainingSettings& settings, int tree, std::int32_t image) {
+  Random random = Random::for_item(settings.seed + static_cast<std::uint64_t>(tree), static_cast<std::uint64_t>(image));
   return random.uniform() < settings.in_bag;
 }
 

@@ -8,7 +8,7 @@ namespace houghstream::training {
 
 /// Whether a tree learns from a picture. Whole pictures are in or out, since patches of one picture are not
 /// independent; what is out tests the tree (Breiman 2001).
-bool in_bag(const TrainingSettings& settings, int tree, std::int32_t picture);
+bool in_bag(const TrainingSettings& settings, int tree, std::int32_t image);
 
 /// Grows tree number `tree` alone: a forest of one. Depends on the seed and the tree's number only.
 Forest grow_tree(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings, int tree);

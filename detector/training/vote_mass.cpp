@@ -35,9 +35,9 @@ std::vector<Tally> out_of_bag_support(const TrainingSet& set, const TrainingSett
                                       const Forest& forest, int tree) {
   std::vector<Tally> tallies(set.classes.size());
   for (const TrainingSample& sample : set.samples) {
-    if (sample.label == 0 || in_bag(settings, tree, sample.picture)) continue;
-    const FeatureImage& picture = set.pictures[static_cast<std::size_t>(sample.picture)];
-    const std::int32_t leaf = find_leaf(forest, tree, picture.patch(sample.x, sample.y, sample.scale));
+    if (sample.label == 0 || in_bag(settings, tree, sample.image)) continue;
+    const FeatureImage& image = set.images[static_cast<std::size_t>(sample.image)];
+    const std::int32_t leaf = find_leaf(forest, tree, image.patch(sample.x, sample.y, sample.scale));
     Tally& tally = tallies[sample.label - 1U];
     tally.support += support_at_ground_truth(forest, leaf, sample, set.first_class + sample.label - 1U, vote_sigma);
     tally.count += 1.0;

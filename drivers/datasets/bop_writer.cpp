@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 3> kPictureFolders = {"rgb", "depth", "mask_visib"};
+constexpr std::array<const char*, 3> kImageFolders = {"rgb", "depth", "mask_visib"};
 
 OrderedJson camera_entry(const BopImage& image) {
   const Camera& c = image.camera;
@@ -113,14 +113,14 @@ void BopWriter::finish() {
 }
 
 bool has_images(const fs::path& scene_folder) {
-  return std::any_of(kPictureFolders.begin(), kPictureFolders.end(), [&](const char* part) {
+  return std::any_of(kImageFolders.begin(), kImageFolders.end(), [&](const char* part) {
     std::error_code error;
     return fs::is_directory(scene_folder / part, error) && !fs::is_empty(scene_folder / part, error);
   });
 }
 
 void remove_images(const fs::path& scene_folder) {
-  for (const char* part : kPictureFolders) {
+  for (const char* part : kImageFolders) {
     std::error_code error;
     fs::remove_all(scene_folder / part, error);
     require(!error, "{}: cannot be emptied: {}", (scene_folder / part).string(), error.message());

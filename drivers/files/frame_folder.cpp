@@ -19,7 +19,7 @@ bool is_depth(const std::string& file) {
   return ends_with(file, "_depth.png") || ends_with(file, "-depth.png");
 }
 
-bool is_picture(const std::string& file) {
+bool is_image(const std::string& file) {
   return ends_with(file, "_color.png") || ends_with(file, "-color.png");
 }
 
@@ -35,7 +35,7 @@ fs::path colour_partner(const fs::path& folder, const std::string& name) {
 bool has_frame_pairs(const fs::path& folder) {
   const auto is_frame = [](const fs::directory_entry& entry) {
     const std::string file = entry.path().filename().string();
-    return is_depth(file) || is_picture(file);
+    return is_depth(file) || is_image(file);
   };
   return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(), is_frame);
 }
@@ -43,17 +43,17 @@ bool has_frame_pairs(const fs::path& folder) {
 std::vector<FrameFiles> list_frame_pairs(const fs::path& folder) {
   require(fs::is_directory(folder), "{}: no such folder, expected images", folder.string());
   std::vector<FrameFiles> pairs;
-  std::size_t pictures = 0;
+  std::size_t images = 0;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string file = entry.path().filename().string();
-    if (is_picture(file)) ++pictures;
+    if (is_image(file)) ++images;
     if (!is_depth(file)) continue;
     const std::string name = file.substr(0, file.size() - std::string("_depth.png").size());
     pairs.push_back({name, colour_partner(folder, name), entry.path()});
   }
   require(!pairs.empty(), "{}: no images, expected NAME_color.png or NAME.png with NAME_depth.png", folder.string());
-  require(pictures <= pairs.size(), "{}: {} colour images and {} depth images, expected pairs", folder.string(),
-          pictures, pairs.size());
+  require(images <= pairs.size(), "{}: {} colour images and {} depth images, expected pairs", folder.string(), images,
+          pairs.size());
   std::sort(pairs.begin(), pairs.end(),
             [](const FrameFiles& a, const FrameFiles& b) { return natural_less(a.name, b.name); });
   return pairs;

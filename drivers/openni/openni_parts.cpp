@@ -25,7 +25,7 @@ bool is_usable(const ::openni::VideoMode& mode, Sensor sensor) {
   return format == ::openni::PIXEL_FORMAT_DEPTH_1_MM || format == ::openni::PIXEL_FORMAT_DEPTH_100_UM;
 }
 
-cv::Mat picture_of(const ::openni::VideoFrameRef& frame, Sensor sensor) {
+cv::Mat image_of(const ::openni::VideoFrameRef& frame, Sensor sensor) {
   if (frame.getWidth() < 1 || frame.getHeight() < 1) return {};
   const int type = sensor == Sensor::kDepth ? CV_16UC1 : CV_8UC3;
   const std::size_t row = frame.getWidth() * CV_ELEM_SIZE(type);
@@ -118,7 +118,7 @@ std::optional<SensorImage> read_image(::openni::VideoStream& stream, Sensor sens
   image.device_us = frame.getTimestamp();
   image.host_us = utime_now();
   image.number = frame.getFrameIndex();
-  image.image = picture_of(frame, sensor);
+  image.image = image_of(frame, sensor);
   return image;
 }
 

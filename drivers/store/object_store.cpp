@@ -165,7 +165,7 @@ fs::path ObjectStore::models_folder() const {
   return folder / "models";
 }
 
-fs::path ObjectStore::view_picture(int id) const {
+fs::path ObjectStore::view_image(int id) const {
   return folder / "views" / fmt::format("obj_{:06d}.png", id);
 }
 

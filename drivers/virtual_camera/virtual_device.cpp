@@ -39,14 +39,14 @@ void note_shutter(const CameraScript& script, int number, std::uint64_t device_u
 
 }  // namespace
 
-VirtualDevice::VirtualDevice(const ScriptWatch& script, const PicturesBySize& pictures, std::string serial)
-    : script_(script), pictures_(pictures), serial_(std::move(serial)) {
+VirtualDevice::VirtualDevice(const ScriptWatch& script, const ImagesBySize& images, std::string serial)
+    : script_(script), images_(images), serial_(std::move(serial)) {
   const int rate = script.current()->rate_hz;
   sensors_[0].type = ONI_SENSOR_DEPTH;
   sensors_[1].type = ONI_SENSOR_COLOR;
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     const OniPixelFormat format = i == 0 ? ONI_PIXEL_FORMAT_DEPTH_1_MM : ONI_PIXEL_FORMAT_RGB888;
-    for (auto size = pictures.rbegin(); size != pictures.rend(); ++size) {
+    for (auto size = images.rbegin(); size != images.rend(); ++size) {
       const Camera& camera = size->second.camera;
       sensors_[i].cameras.push_back(camera);
       sensors_[i].modes.push_back({format, camera.width, camera.height, rate});
@@ -173,16 +173,16 @@ void VirtualDevice::open_shutters(int number, Clock::time_point now) {
   const std::uint64_t device_us = device_time_us(now, *script);
   for (const auto& stream : streams()) {
     const OniVideoMode mode = stream->mode();
-    const std::vector<CameraPicture>& pictures = pictures_.at({mode.resolutionX, mode.resolutionY}).pictures;
-    const CameraPicture& picture = pictures[static_cast<std::size_t>(number) % pictures.size()];
+    const std::vector<CameraImage>& images = images_.at({mode.resolutionX, mode.resolutionY}).images;
+    const CameraImage& image = images[static_cast<std::size_t>(number) % images.size()];
     if (stream->type() == ONI_SENSOR_COLOR) {
       if (is_dropped(number, script->drop_colour_every)) continue;
       late_.push_back({colour_time + milliseconds_of(script->colour_late_ms),
                        number + (synchronised_ ? 0 : kColourAhead), device_time_us(colour_time, *script),
-                       picture.colour});
+                       image.colour});
     } else if (!is_dropped(number, script->drop_depth_every)) {
       if (!stream->is_running()) continue;
-      stream->send(is_registered_by_now() ? picture.depth_mm : unregistered(picture.depth_mm), number, device_us);
+      stream->send(is_registered_by_now() ? image.depth_mm : unregistered(image.depth_mm), number, device_us);
     }
   }
   send_late_colour(Clock::now());
@@ -200,7 +200,7 @@ void VirtualDevice::send_late_colour(Clock::time_point now) {
     const LateColour late = std::move(late_.front());
     late_.pop_front();
     for (const auto& stream : streams()) {
-      if (stream->type() == ONI_SENSOR_COLOR) stream->send(late.picture, late.number, late.device_us);
+      if (stream->type() == ONI_SENSOR_COLOR) stream->send(late.image, late.number, late.device_us);
     }
   }
 }

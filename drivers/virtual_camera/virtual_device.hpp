@@ -17,12 +17,12 @@
 namespace houghstream::virtual_camera {
 
 /// Pictures by {width, height}: one test pattern for each mode, or a scene.
-using PicturesBySize = std::map<std::pair<int, int>, CameraPictures>;
+using ImagesBySize = std::map<std::pair<int, int>, CameraImages>;
 
 /// One virtual camera: a thread that opens both shutters at the script's rate, and its streams.
 class VirtualDevice : public oni::driver::DeviceBase {
  public:
-  VirtualDevice(const ScriptWatch& script, const PicturesBySize& pictures, std::string serial);
+  VirtualDevice(const ScriptWatch& script, const ImagesBySize& images, std::string serial);
   ~VirtualDevice() override;
   VirtualDevice(const VirtualDevice&) = delete;
   VirtualDevice& operator=(const VirtualDevice&) = delete;
@@ -48,7 +48,7 @@ class VirtualDevice : public oni::driver::DeviceBase {
     Clock::time_point due;
     int number = 0;
     std::uint64_t device_us = 0;
-    cv::Mat picture;
+    cv::Mat image;
   };
 
   void run();
@@ -61,7 +61,7 @@ class VirtualDevice : public oni::driver::DeviceBase {
   cv::Mat unregistered(const cv::Mat& depth_mm) const;
 
   const ScriptWatch& script_;
-  const PicturesBySize& pictures_;
+  const ImagesBySize& images_;
   std::string serial_;
   std::array<VirtualSensor, 2> sensors_;
   std::array<OniSensorInfo, 2> infos_{};

@@ -23,10 +23,10 @@ OniDeviceInfo info_of(std::size_t index) {
   return info;
 }
 
-PicturesBySize make_pictures(const CameraScript& script) {
-  PicturesBySize all;
+ImagesBySize make_images(const CameraScript& script) {
+  ImagesBySize all;
   if (!script.scene.empty()) {
-    CameraPictures scene = load_scene_pictures(script.scene);
+    CameraImages scene = load_scene_images(script.scene);
     const std::pair<int, int> size(scene.camera.width, scene.camera.height);
     all.emplace(size, std::move(scene));
     return all;
@@ -65,8 +65,8 @@ class VirtualDriver : public oni::driver::DriverBase {
     guarded([&] {
       for (std::size_t i = 0; i < serials_.size(); ++i) {
         if (uri_of(i) != uri) continue;
-        if (pictures_.empty()) pictures_ = make_pictures(*watch_->current());
-        device = new VirtualDevice(*watch_, pictures_, serials_[i]);
+        if (images_.empty()) images_ = make_images(*watch_->current());
+        device = new VirtualDevice(*watch_, images_, serials_[i]);
       }
     });
     return device;
@@ -115,7 +115,7 @@ class VirtualDriver : public oni::driver::DriverBase {
 
   std::unique_ptr<ScriptWatch> watch_;
   std::vector<std::string> serials_;
-  PicturesBySize pictures_;
+  ImagesBySize images_;
 };
 
 }  // namespace

@@ -123,28 +123,28 @@ bool VirtualStream::is_running() const {
   return running_;
 }
 
-void VirtualStream::send(const cv::Mat& picture, int number, std::uint64_t device_us) {
+void VirtualStream::send(const cv::Mat& image, int number, std::uint64_t device_us) {
   const std::lock_guard<std::mutex> lock(sending_);
   if (!running_) return;
   const OniVideoMode now = mode();
-  if (picture.cols != now.resolutionX || picture.rows != now.resolutionY) return;
+  if (image.cols != now.resolutionX || image.rows != now.resolutionY) return;
   OniFrame* frame = getServices().acquireFrame();
   if (frame == nullptr) return;
-  cv::Mat target(picture.rows, picture.cols, picture.type(), frame->data);
+  cv::Mat target(image.rows, image.cols, image.type(), frame->data);
   OniBool mirrored = FALSE;
   int size = sizeof(mirrored);
   getProperty(ONI_STREAM_PROPERTY_MIRRORING, &mirrored, &size);
   if (mirrored != FALSE) {
-    cv::flip(picture, target, 1);
+    cv::flip(image, target, 1);
   } else {
-    picture.copyTo(target);
+    image.copyTo(target);
   }
   frame->dataSize = static_cast<int>(target.total() * target.elemSize());
   frame->sensorType = sensor_.type;
   frame->timestamp = device_us;
   frame->frameIndex = number;
-  frame->width = picture.cols;
-  frame->height = picture.rows;
+  frame->width = image.cols;
+  frame->height = image.rows;
   frame->videoMode = now;
   frame->croppingEnabled = FALSE;
   frame->cropOriginX = frame->cropOriginY = 0;

@@ -2,7 +2,7 @@
 
 #include <mutex>
 
-#include "drivers/virtual_camera/camera_pictures.hpp"
+#include "drivers/virtual_camera/camera_images.hpp"
 #include "drivers/virtual_camera/driver_api.hpp"
 
 namespace houghstream::virtual_camera {
@@ -33,7 +33,7 @@ class VirtualStream : public oni::driver::StreamBase {
   bool is_running() const;
 
   /// Sends a picture (CV_8UC3 RGB or CV_16UC1) if the stream is running; `number` and `device_us` go with it.
-  void send(const cv::Mat& picture, int number, std::uint64_t device_us);
+  void send(const cv::Mat& image, int number, std::uint64_t device_us);
 
  private:
   OniStatus set_mode(const OniVideoMode& mode);

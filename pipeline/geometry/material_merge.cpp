@@ -16,7 +16,7 @@ bool is_textured(const MeshPart& part) {
 }
 
 cv::Mat read_texture(const MeshPart& part, const fs::path& file) {
-  if (!part.picture.empty()) return part.picture;
+  if (!part.image.empty()) return part.image;
   cv::Mat texture;
   if (fs::is_regular_file(part.texture)) texture = decode_image_file(part.texture, cv::IMREAD_COLOR);
   require(!texture.empty(), "{}: missing or unreadable, expected the texture of {}", part.texture.string(),

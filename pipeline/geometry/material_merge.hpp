@@ -15,7 +15,7 @@ struct MeshPart {
   std::size_t vertices = 0;
   bool has_uvs = false;
   std::filesystem::path texture;  ///< empty = none; parts of one texture have the same path
-  cv::Mat picture;                ///< of a texture that the mesh's file itself holds, CV_8UC3 BGR; else empty
+  cv::Mat image;                  ///< of a texture that the mesh's file itself holds, CV_8UC3 BGR; else empty
   bool has_colour = false;        ///< the material states one
   cv::Vec3b colour;               ///< BGR
 };

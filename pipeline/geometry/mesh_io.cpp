@@ -117,15 +117,15 @@ void append_triangles(const aiMesh& part, std::uint32_t first_vertex, const std:
 
 /// A texture that the file itself holds, CV_8UC3 BGR. Throws InputError where it cannot be decoded.
 cv::Mat decode_texture(const aiTexture& texture, const std::string& where) {
-  cv::Mat picture;
+  cv::Mat image;
   if (texture.mHeight == 0) {  // a picture file of mWidth bytes
-    picture = decode_image(reinterpret_cast<const std::uint8_t*>(texture.pcData), texture.mWidth, cv::IMREAD_COLOR);
+    image = decode_image(reinterpret_cast<const std::uint8_t*>(texture.pcData), texture.mWidth, cv::IMREAD_COLOR);
   } else {
     const cv::Mat bgra(static_cast<int>(texture.mHeight), static_cast<int>(texture.mWidth), CV_8UC4, texture.pcData);
-    cv::cvtColor(bgra, picture, cv::COLOR_BGRA2BGR);
+    cv::cvtColor(bgra, image, cv::COLOR_BGRA2BGR);
   }
-  require(!picture.empty(), "{}: cannot be decoded, expected a PNG or JPEG", where);
-  return picture;
+  require(!image.empty(), "{}: cannot be decoded, expected a PNG or JPEG", where);
+  return image;
 }
 
 /// The texture that gives a material its colour.
@@ -148,7 +148,7 @@ MeshPart describe_part(const aiScene& scene, const aiMesh& part, std::size_t fir
   std::string texture = texture_name(material);
   if (const aiTexture* embedded = texture.empty() ? nullptr : scene.GetEmbeddedTexture(texture.c_str())) {
     out.texture = file / texture;  // a name for it: "FILE.glb/*0"
-    out.picture = decode_texture(*embedded, out.texture.string());
+    out.image = decode_texture(*embedded, out.texture.string());
   } else if (!texture.empty()) {
     std::replace(texture.begin(), texture.end(), '\\', '/');  // of files that were made on Windows
     out.texture = file.parent_path() / texture;

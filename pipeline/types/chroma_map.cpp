@@ -180,16 +180,16 @@ std::vector<ChromaMap> fit_chroma_maps_without_each(const std::vector<ChromaPair
   return maps;
 }
 
-bool is_colourless(const cv::Mat& picture) {
+bool is_colourless(const cv::Mat& image) {
   constexpr int kStep = 8;
-  constexpr int kMaxDifference = 6;             // between channels of a pixel: JPEG leaves some
-  constexpr double kMaxFraction = 0.002;        // of pixels that differ by more
-  if (picture.type() != CV_8UC3) return false;  // is refused by whoever needs the frame
+  constexpr int kMaxDifference = 6;           // between channels of a pixel: JPEG leaves some
+  constexpr double kMaxFraction = 0.002;      // of pixels that differ by more
+  if (image.type() != CV_8UC3) return false;  // is refused by whoever needs the frame
   int pixels = 0;
   int coloured = 0;
-  for (int y = 0; y < picture.rows; y += kStep) {
-    const auto* row = picture.ptr<cv::Vec3b>(y);
-    for (int x = 0; x < picture.cols; x += kStep) {
+  for (int y = 0; y < image.rows; y += kStep) {
+    const auto* row = image.ptr<cv::Vec3b>(y);
+    for (int x = 0; x < image.cols; x += kStep) {
       const auto [minimum, maximum] = std::minmax({row[x][0], row[x][1], row[x][2]});
       ++pixels;
       coloured += maximum - minimum > kMaxDifference ? 1 : 0;

@@ -84,7 +84,7 @@ std::vector<ChromaMap> fit_chroma_maps_without_each(const std::vector<ChromaPair
 
 /// Whether the picture is of a camera in black and white or of infrared light: there is no chroma to learn from. From
 /// one of 64 pixels. False for what is no CV_8UC3.
-bool is_colourless(const cv::Mat& picture);
+bool is_colourless(const cv::Mat& image);
 
 /// The map of such a camera: every colour becomes grey, so that chroma speaks neither for an object nor against it.
 ChromaMap colourless_camera();

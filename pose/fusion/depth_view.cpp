@@ -111,8 +111,8 @@ std::optional<cv::Point> DepthView::pixel_of(const Eigen::Vector3d& point_camera
   return pixel_in({{0, 0}, depth.size()}, camera, point_camera);
 }
 
-bool DepthView::in_picture(const Eigen::Vector3d& point_camera) const {
-  return !picture || pixel_in(*picture, camera, point_camera);
+bool DepthView::is_in_image(const Eigen::Vector3d& point_camera) const {
+  return !image || pixel_in(*image, camera, point_camera);
 }
 
 DepthView make_depth_view(const TrainingView& view) {

@@ -20,7 +20,7 @@ struct DepthView {
   cv::Mat free_space_mask;  ///< CV_8UC1, 255 where the ray through the pixel misses the object
   /// The whole picture that the images are cut out of, in their pixels: beside it nothing is known. None: the cut keeps
   /// away from its edges, and all around it is within.
-  std::optional<cv::Rect> picture;
+  std::optional<cv::Rect> image;
   /// Views of one number, from 0 on, have a light that stands still about the object; -1: who knows.
   int lighting_id = -1;
 
@@ -33,7 +33,7 @@ struct DepthView {
   std::optional<cv::Point> pixel_of(const Eigen::Vector3d& point_camera) const;
 
   /// Whether the whole picture shows a point of the camera frame, though the images may be cut out beside it.
-  bool in_picture(const Eigen::Vector3d& point_camera) const;
+  bool is_in_image(const Eigen::Vector3d& point_camera) const;
 };
 
 /// Normals are those of planes through the pixels around; surface that is seen too flatly, or stands alone, is dropped,

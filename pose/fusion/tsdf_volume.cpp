@@ -90,7 +90,7 @@ struct Observation {
 Observation observe(const DepthView& view, const Eigen::Vector3d& p_camera, double truncation,
                     const TsdfSettings& settings) {
   const auto px = view.pixel_of(p_camera);
-  if (!px && !view.in_picture(p_camera)) return {};
+  if (!px && !view.is_in_image(p_camera)) return {};
   if (!px || view.free_space_mask.at<std::uint8_t>(*px) != 0)
     return {1.0F, static_cast<float>(settings.outline_weight)};
   const double depth = view.depth.at<float>(*px);

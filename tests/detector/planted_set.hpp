@@ -18,20 +18,20 @@ inline training::TrainingSet planted_set() {
   set.views.resize(1);
   Random random(3);
   for (int i = 0; i < 16; ++i) {
-    FeatureImage picture(32, 32, set.layout.pixel_stride());
+    FeatureImage image(32, 32, set.layout.pixel_stride());
     for (int y = 0; y < 32; ++y) {
       for (int x = 0; x < 32; ++x) {
         const auto ramp = static_cast<std::uint8_t>(4 * x);
-        picture.at(x, y)[kClassPlane] = i % 2 == 1 ? ramp : std::uint8_t{60};
-        picture.at(x, y)[kOffsetPlane] = i % 4 == 3 ? ramp : std::uint8_t{60};
-        picture.at(x, y)[kNoisePlane] = static_cast<std::uint8_t>(random.below(256));
+        image.at(x, y)[kClassPlane] = i % 2 == 1 ? ramp : std::uint8_t{60};
+        image.at(x, y)[kOffsetPlane] = i % 4 == 3 ? ramp : std::uint8_t{60};
+        image.at(x, y)[kNoisePlane] = static_cast<std::uint8_t>(random.below(256));
       }
     }
-    picture.replicate_border();
-    set.pictures.push_back(picture);
+    image.replicate_border();
+    set.images.push_back(image);
     for (int s = 0; s < 50; ++s) {
       training::TrainingSample sample;
-      sample.picture = i;
+      sample.image = i;
       sample.x = static_cast<std::int16_t>(random.between(12, 19));
       sample.y = static_cast<std::int16_t>(random.between(12, 19));
       sample.scale = 256;

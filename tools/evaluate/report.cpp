@@ -7,7 +7,7 @@
 #include "pipeline/base/files.hpp"
 #include "pipeline/bus/percentiles.hpp"
 #include "tools/common/rounded.hpp"
-#include "tools/evaluate/reliability_picture.hpp"
+#include "tools/evaluate/reliability_image.hpp"
 
 namespace houghstream {
 namespace {
@@ -253,7 +253,7 @@ void write_report(const Evaluation& evaluation, const OrderedJson& summary, cons
   write_text(folder / "curves.csv", curves_csv(evaluation));
   write_text(folder / "poses.csv", poses_csv(evaluation));
   if (evaluation.detection_calibration.count == 0) return;
-  write_png(reliability_picture(evaluation.detection_calibration, evaluation.pose_calibration),
+  write_png(reliability_image(evaluation.detection_calibration, evaluation.pose_calibration),
             folder / "reliability.png");
 }
 

@@ -58,12 +58,12 @@ std::vector<ObjectViews> group_views(std::vector<TrainingView> views) {
 void check_outputs(const FuseOutputs& outputs, const std::vector<std::string>& views) {
   for (const std::string& view : views) {
     require_outside_source(outputs.models, view);
-    require_outside_source(outputs.pictures, view);
+    require_outside_source(outputs.images, view);
   }
   require(outputs.replace || !has_models(outputs.models),
           "{}: holds models already; --replace puts others in their place", outputs.models.string());
   require_writable_folder(outputs.models);
-  if (!outputs.pictures.empty()) require_writable_folder(outputs.pictures);
+  if (!outputs.images.empty()) require_writable_folder(outputs.images);
 }
 
 void fuse_models(const std::vector<ObjectViews>& objects, fusion::FusionSettings settings, const FuseOutputs& outputs) {
@@ -77,11 +77,11 @@ void fuse_models(const std::vector<ObjectViews>& objects, fusion::FusionSettings
     settings.align = !object.exact_poses;
     fusion::FusedModel model = fusion::fuse_views(object.class_name, object.views, settings);
     report(object.class_name, model, object.views.size());
-    if (!outputs.pictures.empty()) {
+    if (!outputs.images.empty()) {
       std::error_code error;
-      std::filesystem::create_directories(outputs.pictures, error);
-      require(!error, "{}: cannot make this folder: {}", outputs.pictures.string(), error.message());
-      write_png(draw_model(model.mesh), outputs.pictures / (object.class_name + ".png"));
+      std::filesystem::create_directories(outputs.images, error);
+      require(!error, "{}: cannot make this folder: {}", outputs.images.string(), error.message());
+      write_png(draw_model(model.mesh), outputs.images / (object.class_name + ".png"));
     }
     models.push_back({object.class_id, object.class_name, std::move(model.mesh), {}});
     progress.add(1.0);

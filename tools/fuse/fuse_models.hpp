@@ -24,9 +24,9 @@ std::vector<ObjectViews> group_views(std::vector<TrainingView> views);
 
 /// What hs-fuse makes.
 struct FuseOutputs {
-  std::filesystem::path models;    ///< BOP models folder: obj_NNNNNN.ply, models_info.json, names.json
-  std::filesystem::path pictures;  ///< folder for CLASS.png of each model from several sides; empty = none
-  bool replace = false;            ///< models that are there may be replaced
+  std::filesystem::path models;  ///< BOP models folder: obj_NNNNNN.ply, models_info.json, names.json
+  std::filesystem::path images;  ///< folder for CLASS.png of each model from several sides; empty = none
+  bool replace = false;          ///< models that are there may be replaced
 };
 
 /// Asked before the views are read. Throws InputError where the outputs would lie in a folder of the views (each

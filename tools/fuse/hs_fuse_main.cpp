@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   app.add_option("--camera", sources.camera, "WIDTHxHEIGHT,fx,fy,cx,cy, for data that publish none");
   app.add_option("--out", outputs.models, "models/ folder to write, for --models of the other tools").required();
   app.add_flag("--replace", outputs.replace, "models that are there already give way");
-  app.add_option("--pictures", outputs.pictures, "folder for a picture of each model from several sides");
+  app.add_option("--pictures", outputs.images, "folder for a picture of each model from several sides");
   app.add_option("--voxel", voxel_mm, "edge of a voxel, millimetres; triangles are about as large")
       .range(0.2, 20.0)
       .capture_default_str();

@@ -41,7 +41,7 @@ Eigen::Vector3d colour_of(const Mesh& mesh, std::uint32_t vertex) {
 /// In colours above, as shape below.
 cv::Mat draw_view(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera) {
   const RenderedGeometry seen = render_geometry({{&mesh, T_camera_object, 1}}, camera);
-  cv::Mat picture(2 * kSize_px, kSize_px, CV_8UC3, cv::Scalar::all(255));
+  cv::Mat image(2 * kSize_px, kSize_px, CV_8UC3, cv::Scalar::all(255));
   for (int y = 0; y < kSize_px; ++y) {
     for (int x = 0; x < kSize_px; ++x) {
       const int triangle = seen.triangle.at<std::int32_t>(y, x);
@@ -54,13 +54,13 @@ cv::Mat draw_view(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, co
       // Light from above the camera's left shoulder; what faces away from it is dark, so turned triangles show.
       const Eigen::Vector3d light = Eigen::Vector3d(-0.3, -0.4, -1.0).normalized();
       const double lit = std::max(0.0, (T_camera_object.linear() * normal).normalized().dot(light));
-      picture.at<cv::Vec3b>(y, x) =
+      image.at<cv::Vec3b>(y, x) =
           cv::Vec3b(cv::saturate_cast<std::uint8_t>(colour[0]), cv::saturate_cast<std::uint8_t>(colour[1]),
                     cv::saturate_cast<std::uint8_t>(colour[2]));
-      picture.at<cv::Vec3b>(y + kSize_px, x) = cv::Vec3b::all(cv::saturate_cast<std::uint8_t>(20.0 + 220.0 * lit));
+      image.at<cv::Vec3b>(y + kSize_px, x) = cv::Vec3b::all(cv::saturate_cast<std::uint8_t>(20.0 + 220.0 * lit));
     }
   }
-  return picture;
+  return image;
 }
 
 }  // namespace
@@ -81,9 +81,9 @@ cv::Mat draw_model(const Mesh& mesh) {
   for (const double elevation : {M_PI_2, -M_PI_2}) {
     views.push_back(draw_view(mesh, looking_at(centre, -M_PI_2, elevation, distance), camera));
   }
-  cv::Mat picture;
-  cv::hconcat(views, picture);
-  return picture;
+  cv::Mat image;
+  cv::hconcat(views, image);
+  return image;
 }
 
 }  // namespace houghstream

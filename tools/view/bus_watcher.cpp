@@ -108,8 +108,8 @@ StreamState BusWatcher::stream_state() {
   return stream_.state(microseconds(std::chrono::steady_clock::now()));
 }
 
-void BusWatcher::publish_preview(const cv::Mat& picture, std::int64_t utime) {
-  PreviewPicture preview = encode_preview(picture);
+void BusWatcher::publish_preview(const cv::Mat& image, std::int64_t utime) {
+  PreviewImage preview = encode_preview(image);
   houghstream::image_t message{};
   message.utime = utime;
   message.width = preview.width;

@@ -44,7 +44,7 @@ class BusWatcher {
   std::int64_t frames_lost() const { return status_.message().frames_lost; }
 
   /// Sends a picture to those for whom frames are too large.
-  void publish_preview(const cv::Mat& picture, std::int64_t utime);
+  void publish_preview(const cv::Mat& image, std::int64_t utime);
 
   /// Stops listening; frames that wait can still be taken.
   void stop();

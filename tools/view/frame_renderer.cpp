@@ -49,15 +49,15 @@ FrameRenderer::FrameRenderer(const FrameRendererSettings& settings, const std::s
       page_alone_(page_ && !settings.writes()),
       outputs_(settings.outputs),
       camera_(settings.camera),
-      picture_settings_(settings.picture),
+      image_settings_(settings.image),
       preview_(settings.preview) {
-  picture_settings_.show_keys = window_ != nullptr;
+  image_settings_.show_keys = window_ != nullptr;
   if (settings.objects.empty()) return;
   store_ = std::make_unique<store::StoreWatcher<ClassModels>>(settings.objects, [](const store::ObjectStore& store) {
     return std::make_shared<const ClassModels>(store::load_store_meshes(store));
   });
   store_->follow();
-  picture_settings_.can_teach = true;
+  image_settings_.can_teach = true;
   order_.executables = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   order_.store = settings.objects;
   order_.lcm_url = lcm_url;
@@ -65,17 +65,17 @@ FrameRenderer::FrameRenderer(const FrameRendererSettings& settings, const std::s
 
 void FrameRenderer::show(const MatchedFrame& matched, BusWatcher& watcher) {
   const bool unseen = page_alone_ && !page_->has_viewers();
-  if (unseen || picture_settings_.paused || !watcher.cameras().is_shown(matched.id.channel)) {
+  if (unseen || image_settings_.paused || !watcher.cameras().is_shown(matched.id.channel)) {
     watcher.note_skipped();
     return;
   }
-  const std::optional<cv::Mat> picture = drawn(matched, watcher);
-  if (!picture || page_alone_) return;
-  if (window_) window_->show(*picture, matched.id);
-  outputs_.add(*picture, matched.id.utime, matched.slot);
+  const std::optional<cv::Mat> image = drawn(matched, watcher);
+  if (!image || page_alone_) return;
+  if (window_) window_->show(*image, matched.id);
+  outputs_.add(*image, matched.id.utime, matched.slot);
   if (!preview_) return;
   try {
-    watcher.publish_preview(*picture, matched.id.utime);
+    watcher.publish_preview(*image, matched.id.utime);
   } catch (const InputError& error) {
     watcher.note_trouble(error.what());
   }
@@ -84,7 +84,7 @@ void FrameRenderer::show(const MatchedFrame& matched, BusWatcher& watcher) {
 bool FrameRenderer::handle_keys(BusWatcher& watcher) {
   if (page_) serve_page(watcher);
   if (!window_) return true;
-  const KeyAction action = window_->handle_keys(picture_settings_);
+  const KeyAction action = window_->handle_keys(image_settings_);
   if (action == KeyAction::kNextCamera) watcher.cameras().next();
   if (action == KeyAction::kTeach) teach();
   starter_.runs();
@@ -101,13 +101,13 @@ void FrameRenderer::look_at_stream(BusWatcher& watcher) {
 void FrameRenderer::serve_page(BusWatcher& watcher) {
   const PageCommands commands = page_->pop_commands();
   if (commands.next_camera) watcher.cameras().next();
-  picture_settings_.paused = commands.paused.value_or(picture_settings_.paused);
-  picture_settings_.min_score = commands.min_score.value_or(picture_settings_.min_score);
+  image_settings_.paused = commands.paused.value_or(image_settings_.paused);
+  image_settings_.min_score = commands.min_score.value_or(image_settings_.min_score);
   if (commands.empty() && !page_->is_due()) return;
   look_at_stream(watcher);
   try {
-    if (commands.min_score && viewed_) page_->show({*viewed_, *models(), picture_settings_, stream_});
-    page_->catch_up(viewed_, *models(), picture_settings_, stream_);
+    if (commands.min_score && viewed_) page_->show({*viewed_, *models(), image_settings_, stream_});
+    page_->catch_up(viewed_, *models(), image_settings_, stream_);
   } catch (const std::exception& error) {  // OpenCV's too: no frame may end the program
     watcher.note_trouble(error.what());
   }
@@ -127,12 +127,12 @@ void FrameRenderer::teach() {
   // One that was made a moment ago may not be loaded yet.
   order_.joins_others = !known.empty() || std::filesystem::exists(std::filesystem::path(order_.store) / "store.json");
   order_.channel = viewed_->frame.id.channel;
-  const cv::Rect picture({}, viewed_->frame.colour.size());
-  const cv::Rect box = picture_settings_.box & picture;
+  const cv::Rect image({}, viewed_->frame.colour.size());
+  const cv::Rect box = image_settings_.box & image;
   order_.box = box.empty() ? std::nullopt : std::optional<cv::Rect>(box);
-  order_.at = picture_settings_.at && picture.contains(*picture_settings_.at) ? picture_settings_.at : std::nullopt;
-  picture_settings_.box = {};
-  picture_settings_.at.reset();
+  order_.at = image_settings_.at && image.contains(*image_settings_.at) ? image_settings_.at : std::nullopt;
+  image_settings_.box = {};
+  image_settings_.at.reset();
   starter_.press(order_);
 }
 
@@ -141,11 +141,11 @@ std::optional<cv::Mat> FrameRenderer::drawn(const MatchedFrame& matched, BusWatc
     ViewedFrame viewed = decode(matched, camera_, *models());
     remember(viewed);
     look_at_stream(watcher);
-    if (page_) page_->show({viewed, *models(), picture_settings_, stream_});
-    cv::Mat picture = page_alone_ ? cv::Mat() : draw(viewed);
+    if (page_) page_->show({viewed, *models(), image_settings_, stream_});
+    cv::Mat image = page_alone_ ? cv::Mat() : draw(viewed);
     viewed_ = std::move(viewed);
     watcher.note_drawn(matched);
-    return picture;
+    return image;
   } catch (const std::exception& error) {  // OpenCV's too: no frame may end the program
     watcher.note_refused(error.what());
     return std::nullopt;
@@ -153,7 +153,7 @@ std::optional<cv::Mat> FrameRenderer::drawn(const MatchedFrame& matched, BusWatc
 }
 
 cv::Mat FrameRenderer::draw(const ViewedFrame& viewed) const {
-  return draw_frame_view(viewed, *models(), picture_settings_, stream_);
+  return draw_frame_view(viewed, *models(), image_settings_, stream_);
 }
 
 void FrameRenderer::remember(const ViewedFrame& viewed) {

@@ -20,7 +20,7 @@ struct FrameRendererSettings {
   std::string models;            ///< folder of models for outlines; "" = none
   double model_unit_m = 1e-3;    ///< unit of the models' coordinates
   std::string objects;           ///< object store with the models, instead; followed while it changes; "" = none
-  FrameViewSettings picture;
+  FrameViewSettings image;
   bool preview = false;                 ///< send each picture on the preview channel
   std::string http;                     ///< where to serve a page for browsers, [ADDRESS:]PORT; "" = nowhere
   std::vector<std::string> http_hosts;  ///< names, beside its own, that the page answers to
@@ -28,7 +28,7 @@ struct FrameRendererSettings {
 
   /// Files or the preview are asked for.
   bool writes() const {
-    return preview || !outputs.snapshot.empty() || !outputs.video.empty() || !outputs.pictures.empty();
+    return preview || !outputs.snapshot.empty() || !outputs.video.empty() || !outputs.images.empty();
   }
   /// Then there is no window.
   bool headless() const { return writes() || !http.empty(); }
@@ -70,7 +70,7 @@ class FrameRenderer {
   bool page_alone_;  // nobody but the page wants pictures
   ViewOutputs outputs_;
   std::optional<Camera> camera_;
-  FrameViewSettings picture_settings_;
+  FrameViewSettings image_settings_;
   bool preview_;
   std::optional<ViewedFrame> viewed_;
   StreamView stream_;

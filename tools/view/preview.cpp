@@ -8,10 +8,10 @@
 
 namespace houghstream::view {
 
-PreviewPicture encode_preview(const cv::Mat& picture, std::size_t max_bytes) {
+PreviewImage encode_preview(const cv::Mat& image, std::size_t max_bytes) {
   constexpr double kSmaller = 0.75;
   constexpr int kMinPixels = 16;
-  cv::Mat current = picture;
+  cv::Mat current = image;
   while (true) {
     for (const int quality : {85, 70, 55}) {
       std::vector<std::uint8_t> jpeg = encode_jpeg(current, quality);
@@ -22,7 +22,7 @@ PreviewPicture encode_preview(const cv::Mat& picture, std::size_t max_bytes) {
     cv::resize(current, smaller, {}, kSmaller, kSmaller, cv::INTER_AREA);
     current = smaller;
   }
-  fail("preview of {}x{} pixels does not fit {} bytes", picture.cols, picture.rows, max_bytes);
+  fail("preview of {}x{} pixels does not fit {} bytes", image.cols, image.rows, max_bytes);
 }
 
 }  // namespace houghstream::view

@@ -11,7 +11,7 @@ namespace houghstream::view {
 constexpr std::size_t kMaxPreviewBytes = 90'000;
 
 /// A picture as JPEG of at most so many bytes.
-struct PreviewPicture {
+struct PreviewImage {
   int width = 0;   ///< pixels
   int height = 0;  ///< pixels
   std::vector<std::uint8_t> jpeg;
@@ -19,6 +19,6 @@ struct PreviewPicture {
 
 /// The picture (CV_8UC3, BGR) at the best quality, and if need be at a smaller size, that fits `max_bytes`.
 /// Throws InputError where even a few pixels do not fit.
-PreviewPicture encode_preview(const cv::Mat& picture, std::size_t max_bytes = kMaxPreviewBytes);
+PreviewImage encode_preview(const cv::Mat& image, std::size_t max_bytes = kMaxPreviewBytes);
 
 }  // namespace houghstream::view

@@ -103,14 +103,14 @@ bool is_video_name(const std::filesystem::path& file) {
 
 // H.264 wants even sides, and its encoders refuse very long ones. The first picture may be of a single row or column of
 // pixels; those after it must be legible all the same.
-cv::Size video_size(const cv::Size& picture) {
+cv::Size video_size(const cv::Size& image) {
   constexpr int kMaxSide = 8192;  // pixels
   constexpr int kMaxAspect = 8;
-  const int longer = std::max(picture.width, picture.height);
+  const int longer = std::max(image.width, image.height);
   const double scale = std::min(1.0, 1.0 * kMaxSide / longer);
   const int shortest = static_cast<int>(scale * longer) / kMaxAspect;
   const auto side = [&](int side_px) { return std::max({static_cast<int>(scale * side_px), shortest, 2}) / 2 * 2; };
-  return {side(picture.width), side(picture.height)};
+  return {side(image.width), side(image.height)};
 }
 
 }  // namespace
@@ -147,33 +147,33 @@ VideoFile::VideoFile(std::filesystem::path file, double rate_hz, Existing existi
   require_writable(file_);
 }
 
-void VideoFile::open(const cv::Mat& picture) {
+void VideoFile::open(const cv::Mat& image) {
   whole_.emplace(file_, ".partial" + (needs_end(file_) ? ".mkv" : file_.extension().string()), existing_);
   log_recording_names(*whole_);
   const int codec = cv::VideoWriter::fourcc('a', 'v', 'c', '1');
-  size_ = video_size(picture.size());
+  size_ = video_size(image.size());
   const bool opened = writer_.open(whole_->partial().string(), cv::CAP_FFMPEG, codec, rate_hz_, size_);
   require(opened, "{}: cannot be written as H.264 video (OpenCV without FFmpeg, or FFmpeg without H.264)",
           file_.string());
 }
 
-cv::Mat VideoFile::fitted(const cv::Mat& picture) const {
-  if (picture.size() == size_) return picture.clone();
-  const double scale = std::min(1.0 * size_.width / picture.cols, 1.0 * size_.height / picture.rows);
-  const cv::Size inner(std::clamp(cvRound(scale * picture.cols), 1, size_.width),
-                       std::clamp(cvRound(scale * picture.rows), 1, size_.height));
-  cv::Mat out = cv::Mat::zeros(size_, picture.type());
+cv::Mat VideoFile::fitted(const cv::Mat& image) const {
+  if (image.size() == size_) return image.clone();
+  const double scale = std::min(1.0 * size_.width / image.cols, 1.0 * size_.height / image.rows);
+  const cv::Size inner(std::clamp(cvRound(scale * image.cols), 1, size_.width),
+                       std::clamp(cvRound(scale * image.rows), 1, size_.height));
+  cv::Mat out = cv::Mat::zeros(size_, image.type());
   cv::Mat place = out(cv::Rect({(size_.width - inner.width) / 2, (size_.height - inner.height) / 2}, inner));
-  cv::resize(picture, place, inner, 0.0, 0.0, scale < 1.0 ? cv::INTER_AREA : cv::INTER_LINEAR);
+  cv::resize(image, place, inner, 0.0, 0.0, scale < 1.0 ? cv::INTER_AREA : cv::INTER_LINEAR);
   return out;
 }
 
-void VideoFile::add(const cv::Mat& picture, std::int64_t slot) {
+void VideoFile::add(const cv::Mat& image, std::int64_t slot) {
   if (last_.empty()) {
-    open(picture);
+    open(image);
     first_slot_ = slot;
   }
-  const cv::Mat fitting = fitted(picture);
+  const cv::Mat fitting = fitted(image);
   // Who is asked to end does not fill a gap of hours first.
   constexpr double kLongGapS = 10.0;
   const auto is_given_up = [&] {

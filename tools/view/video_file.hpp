@@ -27,7 +27,7 @@ class VideoFile {
 
   /// Slots must grow. The video has the size of the first picture, made even in both directions; one of another size
   /// (the camera's mode has changed) is fitted into it. Throws InputError when the file cannot be written.
-  void add(const cv::Mat& picture, std::int64_t slot);
+  void add(const cv::Mat& image, std::int64_t slot);
 
   /// Ends the video, which is in its place from here on, and not before (AtomicFile), and logs how long that took.
   /// Throws InputError where it does not hold all that was added, as on a full disk; what was in its place stays, and
@@ -37,8 +37,8 @@ class VideoFile {
   std::int64_t frames_written() const { return frames_written_; }
 
  private:
-  void open(const cv::Mat& picture);
-  cv::Mat fitted(const cv::Mat& picture) const;
+  void open(const cv::Mat& image);
+  cv::Mat fitted(const cv::Mat& image) const;
   void complete();
 
   std::filesystem::path file_;

@@ -20,7 +20,7 @@ void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSetting
       .capture_default_str()
       .positive();
   app.add_option("--video", outputs.video, "write a video to this file (.mp4)");
-  app.add_option("--pictures", outputs.pictures, "write every picture drawn to this folder");
+  app.add_option("--pictures", outputs.images, "write every picture drawn to this folder");
   houghstream::add_replace_option(app, outputs.replace, "--video or --pictures");
   app.add_flag("--preview", show.preview, "send JPEGs below 100 kB on HOUGHSTREAM_PREVIEW");
   app.add_option("--http", show.http,
@@ -33,13 +33,13 @@ void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSetting
   app.add_option("--duration", settings.duration, "end after so many seconds (0: when stopped)")
       .capture_default_str()
       .non_negative();
-  app.add_option("--min-score", show.picture.min_score,
+  app.add_option("--min-score", show.image.min_score,
                  "weaker detections are not drawn; default 0: everything that is reported, which has a threshold "
                  "of its own")
       .range(0.0, 1.0);
-  app.add_clearing_flag("--no-depth", show.picture.show_depth, "show the colour image only");
-  app.add_flag("--3d", show.picture.show_3d, "instead of the depth image: what was measured, seen from elsewhere");
-  app.add_flag("--world", show.picture.show_world,
+  app.add_clearing_flag("--no-depth", show.image.show_depth, "show the colour image only");
+  app.add_flag("--3d", show.image.show_3d, "instead of the depth image: what was measured, seen from elsewhere");
+  app.add_flag("--world", show.image.show_world,
                "instead of the depth image: the world of hs-track from above, with all cameras");
   houghstream::add_lcm_url_option(app, settings.lcm_url);
 }

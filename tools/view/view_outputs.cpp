@@ -24,14 +24,14 @@ void make_folder(const fs::path& folder) {
 
 }  // namespace
 
-void write_picture(const fs::path& file, const cv::Mat& picture) {
-  write_image(picture, file);
+void save_image(const fs::path& file, const cv::Mat& image) {
+  write_image(image, file);
 }
 
 ViewOutputs::ViewOutputs(OutputSettings settings) : settings_(std::move(settings)) {
   make_folder(settings_.snapshot.parent_path());
   make_folder(settings_.video.parent_path());
-  make_folder(settings_.pictures);
+  make_folder(settings_.images);
   if (!settings_.snapshot.empty()) {
     require_image_format(settings_.snapshot);
     require_writable(settings_.snapshot);
@@ -40,30 +40,30 @@ ViewOutputs::ViewOutputs(OutputSettings settings) : settings_(std::move(settings
   video_ = std::make_unique<VideoFile>(settings_.video, settings_.rate_hz, existing_of_recording(settings_.replace));
 }
 
-void ViewOutputs::add(const cv::Mat& picture, std::int64_t utime, std::int64_t slot) {
+void ViewOutputs::add(const cv::Mat& image, std::int64_t utime, std::int64_t slot) {
   ++added_;
-  last_ = picture;
-  if (video_) video_->add(picture, slot);
-  if (!settings_.pictures.empty()) {
-    const fs::path file = settings_.pictures / fmt::format("{}.jpg", utime);
-    write_picture(settings_.replace ? file : next_recording_name(file), picture);
+  last_ = image;
+  if (video_) video_->add(image, slot);
+  if (!settings_.images.empty()) {
+    const fs::path file = settings_.images / fmt::format("{}.jpg", utime);
+    save_image(settings_.replace ? file : next_recording_name(file), image);
   }
   if (!settings_.snapshot.empty() && added_ == settings_.snapshot_after) {
-    write_picture(settings_.snapshot, picture);
+    save_image(settings_.snapshot, image);
     snapshot_written_ = true;
   }
 }
 
 void ViewOutputs::finish() {
-  const bool wanted = !settings_.snapshot.empty() || !settings_.video.empty() || !settings_.pictures.empty();
+  const bool wanted = !settings_.snapshot.empty() || !settings_.video.empty() || !settings_.images.empty();
   require(!wanted || added_ > 0, "nothing to write: no frame was seen on the bus");
-  if (!settings_.snapshot.empty() && !snapshot_written_) write_picture(settings_.snapshot, last_);
+  if (!settings_.snapshot.empty() && !snapshot_written_) save_image(settings_.snapshot, last_);
   if (video_) video_->finish();
   video_.reset();
 }
 
 bool ViewOutputs::complete() const {
-  return snapshot_written_ && settings_.video.empty() && settings_.pictures.empty();
+  return snapshot_written_ && settings_.video.empty() && settings_.images.empty();
 }
 
 }  // namespace houghstream::view

@@ -14,7 +14,7 @@ struct OutputSettings {
   std::filesystem::path snapshot;   ///< one picture, PNG or JPEG by its ending
   std::int64_t snapshot_after = 1;  ///< the so-manieth picture drawn; the last one where the stream ends before
   std::filesystem::path video;      ///< MP4
-  std::filesystem::path pictures;   ///< folder for every picture drawn, UTIME.jpg
+  std::filesystem::path images;     ///< folder for every picture drawn, UTIME.jpg
   double rate_hz = 10.0;            ///< of the video
   bool replace = false;             ///< a video and pictures that are there, instead of taking the next number
 };
@@ -25,7 +25,7 @@ class ViewOutputs {
   /// Makes the folders. Throws InputError where that fails, or a file that is wanted cannot be written.
   explicit ViewOutputs(OutputSettings settings);
 
-  void add(const cv::Mat& picture, std::int64_t utime, std::int64_t slot);
+  void add(const cv::Mat& image, std::int64_t utime, std::int64_t slot);
 
   /// Writes a snapshot that did not come to its turn. Throws InputError when there was no picture at all.
   void finish();
@@ -42,6 +42,6 @@ class ViewOutputs {
 };
 
 /// Writes an image; throws InputError where that fails.
-void write_picture(const std::filesystem::path& file, const cv::Mat& picture);
+void save_image(const std::filesystem::path& file, const cv::Mat& image);
 
 }  // namespace houghstream::view

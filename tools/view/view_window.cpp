@@ -100,15 +100,14 @@ void ViewWindow::on_mouse(int event, int x, int y, int /*flags*/, void* window) 
   if (event == cv::EVENT_LBUTTONUP) self.pressed_.reset();
 }
 
-void ViewWindow::show(const cv::Mat& picture, const FrameId& id) {
-  shown_ = picture;
+void ViewWindow::show(const cv::Mat& image, const FrameId& id) {
+  shown_ = image;
   id_ = id;
-  scale_ = std::min(1.0, 1.0 * kMaxSide / std::max(picture.cols, picture.rows));
-  if (scale_ >= 1.0) return cv::imshow(kTitle, picture);
+  scale_ = std::min(1.0, 1.0 * kMaxSide / std::max(image.cols, image.rows));
+  if (scale_ >= 1.0) return cv::imshow(kTitle, image);
   cv::Mat smaller;
-  cv::resize(picture, smaller,
-             {std::max(cvRound(scale_ * picture.cols), 1), std::max(cvRound(scale_ * picture.rows), 1)}, 0.0, 0.0,
-             cv::INTER_AREA);
+  cv::resize(image, smaller, {std::max(cvRound(scale_ * image.cols), 1), std::max(cvRound(scale_ * image.rows), 1)},
+             0.0, 0.0, cv::INTER_AREA);
   cv::imshow(kTitle, smaller);
 }
 
@@ -129,7 +128,7 @@ void ViewWindow::save() const {
   if (shown_.empty()) return;
   const std::string file = fmt::format("view_{}_{}.png", channel::camera_name(id_.channel), id_.utime);
   try {
-    write_picture(file, shown_);
+    save_image(file, shown_);
     log_info("saved {}", file);
   } catch (const InputError& error) {  // the stream can be looked at all the same
     log_error("{}", error.what());

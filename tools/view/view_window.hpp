@@ -32,7 +32,7 @@ class ViewWindow {
   /// Throws InputError, naming the headless options, where there is no display.
   ViewWindow();
 
-  void show(const cv::Mat& picture, const FrameId& id);
+  void show(const cv::Mat& image, const FrameId& id);
 
   /// Lets the window live for a moment and acts on keys and on the mouse, which marks a box or a place (apply_mark).
   KeyAction handle_keys(FrameViewSettings& settings);

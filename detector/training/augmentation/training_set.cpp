@@ -90,9 +90,9 @@ const FeatureImage& all_features(const WorkingFrame& frame, const ImageInput& in
 }
 
 /// What the patches of a picture look at.
-cv::Rect seen_by(const TrainingImage& picture, const PatchSettings& patch) {
+cv::Rect seen_by(const TrainingImage& image, const PatchSettings& patch) {
   cv::Rect seen;
-  for (const auto* list : {&picture.samples, &picture.negative_pool}) {
+  for (const auto* list : {&image.samples, &image.negative_pool}) {
     for (const TrainingSample& sample : *list) {
       const int reach = max_offset(patch, sample.scale);
       seen |= cv::Rect(sample.x - reach, sample.y - reach, 2 * reach + 1, 2 * reach + 1);
@@ -129,14 +129,14 @@ TrainingImage object_image(const LabelledView& taught, const RgbdFrame& backgrou
                            Random& random, ImageWorkspace& workspace) {
   const TrainingView& view = taught.view;
   const AugmentationSettings& settings = input.settings;
-  TrainingImage picture;
+  TrainingImage image;
   double distance = draw_distance(view, input, random);
   std::optional<Composite> composite = make_composite(view, background, distance, settings, random);
   if (!composite) {
     distance = view.T_camera_object.translation().z();
     composite = make_composite(view, background, distance, settings, random);
   }
-  if (!composite) return picture;
+  if (!composite) return image;
 
   jitter_tone(settings.tone_jitter_fraction, settings.camera_randomisation, composite->frame.colour, random);
   input.scales.vary_depth(distance, input.features, composite->frame.depth, random);
@@ -158,15 +158,15 @@ TrainingImage object_image(const LabelledView& taught, const RgbdFrame& backgrou
     sample.offset = input.scales.centre_offset(view, shown_point(*composite, canvas.frame_px(at), depth));
     sample.label = static_cast<std::uint16_t>(taught.label);
     sample.view = taught.index;
-    picture.samples.push_back(sample);
+    image.samples.push_back(sample);
   }
   for (const cv::Point at : draw_pixels(canvas.mask.size(), count / 4, random, beside)) {
-    picture.samples.push_back(sample_at(at, canvas.frame, input));
+    image.samples.push_back(sample_at(at, canvas.frame, input));
   }
   const double px = composite->frame.camera.metres_per_px(input.scales.counted_distance(distance));
-  picture.whole_area = static_cast<float>(composite->whole_px * px * px);
-  picture.features = all_features(canvas.frame, input, workspace).cut_out(seen_by(picture, input.patch));
-  return picture;
+  image.whole_area = static_cast<float>(composite->whole_px * px * px);
+  image.features = all_features(canvas.frame, input, workspace).cut_out(seen_by(image, input.patch));
+  return image;
 }
 
 TrainingImage background_image(const RgbdFrame& background, const FeatureLevel& level, const ImageInput& input,
@@ -181,16 +181,16 @@ TrainingImage background_image(const RgbdFrame& background, const FeatureLevel& 
   jitter_tone(settings.tone_jitter_fraction, settings.camera_randomisation, part.colour, random);
 
   const WorkingFrame frame = input.scales.working_frame(part, level, input.features);
-  TrainingImage picture;
+  TrainingImage image;
   const auto known = [&](int x, int y) { return input.scales.teaches(level, frame.filled_depth.at<float>(y, x)); };
   const auto count = static_cast<std::size_t>(settings.patches_per_background / kBackgroundImages);
   const int drawn = static_cast<int>(count) * (1 + settings.negative_pool);
   for (const cv::Point at : draw_pixels(frame.colour.size(), drawn, random, known)) {
-    auto& list = picture.samples.size() < count ? picture.samples : picture.negative_pool;
+    auto& list = image.samples.size() < count ? image.samples : image.negative_pool;
     list.push_back(sample_at(at, frame, input));
   }
-  picture.features = all_features(frame, input, workspace).cut_out(seen_by(picture, input.patch));
-  return picture;
+  image.features = all_features(frame, input, workspace).cut_out(seen_by(image, input.patch));
+  return image;
 }
 
 namespace {
@@ -243,19 +243,19 @@ std::vector<std::size_t> views_in_images(const std::vector<int>& labels, int eve
   return chosen;
 }
 
-void measure_classes(const std::vector<TrainingImage>& pictures, TrainingSet& set) {
+void measure_classes(const std::vector<TrainingImage>& images, TrainingSet& set) {
   for (std::size_t c = 0; c < set.classes.size(); ++c) {
     std::vector<float> distances;
     double area = 0.0;
     int count = 0;
-    for (const TrainingImage& picture : pictures) {
+    for (const TrainingImage& image : images) {
       bool shows_class = false;
-      for (const TrainingSample& sample : picture.samples) {
+      for (const TrainingSample& sample : image.samples) {
         if (sample.label != c + 1) continue;
         distances.push_back(sample.offset.norm());
         shows_class = true;
       }
-      area += shows_class ? picture.whole_area : 0.0F;
+      area += shows_class ? image.whole_area : 0.0F;
       count += shows_class ? 1 : 0;
     }
     require(!distances.empty(), "class '{}': no patch with depth in any training view", set.classes[c].name);
@@ -267,17 +267,17 @@ void measure_classes(const std::vector<TrainingImage>& pictures, TrainingSet& se
 }
 
 /// Moves the pictures and their samples to the set.
-void take_samples(std::vector<TrainingImage>& pictures, TrainingSet& set) {
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    for (TrainingSample& sample : pictures[i].samples) {
-      sample.picture = static_cast<std::int32_t>(i);
+void take_samples(std::vector<TrainingImage>& images, TrainingSet& set) {
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    for (TrainingSample& sample : images[i].samples) {
+      sample.image = static_cast<std::int32_t>(i);
       set.samples.push_back(sample);
     }
-    for (TrainingSample& sample : pictures[i].negative_pool) {
-      sample.picture = static_cast<std::int32_t>(i);
+    for (TrainingSample& sample : images[i].negative_pool) {
+      sample.image = static_cast<std::int32_t>(i);
       set.negative_pool.push_back(sample);
     }
-    set.pictures.push_back(std::move(pictures[i].features));
+    set.images.push_back(std::move(images[i].features));
   }
 }
 
@@ -302,34 +302,34 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
     set.views.push_back(trained_view(*view, static_cast<std::uint32_t>(index), input.scales));
   }
   const int copies = settings.composites_per_view;
-  const std::vector<std::size_t> pictured = views_in_images(labels, settings.views_per_image);
+  const std::vector<std::size_t> imaged = views_in_images(labels, settings.views_per_image);
   for (std::size_t v = 0; v < objects.size(); ++v) {
-    if (!std::binary_search(pictured.begin(), pictured.end(), v)) is_done(objects[v]);
+    if (!std::binary_search(imaged.begin(), imaged.end(), v)) is_done(objects[v]);
   }
-  const int object_count = static_cast<int>(pictured.size()) * copies;
+  const int object_count = static_cast<int>(imaged.size()) * copies;
   const int total = object_count + static_cast<int>(backgrounds.size()) * kBackgroundImages;
-  std::vector<TrainingImage> pictures(static_cast<std::size_t>(total));
+  std::vector<TrainingImage> images(static_cast<std::size_t>(total));
   PerWorker<ImageWorkspace> workspaces;
   workspaces.resize(settings.threads);
   parallel_for_workers(settings.threads, total, [&](int worker, int i) {
     Random random = Random::for_item(settings.seed, static_cast<std::uint64_t>(i));
-    auto& picture = pictures[static_cast<std::size_t>(i)];
+    auto& image = images[static_cast<std::size_t>(i)];
     if (i < object_count) {
-      const std::size_t v = pictured[static_cast<std::size_t>(i / copies)];
+      const std::size_t v = imaged[static_cast<std::size_t>(i / copies)];
       const auto b = static_cast<std::size_t>(random.below(static_cast<int>(backgrounds.size())));
-      picture = object_image({*objects[v], labels[v], static_cast<std::uint32_t>(v)}, backgrounds[b]->frame, input,
-                             random, workspaces[worker]);
+      image = object_image({*objects[v], labels[v], static_cast<std::uint32_t>(v)}, backgrounds[b]->frame, input,
+                           random, workspaces[worker]);
       if (copies == 1) is_done(objects[v]);
     } else {
       const int b = i - object_count;
       const RgbdFrame& background = backgrounds[static_cast<std::size_t>(b / kBackgroundImages)]->frame;
       const std::vector<FeatureLevel> levels = input.scales.levels(input.features, background.camera);
       const FeatureLevel& level = levels[static_cast<std::size_t>(b) % levels.size()];
-      picture = background_image(background, level, input, random, workspaces[worker]);
+      image = background_image(background, level, input, random, workspaces[worker]);
     }
   });
-  measure_classes(pictures, set);
-  take_samples(pictures, set);
+  measure_classes(images, set);
+  take_samples(images, set);
   return set;
 }
 

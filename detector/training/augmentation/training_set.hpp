@@ -20,8 +20,8 @@ namespace houghstream::training {
 
 /// One patch to learn from.
 struct TrainingSample {
-  std::int32_t picture = 0;  ///< into TrainingSet::pictures
-  std::int16_t x = 0;        ///< patch centre, working pixels
+  std::int32_t image = 0;  ///< into TrainingSet::pictures
+  std::int16_t x = 0;      ///< patch centre, working pixels
   std::int16_t y = 0;
   std::int32_t scale = 0;                            ///< patch_scale of its depth
   std::uint32_t view = 0;                            ///< into TrainingSet::views; meaningless for background
@@ -32,7 +32,7 @@ struct TrainingSample {
 /// Everything the trees see.
 struct TrainingSet {
   FeatureLayout layout;  ///< of the pictures
-  std::vector<FeatureImage> pictures;
+  std::vector<FeatureImage> images;
   std::vector<TrainingSample> samples;        ///< grouped by picture
   std::vector<TrainingSample> negative_pool;  ///< more background patches, from which the hard ones are chosen
   std::vector<ObjectClass> classes;           ///< by class id

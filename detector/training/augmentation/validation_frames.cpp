@@ -111,12 +111,12 @@ TrainingView squeezed(const TrainingView& view, Random& random) {
 TrainingView painted(const TrainingView& shape, const TrainingView& paint) {
   const cv::Rect from = cv::boundingRect(paint.mask);
   const cv::Rect to = cv::boundingRect(shape.mask);
-  cv::Mat picture = paint.frame.colour(from).clone();
-  picture.setTo(cv::mean(picture, paint.mask(from)), paint.mask(from) == 0);
+  cv::Mat image = paint.frame.colour(from).clone();
+  image.setTo(cv::mean(image, paint.mask(from)), paint.mask(from) == 0);
   TrainingView out = shape;
   out.frame.colour = shape.frame.colour.clone();
-  cv::resize(picture, picture, to.size(), 0, 0, cv::INTER_AREA);
-  picture.copyTo(out.frame.colour(to), shape.mask(to));
+  cv::resize(image, image, to.size(), 0, 0, cv::INTER_AREA);
+  image.copyTo(out.frame.colour(to), shape.mask(to));
   return out;
 }
 

@@ -24,12 +24,12 @@ using fusion::TsdfVolume;
 /// Where a box is seen, a few pixels wider; the whole picture where the camera is too near.
 cv::Rect region_of(const Eigen::AlignedBox3d& box, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
   constexpr int kMargin_px = 8;
-  const cv::Rect picture(0, 0, camera.width, camera.height);
+  const cv::Rect image(0, 0, camera.width, camera.height);
   const std::optional<cv::Rect> seen = seen_box(box, camera, T_camera_world);
-  if (!seen) return picture;
+  if (!seen) return image;
   const cv::Rect region(seen->x - kMargin_px, seen->y - kMargin_px, seen->width + 2 * kMargin_px,
                         seen->height + 2 * kMargin_px);
-  return region & picture;
+  return region & image;
 }
 
 /// All surface that the keyframes show about a box; nothing counts as outside but what is seen through.
@@ -267,7 +267,7 @@ ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSetti
 namespace {
 
 /// The part of a view in which the model is, as fusion takes it.
-fusion::DepthView depth_view(const TrainingView& view, const Mesh& known, bool whole_picture) {
+fusion::DepthView depth_view(const TrainingView& view, const Mesh& known, bool whole_image) {
   constexpr int kMargin_px = 14;
   constexpr int kUnsure_px = 2;
   const Camera& camera = view.frame.camera;
@@ -287,7 +287,7 @@ fusion::DepthView depth_view(const TrainingView& view, const Mesh& known, bool w
   fusion::DepthView out = fusion::make_depth_view(cut);
   cv::dilate(outline, outline, cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * kUnsure_px + 1, 2 * kUnsure_px + 1}));
   out.free_space_mask = outline(region) == 0;
-  if (whole_picture) out.picture = whole - region.tl();
+  if (whole_image) out.image = whole - region.tl();
   return out;
 }
 
@@ -369,7 +369,7 @@ ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views
   std::vector<fusion::DepthView> depth_views(views.views.size());
   parallel_for(settings.threads, static_cast<int>(depth_views.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    depth_views[at] = depth_view(views.views[at], known, views.whole_pictures);
+    depth_views[at] = depth_view(views.views[at], known, views.whole_images);
     if (!views.lighting_ids.empty()) depth_views[at].lighting_id = views.lighting_ids[at];
   });
   fusion::TsdfSettings grid_settings;

@@ -46,7 +46,7 @@ struct ModelOfViews {
 struct MaskedViews {
   std::vector<TrainingView> views;
   std::vector<int> lighting_ids;  ///< DepthView::lighting_id of each view; empty: all -1
-  bool whole_pictures = false;    ///< false: cut out of larger ones, which go on around them
+  bool whole_images = false;      ///< false: cut out of larger ones, which go on around them
 };
 
 /// Fuses masked views from all sides (Curless & Levoy 1996). What hides the object in a view, within the outline of

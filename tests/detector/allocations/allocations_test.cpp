@@ -82,7 +82,7 @@ Allocations allocations_of(const Detector& detector, const RgbdFrame& frame, Det
 
 TEST(Allocations, AreCounted) {
   const Allocations before{small_ones, large_ones};
-  const cv::Mat picture(256, 256, CV_8UC1);
+  const cv::Mat image(256, 256, CV_8UC1);
   const std::vector<int> numbers(10);
   EXPECT_GE(large_ones, before.large + 1);
   EXPECT_GE(small_ones, before.small + 1);

@@ -10,11 +10,11 @@ namespace {
 
 enum IntensityPlane : std::size_t { kLightness, kA, kB, kIx, kIy, kIxx, kIyy, kFirstHog };
 
-std::vector<int> at_centre(const cv::Mat& picture) {
+std::vector<int> at_centre(const cv::Mat& image) {
   std::vector<int> values;
-  for (const cv::Mat& plane : intensity_planes(picture)) {
+  for (const cv::Mat& plane : intensity_planes(image)) {
     EXPECT_EQ(plane.type(), CV_8UC1);
-    values.push_back(plane.at<std::uint8_t>(picture.rows / 2, picture.cols / 2));
+    values.push_back(plane.at<std::uint8_t>(image.rows / 2, image.cols / 2));
   }
   EXPECT_EQ(values.size(), static_cast<std::size_t>(FeatureLayout().block(kIntensity).count));
   return values;
@@ -37,9 +37,9 @@ TEST(IntensityFeatures, ColoursAreTakenAsBlueGreenRed) {
 }
 
 TEST(IntensityFeatures, AVerticalEdgeHasASlopeAcrossOnly) {
-  cv::Mat picture(15, 16, CV_8UC3, cv::Scalar(40, 40, 40));
-  picture.colRange(8, 16).setTo(cv::Scalar(120, 120, 120));
-  const std::vector<int> across = at_centre(picture);
+  cv::Mat image(15, 16, CV_8UC3, cv::Scalar(40, 40, 40));
+  image.colRange(8, 16).setTo(cv::Scalar(120, 120, 120));
+  const std::vector<int> across = at_centre(image);
   EXPECT_GT(across[kIx], 100);
   EXPECT_EQ(across[kIy], 0);
   EXPECT_GT(across[kIxx], 50);
@@ -47,7 +47,7 @@ TEST(IntensityFeatures, AVerticalEdgeHasASlopeAcrossOnly) {
   EXPECT_GT(across[kFirstHog], 100);
   EXPECT_EQ(across[kFirstHog + 4], 0);
   cv::Mat rotated;
-  cv::transpose(picture, rotated);
+  cv::transpose(image, rotated);
   const std::vector<int> down = at_centre(rotated);
   EXPECT_EQ(down[kIx], 0);
   EXPECT_EQ(down[kIy], across[kIx]);
@@ -57,12 +57,12 @@ TEST(IntensityFeatures, AVerticalEdgeHasASlopeAcrossOnly) {
 }
 
 TEST(IntensityFeatures, DarkToBrightAndBrightToDarkLookAlike) {
-  cv::Mat picture(15, 15, CV_8UC3, cv::Scalar(40, 40, 40));
-  picture.colRange(8, 15).setTo(cv::Scalar(120, 120, 120));
+  cv::Mat image(15, 15, CV_8UC3, cv::Scalar(40, 40, 40));
+  image.colRange(8, 15).setTo(cv::Scalar(120, 120, 120));
   cv::Mat mirrored;
-  cv::flip(picture, mirrored, 1);
-  EXPECT_EQ(at_centre(picture)[kIx], at_centre(mirrored)[kIx]);
-  EXPECT_GT(at_centre(picture)[kIx], 0);
+  cv::flip(image, mirrored, 1);
+  EXPECT_EQ(at_centre(image)[kIx], at_centre(mirrored)[kIx]);
+  EXPECT_GT(at_centre(image)[kIx], 0);
 }
 
 }  // namespace

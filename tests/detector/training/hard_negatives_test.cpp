@@ -30,7 +30,7 @@ TrainingSet spare_set(std::size_t mistaken) {
 }
 
 bool looks_like_object(const TrainingSample& sample) {
-  return sample.picture % 2 == 1;
+  return sample.image % 2 == 1;
 }
 
 TEST(HardNegatives, OnlyWhatIsMistakenForAnObjectIsAdded) {
@@ -68,7 +68,7 @@ TEST(HardNegatives, AnyNumberOfThreadsChoosesTheSame) {
   add_hard_negatives({}, quick(3), parallel);
   ASSERT_EQ(serial.samples.size(), parallel.samples.size());
   for (std::size_t i = 0; i < serial.samples.size(); ++i) {
-    ASSERT_EQ(serial.samples[i].picture, parallel.samples[i].picture);
+    ASSERT_EQ(serial.samples[i].image, parallel.samples[i].image);
     ASSERT_EQ(serial.samples[i].x, parallel.samples[i].x);
     ASSERT_EQ(serial.samples[i].y, parallel.samples[i].y);
   }

@@ -18,8 +18,8 @@ std::vector<std::uint32_t> every_sample(const TrainingSet& set) {
 }
 
 bool goes_right(const TrainingSet& set, const PixelTest& test, const TrainingSample& sample) {
-  const FeatureImage& picture = set.pictures[static_cast<std::size_t>(sample.picture)];
-  return test_value(test, picture.patch(sample.x, sample.y, sample.scale)) >= test.threshold;
+  const FeatureImage& image = set.images[static_cast<std::size_t>(sample.image)];
+  return test_value(test, image.patch(sample.x, sample.y, sample.scale)) >= test.threshold;
 }
 
 std::optional<PixelTest> search(const TrainingSet& set, const std::vector<std::uint32_t>& samples, Objective objective,
@@ -53,7 +53,7 @@ TEST(SplitSearch, FindsThePlaneThatSeparatesTheOffsets) {
 
 TEST(SplitSearch, WhereAllValuesAreEqualThereIsNoTest) {
   TrainingSet set = toy::planted_set();
-  for (FeatureImage& picture : set.pictures) picture = FeatureImage(32, 32, set.layout.pixel_stride());
+  for (FeatureImage& image : set.images) image = FeatureImage(32, 32, set.layout.pixel_stride());
   EXPECT_FALSE(search(set, every_sample(set), Objective::kClass, 1));
   EXPECT_FALSE(search(set, every_sample(set), Objective::kOffset, 1));
 }
@@ -100,11 +100,11 @@ TEST(SplitSearch, WithoutTrustInTheLightNoSinglePixelOfIntensityDecides) {
 }
 
 void swap_planes(TrainingSet& set, int one, int other) {
-  for (FeatureImage& picture : set.pictures) {
+  for (FeatureImage& image : set.images) {
     for (int y = 0; y < 32; ++y) {
-      for (int x = 0; x < 32; ++x) std::swap(picture.at(x, y)[one], picture.at(x, y)[other]);
+      for (int x = 0; x < 32; ++x) std::swap(image.at(x, y)[one], image.at(x, y)[other]);
     }
-    picture.replicate_border();
+    image.replicate_border();
   }
 }
 
@@ -149,16 +149,16 @@ TEST(SplitSearch, ANodeLooksAtPointHistogramsOrAtTheRestAsOftenAsAsked) {
   TrainingSet set = toy::planted_set();
   set.layout = FeatureLayout(features);
   const int first = set.layout.block(kFastHistogram).first;
-  for (FeatureImage& picture : set.pictures) {
+  for (FeatureImage& image : set.images) {
     FeatureImage wide(32, 32, set.layout.pixel_stride());
     for (int y = 0; y < 32; ++y) {
       for (int x = 0; x < 32; ++x) {
-        wide.at(x, y)[toy::kClassPlane] = picture.at(x, y)[toy::kClassPlane];
-        wide.at(x, y)[first] = picture.at(x, y)[toy::kClassPlane];
+        wide.at(x, y)[toy::kClassPlane] = image.at(x, y)[toy::kClassPlane];
+        wide.at(x, y)[first] = image.at(x, y)[toy::kClassPlane];
       }
     }
     wide.replicate_border();
-    picture = wide;
+    image = wide;
   }
   TrainingSettings settings;
   const PatchSettings patch;
@@ -210,9 +210,9 @@ TEST(SplitSearch, ADifferenceSeparatesAsTestValueDoesAtEveryPatchScale) {
 
 TEST(SplitSearch, OnePixelAloneSeparatesByASingleStepOfGrey) {
   TrainingSet set = toy::planted_set();
-  for (std::size_t i = 0; i < set.pictures.size(); ++i) {
-    for (int p = 0; p < 32 * 32; ++p) set.pictures[i].at(p % 32, p / 32)[toy::kClassPlane] = i % 2 == 1 ? 101 : 100;
-    set.pictures[i].replicate_border();
+  for (std::size_t i = 0; i < set.images.size(); ++i) {
+    for (int p = 0; p < 32 * 32; ++p) set.images[i].at(p % 32, p / 32)[toy::kClassPlane] = i % 2 == 1 ? 101 : 100;
+    set.images[i].replicate_border();
   }
   const auto test = search_for_class(set, 1.0);
   ASSERT_TRUE(test);
@@ -227,16 +227,16 @@ TEST(SplitSearch, DepthIsComparedModulo256) {
   FeatureSettings features;
   features.families = kDepthValue;
   set.layout = FeatureLayout(features);
-  for (std::size_t i = 0; i < set.pictures.size(); ++i) {
-    FeatureImage picture(32, 32, set.layout.pixel_stride());
+  for (std::size_t i = 0; i < set.images.size(); ++i) {
+    FeatureImage image(32, 32, set.layout.pixel_stride());
     for (int y = 0; y < 32; ++y) {
       for (int x = 0; x < 32; ++x) {  // the object's ramp runs over 256 in the middle of the samples
         const int value = i % 2 == 1 ? 256 - 48 + 3 * x : 60;
-        for (const int plane : {0, 1}) picture.at(x, y)[plane] = static_cast<std::uint8_t>(value & 255);
+        for (const int plane : {0, 1}) image.at(x, y)[plane] = static_cast<std::uint8_t>(value & 255);
       }
     }
-    picture.replicate_border();
-    set.pictures[i] = picture;
+    image.replicate_border();
+    set.images[i] = image;
   }
   for (const std::uint64_t seed : {1, 2, 3}) {
     const auto test = search(set, every_sample(set), Objective::kClass, seed);

@@ -33,16 +33,16 @@ TEST(TreeTrainer, TheBagHoldsItsShareOfThePictures) {
   int inside = 0;
   int alike = 0;
   int alike_next_tree = 0;
-  constexpr int kPictures = 4000;
-  for (int picture = 0; picture < kPictures; ++picture) {
-    const bool in = in_bag(settings, 3, picture);
+  constexpr int kImages = 4000;
+  for (int image = 0; image < kImages; ++image) {
+    const bool in = in_bag(settings, 3, image);
     inside += in ? 1 : 0;
-    alike += in == in_bag(settings, 3, picture) ? 1 : 0;
-    alike_next_tree += in == in_bag(settings, 4, picture) ? 1 : 0;
+    alike += in == in_bag(settings, 3, image) ? 1 : 0;
+    alike_next_tree += in == in_bag(settings, 4, image) ? 1 : 0;
   }
-  EXPECT_NEAR(inside, 0.75 * kPictures, 0.03 * kPictures);
-  EXPECT_EQ(alike, kPictures);
-  EXPECT_NEAR(alike_next_tree, (0.75 * 0.75 + 0.25 * 0.25) * kPictures, 0.04 * kPictures);  // independent
+  EXPECT_NEAR(inside, 0.75 * kImages, 0.03 * kImages);
+  EXPECT_EQ(alike, kImages);
+  EXPECT_NEAR(alike_next_tree, (0.75 * 0.75 + 0.25 * 0.25) * kImages, 0.04 * kImages);  // independent
 }
 
 TEST(TreeTrainer, ATreeTellsHeldOutPicturesApart) {
@@ -51,10 +51,10 @@ TEST(TreeTrainer, ATreeTellsHeldOutPicturesApart) {
   const Forest tree = grow_tree(set, {}, settings, 0);
   int held_out = 0;
   for (const TrainingSample& sample : set.samples) {
-    if (in_bag(settings, 0, sample.picture)) continue;
+    if (in_bag(settings, 0, sample.image)) continue;
     ++held_out;
-    const FeatureImage& picture = set.pictures[static_cast<std::size_t>(sample.picture)];
-    const auto leaf = static_cast<std::size_t>(find_leaf(tree, 0, picture.patch(sample.x, sample.y, sample.scale)));
+    const FeatureImage& image = set.images[static_cast<std::size_t>(sample.image)];
+    const auto leaf = static_cast<std::size_t>(find_leaf(tree, 0, image.patch(sample.x, sample.y, sample.scale)));
     const bool is_object = tree.leaves[leaf] < tree.leaves[leaf + 1];
     ASSERT_EQ(is_object, sample.label != 0);
     if (!is_object) continue;

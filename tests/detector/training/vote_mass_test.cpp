@@ -12,14 +12,14 @@ constexpr float kArea = 0.02F;
 constexpr float kSigma = 0.016F;
 
 /// Two classes; the samples of class 0 see their centre at (0.05, 0, 0). Class 1 has no sample.
-TrainingSet set_of(int pictures) {
+TrainingSet set_of(int images) {
   TrainingSet set;
   set.classes.resize(2);
   set.visible_areas = {kArea, 0.5F};
-  for (int i = 0; i < pictures; ++i) {
-    set.pictures.emplace_back(2, 2, set.layout.pixel_stride());
+  for (int i = 0; i < images; ++i) {
+    set.images.emplace_back(2, 2, set.layout.pixel_stride());
     TrainingSample sample;
-    sample.picture = i;
+    sample.image = i;
     sample.label = 1;
     sample.offset = {0.05F, 0, 0};
     set.samples.push_back(sample);
@@ -72,7 +72,7 @@ TEST(Calibration, OnlyPicturesThatTheTreeDidNotLearnFromCount) {
   settings.in_bag = 0.5;
   TrainingSet set = set_of(40);
   for (TrainingSample& sample : set.samples) {  // a tree would know nothing of its own pictures' centres
-    if (in_bag(settings, 0, sample.picture)) sample.offset = {3, 3, 3};
+    if (in_bag(settings, 0, sample.image)) sample.offset = {3, 3, 3};
   }
   EXPECT_NEAR(masses(set, settings, forest_of(1, 0.0F))[0], kArea * 0.6F, 1e-6F);
 }

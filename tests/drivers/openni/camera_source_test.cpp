@@ -52,11 +52,11 @@ TEST(CameraSource, FramesAreRegisteredNotMirroredAndCarryTheCamera) {
   check_frame(frame, "virtual camera");
   EXPECT_NEAR(frame.camera.fx, 525.0 / 2, 1e-3);
   EXPECT_NEAR(frame.camera.cx, 159.5, 1e-9);
-  const virtual_camera::CameraPictures pattern = virtual_camera::make_test_pattern(frame.camera);
+  const virtual_camera::CameraImages pattern = virtual_camera::make_test_pattern(frame.camera);
   cv::Mat rgb;
   cv::cvtColor(frame.colour, rgb, cv::COLOR_BGR2RGB);
   int alike = 0;
-  for (const virtual_camera::CameraPicture& picture : pattern.pictures) {
+  for (const virtual_camera::CameraImage& picture : pattern.images) {
     alike += cv::norm(rgb, picture.colour, cv::NORM_INF) == 0 &&
              cv::norm(depth_to_millimetres(frame.depth), picture.depth_mm, cv::NORM_INF) == 0;
   }

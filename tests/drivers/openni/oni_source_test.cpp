@@ -52,10 +52,10 @@ double colour_difference(const RgbdFrame& a, const RgbdFrame& b) {
 
 /// The device's number of a frame, which runs through the pattern's pictures.
 std::int64_t number_of(const RgbdFrame& frame) {
-  const std::vector<virtual_camera::CameraPicture> pictures = virtual_camera::make_test_pattern(frame.camera).pictures;
+  const std::vector<virtual_camera::CameraImage> images = virtual_camera::make_test_pattern(frame.camera).images;
   const cv::Mat depth_mm = depth_to_millimetres(frame.depth);
   std::size_t k = 0;
-  while (k < pictures.size() && cv::norm(pictures[k].depth_mm, depth_mm, cv::NORM_INF) > 0.0) ++k;
+  while (k < images.size() && cv::norm(images[k].depth_mm, depth_mm, cv::NORM_INF) > 0.0) ++k;
   return static_cast<std::int64_t>(k);
 }
 

@@ -34,12 +34,12 @@ std::map<Sensor, std::map<std::int64_t, cv::Mat>> images_of(const std::filesyste
 }
 
 /// The step of the pattern that an image shows; JPEG leaves the disc's colour where it was, roughly.
-int picture_of(const cv::Mat& image, const virtual_camera::CameraPictures& pattern) {
+int image_of(const cv::Mat& image, const virtual_camera::CameraImages& pattern) {
   double minimum = 1e9;
   int found = -1;
-  for (int k = 0; k < static_cast<int>(pattern.pictures.size()); ++k) {
-    cv::Mat picture = pattern.pictures[k].depth_mm;
-    if (image.type() == CV_8UC3) cv::cvtColor(pattern.pictures[k].colour, picture, cv::COLOR_RGB2BGR);
+  for (int k = 0; k < static_cast<int>(pattern.images.size()); ++k) {
+    cv::Mat picture = pattern.images[k].depth_mm;
+    if (image.type() == CV_8UC3) cv::cvtColor(pattern.images[k].colour, picture, cv::COLOR_RGB2BGR);
     const double difference = cv::norm(image, picture, cv::NORM_L2SQR);
     if (difference < minimum) found = k;
     minimum = std::min(minimum, difference);
@@ -49,14 +49,14 @@ int picture_of(const cv::Mat& image, const virtual_camera::CameraPictures& patte
 
 /// Each depth image's colour, by the pattern, lies `apart_us` after it in the file.
 void expect_apart(const std::filesystem::path& file, std::int64_t apart_us) {
-  const virtual_camera::CameraPictures pattern =
+  const virtual_camera::CameraImages pattern =
       virtual_camera::make_test_pattern({320, 240, 262.5, 262.5, 159.5, 119.5});
   auto images = images_of(file);
   std::map<int, std::int64_t> colour_times;
-  for (const auto& [time, image] : images[Sensor::kColour]) colour_times[picture_of(image, pattern)] = time;
+  for (const auto& [time, image] : images[Sensor::kColour]) colour_times[image_of(image, pattern)] = time;
   int met = 0;
   for (const auto& [time, image] : images[Sensor::kDepth]) {
-    const auto colour = colour_times.find(picture_of(image, pattern));
+    const auto colour = colour_times.find(image_of(image, pattern));
     if (colour == colour_times.end()) continue;
     EXPECT_NEAR(static_cast<double>(colour->second - time), static_cast<double>(apart_us), 2.0) << met;
     ++met;

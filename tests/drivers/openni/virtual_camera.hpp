@@ -10,7 +10,7 @@
 #include <string>
 
 #include "drivers/openni/openni_device.hpp"
-#include "drivers/virtual_camera/camera_pictures.hpp"
+#include "drivers/virtual_camera/camera_images.hpp"
 #include "tests/test_files.hpp"
 
 namespace houghstream::openni {

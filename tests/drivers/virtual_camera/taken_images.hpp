@@ -14,7 +14,7 @@ class TakenImages {
  public:
   struct Image {
     OniFrame frame{};
-    cv::Mat picture;
+    cv::Mat image;
   };
 
   explicit TakenImages(oni::driver::StreamBase& stream) {
@@ -45,9 +45,9 @@ class TakenImages {
   static void ONI_CALLBACK_TYPE take(oni::driver::StreamBase*, OniFrame* frame, void* cookie) {
     auto* self = static_cast<TakenImages*>(cookie);
     const int type = frame->sensorType == ONI_SENSOR_DEPTH ? CV_16UC1 : CV_8UC3;
-    const cv::Mat picture(frame->height, frame->width, type, frame->data, static_cast<std::size_t>(frame->stride));
+    const cv::Mat image(frame->height, frame->width, type, frame->data, static_cast<std::size_t>(frame->stride));
     const std::lock_guard<std::mutex> lock(self->mutex_);
-    self->images_.push_back({*frame, picture.clone()});
+    self->images_.push_back({*frame, image.clone()});
     self->arrived_.notify_all();
   }
 

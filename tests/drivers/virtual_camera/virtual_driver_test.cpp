@@ -133,7 +133,7 @@ TEST(VirtualDriver, TwoSizesOfEqualWidthAreTwoModes) {
     const auto images = taken.wait(1);
     stream->stop();
     ASSERT_FALSE(images.empty());
-    EXPECT_EQ(images[0].picture.size(), cv::Size(64, i == 0 ? 48 : 36));
+    EXPECT_EQ(images[0].image.size(), cv::Size(64, i == 0 ? 48 : 36));
     device->destroyStream(stream);
   }
   oniDriverDeviceClose(device);

@@ -29,30 +29,30 @@ class VirtualStreamTest : public ::testing::Test {
   }
 
   const Camera camera{64, 48, 50.0, 60.0, 31.5, 23.5};
-  const PicturesBySize pictures{{{64, 48}, make_test_pattern(camera)}};
+  const ImagesBySize pictures{{{64, 48}, make_test_pattern(camera)}};
   const ScriptWatch script{std::filesystem::path()};
   VirtualDevice device{script, pictures, "TEST"};
   VirtualStream stream{device,
                        {ONI_SENSOR_DEPTH, {kLargeMode, kSmallMode}, {camera, {32, 24, 40.0, 40.0, 15.5, 11.5}}}};
   TakenImages taken{stream};
-  const cv::Mat picture = pictures.at({64, 48}).pictures[3].depth_mm;
+  const cv::Mat image = pictures.at({64, 48}).images[3].depth_mm;
 };
 
 TEST_F(VirtualStreamTest, PicturesAreSentWhileItRunsMirroredUnlessAskedOtherwise) {
-  stream.send(picture, 1, 100);
+  stream.send(image, 1, 100);
   stream.start();
-  stream.send(picture, 2, 200);
+  stream.send(image, 2, 200);
   EXPECT_EQ(set(ONI_STREAM_PROPERTY_MIRRORING, OniBool{FALSE}), ONI_STATUS_OK);
-  stream.send(picture, 3, 300);
+  stream.send(image, 3, 300);
   stream.stop();
-  stream.send(picture, 4, 400);
+  stream.send(image, 4, 400);
   const auto images = taken.wait(2);
   ASSERT_EQ(images.size(), 2U);
   cv::Mat mirrored;
-  cv::flip(picture, mirrored, 1);
-  ASSERT_GT(cv::norm(mirrored, picture, cv::NORM_INF), 0.0);
-  EXPECT_EQ(cv::norm(images[0].picture, mirrored, cv::NORM_INF), 0.0);
-  EXPECT_EQ(cv::norm(images[1].picture, picture, cv::NORM_INF), 0.0);
+  cv::flip(image, mirrored, 1);
+  ASSERT_GT(cv::norm(mirrored, image, cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(images[0].image, mirrored, cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(images[1].image, image, cv::NORM_INF), 0.0);
   EXPECT_EQ(images[1].frame.frameIndex, 3);
   EXPECT_EQ(images[1].frame.timestamp, 300U);
   EXPECT_EQ(images[1].frame.dataSize, 64 * 48 * 2);
@@ -70,7 +70,7 @@ TEST_F(VirtualStreamTest, OnlyItsModesCanBeSetAndOtherSizesAreNotSent) {
   EXPECT_EQ(get<OniVideoMode>(ONI_STREAM_PROPERTY_VIDEO_MODE).resolutionX, 32);
   EXPECT_EQ(get<int>(ONI_STREAM_PROPERTY_STRIDE), 64);
   stream.start();
-  stream.send(picture, 1, 100);
+  stream.send(image, 1, 100);
   stream.send(cv::Mat(24, 32, CV_16UC1, cv::Scalar(5)), 2, 200);
   const auto images = taken.wait(1);
   ASSERT_EQ(images.size(), 1U);

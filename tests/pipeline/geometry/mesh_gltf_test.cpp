@@ -32,22 +32,22 @@ void write_glb(std::string json, std::string binary, const fs::path& file) {
 }
 
 /// A triangle, 0.2 m along x and y, with texture coordinates and a picture of 4 x 2 pixels: left red, right blue.
-std::string triangle_bytes(std::size_t& picture_bytes) {
+std::string triangle_bytes(std::size_t& image_bytes) {
   const std::vector<float> numbers = {0, 0, 0, 0.2F, 0, 0, 0, 0.2F, 0, 0.1F, 0.25F, 0.9F, 0.25F, 0.1F, 0.75F};
   std::string binary(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float));
-  cv::Mat picture(2, 4, CV_8UC3, cv::Scalar(0, 0, 255));
-  picture.colRange(2, 4).setTo(cv::Scalar(255, 0, 0));
+  cv::Mat image(2, 4, CV_8UC3, cv::Scalar(0, 0, 255));
+  image.colRange(2, 4).setTo(cv::Scalar(255, 0, 0));
   std::vector<std::uint8_t> png;
-  cv::imencode(".png", picture, png);
+  cv::imencode(".png", image, png);
   binary.append(png.begin(), png.end());
-  picture_bytes = png.size();
+  image_bytes = png.size();
   return binary;
 }
 
 /// `material` as glTF writes one, or "" for none.
 fs::path write_triangle(const std::string& name, const std::string& material, double scale = 1.0) {
-  std::size_t picture_bytes = 0;
-  const std::string binary = triangle_bytes(picture_bytes);
+  std::size_t image_bytes = 0;
+  const std::string binary = triangle_bytes(image_bytes);
   const std::string use = material.empty() ? "" : R"(,"material":0)";
   const std::string materials = material.empty() ? "" : R"(,"materials":[)" + material + "]";
   const std::string json =
@@ -57,7 +57,7 @@ fs::path write_triangle(const std::string& name, const std::string& material, do
       R"(}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[0.2,0.2,0]},)"
       R"({"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"}],"bufferViews":[{"buffer":0,"byteOffset":0,)"
       R"("byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24},{"buffer":0,"byteOffset":60,"byteLength":)" +
-      std::to_string(picture_bytes) + R"(}],"buffers":[{"byteLength":)" + std::to_string(binary.size()) +
+      std::to_string(image_bytes) + R"(}],"buffers":[{"byteLength":)" + std::to_string(binary.size()) +
       R"(}],"images":[{"bufferView":2,"mimeType":"image/png"}],"textures":[{"source":0}])" + materials + "}";
   fs::path file = fresh_folder(name) / "part.glb";
   write_glb(json, binary, file);

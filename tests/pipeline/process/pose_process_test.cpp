@@ -106,14 +106,14 @@ TEST(PoseProcess, DetectionsOfAFrameThatIsNotThereAreCountedAndDropped) {
 }
 
 /// Poses that tell which picture they were computed on: the depth of its first pixel with one.
-ObjectPoses by_picture(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) {
+ObjectPoses by_image(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) {
   ObjectPoses poses = at_one_metre(frame, detections, earlier);
   const double depth = static_cast<double>(frame.depth.at<float>(0, 1));
   poses.poses[0].T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0, 0, depth));
   return poses;
 }
 
-images_t picture(std::int64_t utime, float depth) {
+images_t image(std::int64_t utime, float depth) {
   RgbdFrame frame = make_test_frame(utime);
   frame.depth.setTo(depth);
   return to_message(frame, WireFormat{}, utime);
@@ -123,12 +123,12 @@ TEST(PoseProcess, TwoCamerasOfEqualTimesGetPosesOfTheirOwnPictures) {
   ProcessOnMemq test({channel::kPoses, "BOWL_TO_LEFT", "BOWL_TO_RIGHT", "BOWL_TO_CAMERA"});
   PoseProcessOptions options;
   options.frame_channels = "LEFT|RIGHT";
-  test.start([&](LcmBus& bus) { run_pose_process(bus, options, by_picture); });
+  test.start([&](LcmBus& bus) { run_pose_process(bus, options, by_image); });
   constexpr std::size_t kFrames = 5;
   for (std::size_t i = 1; i <= kFrames; ++i) {
     const auto utime = static_cast<std::int64_t>(i);
-    test.bus.publish("LEFT", picture(utime, 1.0F));
-    test.bus.publish("RIGHT", picture(utime, 2.0F));
+    test.bus.publish("LEFT", image(utime, 1.0F));
+    test.bus.publish("RIGHT", image(utime, 2.0F));
     test.bus.publish(channel::kDetections, to_message(one_bowl(utime, "RIGHT")));
     test.bus.publish(channel::kDetections, to_message(one_bowl(utime, "LEFT")));
     ASSERT_TRUE(test.wait_for(channel::kPoses, 2 * i));

@@ -7,18 +7,18 @@ namespace {
 
 /// Stripes of two greys.
 cv::Mat striped(int dark, int bright) {
-  cv::Mat picture(48, 64, CV_8UC3);
-  for (int y = 0; y < picture.rows; ++y) picture.row(y).setTo(cv::Scalar::all(y / 4 % 2 == 0 ? dark : bright));
-  return picture;
+  cv::Mat image(48, 64, CV_8UC3);
+  for (int y = 0; y < image.rows; ++y) image.row(y).setTo(cv::Scalar::all(y / 4 % 2 == 0 ? dark : bright));
+  return image;
 }
 
 TEST(Tone, AnyPictureIsInTheRangeOfAll) {
-  cv::Mat picture = striped(0, 255);
-  const cv::Mat before = picture.clone();
-  const AffineBrightness curve = fit_affine_brightness(picture, {});
+  cv::Mat image = striped(0, 255);
+  const cv::Mat before = image.clone();
+  const AffineBrightness curve = fit_affine_brightness(image, {});
   EXPECT_FALSE(curve.changes());
-  apply_affine_brightness(curve, picture, picture);
-  EXPECT_EQ(cv::norm(picture, before, cv::NORM_INF), 0.0);
+  apply_affine_brightness(curve, image, image);
+  EXPECT_EQ(cv::norm(image, before, cv::NORM_INF), 0.0);
 }
 
 TEST(Tone, WhatIsInTheRangeStays) {
@@ -26,12 +26,12 @@ TEST(Tone, WhatIsInTheRangeStays) {
 }
 
 TEST(Tone, ContrastIsFlattenedAboutTheMean) {
-  cv::Mat picture = striped(40, 180);  // 110, deviation 70
-  const AffineBrightness curve = fit_affine_brightness(picture, {100.0F, 130.0F, 50.0F});
+  cv::Mat image = striped(40, 180);  // 110, deviation 70
+  const AffineBrightness curve = fit_affine_brightness(image, {100.0F, 130.0F, 50.0F});
   EXPECT_NEAR(curve.gain, 50.0F / 70.0F, 1e-5);
-  apply_affine_brightness(curve, picture, picture);
-  EXPECT_NEAR(picture.at<cv::Vec3b>(0, 0)[1], 60, 1);
-  EXPECT_NEAR(picture.at<cv::Vec3b>(4, 0)[1], 160, 1);
+  apply_affine_brightness(curve, image, image);
+  EXPECT_NEAR(image.at<cv::Vec3b>(0, 0)[1], 60, 1);
+  EXPECT_NEAR(image.at<cv::Vec3b>(4, 0)[1], 160, 1);
 }
 
 TEST(Tone, ContrastIsFlattenedToNoLessThanSixTenths) {
@@ -48,8 +48,8 @@ TEST(Tone, DarkAndBrightPicturesComeIntoTheRange) {
 }
 
 TEST(Tone, APictureOfOnePixelHasATone) {
-  cv::Mat picture(1, 1, CV_8UC3, cv::Scalar(255, 0, 0));
-  EXPECT_NEAR(fit_affine_brightness(picture, {100.0F, 130.0F, 50.0F}).offset, 100.0F - 29.07F, 0.01F);
+  cv::Mat image(1, 1, CV_8UC3, cv::Scalar(255, 0, 0));
+  EXPECT_NEAR(fit_affine_brightness(image, {100.0F, 130.0F, 50.0F}).offset, 100.0F - 29.07F, 0.01F);
 }
 
 }  // namespace

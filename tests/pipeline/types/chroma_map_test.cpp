@@ -101,11 +101,11 @@ TEST(ChromaMap, FarFromAllThatIsExpectedItStaysFinite) {
 }
 
 TEST(ChromaMap, APictureInBlackAndWhiteIsColourless) {
-  cv::Mat picture(480, 640, CV_8UC3);
-  for (int y = 0; y < picture.rows; ++y) picture.row(y).setTo(cv::Scalar::all(y % 250));
-  EXPECT_TRUE(is_colourless(picture));
-  picture(cv::Rect(100, 100, 60, 60)).setTo(cv::Scalar(40, 40, 160));
-  EXPECT_FALSE(is_colourless(picture));
+  cv::Mat image(480, 640, CV_8UC3);
+  for (int y = 0; y < image.rows; ++y) image.row(y).setTo(cv::Scalar::all(y % 250));
+  EXPECT_TRUE(is_colourless(image));
+  image(cv::Rect(100, 100, 60, 60)).setTo(cv::Scalar(40, 40, 160));
+  EXPECT_FALSE(is_colourless(image));
   EXPECT_EQ(colourless_camera().apply({40.0, 30.0}, 50.0), Eigen::Vector2d::Zero());
 }
 

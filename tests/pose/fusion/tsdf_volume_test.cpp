@@ -71,7 +71,7 @@ TEST(TsdfVolume, BesideTheImagesIsFreeBesideThePictureNothingIsKnown) {
   };
   EXPECT_EQ(weight_at(-0.2), 1.0F);  // left of the images
   EXPECT_EQ(weight_at(0.2), 1.0F);   // right of them
-  view.picture = cv::Rect(0, -80, 440, 480);
+  view.image = cv::Rect(0, -80, 440, 480);
   EXPECT_EQ(weight_at(-0.2), 0.0F);
   EXPECT_EQ(weight_at(0.2), 1.0F);
 }

@@ -82,17 +82,17 @@ TEST(ModelPicture, ShowsTheModelFromAllSides) {
   Mesh mesh = test_scene::cereal_box();
   mesh.colours.assign(mesh.vertices.size(), cv::Vec3b(10, 20, 200));
   compute_normals(mesh);
-  const cv::Mat picture = draw_model(mesh);
+  const cv::Mat image = draw_model(mesh);
   constexpr int kViews = 6;
-  ASSERT_EQ(picture.cols % kViews, 0);
-  const int size = picture.cols / kViews;
-  ASSERT_EQ(picture.rows, 2 * size);
+  ASSERT_EQ(image.cols % kViews, 0);
+  const int size = image.cols / kViews;
+  ASSERT_EQ(image.rows, 2 * size);
   for (int k = 0; k < kViews; ++k) {
-    EXPECT_EQ(picture.at<cv::Vec3b>(size / 2, k * size + size / 2), cv::Vec3b(10, 20, 200)) << "view " << k;
-    EXPECT_EQ(picture.at<cv::Vec3b>(3, k * size + 3), cv::Vec3b::all(255)) << "view " << k;
+    EXPECT_EQ(image.at<cv::Vec3b>(size / 2, k * size + size / 2), cv::Vec3b(10, 20, 200)) << "view " << k;
+    EXPECT_EQ(image.at<cv::Vec3b>(3, k * size + 3), cv::Vec3b::all(255)) << "view " << k;
   }
   cv::Mat seen;
-  cv::inRange(picture(cv::Rect(0, 0, size, size)), cv::Scalar(10, 20, 200), cv::Scalar(10, 20, 200), seen);
+  cv::inRange(image(cv::Rect(0, 0, size, size)), cv::Scalar(10, 20, 200), cv::Scalar(10, 20, 200), seen);
   EXPECT_GT(cv::boundingRect(seen).height, cv::boundingRect(seen).width) << "upright";
 }
 

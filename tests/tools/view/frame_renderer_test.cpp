@@ -11,47 +11,47 @@
 namespace houghstream::view {
 namespace {
 
-FrameRendererSettings to_pictures(const std::string& name) {
+FrameRendererSettings to_images(const std::string& name) {
   FrameRendererSettings settings;
-  settings.outputs.pictures = fresh_folder("frame_show_" + name);
+  settings.outputs.images = fresh_folder("frame_show_" + name);
   return settings;
 }
 
 TEST(FrameRenderer, DrawsAFrameToTheFilesAskedFor) {
   WatchedBus watched;
-  FrameRendererSettings settings = to_pictures("draws");
+  FrameRendererSettings settings = to_images("draws");
   FrameRenderer frame_show(settings);
   frame_show.show(matched_frame(5), watched.watcher);
   frame_show.finish();
-  const cv::Mat picture = cv::imread((settings.outputs.pictures / "5.jpg").string());
+  const cv::Mat image = cv::imread((settings.outputs.images / "5.jpg").string());
   const RgbdFrame frame = make_test_frame(5);
-  EXPECT_GE(picture.cols, 2 * frame.colour.cols) << "colour, and depth beside it";
-  EXPECT_GT(picture.rows, frame.colour.rows) << "and a panel below";
+  EXPECT_GE(image.cols, 2 * frame.colour.cols) << "colour, and depth beside it";
+  EXPECT_GT(image.rows, frame.colour.rows) << "and a panel below";
   EXPECT_TRUE(frame_show.handle_keys(watched.watcher)) << "without a window nobody asks to end";
   EXPECT_EQ(watched.last_words().frames_processed, 1);
 }
 
 TEST(FrameRenderer, APausedFrameIsSkipped) {
   WatchedBus watched;
-  FrameRendererSettings settings = to_pictures("paused");
-  settings.picture.paused = true;
+  FrameRendererSettings settings = to_images("paused");
+  settings.image.paused = true;
   FrameRenderer frame_show(settings);
   frame_show.show(matched_frame(5), watched.watcher);
-  EXPECT_TRUE(std::filesystem::is_empty(settings.outputs.pictures));
+  EXPECT_TRUE(std::filesystem::is_empty(settings.outputs.images));
   EXPECT_EQ(watched.last_words().frames_skipped, 1);
 }
 
 TEST(FrameRenderer, WhatCannotBeUnderstoodIsRefusedAndTheNextOneIsShown) {
   WatchedBus watched;
-  FrameRendererSettings settings = to_pictures("refused");
+  FrameRendererSettings settings = to_images("refused");
   FrameRenderer frame_show(settings);
   MatchedFrame cut = matched_frame(5);
   cut.frame_bytes.resize(cut.frame_bytes.size() / 2);
   frame_show.show(cut, watched.watcher);
   frame_show.show(matched_frame_without_camera(6), watched.watcher);
-  EXPECT_TRUE(std::filesystem::is_empty(settings.outputs.pictures));
+  EXPECT_TRUE(std::filesystem::is_empty(settings.outputs.images));
   frame_show.show(matched_frame(7), watched.watcher);
-  EXPECT_TRUE(std::filesystem::exists(settings.outputs.pictures / "7.jpg"));
+  EXPECT_TRUE(std::filesystem::exists(settings.outputs.images / "7.jpg"));
   const status_t status = watched.last_words();
   EXPECT_EQ(status.frames_refused, 2);
   EXPECT_EQ(status.frames_processed, 1);
@@ -59,11 +59,11 @@ TEST(FrameRenderer, WhatCannotBeUnderstoodIsRefusedAndTheNextOneIsShown) {
 
 TEST(FrameRenderer, ACameraMayBeGivenForFramesWithoutOne) {
   WatchedBus watched;
-  FrameRendererSettings settings = to_pictures("camera");
+  FrameRendererSettings settings = to_images("camera");
   settings.camera = make_test_frame(1).camera;
   FrameRenderer frame_show(settings);
   frame_show.show(matched_frame_without_camera(6), watched.watcher);
-  EXPECT_TRUE(std::filesystem::exists(settings.outputs.pictures / "6.jpg"));
+  EXPECT_TRUE(std::filesystem::exists(settings.outputs.images / "6.jpg"));
 }
 
 TEST(FrameRenderer, ASnapshotAloneIsSoonComplete) {
@@ -80,12 +80,12 @@ TEST(FrameRenderer, ARowOrAColumnOfPixelsIsDrawnEverywhereAndEndsNothing) {
   for (const cv::Size size : {cv::Size(16384, 1), cv::Size(1, 16384)}) {
     for (const bool show_3d : {false, true}) {
       WatchedBus watched;
-      FrameRendererSettings settings = to_pictures("long");
-      settings.outputs.snapshot = settings.outputs.pictures / "shot.jpg";
-      settings.outputs.video = settings.outputs.pictures / "video.mp4";
+      FrameRendererSettings settings = to_images("long");
+      settings.outputs.snapshot = settings.outputs.images / "shot.jpg";
+      settings.outputs.video = settings.outputs.images / "video.mp4";
       settings.preview = true;
-      settings.picture.show_3d = show_3d;
-      settings.picture.show_world = !show_3d;
+      settings.image.show_3d = show_3d;
+      settings.image.show_world = !show_3d;
       FrameRenderer frame_show(settings);
       MatchedFrame odd = matched_frame(5);
       odd.frame_bytes = encode_message(to_message(make_test_frame(5, size.width, size.height), WireFormat{}, 0));
@@ -96,7 +96,7 @@ TEST(FrameRenderer, ARowOrAColumnOfPixelsIsDrawnEverywhereAndEndsNothing) {
       frame_show.show(usual, watched.watcher);
       frame_show.finish();
       for (const char* file : {"shot.jpg", "video.mp4", "5.jpg", "6.jpg"})
-        EXPECT_TRUE(std::filesystem::exists(settings.outputs.pictures / file)) << file << size;
+        EXPECT_TRUE(std::filesystem::exists(settings.outputs.images / file)) << file << size;
       EXPECT_EQ(watched.last_words().frames_processed, 2) << size;
     }
   }
@@ -105,7 +105,7 @@ TEST(FrameRenderer, ARowOrAColumnOfPixelsIsDrawnEverywhereAndEndsNothing) {
 /// The share of the picture in which two files differ.
 double difference(const FrameRendererSettings& settings, int one, int other) {
   const auto read = [&](int utime) {
-    return cv::imread((settings.outputs.pictures / (std::to_string(utime) + ".jpg")).string());
+    return cv::imread((settings.outputs.images / (std::to_string(utime) + ".jpg")).string());
   };
   cv::Mat different;
   cv::absdiff(read(one)(cv::Rect(0, 0, 64, 48)), read(other)(cv::Rect(0, 0, 64, 48)), different);
@@ -114,7 +114,7 @@ double difference(const FrameRendererSettings& settings, int one, int other) {
 
 TEST(FrameRenderer, AStoreThatChangesIsFollowed) {
   WatchedBus watched;
-  FrameRendererSettings settings = to_pictures("store");
+  FrameRendererSettings settings = to_images("store");
   settings.objects = store::whole_store("frame_show_objects");
   FrameRenderer frame_show(settings);
   const auto show = [&](int utime) {
@@ -149,7 +149,7 @@ TEST(FrameRenderer, AStoreThatChangesIsFollowed) {
 
 TEST(FrameRenderer, WithoutModelsWhatIsFollowedIsShownToo) {
   WatchedBus watched;
-  FrameRendererSettings settings = to_pictures("followed");
+  FrameRendererSettings settings = to_images("followed");
   FrameRenderer frame_show(settings);
   frame_show.show(matched_frame(1), watched.watcher);
   MatchedFrame matched = matched_frame(2);
@@ -167,7 +167,7 @@ TEST(FrameRenderer, WithoutModelsWhatIsFollowedIsShownToo) {
 }
 
 TEST(FrameRenderer, NoModelsOrNoPictureAtAllIsAnError) {
-  FrameRendererSettings settings = to_pictures("none");
+  FrameRendererSettings settings = to_images("none");
   FrameRenderer frame_show(settings);
   EXPECT_THROW(frame_show.finish(), InputError);
   settings.models = "/no/such/models";

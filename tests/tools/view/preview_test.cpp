@@ -9,15 +9,15 @@ namespace houghstream::view {
 namespace {
 
 cv::Mat noise(int width, int height) {
-  cv::Mat picture(height, width, CV_8UC3);
+  cv::Mat image(height, width, CV_8UC3);
   cv::theRNG().state = 1;
-  cv::randu(picture, 0, 256);
-  return picture;
+  cv::randu(image, 0, 256);
+  return image;
 }
 
 TEST(Preview, AnEasyPictureKeepsItsSize) {
-  const cv::Mat picture(600, 1280, CV_8UC3, cv::Scalar(10, 100, 200));
-  const PreviewPicture preview = encode_preview(picture);
+  const cv::Mat image(600, 1280, CV_8UC3, cv::Scalar(10, 100, 200));
+  const PreviewImage preview = encode_preview(image);
   EXPECT_EQ(preview.width, 1280);
   EXPECT_EQ(preview.height, 600);
   const cv::Mat decoded = decode_jpeg({preview.jpeg.data(), preview.jpeg.size()}, 1280, 600);
@@ -25,14 +25,14 @@ TEST(Preview, AnEasyPictureKeepsItsSize) {
 }
 
 TEST(Preview, EvenNoiseFitsTheReceiveBuffer) {
-  const PreviewPicture preview = encode_preview(noise(1280, 646));
+  const PreviewImage preview = encode_preview(noise(1280, 646));
   EXPECT_LE(preview.jpeg.size(), kMaxPreviewBytes);
   EXPECT_GT(preview.width, 200);
   EXPECT_FALSE(decode_jpeg({preview.jpeg.data(), preview.jpeg.size()}, preview.width, preview.height).empty());
 }
 
 TEST(Preview, TheSmallestPictureIsOne) {
-  const PreviewPicture preview = encode_preview(noise(1, 1));
+  const PreviewImage preview = encode_preview(noise(1, 1));
   EXPECT_EQ(preview.width, 1);
   EXPECT_EQ(preview.height, 1);
 }

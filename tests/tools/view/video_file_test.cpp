@@ -32,7 +32,7 @@ TEST(VideoFile, LastsAsLongAsTheStreamThoughSlotsWereSkipped) {
   ASSERT_TRUE(written.isOpened());
   EXPECT_DOUBLE_EQ(written.get(cv::CAP_PROP_FPS), 10.0);
   std::vector<int> levels;
-  for (cv::Mat picture; written.read(picture);) levels.push_back(static_cast<int>(cv::mean(picture)[0]));
+  for (cv::Mat image; written.read(image);) levels.push_back(static_cast<int>(cv::mean(image)[0]));
   ASSERT_EQ(levels.size(), 5U);
   EXPECT_NEAR(levels[2], 20, 6);
   EXPECT_NEAR(levels[3], 120, 6);
@@ -48,11 +48,11 @@ TEST(VideoFile, FitsInWhatHasAnotherSize) {
   video.add(cv::Mat(cv::Size(1, 1), CV_8UC3, cv::Scalar::all(200)), 2);
   video.finish();
   cv::VideoCapture written(file.string());
-  cv::Mat picture;
-  ASSERT_TRUE(written.read(picture) && written.read(picture));
-  EXPECT_EQ(picture.size(), kSize);
-  EXPECT_LT(picture.at<cv::Vec3b>(24, 2)[0], 60) << "black beside a narrower one";
-  EXPECT_GT(picture.at<cv::Vec3b>(24, 32)[0], 140);
+  cv::Mat image;
+  ASSERT_TRUE(written.read(image) && written.read(image));
+  EXPECT_EQ(image.size(), kSize);
+  EXPECT_LT(image.at<cv::Vec3b>(24, 2)[0], 60) << "black beside a narrower one";
+  EXPECT_GT(image.at<cv::Vec3b>(24, 32)[0], 140);
   std::filesystem::remove(file);
 }
 
@@ -64,10 +64,10 @@ TEST(VideoFile, ALongFirstPictureLeavesTheNextOnesLegible) {
     video.add(cv::Mat(cv::Size(640, 480), CV_8UC3, cv::Scalar::all(200)), 1);
     video.finish();
     cv::VideoCapture written(file.string());
-    cv::Mat picture;
-    ASSERT_TRUE(written.read(picture) && written.read(picture)) << size;
-    EXPECT_LE(std::max(picture.cols, picture.rows), 8192) << size;
-    EXPECT_GE(std::min(picture.cols, picture.rows), size.area() > 1 ? 1024 : 2) << size;
+    cv::Mat image;
+    ASSERT_TRUE(written.read(image) && written.read(image)) << size;
+    EXPECT_LE(std::max(image.cols, image.rows), 8192) << size;
+    EXPECT_GE(std::min(image.cols, image.rows), size.area() > 1 ? 1024 : 2) << size;
   }
   std::filesystem::remove(file);
 }
@@ -113,9 +113,9 @@ TEST(VideoFile, WhatAFullDiskCutsTakesNobodysPlace) {
 
 /// Noise, which does not compress: what a killed program has handed to the encoder reaches the file soon.
 cv::Mat noise(int seed) {
-  cv::Mat picture(kSize, CV_8UC3);
-  cv::RNG(static_cast<std::uint64_t>(seed)).fill(picture, cv::RNG::UNIFORM, 0, 256);
-  return picture;
+  cv::Mat image(kSize, CV_8UC3);
+  cv::RNG(static_cast<std::uint64_t>(seed)).fill(image, cv::RNG::UNIFORM, 0, 256);
+  return image;
 }
 
 TEST(VideoFile, WhatAKilledProgramHasDrawnCanBePlayed) {
@@ -136,7 +136,7 @@ TEST(VideoFile, WhatAKilledProgramHasDrawnCanBePlayed) {
   cv::VideoCapture interrupted((folder / "video.interrupted-1.mkv").string());
   ASSERT_TRUE(interrupted.isOpened());
   int frames = 0;
-  for (cv::Mat picture; interrupted.read(picture); ++frames) EXPECT_EQ(picture.size(), kSize);
+  for (cv::Mat image; interrupted.read(image); ++frames) EXPECT_EQ(image.size(), kSize);
   EXPECT_GE(frames, kFrames / 2) << "but for the last ten seconds, which encoder and format hold back";
   std::filesystem::remove_all(folder);
 }
@@ -151,7 +151,7 @@ TEST(VideoFile, EachFormatHoldsAllFramesAtTheRate) {
       cv::VideoCapture written((folder / name).string());
       EXPECT_NEAR(written.get(cv::CAP_PROP_FPS), rate_hz, 0.01) << name;
       int frames = 0;
-      for (cv::Mat picture; written.read(picture);) ++frames;
+      for (cv::Mat image; written.read(image);) ++frames;
       EXPECT_EQ(frames, 70) << name << " " << rate_hz;
     }
   }

@@ -52,13 +52,13 @@ TEST(ViewOutputs, VideoAndPicturesGoOnAfterTheSnapshot) {
   OutputSettings settings;
   settings.snapshot = folder / "shot.png";
   settings.video = folder / "video.mp4";
-  settings.pictures = folder / "pictures";
+  settings.images = folder / "pictures";
   ViewOutputs outputs(settings);
   outputs.add(grey(10), 111, 0);
   EXPECT_FALSE(outputs.complete());
   outputs.add(grey(20), 222, 1);
   outputs.finish();
-  EXPECT_NEAR(level_of(settings.pictures / "222.jpg"), 20, 2);
+  EXPECT_NEAR(level_of(settings.images / "222.jpg"), 20, 2);
   EXPECT_GT(fs::file_size(settings.video), 0U);
 }
 
@@ -66,15 +66,15 @@ TEST(ViewOutputs, PicturesAndVideosThatAreThereStay) {
   const fs::path folder = fresh_folder("view_outputs_again");
   OutputSettings settings;
   settings.video = folder / "video.mp4";
-  settings.pictures = folder / "pictures";
+  settings.images = folder / "pictures";
   for (const int level : {10, 60, 110}) {
     settings.replace = level == 110;
     ViewOutputs outputs(settings);
     outputs.add(grey(level), 222, 0);
     outputs.finish();
   }
-  EXPECT_NEAR(level_of(settings.pictures / "222.jpg"), 110, 2);
-  EXPECT_NEAR(level_of(settings.pictures / "222_2.jpg"), 60, 2);
+  EXPECT_NEAR(level_of(settings.images / "222.jpg"), 110, 2);
+  EXPECT_NEAR(level_of(settings.images / "222_2.jpg"), 60, 2);
   EXPECT_TRUE(fs::exists(settings.video) && fs::exists(folder / "video_2.mp4"));
   EXPECT_FALSE(fs::exists(folder / "video_3.mp4"));
 }

@@ -100,8 +100,8 @@ DrawnBoxes read_uw_scene(const fs::path& folder, const Camera& camera) {
           file.string(), drawn.frames.size(), frames_there, folder.string());
   for (const DrawnFrame& frame : drawn.frames) {
     for (const char* ending : {".png", "_depth.png"}) {
-      const fs::path picture = folder / (frame.name + ending);
-      require(fs::exists(picture), "{}: missing, expected as frame {} of the annotated video", picture.string(),
+      const fs::path image = folder / (frame.name + ending);
+      require(fs::exists(image), "{}: missing, expected as frame {} of the annotated video", image.string(),
               &frame - drawn.frames.data() + 1);
     }
   }

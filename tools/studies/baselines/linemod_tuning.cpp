@@ -105,7 +105,7 @@ Matches match_all(const LinemodTemplates& templates, const ComposedExamples& exa
 }  // namespace
 
 ComposedExamples compose_examples(const std::vector<TrainingView>& views, float min_distance, float max_distance,
-                                  int pictures) {
+                                  int images) {
   constexpr int kShownOneIn = 4;
   constexpr std::uint64_t kSeed = 20110701;
   constexpr training::ComposedThings kThings = {4, 2, 0};
@@ -128,7 +128,7 @@ ComposedExamples compose_examples(const std::vector<TrainingView>& views, float 
   training::AugmentationSettings settings;
   settings.min_distance = min_distance;
   settings.max_distance = max_distance;
-  for (std::size_t f = 0; f < static_cast<std::size_t>(pictures); ++f) {
+  for (std::size_t f = 0; f < static_cast<std::size_t>(images); ++f) {
     Random random = Random::for_item(kSeed, f);
     const training::ValidationFrame composed =
         training::make_validation_frame(shown, rooms[f % rooms.size()]->frame, kThings, settings, random);
@@ -139,9 +139,9 @@ ComposedExamples compose_examples(const std::vector<TrainingView>& views, float 
 }
 
 void tune_linemod(const std::vector<TrainingView>& views, const LinemodTemplateSettings& base,
-                  const LinemodSelection& base_selection, int pictures,
+                  const LinemodSelection& base_selection, int images,
                   const std::function<void(const LinemodTrial&)>& report) {
-  const ComposedExamples examples = compose_examples(views, base.min_distance, base.max_distance, pictures);
+  const ComposedExamples examples = compose_examples(views, base.min_distance, base.max_distance, images);
   for (const LinemodTemplateSettings& settings : template_grid(base)) {
     const LinemodTemplates templates(examples.taught, settings);
     LinemodTrial trial;

@@ -22,7 +22,7 @@ struct ComposedExamples {
 /// `pictures` of up to four views each at these distances (metres), lit and partly hidden as make_validation_frame()
 /// does; the same for the same views. Throws InputError without background or with less than four views of each class.
 ComposedExamples compose_examples(const std::vector<TrainingView>& views, float min_distance, float max_distance,
-                                  int pictures);
+                                  int images);
 
 /// How one choice of settings fared on composed pictures.
 struct LinemodTrial {
@@ -40,7 +40,7 @@ struct LinemodTrial {
 /// the other three, so that no picture shows what a template was made of. `report` gets each trial as it is done.
 /// The match threshold is that of `base_selection`: what it costs and loses shows by tuning again with another.
 void tune_linemod(const std::vector<TrainingView>& views, const LinemodTemplateSettings& base,
-                  const LinemodSelection& base_selection, int pictures,
+                  const LinemodSelection& base_selection, int images,
                   const std::function<void(const LinemodTrial&)>& report);
 
 }  // namespace houghstream

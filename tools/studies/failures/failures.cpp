@@ -105,13 +105,13 @@ cv::Mat draw_failure(const Failure& failure, const cv::Mat& colour) {
   const double scale = static_cast<double>(kTileWidth) / part.width;
   const bool missed = failure.kind == Failure::Kind::kMissed;
   cv::Mat tile(kCaptionHeight + kTileHeight, kTileWidth, CV_8UC3, cv::Scalar(0, 0, 0));
-  cv::Mat picture = tile.rowRange(kCaptionHeight, tile.rows);
-  cv::resize(colour(part), picture, picture.size(), 0, 0, cv::INTER_LINEAR);
+  cv::Mat image = tile.rowRange(kCaptionHeight, tile.rows);
+  cv::resize(colour(part), image, image.size(), 0, 0, cv::INTER_LINEAR);
   const cv::Point2f corner = scale * (failure.box_px.tl() - cv::Point2f(part.tl()));
   const cv::Rect box(corner, cv::Size2f(static_cast<float>(scale) * failure.box_px.width,
                                         static_cast<float>(scale) * failure.box_px.height));
-  cv::rectangle(picture, box, cv::Scalar(20, 20, 20), 4);
-  cv::rectangle(picture, box, missed ? cv::Scalar(60, 220, 255) : cv::Scalar(80, 80, 255), 2);
+  cv::rectangle(image, box, cv::Scalar(20, 20, 20), 4);
+  cv::rectangle(image, box, missed ? cv::Scalar(60, 220, 255) : cv::Scalar(80, 80, 255), 2);
   const std::string words = missed
                                 ? fmt::format("missed: {}, {:.0f} % visible", failure.class_name, 100 * failure.weight)
                                 : fmt::format("false: {} {:.2f}", failure.class_name, failure.weight);

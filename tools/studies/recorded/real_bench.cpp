@@ -89,8 +89,8 @@ RealBench run_real_bench(const std::filesystem::path& scenes, const DrawnBoxes& 
     const bool is_compared = reference != object.references.end();
     if (is_compared) bench.compared.push_back(compare(pair.name, reference->second, poses, object));
     const std::string title = title_of(pair.name, is_compared ? &bench.compared.back() : nullptr);
-    bench.pictures.push_back(draw_poses(frame, poses, withheld, method.models, title));
-    bench.pictures.push_back(paint_models(frame, poses, method.models));
+    bench.images.push_back(draw_poses(frame, poses, withheld, method.models, title));
+    bench.images.push_back(paint_models(frame, poses, method.models));
   }
   require(bench.compared.size() == object.references.size(), "{}: {} of the {} frames with reference poses",
           scenes.string(), bench.compared.size(), object.references.size());

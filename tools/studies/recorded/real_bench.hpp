@@ -27,7 +27,7 @@ struct ComparedObject {
 struct RealBench {
   std::vector<ComparedFrame> compared;  ///< frames with a reference, in natural order
   int poses = 0;                        ///< valid ones, of all classes in all frames
-  std::vector<cv::Mat> pictures;        ///< of every frame two: draw_poses, paint_models
+  std::vector<cv::Mat> images;          ///< of every frame two: draw_poses, paint_models
 };
 
 /// What makes the poses.

@@ -58,8 +58,8 @@ void run(const BenchOptions& options) {
   write_json(to_json(bench, object), options.out / "poses.json");
   write_png(draw_model(object.scan.mesh), options.out / (options.object + ".png"));
   int sheet = 0;
-  for (const cv::Mat& picture : make_sheets(bench.pictures)) {
-    write_png(picture, options.out / fmt::format("sheet_{}.png", ++sheet));
+  for (const cv::Mat& image : make_sheets(bench.images)) {
+    write_png(image, options.out / fmt::format("sheet_{}.png", ++sheet));
   }
   const AgreementSummary summary = summarise(bench.compared);
   fmt::print("{}: {} of {} frames within 5 mm and 5 degrees, {} with a pose; pictures in {}\n", options.object,

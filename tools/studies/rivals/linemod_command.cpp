@@ -106,8 +106,8 @@ void evaluate_scenes(const LinemodOptions& options) {
 
 void tune(const LinemodOptions& options) {
   fmt::print("features step weak templates check_depth AUC best_f1 at_score match_ms select_ms\n");
-  constexpr int kPictures = 60;
-  tune_linemod(read_training_sources(options.sources), options.templates, options.selection, kPictures,
+  constexpr int kImages = 60;
+  tune_linemod(read_training_sources(options.sources), options.templates, options.selection, kImages,
                [](const LinemodTrial& trial) {
                  const std::string check = trial.selection.check_depth
                                                ? fmt::format("{:.2f}", trial.selection.depth_tolerance)

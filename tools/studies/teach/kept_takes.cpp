@@ -19,14 +19,14 @@ namespace fs = std::filesystem;
 using FramePlace = std::pair<std::size_t, std::size_t>;  // scene, frame
 
 /// Of the pixels.
-std::uint64_t fingerprint(const cv::Mat& picture) {
+std::uint64_t fingerprint(const cv::Mat& image) {
   std::uint64_t hash = fnv1a(nullptr, 0);
-  for (int y = 0; y < picture.rows; ++y)
-    hash = fnv1a(picture.ptr(y), static_cast<std::size_t>(picture.cols) * picture.elemSize(), hash);
+  for (int y = 0; y < image.rows; ++y)
+    hash = fnv1a(image.ptr(y), static_cast<std::size_t>(image.cols) * image.elemSize(), hash);
   return hash;
 }
 
-std::map<std::uint64_t, FramePlace> places_of_pictures(const TrueTakes& takes) {
+std::map<std::uint64_t, FramePlace> places_of_images(const TrueTakes& takes) {
   std::map<std::uint64_t, FramePlace> places;
   for (std::size_t s = 0; s < takes.scenes.size(); ++s) {
     for (std::size_t f = 0; f < takes.scenes[s].images().size(); ++f)
@@ -99,7 +99,7 @@ std::vector<ShownPose> read_camera_poses(const fs::path& file) {
 }
 
 std::vector<KeptView> read_kept_views(const fs::path& folder, const TrueTakes& takes) {
-  const std::map<std::uint64_t, FramePlace> places = places_of_pictures(takes);
+  const std::map<std::uint64_t, FramePlace> places = places_of_images(takes);
   std::vector<KeptView> views;
   for (const fs::path& scene_folder : scene_folders(folder)) {
     const BopScene scene(scene_folder);

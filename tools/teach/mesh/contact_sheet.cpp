@@ -72,31 +72,31 @@ std::string title_of(const store::StoredObject& object) {
                      object.shape_symmetry ? "; shape symmetries: " + symmetry_words(*object.shape_symmetry) : "");
 }
 
-void write_title(const std::string& title, cv::Mat& view_picture) {
-  view_picture.rowRange(0, kTitle_px).setTo(kGround);
-  cv::putText(view_picture, title, {4, kTitle_px - 8}, cv::FONT_HERSHEY_SIMPLEX, 0.55, {255, 255, 255}, 1, cv::LINE_AA);
+void write_title(const std::string& title, cv::Mat& view_image) {
+  view_image.rowRange(0, kTitle_px).setTo(kGround);
+  cv::putText(view_image, title, {4, kTitle_px - 8}, cv::FONT_HERSHEY_SIMPLEX, 0.55, {255, 255, 255}, 1, cv::LINE_AA);
 }
 
-cv::Mat view_picture(const std::vector<TrainingView>& views, const std::string& title) {
+cv::Mat view_image(const std::vector<TrainingView>& views, const std::string& title) {
   const int rows = kShown / kColumns;
-  cv::Mat picture(kTitle_px + rows * kTile_px, kColumns * kTile_px, CV_8UC3, kGround);
-  write_title(title, picture);
+  cv::Mat image(kTitle_px + rows * kTile_px, kColumns * kTile_px, CV_8UC3, kGround);
+  write_title(title, image);
   const int count = static_cast<int>(views.size());
   for (int i = 0; i < std::min(kShown, count); ++i) {
     const std::size_t which = static_cast<std::size_t>(count <= kShown ? i : i * (count - 1) / (kShown - 1));
     const cv::Mat tile = tile_of(views[which]);
-    tile.copyTo(picture({{i % kColumns * kTile_px + 1, kTitle_px + i / kColumns * kTile_px + 1}, tile.size()}));
+    tile.copyTo(image({{i % kColumns * kTile_px + 1, kTitle_px + i / kColumns * kTile_px + 1}, tile.size()}));
   }
-  return picture;
+  return image;
 }
 
-void write_contact_sheet(const std::vector<std::filesystem::path>& pictures, const std::filesystem::path& sheet) {
+void write_contact_sheet(const std::vector<std::filesystem::path>& images, const std::filesystem::path& sheet) {
   cv::Mat all;
-  for (const std::filesystem::path& file : pictures) {
-    const cv::Mat picture = read_colour_image(file);
-    require(all.empty() || picture.cols == all.cols, "{}: {} pixels wide, expected {} as the others are", file.string(),
-            picture.cols, all.cols);
-    all.push_back(picture);
+  for (const std::filesystem::path& file : images) {
+    const cv::Mat image = read_colour_image(file);
+    require(all.empty() || image.cols == all.cols, "{}: {} pixels wide, expected {} as the others are", file.string(),
+            image.cols, all.cols);
+    all.push_back(image);
   }
   write_image(all, sheet);
 }

@@ -18,13 +18,13 @@ std::string title_of(const store::StoredObject& object);
 
 /// Two dozen of an object's views, spread over all of them, side by side under a title, for a person to look at.
 /// CV_8UC3, the same width for every object.
-cv::Mat view_picture(const std::vector<TrainingView>& views, const std::string& title);
+cv::Mat view_image(const std::vector<TrainingView>& views, const std::string& title);
 
 /// Another title above them.
-void write_title(const std::string& title, cv::Mat& view_picture);
+void write_title(const std::string& title, cv::Mat& view_image);
 
 /// The pictures below one another. Throws InputError where one cannot be read or has another width, or the sheet cannot
 /// be written.
-void write_contact_sheet(const std::vector<std::filesystem::path>& pictures, const std::filesystem::path& sheet);
+void write_contact_sheet(const std::vector<std::filesystem::path>& images, const std::filesystem::path& sheet);
 
 }  // namespace houghstream::teach

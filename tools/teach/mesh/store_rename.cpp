@@ -42,13 +42,13 @@ void write_names(const ObjectStore& store) {
   write_bop_names(names, store.models_folder() / "names.json");
 }
 
-void write_pictures(const ObjectStore& store, const StoredObject& renamed) {
-  cv::Mat picture = read_colour_image(store.view_picture(renamed.id));
-  write_title(title_of(renamed), picture);
-  write_png(picture, store.view_picture(renamed.id));
-  std::vector<fs::path> pictures;
-  for (const StoredObject& object : store.objects) pictures.push_back(store.view_picture(object.id));
-  write_contact_sheet(pictures, store.contact_sheet());
+void write_images(const ObjectStore& store, const StoredObject& renamed) {
+  cv::Mat image = read_colour_image(store.view_image(renamed.id));
+  write_title(title_of(renamed), image);
+  write_png(image, store.view_image(renamed.id));
+  std::vector<fs::path> images;
+  for (const StoredObject& object : store.objects) images.push_back(store.view_image(object.id));
+  write_contact_sheet(images, store.contact_sheet());
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
   }
   save_forest(forest, store.forest_file());
   write_names(store);
-  write_pictures(store, store::find_object(store, new_name));
+  write_images(store, store::find_object(store, new_name));
   store::write_store_json(store);
   load_store_forest(store::read_store(build.folder()));  // what nothing can read takes no store's place
   build.commit();

@@ -118,7 +118,7 @@ std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, cons
     object.attitudes = options.attitudes;
     object.shape_symmetry = find_shape_symmetry(taught.mesh);
     report(title_of(object));
-    write_png(view_picture(views, title_of(object)), made.view_picture(object.id));
+    write_png(view_image(views, title_of(object)), made.view_image(object.id));
     if (!options.dump_views.empty()) dump_views(views, options.dump_views / fmt::format("{:06d}", object.id));
     object.vote_centre = vote_centre_of(taught.mesh);
     vote_for(object.vote_centre, views);
@@ -155,8 +155,8 @@ Forest train_store_forest(std::vector<TrainingView> views, const std::optional<F
   profile.training.tone_jitter_fraction = kToneFraction;
   if (!old) profile.features.tone = kCalibrationBrightness;
   profile.training.views_per_image = kViewsPerImage;
-  const int pictures = std::max(max_views(views) / kViewsPerImage, 1);
-  profile.training.patches_per_view = std::clamp(kPatches / pictures, kMinPatches, kMaxPatches);
+  const int images = std::max(max_views(views) / kViewsPerImage, 1);
+  profile.training.patches_per_view = std::clamp(kPatches / images, kMinPatches, kMaxPatches);
   profile.training.node_samples = kNodeSamples;
   profile.training.tests_per_node = kTestsPerNode;
   profile.training.min_samples = kMinOfLeaf;

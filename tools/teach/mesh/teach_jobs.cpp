@@ -130,9 +130,9 @@ void write_store(ObjectStore list, const std::vector<NamedModel>& models, const 
             [](const StoredObject& a, const StoredObject& b) { return a.id < b.id; });
   write_bop_models(models, list.models_folder());
   save_forest(forest, list.forest_file());
-  std::vector<fs::path> pictures;
-  for (const StoredObject& object : list.objects) pictures.push_back(list.view_picture(object.id));
-  write_contact_sheet(pictures, list.contact_sheet());
+  std::vector<fs::path> images;
+  for (const StoredObject& object : list.objects) images.push_back(list.view_image(object.id));
+  write_contact_sheet(images, list.contact_sheet());
   list.tone = forest.features.tone;
   store::write_store_json(list);
   load_store_forest(store::read_store(list.folder));
@@ -147,8 +147,8 @@ void keep(const Contents& old, const std::string& except, ObjectStore& made, std
     if (!shape) shape = find_shape_symmetry(old.meshes.at(object.name));  // taught before it was looked for
     models.push_back({object.id, object.name, old.meshes.at(object.name), old.list.symmetries.at(object.id)});
     std::error_code error;
-    fs::copy_file(old.list.view_picture(object.id), made.view_picture(object.id), error);
-    require(!error, "{}: cannot be copied: {}", old.list.view_picture(object.id).string(), error.message());
+    fs::copy_file(old.list.view_image(object.id), made.view_image(object.id), error);
+    require(!error, "{}: cannot be copied: {}", old.list.view_image(object.id).string(), error.message());
   }
 }
 

@@ -103,17 +103,17 @@ std::vector<TrainingView> all_views(const ShowResult& shown) {
 }
 
 /// The model's outline over a keyframe, and its mask where that ends elsewhere.
-cv::Mat outline_picture(const Mesh& mesh, const TrainingView& view) {
+cv::Mat outline_image(const Mesh& mesh, const TrainingView& view) {
   RgbdFrame nothing_hides = view.frame;
   nothing_hides.depth = cv::Mat(view.frame.depth.size(), CV_32FC1, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
-  cv::Mat picture = view.frame.colour.clone();
+  cv::Mat image = view.frame.colour.clone();
   std::vector<std::vector<cv::Point>> outlines;
   cv::findContours(view.mask.clone(), outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-  cv::drawContours(picture, outlines, -1, {0, 200, 255}, 1);
+  cv::drawContours(image, outlines, -1, {0, 200, 255}, 1);
   cv::findContours(reconstruction::render_visible_mask(mesh, nothing_hides, view.T_camera_object), outlines,
                    cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-  cv::drawContours(picture, outlines, -1, {0, 255, 0}, 1);
-  return picture;
+  cv::drawContours(image, outlines, -1, {0, 255, 0}, 1);
+  return image;
 }
 
 /// What was taken for the object in a take's first frame; that of turntable videos is given by their masks.
@@ -121,22 +121,22 @@ void write_choices(const ShowResult& shown, const fs::path& folder) {
   for (std::size_t t = 0; t < shown.takes.size(); ++t) {
     const Take& take = shown.takes[t];
     if (take.chosen.mask.empty()) continue;
-    cv::Mat picture = take.keyframes.front().frame.colour.clone();
+    cv::Mat image = take.keyframes.front().frame.colour.clone();
     std::vector<std::vector<cv::Point>> outlines;
     cv::findContours(take.chosen.mask.clone(), outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-    cv::drawContours(picture, outlines, -1, {0, 255, 0}, 2);
-    write_png(picture, folder / (t == 0 ? "chosen.png" : "chosen_2.png"));
+    cv::drawContours(image, outlines, -1, {0, 255, 0}, 2);
+    write_png(image, folder / (t == 0 ? "chosen.png" : "chosen_2.png"));
   }
 }
 
-void write_pictures(const ShowResult& shown, const std::vector<TrainingView>& views, const fs::path& folder) {
+void write_images(const ShowResult& shown, const std::vector<TrainingView>& views, const fs::path& folder) {
   constexpr std::size_t kOutlines = 12;
   write_choices(shown, folder);
   fs::create_directories(folder / "outlines");
   const std::size_t step = std::max<std::size_t>(1, views.size() / kOutlines);
   for (std::size_t i = 0; i < views.size(); i += step)
-    write_png(outline_picture(shown.mesh, views[i]), folder / "outlines" / fmt::format("{:06d}.png", i));
-  cv::Mat sheet = view_picture(views, fmt::format("{}: {} keyframes", shown.name, views.size()));
+    write_png(outline_image(shown.mesh, views[i]), folder / "outlines" / fmt::format("{:06d}.png", i));
+  cv::Mat sheet = view_image(views, fmt::format("{}: {} keyframes", shown.name, views.size()));
   cv::Mat model = draw_model(shown.mesh);
   cv::resize(model, model, {sheet.cols, model.rows * sheet.cols / model.cols}, 0, 0, cv::INTER_AREA);
   sheet.push_back(model);
@@ -176,33 +176,33 @@ bool is_kept_entry(const fs::path& relative) {
 }
 
 void write_page(const ShowResult& shown, const ModelAssessment& assessment, const fs::path& folder) {
-  ShownPictures pictures;
+  SessionImages images;
   for (const char* name : {"chosen.png", "chosen_2.png"}) {
-    if (fs::exists(folder / name)) pictures.chosen.emplace_back(name);
+    if (fs::exists(folder / name)) images.chosen.emplace_back(name);
   }
   for (const auto& entry : fs::directory_iterator(folder / "outlines"))
-    pictures.outlines.push_back("outlines/" + entry.path().filename().string());
-  std::sort(pictures.outlines.begin(), pictures.outlines.end());
+    images.outlines.push_back("outlines/" + entry.path().filename().string());
+  std::sort(images.outlines.begin(), images.outlines.end());
   std::ofstream out(folder / "report.html");
-  out << report_page(shown, assessment, pictures);
+  out << report_page(shown, assessment, images);
   out.close();
   require(out.good(), "{}: cannot be written", (folder / "report.html").string());
 }
 
 }  // namespace
 
-std::string report_page(const ShowResult& shown, const ModelAssessment& assessment, const ShownPictures& pictures) {
+std::string report_page(const ShowResult& shown, const ModelAssessment& assessment, const SessionImages& images) {
   std::string page =
       fmt::format("<!doctype html><meta charset=\"utf-8\"><title>{0}</title>\n<h1>{0}: {1}</h1>\n<pre>{2}</pre>\n",
                   escape_html(shown.name), assessment.good ? "good" : "poor", escape_html(describe(shown, assessment)));
-  for (const std::string& file : pictures.chosen)
+  for (const std::string& file : images.chosen)
     page += fmt::format("<p>Taken for the object in the first frame:</p>\n<img src=\"{}\" width=\"50%\">\n",
                         escape_html(file));
   page +=
       "<p>Some keyframes, and the model in its colours and as shape:</p>\n<img src=\"contact_sheet.jpg\" "
       "width=\"100%\">\n"
       "<p>The model's outline (green) and the mask (orange) over keyframes:</p>\n";
-  for (const std::string& file : pictures.outlines)
+  for (const std::string& file : images.outlines)
     page += fmt::format("<img src=\"{}\" width=\"32%\">\n", escape_html(file));
   return page;
 }
@@ -225,7 +225,7 @@ void archive_session(const ShowResult& shown, const ModelAssessment& assessment,
     const std::vector<TrainingView> views = all_views(shown);
     save_ply(shown.mesh, partial / "model.ply");
     write_views(shown, views, partial / "views");
-    write_pictures(shown, views, partial);
+    write_images(shown, views, partial);
     write_poses(shown, partial / "camera_poses.csv");
     write_json(report_json(shown, assessment), partial / "report.json");
     write_page(shown, assessment, partial);

@@ -18,12 +18,12 @@ void require_keepable(const std::filesystem::path& folder);
 void archive_session(const ShowResult& shown, const ModelAssessment& assessment, const std::filesystem::path& folder);
 
 /// Files beside report.html that it shows.
-struct ShownPictures {
+struct SessionImages {
   std::vector<std::string> chosen;    ///< of each take
   std::vector<std::string> outlines;  ///< of some keyframes
 };
 
 /// report.html. Names are shown as they are, whatever they hold.
-std::string report_page(const ShowResult& shown, const ModelAssessment& assessment, const ShownPictures& pictures);
+std::string report_page(const ShowResult& shown, const ModelAssessment& assessment, const SessionImages& images);
 
 }  // namespace houghstream::teach

@@ -28,9 +28,9 @@ double middle_depth(const cv::Mat& depth) {
 }
 
 /// A picture of points; the nearest one is seen.
-class PointPicture {
+class PointImage {
  public:
-  explicit PointPicture(const Camera& camera)
+  explicit PointImage(const Camera& camera)
       : camera_(camera),
         image_(camera.height, camera.width, CV_8UC3, kTurnedGround),
         nearest_(camera.height, camera.width, CV_32FC1, cv::Scalar(std::numeric_limits<float>::infinity())) {}
@@ -71,7 +71,7 @@ Eigen::Isometry3d rotated_camera(const cv::Mat& depth) {
 cv::Mat draw_rotated_view(const RgbdFrame& frame, const std::optional<ObjectPoses>& poses, const ClassModels& models) {
   const Eigen::Isometry3d T_rotated_camera = rotated_camera(frame.depth);
   const Eigen::Isometry3f T = T_rotated_camera.cast<float>();
-  PointPicture picture(frame.camera);
+  PointImage picture(frame.camera);
   for (int y = 0; y < frame.depth.rows; ++y) {
     for (int x = 0; x < frame.depth.cols; ++x) {
       const float z = frame.depth.at<float>(y, x);

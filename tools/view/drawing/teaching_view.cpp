@@ -31,19 +31,19 @@ bool is_of(const Teaching& teaching, const FrameId& frame) {
 }
 
 /// A part of the picture, made darker for what is written on it.
-cv::Mat darkened(cv::Mat& picture, const cv::Rect& area) {
-  cv::Mat part = picture(area & cv::Rect({}, picture.size()));
+cv::Mat darkened(cv::Mat& image, const cv::Rect& area) {
+  cv::Mat part = image(area & cv::Rect({}, image.size()));
   if (part.empty()) return part;  // a picture of a single row or column of pixels
   cv::Mat ground(part.size(), part.type(), kPanelGround);
   cv::addWeighted(part, 0.25, ground, 0.75, 0.0, part);
   return part;
 }
 
-void draw_object(cv::Mat& picture, const Teaching& teaching, const Camera& camera) {
-  if (teaching.box_px) cv::rectangle(picture, cv::Rect(*teaching.box_px), colour_of(teaching.state), 2, cv::LINE_AA);
+void draw_object(cv::Mat& image, const Teaching& teaching, const Camera& camera) {
+  if (teaching.box_px) cv::rectangle(image, cv::Rect(*teaching.box_px), colour_of(teaching.state), 2, cv::LINE_AA);
   ObjectPose pose;
   pose.T_camera_object = teaching.T_camera_object;
-  draw_pose(picture, pose, {}, camera);
+  draw_pose(image, pose, {}, camera);
 }
 
 /// From where the camera is; where that is not known, from the front and a little above.
@@ -56,11 +56,11 @@ Eigen::Matrix3f view_of(const Teaching& teaching) {
   return view;
 }
 
-void draw_spheres(cv::Mat& picture, const Teaching& teaching) {
+void draw_spheres(cv::Mat& image, const Teaching& teaching) {
   if (teaching.directions.empty()) return;
   const int width = 2 * kSphere_px + 3 * kMargin_px;
-  cv::Mat part = darkened(
-      picture, {picture.cols - width - kMargin_px, kMargin_px, width, kSphere_px + 2 * kMargin_px + 2 * kLine_px});
+  cv::Mat part =
+      darkened(image, {image.cols - width - kMargin_px, kMargin_px, width, kSphere_px + 2 * kMargin_px + 2 * kLine_px});
   const Eigen::Matrix3f near = view_of(teaching);
   const Eigen::Matrix3f far = Eigen::AngleAxisf(static_cast<float>(M_PI), Eigen::Vector3f::UnitY()) * near;
   const int top = kMargin_px + kLine_px;
@@ -72,10 +72,10 @@ void draw_spheres(cv::Mat& picture, const Teaching& teaching) {
             {kMargin_px + 10, top + kSphere_px + kLine_px - 4}, kPanelText);
 }
 
-void draw_words(cv::Mat& picture, const Teaching& teaching) {
+void draw_words(cv::Mat& image, const Teaching& teaching) {
   constexpr int kBar_px = 4;
   const int height = 2 * kLine_px + kBar_px + 2;
-  cv::Mat part = darkened(picture, {0, picture.rows - height, picture.cols, height});
+  cv::Mat part = darkened(image, {0, image.rows - height, image.cols, height});
   const cv::Scalar colour = colour_of(teaching.state);
   const std::string counts = fmt::format("{}: {}, {} frames, {} kept", teaching.name, to_string(teaching.state),
                                          teaching.frames, teaching.keyframes);
@@ -88,26 +88,26 @@ void draw_words(cv::Mat& picture, const Teaching& teaching) {
 
 }  // namespace
 
-void draw_sphere(cv::Mat& picture, const cv::Rect& square, const std::vector<ViewDirection>& directions,
+void draw_sphere(cv::Mat& image, const cv::Rect& square, const std::vector<ViewDirection>& directions,
                  const Eigen::Matrix3f& R_view_object) {
   constexpr float kReach = 0.86F;  // of the square's half side: what lies at the rim is drawn whole
   const float radius = 0.5F * static_cast<float>(std::min(square.width, square.height));
   const auto dot = [&](float towards) { return std::max(1, static_cast<int>(radius * (0.07F + 0.07F * towards))); };
   const cv::Point middle(square.x + square.width / 2, square.y + square.height / 2);
-  cv::circle(picture, middle, static_cast<int>(radius), kUnseen, 1, cv::LINE_AA);
+  cv::circle(image, middle, static_cast<int>(radius), kUnseen, 1, cv::LINE_AA);
   for (const ViewDirection& direction : directions) {
     const Eigen::Vector3f at = R_view_object * direction.direction;
     if (at.z() > 0.0F) continue;  // away from the camera
     const cv::Point place = middle + cv::Point(static_cast<int>(std::lround(kReach * radius * at.x())),
                                                static_cast<int>(std::lround(kReach * radius * at.y())));
-    cv::circle(picture, place, dot(-at.z()), direction.seen ? kSeen : kUnseen, cv::FILLED, cv::LINE_AA);
+    cv::circle(image, place, dot(-at.z()), direction.seen ? kSeen : kUnseen, cv::FILLED, cv::LINE_AA);
   }
 }
 
-void draw_teaching(cv::Mat& picture, const Teaching& teaching, const RgbdFrame& frame) {
-  if (is_of(teaching, frame.id)) draw_object(picture, teaching, frame.camera);
-  draw_spheres(picture, teaching);
-  draw_words(picture, teaching);
+void draw_teaching(cv::Mat& image, const Teaching& teaching, const RgbdFrame& frame) {
+  if (is_of(teaching, frame.id)) draw_object(image, teaching, frame.camera);
+  draw_spheres(image, teaching);
+  draw_words(image, teaching);
 }
 
 }  // namespace houghstream::view

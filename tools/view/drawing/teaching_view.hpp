@@ -11,11 +11,11 @@ namespace houghstream::view {
 /// the teaching is of this camera and of about this time; at the upper right the sphere of directions, filled where the
 /// object was seen from, once from where the camera is now and once from behind; at the lower edge state and words,
 /// with a bar as long as the state's progress.
-void draw_teaching(cv::Mat& picture, const Teaching& teaching, const RgbdFrame& frame);
+void draw_teaching(cv::Mat& image, const Teaching& teaching, const RgbdFrame& frame);
 
 /// A sphere of directions as seen from where `R_view_object` turns it, in a square: those on the near side, seen ones
 /// filled. Places are those of the directions' points on the sphere, seen from far away.
-void draw_sphere(cv::Mat& picture, const cv::Rect& square, const std::vector<ViewDirection>& directions,
+void draw_sphere(cv::Mat& image, const cv::Rect& square, const std::vector<ViewDirection>& directions,
                  const Eigen::Matrix3f& R_view_object);
 
 }  // namespace houghstream::view

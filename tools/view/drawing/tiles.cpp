@@ -13,13 +13,13 @@ cv::Mat tiled(const std::vector<cv::Mat>& tiles, int columns) {
   const int count = static_cast<int>(tiles.size());
   const int rows = (count + columns - 1) / columns;
   const cv::Size step = tiles[0].size() + cv::Size(kGap, kGap);
-  cv::Mat picture(rows * step.height - kGap, std::min(columns, count) * step.width - kGap, CV_8UC3,
-                  cv::Scalar(60, 60, 60));
+  cv::Mat image(rows * step.height - kGap, std::min(columns, count) * step.width - kGap, CV_8UC3,
+                cv::Scalar(60, 60, 60));
   for (int i = 0; i < count; ++i) {
     const cv::Point corner(i % columns * step.width, i / columns * step.height);
-    tiles[static_cast<std::size_t>(i)].copyTo(picture(cv::Rect(corner, tiles[0].size())));
+    tiles[static_cast<std::size_t>(i)].copyTo(image(cv::Rect(corner, tiles[0].size())));
   }
-  return picture;
+  return image;
 }
 
 }  // namespace houghstream::view

@@ -58,7 +58,7 @@ MapScale scale_of(const WorldState& world, const cv::Size& size) {
   return {extent.center(), std::min(0.5 * size.width / half.x(), 0.5 * size.height / half.y()), size};
 }
 
-void draw_grid(cv::Mat& picture, const MapScale& scale) {
+void draw_grid(cv::Mat& image, const MapScale& scale) {
   constexpr double kStepM = 0.1;
   constexpr double kMaxLines = 200.0;
   const Eigen::Vector2d half(0.5 * scale.size.width / scale.px_per_m, 0.5 * scale.size.height / scale.px_per_m);
@@ -74,14 +74,14 @@ void draw_grid(cv::Mat& picture, const MapScale& scale) {
       const cv::Point p = scale.at(place);
       const cv::Scalar colour = first + i == 0.0 ? cv::Scalar(90, 90, 90) : grey;
       if (axis == 0)
-        cv::line(picture, {p.x, 0}, {p.x, picture.rows}, colour);
+        cv::line(image, {p.x, 0}, {p.x, image.rows}, colour);
       else
-        cv::line(picture, {0, p.y}, {picture.cols, p.y}, colour);
+        cv::line(image, {0, p.y}, {image.cols, p.y}, colour);
     }
   }
 }
 
-void draw_camera(cv::Mat& picture, const MapScale& scale, const std::string& channel, const Eigen::Isometry3d& T) {
+void draw_camera(cv::Mat& image, const MapScale& scale, const std::string& channel, const Eigen::Isometry3d& T) {
   const double reach_m = 24.0 / scale.px_per_m;
   const cv::Point eye = scale.at(T.translation());
   const auto corner = [&](double side) {
@@ -90,18 +90,18 @@ void draw_camera(cv::Mat& picture, const MapScale& scale, const std::string& cha
     return scale.at(T.translation() + reach_m * ray.normalized());
   };
   const std::vector<cv::Point> wedge = {eye, corner(-0.5), corner(0.5)};
-  cv::polylines(picture, wedge, true, {200, 200, 200}, 1, cv::LINE_AA);
-  draw_text(picture, channel, eye + cv::Point(6, 14), 0.38, {190, 190, 190});
+  cv::polylines(image, wedge, true, {200, 200, 200}, 1, cv::LINE_AA);
+  draw_text(image, channel, eye + cv::Point(6, 14), 0.38, {190, 190, 190});
 }
 
-void draw_object(cv::Mat& picture, const MapScale& scale, const TrackedObject& object) {
+void draw_object(cv::Mat& image, const MapScale& scale, const TrackedObject& object) {
   constexpr int kDisc = 7;  // pixels
   const cv::Scalar colour = class_colour(object.class_id);
   const cv::Point place = scale.at(object.T_world_object.translation());
   const int sure = static_cast<int>(std::lround(std::min(2.0 * deviation_of(object) * scale.px_per_m, 2000.0)));
-  cv::circle(picture, place, kDisc, colour, is_seen(object) ? cv::FILLED : 1, cv::LINE_AA);
-  if (sure > kDisc) cv::circle(picture, place, sure, colour, 1, cv::LINE_AA);
-  draw_text(picture, label_of(object), place + cv::Point(10, 4), 0.4);
+  cv::circle(image, place, kDisc, colour, is_seen(object) ? cv::FILLED : 1, cv::LINE_AA);
+  if (sure > kDisc) cv::circle(image, place, sure, colour, 1, cv::LINE_AA);
+  draw_text(image, label_of(object), place + cv::Point(10, 4), 0.4);
 }
 
 }  // namespace
@@ -124,7 +124,7 @@ void WorldState::add(const WorldObjects& world) {
   trails = std::move(kept);
 }
 
-void draw_tracks(cv::Mat& picture, const WorldState& world, const RgbdFrame& frame) {
+void draw_tracks(cv::Mat& image, const WorldState& world, const RgbdFrame& frame) {
   const auto camera = world.T_world_camera.find(frame.id.channel);
   const double apart_s = std::abs(seconds_between(world.last.frame.utime, frame.id.utime));
   if (camera == world.T_world_camera.end() || apart_s > kOfThisTimeS) return;
@@ -140,7 +140,7 @@ void draw_tracks(cv::Mat& picture, const WorldState& world, const RgbdFrame& fra
     std::optional<cv::Point> before;
     for (const Eigen::Vector3d& place : world.trails.at(object.track_id)) {
       const std::optional<cv::Point> here = pixel_of(place);
-      if (before && here) cv::line(picture, *before, *here, colour, 1, cv::LINE_AA);
+      if (before && here) cv::line(image, *before, *here, colour, 1, cv::LINE_AA);
       before = here;
     }
     const std::optional<cv::Point> centre = pixel_of(object.T_world_object.translation());
@@ -148,26 +148,26 @@ void draw_tracks(cv::Mat& picture, const WorldState& world, const RgbdFrame& fra
     const double depth = (T_camera_world * object.T_world_object.translation()).z();
     const int radius =
         static_cast<int>(std::clamp(2.0 * deviation_of(object) / frame.camera.metres_per_px(depth), 4.0, 400.0));
-    cv::circle(picture, *centre, radius, colour, is_seen(object) ? 2 : 1, cv::LINE_AA);
-    draw_text(picture, label_of(object), *centre + cv::Point(radius + 4, 4), 0.4);
+    cv::circle(image, *centre, radius, colour, is_seen(object) ? 2 : 1, cv::LINE_AA);
+    draw_text(image, label_of(object), *centre + cv::Point(radius + 4, 4), 0.4);
   }
 }
 
 cv::Mat draw_world_from_above(const WorldState& world, const cv::Size& size) {
-  cv::Mat picture(size, CV_8UC3, cv::Scalar(30, 30, 30));
+  cv::Mat image(size, CV_8UC3, cv::Scalar(30, 30, 30));
   const MapScale scale = scale_of(world, size);
-  draw_grid(picture, scale);
-  for (const auto& [channel, T] : world.T_world_camera) draw_camera(picture, scale, channel, T);
+  draw_grid(image, scale);
+  for (const auto& [channel, T] : world.T_world_camera) draw_camera(image, scale, channel, T);
   for (const TrackedObject& object : world.last.objects) {
     std::vector<cv::Point> way;
     for (const Eigen::Vector3d& place : world.trails.at(object.track_id)) way.push_back(scale.at(place));
-    cv::polylines(picture, way, false, class_colour(object.class_id), 1, cv::LINE_AA);
-    if (object.state != TrackState::kGone) draw_object(picture, scale, object);
+    cv::polylines(image, way, false, class_colour(object.class_id), 1, cv::LINE_AA);
+    if (object.state != TrackState::kGone) draw_object(image, scale, object);
   }
   const auto there = std::count_if(world.last.objects.begin(), world.last.objects.end(),
                                    [](const TrackedObject& object) { return object.state != TrackState::kGone; });
-  draw_text(picture, fmt::format("{} from above, grid 10 cm, {} objects", world.last.world, there), {8, 16});
-  return picture;
+  draw_text(image, fmt::format("{} from above, grid 10 cm, {} objects", world.last.world, there), {8, 16});
+  return image;
 }
 
 }  // namespace houghstream::view

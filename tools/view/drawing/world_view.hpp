@@ -25,7 +25,7 @@ struct WorldState {
 /// Draws over a picture of a frame (CV_8UC3, BGR) the objects of the world in it: a ring as wide as the place is
 /// uncertain (two standard deviations), number, class and probability, and the way of the last seconds. What is not
 /// seen is drawn thin, with its state in words. Nothing where the world's camera was elsewhere: it is of another time.
-void draw_tracks(cv::Mat& picture, const WorldState& world, const RgbdFrame& frame);
+void draw_tracks(cv::Mat& image, const WorldState& world, const RgbdFrame& frame);
 
 /// The world from above, x to the right and y up, of that size (CV_8UC3): objects as discs with their numbers and ways,
 /// cameras as wedges that point where they look, and a grid of 10 cm.

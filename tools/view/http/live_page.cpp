@@ -66,10 +66,10 @@ void LivePage::draw(const std::vector<PageView>& views, const PageContent& conte
     try {
       jpeg = encode_jpeg(drawn(view, content), kJpegQuality);
     } catch (const std::exception&) {  // OpenCV's too
-      board_.put_picture(view, {});
+      board_.put_image(view, {});
       throw;
     }
-    board_.put_picture(view, std::move(jpeg));
+    board_.put_image(view, std::move(jpeg));
   }
 }
 

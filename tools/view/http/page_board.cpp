@@ -8,14 +8,14 @@ namespace houghstream::view {
 bool PageBoard::has_viewers() const {
   const std::lock_guard lock(mutex_);
   return viewers_ > 0 ||
-         std::any_of(pictures_.begin(), pictures_.end(), [this](const Picture& picture) { return is_wanted(picture); });
+         std::any_of(images_.begin(), images_.end(), [this](const Image& image) { return is_wanted(image); });
 }
 
 std::vector<PageView> PageBoard::wanted() const {
   const std::lock_guard lock(mutex_);
   std::vector<PageView> views;
   for (std::size_t i = 0; i < kPageViews; ++i) {
-    if (is_wanted(pictures_[i])) views.push_back(static_cast<PageView>(i));
+    if (is_wanted(images_[i])) views.push_back(static_cast<PageView>(i));
   }
   return views;
 }
@@ -24,7 +24,7 @@ std::vector<PageView> PageBoard::missing() const {
   const std::lock_guard lock(mutex_);
   std::vector<PageView> views;
   for (std::size_t i = 0; i < kPageViews; ++i) {
-    if (pictures_[i].waiting > 0 && pictures_[i].frame_number < updates_.frame_number)
+    if (images_[i].waiting > 0 && images_[i].frame_number < updates_.frame_number)
       views.push_back(static_cast<PageView>(i));
   }
   return views;
@@ -37,11 +37,11 @@ void PageBoard::put_frame(std::string json) {
   changed_.notify_all();
 }
 
-void PageBoard::put_picture(PageView view, std::vector<std::uint8_t> jpeg) {
+void PageBoard::put_image(PageView view, std::vector<std::uint8_t> jpeg) {
   const std::lock_guard lock(mutex_);
-  Picture& picture = pictures_[static_cast<std::size_t>(view)];
-  picture.jpeg = std::make_shared<const std::vector<std::uint8_t>>(std::move(jpeg));
-  picture.frame_number = updates_.frame_number;
+  Image& image = images_[static_cast<std::size_t>(view)];
+  image.jpeg = std::make_shared<const std::vector<std::uint8_t>>(std::move(jpeg));
+  image.frame_number = updates_.frame_number;
   changed_.notify_all();
 }
 
@@ -81,15 +81,15 @@ std::optional<PageUpdates> PageBoard::updates_after(const PageUpdates& seen, std
   return fresh;
 }
 
-Jpeg PageBoard::picture(PageView view, std::chrono::milliseconds timeout) {
+Jpeg PageBoard::image(PageView view, std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  Picture& picture = pictures_[static_cast<std::size_t>(view)];
-  picture.asked = Clock::now();
-  ++picture.waiting;
+  Image& image = images_[static_cast<std::size_t>(view)];
+  image.asked = Clock::now();
+  ++image.waiting;
   const std::int64_t wanted = std::max<std::int64_t>(updates_.frame_number, 1);
-  changed_.wait_for(lock, timeout, [&] { return closed_ || picture.frame_number >= wanted; });
-  --picture.waiting;
-  return picture.jpeg;
+  changed_.wait_for(lock, timeout, [&] { return closed_ || image.frame_number >= wanted; });
+  --image.waiting;
+  return image.jpeg;
 }
 
 void PageBoard::push_command(const PageCommands& commands) {

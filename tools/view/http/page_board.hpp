@@ -51,7 +51,7 @@ class PageBoard {
   std::vector<PageView> missing() const;
   /// The next frame. Its pictures follow.
   void put_frame(std::string json);
-  void put_picture(PageView view, std::vector<std::uint8_t> jpeg);
+  void put_image(PageView view, std::vector<std::uint8_t> jpeg);
   void put_stream(std::string json);
   PageCommands pop_commands();
 
@@ -61,24 +61,24 @@ class PageBoard {
   /// Waits until there is more than `seen`, or for `timeout`; what is not new is empty. Nothing once it is closed.
   std::optional<PageUpdates> updates_after(const PageUpdates& seen, std::chrono::milliseconds timeout);
   /// The picture of the frame that is shown, waited for if need be; an older one, or nothing, after `timeout`.
-  Jpeg picture(PageView view, std::chrono::milliseconds timeout);
+  Jpeg image(PageView view, std::chrono::milliseconds timeout);
   void push_command(const PageCommands& commands);
 
   /// Nobody waits any longer.
   void close();
 
  private:
-  struct Picture {
+  struct Image {
     Jpeg jpeg;
     std::int64_t frame_number = 0;
     Clock::time_point asked = Clock::time_point::min();
     int waiting = 0;
   };
-  bool is_wanted(const Picture& picture) const { return Clock::now() - kViewTimeout < picture.asked; }
+  bool is_wanted(const Image& image) const { return Clock::now() - kViewTimeout < image.asked; }
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::array<Picture, kPageViews> pictures_;
+  std::array<Image, kPageViews> images_;
   PageUpdates updates_;
   PageCommands commands_;
   int viewers_ = 0;

@@ -122,7 +122,7 @@ struct PageServer::State {
   /// Returns the words of the refusal of a Host header that somebody else may have chosen; "" where it is none.
   std::string refusal_of_host(const httplib::Request& request) const;
   void add_pages();
-  void serve_picture(const httplib::Request& request, httplib::Response& response);
+  void serve_image(const httplib::Request& request, httplib::Response& response);
   void serve_events(httplib::Response& response);
   void pop_commands(const httplib::Request& request, httplib::Response& response);
 
@@ -172,18 +172,17 @@ void PageServer::State::add_pages() {
     response.set_content(kPageHtml, "text/html; charset=utf-8");
   });
   server.Get("/events", [this](const httplib::Request&, httplib::Response& response) { serve_events(response); });
-  server.Get(
-      R"(/picture/(colour|depth|3d|world)\.jpg)",
-      [this](const httplib::Request& request, httplib::Response& response) { serve_picture(request, response); });
+  server.Get(R"(/picture/(colour|depth|3d|world)\.jpg)",
+             [this](const httplib::Request& request, httplib::Response& response) { serve_image(request, response); });
   server.Post("/orders", [this](const httplib::Request& request, httplib::Response& response) {
     pop_commands(request, response);
   });
 }
 
-void PageServer::State::serve_picture(const httplib::Request& request, httplib::Response& response) {
+void PageServer::State::serve_image(const httplib::Request& request, httplib::Response& response) {
   static const std::map<std::string, PageView> views = {
       {"colour", PageView::kColour}, {"depth", PageView::kDepth}, {"3d", PageView::k3d}, {"world", PageView::kWorld}};
-  const Jpeg jpeg = board.picture(views.at(request.matches[1]), kImageTimeout);
+  const Jpeg jpeg = board.image(views.at(request.matches[1]), kImageTimeout);
   if (!jpeg) return answer(response, 503, "no frame has come yet");
   if (jpeg->empty()) return answer(response, 503, "this view of the frame cannot be drawn");
   response.set_content(reinterpret_cast<const char*>(jpeg->data()), jpeg->size(), "image/jpeg");

@@ -30,9 +30,9 @@ cv::Vec3d patch(const cv::Mat& colour, int x, int y) {
   return {mean[0], mean[1], mean[2]};
 }
 
-cv::Mat taken(const ColourVariation& colour, const cv::Mat& picture, std::uint64_t seed = 1) {
+cv::Mat taken(const ColourVariation& colour, const cv::Mat& image, std::uint64_t seed = 1) {
   Random random(seed);
-  cv::Mat out = picture.clone();
+  cv::Mat out = image.clone();
   apply_colour({colour, {}}, out, random);
   return out;
 }
@@ -215,9 +215,9 @@ TEST(CameraColour, NoiseHasItsDeviationAndNoBias) {
   EXPECT_GT(cv::norm(after, taken(camera, cv::Mat(120, 120, CV_8UC3, cv::Scalar::all(150)), 2), cv::NORM_INF), 0.0);
 }
 
-double steepest(const cv::Mat& picture) {
+double steepest(const cv::Mat& image) {
   cv::Mat difference;
-  cv::absdiff(picture.colRange(1, picture.cols), picture.colRange(0, picture.cols - 1), difference);
+  cv::absdiff(image.colRange(1, image.cols), image.colRange(0, image.cols - 1), difference);
   double maximum = 0.0;
   cv::minMaxLoc(difference.reshape(1), nullptr, &maximum);
   return maximum;

@@ -42,15 +42,15 @@ ImageInput input_of(const Profile& profile) {
   return {profile.features, profile.patch, profile.training, baseline::scales_of(profile.features)};
 }
 
-TrainingImage picture_of(const TrainingView& view, const Profile& profile, std::uint64_t seed) {
+TrainingImage image_of(const TrainingView& view, const Profile& profile, std::uint64_t seed) {
   Random random(seed);
   ImageWorkspace workspace;
   return object_image({view, 2, 5}, toy::room(3), input_of(profile), random, workspace);
 }
 
 /// How much larger the picture shows the object than the view does, `image_scale` aside.
-double size_of(const TrainingImage& picture, double image_scale) {
-  return (picture.features.width() / image_scale - 2 * kMargin) / (2 * kRadius + 1);
+double size_of(const TrainingImage& image, double image_scale) {
+  return (image.features.width() / image_scale - 2 * kMargin) / (2 * kRadius + 1);
 }
 
 TEST(TrainingImages, OffsetsOfAScaleSpaceLeadToTheCentresPixel) {
@@ -59,12 +59,12 @@ TEST(TrainingImages, OffsetsOfAScaleSpaceLeadToTheCentresPixel) {
     Profile profile = open_profile("gall");
     profile.features.image_scale = image_scale;
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
-      const TrainingImage picture = picture_of(view, profile, seed);
-      const double size = size_of(picture, image_scale);
+      const TrainingImage image = image_of(view, profile, seed);
+      const double size = size_of(image, image_scale);
       // the mask's middle is the picture's; the object's centre lies half a pixel of the view beside it
-      const double x = 0.5 * (picture.features.width() - 1) - 0.5 * size * image_scale;
-      const double y = 0.5 * (picture.features.height() - 1) - 0.5 * size * image_scale;
-      for (const TrainingSample& sample : picture.samples) {
+      const double x = 0.5 * (image.features.width() - 1) - 0.5 * size * image_scale;
+      const double y = 0.5 * (image.features.height() - 1) - 0.5 * size * image_scale;
+      for (const TrainingSample& sample : image.samples) {
         if (sample.label == 0) continue;
         ASSERT_NEAR(sample.x + sample.offset.x() * kFocal * image_scale, x, 0.6) << "size " << size;
         ASSERT_NEAR(sample.y + sample.offset.y() * kFocal * image_scale, y, 0.6) << "size " << size;
@@ -78,13 +78,13 @@ TEST(TrainingImages, OffsetsOfAScaleSpaceLeadToTheCentresPixel) {
 TEST(TrainingImages, SamplesOfTheObjectLieOnItsMaskAndTheOthersBeside) {
   const TrainingView view = round_view();
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
-    const TrainingImage picture = picture_of(view, open_profile("gall"), seed);
-    const double radius = kRadius * size_of(picture, 1.0);
+    const TrainingImage image = image_of(view, open_profile("gall"), seed);
+    const double radius = kRadius * size_of(image, 1.0);
     int on_object = 0;
     int beside = 0;
-    for (const TrainingSample& sample : picture.samples) {
+    for (const TrainingSample& sample : image.samples) {
       const double distance =
-          std::hypot(sample.x - 0.5 * (picture.features.width() - 1), sample.y - 0.5 * (picture.features.height() - 1));
+          std::hypot(sample.x - 0.5 * (image.features.width() - 1), sample.y - 0.5 * (image.features.height() - 1));
       if (sample.label == 0) {
         ASSERT_GT(distance, radius - 2.0);
         ++beside;
@@ -97,18 +97,18 @@ TEST(TrainingImages, SamplesOfTheObjectLieOnItsMaskAndTheOthersBeside) {
     }
     EXPECT_EQ(on_object, 120);
     EXPECT_EQ(beside, 30);
-    EXPECT_TRUE(picture.negative_pool.empty());
+    EXPECT_TRUE(image.negative_pool.empty());
   }
 }
 
 /// How unevenly steep the middle of the object seems, 0 to 127; the derivatives are the first planes.
-double unevenness(const TrainingImage& picture) {
+double unevenness(const TrainingImage& image) {
   constexpr int kReach = 8;  // pixels
-  const cv::Point middle(picture.features.width() / 2, picture.features.height() / 2);
+  const cv::Point middle(image.features.width() / 2, image.features.height() / 2);
   std::vector<double> slopes;
   for (int y = -kReach; y <= kReach; ++y) {
     for (int x = -kReach; x <= kReach; ++x) {
-      slopes.push_back(picture.features.at(middle.x + x, middle.y + y)[0]);
+      slopes.push_back(image.features.at(middle.x + x, middle.y + y)[0]);
     }
   }
   cv::Scalar mean;
@@ -125,31 +125,31 @@ TEST(TrainingImages, AScaleSpaceIsTaughtTheNoiseOfTheDistancesItSearches) {
   double smooth = 0.0;
   double rough = 0.0;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
-    smooth += unevenness(picture_of(round_view(), single, seed));
-    rough += unevenness(picture_of(round_view(), five, seed));
+    smooth += unevenness(image_of(round_view(), single, seed));
+    rough += unevenness(image_of(round_view(), five, seed));
   }
   EXPECT_GT(rough, 2.0 * smooth);
 }
 
 /// Whether a picture holds all that its patches look at, and how much more it could hold.
-void expect_held(const TrainingImage& picture, const PatchSettings& patch) {
-  const cv::Rect held = picture.features.held();
-  for (const auto* list : {&picture.samples, &picture.negative_pool}) {
+void expect_held(const TrainingImage& image, const PatchSettings& patch) {
+  const cv::Rect held = image.features.held();
+  for (const auto* list : {&image.samples, &image.negative_pool}) {
     for (const TrainingSample& sample : *list) {
       const int reach = max_offset(patch, sample.scale);
       const cv::Rect seen(sample.x - reach, sample.y - reach, 2 * reach + 1, 2 * reach + 1);
       ASSERT_EQ(seen & held, seen) << sample.x << " " << sample.y;
     }
   }
-  EXPECT_LT(held.width, picture.features.width() + 2 * FeatureImage::kPad);
-  EXPECT_LT(held.height, picture.features.height() + 2 * FeatureImage::kPad);
+  EXPECT_LT(held.width, image.features.width() + 2 * FeatureImage::kPad);
+  EXPECT_LT(held.height, image.features.height() + 2 * FeatureImage::kPad);
 }
 
 TEST(TrainingImages, PicturesHoldWhatTheirPatchesLookAtOnly) {
   const Profile profile = open_profile("realtime");
   ImageWorkspace workspace;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
-    expect_held(picture_of(round_view(), profile, seed), profile.patch);
+    expect_held(image_of(round_view(), profile, seed), profile.patch);
     Random random(seed);
     for (const FeatureLevel& level : feature_levels(profile.features)) {
       expect_held(background_image(toy::room(3), level, input_of(profile), random, workspace), profile.patch);
@@ -158,9 +158,9 @@ TEST(TrainingImages, PicturesHoldWhatTheirPatchesLookAtOnly) {
 }
 
 TEST(TrainingImages, NoPixelIsDrawnTwice) {
-  const TrainingImage picture = picture_of(round_view(), open_profile("gall"), 4);
+  const TrainingImage image = image_of(round_view(), open_profile("gall"), 4);
   std::vector<std::pair<int, int>> places;
-  for (const TrainingSample& sample : picture.samples) places.emplace_back(sample.x, sample.y);
+  for (const TrainingSample& sample : image.samples) places.emplace_back(sample.x, sample.y);
   std::sort(places.begin(), places.end());
   EXPECT_EQ(std::adjacent_find(places.begin(), places.end()), places.end());
 }
@@ -169,10 +169,10 @@ TEST(TrainingImages, AScaleSpaceIsTaughtTheSizesBetweenThoseThatAreSearched) {
   const TrainingView view = round_view();
   std::vector<double> sizes;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
-    const TrainingImage picture = picture_of(view, open_profile("gall"), seed);
-    sizes.push_back(size_of(picture, 1.0));
+    const TrainingImage image = image_of(view, open_profile("gall"), seed);
+    sizes.push_back(size_of(image, 1.0));
     const double area = M_PI * kRadius * kRadius * sizes.back() * sizes.back() / kFocal / kFocal;  // as at 1 m
-    EXPECT_NEAR(picture.whole_area, area, 0.06 * area);
+    EXPECT_NEAR(image.whole_area, area, 0.06 * area);
   }
   const auto [smallest, largest] = std::minmax_element(sizes.begin(), sizes.end());
   EXPECT_NEAR(*smallest, 1.0 / 1.25, 0.05);
@@ -187,9 +187,9 @@ TEST(TrainingImages, WithDepthTheAreaIsThatOfTheSurfaceAtAnyDistance) {
   for (const float distance : {0.5F, 0.7F, 1.1F}) {
     profile.training.min_distance = distance;
     profile.training.max_distance = distance;
-    const TrainingImage picture = picture_of(view, profile, 1);
-    EXPECT_NEAR(picture.whole_area, area, 0.08 * area) << distance;
-    for (const TrainingSample& sample : picture.samples) {
+    const TrainingImage image = image_of(view, profile, 1);
+    EXPECT_NEAR(image.whole_area, area, 0.08 * area) << distance;
+    for (const TrainingSample& sample : image.samples) {
       if (sample.label == 0) continue;
       ASSERT_NEAR(sample.scale, patch_scale(profile.patch, working, distance), 6) << distance;  // it faces the camera
     }
@@ -200,8 +200,8 @@ TEST(TrainingImages, OnlyWithoutScaleSpaceMustDepthBeKnown) {
   TrainingView view = round_view();
   view.frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   const auto objects = [&](const std::string& name) {
-    const TrainingImage picture = picture_of(view, open_profile(name), 1);
-    return std::count_if(picture.samples.begin(), picture.samples.end(),
+    const TrainingImage image = image_of(view, open_profile(name), 1);
+    return std::count_if(image.samples.begin(), image.samples.end(),
                          [](const TrainingSample& sample) { return sample.label != 0; });
   };
   EXPECT_EQ(objects("gall"), 120);
@@ -217,9 +217,9 @@ TEST(TrainingImages, ATooSmallBackgroundGivesNothing) {
   ImageWorkspace workspace;
   const TrainingView view = round_view();
   const Profile gall = open_profile("gall");
-  const TrainingImage picture = object_image({view, 1, 0}, corner, input_of(gall), random, workspace);
-  EXPECT_TRUE(picture.samples.empty());
-  EXPECT_EQ(picture.whole_area, 0.0F);
+  const TrainingImage image = object_image({view, 1, 0}, corner, input_of(gall), random, workspace);
+  EXPECT_TRUE(image.samples.empty());
+  EXPECT_EQ(image.whole_area, 0.0F);
 }
 
 TEST(TrainingImages, ABackgroundIsDrawnFromWhereItsLevelSees) {
@@ -233,11 +233,11 @@ TEST(TrainingImages, ABackgroundIsDrawnFromWhereItsLevelSees) {
     const float seen = level.min_distance > 0.0F ? 2.0F : 0.8F;
     Random random(7);
     ImageWorkspace workspace;
-    const TrainingImage picture = background_image(room, level, input_of(profile), random, workspace);
+    const TrainingImage image = background_image(room, level, input_of(profile), random, workspace);
     const auto drawn = static_cast<std::size_t>(profile.training.patches_per_background / kBackgroundImages);
-    EXPECT_EQ(picture.samples.size(), drawn);
-    EXPECT_EQ(picture.negative_pool.size(), drawn * static_cast<std::size_t>(profile.training.negative_pool));
-    for (const auto* list : {&picture.samples, &picture.negative_pool}) {
+    EXPECT_EQ(image.samples.size(), drawn);
+    EXPECT_EQ(image.negative_pool.size(), drawn * static_cast<std::size_t>(profile.training.negative_pool));
+    for (const auto* list : {&image.samples, &image.negative_pool}) {
       for (const TrainingSample& sample : *list) {
         ASSERT_EQ(sample.label, 0);
         ASSERT_EQ(sample.scale, patch_scale(profile.patch, kFocal * level.scale, seen));
@@ -253,10 +253,10 @@ TEST(TrainingImages, ABackgroundOfAScaleSpaceNeedsNoDepth) {
   for (const FeatureLevel& level : baseline::scale_space_levels(profile.features)) {
     Random random(7);
     ImageWorkspace workspace;
-    const TrainingImage picture = background_image(room, level, input_of(profile), random, workspace);
-    EXPECT_EQ(picture.samples.size(), 20U) << level.size_ratio;
-    EXPECT_TRUE(picture.negative_pool.empty());
-    for (const TrainingSample& sample : picture.samples) ASSERT_EQ(sample.scale, 256);
+    const TrainingImage image = background_image(room, level, input_of(profile), random, workspace);
+    EXPECT_EQ(image.samples.size(), 20U) << level.size_ratio;
+    EXPECT_TRUE(image.negative_pool.empty());
+    for (const TrainingSample& sample : image.samples) ASSERT_EQ(sample.scale, 256);
   }
 }
 

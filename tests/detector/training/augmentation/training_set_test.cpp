@@ -49,9 +49,9 @@ TEST(TrainingSet, OffsetsPointFromTheSurfaceToTheCentre) {
     ASSERT_EQ(sample.label, 1);
     // The picture is the tile with equal margins, at its own size, as its lens is half as long as the usual one: its
     // middle shows the view's principal point.
-    const FeatureImage& picture = set.pictures[static_cast<std::size_t>(sample.picture)];
-    const double right_px = sample.x - 0.5 * (picture.width() - 1);
-    const double down_px = sample.y - 0.5 * (picture.height() - 1);
+    const FeatureImage& image = set.images[static_cast<std::size_t>(sample.image)];
+    const double right_px = sample.x - 0.5 * (image.width() - 1);
+    const double down_px = sample.y - 0.5 * (image.height() - 1);
     const Eigen::Vector3f point = Eigen::Vector3d(right_px / 262.5 * 0.7, down_px / 262.5 * 0.7, 0.7).cast<float>();
     const Eigen::Vector3f centre = point + ray_rotation(point) * sample.offset;
     ASSERT_LT((centre - Eigen::Vector3f(0, 0, 0.7F)).norm(), 0.001F) << sample.x << " " << sample.y;
@@ -102,8 +102,8 @@ TEST(TrainingSet, EachLevelLearnsBackgroundOfItsOwnDistances) {
   std::array<int, 2> counts{};
   for (const auto* list : {&set.samples, &set.negative_pool}) {
     for (const TrainingSample& sample : *list) {
-      if (sample.picture < settings.composites_per_view) continue;
-      const auto level = static_cast<std::size_t>((sample.picture - settings.composites_per_view) % 2);
+      if (sample.image < settings.composites_per_view) continue;
+      const auto level = static_cast<std::size_t>((sample.image - settings.composites_per_view) % 2);
       EXPECT_EQ(sample.label, 0);
       EXPECT_EQ(sample.scale, level == 0 ? patch_scale({}, 262.5, 0.8F) : patch_scale({}, 525.0, 2.0F));
       ++counts[level];

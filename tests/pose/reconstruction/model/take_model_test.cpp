@@ -12,7 +12,7 @@ TEST(FuseMaskedViews, PicturesThatCutTheObjectOffDoNotCutTheModelOff) {
   const Mesh table = test_scene::table_with(scene);
   const Mesh box = test_scene::box_of(scene);
   MaskedViews views;
-  views.whole_pictures = true;
+  views.whole_images = true;
   const cv::Rect lower_half(0, scene.camera.height / 2, scene.camera.width, scene.camera.height / 2);
   for (int i = 0; i < 24; ++i) {
     TrainingView view;
@@ -34,13 +34,13 @@ TEST(FuseMaskedViews, PicturesThatCutTheObjectOffDoNotCutTheModelOff) {
 
 /// Pictures of the box on its table from all round, from an azimuth on.
 Take take_about_box(double azimuth) {
-  constexpr int kPictures = 12;
+  constexpr int kImages = 12;
   const test_scene::ShownScene scene;
   const Mesh table = test_scene::table_with(scene);
   Take take;
-  for (int i = 0; i < kPictures; ++i) {
+  for (int i = 0; i < kImages; ++i) {
     Keyframe keyframe;
-    keyframe.T_camera_world = test_scene::camera_at(azimuth + 2.0 * M_PI * i / kPictures, 0.7, 0.6);
+    keyframe.T_camera_world = test_scene::camera_at(azimuth + 2.0 * M_PI * i / kImages, 0.7, 0.6);
     keyframe.frame = test_scene::photograph(table, keyframe.T_camera_world, scene.camera, i + 1);
     take.keyframes.push_back(std::move(keyframe));
   }

@@ -147,7 +147,7 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   before.objects[0].shape_symmetry->nearly_round = ContinuousSymmetry{};
   store::write_store_json(before);
   const std::string forest = read_text(before.forest_file());
-  const cv::Mat views = read_colour_image(before.view_picture(1));
+  const cv::Mat views = read_colour_image(before.view_image(1));
   put_notes(options.out);
   rename_in_store(options.out, "bracket", "shelf_support");
   expect_notes(options.out, "rename");
@@ -161,7 +161,7 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   EXPECT_EQ(after.tone.max_mean, before.tone.max_mean);
   EXPECT_TRUE(fs::exists(after.contact_sheet()));
   cv::Mat difference;
-  cv::absdiff(read_colour_image(after.view_picture(1)), views, difference);
+  cv::absdiff(read_colour_image(after.view_image(1)), views, difference);
   EXPECT_GT(cv::sum(difference.rowRange(0, 26))[0], 0.0) << "another title";
   EXPECT_EQ(cv::sum(difference.rowRange(26, difference.rows)), cv::Scalar()) << "above the same views";
 

@@ -27,10 +27,10 @@ Teaching half_seen() {
   return mug;
 }
 
-int count_colour(const cv::Mat& picture, const cv::Vec3b& colour) {
+int count_colour(const cv::Mat& image, const cv::Vec3b& colour) {
   int count = 0;
-  for (int y = 0; y < picture.rows; ++y) {
-    for (int x = 0; x < picture.cols; ++x) count += picture.at<cv::Vec3b>(y, x) == colour ? 1 : 0;
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) count += image.at<cv::Vec3b>(y, x) == colour ? 1 : 0;
   }
   return count;
 }
@@ -38,9 +38,9 @@ int count_colour(const cv::Mat& picture, const cv::Vec3b& colour) {
 TEST(TeachingView, TheSphereFillsWhereItWasSeen) {
   Teaching mug = half_seen();
   const auto filled = [&](const Eigen::Matrix3f& R_view_object) {
-    cv::Mat picture(100, 100, CV_8UC3, cv::Scalar());
-    draw_sphere(picture, {0, 0, 100, 100}, mug.directions, R_view_object);
-    return count_colour(picture, kSeen);
+    cv::Mat image(100, 100, CV_8UC3, cv::Scalar());
+    draw_sphere(image, {0, 0, 100, 100}, mug.directions, R_view_object);
+    return count_colour(image, kSeen);
   };
   // The view's z points away from the camera: who looks from positive x sees the object's x towards him.
   Eigen::Matrix3f from_x;
@@ -57,10 +57,10 @@ TEST(TeachingView, BoxSphereWordsAndProgressAreDrawn) {
   RgbdFrame frame = make_test_frame(1000, 640, 480);
   Teaching mug = half_seen();
   const auto changed = [&](const cv::Rect& area) {
-    cv::Mat picture = frame.colour.clone();
-    draw_teaching(picture, mug, frame);
+    cv::Mat image = frame.colour.clone();
+    draw_teaching(image, mug, frame);
     cv::Mat difference;
-    cv::absdiff(picture(area), frame.colour(area), difference);
+    cv::absdiff(image(area), frame.colour(area), difference);
     return cv::countNonZero(difference.reshape(1));
   };
   const cv::Rect middle(200, 160, 200, 160);
@@ -76,17 +76,17 @@ TEST(TeachingView, BoxSphereWordsAndProgressAreDrawn) {
   mug.frame = {"OTHER_CAMERA", 1000};
   EXPECT_EQ(changed(middle), 0) << "or of another camera";
   EXPECT_GT(changed({400, 0, 240, 140}), 1000) << "the sphere";
-  cv::Mat picture = frame.colour.clone();
-  draw_teaching(picture, mug, frame);
-  EXPECT_EQ(count_colour(picture.row(479), kSeen), 320) << "half of the work";
+  cv::Mat image = frame.colour.clone();
+  draw_teaching(image, mug, frame);
+  EXPECT_EQ(count_colour(image.row(479), kSeen), 320) << "half of the work";
 }
 
 TEST(TeachingView, OfASmallPictureNothingIsDrawnOutside) {
   const RgbdFrame frame = make_test_frame(1000, 64, 48);
-  cv::Mat picture = frame.colour.clone();
+  cv::Mat image = frame.colour.clone();
   Teaching mug = half_seen();
   mug.box_px = cv::Rect2f(-20, -20, 500, 500);
-  EXPECT_NO_THROW(draw_teaching(picture, mug, frame));
+  EXPECT_NO_THROW(draw_teaching(image, mug, frame));
 }
 
 TEST(TeachingView, AFrameIsShownWithTheTeachingThatGoesOn) {

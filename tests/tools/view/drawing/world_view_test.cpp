@@ -33,9 +33,9 @@ RgbdFrame black_frame(std::int64_t utime) {
   return frame;
 }
 
-int pixels_of(const cv::Mat& picture, const cv::Scalar& colour) {
+int pixels_of(const cv::Mat& image, const cv::Scalar& colour) {
   cv::Mat found;
-  cv::inRange(picture, colour, colour, found);
+  cv::inRange(image, colour, colour, found);
   return cv::countNonZero(found);
 }
 
@@ -43,10 +43,10 @@ TEST(WorldView, AnObjectIsDrawnWhereItIsWithItsWayAndNotIntoAFrameOfAnotherTime)
   WorldState state;
   for (int i = 0; i < 20; ++i) state.add(one_can(0.01 * i));
   EXPECT_EQ(state.trails.at(4).size(), 20U);
-  cv::Mat picture = black_frame(1000000).colour;
-  draw_tracks(picture, state, black_frame(1000000));
-  EXPECT_GT(pixels_of(picture, class_colour(2)), 20);
-  EXPECT_GT(cv::norm(picture.at<cv::Vec3b>(119, 180)), 0.0);  // on the way
+  cv::Mat image = black_frame(1000000).colour;
+  draw_tracks(image, state, black_frame(1000000));
+  EXPECT_GT(pixels_of(image, class_colour(2)), 20);
+  EXPECT_GT(cv::norm(image.at<cv::Vec3b>(119, 180)), 0.0);  // on the way
   cv::Mat later = black_frame(9000000).colour;
   draw_tracks(later, state, black_frame(9000000));
   EXPECT_EQ(cv::norm(later), 0.0);
@@ -80,9 +80,9 @@ TEST(WorldView, AWorldOfAnyTimeIsSurvived) {
   WorldState state;
   state.add(one_can(0.0, std::numeric_limits<std::int64_t>::min()));
   const RgbdFrame frame = black_frame(std::numeric_limits<std::int64_t>::max());
-  cv::Mat picture = frame.colour.clone();
-  draw_tracks(picture, state, frame);
-  EXPECT_EQ(cv::norm(picture), 0.0);
+  cv::Mat image = frame.colour.clone();
+  draw_tracks(image, state, frame);
+  EXPECT_EQ(cv::norm(image), 0.0);
 }
 
 TEST(WorldView, FromAboveObjectsAndCamerasAreDrawn) {
@@ -120,9 +120,9 @@ TEST(WorldView, PlacesFarAwayAreSurvived) {
     back.objects[0].covariance = 1e300 * Covariance6::Identity();
     state.add(back);
     EXPECT_EQ(draw_world_from_above(state, {320, 240}).cols, 320) << "its way comes from far away";
-    cv::Mat picture = black_frame(1000000).colour;
-    draw_tracks(picture, state, black_frame(1000000));
-    EXPECT_GT(cv::norm(picture), 0.0);
+    cv::Mat image = black_frame(1000000).colour;
+    draw_tracks(image, state, black_frame(1000000));
+    EXPECT_GT(cv::norm(image), 0.0);
   }
 }
 

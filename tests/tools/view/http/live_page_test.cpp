@@ -74,8 +74,8 @@ TEST(LivePage, ShowsEachViewThatIsAskedFor) {
   const ViewedFrame viewed = viewed_frame(5);
   looked.show(viewed);
   for (const char* view : {"colour", "depth", "3d"}) {
-    const cv::Mat picture = looked.fetched(view, viewed);
-    EXPECT_EQ(picture.size(), viewed.frame.colour.size()) << view;
+    const cv::Mat image = looked.fetched(view, viewed);
+    EXPECT_EQ(image.size(), viewed.frame.colour.size()) << view;
   }
 }
 
@@ -87,9 +87,9 @@ TEST(LivePage, ARowOrAColumnOfPixelsIsAPictureOfModestSizeInEachView) {
     const ViewedFrame viewed = viewed_frame(5, size.width, size.height);
     looked.show(viewed);
     for (const char* view : {"colour", "depth", "3d", "world"}) {
-      const cv::Mat picture = looked.fetched(view, viewed);
-      EXPECT_GE(picture.total(), 1U) << view << size;
-      EXPECT_LE(picture.total(), 1'000'000U) << view << size;
+      const cv::Mat image = looked.fetched(view, viewed);
+      EXPECT_GE(image.total(), 1U) << view << size;
+      EXPECT_LE(image.total(), 1'000'000U) << view << size;
     }
   }
 }

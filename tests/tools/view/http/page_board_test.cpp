@@ -18,7 +18,7 @@ TEST(PageBoard, WithoutViewersNothingIsWanted) {
   EXPECT_TRUE(board.wanted().empty());
   board.leave();
   EXPECT_FALSE(board.has_viewers());
-  EXPECT_EQ(board.picture(PageView::kDepth, kNow), nullptr);
+  EXPECT_EQ(board.image(PageView::kDepth, kNow), nullptr);
   EXPECT_TRUE(board.has_viewers());
   EXPECT_EQ(board.wanted(), std::vector<PageView>{PageView::kDepth});
 }
@@ -45,10 +45,10 @@ TEST(PageBoard, APictureThatIsWaitedForIsMissing) {
   board.put_frame("a");
   EXPECT_TRUE(board.missing().empty());
   Jpeg seen;
-  std::thread viewer([&] { seen = board.picture(PageView::k3d, kLong); });
+  std::thread viewer([&] { seen = board.image(PageView::k3d, kLong); });
   while (board.missing().empty()) std::this_thread::yield();
   EXPECT_EQ(board.missing(), std::vector<PageView>{PageView::k3d});
-  board.put_picture(PageView::k3d, {1, 2, 3});
+  board.put_image(PageView::k3d, {1, 2, 3});
   viewer.join();
   ASSERT_TRUE(seen);
   EXPECT_EQ(seen->size(), 3U);

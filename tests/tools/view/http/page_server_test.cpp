@@ -108,11 +108,11 @@ TEST(PageServer, ThePageIsWholeAndLoadsNothingFromElsewhere) {
 TEST(PageServer, PicturesAreThoseOfTheFrameThatIsShown) {
   Served served;
   served.board.put_frame("{}");
-  served.board.put_picture(PageView::kColour, {'j', 'p', 'g'});
-  const httplib::Result picture = served.client.Get("/picture/colour.jpg");
-  ASSERT_TRUE(picture);
-  EXPECT_EQ(picture->body, "jpg");
-  EXPECT_EQ(picture->get_header_value("Content-Type"), "image/jpeg");
+  served.board.put_image(PageView::kColour, {'j', 'p', 'g'});
+  const httplib::Result image = served.client.Get("/picture/colour.jpg");
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->body, "jpg");
+  EXPECT_EQ(image->get_header_value("Content-Type"), "image/jpeg");
   EXPECT_EQ(served.client.Get("/picture/depth.jpg")->status, 503);
   EXPECT_EQ(served.client.Get("/picture/other.jpg")->status, 404);
 }
@@ -167,7 +167,7 @@ TEST(PageServer, ANameThatSomebodyMadeUpForThisMachineIsRefused) {
   for (const char* host : {"127.0.0.1", "0.0.0.0"}) {
     Served served(host);
     served.board.put_frame("{}");
-    served.board.put_picture(PageView::kColour, {'j', 'p', 'g'});
+    served.board.put_image(PageView::kColour, {'j', 'p', 'g'});
     for (const char* path : {"/", "/picture/colour.jpg", "/events"}) {
       for (const char* name : {"evil.example:80", "[::1].evil.example", "127.0.0.1.evil.example"}) {
         const httplib::Result refused = served.client.Get(path, {{"Host", name}});
@@ -220,15 +220,15 @@ TEST(PageServer, EndsWhileSomebodyListens) {
 TEST(PageServer, RangesAreIgnored) {
   Served served;
   served.board.put_frame("{}");
-  served.board.put_picture(PageView::kColour, std::vector<std::uint8_t>(30'000, 'x'));
+  served.board.put_image(PageView::kColour, std::vector<std::uint8_t>(30'000, 'x'));
   std::string ranges = "bytes=0-";
   while (ranges.size() < 8'000) ranges += ",0-";
   for (const std::string& range : {std::string("bytes=0-9"), ranges}) {
-    const httplib::Result picture = served.client.Get("/picture/colour.jpg", {{"Range", range}});
-    ASSERT_TRUE(picture);
-    EXPECT_EQ(picture->status, 200);
-    EXPECT_EQ(picture->body.size(), 30'000U);
-    EXPECT_FALSE(picture->has_header("Content-Range"));
+    const httplib::Result image = served.client.Get("/picture/colour.jpg", {{"Range", range}});
+    ASSERT_TRUE(image);
+    EXPECT_EQ(image->status, 200);
+    EXPECT_EQ(image->body.size(), 30'000U);
+    EXPECT_FALSE(image->has_header("Content-Range"));
   }
   const std::string refused =
       answer_to(served.server.port(), "GET / HTTP/1.1\r\nHost: evil.example\r\nRange: " + ranges + "\r\n\r\n");
@@ -264,8 +264,8 @@ TEST(PageServer, ACrowdThatReadsNothingLeavesItReachable) {
   Served served;
   const int port = served.server.port();
   served.board.put_frame("{}");
-  served.board.put_picture(PageView::kColour, std::vector<std::uint8_t>(3'000'000, 'x'));
-  served.board.put_picture(PageView::kDepth, {'j', 'p', 'g'});
+  served.board.put_image(PageView::kColour, std::vector<std::uint8_t>(3'000'000, 'x'));
+  served.board.put_image(PageView::kDepth, {'j', 'p', 'g'});
   const RawClients greedy = crowd(port, "GET /picture/colour.jpg HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_TRUE(answers_soon(port, "/"));
   EXPECT_TRUE(answers_soon(port, "/picture/depth.jpg"));
@@ -297,7 +297,7 @@ TEST(PageServer, EndsAtOnceWhateverItsClientsDo) {
   auto served = std::make_unique<Served>();
   const int port = served->server.port();
   served->board.put_frame("{}");
-  served->board.put_picture(PageView::kColour, std::vector<std::uint8_t>(3'000'000, 'x'));
+  served->board.put_image(PageView::kColour, std::vector<std::uint8_t>(3'000'000, 'x'));
   const RawClients silent = crowd(port, "GET / HTTP/1.1\r\nHo");
   const RawClients greedy = crowd(port, "GET /picture/colour.jpg HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_TRUE(answers_soon(port, "/"));

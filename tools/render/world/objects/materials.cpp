@@ -235,7 +235,7 @@ cv::Mat book_cover(const cv::Size& size, const Palette& palette, Random& random)
   return image;
 }
 
-cv::Mat screen_picture(const cv::Size& size, Random& random) {
+cv::Mat screen_image(const cv::Size& size, Random& random) {
   cv::Mat image = plain(size, hsv(random.uniform(0, 360), 0.4, 0.5), 0.4, random);
   const int windows = random.between(1, 4);
   for (int i = 0; i < windows; ++i) {

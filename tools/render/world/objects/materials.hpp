@@ -37,7 +37,7 @@ cv::Mat carton_side(const cv::Size& size, const Palette& palette, Random& random
 cv::Mat can_label(const cv::Size& size, const Palette& palette, Random& random);  ///< wraps round, u = 0 meets u = 1
 cv::Mat mug_print(const cv::Size& size, const Palette& palette, Random& random);  ///< glaze with a motif
 cv::Mat book_cover(const cv::Size& size, const Palette& palette, Random& random);
-cv::Mat screen_picture(const cv::Size& size, Random& random);  ///< windows on a monitor
+cv::Mat screen_image(const cv::Size& size, Random& random);  ///< windows on a monitor
 cv::Mat keyboard_top(const cv::Size& size, Random& random);
 cv::Mat poster(const cv::Size& size, Random& random);
 

@@ -69,21 +69,21 @@ cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
 }
 
 /// The same picture, begun elsewhere: what is printed where changes.
-cv::Mat moved_round(const cv::Mat& picture, Random& random) {
-  const int right = static_cast<int>(picture.cols * random.uniform(0.2, 0.8));
-  const int down = static_cast<int>(picture.rows * random.uniform(0.2, 0.8));
-  cv::Mat out(picture.size(), picture.type());
-  for (int y = 0; y < picture.rows; ++y) {
-    for (int x = 0; x < picture.cols; ++x)
-      out.at<cv::Vec3b>((y + down) % picture.rows, (x + right) % picture.cols) = picture.at<cv::Vec3b>(y, x);
+cv::Mat moved_round(const cv::Mat& image, Random& random) {
+  const int right = static_cast<int>(image.cols * random.uniform(0.2, 0.8));
+  const int down = static_cast<int>(image.rows * random.uniform(0.2, 0.8));
+  cv::Mat out(image.size(), image.type());
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x)
+      out.at<cv::Vec3b>((y + down) % image.rows, (x + right) % image.cols) = image.at<cv::Vec3b>(y, x);
   }
   return out;
 }
 
 /// The mesh in other colours, and with another print or not. Another print alone would leave what is plain as it is.
 void repaint(bool other_print, Random& random, Mesh& mesh) {
-  const auto painted = [&](const cv::Mat& picture) {
-    return recoloured(other_print ? moved_round(picture, random) : picture, random);
+  const auto painted = [&](const cv::Mat& image) {
+    return recoloured(other_print ? moved_round(image, random) : image, random);
   };
   if (!mesh.texture.empty()) {
     mesh.texture = painted(mesh.texture);

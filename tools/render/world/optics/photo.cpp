@@ -43,13 +43,13 @@ cv::Mat simulate_colour_camera(const cv::Mat& radiance, const ColourCameraSettin
   const auto read_sq = static_cast<float>(settings.read_noise * settings.read_noise);
   const auto falloff = static_cast<float>(settings.vignetting /
                                           (0.25 * (radiance.cols * radiance.cols + radiance.rows * radiance.rows)));
-  cv::Mat picture(radiance.size(), CV_8UC3);
-  for (int y = 0; y < picture.rows; ++y) {
+  cv::Mat image(radiance.size(), CV_8UC3);
+  for (int y = 0; y < image.rows; ++y) {
     const auto* in = blurred.ptr<cv::Vec3f>(y);
-    auto* out = picture.ptr<cv::Vec3b>(y);
-    const float dy = static_cast<float>(y) - 0.5F * static_cast<float>(picture.rows);
-    for (int x = 0; x < picture.cols; ++x) {
-      const float dx = static_cast<float>(x) - 0.5F * static_cast<float>(picture.cols);
+    auto* out = image.ptr<cv::Vec3b>(y);
+    const float dy = static_cast<float>(y) - 0.5F * static_cast<float>(image.rows);
+    for (int x = 0; x < image.cols; ++x) {
+      const float dx = static_cast<float>(x) - 0.5F * static_cast<float>(image.cols);
       const float vignette = 1.0F - falloff * (dx * dx + dy * dy);
       for (int c = 0; c < 3; ++c) {
         const float level = vignette * gain[c] * in[x][c];
@@ -60,7 +60,7 @@ cv::Mat simulate_colour_camera(const cv::Mat& radiance, const ColourCameraSettin
       }
     }
   }
-  return picture;
+  return image;
 }
 
 ColourResponse other_colour_camera() {

@@ -211,7 +211,7 @@ AssetPtr monitor(Random& random, const Dyes& /*dyes*/) {
   BoxFaces faces;
   faces.back = plain({128, 96}, {40, 40, 40}, 0.05, random);
   faces.left = faces.right = faces.top = faces.bottom = faces.back;
-  faces.front = screen_picture({960, 600}, random);
+  faces.front = screen_image({960, 600}, random);
   const double width = random.uniform(0.4, 0.55);
   const double height = 0.6 * width;
   return make_asset("monitor",

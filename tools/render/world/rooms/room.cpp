@@ -106,7 +106,7 @@ AssetPtr make_cabinet(const Eigen::Vector3d& size, Random& random) {
 }
 
 /// A poster to hang; the origin is at its centre.
-AssetPtr make_picture(Random& random) {
+AssetPtr make_wall_image(Random& random) {
   const double width = random.uniform(0.3, 0.7);
   const double height = random.uniform(0.3, 0.8);
   BoxFaces faces;
@@ -195,19 +195,19 @@ void add_shell(Room& room, RoomStyle style, const Walls& walls, Random& random) 
   add("wall", {kThick, depth, kWallHeight}, wall, {walls.side + 0.5 * kThick, middle, z});
 }
 
-void add_pictures(Room& room, const Walls& walls, Random& random) {
+void add_wall_images(Room& room, const Walls& walls, Random& random) {
   const auto hang = [&](AssetPtr thing, const Eigen::Vector3d& position, double yaw) {
     room.items.push_back(place(std::move(thing), position, yaw));
     room.items.back().casts_shadow = false;
   };
   double x = -walls.side + 0.5;
   while (x < walls.side - 0.4) {
-    if (chance(random, 0.7)) hang(make_picture(random), {x, walls.back - 0.012, random.uniform(0.3, 0.75)}, 0.0);
+    if (chance(random, 0.7)) hang(make_wall_image(random), {x, walls.back - 0.012, random.uniform(0.3, 0.75)}, 0.0);
     x += random.uniform(0.75, 1.2);
   }
   for (const double side : {-1.0, 1.0}) {
     const Eigen::Vector3d position(side * (walls.side - 0.02), random.uniform(-1.0, 0.4), 0.55);
-    hang(chance(random, 0.5) ? make_window(random) : make_picture(random), position, -side * M_PI / 2);
+    hang(chance(random, 0.5) ? make_window(random) : make_wall_image(random), position, -side * M_PI / 2);
   }
 }
 
@@ -246,7 +246,7 @@ Room make_room(RoomStyle style, std::uint64_t seed) {
   const Walls walls = plan_walls(style, room.table_half, random);
   add_shell(room, style, walls, random);
   room.items.push_back(place(make_table(room.table_half, kTableHeight, table_top(style, random), random), {0, 0, 0}));
-  if (style != RoomStyle::kKitchen) add_pictures(room, walls, random);
+  if (style != RoomStyle::kKitchen) add_wall_images(room, walls, random);
   add_furniture(room, style, walls, random);
   return room;
 }

@@ -1,4 +1,4 @@
-#include "tools/evaluate/reliability_picture.hpp"
+#include "tools/evaluate/reliability_image.hpp"
 
 #include <fmt/format.h>
 
@@ -26,14 +26,14 @@ const cv::Scalar kGapColour(80, 80, 220);
 /// Draws in a panel, whose origin is the diagram's lower left corner; x and y from 0 to 1.
 class Panel {
  public:
-  Panel(cv::Mat picture, const Calibration& calibration, const std::string& name)
-      : picture_(std::move(picture)), calibration_(calibration), name_(name) {}
+  Panel(cv::Mat image, const Calibration& calibration, const std::string& name)
+      : image_(std::move(image)), calibration_(calibration), name_(name) {}
 
   void draw() {
     draw_grid();
     for (const ReliabilityBin& bin : calibration_.bins) draw_bin(bin);
-    cv::line(picture_, at(0, 0), at(1, 1), kInk, 1, cv::LINE_AA);
-    cv::rectangle(picture_, at(0, 1), at(1, 0), kInk, 1);
+    cv::line(image_, at(0, 0), at(1, 1), kInk, 1, cv::LINE_AA);
+    cv::rectangle(image_, at(0, 1), at(1, 0), kInk, 1);
     draw_counts();
     const std::string error = std::isfinite(calibration_.ece) ? fmt::format("{:.3f}", calibration_.ece) : "-";
     text(fmt::format("{}: {} judged, ECE {}", name_, calibration_.count, error), {kMargin, 36}, 0.6);
@@ -48,14 +48,14 @@ class Panel {
   }
 
   void text(const std::string& words, const cv::Point& corner, double size) {
-    cv::putText(picture_, words, corner, cv::FONT_HERSHEY_SIMPLEX, size, kInk, 1, cv::LINE_AA);
+    cv::putText(image_, words, corner, cv::FONT_HERSHEY_SIMPLEX, size, kInk, 1, cv::LINE_AA);
   }
 
   void draw_grid() {
     for (int i = 0; i <= 10; i += 2) {
       const double fraction = i / 10.0;
-      cv::line(picture_, at(fraction, 0), at(fraction, 1), kGrid, 1);
-      cv::line(picture_, at(0, fraction), at(1, fraction), kGrid, 1);
+      cv::line(image_, at(fraction, 0), at(fraction, 1), kGrid, 1);
+      cv::line(image_, at(0, fraction), at(1, fraction), kGrid, 1);
       text(fmt::format("{:.1f}", fraction), at(fraction, 0) + cv::Point(-12, 20), 0.42);
       text(fmt::format("{:.1f}", fraction), at(0, fraction) + cv::Point(-34, 5), 0.42);
     }
@@ -65,10 +65,10 @@ class Panel {
   void draw_bin(const ReliabilityBin& bin) {
     if (bin.count == 0) return;
     const cv::Point gap(2, 0);
-    cv::rectangle(picture_, at(bin.from, bin.true_fraction) + gap, at(bin.to, 0) - gap, kBar, cv::FILLED);
+    cv::rectangle(image_, at(bin.from, bin.true_fraction) + gap, at(bin.to, 0) - gap, kBar, cv::FILLED);
     const cv::Point mean = at(bin.mean_score, bin.true_fraction);
-    cv::line(picture_, mean, at(bin.mean_score, bin.mean_score), kGapColour, 2, cv::LINE_AA);
-    cv::circle(picture_, mean, 4, kGapColour, cv::FILLED, cv::LINE_AA);
+    cv::line(image_, mean, at(bin.mean_score, bin.mean_score), kGapColour, 2, cv::LINE_AA);
+    cv::circle(image_, mean, 4, kGapColour, cv::FILLED, cv::LINE_AA);
   }
 
   /// Bars as high as the logarithm of the bin's count, so that a few are seen beside many.
@@ -80,23 +80,23 @@ class Panel {
     for (const ReliabilityBin& bin : calibration_.bins) {
       const double fraction = std::log1p(bin.count) / std::log1p(maximum);
       const int top = bottom - static_cast<int>(std::lround(fraction * (kCounts - kTextHeight)));
-      cv::rectangle(picture_, {at(bin.from, 0).x + 2, top}, {at(bin.to, 0).x - 2, bottom}, kCountBar, cv::FILLED);
+      cv::rectangle(image_, {at(bin.from, 0).x + 2, top}, {at(bin.to, 0).x - 2, bottom}, kCountBar, cv::FILLED);
       text(std::to_string(bin.count), {at(bin.from, 0).x + 3, top - 3}, 0.36);
     }
   }
 
-  cv::Mat picture_;
+  cv::Mat image_;
   const Calibration& calibration_;
   std::string name_;
 };
 
 }  // namespace
 
-cv::Mat reliability_picture(const Calibration& score, const Calibration& quality) {
-  cv::Mat picture(kHeight, 2 * kWidth, CV_8UC3, cv::Scalar::all(255));
-  Panel(picture.colRange(0, kWidth), score, "score").draw();
-  Panel(picture.colRange(kWidth, 2 * kWidth), quality, "quality").draw();
-  return picture;
+cv::Mat reliability_image(const Calibration& score, const Calibration& quality) {
+  cv::Mat image(kHeight, 2 * kWidth, CV_8UC3, cv::Scalar::all(255));
+  Panel(image.colRange(0, kWidth), score, "score").draw();
+  Panel(image.colRange(kWidth, 2 * kWidth), quality, "quality").draw();
+  return image;
 }
 
 }  // namespace houghstream
