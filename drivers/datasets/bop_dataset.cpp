@@ -66,7 +66,7 @@ cv::Rect parse_box(const json& info, const Camera& camera, const std::string& wh
 }
 
 /// What scene_gt.json says of an object.
-GroundTruthObject parse_truth(const json& entry, const std::string& where) {
+GroundTruthObject parse_ground_truth(const json& entry, const std::string& where) {
   GroundTruthObject object;
   object.object_id = json_integer(entry, "obj_id", where);
   require(object.object_id >= 1, "{}: 'obj_id' is {}, expected at least 1", where, object.object_id);
@@ -138,7 +138,7 @@ void read_objects(const fs::path& folder, std::vector<BopImage>& images) {
             info_file.string(), image.image_id, infos.size(), entries.size());
     for (std::size_t i = 0; i < entries.size(); ++i) {
       const std::string place = fmt::format(" image {} object {}", image.image_id, i);
-      image.objects.push_back(parse_truth(entries[i], gt_file.string() + place));
+      image.objects.push_back(parse_ground_truth(entries[i], gt_file.string() + place));
       add_info(infos[i], image.camera, info_file.string() + place, image.objects.back());
     }
   }

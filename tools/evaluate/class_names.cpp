@@ -26,7 +26,7 @@ void require_shared_name(const NamedSide& a, const NamedSide& b) {
   require(shared, "no name in common: {} has {}; {} has {}", a.what, listed(a.names), b.what, listed(b.names));
 }
 
-std::set<std::string> true_names(const std::vector<EvaluatedFrame>& frames) {
+std::set<std::string> ground_truth_names(const std::vector<EvaluatedFrame>& frames) {
   std::set<std::string> names;
   for (const EvaluatedFrame& frame : frames) {
     for (const NamedObject& object : frame.objects) names.insert(object.class_name);

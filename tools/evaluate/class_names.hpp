@@ -21,7 +21,7 @@ struct NamedSide {
 void require_shared_name(const NamedSide& a, const NamedSide& b);
 
 /// Of all objects in the truth; none for a scene without objects.
-std::set<std::string> true_names(const std::vector<EvaluatedFrame>& frames);
+std::set<std::string> ground_truth_names(const std::vector<EvaluatedFrame>& frames);
 
 /// Of all detections.
 std::set<std::string> detected_names(const std::vector<Detections>& results);

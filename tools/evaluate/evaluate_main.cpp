@@ -48,7 +48,7 @@ std::vector<OpenScene> open_scenes(const EvaluateOptions& options) {
     require(folder_names.insert(scene_name(scene)).second, "--scene {}: two scenes of this folder name, expected one",
             folder);
     std::map<int, std::string> names = find_bop_names(folder);
-    std::vector<EvaluatedFrame> frames = read_truth(scene, names);
+    std::vector<EvaluatedFrame> frames = read_ground_truth(scene, names);
     scenes.push_back({scene, std::move(names), std::move(frames)});
   }
   return scenes;
@@ -64,9 +64,9 @@ void choose_frames(const EvaluateOptions& options, std::vector<OpenScene>& scene
   }
 }
 
-NamedSide truth_side(const EvaluateOptions& options, const std::vector<OpenScene>& scenes) {
+NamedSide ground_truth_side(const EvaluateOptions& options, const std::vector<OpenScene>& scenes) {
   NamedSide side{fmt::format("the scene{} {}", scenes.size() > 1 ? "s" : "", fmt::join(options.scenes, ", ")), {}};
-  for (const OpenScene& it : scenes) side.names.merge(true_names(it.frames));
+  for (const OpenScene& it : scenes) side.names.merge(ground_truth_names(it.frames));
   return side;
 }
 
@@ -155,7 +155,7 @@ void run(EvaluateOptions options) {
   if (!options.known.forest.empty()) forest = load_forest(options.known.forest);
   const std::map<std::string, Mesh> meshes =
       options.known.models.empty() ? std::map<std::string, Mesh>() : load_class_models(options.known.models);
-  const NamedSide truth = truth_side(options, scenes);
+  const NamedSide truth = ground_truth_side(options, scenes);
   const std::vector<std::string> classes = listed_classes(options, forest, truth, meshes);
   if (!options.log.empty()) add_log(options, !forest, truth, scenes.front());
   choose_frames(options, scenes);

@@ -38,7 +38,7 @@ OrderedJson pose_entry(const Eigen::Isometry3d& T) {
 }
 
 /// The share that is seen of each instance; a frame's objects are those of which enough is seen, in no other order.
-OrderedJson visible_entry(const SequenceTruth& truth, int camera, const std::vector<GroundTruthObject>& seen) {
+OrderedJson visible_entry(const SequenceGroundTruth& truth, int camera, const std::vector<GroundTruthObject>& seen) {
   constexpr double kSamePlaceM = 1e-6;
   OrderedJson out = OrderedJson::array();
   for (const auto& T_world_object : truth.T_world_object) {
@@ -57,7 +57,7 @@ OrderedJson visible_entry(const SequenceTruth& truth, int camera, const std::vec
 OrderedJson empty_frames(const Sequence& sequence, int frames, double fps) {
   OrderedJson out = OrderedJson::array();
   for (int i = 0; i < frames; ++i) {
-    const SequenceTruth truth = sequence.truth(i / fps);
+    const SequenceGroundTruth truth = sequence.truth(i / fps);
     OrderedJson objects = OrderedJson::array();
     for (const auto& T : truth.T_world_object) objects.push_back(T ? pose_entry(*T) : OrderedJson());
     out.push_back({{"utime", dataset_utime(0) + std::llround(i * 1e6 / fps)},
@@ -75,7 +75,7 @@ void render_sequence(const RenderOptions& options, const SequencesJob& job, cons
     out["objects"].push_back({{"instance", i + 1},
                               {"object_id", plan.actors[i].object_id},
                               {"name", make_taught_object(plan.actors[i].object_id).name}});
-  OrderedJson truth_of_frames = empty_frames(sequence, frames, job.fps);
+  OrderedJson ground_truth_of_frames = empty_frames(sequence, frames, job.fps);
   for (int camera = 0; camera < sequence.cameras(); ++camera) {
     const std::string scene = fmt::format("{:06d}", camera + 1);
     out["cameras"].push_back({{"scene", scene}, {"channel", fmt::format("CAMERA_{}", camera + 1)}});
@@ -84,16 +84,16 @@ void render_sequence(const RenderOptions& options, const SequencesJob& job, cons
     render_in_order(
         plan.name, options.threads, frames, [&](int i) { return sequence.render(camera, i / job.fps, i); },
         [&](const RenderedFrame& view) {
-          const SequenceTruth truth = sequence.truth(index / job.fps);
+          const SequenceGroundTruth truth = sequence.truth(index / job.fps);
           const Eigen::Isometry3d T_world_camera = truth.T_camera_world[static_cast<std::size_t>(camera)].inverse();
-          truth_of_frames[static_cast<std::size_t>(index++)]["cameras"].push_back(
+          ground_truth_of_frames[static_cast<std::size_t>(index++)]["cameras"].push_back(
               {{"T_world_camera", pose_entry(T_world_camera)},
                {"visible", visible_entry(truth, camera, view.objects)}});
           writer.add(view.frame, view.objects, view.visible_masks);
         });
     writer.finish();
   }
-  out["frames"] = truth_of_frames;
+  out["frames"] = ground_truth_of_frames;
   write_json(out, options.out / plan.name / "sequence.json");
 }
 

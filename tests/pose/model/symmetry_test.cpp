@@ -97,11 +97,12 @@ TEST(Symmetry, ABallHasNoRotation) {
 
 TEST(Symmetry, APoseMovesAlongWhereTheAxisIsOffTheOrigin) {
   const Symmetries bowl = {{}, {{Eigen::Vector3d::UnitZ(), {0.1, 0.0, 0.0}}}};
-  Eigen::Isometry3d T_true(kSomeRotation);
-  T_true.pretranslate(Eigen::Vector3d(0.1, 0.2, 0.9));
+  Eigen::Isometry3d T_ground_truth(kSomeRotation);
+  T_ground_truth.pretranslate(Eigen::Vector3d(0.1, 0.2, 0.9));
   const Eigen::Translation3d offset(0.1, 0.0, 0.0);
-  const Eigen::Isometry3d rotated = T_true * offset * rotation(120.0, Eigen::Vector3d::UnitZ()) * offset.inverse();
-  EXPECT_TRUE(nearest_equivalent(rotated, T_true, bowl).isApprox(T_true, 1e-9));
+  const Eigen::Isometry3d rotated =
+      T_ground_truth * offset * rotation(120.0, Eigen::Vector3d::UnitZ()) * offset.inverse();
+  EXPECT_TRUE(nearest_equivalent(rotated, T_ground_truth, bowl).isApprox(T_ground_truth, 1e-9));
 }
 
 TEST(Symmetry, HalfATurnAcrossTheAxisIsNoTwist) {

@@ -102,7 +102,7 @@ TEST(BopResults, BadFilesAreRefusedWithOneLine) {
 
 TEST(BopEstimates, CarryTheIdsOfTheScene) {
   const BopScene scene = scene_in(fresh_folder("bop_estimates") / "000048");
-  std::vector<EvaluatedFrame> frames = read_truth(scene, {});
+  std::vector<EvaluatedFrame> frames = read_ground_truth(scene, {});
   ObjectPose refused = pose_of("mug");
   refused.T_camera_object.reset();
   frames[1].poses = ObjectPoses{{"", frames[1].utime},
@@ -119,7 +119,7 @@ TEST(BopEstimates, CarryTheIdsOfTheScene) {
 
 TEST(BopEstimates, AnotherNameOfTheFolderIsSceneZeroAndNoStagesNoTime) {
   const BopScene scene = scene_in(fresh_folder("bop_estimates") / "12_monkeys");
-  std::vector<EvaluatedFrame> frames = read_truth(scene, {});
+  std::vector<EvaluatedFrame> frames = read_ground_truth(scene, {});
   frames[0].poses = ObjectPoses{{"", frames[0].utime}, {pose_of("object_9")}, {}};
   NamedObject object;
   object.class_name = "object_9";

@@ -32,8 +32,8 @@ TEST(ClassNames, AreThoseOfTruthAndDetections) {
   std::vector<EvaluatedFrame> frames(2);
   frames[0].objects = {{"mug", {}}, {"can", {}}};
   frames[1].objects = {{"mug", {}}};
-  EXPECT_EQ(true_names(frames), (std::set<std::string>{"can", "mug"}));
-  EXPECT_TRUE(true_names({}).empty());
+  EXPECT_EQ(ground_truth_names(frames), (std::set<std::string>{"can", "mug"}));
+  EXPECT_TRUE(ground_truth_names({}).empty());
   Detections result;
   result.detections.resize(1);
   result.detections[0].class_name = "bowl";

@@ -47,7 +47,7 @@ DetectionSettings settings_from(float threshold) {
 }
 
 std::vector<EvaluatedFrame> run(const BopScene& scene, float threshold, const PublishingRules& rules) {
-  std::vector<EvaluatedFrame> frames = read_truth(scene, {});
+  std::vector<EvaluatedFrame> frames = read_ground_truth(scene, {});
   InProcess(toy_forest(), settings_from(threshold), detector_search, plates(), rules).run(scene, frames);
   return frames;
 }
@@ -151,7 +151,7 @@ TEST(InProcess, TimesAreThoseOfASearchForWhatIsPublished) {
 
 TEST(InProcess, WithoutModelsNobodyLooksForPoses) {
   const BopScene scene = two_tiles("in_process_models");
-  std::vector<EvaluatedFrame> frames = read_truth(scene, {});
+  std::vector<EvaluatedFrame> frames = read_ground_truth(scene, {});
   frames.erase(frames.begin());
   InProcess(toy_forest(), settings_from(0.5F), detector_search, {}, {}).run(scene, frames);
   ASSERT_EQ(frames.size(), 1U) << "those that were asked for";

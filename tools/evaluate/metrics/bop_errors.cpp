@@ -37,11 +37,11 @@ double max_sq(const std::vector<Eigen::Vector2d>& estimated, const Vertices& ver
 }
 
 /// The part of the image in which the object can be seen in either pose: all of it where the object is too near to say.
-cv::Rect seen_region(const Vertices& vertices, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true,
-                     const Camera& camera) {
+cv::Rect seen_region(const Vertices& vertices, const Eigen::Isometry3d& T_estimated,
+                     const Eigen::Isometry3d& T_ground_truth, const Camera& camera) {
   const cv::Rect image(0, 0, camera.width, camera.height);
   Eigen::AlignedBox2d bounds;
-  for (const Eigen::Isometry3d* T : {&T_estimated, &T_true}) {
+  for (const Eigen::Isometry3d* T : {&T_estimated, &T_ground_truth}) {
     const std::vector<Eigen::Vector2d> points = projected(vertices, *T, camera);
     if (points.empty()) return image;
     for (const Eigen::Vector2d& point : points) bounds.extend(point);
@@ -63,11 +63,11 @@ struct PixelCounts {
 void count_pixel(double estimated, double truth, double measured, double diameter, PixelCounts& counts) {
   constexpr double kDelta = 0.015;
   const auto visible = [&](double model) { return std::isfinite(model) && !(model - measured > kDelta); };
-  const bool true_visible = visible(truth);
+  const bool ground_truth_visible = visible(truth);
   // Where the true object is seen, an estimate behind it is not hidden but wrong.
-  const bool estimate_visible = visible(estimated) || (true_visible && std::isfinite(estimated));
-  counts.in_either += true_visible || estimate_visible ? 1 : 0;
-  if (!true_visible || !estimate_visible) return;
+  const bool estimate_visible = visible(estimated) || (ground_truth_visible && std::isfinite(estimated));
+  counts.in_either += ground_truth_visible || estimate_visible ? 1 : 0;
+  if (!ground_truth_visible || !estimate_visible) return;
   ++counts.in_both;
   for (std::size_t i = 0; i < kBopSteps; ++i) {
     counts.apart[i] += std::abs(truth - estimated) / diameter >= bop_step(i) ? 1 : 0;
@@ -77,10 +77,10 @@ void count_pixel(double estimated, double truth, double measured, double diamete
 }  // namespace
 
 double mssd_error(const Vertices& vertices, const std::vector<Eigen::Isometry3d>& symmetries,
-                  const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true) {
+                  const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_ground_truth) {
   double best_sq = kInfinity;
   for (const Eigen::Isometry3d& symmetry : symmetries) {
-    const Eigen::Isometry3d T = T_true * symmetry;
+    const Eigen::Isometry3d T = T_ground_truth * symmetry;
     const Eigen::Matrix3d A = T_estimated.linear() - T.linear();
     const Eigen::Vector3d b = T_estimated.translation() - T.translation();
     double farthest = 0.0;
@@ -92,23 +92,23 @@ double mssd_error(const Vertices& vertices, const std::vector<Eigen::Isometry3d>
 }
 
 double mspd_error(const Vertices& vertices, const std::vector<Eigen::Isometry3d>& symmetries,
-                  const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true, const Camera& camera) {
+                  const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_ground_truth, const Camera& camera) {
   const std::vector<Eigen::Vector2d> estimated = projected(vertices, T_estimated, camera);
   if (estimated.empty()) return kInfinity;
   double best_sq = kInfinity;
   for (const Eigen::Isometry3d& symmetry : symmetries)
-    best_sq = std::min(best_sq, max_sq(estimated, vertices, T_true * symmetry, camera, best_sq));
+    best_sq = std::min(best_sq, max_sq(estimated, vertices, T_ground_truth * symmetry, camera, best_sq));
   return std::sqrt(best_sq);
 }
 
 std::array<double, kBopSteps> vsd_errors(const Mesh& mesh, double diameter, const Eigen::Isometry3d& T_estimated,
-                                         const Eigen::Isometry3d& T_true, const RgbdFrame& frame) {
-  const cv::Rect region = seen_region(mesh.vertices, T_estimated, T_true, frame.camera);
+                                         const Eigen::Isometry3d& T_ground_truth, const RgbdFrame& frame) {
+  const cv::Rect region = seen_region(mesh.vertices, T_estimated, T_ground_truth, frame.camera);
   std::array<double, kBopSteps> errors;
   errors.fill(1.0);
   if (region.empty()) return errors;
   const cv::Mat estimated = render_depth(mesh, T_estimated, frame.camera, region);
-  const cv::Mat truth = render_depth(mesh, T_true, frame.camera, region);
+  const cv::Mat truth = render_depth(mesh, T_ground_truth, frame.camera, region);
   PixelCounts counts;
   for (int y = 0; y < region.height; ++y) {
     for (int x = 0; x < region.width; ++x) {
@@ -125,13 +125,14 @@ std::array<double, kBopSteps> vsd_errors(const Mesh& mesh, double diameter, cons
   return errors;
 }
 
-BopErrors bop_errors(const BopModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true,
-                     const RgbdFrame& frame) {
+BopErrors bop_errors(const BopModel& model, const Eigen::Isometry3d& T_estimated,
+                     const Eigen::Isometry3d& T_ground_truth, const RgbdFrame& frame) {
   constexpr double kBopWidth_px = 640.0;
   const auto& vertices = model.mesh.vertices;
-  return {mssd_error(vertices, model.symmetries, T_estimated, T_true) / model.diameter,
-          mspd_error(vertices, model.symmetries, T_estimated, T_true, frame.camera) * kBopWidth_px / frame.camera.width,
-          vsd_errors(model.mesh, model.diameter, T_estimated, T_true, frame)};
+  return {mssd_error(vertices, model.symmetries, T_estimated, T_ground_truth) / model.diameter,
+          mspd_error(vertices, model.symmetries, T_estimated, T_ground_truth, frame.camera) * kBopWidth_px /
+              frame.camera.width,
+          vsd_errors(model.mesh, model.diameter, T_estimated, T_ground_truth, frame)};
 }
 
 }  // namespace houghstream

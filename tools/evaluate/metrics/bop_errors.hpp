@@ -16,12 +16,12 @@ namespace houghstream {
 /// MSSD, Maximum Symmetry-aware Surface Distance, metres: the farthest that a vertex is from its true place, for the
 /// true pose that is best among the equivalent ones.
 double mssd_error(const std::vector<Eigen::Vector3f>& vertices, const std::vector<Eigen::Isometry3d>& symmetries,
-                  const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
+                  const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_ground_truth);
 
 /// MSPD, Maximum Symmetry-aware Projection Distance, pixels: the same in the image. Infinite where a vertex does not
 /// lie in front of the camera.
 double mspd_error(const std::vector<Eigen::Vector3f>& vertices, const std::vector<Eigen::Isometry3d>& symmetries,
-                  const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true, const Camera& camera);
+                  const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_ground_truth, const Camera& camera);
 
 /// Ten steps from 0.05 to 0.5.
 constexpr std::size_t kBopSteps = 10;
@@ -35,7 +35,7 @@ constexpr double bop_step(std::size_t index) {
 /// what lies up to delta = 15 mm behind the measured depth is visible. Blind to symmetries that cannot be seen. 1 where
 /// nothing is visible. `frame` needs depth and camera only.
 std::array<double, kBopSteps> vsd_errors(const Mesh& mesh, double diameter, const Eigen::Isometry3d& T_estimated,
-                                         const Eigen::Isometry3d& T_true, const RgbdFrame& frame);
+                                         const Eigen::Isometry3d& T_ground_truth, const RgbdFrame& frame);
 
 /// What poses of a class are measured with in BOP's way.
 struct BopModel {
@@ -50,7 +50,7 @@ struct BopErrors {
   double mspd = 0.0;                       ///< pixels of an image 640 wide
   std::array<double, kBopSteps> vsd = {};  ///< by tau
 };
-BopErrors bop_errors(const BopModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true,
-                     const RgbdFrame& frame);
+BopErrors bop_errors(const BopModel& model, const Eigen::Isometry3d& T_estimated,
+                     const Eigen::Isometry3d& T_ground_truth, const RgbdFrame& frame);
 
 }  // namespace houghstream

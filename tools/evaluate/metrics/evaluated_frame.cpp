@@ -51,7 +51,7 @@ int scene_number(const std::string& scene_name) {
   return result.ec == std::errc() && result.ptr == end && number >= 0 ? number : 0;
 }
 
-std::vector<EvaluatedFrame> read_truth(const BopScene& scene, const std::map<int, std::string>& names) {
+std::vector<EvaluatedFrame> read_ground_truth(const BopScene& scene, const std::map<int, std::string>& names) {
   std::vector<EvaluatedFrame> frames;
   for (std::size_t i = 0; i < scene.images().size(); ++i) {
     EvaluatedFrame frame;

@@ -43,7 +43,7 @@ std::string scene_name(const BopScene& scene);
 int scene_number(const std::string& scene_name);
 
 /// The truth of a scene, frame by frame, with the utimes of its frames. Objects without a name are "object_N".
-std::vector<EvaluatedFrame> read_truth(const BopScene& scene, const std::map<int, std::string>& names);
+std::vector<EvaluatedFrame> read_ground_truth(const BopScene& scene, const std::map<int, std::string>& names);
 
 /// Puts the results of one camera beside the truth of the same time, those of several detectors of one frame joined.
 /// Throws InputError naming `source` for a result of an unknown frame, two results of one frame that share a class but

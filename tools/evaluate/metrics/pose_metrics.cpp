@@ -31,18 +31,18 @@ double recall(const std::vector<JudgedPose>& poses, double JudgedPose::*error, d
 
 }  // namespace
 
-double add_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true) {
+double add_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_ground_truth) {
   const Points estimated = transformed(model, T_estimated);
-  const Points truth = transformed(model, T_true);
+  const Points truth = transformed(model, T_ground_truth);
   double sum = 0.0;
   for (std::size_t i = 0; i < model.size(); ++i) sum += static_cast<double>((estimated[i] - truth[i]).norm());
   return sum / static_cast<double>(model.size());
 }
 
-double add_s_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true) {
+double add_s_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_ground_truth) {
   const Points estimated = transformed(model, T_estimated);
   double sum = 0.0;
-  for (const Eigen::Vector3f& point : transformed(model, T_true)) {
+  for (const Eigen::Vector3f& point : transformed(model, T_ground_truth)) {
     float nearest_sq = std::numeric_limits<float>::infinity();
     for (const Eigen::Vector3f& other : estimated) nearest_sq = std::min(nearest_sq, (other - point).squaredNorm());
     sum += std::sqrt(static_cast<double>(nearest_sq));
@@ -56,18 +56,19 @@ PoseModel make_pose_model(const Mesh& mesh, const Symmetries& symmetries) {
   return {sample_surface(mesh, kPoints, kSeed).points, mesh_diameter(mesh), expand_symmetries(symmetries)};
 }
 
-double strict_error(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true) {
-  return model.is_symmetric() ? mssd_error(model.points, model.symmetries, T_estimated, T_true)
-                              : add_error(model.points, T_estimated, T_true);
+double strict_error(const PoseModel& model, const Eigen::Isometry3d& T_estimated,
+                    const Eigen::Isometry3d& T_ground_truth) {
+  return model.is_symmetric() ? mssd_error(model.points, model.symmetries, T_estimated, T_ground_truth)
+                              : add_error(model.points, T_estimated, T_ground_truth);
 }
 
-bool is_correct(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true) {
-  return strict_error(model, T_estimated, T_true) < kCorrectBelow * model.diameter;
+bool is_correct(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_ground_truth) {
+  return strict_error(model, T_estimated, T_ground_truth) < kCorrectBelow * model.diameter;
 }
 
 bool is_correct_up_to_shape(const PoseModel& model, const Eigen::Isometry3d& T_estimated,
-                            const Eigen::Isometry3d& T_true) {
-  return add_s_error(model.points, T_estimated, T_true) < kCorrectBelow * model.diameter;
+                            const Eigen::Isometry3d& T_ground_truth) {
+  return add_s_error(model.points, T_estimated, T_ground_truth) < kCorrectBelow * model.diameter;
 }
 
 std::vector<JudgedPose> match_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,

@@ -20,11 +20,11 @@ using Points = std::vector<Eigen::Vector3f>;
 constexpr double kCorrectBelow = 0.1;  ///< error of a right pose, diameters (Hinterstoisser et al. 2012)
 
 /// ADD (Hinterstoisser et al. 2012): mean distance in metres of the model's points under the two poses.
-double add_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
+double add_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_ground_truth);
 
 /// ADD-S (Hinterstoisser et al. 2012): mean distance in metres from each point under the true pose to the nearest point
 /// under the estimated one; blind to symmetries.
-double add_s_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
+double add_s_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_ground_truth);
 
 /// What poses of a class are measured with.
 struct PoseModel {
@@ -42,11 +42,12 @@ PoseModel make_pose_model(const Mesh& mesh, const Symmetries& symmetries);
 
 /// The error by which a pose is right or not, metres: MSSD (Hodan et al. 2020) over the model's points where the
 /// dataset lists symmetries of the object, else ADD.
-double strict_error(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
-bool is_correct(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
+double strict_error(const PoseModel& model, const Eigen::Isometry3d& T_estimated,
+                    const Eigen::Isometry3d& T_ground_truth);
+bool is_correct(const PoseModel& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_ground_truth);
 /// By ADD-S.
 bool is_correct_up_to_shape(const PoseModel& model, const Eigen::Isometry3d& T_estimated,
-                            const Eigen::Isometry3d& T_true);
+                            const Eigen::Isometry3d& T_ground_truth);
 
 /// A true detection and the pose that was published for it.
 struct JudgedPose {

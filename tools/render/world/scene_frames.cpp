@@ -30,8 +30,8 @@ int silhouette_px(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, co
   return cv::countNonZero(depth == depth);  // NaN differs from itself
 }
 
-void add_truth(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, const cv::Mat& ids,
-               RenderedFrame& result) {
+void add_ground_truth(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, const cv::Mat& ids,
+                      RenderedFrame& result) {
   for (std::size_t i = 0; i < lit_world.world.items.size(); ++i) {
     const PlacedAsset& placed = lit_world.world.items[i];
     if (placed.object_id == 0) continue;
@@ -76,7 +76,7 @@ RenderedFrame record_view(const LitWorld& lit_world, const Eigen::Isometry3d& T_
   } else {
     result.frame.depth = measure_depth(seen, result.frame.camera, DepthSensorSettings{}, depth_seed);
   }
-  add_truth(lit_world, T_camera_world, view.geometry.id, result);
+  add_ground_truth(lit_world, T_camera_world, view.geometry.id, result);
   return result;
 }
 

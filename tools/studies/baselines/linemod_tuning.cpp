@@ -12,7 +12,8 @@
 namespace houghstream {
 namespace {
 
-EvaluatedFrame to_truth(const training::ValidationFrame& composed, const std::vector<const TrainingView*>& shown) {
+EvaluatedFrame to_ground_truth(const training::ValidationFrame& composed,
+                               const std::vector<const TrainingView*>& shown) {
   EvaluatedFrame truth;
   for (const training::ValidationFrame::Object& object : composed.objects) {
     NamedObject named;
@@ -133,7 +134,7 @@ ComposedExamples compose_examples(const std::vector<TrainingView>& views, float 
     const training::ValidationFrame composed =
         training::make_validation_frame(shown, rooms[f % rooms.size()]->frame, kThings, settings, random);
     out.frames.push_back(composed.frame);
-    out.truth.push_back(to_truth(composed, shown));
+    out.truth.push_back(to_ground_truth(composed, shown));
   }
   return out;
 }

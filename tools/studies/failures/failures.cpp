@@ -31,7 +31,8 @@ std::vector<Failure> thinned(std::vector<Failure> failures, std::size_t apart) {
   return kept;
 }
 
-std::vector<Failure> false_ones(const std::vector<EvaluatedFrame>& frames, const ClassResult& result, float minimum) {
+std::vector<Failure> false_positives(const std::vector<EvaluatedFrame>& frames, const ClassResult& result,
+                                     float minimum) {
   std::vector<Failure> out;
   for (const MatchedDetection& judged : result.judged) {
     if (judged.outcome != MatchOutcome::kFalsePositive || judged.score < minimum) continue;
@@ -76,7 +77,7 @@ std::vector<Failure> choose_failures(const std::vector<EvaluatedFrame>& frames, 
   std::vector<std::vector<Failure>> groups;
   for (const std::string& name : classes) {
     const ClassResult result = evaluate_class(frames, name, rules.detection);
-    groups.push_back(thinned(false_ones(frames, result, rules.operating_score), rules.apart));
+    groups.push_back(thinned(false_positives(frames, result, rules.operating_score), rules.apart));
     groups.push_back(thinned(missed_ones(frames, result, rules), rules.apart));
   }
   std::vector<Failure> chosen;

@@ -30,7 +30,7 @@ struct FailureOptions {
 /// A picture of each of the scene's gravest failures.
 std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& detector, const FailureOptions& options) {
   const BopScene scene(folder);
-  std::vector<EvaluatedFrame> frames = every_nth(read_truth(scene, find_bop_names(folder)), options.every);
+  std::vector<EvaluatedFrame> frames = every_nth(read_ground_truth(scene, find_bop_names(folder)), options.every);
   DetectorWorkspace workspace;
   for (std::size_t f = 0; f < frames.size(); ++f) {
     frames[f].detections = detector.detect(scene.read_frame(f * static_cast<std::size_t>(options.every)), workspace);

@@ -36,7 +36,7 @@ cv::Scalar colour_of(const Forest& forest, const std::string& class_name) {
 }
 
 /// Those that are visible enough to be required of a detector.
-std::vector<NamedBox> true_boxes(const EvaluatedFrame& frame, const Forest& forest) {
+std::vector<NamedBox> ground_truth_boxes(const EvaluatedFrame& frame, const Forest& forest) {
   std::vector<NamedBox> boxes;
   for (const NamedObject& object : frame.objects) {
     if (object.truth.visible_fraction < DetectionRules{}.min_visible) continue;
@@ -72,11 +72,11 @@ void run(const HoughOptions& options) {
   require(options.frame >= 0 && options.frame <= last, "{}: --frame {}, expected 0 to {}", options.scene, options.frame,
           last);
   const auto index = static_cast<std::size_t>(options.frame);
-  const EvaluatedFrame truth = read_truth(scene, find_bop_names(options.scene))[index];
+  const EvaluatedFrame truth = read_ground_truth(scene, find_bop_names(options.scene))[index];
   const Forest forest = load_forest(options.forest);
   const RgbdFrame frame = scene.read_frame(index);
   const std::vector<HoughPanel> panels = search(forest, frame, options);
-  write_png(draw_hough_panels(frame.colour, true_boxes(truth, forest), panels), options.out);
+  write_png(draw_hough_panels(frame.colour, ground_truth_boxes(truth, forest), panels), options.out);
 }
 
 }  // namespace

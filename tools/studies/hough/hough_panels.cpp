@@ -98,9 +98,9 @@ cv::Mat draw_hough_panels(const cv::Mat& colour, const std::vector<NamedBox>& tr
             panel.votes.cols, panel.votes.rows, colour.cols, colour.rows);
     top = std::max(top, highest_value(panel.votes));
   }
-  cv::Mat with_truth = colour.clone();
-  for (const NamedBox& box : truth) draw_box(with_truth, box);
-  std::vector<cv::Mat> tiles = {captioned(with_truth, "true boxes", 0.0)};
+  cv::Mat with_ground_truth = colour.clone();
+  for (const NamedBox& box : truth) draw_box(with_ground_truth, box);
+  std::vector<cv::Mat> tiles = {captioned(with_ground_truth, "true boxes", 0.0)};
   const cv::Mat ground = darkened_grey(colour);
   for (const HoughPanel& panel : panels) tiles.push_back(class_tile(ground, panel, top));
   return view::tiled(tiles, static_cast<int>(std::ceil(std::sqrt(tiles.size()))));

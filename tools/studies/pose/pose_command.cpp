@@ -59,7 +59,7 @@ std::filesystem::path models_of(const BopScene& scene, const BenchOptions& optio
 }
 
 DetectedScene detect_scene(const std::string& name, const BopScene& scene, const Detector& detector, int every) {
-  DetectedScene out{name, scene, every_nth(read_truth(scene, find_bop_names(scene.folder())), every)};
+  DetectedScene out{name, scene, every_nth(read_ground_truth(scene, find_bop_names(scene.folder())), every)};
   DetectorWorkspace workspace;
   for (EvaluatedFrame& frame : out.frames) frame.detections = detector.detect(scene.read_frame(frame.image), workspace);
   log_info("{}: {} frames", name, out.frames.size());

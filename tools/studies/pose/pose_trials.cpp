@@ -6,12 +6,12 @@
 namespace houghstream {
 namespace {
 
-void measure_errors(const ScoredModel& model, const Eigen::Isometry3d& T_true, PoseTrial& trial) {
+void measure_errors(const ScoredModel& model, const Eigen::Isometry3d& T_ground_truth, PoseTrial& trial) {
   const Eigen::Isometry3d& T_estimated = *trial.T_camera_object;
-  trial.strict = strict_error(model.surface, T_estimated, T_true) / model.surface.diameter;
-  trial.add = add_error(model.surface.points, T_estimated, T_true) / model.surface.diameter;
-  trial.add_s = add_s_error(model.surface.points, T_estimated, T_true) / model.surface.diameter;
-  const PoseDifference difference = compare_poses(T_estimated, T_true, model.symmetries);
+  trial.strict = strict_error(model.surface, T_estimated, T_ground_truth) / model.surface.diameter;
+  trial.add = add_error(model.surface.points, T_estimated, T_ground_truth) / model.surface.diameter;
+  trial.add_s = add_s_error(model.surface.points, T_estimated, T_ground_truth) / model.surface.diameter;
+  const PoseDifference difference = compare_poses(T_estimated, T_ground_truth, model.symmetries);
   trial.shift_m = difference.shift_m;
   trial.angle_deg = difference.angle_deg;
 }

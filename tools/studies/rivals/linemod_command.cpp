@@ -45,7 +45,7 @@ std::string folder_name(const fs::path& scene) {
 /// Every Nth frame of the scene, or as many of them as can be done in time: its truth, and what was detected.
 std::vector<EvaluatedFrame> detect_in_scene(const LinemodDetector& detector, const BopScene& scene,
                                             const LinemodOptions& options) {
-  const std::vector<EvaluatedFrame> all = read_truth(scene, find_bop_names(scene.folder()));
+  const std::vector<EvaluatedFrame> all = read_ground_truth(scene, find_bop_names(scene.folder()));
   std::vector<EvaluatedFrame> chosen = every_nth(all, static_cast<int>(options.every));
   const std::vector<std::size_t> visited = visit_within(options.seconds, chosen.size(), [&](std::size_t i) {
     chosen[i].detections = detector.detect(scene.read_frame(chosen[i].image));

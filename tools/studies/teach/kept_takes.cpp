@@ -72,7 +72,7 @@ TrueTakes read_true_takes(const fs::path& folder, const std::string& object) {
   return takes;
 }
 
-const GroundTruthObject* true_object(const TrueTakes& takes, std::size_t scene, std::size_t frame) {
+const GroundTruthObject* ground_truth_object(const TrueTakes& takes, std::size_t scene, std::size_t frame) {
   for (const GroundTruthObject& object : takes.scenes.at(scene).images().at(frame).objects) {
     if (object.object_id == takes.object_id) return &object;
   }
@@ -109,7 +109,7 @@ std::vector<KeptView> read_kept_views(const fs::path& folder, const TrueTakes& t
       KeptView view;
       std::tie(view.pose.scene, view.pose.frame) = place->second;
       view.pose.T_camera_taught = scene.images()[i].objects.front().T_camera_object;
-      const GroundTruthObject* object = true_object(takes, view.pose.scene, view.pose.frame);
+      const GroundTruthObject* object = ground_truth_object(takes, view.pose.scene, view.pose.frame);
       if (object != nullptr) {
         const BopScene& truth = takes.scenes[view.pose.scene];
         const auto index = static_cast<std::size_t>(object - truth.images()[view.pose.frame].objects.data());

@@ -22,7 +22,7 @@ struct TrueTakes {
 TrueTakes read_true_takes(const std::filesystem::path& folder, const std::string& object);
 
 /// Where the object truly is in a frame, or nothing where hardly any of it is seen.
-const GroundTruthObject* true_object(const TrueTakes& takes, std::size_t scene, std::size_t frame);
+const GroundTruthObject* ground_truth_object(const TrueTakes& takes, std::size_t scene, std::size_t frame);
 
 /// A pose that was estimated of a frame of a take.
 struct ShownPose {

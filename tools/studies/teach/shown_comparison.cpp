@@ -75,11 +75,11 @@ Eigen::Isometry3d robust_mean(const std::vector<Eigen::Isometry3d>& poses, const
 }
 
 /// The taught frame in the true one as each pose says; poses of frames without truth are left out.
-std::vector<Eigen::Isometry3d> true_from_taught(const TrueTakes& takes, const std::vector<ShownPose>& poses) {
+std::vector<Eigen::Isometry3d> ground_truth_from_taught(const TrueTakes& takes, const std::vector<ShownPose>& poses) {
   std::vector<Eigen::Isometry3d> out;
   for (const ShownPose& pose : poses) {
     if (pose.frame >= takes.scenes[pose.scene].images().size()) continue;
-    const GroundTruthObject* object = true_object(takes, pose.scene, pose.frame);
+    const GroundTruthObject* object = ground_truth_object(takes, pose.scene, pose.frame);
     if (object != nullptr) out.push_back(object->T_camera_object.inverse() * pose.T_camera_taught);
   }
   return out;
@@ -103,7 +103,7 @@ std::vector<Eigen::Vector3f> seen_points(const TrueTakes& takes, const std::vect
   for (std::size_t s = 0; s < takes.scenes.size(); ++s) {
     const std::size_t step = std::max<std::size_t>(1, takes.scenes[s].images().size() / kFrames);
     for (std::size_t f = 0; f < takes.scenes[s].images().size(); f += step) {
-      const GroundTruthObject* object = true_object(takes, s, f);
+      const GroundTruthObject* object = ground_truth_object(takes, s, f);
       if (object == nullptr) continue;
       const Camera& camera = takes.scenes[s].images()[f].camera;
       const cv::Rect all(0, 0, camera.width, camera.height);
@@ -162,7 +162,7 @@ void compare_views(const TrueTakes& takes, const std::vector<KeptView>& views, c
     comparison.min_mask_iou = std::min(comparison.min_mask_iou, view.mask_iou);
     if (view.pose.scene == 1) second.push_back(view.pose);
   }
-  const std::vector<Eigen::Isometry3d> poses = true_from_taught(takes, second);
+  const std::vector<Eigen::Isometry3d> poses = ground_truth_from_taught(takes, second);
   if (!poses.empty()) comparison.second = gap_between(robust_mean(poses, middle), comparison.T_true_taught, middle);
 }
 
@@ -172,7 +172,7 @@ ShownComparison compare_shown(const TrueTakes& takes, const std::filesystem::pat
   const std::vector<KeptView> views = read_kept_views(kept / "views", takes);
   require(!views.empty(), "{}: no view whose picture is in the takes, expected keyframes", (kept / "views").string());
   const std::filesystem::path poses_file = kept / "camera_poses.csv";
-  const std::vector<Eigen::Isometry3d> poses = true_from_taught(takes, read_camera_poses(poses_file));
+  const std::vector<Eigen::Isometry3d> poses = ground_truth_from_taught(takes, read_camera_poses(poses_file));
   require(!poses.empty(), "{}: no tracked frame, expected some", poses_file.string());
   const Eigen::Vector3d middle = mesh_bounds(taught).center().cast<double>();
   ShownComparison comparison;

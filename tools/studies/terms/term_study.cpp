@@ -60,7 +60,7 @@ double median_score(const std::vector<Sample>& samples) {
 }
 
 int count_reported(const Group& group, const StudyRules& rules) {
-  return static_cast<int>(std::count_if(group.true_ones.begin(), group.true_ones.end(),
+  return static_cast<int>(std::count_if(group.true_positives.begin(), group.true_positives.end(),
                                         [&](const Sample& sample) { return sample.score >= rules.score; }));
 }
 
@@ -93,10 +93,10 @@ std::string counts(const std::vector<Group>& groups, const StudyRules& rules) {
   add("objects", [](const Group& group) { return fmt::format("{:>14}{:>14}", group.objects, ""); });
   add("with a candidate", [](const Group& group) { return fmt::format("{:>14}{:>14}", group.with_candidate, ""); });
   add(fmt::format("from score {:.2f} / {:.2f} on", rules.score, rules.false_score), [&](const Group& group) {
-    return fmt::format("{:>14}{:>14}", count_reported(group, rules), group.false_ones.size());
+    return fmt::format("{:>14}{:>14}", count_reported(group, rules), group.false_positives.size());
   });
   add("score", [](const Group& group) {
-    return cell(median_score(group.true_ones), 14) + cell(median_score(group.false_ones), 14);
+    return cell(median_score(group.true_positives), 14) + cell(median_score(group.false_positives), 14);
   });
   return text;
 }
@@ -128,14 +128,14 @@ void add_frame(EvaluatedFrame truth, const std::vector<ScoredHypothesis>& candid
     const ScoredHypothesis* found = strongest_of(object, candidates);
     if (found == nullptr) continue;
     ++group.with_candidate;
-    group.true_ones.push_back(sample_of(*found, model->second));
+    group.true_positives.push_back(sample_of(*found, model->second));
   }
   truth.detections = numbered_detections(candidates, rules.suppression);
   for (const auto& [name, model] : models) {
     for (const MatchedDetection& judged : match_detections({truth}, name, DetectionRules{})) {
       if (judged.outcome != MatchOutcome::kFalsePositive || judged.score < rules.false_score) continue;
       const int number = truth.detections->detections[judged.index].vote_count;
-      group.false_ones.push_back(sample_of(candidates[static_cast<std::size_t>(number)], model));
+      group.false_positives.push_back(sample_of(candidates[static_cast<std::size_t>(number)], model));
     }
   }
 }
@@ -173,8 +173,8 @@ std::string table(const std::vector<Group>& groups, const StudyRules& rules) {
   std::string text = header(groups) + counts(groups, rules);
   std::vector<std::vector<TermFigures>> columns;
   for (const Group& group : groups) {
-    columns.push_back(term_figures(group.true_ones));
-    columns.push_back(term_figures(group.false_ones));
+    columns.push_back(term_figures(group.true_positives));
+    columns.push_back(term_figures(group.false_positives));
   }
   for (std::size_t i = 0; i < kScoreTerms; ++i) {
     text += fmt::format("{:<28}", kScoreTermNames[i]);
@@ -188,7 +188,7 @@ std::string table(const std::vector<Group>& groups, const StudyRules& rules) {
   constexpr std::size_t kRecentFrames = 6;
   for (std::size_t i = 1; i < groups.size(); ++i) {
     text += fmt::format("true ones of {} against {}:", groups[i].name, groups[0].name);
-    const std::vector<TermShift> shifts = shifts_between(groups[0].true_ones, groups[i].true_ones);
+    const std::vector<TermShift> shifts = shifts_between(groups[0].true_positives, groups[i].true_positives);
     for (std::size_t k = 0; k < std::min(kRecentFrames, shifts.size()); ++k)
       text += fmt::format(" {} {:+.2f}", shifts[k].term, shifts[k].shift);
     text += "\n";
@@ -203,9 +203,9 @@ OrderedJson to_json(const std::vector<Group>& groups, const StudyRules& rules) {
                         {"objects", group.objects},
                         {"with_candidate", group.with_candidate},
                         {"reported", count_reported(group, rules)},
-                        {"score_median", number(median_score(group.true_ones))},
-                        {"true", figures_json(group.true_ones)},
-                        {"false", figures_json(group.false_ones)}};
+                        {"score_median", number(median_score(group.true_positives))},
+                        {"true", figures_json(group.true_positives)},
+                        {"false", figures_json(group.false_positives)}};
   }
   return json;
 }

@@ -33,10 +33,10 @@ struct Sample {
 struct Group {
   std::string name;
   int frames = 0;
-  int objects = 0;                 ///< true ones that are visible enough, of classes that the forest knows
-  int with_candidate = 0;          ///< of which a candidate overlaps the visible box by half or more
-  std::vector<Sample> true_ones;   ///< the strongest such candidate of each object
-  std::vector<Sample> false_ones;  ///< what is left after suppression, false, from StudyRules::false_score on
+  int objects = 0;                      ///< true ones that are visible enough, of classes that the forest knows
+  int with_candidate = 0;               ///< of which a candidate overlaps the visible box by half or more
+  std::vector<Sample> true_positives;   ///< the strongest such candidate of each object
+  std::vector<Sample> false_positives;  ///< what is left after suppression, false, from StudyRules::false_score on
 };
 
 using ModelsByClass = std::map<std::string, ScoreModel>;

@@ -89,8 +89,8 @@ terms::Group study(const StudyOptions& options, const SceneGroup& scenes, const 
   DetectorWorkspace workspace;
   for (const std::string& folder : scenes.scenes) {
     const BopScene scene(folder);
-    std::vector<EvaluatedFrame> frames = read_truth(scene, find_bop_names(folder));
-    const NamedSide truth{"the scene " + folder, true_names(frames)};
+    std::vector<EvaluatedFrame> frames = read_ground_truth(scene, find_bop_names(folder));
+    const NamedSide truth{"the scene " + folder, ground_truth_names(frames)};
     if (!truth.names.empty()) require_shared_name(known, truth);
     for (EvaluatedFrame& frame : every_nth(std::move(frames), options.every)) {
       const std::vector<ScoredHypothesis> candidates = candidates_in(search, scene.read_frame(frame.image), workspace);

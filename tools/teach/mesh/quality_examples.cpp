@@ -60,7 +60,7 @@ UnfilteredPoseFinder::UnfilteredPoseFinder(const PosedModels& models, int thread
 
 FoundPoses UnfilteredPoseFinder::find(const std::string& name, const BopScene& scene, const Detector& detector,
                                       int every) const {
-  FoundPoses found{name, every_nth(read_truth(scene, find_bop_names(scene.folder())), every), {}};
+  FoundPoses found{name, every_nth(read_ground_truth(scene, find_bop_names(scene.folder())), every), {}};
   for (EvaluatedFrame& truth : found.frames) {
     const RgbdFrame frame = scene.read_frame(truth.image);
     truth.detections = detector.detect(frame);

@@ -48,7 +48,7 @@ Take take_about_box(double azimuth) {
 }
 
 /// The true box as the model of a take, which says of itself that it agrees badly.
-ReconstructedModel true_model(const Take& take) {
+ReconstructedModel ground_truth_model(const Take& take) {
   ReconstructedModel model;
   model.mesh = test_scene::box_of({});
   compute_normals(model.mesh);
@@ -65,8 +65,8 @@ ReconstructedModel true_model(const Take& take) {
 TEST(MergeTakes, HowWellTheViewsAgreeIsThatOfBothTakes) {
   const Take first = take_about_box(0.0);
   const Take second = take_about_box(0.26);
-  ReconstructedModel model = true_model(first);
-  ReconstructedModel other = true_model(second);
+  ReconstructedModel model = ground_truth_model(first);
+  ReconstructedModel other = ground_truth_model(second);
   ReconstructionSettings settings;
   settings.voxel_m = 0.003;
   ASSERT_TRUE(merge_takes(first, model, second, other, settings));

@@ -17,14 +17,14 @@ constexpr int kFrames = 100;
 constexpr double kAngle = 6.283185307179586;
 
 /// The camera goes once about the box, and a little farther.
-Eigen::Isometry3d true_pose(int i) {
+Eigen::Isometry3d ground_truth_pose(int i) {
   return test_scene::camera_at(0.3 + 1.04 * kAngle * i / kFrames, 0.55 + 0.1 * std::sin(0.1 * i), 0.65);
 }
 
 Take go_round(const Mesh& mesh, int from, int to, const std::vector<int>& black) {
   TakePlacer placer{TakePlacerSettings()};
   for (int i = from; i < to; ++i) {
-    RgbdFrame frame = photograph(mesh, true_pose(i), ShownScene().camera, 1 + 33000 * i);
+    RgbdFrame frame = photograph(mesh, ground_truth_pose(i), ShownScene().camera, 1 + 33000 * i);
     if (std::find(black.begin(), black.end(), i) != black.end()) {
       frame.colour.setTo(cv::Scalar::all(0));
       frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
@@ -37,8 +37,8 @@ Take go_round(const Mesh& mesh, int from, int to, const std::vector<int>& black)
 /// How far the last tracked pose is from the first, beside how far it should be: metres at the object.
 double drift_m(const Take& take, int first, int last) {
   const auto pose = [&](int i) { return take.pose_of(take.frames[static_cast<std::size_t>(i)]); };
-  const Eigen::Isometry3d at_first = pose(first).inverse() * true_pose(first);
-  const Eigen::Isometry3d at_last = pose(last).inverse() * true_pose(last);
+  const Eigen::Isometry3d at_first = pose(first).inverse() * ground_truth_pose(first);
+  const Eigen::Isometry3d at_last = pose(last).inverse() * ground_truth_pose(last);
   return (at_first.inverse() * at_last).translation().norm();
 }
 
@@ -60,7 +60,7 @@ TEST(TakePlacer, ClosesATurnAndMakesAModel) {
 }
 
 TEST(TakePlacer, FirstSaysWhatItTakesForTheObject) {
-  RgbdFrame frame = photograph(table_with({}), true_pose(0), ShownScene().camera, 1);
+  RgbdFrame frame = photograph(table_with({}), ground_truth_pose(0), ShownScene().camera, 1);
   TakePlacer placer{TakePlacerSettings()};
   const std::string choice = placer.process(frame).message;
   EXPECT_EQ(choice.find("meant is what stands at "), 0U) << choice;
@@ -189,10 +189,10 @@ TEST(TakePlacer, RefusesAFrameOfAnotherSize) {
   const Mesh table = table_with({});
   const Camera smaller = {160, 120, 145.0, 145.0, 79.5, 59.5};
   TakePlacer placer{TakePlacerSettings()};
-  placer.process(photograph(table, true_pose(0), ShownScene().camera, 1));
+  placer.process(photograph(table, ground_truth_pose(0), ShownScene().camera, 1));
   std::string line;
   try {
-    placer.process(photograph(table, true_pose(1), smaller, 33001));
+    placer.process(photograph(table, ground_truth_pose(1), smaller, 33001));
   } catch (const InputError& error) {
     line = error.what();
   }

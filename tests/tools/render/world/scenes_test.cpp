@@ -25,7 +25,7 @@ double yaw_of(const Eigen::Isometry3d& T) {
   return std::atan2(T.linear()(1, 0), T.linear()(0, 0));
 }
 
-std::multiset<int> ids_in_truth(const Scene& scene) {
+std::multiset<int> ids_in_ground_truth(const Scene& scene) {
   std::multiset<int> ids;
   for (const PlacedAsset& placed : scene.world.items) {
     if (placed.object_id != 0) ids.insert(placed.object_id);
@@ -54,7 +54,7 @@ void expect_apart(const World& world, std::size_t min_count) {
 }
 
 // All scenes whose truth names something.
-std::vector<const char*> scenes_with_truth() {
+std::vector<const char*> scenes_with_ground_truth() {
   std::vector<const char*> names(kTestScenes.begin(), kTestScenes.end());
   names.insert(names.end(), kTwentyClassScenes.begin(), kTwentyClassScenes.end());
   names.insert(names.end(), kTwentyClassDevelopmentScenes.begin(), kTwentyClassDevelopmentScenes.end());
@@ -80,7 +80,7 @@ TEST(Scenes, HoldTheFourClassesAmongClutterThatDoesNotTouch) {
   for (const char* name : kTestScenes) {
     SCOPED_TRACE(name);
     const Scene& scene = test_scene(name);
-    EXPECT_EQ(ids_in_truth(scene), (std::multiset<int>{1, 2, 3, 4}));
+    EXPECT_EQ(ids_in_ground_truth(scene), (std::multiset<int>{1, 2, 3, 4}));
     expect_apart(scene.world, 12);
   }
 }
@@ -105,7 +105,7 @@ void expect_twenty_in_turn(const std::array<const char*, kCount>& names) {
     std::set<int> all;
     for (const char* name : {names[i], names[i + 1]}) {
       SCOPED_TRACE(name);
-      const std::multiset<int> ids = ids_in_truth(test_scene(name));
+      const std::multiset<int> ids = ids_in_ground_truth(test_scene(name));
       EXPECT_EQ(ids.size(), 12U);
       for (const int id : {1, 2, 3, 4}) EXPECT_EQ(ids.count(id), 1U);
       all.insert(ids.begin(), ids.end());
@@ -121,7 +121,7 @@ TEST(Scenes, PairsOfScenesHoldTheTwentyClassesAmongClutter) {
 }
 
 TEST(Scenes, ObjectsAreBetween60CentimetresAnd250FromTheCamera) {
-  for (const char* name : scenes_with_truth()) {
+  for (const char* name : scenes_with_ground_truth()) {
     SCOPED_TRACE(name);
     const Scene& scene = test_scene(name);
     for (int i = 0; i <= 100; ++i) {

@@ -56,11 +56,11 @@ TEST(TermStudy, AnObjectsStrongestCandidateStandsForIt) {
   EXPECT_EQ(group.frames, 1);
   EXPECT_EQ(group.objects, 1) << "not the hidden one, and no class that the forest does not know";
   EXPECT_EQ(group.with_candidate, 1);
-  ASSERT_EQ(group.true_ones.size(), 1U);
-  EXPECT_EQ(group.true_ones[0].score, 0.4F);
-  EXPECT_EQ(group.true_ones[0].terms.colour_correlation, 0.5F);
-  EXPECT_EQ(group.true_ones[0].contributions.colour_correlation, 1.0F);
-  EXPECT_EQ(group.true_ones[0].contributions.log_vote_mass, 0.0F);
+  ASSERT_EQ(group.true_positives.size(), 1U);
+  EXPECT_EQ(group.true_positives[0].score, 0.4F);
+  EXPECT_EQ(group.true_positives[0].terms.colour_correlation, 0.5F);
+  EXPECT_EQ(group.true_positives[0].contributions.colour_correlation, 1.0F);
+  EXPECT_EQ(group.true_positives[0].contributions.log_vote_mass, 0.0F);
 }
 
 TEST(TermStudy, AMissedObjectHasNoCandidate) {
@@ -68,7 +68,7 @@ TEST(TermStudy, AMissedObjectHasNoCandidate) {
   add_frame(frame({object("mug", 1.0)}), {candidate("mug", {300, 100, 80, 80}, 0.2F, 0.1F)}, mugs(), {}, group);
   EXPECT_EQ(group.objects, 1);
   EXPECT_EQ(group.with_candidate, 0);
-  EXPECT_TRUE(group.true_ones.empty());
+  EXPECT_TRUE(group.true_positives.empty());
 }
 
 TEST(TermStudy, FalseIsWhatSuppressionLeavesAndTheTruthLacks) {
@@ -80,8 +80,8 @@ TEST(TermStudy, FalseIsWhatSuppressionLeavesAndTheTruthLacks) {
              candidate("mug", {300, 300, 80, 80}, 0.2F, 0.1F), candidate("mug", {500, 100, 80, 80}, 0.9F, 0.7F),
              candidate("mug", kBox, 0.7F, 0.8F)},
             mugs(), rules, group);
-  ASSERT_EQ(group.false_ones.size(), 1U) << "not the suppressed, the weak, the hardly visible and the true one";
-  EXPECT_EQ(group.false_ones[0].terms.colour_correlation, 0.3F);
+  ASSERT_EQ(group.false_positives.size(), 1U) << "not the suppressed, the weak, the hardly visible and the true one";
+  EXPECT_EQ(group.false_positives[0].terms.colour_correlation, 0.3F);
 }
 
 TEST(TermStudy, FiguresAreMediansAndMeans) {

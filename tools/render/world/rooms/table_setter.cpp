@@ -34,7 +34,7 @@ bool separated_by(const Footprint& a, const Footprint& b, double gap_m) {
 }
 
 // The truth does not name look-alikes.
-int true_id(int id) {
+int ground_truth_id(int id) {
   return id > kClassCount && id <= kTaughtObjectCount ? 0 : id;
 }
 
@@ -100,26 +100,29 @@ bool TableSetter::put(const AssetGroup& group, const Eigen::AlignedBox2d& region
 
 void TableSetter::stand_object(int id, const Eigen::AlignedBox2d& where) {
   const TaughtObject object = make_taught_object(id);
-  require(stand(object.thing, where, M_PI, true_id(id)), "scene: no place left for {}", object.name);
+  require(stand(object.thing, where, M_PI, ground_truth_id(id)), "scene: no place left for {}", object.name);
 }
 
 void TableSetter::lay_object(int id, const Eigen::AlignedBox2d& where) {
   const TaughtObject object = make_taught_object(id);
-  require(put(put_lying(object.thing, true_id(id), random_), where), "scene: no place left for {}", object.name);
+  require(put(put_lying(object.thing, ground_truth_id(id), random_), where), "scene: no place left for {}",
+          object.name);
 }
 
 void TableSetter::tilt_object(int id, const Eigen::AlignedBox2d& where) {
   const TaughtObject object = make_taught_object(id);
-  require(put(put_on_wedge(object.thing, true_id(id), random_), where), "scene: no place left for {}", object.name);
+  require(put(put_on_wedge(object.thing, ground_truth_id(id), random_), where), "scene: no place left for {}",
+          object.name);
 }
 
 void TableSetter::lean_object(int id, const Eigen::AlignedBox2d& where) {
   const TaughtObject object = make_taught_object(id);
-  require(put(put_leaning(object.thing, true_id(id), random_), where), "scene: no place left for {}", object.name);
+  require(put(put_leaning(object.thing, ground_truth_id(id), random_), where), "scene: no place left for {}",
+          object.name);
 }
 
 void TableSetter::hold_object(int id, const HeldPlace& place) {
-  for (const PlacedAsset& placed : hold(make_taught_object(id).thing, true_id(id), place, random_)) {
+  for (const PlacedAsset& placed : hold(make_taught_object(id).thing, ground_truth_id(id), place, random_)) {
     const Eigen::Vector3d towards = placed.T_world_object.linear().col(0);
     Footprint footprint;
     footprint.yaw_rad = std::atan2(towards.y(), towards.x());

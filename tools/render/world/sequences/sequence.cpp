@@ -178,8 +178,8 @@ Eigen::Isometry3d Sequence::T_world_actor(std::size_t actor, double seconds) con
   return between(*(next - 1), *next, seconds, height_m);
 }
 
-SequenceTruth Sequence::truth(double seconds) const {
-  SequenceTruth truth;
+SequenceGroundTruth Sequence::truth(double seconds) const {
+  SequenceGroundTruth truth;
   for (std::size_t i = 0; i < plan_.actors.size(); ++i) {
     const Eigen::Isometry3d T = T_world_actor(i, seconds);
     truth.T_world_object.push_back(is_away(T.translation()) ? std::nullopt : std::optional<Eigen::Isometry3d>(T));

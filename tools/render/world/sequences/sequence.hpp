@@ -11,7 +11,7 @@
 namespace houghstream::world {
 
 /// What is so at a time of a sequence.
-struct SequenceTruth {
+struct SequenceGroundTruth {
   std::vector<std::optional<Eigen::Isometry3d>> T_world_object;  ///< per actor; nothing where it has been taken away
   std::vector<Eigen::Isometry3d> T_camera_world;                 ///< per camera
 };
@@ -24,7 +24,7 @@ class Sequence {
 
   const SequencePlan& plan() const { return plan_; }
   int cameras() const;
-  SequenceTruth truth(double seconds) const;
+  SequenceGroundTruth truth(double seconds) const;
 
   /// What a camera sees then. Its objects are those of RenderedFrame; the utime is left 0. `index` names the noise.
   RenderedFrame render(int camera, double seconds, int index) const;

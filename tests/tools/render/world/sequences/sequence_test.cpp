@@ -45,7 +45,7 @@ TEST(Sequence, TheArmHidesObjectsAndThreeCamerasLookFromThreeSides) {
   EXPECT_LT(visible(4.7), 0.5);
   const Sequence three(plan_of("cameras"), DatasetSplit::kTraining);
   ASSERT_EQ(three.cameras(), 3);
-  const SequenceTruth truth = three.truth(0.0);
+  const SequenceGroundTruth truth = three.truth(0.0);
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < i; ++k) {
       const Eigen::Vector3d a = truth.T_camera_world[static_cast<std::size_t>(i)].inverse().translation();
