@@ -64,31 +64,31 @@ bool learns_scores(const TrainingSettings& settings) {
 }
 
 /// Who learns from which views: the score must not learn from rooms that the trees know by heart.
-struct Rooms {
+struct TrainingSplit {
   std::vector<const TrainingView*> objects;
   std::vector<const TrainingView*> for_trees;  ///< objects and rooms
   std::vector<const TrainingView*> for_score;  ///< rooms
 };
 
-Rooms share_rooms(const std::vector<TrainingView>& views, const TrainingSettings& settings) {
+TrainingSplit split_views(const std::vector<TrainingView>& views, const TrainingSettings& settings) {
   constexpr std::size_t kFew = 6;  // rooms for the score, of which trees need twice as many
-  const auto is_a_room = [](const TrainingView& view) { return view.class_id == 0; };
-  const auto all = static_cast<std::size_t>(std::count_if(views.begin(), views.end(), is_a_room));
+  const auto is_background = [](const TrainingView& view) { return view.class_id == 0; };
+  const auto all = static_cast<std::size_t>(std::count_if(views.begin(), views.end(), is_background));
   const std::size_t every = std::clamp<std::size_t>(all / kFew, 3, 6);
   const bool learns_score = learns_scores(settings);
-  Rooms rooms;
+  TrainingSplit training_split;
   std::size_t count = 0;
   for (const TrainingView& view : views) {
-    const bool is_room = is_a_room(view);
-    const bool for_score = is_room && learns_score && ++count % every == 0;
-    if (!is_room) rooms.objects.push_back(&view);
-    (for_score ? rooms.for_score : rooms.for_trees).push_back(&view);
+    const bool is_without_objects = is_background(view);
+    const bool for_score = is_without_objects && learns_score && ++count % every == 0;
+    if (!is_without_objects) training_split.objects.push_back(&view);
+    (for_score ? training_split.for_score : training_split.for_trees).push_back(&view);
   }
-  if (!learns_score || !rooms.for_score.empty()) return rooms;
+  if (!learns_score || !training_split.for_score.empty()) return training_split;
   for (const TrainingView& view : views) {  // too few to share
-    if (view.class_id == 0) rooms.for_score.push_back(&view);
+    if (view.class_id == 0) training_split.for_score.push_back(&view);
   }
-  return rooms;
+  return training_split;
 }
 
 /// `old`: forest whose trees go on growing, or nullptr.
@@ -140,14 +140,14 @@ class Counted {
 };
 
 /// The objects' views are the last of the forest's.
-void learn_scores(const Rooms& rooms, const Profile& profile, const Scales& scales, const Progress& progress,
-                  Forest& forest) {
+void learn_scores(const TrainingSplit& training_split, const Profile& profile, const Scales& scales,
+                  const Progress& progress, Forest& forest) {
   std::set<int> class_ids;
-  for (const TrainingView* view : rooms.objects) class_ids.insert(view->class_id);
-  const auto first_view = static_cast<std::uint32_t>(forest.views.size() - rooms.objects.size());
-  const ValidationSource plain = composed_frames(rooms.objects, rooms.for_score, profile.training);
+  for (const TrainingView* view : training_split.objects) class_ids.insert(view->class_id);
+  const auto first_view = static_cast<std::uint32_t>(forest.views.size() - training_split.objects.size());
+  const ValidationSource plain = composed_frames(training_split.objects, training_split.for_score, profile.training);
   const ValidationSource hard_negatives =
-      compose_hard_negative_frames(rooms.objects, rooms.for_score, profile.training);
+      compose_hard_negative_frames(training_split.objects, training_split.for_score, profile.training);
   Counted counted(plain.count + hard_negatives.count, progress);
   const auto examples = [&](const ValidationSource& source) {
     return find_score_examples(counted.through(source), first_view, profile, forest, scales);
@@ -155,15 +155,15 @@ void learn_scores(const Rooms& rooms, const Profile& profile, const Scales& scal
   fit_scores(examples(plain), class_ids, forest);
   calibrate_scores(examples(hard_negatives), class_ids, forest);
   progress(fmt::format("score from {} composed pictures of {} rooms", plain.count + hard_negatives.count,
-                       rooms.for_score.size()));
+                       training_split.for_score.size()));
 }
 
 /// The set of what trees learn from. Views that the score will not ask for are let go as soon as they are in it.
-TrainingSet make_set(const Rooms& rooms, const Profile& profile, const Scales& scales,
+TrainingSet make_set(const TrainingSplit& training_split, const Profile& profile, const Scales& scales,
                      std::vector<TrainingView>& views) {
   const bool keep = learns_scores(profile.training);
   const ImageInput input{profile.features, profile.patch, profile.training, scales};
-  return make_training_set(rooms.for_trees, input, [&](const TrainingView* done) {
+  return make_training_set(training_split.for_trees, input, [&](const TrainingView* done) {
     if (keep) return;
     TrainingView& view = views[static_cast<std::size_t>(done - views.data())];
     view.frame.colour.release();
@@ -200,8 +200,8 @@ Forest train_forest(std::vector<TrainingView> views, const Profile& profile, con
                     const Scales& scales) {
   check_profile(profile, scales);
   const TrainingSettings& settings = profile.training;
-  const Rooms rooms = share_rooms(views, settings);
-  TrainingSet set = make_set(rooms, profile, scales, views);
+  const TrainingSplit training_split = split_views(views, settings);
+  TrainingSet set = make_set(training_split, profile, scales, views);
   progress(fmt::format("{} patches of {} pictures, {} classes, {} planes", set.samples.size(), set.images.size(),
                        set.classes.size(), set.layout.planes()));
   const std::size_t before = set.samples.size();
@@ -213,7 +213,7 @@ Forest train_forest(std::vector<TrainingView> views, const Profile& profile, con
   forest.views = set.views;
   for (const Forest& tree : grow_trees(set, profile, nullptr, progress)) append_tree(tree, forest);
   estimate_nominal_vote_mass(set, settings, profile.detection.voting.vote_sigma, forest);
-  if (learns_scores(settings)) learn_scores(rooms, profile, scales, progress, forest);
+  if (learns_scores(settings)) learn_scores(training_split, profile, scales, progress, forest);
   return forest;
 }
 
@@ -223,8 +223,8 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   require(profile.training.trees == static_cast<int>(old.roots.size()),
           "adding objects: {} trees, expected the forest's {}", profile.training.trees, old.roots.size());
   number_after(old, views);
-  const Rooms rooms = share_rooms(views, profile.training);
-  TrainingSet set = make_set(rooms, profile, scales, views);
+  const TrainingSplit training_split = split_views(views, profile.training);
+  TrainingSet set = make_set(training_split, profile, scales, views);
   set.first_class = static_cast<std::uint16_t>(old.classes.size());
   set.first_view = static_cast<std::uint32_t>(old.views.size());
   progress(fmt::format("{} patches of {} pictures, {} new classes beside {}", set.samples.size(), set.images.size(),
@@ -241,7 +241,7 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   for (const Forest& tree : grow_trees(set, profile, &old, progress)) append_tree(tree, forest);
   rescale_nominal_vote_mass(old, forest);
   estimate_nominal_vote_mass(set, profile.training, profile.detection.voting.vote_sigma, forest);
-  if (learns_scores(profile.training)) learn_scores(rooms, profile, scales, progress, forest);
+  if (learns_scores(profile.training)) learn_scores(training_split, profile, scales, progress, forest);
   return forest;
 }
 

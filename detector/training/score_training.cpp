@@ -49,11 +49,11 @@ ScoreExamples label_hypotheses(const std::vector<ScoredHypothesis>& candidates, 
 }
 
 /// A room with objects, in which near surfaces may have lost their depth.
-ValidationFrame compose(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
+ValidationFrame compose(const std::vector<const TrainingView*>& objects, const RgbdFrame& background,
                         const ComposedThings& things, const TrainingSettings& settings, Random& random) {
   constexpr double kMin = 0.05;  // of the depth is kept
   constexpr double kMax = 0.6;
-  ValidationFrame composed = make_validation_frame(objects, room, things, settings, random);
+  ValidationFrame composed = make_validation_frame(objects, background, things, settings, random);
   if (random.uniform() >= settings.near_dropout_fraction) return composed;
   const double limit = random.uniform(settings.min_distance, settings.max_distance);
   const double kept = std::exp(random.uniform(std::log(kMin), std::log(kMax)));
@@ -63,11 +63,11 @@ ValidationFrame compose(const std::vector<const TrainingView*>& objects, const R
 
 /// As many as the settings say, numbered from `first` on. What is referred to must outlive it.
 ValidationSource frames_from(int first, const ComposedThings& things, const std::vector<const TrainingView*>& objects,
-                             const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings) {
-  return {settings.validation_frames, [first, things, &objects, &rooms, &settings](int index) {
+                             const std::vector<const TrainingView*>& backgrounds, const TrainingSettings& settings) {
+  return {settings.validation_frames, [first, things, &objects, &backgrounds, &settings](int index) {
             const auto item = static_cast<std::uint64_t>(first + index);
             Random random = Random::for_item(settings.seed ^ 0x73636F7265ULL, item);
-            return compose(objects, rooms[item % rooms.size()]->frame, things, settings, random);
+            return compose(objects, backgrounds[item % backgrounds.size()]->frame, things, settings, random);
           }};
 }
 
@@ -114,14 +114,16 @@ std::string described(const ScoreTerms& weights) {
 }  // namespace
 
 ValidationSource composed_frames(const std::vector<const TrainingView*>& objects,
-                                 const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings) {
-  return frames_from(0, kThings, objects, rooms, settings);
+                                 const std::vector<const TrainingView*>& backgrounds,
+                                 const TrainingSettings& settings) {
+  return frames_from(0, kThings, objects, backgrounds, settings);
 }
 
 ValidationSource compose_hard_negative_frames(const std::vector<const TrainingView*>& objects,
-                                              const std::vector<const TrainingView*>& rooms,
+                                              const std::vector<const TrainingView*>& backgrounds,
                                               const TrainingSettings& settings) {
-  ValidationSource source = frames_from(settings.validation_frames, kHardNegativeObjects, objects, rooms, settings);
+  ValidationSource source =
+      frames_from(settings.validation_frames, kHardNegativeObjects, objects, backgrounds, settings);
   source.count = (source.count + 1) / 2;  // for two numbers of each object
   return source;
 }

@@ -24,13 +24,13 @@ struct ValidationSource {
 /// Rooms into which views are put that trees have not seen there, see TrainingSettings::validation_frames. The views
 /// and the settings must outlive it.
 ValidationSource composed_frames(const std::vector<const TrainingView*>& objects,
-                                 const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings);
+                                 const std::vector<const TrainingView*>& backgrounds, const TrainingSettings& settings);
 
 /// Half as many after those: things stand in them too that have an object's colours and another shape, or its shape in
 /// another's colours, as rooms in which people live are full of. Composed ones else hold hardly anything that ends
 /// where its outline is, but the objects, and scores that are learnt there are too high.
 ValidationSource compose_hard_negative_frames(const std::vector<const TrainingView*>& objects,
-                                              const std::vector<const TrainingView*>& rooms,
+                                              const std::vector<const TrainingView*>& backgrounds,
                                               const TrainingSettings& settings);
 
 /// What the forest finds in a frame, compared with what is there: by class id.

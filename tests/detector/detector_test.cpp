@@ -22,7 +22,7 @@ Detections detect(const RgbdFrame& frame, int threads) {
 }
 
 void expect_tile(int kind, double u, double v, double distance) {
-  RgbdFrame frame = toy::room(77);
+  RgbdFrame frame = toy::background(77);
   frame.id.utime = 123456;
   const cv::Mat mask = toy::put_tile(kind, u, v, distance, frame);
   const Detections found = detect(frame, 2);
@@ -59,7 +59,7 @@ double leave_depth_in_discs(int radius_px, const cv::Mat& mask, RgbdFrame& frame
 TEST(Detector, FindsNearObjectsOfWhichLittleDepthIsMeasured) {
   for (const int kind : {0, 1}) {
     for (const int radius_px : {5, 8}) {
-      RgbdFrame frame = toy::room(85);
+      RgbdFrame frame = toy::background(85);
       const cv::Mat mask = toy::put_tile(kind, 150, 120, 0.52, frame);
       const double kept = leave_depth_in_discs(radius_px, mask, frame);
       EXPECT_NEAR(kept, radius_px == 5 ? 0.09 : 0.22, 0.03);
@@ -74,7 +74,7 @@ TEST(Detector, FindsNearObjectsOfWhichLittleDepthIsMeasured) {
 }
 
 TEST(Detector, AnotherOneFindsTheSameWithTheForestThatItTakes) {
-  RgbdFrame frame = toy::room(77);
+  RgbdFrame frame = toy::background(77);
   toy::put_tile(0, 159.5, 119.5, 0.7, frame);
   DetectionSettings settings;
   settings.evidence.threshold = 0.5F;
@@ -86,11 +86,11 @@ TEST(Detector, AnotherOneFindsTheSameWithTheForestThatItTakes) {
 }
 
 TEST(Detector, FindsNothingInAnEmptyRoom) {
-  EXPECT_TRUE(detect(toy::room(78), 1).detections.empty());
+  EXPECT_TRUE(detect(toy::background(78), 1).detections.empty());
 }
 
 TEST(Detector, CandidatesStandBehindWhatIsReportedAndChangeNothingOfIt) {
-  RgbdFrame frame = toy::room(80);
+  RgbdFrame frame = toy::background(80);
   toy::put_tile(0, 90, 100, 0.7, frame);
   toy::put_tile(1, 230, 120, 0.8, frame);
   DetectionSettings settings;
@@ -115,14 +115,14 @@ TEST(Detector, CandidatesStandBehindWhatIsReportedAndChangeNothingOfIt) {
 }
 
 TEST(Detector, NothingIsFoundWhereThereIsNoDepth) {
-  RgbdFrame frame = toy::room(79);
+  RgbdFrame frame = toy::background(79);
   toy::put_tile(0, 159.5, 119.5, 0.7, frame);
   frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   EXPECT_TRUE(detect(frame, 1).detections.empty());
 }
 
 TEST(Detector, AnyNumberOfThreadsAndTheReferenceWayGiveTheSameDetections) {
-  RgbdFrame frame = toy::room(80);
+  RgbdFrame frame = toy::background(80);
   toy::put_tile(0, 90, 100, 0.7, frame);
   toy::put_tile(1, 230, 120, 0.8, frame);
   DetectionSettings settings;
@@ -138,7 +138,7 @@ TEST(Detector, AnyNumberOfThreadsAndTheReferenceWayGiveTheSameDetections) {
 }
 
 TEST(Detector, StagesAreTimedInTheOrderOfThePage) {
-  RgbdFrame frame = toy::room(78);
+  RgbdFrame frame = toy::background(78);
   frame.stages = {{"capture.read", 5}};
   std::vector<std::string> names;
   for (const StageTime& time : detect(frame, 1).stages) names.push_back(time.stage);
@@ -147,9 +147,9 @@ TEST(Detector, StagesAreTimedInTheOrderOfThePage) {
 }
 
 TEST(Detector, AWorkspaceLeavesNothingOfTheFramesBefore) {
-  RgbdFrame frame = toy::room(82);
+  RgbdFrame frame = toy::background(82);
   toy::put_tile(1, 200, 120, 0.7, frame);
-  RgbdFrame other = toy::room(83);
+  RgbdFrame other = toy::background(83);
   toy::put_tile(0, 60, 60, 0.55, other);
   toy::put_tile(1, 250, 180, 1.1, other);
   DetectionSettings settings;
@@ -172,7 +172,7 @@ TEST(Detector, AForestThatNeedsTheBaselineIsRefusedWithoutIt) {
 }
 
 TEST(Detector, FramesOfWrongSizesAreRefused) {
-  RgbdFrame frame = toy::room(81);
+  RgbdFrame frame = toy::background(81);
   frame.depth = frame.depth(cv::Rect(0, 0, 100, 100));
   EXPECT_THROW(detect(frame, 1), InputError);
 }

@@ -39,7 +39,7 @@ TEST(Searchable, WhatIsNotIsNamedWithWhoNeedsItAndWhoHasIt) {
 TEST(Searchable, NothingElseIsComputedOrTaughtByTheProduct) {
   FeatureSettings settings;
   settings.families = kCurvature;
-  const WorkingFrame frame = make_working_frame(toy::room(5), 0.5F, settings);
+  const WorkingFrame frame = make_working_frame(toy::background(5), 0.5F, settings);
   EXPECT_THROW(compute_features(frame, settings, 1), InputError);
   const Profile gall = baseline::make_profile("gall");
   EXPECT_THROW(training::train_forest(toy::training_views(), gall, [](const auto&) {}), InputError);

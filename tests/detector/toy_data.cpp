@@ -27,7 +27,7 @@ double tile_relief(int kind, double x, double y) {
 
 }  // namespace
 
-RgbdFrame room(std::uint64_t seed) {
+RgbdFrame background(std::uint64_t seed) {
   Random random(seed);
   RgbdFrame frame;
   frame.camera = kCamera;

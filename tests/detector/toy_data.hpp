@@ -9,7 +9,7 @@
 namespace houghstream::toy {
 
 /// A room of coloured noise 1.6 m away; no object.
-RgbdFrame room(std::uint64_t seed);
+RgbdFrame background(std::uint64_t seed);
 
 /// Puts a 0.12 m wide relief tile with a pattern of its kind (0 or 1) into a frame, its centre `distance` away at pixel
 /// (u, v), and returns its mask. It faces the camera: it lies across the ray to its middle.

@@ -11,8 +11,8 @@ namespace houghstream {
 namespace {
 
 /// One tile in a room that is too far away for the near level: most of that one's picture is looked at by nobody.
-RgbdFrame tile_in_a_room() {
-  RgbdFrame frame = toy::room(90);
+RgbdFrame tile_on_a_background() {
+  RgbdFrame frame = toy::background(90);
   toy::put_tile(0, 100.0, 90.0, 0.7, frame);
   return frame;
 }
@@ -20,7 +20,7 @@ RgbdFrame tile_in_a_room() {
 /// A frame that differs from it everywhere and has patches everywhere at both levels: what it leaves in memory that is
 /// kept from frame to frame is wrong for any other.
 RgbdFrame other_frame() {
-  RgbdFrame frame = toy::room(91);
+  RgbdFrame frame = toy::background(91);
   cv::Mat(frame.depth.rowRange(0, 120)).setTo(0.8F);
   return frame;
 }
@@ -52,7 +52,7 @@ std::vector<FeatureImage> whole_images(const RgbdFrame& frame) {
 }
 
 TEST(WantedTiles, LeavesInWantedTilesAreThoseInWholeImages) {
-  const RgbdFrame frame = tile_in_a_room();
+  const RgbdFrame frame = tile_on_a_background();
   const std::vector<FeatureImage> whole = whole_images(frame);
   DetectionSettings settings = curious();
   for (const int threads : {1, 3}) {
@@ -72,7 +72,7 @@ TEST(WantedTiles, LeavesInWantedTilesAreThoseInWholeImages) {
 }
 
 TEST(WantedTiles, EveryLeafOfEveryTreeIsFoundInWantedTilesAlone) {
-  const RgbdFrame frame = tile_in_a_room();
+  const RgbdFrame frame = tile_on_a_background();
   const Forest& forest = toy::forest();
   DetectorWorkspace workspace;
   see(frame, curious(), workspace);
@@ -107,9 +107,9 @@ TEST(WantedTiles, DetectionsInThemAreThoseInWholeImages) {
   const Detector detector(toy::forest(), settings);
   DetectorWorkspace workspace;
   detector.detect(other_frame(), workspace);
-  const Detections found = detector.detect(tile_in_a_room(), workspace);
+  const Detections found = detector.detect(tile_on_a_background(), workspace);
   const Detections expected =
-      baseline::StudyDetector(toy::forest(), settings, baseline::Way::kReference).detect(tile_in_a_room());
+      baseline::StudyDetector(toy::forest(), settings, baseline::Way::kReference).detect(tile_on_a_background());
   ASSERT_FALSE(expected.detections.empty());
   expect_same(found, expected);
 }

@@ -19,7 +19,7 @@ using namespace houghstream::teach;
 struct Lists {
   std::string names;
   std::string ids;
-  std::string rooms;
+  std::string backgrounds;
 };
 
 std::vector<std::string> split(const std::string& list) {
@@ -31,7 +31,7 @@ std::vector<std::string> split(const std::string& list) {
 
 void add_calibration_options(CommandLine& command, TeachOptions& options) {
   command
-      .add_option("--practice-rooms", options.calibration.rooms,
+      .add_option("--practice-rooms", options.calibration.scenes,
                   fmt::format("rendered rooms in which scores and qualities are learnt, two pictures of each; 4.3 MB "
                               "of memory a room; default {}, with each further new object more, {} of seven",
                               scene_count_for(1), scene_count_for(7)))
@@ -63,10 +63,10 @@ CommandLine add_mesh(CommandLine& app, TeachOptions& options, Lists& lists) {
   mesh.add_option("--attitudes", options.attitudes,
                   "resting (as it comes to rest, and leaning), upright (the mesh's z axis up) or any")
       .capture_default_str();
-  mesh.add_option("--rooms", lists.rooms,
+  mesh.add_option("--rooms", lists.backgrounds,
                   "own pictures without the objects, beside the rendered rooms: bop:DIR or images:DIR");
-  mesh.add_option("--camera", options.rooms.camera, "WIDTHxHEIGHT,fx,fy,cx,cy of images:DIR");
-  mesh.add_option("--cache", options.rooms.cache, "where rendered rooms are kept; default ~/.cache/houghstream");
+  mesh.add_option("--camera", options.backgrounds.camera, "WIDTHxHEIGHT,fx,fy,cx,cy of images:DIR");
+  mesh.add_option("--cache", options.backgrounds.cache, "where rendered rooms are kept; default ~/.cache/houghstream");
   add_calibration_options(mesh, options);
   mesh.add_option("--dump-views", options.dump_views, "writes the training views as a BOP training folder too");
   mesh.add_example("hs-teach mesh mug.ply drill.glb --out my.store");
@@ -177,8 +177,8 @@ int main(int argc, char** argv) {
   const int failed = run_tool(app, argc, argv, [&] {
     options.meshes.names = split(lists.names);
     options.meshes.ids = split(lists.ids);
-    options.rooms.further = split(lists.rooms);
-    options.rooms.threads = options.threads;
+    options.backgrounds.further = split(lists.backgrounds);
+    options.backgrounds.threads = options.threads;
     if (show.given()) {
       status = run_show(shown, words);
     } else if (mesh.given()) {

@@ -156,7 +156,7 @@ class Others {
 
 }  // namespace
 
-ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
+ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& background,
                                       const ComposedThings& things, const AugmentationSettings& settings,
                                       Random& random) {
   constexpr double kOtherLight = 2.0;  // colours must not be trusted further than light lets them
@@ -164,10 +164,10 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   even_light.lighting_variation = 0.0;  // one light for the whole frame
   even_light.sharpened_fraction = 0.0;  // and one camera, as blind to detail as the one that taught
   ValidationFrame out;
-  out.frame = room;
-  out.frame.colour = room.colour.clone();
-  out.frame.depth = room.depth.clone();
-  Stage stage{out.frame, cv::Mat::zeros(room.colour.size(), CV_8UC1), even_light, random};
+  out.frame = background;
+  out.frame.colour = background.colour.clone();
+  out.frame.depth = background.depth.clone();
+  Stage stage{out.frame, cv::Mat::zeros(background.colour.size(), CV_8UC1), even_light, random};
   std::vector<int> whole_px;
   Others others(objects, stage);
   for (int i = 0; i < 2 * things.near_duplicates; ++i) others.add_near_duplicate(i % 2 == 0);

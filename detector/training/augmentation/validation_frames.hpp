@@ -32,7 +32,7 @@ struct ComposedThings {
 
 /// Random views in one room, each as in a composite: other distance, light, half of them partly hidden; behind them
 /// what is none. Depth has the errors of sensor_errors.hpp.
-ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
+ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& background,
                                       const ComposedThings& things, const AugmentationSettings& settings,
                                       Random& random);
 

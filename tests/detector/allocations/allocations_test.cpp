@@ -90,7 +90,7 @@ TEST(Allocations, AreCounted) {
 
 TEST(Allocations, FramesTakeTheMemoryOfThoseBefore) {
   const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
-  RgbdFrame frame = toy::room(5);
+  RgbdFrame frame = toy::background(5);
   toy::put_tile(0, 90, 120, 0.8, frame);
   toy::put_tile(1, 230, 120, 0.9, frame);
   // As a camera of the usual focal length sees it: where a coarse one's frames are enlarged, OpenCV takes memory.

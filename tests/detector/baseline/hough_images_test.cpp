@@ -51,7 +51,7 @@ cv::Point strongest(const cv::Mat& image) {
 
 /// Where the strongest votes for a tile lie that was put at (u, v), relative to its centre.
 cv::Point error_of(const Forest& forest, double u_px, double v_px, double distance) {
-  RgbdFrame frame = toy::room(77);
+  RgbdFrame frame = toy::background(77);
   toy::put_tile(kRings, u_px, v_px, distance, frame);
   const cv::Mat image = image_of(forest, kRings, frame);
   EXPECT_EQ(image.type(), CV_32FC1);
@@ -70,7 +70,7 @@ TEST(HoughImages, VotesOfAScaleSpaceMeetAtTheCentre) {
 }
 
 TEST(HoughImages, FrameOfOddSizeIsCoveredToo) {
-  RgbdFrame frame = toy::room(77);
+  RgbdFrame frame = toy::background(77);
   toy::put_tile(kRings, 230, 110, 0.7, frame);
   const cv::Rect part(0, 0, 317, 233);
   frame.colour = frame.colour(part).clone();
@@ -83,7 +83,7 @@ TEST(HoughImages, FrameOfOddSizeIsCoveredToo) {
 }
 
 TEST(HoughImages, AnotherClassGetsFewerVotes) {
-  RgbdFrame frame = toy::room(77);
+  RgbdFrame frame = toy::background(77);
   toy::put_tile(kRings, 159.5, 119.5, 0.7, frame);
   for (const Forest* forest : {&normalised_forest(), &scale_space_forest()}) {
     const cv::Point centre(160, 120);

@@ -40,7 +40,7 @@ DetectionSettings quick_settings() {
 }
 
 struct Scene {
-  RgbdFrame frame = toy::room(77);
+  RgbdFrame frame = toy::background(77);
   cv::Rect2f box_px;
 };
 
@@ -170,7 +170,7 @@ TEST(ScaleSpaceSearch, TheDetectorReportsTheStrongestOfAllSizes) {
 }
 
 TEST(ScaleSpaceFrame, HolesBorrowOverPixelsAlone) {
-  RgbdFrame frame = toy::room(79);
+  RgbdFrame frame = toy::background(79);
   frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   frame.depth.colRange(0, 5).setTo(0.4F);
   FeatureSettings settings;
@@ -185,7 +185,7 @@ TEST(ScaleSpaceFrame, HolesBorrowOverPixelsAlone) {
 
 TEST(ScaleSpaceSearch, AnEmptyRoomOffersLittle) {
   const float found = strongest(search(tile_at(0, 120, 110, 0.7).frame, quick_settings())).detection.score;
-  for (const ScoredHypothesis& candidate : search(toy::room(78), quick_settings())) {
+  for (const ScoredHypothesis& candidate : search(toy::background(78), quick_settings())) {
     EXPECT_LT(candidate.detection.score, 0.5F * found);
   }
 }

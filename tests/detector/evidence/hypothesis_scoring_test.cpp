@@ -26,7 +26,7 @@ std::vector<ScoredHypothesis> candidates(const RgbdFrame& frame, const Detection
 }
 
 TEST(Candidates, TheStrongestOfAClassComesWithEvidenceForIt) {
-  RgbdFrame frame = toy::room(77);
+  RgbdFrame frame = toy::background(77);
   const cv::Mat mask = toy::put_tile(0, 159.5, 119.5, 0.7, frame);
   const std::vector<ScoredHypothesis> found = candidates(frame);
   ASSERT_FALSE(found.empty());
@@ -40,7 +40,7 @@ TEST(Candidates, TheStrongestOfAClassComesWithEvidenceForIt) {
 }
 
 TEST(Candidates, ExcludedViewsAreNotCompared) {
-  RgbdFrame frame = toy::room(77);
+  RgbdFrame frame = toy::background(77);
   toy::put_tile(0, 159.5, 119.5, 0.7, frame);
   std::vector<std::uint32_t> all;
   all.reserve(toy::forest().views.size());
@@ -51,7 +51,7 @@ TEST(Candidates, ExcludedViewsAreNotCompared) {
 }
 
 TEST(Candidates, NoClassOffersMoreThanItMay) {
-  RgbdFrame frame = toy::room(77);
+  RgbdFrame frame = toy::background(77);
   toy::put_tile(0, 80, 119.5, 0.7, frame);
   toy::put_tile(0, 240, 119.5, 0.7, frame);
   const auto stripes = [&](int candidates_per_class) {

@@ -35,7 +35,7 @@ TEST(TemplateMatch, TheViewItselfFitsWholly) {
 
 TEST(TemplateMatch, FitsWhereverInThePictureTheObjectFacesTheCamera) {
   for (const cv::Point2d at : {cv::Point2d(30, 119.5), cv::Point2d(290, 119.5), cv::Point2d(280, 200)}) {
-    RgbdFrame frame = toy::room(5);
+    RgbdFrame frame = toy::background(5);
     toy::put_tile(0, at.x, at.y, kDistance, frame);
     const TemplateMatch result = fit(frame, frame.camera.backproject(at.x, at.y, kDistance).cast<float>());
     EXPECT_GT(result.visible_fraction, 0.97F) << at;
@@ -87,7 +87,7 @@ TEST(TemplateMatch, ColoursCountWhereDepthIsMissing) {
   RgbdFrame frame = tile_frame();
   frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   EXPECT_GT(fit(frame).colour_correlation, 0.8F);
-  frame.colour = toy::room(5).colour;
+  frame.colour = toy::background(5).colour;
   EXPECT_LT(fit(frame).colour_correlation, 0.3F);
 }
 

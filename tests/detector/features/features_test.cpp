@@ -11,7 +11,7 @@ namespace houghstream {
 namespace {
 
 WorkingFrame toy_frame() {
-  RgbdFrame frame = toy::room(5);
+  RgbdFrame frame = toy::background(5);
   toy::put_tile(0, 160, 120, 0.7, frame);
   return make_working_frame(frame, 0.5F, {});
 }

@@ -83,7 +83,7 @@ class Traversal : public ::testing::Test {
   }
 
   /// All levels, with a patch every so many pixels.
-  void look_at_room(int stride, std::vector<FeatureImage>& features, PatchGrid& patches) const {
+  void look_at_background(int stride, std::vector<FeatureImage>& features, PatchGrid& patches) const {
     for (const FeatureLevel& level : feature_levels(forest.features)) {
       const WorkingFrame frame = make_working_frame(room, level, forest.features);
       add_patches(frame, level, static_cast<std::uint8_t>(features.size()), {forest.patch, {stride, 0.0F}}, patches);
@@ -93,13 +93,13 @@ class Traversal : public ::testing::Test {
 
   const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
   const ForestIndex index{forest};
-  RgbdFrame room = toy::room(5);
+  RgbdFrame room = toy::background(5);
 };
 
 TEST_F(Traversal, ManyPatchesAtOnceReachTheLeavesOfOneAtATime) {
   std::vector<FeatureImage> features;
   PatchGrid patches;
-  look_at_room(2, features, patches);
+  look_at_background(2, features, patches);
   ASSERT_GT(patches.size(), 4000U);
   expect_leaves_of_find_leaf(index, features, patches);
   for (const float fraction : {0.0F, 0.02F, 0.3F}) expect_given_up_after(2, fraction, features, patches);
@@ -124,7 +124,7 @@ TEST_F(Traversal, SoDoPatchesAtEveryPixelWithDepth) {
   room.depth(cv::Rect(100, 40, 90, 90)).setTo(0.45F);  // nearer, and some pixels know no depth
   std::vector<FeatureImage> features;
   PatchGrid patches;
-  look_at_room(1, features, patches);
+  look_at_background(1, features, patches);
   expect_leaves_of_find_leaf(index, features, patches);
   for (const float fraction : {0.0F, 0.02F, 0.3F}) expect_given_up_after(2, fraction, features, patches);
 }

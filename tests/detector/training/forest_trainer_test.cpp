@@ -100,7 +100,7 @@ TEST(AddObjects, BothTheOldAndTheNewObjectAreFound) {
   ASSERT_EQ(detector.forest().classes.size(), 2U);
   EXPECT_EQ(detector.forest().classes[1].class_id, 2);
   for (const int kind : {0, 1}) {
-    RgbdFrame frame = toy::room(77);
+    RgbdFrame frame = toy::background(77);
     const cv::Mat mask = toy::put_tile(kind, 150, 110, 0.7, frame);
     const Detections found = detector.detect(frame);
     ASSERT_FALSE(found.detections.empty()) << kind;

@@ -34,7 +34,7 @@ double share_of(const Forest& forest, std::size_t class_index) {
 }
 
 Detections detect(const Forest& forest, int kind) {
-  RgbdFrame frame = toy::room(77);
+  RgbdFrame frame = toy::background(77);
   toy::put_tile(kind, 150, 110, 0.7, frame);
   return Detector(forest, DetectionSettings{}).detect(frame);
 }

@@ -20,9 +20,9 @@ namespace {
 struct Toys {
   std::vector<TrainingView> views = toy::training_views();
   std::vector<const TrainingView*> objects;
-  std::vector<const TrainingView*> rooms;
+  std::vector<const TrainingView*> backgrounds;
   Toys() {
-    for (const TrainingView& view : views) (view.class_id == 0 ? rooms : objects).push_back(&view);
+    for (const TrainingView& view : views) (view.class_id == 0 ? backgrounds : objects).push_back(&view);
   }
 };
 
@@ -32,7 +32,7 @@ Forest with_score_trained(const Toys& toys, Forest forest, int threads) {
   Profile profile = toy::quick_profile();
   profile.training.validation_frames = 16;
   profile.training.threads = threads;
-  const ValidationSource source = composed_frames(toys.objects, toys.rooms, profile.training);
+  const ValidationSource source = composed_frames(toys.objects, toys.backgrounds, profile.training);
   fit_scores(find_score_examples(source, 0, profile, forest), kClasses, forest);
   return forest;
 }
@@ -94,9 +94,9 @@ TEST(ScoreTraining, AnyNumberOfThreadsGivesTheSameModel) {
 
 /// A picture that is not composed of views: a tile of each kind in a room; `is_there` says whether the truth names
 /// them.
-ValidationFrame tiles_in_a_room(int index, bool is_there) {
+ValidationFrame tiles_on_a_background(int index, bool is_there) {
   ValidationFrame frame;
-  frame.frame = toy::room(50 + static_cast<std::uint64_t>(index));
+  frame.frame = toy::background(50 + static_cast<std::uint64_t>(index));
   for (const int kind : {0, 1}) {
     const cv::Mat mask = toy::put_tile(kind, 90.0 + 130.0 * kind, 110.0 + 20.0 * index, 0.7, frame.frame);
     if (is_there) frame.objects.push_back({kind + 1, {}, cv::boundingRect(mask), 1.0});
@@ -122,7 +122,7 @@ TEST(ScoreTraining, LearnsFromAnySourceOfFrames) {
     std::array<std::atomic<int>, 2> asked{};
     const ValidationSource source{2, [&](int index) {
                                     ++asked.at(static_cast<std::size_t>(index));
-                                    return tiles_in_a_room(index, is_there);
+                                    return tiles_on_a_background(index, is_there);
                                   }};
     Forest& forest = forests[is_there ? 1 : 0];
     fit_scores(find_score_examples(source, 0, profile, forest), {1}, forest);

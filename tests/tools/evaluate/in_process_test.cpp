@@ -31,7 +31,7 @@ BopScene two_tiles(const std::string& name) {
   const std::filesystem::path folder = fresh_folder(name);
   BopWriter writer(folder);
   for (const std::uint64_t seed : {77, 78}) {
-    RgbdFrame frame = toy::room(seed);
+    RgbdFrame frame = toy::background(seed);
     toy::put_tile(0, 90, 119.5, 0.7, frame);
     toy::put_tile(1, 230, 119.5, 0.7, frame);
     writer.add(frame, {}, {});

@@ -112,11 +112,11 @@ ComposedExamples compose_examples(const std::vector<TrainingView>& views, float 
   constexpr training::ComposedThings kThings = {4, 2, 0};
   ComposedExamples out;
   std::vector<const TrainingView*> shown;
-  std::vector<const TrainingView*> rooms;
+  std::vector<const TrainingView*> backgrounds;
   std::map<int, int> seen;  // views by class id
   for (const TrainingView& view : views) {
     if (view.class_id == 0) {
-      rooms.push_back(&view);
+      backgrounds.push_back(&view);
     } else if (seen[view.class_id]++ % kShownOneIn == kShownOneIn - 1) {
       shown.push_back(&view);
     } else {
@@ -124,15 +124,15 @@ ComposedExamples compose_examples(const std::vector<TrainingView>& views, float 
       out.class_names.insert(view.class_name);
     }
   }
-  require(!shown.empty() && !rooms.empty(), "{} views to show in {} background views, expected some of each",
-          shown.size(), rooms.size());
+  require(!shown.empty() && !backgrounds.empty(), "{} views to show in {} background views, expected some of each",
+          shown.size(), backgrounds.size());
   training::AugmentationSettings settings;
   settings.min_distance = min_distance;
   settings.max_distance = max_distance;
   for (std::size_t f = 0; f < static_cast<std::size_t>(images); ++f) {
     Random random = Random::for_item(kSeed, f);
     const training::ValidationFrame composed =
-        training::make_validation_frame(shown, rooms[f % rooms.size()]->frame, kThings, settings, random);
+        training::make_validation_frame(shown, backgrounds[f % backgrounds.size()]->frame, kThings, settings, random);
     out.frames.push_back(composed.frame);
     out.truth.push_back(to_ground_truth(composed, shown));
   }

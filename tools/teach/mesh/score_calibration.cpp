@@ -23,17 +23,17 @@ constexpr std::uint64_t kCameras = 0x63616D657261ULL;
 
 /// Rendered once, looked at twice. The objects are not quite those that were taught: light, wear and printer differ.
 std::vector<world::RenderedFrame> render_frames(const std::vector<CalibrationObject>& objects,
-                                                const CalibrationSettings& settings, int rooms) {
+                                                const CalibrationSettings& settings, int scene_count) {
   std::vector<world::CalibrationSceneObject> in_scene;
   in_scene.reserve(objects.size());
   for (const CalibrationObject& object : objects) in_scene.push_back(object.in_scene);
   const world::CalibrationScenes scenes(std::move(in_scene), settings.seed);
   constexpr int kEach = world::CalibrationScenes::kFramesPerScene;
-  std::vector<world::RenderedFrame> frames(static_cast<std::size_t>(rooms * kEach));
-  ProgressLine progress("practice rooms", rooms);
-  parallel_for(settings.threads, rooms, [&](int room) {
-    int index = room * kEach;
-    for (world::RenderedFrame& frame : scenes.render(room)) {
+  std::vector<world::RenderedFrame> frames(static_cast<std::size_t>(scene_count * kEach));
+  ProgressLine progress("practice rooms", scene_count);
+  parallel_for(settings.threads, scene_count, [&](int scene) {
+    int index = scene * kEach;
+    for (world::RenderedFrame& frame : scenes.render(scene)) {
       Random random = Random::for_item(settings.seed ^ kCameras, static_cast<std::uint64_t>(index));
       for (const cv::Mat& mask : frame.visible_masks) {
         const cv::Rect part = cv::boundingRect(mask);
@@ -50,12 +50,12 @@ std::vector<world::RenderedFrame> render_frames(const std::vector<CalibrationObj
   return frames;
 }
 
-void warn_of(const std::vector<std::string>& names, int rooms) {
+void warn_of(const std::vector<std::string>& names, int scene_count) {
   for (const std::string& name : names)
     log_warning(
         "{}: seen in none of {} practice rooms, expected some: what its scores and poses are worth is not learnt (too "
         "large for a table, or too few --practice-rooms)",
-        name, rooms);
+        name, scene_count);
 }
 
 training::ValidationSource validation_source(const std::vector<world::RenderedFrame>& frames) {
@@ -155,7 +155,7 @@ int scene_count_for(std::size_t new_objects, const CalibrationSettings& settings
   constexpr int kOfOne = 80;
   constexpr int kOfEachMore = 25;
   constexpr int kMax = 240;
-  return settings.rooms.value_or(std::min(kOfOne + kOfEachMore * (static_cast<int>(new_objects) - 1), kMax));
+  return settings.scenes.value_or(std::min(kOfOne + kOfEachMore * (static_cast<int>(new_objects) - 1), kMax));
 }
 
 std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFrame>& frames,
@@ -176,11 +176,11 @@ std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFra
 std::map<std::string, QualitySettings> calibrate_on_scenes(const std::vector<CalibrationObject>& objects,
                                                            const std::set<int>& new_ids,
                                                            const CalibrationSettings& settings, Forest& forest) {
-  const int rooms = scene_count_for(new_ids.size(), settings);
-  require(rooms <= CalibrationSettings::kMaxScenes, "{} practice rooms, expected at most {}: all are in memory", rooms,
-          CalibrationSettings::kMaxScenes);
-  const std::vector<world::RenderedFrame> frames = render_frames(objects, settings, rooms);
-  warn_of(unobserved_objects(frames, objects, new_ids), rooms);
+  const int scene_count = scene_count_for(new_ids.size(), settings);
+  require(scene_count <= CalibrationSettings::kMaxScenes, "{} practice rooms, expected at most {}: all are in memory",
+          scene_count, CalibrationSettings::kMaxScenes);
+  const std::vector<world::RenderedFrame> frames = render_frames(objects, settings, scene_count);
+  warn_of(unobserved_objects(frames, objects, new_ids), scene_count);
   Profile profile = training::profile_of(forest);
   profile.training.threads = settings.threads;
   const std::vector<training::ScoreExamples> examples =

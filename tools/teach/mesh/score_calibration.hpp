@@ -28,7 +28,7 @@ struct CalibrationSettings {
   static constexpr int kMaxScenes = 500;  ///< whose pictures, 4.3 MB a room, are all in memory at once: 2 GB
 
   std::optional<int>
-      rooms;  ///< each is looked at world::CalibrationScenes::kFramesPerRoom times; default: scene_count_for()
+      scenes;  ///< each is looked at world::CalibrationScenes::kFramesPerRoom times; default: scene_count_for()
   double surface_variation = 0.6;     ///< strength of the changes of objects' colours, see training::resurface
   double camera_fraction = 0.8;       ///< of the frames, that another camera sees than the one that taught
   double camera_randomisation = 0.8;  ///< see detector/training/augmentation/camera_randomisation.hpp

@@ -209,7 +209,7 @@ void require_no_store(const fs::path& folder) {
 void teach_meshes(const TeachOptions& options) {
   const Progress progress;
   world::parse_mesh_attitudes(options.attitudes);
-  if (options.rooms.camera) parse_camera(*options.rooms.camera);
+  if (options.backgrounds.camera) parse_camera(*options.backgrounds.camera);
   require_free(options.dump_views);
   store::StoreTransaction build(options.out);  // before the store is read: nobody else changes it from here on
   if (!options.add && !options.replace) require_no_store(options.out);
@@ -230,7 +230,7 @@ void teach_meshes(const TeachOptions& options) {
   ObjectStore made = start_store(build.folder());
   std::vector<NamedModel> models;
   keep(old, "", made, models);
-  std::vector<TrainingView> views = read_backgrounds(options.rooms);
+  std::vector<TrainingView> views = read_backgrounds(options.backgrounds);
   progress(fmt::format("{} pictures of rooms read", views.size()));
   std::vector<TrainingView> of_objects = make_views(meshes, options, made, progress);
   std::move(of_objects.begin(), of_objects.end(), std::back_inserter(views));

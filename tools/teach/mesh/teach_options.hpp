@@ -21,7 +21,7 @@ struct TeachOptions {
   MeshSources meshes;
   std::vector<TaughtMesh> shown;        ///< beside those: checked as they are (mesh_checks.hpp)
   std::vector<TrainingView> own_views;  ///< of a camera, by class_name, beside the rendered ones; in the mesh's frame
-  BackgroundSettings rooms;
+  BackgroundSettings backgrounds;
   std::filesystem::path out;                   ///< the store
   std::string attitudes = "resting";           ///< see world::parse_mesh_attitudes
   bool add = false;                            ///< to the store that is there

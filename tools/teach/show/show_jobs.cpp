@@ -86,8 +86,8 @@ TeachOptions options_to_teach(const ShowOptions& options, const ShowResult& show
   teach.out = options.out;
   teach.add = options.add;
   teach.replace = options.replace;
-  teach.rooms.cache = options.backgrounds_cache;
-  teach.rooms.threads = options.threads;
+  teach.backgrounds.cache = options.backgrounds_cache;
+  teach.backgrounds.threads = options.threads;
   teach.seed = options.seed;
   teach.threads = options.threads;
   return teach;
@@ -236,7 +236,7 @@ void teach_shown(const ShowOptions& options, const ShowResult& shown, ProgressRe
   CalibrationSettings thorough = teach.calibration;
   thorough.seed = options.seed;
   thorough.threads = options.threads;
-  teach.calibration.rooms = kFirstScenes;
+  teach.calibration.scenes = kFirstScenes;
   reporter.step(ShowState::kTraining, 0.5, "the model is taught");
   teach_meshes(teach);
   reporter.step(ShowState::kTraining, 0.8,

@@ -19,7 +19,7 @@ CameraRandomisation camera(double strength, std::uint64_t seed) {
 }
 
 TEST(CameraRandomisation, StrengthZeroChangesNothing) {
-  const RgbdFrame room = toy::room(3);
+  const RgbdFrame room = toy::background(3);
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     Random random(seed);
     const CameraRandomisation none = sample_camera(0.0, random);
@@ -33,7 +33,7 @@ TEST(CameraRandomisation, StrengthZeroChangesNothing) {
 }
 
 TEST(CameraRandomisation, TheSameSeedIsTheSameCameraAndTakesTheSamePicture) {
-  const RgbdFrame room = toy::room(3);
+  const RgbdFrame room = toy::background(3);
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     cv::Mat colours[2];
     cv::Mat depths[2];
@@ -91,7 +91,7 @@ TEST(CameraRandomisation, DrawnCamerasStayWithinTheirRangesAndReachThem) {
 }
 
 TEST(CameraRandomisation, LessStrengthChangesLess) {
-  const RgbdFrame room = toy::room(3);
+  const RgbdFrame room = toy::background(3);
   double changes[3] = {0.0, 0.0, 0.0};
   const double strengths[3] = {0.2, 0.6, 1.2};
   for (int i = 0; i < 3; ++i) {
@@ -127,7 +127,7 @@ TEST(CameraRandomisation, AnySizeAndAnyStrengthIsTaken) {
 
 /// Whether another camera's picture of a room came out.
 bool looks_through_another(double fraction, double strength, std::uint64_t seed) {
-  const RgbdFrame room = toy::room(3);
+  const RgbdFrame room = toy::background(3);
   RgbdFrame frame = room;
   frame.colour = room.colour.clone();
   frame.depth = room.depth.clone();

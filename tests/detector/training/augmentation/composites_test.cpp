@@ -28,7 +28,7 @@ TrainingView tile_view() {
 std::optional<Composite> compose(const TrainingView& view, double distance, std::uint64_t seed,
                                  const AugmentationSettings& settings) {
   Random random(seed);
-  return make_composite(view, toy::room(5), distance, settings, random);
+  return make_composite(view, toy::background(5), distance, settings, random);
 }
 
 bool same_values(const cv::Mat& a, const cv::Mat& b) {
@@ -104,7 +104,7 @@ TEST(Composites, TheObjectFacesTheRoomsCameraWhereItIsPut) {
 TEST(Composites, AroundTheObjectTheRoomIsUntouched) {
   const auto composite = compose(tile_view(), 1.0, 3, plain());
   ASSERT_TRUE(composite);
-  const RgbdFrame room = toy::room(5);
+  const RgbdFrame room = toy::background(5);
   const cv::Rect place(static_cast<int>(std::lround(room.camera.cx - composite->frame.camera.cx)),
                        static_cast<int>(std::lround(room.camera.cy - composite->frame.camera.cy)), composite->mask.cols,
                        composite->mask.rows);
@@ -118,7 +118,7 @@ TEST(Composites, AroundTheObjectTheRoomIsUntouched) {
 
 TEST(Composites, TheRoomBehindTheObjectIsNotInFrontOfIt) {
   const TrainingView view = tile_view();
-  RgbdFrame room = toy::room(5);
+  RgbdFrame room = toy::background(5);
   room.depth.colRange(0, room.depth.cols / 4).setTo(0.4F);  // too near to stand behind
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     Random random(seed);

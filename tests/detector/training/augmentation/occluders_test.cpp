@@ -18,7 +18,7 @@ Composite bare_tile(std::uint64_t seed) {
   settings.lighting_variation = 0.0;
   settings.occluded_fraction = 0.0;
   Random random(seed);
-  return make_composite(toy::training_views().front(), toy::room(5), kDistance, settings, random).value();
+  return make_composite(toy::training_views().front(), toy::background(5), kDistance, settings, random).value();
 }
 
 struct Pair {
@@ -32,7 +32,7 @@ std::vector<Pair> occluded_tiles() {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Pair pair{bare_tile(seed), bare_tile(seed)};
     Random random(seed + 100);
-    add_occluder(toy::room(6), kDistance, pair.after, random);
+    add_occluder(toy::background(6), kDistance, pair.after, random);
     if (!pair.after.occluder.empty()) pairs.push_back(std::move(pair));
   }
   return pairs;

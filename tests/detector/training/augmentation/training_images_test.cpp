@@ -45,7 +45,7 @@ ImageInput input_of(const Profile& profile) {
 TrainingImage image_of(const TrainingView& view, const Profile& profile, std::uint64_t seed) {
   Random random(seed);
   ImageWorkspace workspace;
-  return object_image({view, 2, 5}, toy::room(3), input_of(profile), random, workspace);
+  return object_image({view, 2, 5}, toy::background(3), input_of(profile), random, workspace);
 }
 
 /// How much larger the picture shows the object than the view does, `image_scale` aside.
@@ -152,7 +152,7 @@ TEST(TrainingImages, PicturesHoldWhatTheirPatchesLookAtOnly) {
     expect_held(image_of(round_view(), profile, seed), profile.patch);
     Random random(seed);
     for (const FeatureLevel& level : feature_levels(profile.features)) {
-      expect_held(background_image(toy::room(3), level, input_of(profile), random, workspace), profile.patch);
+      expect_held(background_image(toy::background(3), level, input_of(profile), random, workspace), profile.patch);
     }
   }
 }
@@ -209,7 +209,7 @@ TEST(TrainingImages, OnlyWithoutScaleSpaceMustDepthBeKnown) {
 }
 
 TEST(TrainingImages, ATooSmallBackgroundGivesNothing) {
-  RgbdFrame corner = toy::room(3);
+  RgbdFrame corner = toy::background(3);
   corner.colour = corner.colour(cv::Rect(0, 0, 120, 120)).clone();
   corner.depth = corner.depth(cv::Rect(0, 0, 120, 120)).clone();
   corner.camera = corner.camera.cropped(0, 0, 120, 120);
@@ -223,7 +223,7 @@ TEST(TrainingImages, ATooSmallBackgroundGivesNothing) {
 }
 
 TEST(TrainingImages, ABackgroundIsDrawnFromWhereItsLevelSees) {
-  RgbdFrame room = toy::room(3);
+  RgbdFrame room = toy::background(3);
   room.depth.setTo(0.8F);
   room.depth.colRange(0, 160).setTo(2.0F);
   Profile profile = open_profile("realtime");
@@ -247,7 +247,7 @@ TEST(TrainingImages, ABackgroundIsDrawnFromWhereItsLevelSees) {
 }
 
 TEST(TrainingImages, ABackgroundOfAScaleSpaceNeedsNoDepth) {
-  RgbdFrame room = toy::room(3);
+  RgbdFrame room = toy::background(3);
   room.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   const Profile profile = open_profile("gall");
   for (const FeatureLevel& level : baseline::scale_space_levels(profile.features)) {

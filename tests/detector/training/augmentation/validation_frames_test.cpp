@@ -9,10 +9,10 @@
 namespace houghstream::training {
 namespace {
 
-struct TilesAndRooms {
+struct TilesAndBackgrounds {
   std::vector<TrainingView> views = toy::training_views();
   std::vector<const TrainingView*> objects;
-  TilesAndRooms() {
+  TilesAndBackgrounds() {
     for (const TrainingView& view : views) {
       if (view.class_id != 0) objects.push_back(&view);
     }
@@ -22,18 +22,18 @@ struct TilesAndRooms {
 constexpr ComposedThings kThings = {4, 2, 0};
 
 /// By the camera that taught: another one's depth has other holes and lies a few pixels beside.
-ValidationFrame compose(const TilesAndRooms& toys, std::uint64_t seed, double occluded_fraction,
+ValidationFrame compose(const TilesAndBackgrounds& toys, std::uint64_t seed, double occluded_fraction,
                         double camera_fraction = 0.0) {
   TrainingSettings settings = toy::quick_profile().training;
   settings.occluded_fraction = occluded_fraction;
   settings.camera_fraction = camera_fraction;
   Random random(seed);
-  return make_validation_frame(toys.objects, toy::room(9), kThings, settings, random);
+  return make_validation_frame(toys.objects, toy::background(9), kThings, settings, random);
 }
 
 TEST(ValidationFrames, NameWhatTheyShowAndWhere) {
-  const TilesAndRooms toys;
-  const RgbdFrame room = toy::room(9);
+  const TilesAndBackgrounds toys;
+  const RgbdFrame room = toy::background(9);
   int objects = 0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const ValidationFrame validation = compose(toys, seed, 0.0);
@@ -54,7 +54,7 @@ TEST(ValidationFrames, NameWhatTheyShowAndWhere) {
 }
 
 TEST(ValidationFrames, OccludersLeaveLessOfTheObjects) {
-  const TilesAndRooms toys;
+  const TilesAndBackgrounds toys;
   double open = 0.0;
   double occluded = 0.0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
@@ -65,12 +65,13 @@ TEST(ValidationFrames, OccludersLeaveLessOfTheObjects) {
 }
 
 TEST(ValidationFrames, AsManyLookAlikesAndStrangersOfEachSortAsAskedForStandThereToo) {
-  const TilesAndRooms toys;
+  const TilesAndBackgrounds toys;
   EXPECT_EQ(compose(toys, 1, 0.0).distractor_views.size(), 2U * 2U);
   TrainingSettings settings = toy::quick_profile().training;
   Random random(1);
   const ComposedThings things{0, 0, 4};
-  const ValidationFrame hard_negatives = make_validation_frame(toys.objects, toy::room(9), things, settings, random);
+  const ValidationFrame hard_negatives =
+      make_validation_frame(toys.objects, toy::background(9), things, settings, random);
   EXPECT_EQ(hard_negatives.distractor_views.size(), 4U + 2U * 4U);  // each of the second sort is made of two views
   EXPECT_TRUE(hard_negatives.objects.empty());
 }
@@ -92,8 +93,8 @@ std::vector<double> widths_of_things(const cv::Mat& depth, const cv::Mat& room) 
 }
 
 TEST(ValidationFrames, AStrangerIsNarrowerOrWiderThanAnyObjectOrHasItsShape) {
-  const TilesAndRooms toys;  // all are square
-  const RgbdFrame room = toy::room(9);
+  const TilesAndBackgrounds toys;  // all are square
+  const RgbdFrame room = toy::background(9);
   TrainingSettings settings = toy::quick_profile().training;
   settings.occluded_fraction = 0.0;
   settings.depth_error = {};
@@ -113,7 +114,7 @@ TEST(ValidationFrames, AStrangerIsNarrowerOrWiderThanAnyObjectOrHasItsShape) {
 }
 
 TEST(ValidationFrames, AnotherCameraChangesThePictureAndNotTheTruth) {
-  const TilesAndRooms toys;
+  const TilesAndBackgrounds toys;
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const ValidationFrame same = compose(toys, seed, 0.0, 0.0);
     const ValidationFrame other = compose(toys, seed, 0.0, 1.0);
@@ -129,9 +130,9 @@ TEST(ValidationFrames, AnotherCameraChangesThePictureAndNotTheTruth) {
 }
 
 TEST(ValidationFrames, TheRoomAndTheViewsStayAsTheyAre) {
-  const TilesAndRooms toys;
-  const TilesAndRooms untouched;
-  const RgbdFrame room = toy::room(9);
+  const TilesAndBackgrounds toys;
+  const TilesAndBackgrounds untouched;
+  const RgbdFrame room = toy::background(9);
   const cv::Mat colour = room.colour.clone();
   TrainingSettings settings = toy::quick_profile().training;
   Random random(1);

@@ -37,7 +37,7 @@ const LinemodDetector& toy_detector() {
 }
 
 Detections find_tile(int kind, double distance, cv::Point2d centre, cv::Rect& box_px) {
-  RgbdFrame frame = toy::room(9);
+  RgbdFrame frame = toy::background(9);
   frame.id.utime = 17;
   box_px = cv::boundingRect(toy::put_upright_tile(kind, centre.x, centre.y, distance, frame));
   return toy_detector().detect(frame);
@@ -85,7 +85,7 @@ TEST(LinemodDetector, StrongestComeFirstAndRepeatsOfAClassAreGone) {
 }
 
 TEST(LinemodDetector, AFrameWithoutAnythingGivesNoDetection) {
-  RgbdFrame frame = toy::room(9);
+  RgbdFrame frame = toy::background(9);
   frame.colour.setTo(cv::Scalar(90, 90, 90));
   frame.depth.setTo(kNone);
   EXPECT_TRUE(toy_detector().detect(frame).detections.empty());
@@ -94,7 +94,7 @@ TEST(LinemodDetector, AFrameWithoutAnythingGivesNoDetection) {
 TEST(LinemodDetector, TheSameWhateverTheNumberOfThreads) {
   LinemodTemplateSettings one = quick_templates();
   one.threads = 1;
-  RgbdFrame frame = toy::room(9);
+  RgbdFrame frame = toy::background(9);
   toy::put_upright_tile(0, 110, 130, 0.8, frame);
   const Detections a = LinemodDetector(toy_views(), one, {}).detect(frame);
   const Detections b = toy_detector().detect(frame);
@@ -175,7 +175,7 @@ TEST(SelectDetections, ChecksDepthOnlyWhereItIsAskedTo) {
   shape.distance = 1.0F;
   shape.box_px = {-2, -2, 20, 20};
   shape.samples = {{{0, 0}, 1.0F}};
-  const RgbdFrame far = toy::room(9);
+  const RgbdFrame far = toy::background(9);
   const std::vector<LinemodMatch> matches = {{90.0F, &shape, {0, 0}}, {50.0F, &shape, {200, 100}}};
   LinemodSelection selection;
   const std::vector<Detection> found = select_detections(matches, far, selection);
@@ -212,7 +212,7 @@ TEST(ScaledView, ImagesGrowAndDepthIsShifted) {
 }
 
 TEST(LinemodImages, AreWholeStepsAndAlignedAndHoldTheLargestTemplate) {
-  const RgbdFrame frame = toy::room(9);  // 320x240
+  const RgbdFrame frame = toy::background(9);  // 320x240
   const std::vector<cv::Mat> same = linemod_images(frame, {200, 100});
   EXPECT_EQ(same[0].size(), cv::Size(320, 240)) << "nothing to add";
   for (const cv::Mat& image : linemod_images(frame, {300, 239})) {

@@ -25,7 +25,7 @@ class Names : public benchmark::BenchmarkReporter {
 
 TEST(Kernels, EachOneRuns) {
   const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
-  RgbdFrame frame = toy::room(5);
+  RgbdFrame frame = toy::background(5);
   toy::put_tile(0, 159.5, 119.5, 0.7, frame);
   DetectionSettings settings;
   settings.threads = 1;

@@ -86,7 +86,7 @@ TEST_F(ParseContender, WishesAreGranted) {
 }
 
 TEST_F(ParseContender, ItDetectsAsTheDetectorDoes) {
-  RgbdFrame frame = toy::room(77);
+  RgbdFrame frame = toy::background(77);
   toy::put_tile(0, 200, 200, 0.8, frame);
   const Detections fast = parse(",threads=2").detect(frame);
   const Detections reference = parse(",threads=1,reference").detect(frame);
@@ -97,7 +97,7 @@ TEST_F(ParseContender, ItDetectsAsTheDetectorDoes) {
 }
 
 TEST_F(ParseContender, ItReportsFromTheThresholdAndMassThatItIsTold) {
-  RgbdFrame frame = toy::room(77);
+  RgbdFrame frame = toy::background(77);
   toy::put_tile(0, 200, 200, 0.8, frame);
   const std::size_t usual = parse("").detect(frame).detections.size();
   EXPECT_GT(parse(",threshold=0,min-mass=0").detect(frame).detections.size(), usual);
@@ -121,7 +121,7 @@ TEST_F(ParseContender, WhatIsNotUnderstoodIsNamed) {
 }
 
 TEST(ResizedFrame, CameraAndDepthFollow) {
-  const RgbdFrame frame = toy::room(5);
+  const RgbdFrame frame = toy::background(5);
   const RgbdFrame half = resized_frame(frame, 0.5);
   EXPECT_EQ(half.colour.cols, frame.colour.cols / 2);
   EXPECT_EQ(half.depth.size(), half.colour.size());

@@ -33,7 +33,7 @@ TEST(Calibration, NewObjectsThatNoFrameShowsAreNamed) {
 
 TEST(Calibration, MoreRoomsThanMemoryHoldsAreRefused) {
   CalibrationSettings settings;
-  settings.rooms = CalibrationSettings::kMaxScenes + 1;
+  settings.scenes = CalibrationSettings::kMaxScenes + 1;
   Forest forest;
   EXPECT_EQ(error_of([&] { calibrate_on_scenes({}, {}, settings, forest); }),
             "501 practice rooms, expected at most 500: all are in memory");

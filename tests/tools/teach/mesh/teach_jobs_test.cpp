@@ -25,14 +25,14 @@ TeachOptions quick_options(const fs::path& folder, const std::string& mesh) {
   TeachOptions options;
   options.meshes.sources = {(folder / mesh).string()};
   options.out = folder / "store";
-  options.rooms.cache = fs::temp_directory_path() / "houghstream_teach_jobs_test_cache";
-  options.rooms.count = 5;
+  options.backgrounds.cache = fs::temp_directory_path() / "houghstream_teach_jobs_test_cache";
+  options.backgrounds.count = 5;
   options.views.views_per_attitude = 3;
   options.profile.training.trees = 2;
   options.profile.training.tests_per_node = 100;
   options.profile.training.patches_per_view = 60;
   options.profile.training.composites_per_view = 1;
-  options.calibration.rooms = 3;
+  options.calibration.scenes = 3;
   return options;
 }
 
