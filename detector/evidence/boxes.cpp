@@ -44,7 +44,7 @@ Sides template_sides(const Forest& forest, const Hypothesis& hypothesis, const C
   const Eigen::Vector3d centre = hypothesis.centre_camera.cast<double>();
   const Eigen::Vector2d centre_px = camera.project(centre);
   const auto px_per_metre = static_cast<float>(1.0 / camera.metres_per_px(centre.z()));
-  std::vector<std::pair<float, float>>& values = workspace.remembered;
+  std::vector<std::pair<float, float>>& values = workspace.template_values;
   Sides sides{};
   for (std::size_t i = 0; i < sides.size(); ++i) {
     values.clear();

@@ -12,8 +12,8 @@ namespace houghstream {
 /// Workspace of backproject_box(), used again from box to box.
 struct BoxWorkspace {
   std::vector<float> weights;
-  std::array<std::vector<float>, 4> sides;          ///< of the supporting patches
-  std::vector<std::pair<float, float>> remembered;  ///< a side of the remembered views, and their weights
+  std::array<std::vector<float>, 4> sides;               ///< of the supporting patches
+  std::vector<std::pair<float, float>> template_values;  ///< a side of the remembered views, and their weights
 };
 
 /// Returns the box of a hypothesis by back-projection of all supporting patches (paper, Section 2), frame pixels.

@@ -196,13 +196,13 @@ Comparison compare(const ViewTemplate& view, const Eigen::Vector3f& centre, cons
       if (x < 0 || x >= frame.depth.cols) continue;
       const std::size_t cell = row * kSide + column;
       const float beyond_centre = depth[x] - expected[column];
-      const std::int16_t remembered = view.appearance.mm[cell];
+      const std::int16_t template_mm = view.appearance.mm[cell];
       const std::int16_t neighbour = view.appearance.beside[cell];
       out.cells[out.object_cells] = {static_cast<std::uint16_t>(cell), static_cast<std::uint8_t>(row),
                                      static_cast<std::uint8_t>(column)};
       out.excess[out.object_cells] =
-          remembered > TemplateGrid::kNoDepth ? beyond_centre - metres_per_mm * remembered : kNoValue;
-      out.object_cells += remembered != TemplateGrid::kBeside ? 1 : 0;
+          template_mm > TemplateGrid::kNoDepth ? beyond_centre - metres_per_mm * template_mm : kNoValue;
+      out.object_cells += template_mm != TemplateGrid::kBeside ? 1 : 0;
       out.excess_beside[out.beside_cells] =
           neighbour > TemplateGrid::kNoDepth ? beyond_centre - metres_per_mm * neighbour : kNoValue;
       out.beside_cells += neighbour != TemplateGrid::kBeside ? 1 : 0;

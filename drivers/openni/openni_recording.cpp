@@ -15,7 +15,7 @@
 namespace houghstream::openni {
 namespace {
 
-constexpr std::size_t kRemembered = 300;  // ten seconds: as late as a sleeping disk may let the recorder begin
+constexpr std::size_t kMaxThumbnails = 300;  // ten seconds: as late as a sleeping disk may let the recorder begin
 
 /// What cannot be mended stays as it is.
 void end_interrupted(const std::filesystem::path& file) {
@@ -50,7 +50,7 @@ void OpenniRecording::start() {
 void OpenniRecording::note(const SensorImage& image) {
   std::vector<ImageThumbnail>& own = live_.of(image.sensor);
   const bool may_be_recorded = started() && image.host_us >= started_us_;
-  if (may_be_recorded && own.size() < kRemembered) own.push_back(remember(image));
+  if (may_be_recorded && own.size() < kMaxThumbnails) own.push_back(make_thumbnail(image));
 }
 
 void OpenniRecording::mend_times(const FirstImages& recorded) {

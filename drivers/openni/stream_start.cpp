@@ -61,7 +61,7 @@ bool fits_better(const RecordedStarts& a, const RecordedStarts& b) {
 
 }  // namespace
 
-ImageThumbnail remember(const SensorImage& image) {
+ImageThumbnail make_thumbnail(const SensorImage& image) {
   ImageThumbnail small{static_cast<std::int64_t>(image.device_us), {}};
   cv::resize(image.image, small.some_pixels, {}, 1.0 / kStep, 1.0 / kStep, cv::INTER_NEAREST);
   return small;

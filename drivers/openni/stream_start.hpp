@@ -14,7 +14,7 @@ struct ImageThumbnail {
   cv::Mat some_pixels;  ///< every eighth of each row and column
 };
 
-ImageThumbnail remember(const SensorImage& image);
+ImageThumbnail make_thumbnail(const SensorImage& image);
 
 /// The first images of a camera's two streams.
 struct FirstImages {

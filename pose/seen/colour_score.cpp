@@ -26,9 +26,9 @@ double variance(const ColourProducts& products, Eigen::Index channel) {
 }
 
 /// Mean square that is left over of a channel's seen values by least squares on the remembered ones.
-double chroma_left_over(const ColourProducts& products, Eigen::Index remembered, Eigen::Index seen) {
-  const double own = variance(products, remembered);
-  const double covariance = products(remembered, seen) - products(remembered, kOne) * products(seen, kOne);
+double chroma_left_over(const ColourProducts& products, Eigen::Index template_value, Eigen::Index seen) {
+  const double own = variance(products, template_value);
+  const double covariance = products(template_value, seen) - products(template_value, kOne) * products(seen, kOne);
   const double gain = std::clamp(covariance / std::max(own, 1e-3), kMinGain, kMaxGain);
   return std::max(0.0, variance(products, seen) - gain * (2.0 * covariance - gain * own));
 }

@@ -4,7 +4,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "tests/detector/evidence/remembered_view.hpp"
+#include "tests/detector/evidence/template_view.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream {
@@ -29,7 +29,7 @@ Forest alike(std::size_t classes) {
     object.class_id = static_cast<int>(i) + 1;
     object.name = std::string(1, static_cast<char>('a' + i));
     object.radius = 0.08F;
-    forest.views.push_back(toy::remembered_view());
+    forest.views.push_back(toy::template_view());
     forest.views.back().class_index = static_cast<std::uint32_t>(i);
   }
   return forest;
@@ -37,7 +37,7 @@ Forest alike(std::size_t classes) {
 
 /// What is found where the toy's view stands, by a hypothesis of each class.
 std::vector<ScoredHypothesis> weighed(const Forest& forest, const RgbdFrame& frame,
-                                      const std::vector<ChromaPair>& remembered = {}) {
+                                      const std::vector<ChromaPair>& reference = {}) {
   const ForestIndex index(forest);
   const LabFrame in_lab = toy::lab_frame(frame, frame.colour, 1.0F);
   std::vector<Hypothesis> hypotheses(forest.classes.size());
@@ -49,7 +49,7 @@ std::vector<ScoredHypothesis> weighed(const Forest& forest, const RgbdFrame& fra
     hypotheses[i].views = {{static_cast<std::uint32_t>(i), 1.0F}};
   }
   ScoringWorkspace workspace;
-  return weigh_in_camera_colours({index, in_lab, {}, {}, {}}, remembered, hypotheses, 2, workspace);
+  return weigh_in_camera_colours({index, in_lab, {}, {}, {}}, reference, hypotheses, 2, workspace);
 }
 
 std::vector<ChromaPair> seen_with_cast(double a, double b) {

@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/stages.hpp"
-#include "tests/detector/evidence/remembered_view.hpp"
+#include "tests/detector/evidence/template_view.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream {
@@ -72,7 +72,7 @@ ViewTemplate middle_part() {
   const cv::Rect part(box.x + box.width / 4, box.y + box.height / 4, box.width / 2, box.height / 2);
   cv::Mat mask = cv::Mat::zeros(whole.mask.size(), CV_8U);
   whole.mask(part).copyTo(mask(part));
-  ViewTemplate view = toy::remembered_view();
+  ViewTemplate view = toy::template_view();
   for (float& side : view.box) side *= 0.5F;
   view.R_ray_object = Eigen::AngleAxisf(1.0F, Eigen::Vector3f::UnitX());
   view.appearance = make_template_grid(whole.frame, mask, part, {0.0F, 0.0F, toy::kDistance});
@@ -83,7 +83,7 @@ ViewTemplate middle_part() {
 Evidence evidence_among(std::size_t views, const RgbdFrame& frame) {
   Forest forest;
   forest.classes.emplace_back().radius = 0.08F;
-  forest.views = {toy::remembered_view(), middle_part()};
+  forest.views = {toy::template_view(), middle_part()};
   forest.views.resize(views);
   std::vector<std::uint32_t> without_appearance(views - 2);
   std::iota(without_appearance.begin(), without_appearance.end(), 2U);

@@ -3,14 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/types/detection.hpp"
-#include "tests/detector/evidence/remembered_view.hpp"
+#include "tests/detector/evidence/template_view.hpp"
 
 namespace houghstream {
 namespace {
 
 TEST(ViewAlignment, AVoteBesideTheCentreFindsItsWayBack) {
   const TrainingView seen = toy::training_views().front();
-  const ViewTemplate view = toy::remembered_view();
+  const ViewTemplate view = toy::template_view();
   const LabFrame frame = toy::lab_frame(seen.frame, seen.frame.colour, 1.0F);
   const cv::Rect2f truth(cv::boundingRect(seen.mask));
   const float cell = (view.box[2] - view.box[0]) / TemplateGrid::kBoxSide;
@@ -28,7 +28,7 @@ TEST(ViewAlignment, AVoteBesideTheCentreFindsItsWayBack) {
 
 TEST(ViewAlignment, WhereNothingIsBetterNothingMoves) {
   const TrainingView seen = toy::training_views().front();
-  const ViewTemplate view = toy::remembered_view();
+  const ViewTemplate view = toy::template_view();
   const LabFrame frame = toy::lab_frame(seen.frame, seen.frame.colour, 1.0F);
   const Eigen::Vector3f outside(3.0F, 0.0F, toy::kDistance);
   const PlacedTemplate nothing = {0, outside, match_template(view, outside, frame)};
@@ -41,7 +41,7 @@ TEST(ViewAlignment, WhereNothingIsBetterNothingMoves) {
 TEST(ViewAlignment, TheViewThatAgreesBestOnceAlignedIsTaken) {
   const TrainingView seen = toy::training_views().front();
   const LabFrame frame = toy::lab_frame(seen.frame, seen.frame.colour, 1.0F);
-  const ViewTemplate right = toy::remembered_view();
+  const ViewTemplate right = toy::template_view();
   const float cell = (right.box[2] - right.box[0]) / TemplateGrid::kBoxSide;
   const Eigen::Vector3f beside(cell, 0.0F, toy::kDistance);
   ViewTemplate wrong = right;
@@ -62,7 +62,7 @@ TEST(ViewAlignment, TheViewThatAgreesBestOnceAlignedIsTaken) {
 TEST(ViewAlignment, AnObjectOfAnotherSizeAgreesBetterInThatSize) {
   const TrainingView seen = toy::training_views().front();
   const LabFrame frame = toy::lab_frame(seen.frame, seen.frame.colour, 1.0F);
-  const ViewTemplate right = toy::remembered_view();
+  const ViewTemplate right = toy::template_view();
   const Eigen::Vector3f centre(0.0F, 0.0F, toy::kDistance);
   const auto gain = [&](const ViewTemplate& view) {
     return alternative_scale_gain(view, {0, centre, match_template(view, centre, frame)}, frame);

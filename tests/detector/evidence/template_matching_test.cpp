@@ -7,7 +7,7 @@
 
 #include "pipeline/base/random.hpp"
 #include "pipeline/types/detection.hpp"
-#include "tests/detector/evidence/remembered_view.hpp"
+#include "tests/detector/evidence/template_view.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream {
@@ -17,7 +17,7 @@ using toy::kDistance;
 const Eigen::Vector3f kCentre(0.0F, 0.0F, kDistance);
 
 TemplateMatch fit(const RgbdFrame& frame, const Eigen::Vector3f& centre = kCentre) {
-  return match_template(toy::remembered_view(), centre, toy::lab_frame(frame, frame.colour, 1.0F));
+  return match_template(toy::template_view(), centre, toy::lab_frame(frame, frame.colour, 1.0F));
 }
 
 RgbdFrame tile_frame() {
@@ -121,7 +121,7 @@ TEST(TemplateMatch, ALargerThingGoesOnBesideTheOutlineAndComesNearerThere) {
 }
 
 BoundaryContinuation outline_of(const RgbdFrame& frame, const Eigen::Vector3f& centre = kCentre) {
-  return measure_boundary_continuation(toy::remembered_view(), centre, toy::lab_frame(frame, frame.colour, 1.0F));
+  return measure_boundary_continuation(toy::template_view(), centre, toy::lab_frame(frame, frame.colour, 1.0F));
 }
 
 /// What lies around the tile, `behind` metres behind its edges and painted in `colour`.
@@ -151,7 +151,7 @@ TEST(TemplateMatch, APartOfALargerThingDoesNotEndAtTheOutline) {
   wall.depth.setTo(kDistance);
   wall.colour.setTo(cv::Scalar(90, 120, 150));
   const cv::Mat mask = toy::training_views().front().mask;
-  ViewTemplate window = toy::remembered_view();
+  ViewTemplate window = toy::template_view();
   window.appearance = make_template_grid(wall, mask, cv::boundingRect(mask), kCentre);
   const auto outline = [&] {
     return measure_boundary_continuation(window, kCentre, toy::lab_frame(wall, wall.colour, 1.0F));
@@ -181,12 +181,12 @@ TEST(TemplateMatch, WhatHidesTheOutlineHasNoSayInWhereTheObjectEnds) {
 TEST(TemplateMatch, AViewMayBeTakenForOneOfALargerObject) {
   const RgbdFrame frame = tile_frame();
   const LabFrame lab = toy::lab_frame(frame, frame.colour, 1.0F);
-  const TemplateMatch own = match_template(toy::remembered_view(), kCentre, lab);
-  const TemplateMatch resized = match_template(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab, 2.0F);
+  const TemplateMatch own = match_template(toy::template_view(), kCentre, lab);
+  const TemplateMatch resized = match_template(toy::resized(toy::template_view(), 0.5F), kCentre, lab, 2.0F);
   EXPECT_NEAR(resized.visible_fraction, own.visible_fraction, 0.01F);
   EXPECT_NEAR(resized.colour_correlation, own.colour_correlation, 0.01F);
   EXPECT_GT(box_iou(resized.visible_box_px, own.visible_box_px), 0.99F);
-  EXPECT_LT(match_template(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab).colour_correlation,
+  EXPECT_LT(match_template(toy::resized(toy::template_view(), 0.5F), kCentre, lab).colour_correlation,
             own.colour_correlation - 0.1F);
 }
 

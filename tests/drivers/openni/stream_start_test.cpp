@@ -19,7 +19,7 @@ std::vector<ImageThumbnail> seen(int count) {
     image.number = i;
     image.image = cv::Mat(48, 64, CV_8UC3);
     random.fill(image.image, cv::RNG::UNIFORM, 100, 130);
-    images.push_back(remember(image));
+    images.push_back(make_thumbnail(image));
   }
   return images;
 }

@@ -12,7 +12,7 @@ namespace houghstream::toy {
 inline constexpr float kDistance = 0.7F;
 
 /// The first toy view (stripes on a relief) as a forest remembers it.
-inline ViewTemplate remembered_view() {
+inline ViewTemplate template_view() {
   const TrainingView view = training_views().front();
   const cv::Rect box = cv::boundingRect(view.mask);
   const double metres = view.frame.camera.metres_per_px(kDistance);
