@@ -236,9 +236,9 @@ float common_shift(const Comparison& comparison) {
     const float e = comparison.excess[i];
     const bool within = std::abs(e) < kReach;
     const float position = within ? (e + kReach) * (kClasses / (2.0F * kReach)) : 0.0F;
-    const int own = within ? std::min(static_cast<int>(position), kClasses - 1) : kClasses;
-    classes[i] = static_cast<std::uint8_t>(own);
-    ++counts[static_cast<std::size_t>(own)];
+    const int bin = within ? std::min(static_cast<int>(position), kClasses - 1) : kClasses;
+    classes[i] = static_cast<std::uint8_t>(bin);
+    ++counts[static_cast<std::size_t>(bin)];
   }
   const std::size_t total = cells - counts[kClasses];
   if (total == 0) return 0.0F;

@@ -43,8 +43,8 @@ struct Line {
 
   OutlineCells::Cell cell(int i) const {
     const auto along = static_cast<std::uint8_t>(i);
-    const auto own = static_cast<std::uint8_t>(number);
-    return is_row ? OutlineCells::Cell{own, along} : OutlineCells::Cell{along, own};
+    const auto position = static_cast<std::uint8_t>(number);
+    return is_row ? OutlineCells::Cell{position, along} : OutlineCells::Cell{along, position};
   }
   /// As TemplateGrid::mm; beside the object where there is no such cell.
   std::int16_t mm(const TemplateGrid& appearance, int i) const {

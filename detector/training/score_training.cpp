@@ -76,8 +76,8 @@ ScoreExamples joined(const std::vector<ScoreExamples>& by_frame) {
   ScoreExamples by_class;
   for (const ScoreExamples& part : by_frame) {
     for (const auto& [class_id, examples] : part) {
-      std::vector<ScoreExample>& own = by_class[class_id];
-      own.insert(own.end(), examples.begin(), examples.end());
+      std::vector<ScoreExample>& class_examples = by_class[class_id];
+      class_examples.insert(class_examples.end(), examples.begin(), examples.end());
     }
   }
   return by_class;
@@ -172,15 +172,15 @@ void calibrate_scores(const std::vector<ScoreExamples>& by_frame, const std::set
   std::map<int, OddsExamples> by_class;
   for (const ObjectClass& object : forest.classes) {
     if (class_ids.count(object.class_id) == 0) continue;
-    OddsExamples& own = by_class[object.class_id];
-    own = odds_examples(object.score_model, examples[object.class_id]);
-    all.insert(all.end(), own.begin(), own.end());
+    OddsExamples& class_examples = by_class[object.class_id];
+    class_examples = odds_examples(object.score_model, examples[object.class_id]);
+    all.insert(all.end(), class_examples.begin(), class_examples.end());
   }
   const OddsScale common = fit_scale(all, OddsScale(1.0, 0.0));
   log_debug("log odds among strangers, {} examples: {:.2f} times, {:+.2f}", all.size(), common[0], common[1]);
   for (ObjectClass& object : forest.classes) {
-    const auto own = by_class.find(object.class_id);
-    if (own != by_class.end()) scale_odds(fit_scale(own->second, common), object.score_model);
+    const auto class_examples = by_class.find(object.class_id);
+    if (class_examples != by_class.end()) scale_odds(fit_scale(class_examples->second, common), object.score_model);
   }
 }
 

@@ -169,9 +169,10 @@ std::vector<Hypothesis> find_hypotheses(const VotingInput& input, int threads, V
   });
   std::vector<Hypothesis> all;
   std::size_t count = 0;
-  for (const std::vector<Hypothesis>& own : by_class) count += own.size();
+  for (const std::vector<Hypothesis>& class_list : by_class) count += class_list.size();
   all.reserve(count);
-  for (std::vector<Hypothesis>& own : by_class) std::move(own.begin(), own.end(), std::back_inserter(all));
+  for (std::vector<Hypothesis>& class_list : by_class)
+    std::move(class_list.begin(), class_list.end(), std::back_inserter(all));
   return all;
 }
 

@@ -48,9 +48,9 @@ void OpenniRecording::start() {
 }
 
 void OpenniRecording::note(const SensorImage& image) {
-  std::vector<ImageThumbnail>& own = live_.of(image.sensor);
+  std::vector<ImageThumbnail>& thumbnails = live_.of(image.sensor);
   const bool may_be_recorded = started() && image.host_us >= started_us_;
-  if (may_be_recorded && own.size() < kMaxThumbnails) own.push_back(make_thumbnail(image));
+  if (may_be_recorded && thumbnails.size() < kMaxThumbnails) thumbnails.push_back(make_thumbnail(image));
 }
 
 void OpenniRecording::mend_times(const FirstImages& recorded) {

@@ -146,9 +146,9 @@ const image_metadata_t* find_metadata(const images_t& message, const std::string
 }
 
 Camera camera_or(const images_t& message, const std::optional<Camera>& fallback_camera) {
-  const std::optional<Camera> own = read_camera_metadata(message);
-  require(own || fallback_camera, "no camera in its metadata; give --camera WIDTHxHEIGHT,fx,fy,cx,cy");
-  return own ? *own : *fallback_camera;
+  const std::optional<Camera> from_metadata = read_camera_metadata(message);
+  require(from_metadata || fallback_camera, "no camera in its metadata; give --camera WIDTHxHEIGHT,fx,fy,cx,cy");
+  return from_metadata ? *from_metadata : *fallback_camera;
 }
 
 std::vector<StageTime> stages_of(const images_t& message) {

@@ -61,11 +61,12 @@ Moments surface_moments(const Mesh& mesh) {
     const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>();
     const Eigen::Vector3d b = mesh.vertices[t[1]].cast<double>();
     const Eigen::Vector3d c = mesh.vertices[t[2]].cast<double>();
-    const double own = 0.5 * (b - a).cross(c - a).norm();
+    const double triangle_area = 0.5 * (b - a).cross(c - a).norm();
     const Eigen::Vector3d sum = a + b + c;
-    area += own;
-    first += own / 3.0 * sum;
-    second += own / 12.0 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+    area += triangle_area;
+    first += triangle_area / 3.0 * sum;
+    second +=
+        triangle_area / 12.0 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
   }
   require(area > 0.0, "mesh of {} triangles with surface area 0, expected a surface", mesh.triangles.size());
   Moments out;

@@ -27,10 +27,10 @@ double variance(const ColourProducts& products, Eigen::Index channel) {
 
 /// Mean square that is left over of a channel's seen values by least squares on the remembered ones.
 double chroma_left_over(const ColourProducts& products, Eigen::Index template_value, Eigen::Index seen) {
-  const double own = variance(products, template_value);
+  const double model_variance = variance(products, template_value);
   const double covariance = products(template_value, seen) - products(template_value, kOne) * products(seen, kOne);
-  const double gain = std::clamp(covariance / std::max(own, 1e-3), kMinGain, kMaxGain);
-  return std::max(0.0, variance(products, seen) - gain * (2.0 * covariance - gain * own));
+  const double gain = std::clamp(covariance / std::max(model_variance, 1e-3), kMinGain, kMaxGain);
+  return std::max(0.0, variance(products, seen) - gain * (2.0 * covariance - gain * model_variance));
 }
 
 /// The same for lightness on the remembered one and the surface's normal.
@@ -85,7 +85,8 @@ ColourComparison compare(const SummedColours& sums) {
   const ColourProducts products = sums.compared.means();
   const double seen =
       weighted(variance(products, kObservedLightness), variance(products, kObservedA), variance(products, kObservedB));
-  const double own = weighted(variance(products, kLightness), variance(products, kA), variance(products, kB));
+  const double model_variance =
+      weighted(variance(products, kLightness), variance(products, kA), variance(products, kB));
   const double left = weighted(lightness_left_over(products), chroma_left_over(products, kA, kObservedA),
                                chroma_left_over(products, kB, kObservedB));
   ColourComparison comparison;
@@ -97,7 +98,7 @@ ColourComparison compare(const SummedColours& sums) {
   comparison.chroma_difference = chroma_difference(comparison.chroma, kAsTaught);
   comparison.clipped = sums.clipped.count();
   comparison.observed_contrast = static_cast<float>(std::sqrt(std::max(0.0, seen)));
-  comparison.model_contrast = static_cast<float>(std::sqrt(std::max(0.0, own)));
+  comparison.model_contrast = static_cast<float>(std::sqrt(std::max(0.0, model_variance)));
   return comparison;
 }
 

@@ -42,18 +42,20 @@ constexpr double kCommonStiffness = 5.0;  // of the numbers in use: nor do those
 
 std::map<std::string, QualitySettings> fit_each(const ExamplesByName& examples) {
   std::vector<QualityExample> all;
-  for (const auto& [name, own] : examples) all.insert(all.end(), own.begin(), own.end());
+  for (const auto& [name, class_examples] : examples)
+    all.insert(all.end(), class_examples.begin(), class_examples.end());
   const QualitySettings common = fit_quality_settings(all, QualitySettings{}, kCommonStiffness);
   std::map<std::string, QualitySettings> fitted;
-  for (const auto& [name, own] : examples) fitted[name] = fit_quality_settings(own, common, kPriorPrecision);
+  for (const auto& [name, class_examples] : examples)
+    fitted[name] = fit_quality_settings(class_examples, common, kPriorPrecision);
   return fitted;
 }
 
 ExamplesByName of_half(int half, const ExamplesByName& examples) {
   ExamplesByName out;
-  for (const auto& [name, own] : examples) {
+  for (const auto& [name, class_examples] : examples) {
     std::vector<QualityExample>& here = out[name];
-    std::copy_if(own.begin(), own.end(), std::back_inserter(here),
+    std::copy_if(class_examples.begin(), class_examples.end(), std::back_inserter(here),
                  [half](const QualityExample& example) { return example.half == half; });
   }
   return out;
@@ -64,8 +66,8 @@ std::map<std::string, std::vector<PresenceExample>> presence_examples(const Exam
   std::map<std::string, std::vector<PresenceExample>> out;
   for (const int half : {0, 1}) {
     const std::map<std::string, QualitySettings> fitted = fit_each(of_half(1 - half, examples));
-    for (const auto& [name, own] : of_half(half, examples)) {
-      for (const QualityExample& example : own)
+    for (const auto& [name, class_examples] : of_half(half, examples)) {
+      for (const QualityExample& example : class_examples)
         out[name].push_back({example.score, shape_quality(example.terms, fitted.at(name)), example.is_present});
     }
   }
@@ -114,14 +116,17 @@ std::map<std::string, QualitySettings> learn_qualities(const ExamplesByName& exa
   std::map<std::string, QualitySettings> learnt = fit_each(examples);
   const std::map<std::string, std::vector<PresenceExample>> presence = presence_examples(examples);
   std::vector<PresenceExample> all;
-  for (const auto& [name, own] : presence) all.insert(all.end(), own.begin(), own.end());
+  for (const auto& [name, class_examples] : presence)
+    all.insert(all.end(), class_examples.begin(), class_examples.end());
   const PresenceSettings common = fit_presence(all, PresenceSettings{}, 1.0);
-  for (const auto& [name, own] : presence) learnt.at(name).presence = fit_presence(own, common, kPriorPrecision);
+  for (const auto& [name, class_examples] : presence)
+    learnt.at(name).presence = fit_presence(class_examples, common, kPriorPrecision);
   std::vector<QualityExample> posed;
-  for (const auto& [name, own] : examples) posed.insert(posed.end(), own.begin(), own.end());
+  for (const auto& [name, class_examples] : examples)
+    posed.insert(posed.end(), class_examples.begin(), class_examples.end());
   const PrintSettings common_print = fit_print_settings(posed, PrintSettings{}, kCommonStiffness);
-  for (const auto& [name, own] : examples)
-    learnt.at(name).print = fit_print_settings(own, common_print, kPriorPrecision);
+  for (const auto& [name, class_examples] : examples)
+    learnt.at(name).print = fit_print_settings(class_examples, common_print, kPriorPrecision);
   return learnt;
 }
 

@@ -50,7 +50,7 @@ double correlation(const std::vector<LabColour>& a, const std::vector<LabColour>
 
 std::optional<PoseEvidence> evidence_with_swapped_texture(const ObjectObservation& seen,
                                                           const Eigen::Isometry3d& T_camera_object,
-                                                          const PoseEvidence& own,
+                                                          const PoseEvidence& original,
                                                           const VerificationSettings& settings) {
   constexpr double kMaxTextureCorrelation = 0.5;
   const ProjectedView look = project_view(seen.frame, seen.model, T_camera_object, settings.points);
@@ -59,7 +59,7 @@ std::optional<PoseEvidence> evidence_with_swapped_texture(const ObjectObservatio
   if (correlation(look.view.colours, view.colours) > kMaxTextureCorrelation) return std::nullopt;
   const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
   const ProjectedView other{view, look.T, look.depth, look.points};
-  PoseEvidence evidence = own;
+  PoseEvidence evidence = original;
   evidence.colour = compare_texture(seen, other, tolerance);
   if (!evidence.colour) return std::nullopt;
   return evidence;

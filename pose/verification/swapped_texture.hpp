@@ -11,7 +11,7 @@ namespace houghstream {
 /// has no colours.
 std::optional<PoseEvidence> evidence_with_swapped_texture(const ObjectObservation& seen,
                                                           const Eigen::Isometry3d& T_camera_object,
-                                                          const PoseEvidence& own,
+                                                          const PoseEvidence& original,
                                                           const VerificationSettings& settings);
 
 }  // namespace houghstream

@@ -28,10 +28,11 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     hush_log();  // the bus would warn of small buffers itself
     std::error_code unknown;
-    const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
-    settings.programs = own;
-    settings.types_jar = own / "houghstream_types.jar";
-    if (!std::filesystem::exists(settings.types_jar)) settings.types_jar = own / "../share/java/houghstream_types.jar";
+    const std::filesystem::path program_folder = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
+    settings.programs = program_folder;
+    settings.types_jar = program_folder / "houghstream_types.jar";
+    if (!std::filesystem::exists(settings.types_jar))
+      settings.types_jar = program_folder / "../share/java/houghstream_types.jar";
     const Findings findings = examine(this_machine(), settings);
     fmt::print("{}", to_text(findings));
     std::fflush(stdout);

@@ -115,12 +115,12 @@ std::vector<fs::path> folders_with_programs(const Machine& machine) {
 }
 
 Finding check_programs(const Machine& machine, const fs::path& programs) {
-  const fs::path own = resolved(programs);
+  const fs::path program_folder = resolved(programs);
   const std::vector<fs::path> folders = folders_with_programs(machine);
   const auto other =
-      std::find_if(folders.begin(), folders.end(), [&](const fs::path& folder) { return folder != own; });
+      std::find_if(folders.begin(), folders.end(), [&](const fs::path& folder) { return folder != program_folder; });
   if (other == folders.end())
-    return ok("programs", fmt::format("those in {}, no others on $PATH", shown(machine, own)));
+    return ok("programs", fmt::format("those in {}, no others on $PATH", shown(machine, program_folder)));
   const std::string place = shown(machine, *other);
   return note("programs",
               fmt::format("others in {}{}: processes of two versions need not understand each other", place,

@@ -26,8 +26,8 @@ std::string stem_of(const fs::path& file) {
 
 std::optional<fs::path> find_openni(const Machine& machine) {
   std::vector<std::string> folders;
-  std::istringstream own(machine.environment("LD_LIBRARY_PATH"));
-  for (std::string folder; std::getline(own, folder, ':');) {
+  std::istringstream library_path(machine.environment("LD_LIBRARY_PATH"));
+  for (std::string folder; std::getline(library_path, folder, ':');) {
     if (!folder.empty() && folder.front() == '/') folders.push_back(folder.substr(1));
   }
   for (const char* folder : {"usr/local/lib", "usr/lib/x86_64-linux-gnu", "usr/lib/aarch64-linux-gnu", "usr/lib"}) {

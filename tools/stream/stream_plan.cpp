@@ -74,9 +74,9 @@ void add_number(const std::string& option, const std::optional<double>& value, W
 std::vector<ChildPlan> plan_captures(const StreamOptions& options, const std::vector<NamedSource>& sources) {
   std::vector<ChildPlan> plans;
   for (const NamedSource& each : sources) {
-    StreamOptions own = options;
-    own.channel = each.channel;
-    plans.push_back(plan(own, "capture", {"--source", each.source}, options.capture_options));
+    StreamOptions camera_options = options;
+    camera_options.channel = each.channel;
+    plans.push_back(plan(camera_options, "capture", {"--source", each.source}, options.capture_options));
     if (sources.size() > 1) plans.back().name += " " + each.channel;
     plans.back().ends_stream = true;
     plans.back().is_started_last = true;

@@ -97,8 +97,8 @@ CameraRandomisation sample_camera(double strength, Random& random) {
 
 void randomise_camera(double fraction, double strength, RgbdFrame& frame, Random& random) {
   if (fraction <= 0.0 || strength <= 0.0 || random.uniform() >= fraction) return;
-  const double own = random.uniform();  // most cameras differ little
-  const CameraRandomisation camera = sample_camera(strength * own, random);
+  const double amount = random.uniform();  // most cameras differ little
+  const CameraRandomisation camera = sample_camera(strength * amount, random);
   apply_depth(camera, frame.camera, frame.depth, random, frame.colour);
   apply_colour(camera, frame.colour, random);
 }

@@ -119,8 +119,9 @@ DepthChange depth_change(const TrainingView& view, double distance, const Compos
   change.centre_px = out.origin_px + out.scale * cv::Point2d(view_px.x(), view_px.y());
   const cv::Point2d& px = change.centre_px;
   const OffAxisSlope there = off_axis_slope(out.frame.camera.backproject(px.x, px.y, distance).cast<float>());
-  const OffAxisSlope own = off_axis_slope(centre.cast<float>());
-  change.tilt = out.frame.camera.metres_per_px(distance) * cv::Point2d(there.right - own.right, there.down - own.down);
+  const OffAxisSlope slope = off_axis_slope(centre.cast<float>());
+  change.tilt =
+      out.frame.camera.metres_per_px(distance) * cv::Point2d(there.right - slope.right, there.down - slope.down);
   const double extra_sq = std::pow(axial_noise(distance), 2) - std::pow(axial_noise(centre.z()), 2);
   change.extra_sigma = std::sqrt(std::max(0.0, extra_sq));
   return change;

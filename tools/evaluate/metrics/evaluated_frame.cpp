@@ -14,9 +14,9 @@ namespace {
 void check_classes(const FrameResults& results, const std::string& where) {
   std::set<std::string> earlier;
   for (const FrameResult& result : results.results()) {
-    std::set<std::string> own;
-    for (const Detection& detection : result.detections.detections) own.insert(detection.class_name);
-    for (const std::string& name : own) {
+    std::set<std::string> class_names;
+    for (const Detection& detection : result.detections.detections) class_names.insert(detection.class_name);
+    for (const std::string& name : class_names) {
       require(earlier.insert(name).second,
               "{}: two results hold '{}', expected detectors of different objects, or one run", where, name);
     }

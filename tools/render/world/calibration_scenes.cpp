@@ -85,15 +85,15 @@ int draw_calibrated(const std::vector<CalibrationSceneObject>& objects, Random& 
 }  // namespace
 
 World CalibrationScenes::make_furnished_world(int room) const {
-  const std::uint64_t own =
+  const std::uint64_t scene_seed =
       aspect_seed(world_seed(DatasetSplit::kTraining, kFirstRoom + static_cast<std::uint64_t>(room)), seed_);
   World world;
-  Room walls = make_room(static_cast<RoomStyle>(room % kRoomStyles), aspect_seed(own, 1));
+  Room walls = make_room(static_cast<RoomStyle>(room % kRoomStyles), aspect_seed(scene_seed, 1));
   world.items = std::move(walls.items);
-  set_lighting(world, room % 3 == 2 ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, 2));
-  Random lens(aspect_seed(own, 4));
+  set_lighting(world, room % 3 == 2 ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(scene_seed, 2));
+  Random lens(aspect_seed(scene_seed, 4));
   world.camera = draw_camera(lens);
-  TableSetter setter(world, walls.table_half, aspect_seed(own, 3));
+  TableSetter setter(world, walls.table_half, aspect_seed(scene_seed, 3));
   Random& random = setter.random();
   const double reach = random.uniform(0.35, 0.8);  // near together they hide one another
   const Eigen::AlignedBox2d middle = setter.region(-reach, reach, -reach, 0.8 * reach);
@@ -103,7 +103,7 @@ World CalibrationScenes::make_furnished_world(int room) const {
   for (int i = 0; i < count; ++i) {
     const CalibrationSceneObject& object = objects_[static_cast<std::size_t>(first + i) % objects_.size()];
     const AssetPtr painted = object.has_colour ? object.thing : plainly_painted(*object.thing, random);
-    Random shape(aspect_seed(own, 50U + static_cast<std::uint64_t>(i)));
+    Random shape(aspect_seed(scene_seed, 50U + static_cast<std::uint64_t>(i)));
     setter.put(put_down(object, make_instance_variant(*painted, shape), object.id, random), middle);
   }
   const int max_look_alikes = std::min(kMaxLookAlikes, (count + 1) / 2);  // such as they are, they are the fewer ones
@@ -113,8 +113,8 @@ World CalibrationScenes::make_furnished_world(int room) const {
   }
   for (int i = random.between(3, kMaxDistractors); i > 0; --i) {
     const int kind = random.below(kDistractorKinds);
-    setter.stand(make_distractor(kind, aspect_seed(own, 100U + static_cast<std::uint64_t>(i)), kTaughtColours), all,
-                 M_PI, 0);
+    setter.stand(make_distractor(kind, aspect_seed(scene_seed, 100U + static_cast<std::uint64_t>(i)), kTaughtColours),
+                 all, M_PI, 0);
   }
   return world;
 }
@@ -124,9 +124,9 @@ std::array<RenderedFrame, CalibrationScenes::kFramesPerScene> CalibrationScenes:
   std::array<RenderedFrame, kFramesPerScene> frames;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::uint64_t index = frames.size() * static_cast<std::uint64_t>(room) + i;
-    const std::uint64_t own = aspect_seed(world_seed(DatasetSplit::kTraining, seed_), kFirstRoom + index);
-    Random random(own);
-    frames[i] = render_frame(lit_world, draw_viewpoint(lit_world.world, random), aspect_seed(own, 1));
+    const std::uint64_t scene_seed = aspect_seed(world_seed(DatasetSplit::kTraining, seed_), kFirstRoom + index);
+    Random random(scene_seed);
+    frames[i] = render_frame(lit_world, draw_viewpoint(lit_world.world, random), aspect_seed(scene_seed, 1));
   }
   return frames;
 }

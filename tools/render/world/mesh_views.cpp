@@ -197,10 +197,10 @@ void MeshViews::add_any_views() {
 
 TrainingView MeshViews::render(int index) const {
   const ViewPose& pose = poses_.at(static_cast<std::size_t>(index));
-  const std::uint64_t own = aspect_seed(seed_, 500U + static_cast<std::uint64_t>(index));
-  Random random(aspect_seed(own, 2));
+  const std::uint64_t view_seed = aspect_seed(seed_, 500U + static_cast<std::uint64_t>(index));
+  Random random(aspect_seed(view_seed, 2));
   World world;
-  set_lighting(world, chance(random, 0.25) ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, 3));
+  set_lighting(world, chance(random, 0.25) ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(view_seed, 3));
   world.focus_radius_m = std::max(0.3, 1.5 * radius_);
   PlacedAsset object{settings_.has_colour ? thing_ : plainly_painted(*thing_, random), Eigen::Isometry3d::Identity(), 1,
                      true};
@@ -224,9 +224,9 @@ TrainingView MeshViews::render(int index) const {
 
   TrainingView view;
   view.frame.camera = camera;
-  view.frame.colour = simulate_colour_camera(seen.radiance, world.photo, aspect_seed(own, 4));
+  view.frame.colour = simulate_colour_camera(seen.radiance, world.photo, aspect_seed(view_seed, 4));
   view.frame.depth = measure_depth({seen.geometry.depth, seen.cos_incidence, seen.reflectance, seen.specular}, camera,
-                                   DepthSensorSettings{}, aspect_seed(own, 5));
+                                   DepthSensorSettings{}, aspect_seed(view_seed, 5));
   view.mask = seen.geometry.id == 1;
   view.T_camera_object = T_camera_world * object.T_world_object;
   return view;

@@ -39,8 +39,8 @@ void add_distractors(TableSetter& setter, RoomStyle style, const Clutter& clutte
   for (int i = 0; i < clutter.distractors; ++i) {
     int kind = setter.random().below(kDistractorKinds);
     if (kind == kMonitor && style != RoomStyle::kDesk) kind = kBook;
-    const std::uint64_t own = aspect_seed(seed, kFirstDistractor + static_cast<std::uint64_t>(i));
-    const AssetPtr thing = make_distractor(kind, own, clutter.taught_colours);
+    const std::uint64_t derived_seed = aspect_seed(seed, kFirstDistractor + static_cast<std::uint64_t>(i));
+    const AssetPtr thing = make_distractor(kind, derived_seed, clutter.taught_colours);
     // Large things stand at the back, as people put them.
     const bool large = kind == kMonitor || thing->mesh.vertices.empty() || thing->name == "lamp";
     const double front = large ? 0.3 : -0.98;
@@ -269,9 +269,10 @@ Scene make_named_scene(const std::string& name) {
 }
 
 Scene make_background_scene(int index, std::uint64_t seed) {
-  const std::uint64_t own = world_seed(DatasetSplit::kTraining, seed * 100000U + static_cast<std::uint64_t>(index));
+  const std::uint64_t derived_seed =
+      world_seed(DatasetSplit::kTraining, seed * 100000U + static_cast<std::uint64_t>(index));
   const auto style = static_cast<RoomStyle>(index % kRoomStyles);
-  return make_scene("background", style, {false, 0, 0, 16, kNone}, TimeOfDay::kDay, own);
+  return make_scene("background", style, {false, 0, 0, 16, kNone}, TimeOfDay::kDay, derived_seed);
 }
 
 }  // namespace houghstream::world

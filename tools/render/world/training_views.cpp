@@ -36,12 +36,12 @@ TurntableWorld::TurntableWorld(const TurntableSettings& settings, std::uint64_t 
   require(different.size() == settings.attitudes.size(), "turntable: an attitude is named twice, expected each once");
   for (int pitch = 0; pitch < settings.pitches; ++pitch) {
     const auto number = seed * 100000U + kFirstViewRoom + static_cast<std::uint64_t>(pitch);
-    const std::uint64_t own = world_seed(DatasetSplit::kTraining, number);
+    const std::uint64_t scene_seed = world_seed(DatasetSplit::kTraining, number);
     World world;
-    world.items = make_room(static_cast<RoomStyle>(pitch % kRoomStyles), aspect_seed(own, 1)).items;
-    set_lighting(world, TimeOfDay::kDay, aspect_seed(own, 2));
+    world.items = make_room(static_cast<RoomStyle>(pitch % kRoomStyles), aspect_seed(scene_seed, 1)).items;
+    set_lighting(world, TimeOfDay::kDay, aspect_seed(scene_seed, 2));
     world.focus_radius_m = 0.5;
-    Random random(aspect_seed(own, 3));
+    Random random(aspect_seed(scene_seed, 3));
     PlacedAsset disc{make_turntable_disc(random), Eigen::Isometry3d::Identity(), 0, true};
     disc.T_world_object.translate(Eigen::Vector3d(0, 0, 0.5 * kTopM));
     world.items.push_back(disc);

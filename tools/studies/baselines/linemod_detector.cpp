@@ -52,15 +52,15 @@ std::vector<Detection> select_detections(const std::vector<LinemodMatch>& matche
   std::map<int, std::vector<cv::Rect2f>> boxes;  // by class id
   for (const LinemodMatch& match : matches) {
     if (match.similarity < selection.match_threshold) break;
-    std::vector<cv::Rect2f>& own = boxes[match.shape->class_id];
-    if (static_cast<int>(own.size()) >= selection.max_per_class) continue;
+    std::vector<cv::Rect2f>& class_boxes = boxes[match.shape->class_id];
+    if (static_cast<int>(class_boxes.size()) >= selection.max_per_class) continue;
     const cv::Rect seen = (match.shape->box_px + match.at_px) & inside;
     if (seen.empty()) continue;
     const cv::Rect2f box(seen);
     const auto repeats = [&](const cv::Rect2f& other) { return box_iou(box, other) > selection.max_overlap; };
-    if (std::any_of(own.begin(), own.end(), repeats)) continue;
+    if (std::any_of(class_boxes.begin(), class_boxes.end(), repeats)) continue;
     if (selection.check_depth && !depth_agrees(match, frame.depth, selection.depth_tolerance)) continue;
-    own.push_back(box);
+    class_boxes.push_back(box);
     kept.push_back(to_detection(match, seen, frame.camera));
   }
   return kept;

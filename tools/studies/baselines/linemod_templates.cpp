@@ -154,8 +154,8 @@ std::vector<LinemodMatch> LinemodTemplates::match(const RgbdFrame& frame, float 
   const std::vector<cv::Mat> images = linemod_images(frame, largest);
   std::vector<std::vector<LinemodMatch>> parts(shares_.size());
   parallel_for(static_cast<int>(shares_.size()), static_cast<int>(shares_.size()), [&](int s) {
-    const auto own = static_cast<std::size_t>(s);
-    parts[own] = shares_[own].match(images, threshold);
+    const auto index = static_cast<std::size_t>(s);
+    parts[index] = shares_[index].match(images, threshold);
   });
   std::vector<LinemodMatch> all;
   for (const std::vector<LinemodMatch>& part : parts) all.insert(all.end(), part.begin(), part.end());

@@ -140,10 +140,10 @@ std::map<std::string, std::vector<QualityExample>> quality_examples(const qualit
                                                                     const std::map<std::string, PoseModel>& models) {
   std::map<std::string, std::vector<QualityExample>> by_name;
   for (const auto& [name, model] : models) {
-    std::vector<QualityExample>& own = by_name[name];
+    std::vector<QualityExample>& class_examples = by_name[name];
     for (const quality::Example& example : quality::label_examples(found, {{name, model}})) {
-      own.push_back(example);
-      own.back().half = half_of(example.frame);
+      class_examples.push_back(example);
+      class_examples.back().half = half_of(example.frame);
     }
   }
   return by_name;

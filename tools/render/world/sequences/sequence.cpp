@@ -90,9 +90,9 @@ void Sequence::furnish() {
   const int alike = kClassCount + 1 + setter.random().below(kClassCount);
   setter.stand(make_taught_object(alike).thing, setter.region(0.6, 0.95, -0.3, 0.9), M_PI, 0);
   for (int i = 0; i < 9; ++i) {
-    const std::uint64_t own = aspect_seed(seed_, sequence_aspect::kFirstThing + static_cast<std::uint64_t>(i));
-    const AssetPtr thing =
-        i < 3 ? make_other_instance(1 + i, own) : make_distractor(setter.random().below(kDistractorKinds), own);
+    const std::uint64_t asset_seed = aspect_seed(seed_, sequence_aspect::kFirstThing + static_cast<std::uint64_t>(i));
+    const AssetPtr thing = i < 3 ? make_other_instance(1 + i, asset_seed)
+                                 : make_distractor(setter.random().below(kDistractorKinds), asset_seed);
     const bool behind = i % 3 == 0;
     if (thing_height(*thing) > (behind ? 0.3 : kTallestBesideM)) continue;
     const double side = i % 3 == 1 ? -1.0 : 1.0;

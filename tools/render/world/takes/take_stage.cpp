@@ -65,18 +65,18 @@ TakeStage::TakeStage(const TakePlan& plan)
 
 // A table that one can walk round.
 void TakeStage::furnish(const TakePlan& plan) {
-  const std::uint64_t own = world_seed(plan.use, kFirstTakeWorld + plan.number);
-  Random random(aspect_seed(own, take_aspect::kTable));
-  Room room =
-      make_room(chance(random, 0.5) ? RoomStyle::kTable : RoomStyle::kMeeting, aspect_seed(own, take_aspect::kRoom));
+  const std::uint64_t take_seed = world_seed(plan.use, kFirstTakeWorld + plan.number);
+  Random random(aspect_seed(take_seed, take_aspect::kTable));
+  Room room = make_room(chance(random, 0.5) ? RoomStyle::kTable : RoomStyle::kMeeting,
+                        aspect_seed(take_seed, take_aspect::kRoom));
   world_.items = std::move(room.items);
   set_lighting(world_, plan.number % 4 == 3 ? TimeOfDay::kEvening : TimeOfDay::kDay,
-               aspect_seed(own, take_aspect::kLight));
+               aspect_seed(take_seed, take_aspect::kLight));
   world_.focus_radius_m = kShadowRadiusM;
-  TableSetter setter(world_, room.table_half, aspect_seed(own, take_aspect::kTable));
+  TableSetter setter(world_, room.table_half, aspect_seed(take_seed, take_aspect::kTable));
   for (int i = 0; i < 5; ++i) {
     const AssetPtr thing =
-        make_distractor(random.below(kDistractorKinds), aspect_seed(own, take_aspect::kFirstThing + i));
+        make_distractor(random.below(kDistractorKinds), aspect_seed(take_seed, take_aspect::kFirstThing + i));
     if (thing_height(*thing) > kTallestBesideShownM) continue;
     const double side = i % 2 == 0 ? 1.0 : -1.0;
     const double near = std::min(side * 0.6, side * 0.98);
