@@ -210,7 +210,7 @@ Forest load_forest(const std::filesystem::path& file) {
   require(line.rfind(kName, 0) == 0, "{}: not a forest file, expected it to begin with '{}{}'", source, kName,
           kForestFileVersion);
   const std::string version = line.substr(sizeof kName - 1);
-  require(version == std::to_string(kForestFileVersion), "{}: forest file of version '{}', expected {}: train it anew",
+  require(version == std::to_string(kForestFileVersion), "{}: forest file of version '{}', expected {}: retrain it",
           source, version, kForestFileVersion);
 
   std::uint64_t size = 0;

@@ -119,7 +119,7 @@ std::vector<StoredObject> parse_objects(const nlohmann::json& json, const std::s
 }
 
 void require_file(const fs::path& file, const fs::path& store) {
-  require(fs::is_regular_file(file), "{}: missing, expected it in the object store {}: half written; teach it anew",
+  require(fs::is_regular_file(file), "{}: missing, expected it in the object store {}: half written; teach it again",
           file.string(), store.string());
 }
 
@@ -210,7 +210,7 @@ ObjectStore read_store(const fs::path& folder) {
           file.string());
   const nlohmann::json json = read_json_object(file);
   const int version = json_integer(json, kVersionKey, file.string());
-  require(version == kStoreVersion, "{}: object store of version {}, expected {}: teach it anew", file.string(),
+  require(version == kStoreVersion, "{}: object store of version {}, expected {}: teach it again", file.string(),
           version, kStoreVersion);
   require_known_names(json, {kVersionKey, "objects", "tone", "settings"}, file.string());
   ObjectStore store;

@@ -129,7 +129,7 @@ void require_writable_folder(const fs::path& folder) {
   std::error_code error;
   fs::path there = fs::absolute(folder, error);
   while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
-  require(fs::is_directory(there, error), "{}: cannot be a folder to write to: {} is none", folder.string(),
+  require(fs::is_directory(there, error), "{}: cannot be a folder to write to: {} is not a directory", folder.string(),
           there.string());
   const bool takes_files = access(there.c_str(), W_OK | X_OK) == 0;
   require(takes_files, "{}: cannot be written: {}", folder.string(), std::strerror(errno));

@@ -17,7 +17,7 @@ nlohmann::json parse_json(std::string_view text, const std::string& source) {
     if (event == Event::object_start) open.emplace_back();
     if (event == Event::object_end) open.pop_back();
     if (event == Event::key)
-      require(open.back().insert(parsed.get<std::string>()).second, "{}: '{}' stands twice in an object", source,
+      require(open.back().insert(parsed.get<std::string>()).second, "{}: duplicate '{}' in an object", source,
               printable(parsed.get<std::string>()));
     return true;
   };

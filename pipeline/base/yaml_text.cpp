@@ -43,7 +43,7 @@ std::vector<std::string> yaml_names(const YAML::Node& map, const std::string& of
     names.push_back(entry.first.Scalar());
   }
   std::set<std::string> seen;
-  for (const std::string& name : names) require(seen.insert(name).second, "{}: '{}' stands twice", of, printable(name));
+  for (const std::string& name : names) require(seen.insert(name).second, "{}: duplicate '{}'", of, printable(name));
   return names;
 }
 

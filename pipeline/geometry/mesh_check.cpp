@@ -610,7 +610,7 @@ class GltfCheck {
       for (const auto& [name, count] : {std::pair{"matrix", 16U}, {"rotation", 4U}, {"scale", 3U}, {"translation", 3U}})
         check_numbers(nodes[n], name, count);
       for (const Json& child : nodes[n].value("children", Json::array())) {
-        require(is_free_node(child), "{}: node {} has a child that is none, or has two parents", source_, n);
+        require(is_free_node(child), "{}: node {} has an invalid child, or one with two parents", source_, n);
         parents[child.get<std::size_t>()] = n;
       }
     }
@@ -622,7 +622,7 @@ class GltfCheck {
     }
     for (const Json& scene : list("scenes")) {
       for (const Json& root : scene.value("nodes", Json::array()))
-        require(is_free_node(root), "{}: a scene begins with a node that is none, or is another one's child", source_);
+        require(is_free_node(root), "{}: a scene begins with an invalid node, or with a node's child", source_);
     }
   }
 

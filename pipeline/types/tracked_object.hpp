@@ -15,7 +15,7 @@ enum class TrackState : std::int8_t {
   kInvalid = 0,
   kVisible = 1,       ///< a pose of it was measured, or no camera has looked there since
   kUnrecognised = 2,  ///< no pose was measured, but the depth where it stands is as it should be
-  kHidden = 3,        ///< something stands before it
+  kHidden = 3,        ///< occluded by a nearer surface
   kOutOfView = 4,     ///< no camera looks there, or none measures depth there
   kGone = 5           ///< it is not there any more
 };

@@ -55,11 +55,11 @@ void update_unobserved(const UnobservedContext& frame, const MissedDetection& mi
         rate = settings.free_space_rate * visibility.free_space_violation;
         track.free_space_violation_s += missed.seconds;
       }
-      reason = fmt::format("{} sees through {:.0f} % of where it was", observation.poses.frame.channel,
+      reason = fmt::format("{}: free-space violation {:.0f} %", observation.poses.frame.channel,
                            100.0 * visibility.free_space_violation);
       break;
     case TrackState::kHidden:
-      reason = fmt::format("something stands before it in {}", observation.poses.frame.channel);
+      reason = fmt::format("occluded by a nearer surface in {}", observation.poses.frame.channel);
       break;
     case TrackState::kOutOfView:
       reason = fmt::format("not in view of {}, or without depth", observation.poses.frame.channel);

@@ -171,7 +171,7 @@ void Tracker::confirm_tracks(std::int64_t utime) {
       candidate.first_utime = earlier->first_utime;
       candidate.seen += earlier->seen;
       earlier->id = -1;  // for forget_tracks()
-      log_info("{} #{} is in another place", candidate.class_name, id);
+      log_info("{} #{} re-identified at a new pose", candidate.class_name, id);
     } else {
       candidate.id = next_id_++;
       log_info("{} #{} is there, seen by {}", candidate.class_name, candidate.id, candidate.last_seen.channel);

@@ -20,12 +20,12 @@ QualityTerms terms_from(const nlohmann::json& entry, const std::string& name, co
   QualityTerms terms;
   for_each_number(terms, [&](const auto& field, double& value) {
     require(entry[name].contains(field.name),
-            "{}: '{}' of the quality has no '{}': it was learnt from other terms; hs-teach practise learns it anew",
+            "{}: '{}' of the quality has no '{}': it was learnt from other terms; hs-teach practise recalibrates it",
             where, name, field.name);
     value = json_number(entry[name], field.name, where);
   });
   require(entry[name].size() == kQualityTerms.size(),
-          "{}: '{}' of the quality has {} terms, expected {}; hs-teach practise learns it anew", where, name,
+          "{}: '{}' of the quality has {} terms, expected {}; hs-teach practise recalibrates it", where, name,
           entry[name].size(), kQualityTerms.size());
   return terms;
 }

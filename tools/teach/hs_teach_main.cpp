@@ -169,7 +169,7 @@ int main(int argc, char** argv) {
   rename.add_option("name", name, "of the object").required();
   rename.add_option("new-name", new_name, "that it gets").required();
   rename.add_example("hs-teach rename my.store object_1 cup");
-  CommandLine practise = app.add_subcommand("practise", "learns anew what detections and poses of a store are worth");
+  CommandLine practise = app.add_subcommand("practise", "recalibrates scores and pose quality of a store");
   practise.add_option("store", folder, "object store").required();
   practise.add_option("--names", lists.names, "MUG,DRILL: these only; default: all");
   add_calibration_options(practise, options);

@@ -37,7 +37,7 @@ std::vector<std::string> HeartbeatMonitor::pop_timed_out(std::int64_t now_us) {
 
 void HeartbeatMonitor::log_timed_out(std::int64_t now_us) {
   for (const std::string& name : pop_timed_out(now_us)) {
-    const std::string line = name + " has fallen silent: what it alone finds is not seen any more";
+    const std::string line = name + ": no heartbeat for 3 s; objects that only it detects are no longer updated";
     const auto admitted = lines_.admit(name, line, std::chrono::steady_clock::now());
     if (admitted) log_warning("{}", *admitted);
   }

@@ -24,11 +24,11 @@ tracks::CameraPose WorldReference::camera_pose(const FrameId& frame, bool may_wa
   if (place.T_world_camera || place.may_come) return begin("WORLD", place);
   if (extrinsics_.any()) return place;
   if (!reference_camera_.empty() && reference_camera_ != frame.channel)
-    return {
-        std::nullopt, false,
-        "where its camera is is not known, expected --cameras, --camera-pose or " + channel::to_world(frame.channel)};
+    return {std::nullopt, false,
+            "the pose of its camera is not known, expected --cameras, --camera-pose or " +
+                channel::to_world(frame.channel)};
   if (reference_camera_.empty())
-    log_info("where {} is is not known: the world is its own frame, and objects move when it does", frame.channel);
+    log_info("the pose of {} is not known: the world is its own frame, and objects move when it does", frame.channel);
   reference_camera_ = frame.channel;
   return begin(frame.channel, {Eigen::Isometry3d::Identity(), false, ""});
 }

@@ -12,7 +12,7 @@ namespace houghstream::view {
 /// Where pictures go without a display; an empty path is not written.
 struct OutputSettings {
   std::filesystem::path snapshot;   ///< one picture, PNG or JPEG by its ending
-  std::int64_t snapshot_after = 1;  ///< the so-manieth picture drawn; the last one where the stream ends before
+  std::int64_t snapshot_after = 1;  ///< the Nth image drawn; the last one where the stream ends before
   std::filesystem::path video;      ///< MP4
   std::filesystem::path images;     ///< folder for every picture drawn, UTIME.jpg
   double rate_hz = 10.0;            ///< of the video

@@ -62,7 +62,7 @@ TEST(JsonFile, NumberedEntriesComeByNumber) {
 
 TEST(JsonFile, NamesThatStandTwiceAreRefused) {
   const fs::path file = file_with(R"({"0": "a", "1": {"id": 2}, "0": "b"})");
-  EXPECT_EQ(error_of([&] { read_json_by_id(file); }), file.string() + ": '0' stands twice in an object");
+  EXPECT_EQ(error_of([&] { read_json_by_id(file); }), file.string() + ": duplicate '0' in an object");
   EXPECT_THROW(read_json_list(file_with(R"([{"id": 1, "id": 2}])")), InputError);
   EXPECT_NO_THROW(read_json_list(file_with(R"([{"id": 1}, {"id": {"id": 2}}])")));
 }

@@ -24,7 +24,7 @@ WorldObjects one_mug() {
   mug.seen = 12;
   mug.first_utime = 70;
   mug.last_seen = {"LEFT", 76};
-  mug.reason = "something stands before it in LEFT";
+  mug.reason = "occluded by a nearer surface in LEFT";
   WorldObjects world;
   world.frame = {"RIGHT", 77};
   world.world = "WORLD";
@@ -57,7 +57,7 @@ TEST(ObjectMessages, AWorldComesBackAsItWas) {
   EXPECT_EQ(mug.seen, 12);
   EXPECT_EQ(mug.first_utime, 70);
   EXPECT_EQ(mug.last_seen, (FrameId{"LEFT", 76}));
-  EXPECT_EQ(mug.reason, "something stands before it in LEFT");
+  EXPECT_EQ(mug.reason, "occluded by a nearer surface in LEFT");
 }
 
 TEST(ObjectMessages, TheFrameIsReadWithoutDecoding) {

@@ -55,7 +55,7 @@ TEST(Tracker, WhatIsSeenThroughIsGoneWithinASecondAndSaysWhy) {
   const WorldObjects world = scene.frames(29);
   ASSERT_EQ(world.objects.size(), 2U);
   EXPECT_EQ(world.objects[0].state, TrackState::kGone);
-  EXPECT_NE(world.objects[0].reason.find("sees through"), std::string::npos) << world.objects[0].reason;
+  EXPECT_NE(world.objects[0].reason.find("free-space violation"), std::string::npos) << world.objects[0].reason;
   EXPECT_EQ(world.objects[1].state, TrackState::kVisible);
   EXPECT_EQ(scene.frames(90).objects.size(), 1U);  // gone is told for a while
 }
@@ -93,7 +93,7 @@ TEST(Tracker, WhatMovedBeforeItWasHiddenIsGoneAndSaysWhy) {
     if (world.objects[0].state == TrackState::kGone) break;
   }
   EXPECT_EQ(world.objects[0].state, TrackState::kGone);
-  EXPECT_EQ(world.objects[0].reason, "something stands before it in CAMERA; it moved when it was seen last");
+  EXPECT_EQ(world.objects[0].reason, "occluded by a nearer surface in CAMERA; it moved when it was seen last");
 }
 
 TEST(Tracker, WhenACamerasResolutionChangesWhatStandsIsStillThereAndWhatIsTakenAwayIsGone) {

@@ -84,7 +84,7 @@ TEST(StoredQuality, AMissingOrUnknownNumberIsRefusedNamingTheStore) {
   json["weights"]["agreement"] = 1.0;
   expect_refused(json, "has 9 terms, expected 8");
   json["weights"].erase("print");  // of another version
-  expect_refused(json, "has no 'print': it was learnt from other terms; hs-teach practise learns it anew");
+  expect_refused(json, "has no 'print': it was learnt from other terms; hs-teach practise recalibrates it");
   json = whole;
   json.erase("typical");
   expect_refused(json, "'typical'");

@@ -147,7 +147,7 @@ final class Samples {
     mug.probability = 0.9f;
     mug.trans = new double[] {0.1, 0.2, 0.05};
     mug.quat = new double[] {1, 0, 0, 0};
-    mug.reason = "something stands before it";
+    mug.reason = "occluded by a nearer surface";
     mug.seen_channel = "LEFT";
     objects_t message = new objects_t();
     message.utime = 5;

@@ -138,7 +138,7 @@ public final class ViewersTest {
     Check.equal(viewer.table().getValueAt(0, 2), "visible");
     viewer.show(Samples.world(tracked_object_t.HIDDEN));
     Check.equal(count(painted(viewer.component(), 640, 600), WorldViewer.Map.SEEN), 0);
-    Check.equal(viewer.table().getValueAt(0, 6), "something stands before it");
+    Check.equal(viewer.table().getValueAt(0, 6), "occluded by a nearer surface");
     viewer.show(Samples.world((byte) 99));
     viewer.close();
   }

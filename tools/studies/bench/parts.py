@@ -18,7 +18,7 @@ DISTANCES = ("--min-distance", "0.75", "--max-distance", "2.1")  # at which the 
 RANKED = ("--min-mass", "0.05", "--threshold", "0")
 RANKED_WISHES = "min-mass=0.05,threshold=0"
 GALL = ("--threshold", "0.1", "--stride", "1")  # of gall, whose score is the vote mass, all from 0.1 on: its defaults
-FEW = 12  # the reference engine looks at every so-manieth frame
+FEW = 12  # the reference engine looks at every Nth frame
 SETS = ("SSE4", "AVX2", "AVX3")  # Highway's names
 STREAM_RATE, STREAM_SECONDS = 30, 60
 OBJECTS, TREES, SCALES = (1, 2, 4, 8, 12, 20, 30, 40), (5, 10, 15, 20, 30), (0.5, 1, 1.5, 2)

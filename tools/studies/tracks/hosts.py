@@ -177,7 +177,7 @@ def run_two(taught, network, log, out):
         summary = usage.summary()
         times = {"cut": time.time()}
         network.cut("b")
-        said = stream.await_words("track", "has fallen silent", CUT_S)
+        said = stream.await_words("track", "no heartbeat", CUT_S)
         time.sleep(max(0.0, times["cut"] + CUT_S - time.time()))
         times["joined"] = time.time()
         network.join("b")

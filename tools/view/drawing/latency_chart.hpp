@@ -18,7 +18,7 @@ struct FrameLatency {
 /// The last frames, oldest first.
 using LatencyHistory = std::deque<FrameLatency>;
 
-/// The colour (BGR) of the so-manieth stage of a frame, from 0.
+/// The colour (BGR) of the Nth stage of a frame, from 0.
 cv::Scalar stage_colour(std::size_t index);
 
 /// A row per stage in columns of `rows` rows, or of more and lower ones where `area` is not wide enough for all

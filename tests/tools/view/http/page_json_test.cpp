@@ -119,7 +119,7 @@ TEST(PageJson, TheWorldIsToldWithItsObjects) {
   mug.state = TrackState::kHidden;
   mug.probability = 0.75F;
   mug.T_world_object = Eigen::Translation3d(1, 2, 3);
-  mug.reason = "something stands before it";
+  mug.reason = "occluded by a nearer surface";
   TrackedObject moved = mug;
   moved.moving = true;
   moved.velocity << 0.3, 0.4, 0.0, 0.0, 0.0, 0.0;
@@ -138,7 +138,7 @@ TEST(PageJson, TheWorldIsToldWithItsObjects) {
   EXPECT_EQ(told["objects"][0]["number"], 3);
   EXPECT_EQ(told["objects"][0]["state"], to_string(TrackState::kHidden));
   EXPECT_EQ(told["objects"][0]["position"], json::parse("[1.0, 2.0, 3.0]"));
-  EXPECT_EQ(told["objects"][0]["reason"], "something stands before it");
+  EXPECT_EQ(told["objects"][0]["reason"], "occluded by a nearer surface");
   EXPECT_TRUE(told["objects"][0]["speed"].is_null());
   EXPECT_NEAR(told["objects"][1]["speed"].get<double>(), 0.5, 1e-9);
 }

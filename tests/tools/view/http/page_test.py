@@ -52,7 +52,7 @@ def check_world(page):
     page.wait_for("!document.getElementById('world-card').hidden")
     bowl, mug = page.wait_for("[...document.querySelectorAll('#world tbody tr')].map(row => row.innerText)")
     assert "#1 bowl" in bowl and "visible" in bowl, bowl
-    assert "#2 mug <b>" in mug and "hidden" in mug and "something stands before it" in mug, mug
+    assert "#2 mug <b>" in mug and "hidden" in mug and "occluded by a nearer surface" in mug, mug
     page.value("{ const view = document.getElementById('second-view'); view.value = 'world'; view.dispatchEvent(new Event('change')); }")
     second = "document.getElementById('second')"
     page.wait_for(f"{second}.naturalWidth === 440 && {second}.naturalHeight === 330")

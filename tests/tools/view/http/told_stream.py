@@ -96,7 +96,7 @@ def objects_message(utime, channel, turn):
     message.camera_trans, message.camera_quat = [side, -0.8, 0.6], [0.707, -0.707, 0.0, 0.0]
     place = [0.3 * math.cos(0.2 * turn), 0.3 * math.sin(0.2 * turn), 0.0]
     message.objects = [tracked(1, "bowl", tracked_object_t.VISIBLE, place, "seen by OPENNI_FRAME"),
-                       tracked(2, "mug <b>", tracked_object_t.HIDDEN, [0.1, 0.2, 0.0], "something stands before it")]  # fmt: skip
+                       tracked(2, "mug <b>", tracked_object_t.HIDDEN, [0.1, 0.2, 0.0], "occluded by a nearer surface")]  # fmt: skip
     message.n_objects = len(message.objects)
     return message
 
