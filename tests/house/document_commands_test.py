@@ -3,7 +3,7 @@
 import unittest
 
 import document_commands
-import planted
+import seeded_faults
 
 HELP = {
     ("hs-detect", ""): "  --forest TEXT  a forest\n  --threads INT\n",
@@ -23,7 +23,7 @@ WRONG = {
 
 
 def faults_with(extra):
-    return planted.faults_of({**GOOD, **extra}, lambda root: list(document_commands.find_faults(root, lambda *key: HELP.get(key))))
+    return seeded_faults.faults_of({**GOOD, **extra}, lambda root: list(document_commands.find_faults(root, lambda *key: HELP.get(key))))
 
 
 class DocumentCommands(unittest.TestCase):

@@ -3,7 +3,7 @@
 import unittest
 
 import document_paths
-import planted
+import seeded_faults
 
 GOOD = {
     "detector/README.md": "See `features/tiles.hpp`, `features/tiles`, `features/`, `detector/detector.cpp`, [the page](../README.md) and\n"
@@ -24,12 +24,12 @@ WRONG = {
 
 class DocumentPaths(unittest.TestCase):
     def test_a_tidy_house_has_no_fault(self):
-        self.assertEqual(planted.faults_of(GOOD, lambda root: list(document_paths.find_faults(root))), [])
+        self.assertEqual(seeded_faults.faults_of(GOOD, lambda root: list(document_paths.find_faults(root))), [])
 
     def test_every_planted_fault_is_found_once(self):
         for what, extra in WRONG.items():
             with self.subTest(what):
-                found = planted.faults_of({**GOOD, **extra}, lambda root: list(document_paths.find_faults(root)))
+                found = seeded_faults.faults_of({**GOOD, **extra}, lambda root: list(document_paths.find_faults(root)))
                 self.assertEqual(len(found), 1, found)
 
 

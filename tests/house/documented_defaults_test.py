@@ -3,14 +3,14 @@
 import unittest
 
 import documented_defaults
-import planted
+import seeded_faults
 
 ROWS = (("pose/README.md", r"from quality ([\d.]+) on", "pose/quality.hpp", r"least = ([\d.]+)F"),)
 
 
 def faults_of(document, source):
     files = {"pose/README.md": document, "pose/quality.hpp": source}
-    return planted.faults_of(files, lambda root: list(documented_defaults.find_faults(root, ROWS)))
+    return seeded_faults.faults_of(files, lambda root: list(documented_defaults.find_faults(root, ROWS)))
 
 
 class DocumentedDefaults(unittest.TestCase):

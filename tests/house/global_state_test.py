@@ -3,7 +3,7 @@
 import unittest
 
 import global_state
-import planted
+import seeded_faults
 
 GOOD = """
 #include "pipeline/base/files.hpp"
@@ -39,7 +39,7 @@ WRONG = {
 
 
 def faults_with(text, name="pose/seen/region.cpp"):
-    return planted.faults_of({"pipeline/base/files.cpp": GOOD, name: text}, lambda root: list(global_state.find_faults(root)))
+    return seeded_faults.faults_of({"pipeline/base/files.cpp": GOOD, name: text}, lambda root: list(global_state.find_faults(root)))
 
 
 class GlobalState(unittest.TestCase):

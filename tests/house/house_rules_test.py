@@ -3,7 +3,7 @@
 import unittest
 
 import house_rules
-import planted
+import seeded_faults
 
 GOOD = {
     "README.md": "A house.\n",
@@ -23,7 +23,7 @@ WRONG = {
 
 def faults_with(extra, left_out=()):
     files = {name: text for name, text in {**GOOD, **extra}.items() if name not in left_out}
-    return planted.faults_of(files, house_rules.find_faults)
+    return seeded_faults.faults_of(files, house_rules.find_faults)
 
 
 class HouseRules(unittest.TestCase):

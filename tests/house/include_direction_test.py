@@ -3,7 +3,7 @@
 import unittest
 
 import include_direction
-import planted
+import seeded_faults
 
 GOOD = {
     "pipeline/CMakeLists.txt": "houghstream_library(pipeline SOURCES types/frame.cpp LINK x)\n"
@@ -32,7 +32,7 @@ WRONG = {
 
 
 def faults_with(extra):
-    return planted.faults_of({**GOOD, **extra}, include_direction.find_faults)
+    return seeded_faults.faults_of({**GOOD, **extra}, include_direction.find_faults)
 
 
 class IncludeDirection(unittest.TestCase):

@@ -3,7 +3,7 @@
 import unittest
 
 import named_fields
-import planted
+import seeded_faults
 
 STRUCTS = """
 struct Track {
@@ -57,7 +57,7 @@ WRONG = {
 
 
 def faults_with(extra):
-    return planted.faults_of({"pose/track.hpp": STRUCTS, "pose/tidy.cpp": GOOD, **extra}, named_fields.find_faults)
+    return seeded_faults.faults_of({"pose/track.hpp": STRUCTS, "pose/tidy.cpp": GOOD, **extra}, named_fields.find_faults)
 
 
 class NamedFields(unittest.TestCase):

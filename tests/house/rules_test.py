@@ -4,7 +4,7 @@ import pathlib
 import tempfile
 import unittest
 
-import planted
+import seeded_faults
 import rules
 
 GOOD = {
@@ -47,7 +47,7 @@ WRONG = {
 
 
 def faults_with(extra):
-    return planted.faults_of({**GOOD, **extra}, rules.find_faults)
+    return seeded_faults.faults_of({**GOOD, **extra}, rules.find_faults)
 
 
 class Rules(unittest.TestCase):
@@ -74,8 +74,8 @@ class Rules(unittest.TestCase):
         fault = "circle: pipeline/base/one, pipeline/base/two"
         files = {**GOOD, **WRONG["a circle of two units by way of a source"]}
         for known, told in (("", [fault]), (f"{fault}\n", [])):
-            self.assertEqual(planted.faults_of({**files, "tests/house/known.txt": known}, rules.news), told)
-        (gone,) = planted.faults_of({**GOOD, "tests/house/known.txt": f"{fault}\n"}, rules.news)
+            self.assertEqual(seeded_faults.faults_of({**files, "tests/house/known.txt": known}, rules.news), told)
+        (gone,) = seeded_faults.faults_of({**GOOD, "tests/house/known.txt": f"{fault}\n"}, rules.news)
         self.assertIn("no fault any more", gone)
 
     def test_a_row_of_owners_without_places_is_refused(self):

@@ -2,7 +2,7 @@
 
 import unittest
 
-import planted
+import seeded_faults
 import settings_lists
 
 GOOD = """
@@ -40,7 +40,7 @@ WRONG = {
 
 
 def faults_of(text):
-    return planted.faults_of({"pose/motion/motion.hpp": text}, lambda root: list(settings_lists.find_faults(root)))
+    return seeded_faults.faults_of({"pose/motion/motion.hpp": text}, lambda root: list(settings_lists.find_faults(root)))
 
 
 class SettingsLists(unittest.TestCase):

@@ -3,7 +3,7 @@
 import unittest
 
 import unique_names
-import planted
+import seeded_faults
 
 GOOD = {
     "pipeline/frame.hpp": "namespace houghstream {\nclass Later;\nstruct Frame {\n  struct Pair { int a; };\n};\n"
@@ -31,7 +31,7 @@ TWICE = {
 
 
 def faults_with(extra):
-    return planted.faults_of({**GOOD, **extra}, unique_names.find_faults)
+    return seeded_faults.faults_of({**GOOD, **extra}, unique_names.find_faults)
 
 
 class UniqueNames(unittest.TestCase):

@@ -12,10 +12,10 @@ import sys
 import time
 
 from folders import read_arguments
-from heard import detections_of, poses_of
+from result_values import detections_of, poses_of
 from houghstream import objects_t
 from houghstream.event_log import read_log
-from studies.encoded import utime_of
+from studies.wire_patch import utime_of
 from studies.stream import Process, enter_private_network
 from end_to_end_test import THRESHOLD, VALID
 from live_stream import camera_option, wait_for_results, write_script

@@ -9,10 +9,10 @@ import subprocess
 import sys
 
 from folders import read_arguments
-from heard import detections_by_utime, poses_of
+from result_values import detections_by_utime, poses_of
 from houghstream import object_pose_t
 from houghstream.event_log import read_log
-from studies.encoded import utime_of
+from studies.wire_patch import utime_of
 from studies.stream import Process, enter_private_network
 from live_stream import check_live_stream
 

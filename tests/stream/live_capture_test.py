@@ -10,7 +10,7 @@ import time
 from folders import read_arguments
 from houghstream import images_t, status_t
 from houghstream.event_log import read_log
-from studies.encoded import utime_of
+from studies.wire_patch import utime_of
 from studies.stream import Process, enter_private_network
 
 LIVE_FRAMES = 90

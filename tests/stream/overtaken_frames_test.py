@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 from folders import read_arguments
-from heard import poses_of
+from result_values import poses_of
 from studies.soak.frames import FrameSender
 from studies.soak.wire import Listener
 from studies.stream import Process, enter_private_network

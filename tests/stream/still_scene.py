@@ -1,6 +1,6 @@
 """The picture of end_to_end_test.py's scene in which most is detected, as a scene of its own."""
 
-from heard import detections_by_utime
+from result_values import detections_by_utime
 from houghstream.event_log import read_log
 from studies.still_scene import make_still_scene
 

@@ -14,9 +14,9 @@ import zlib
 from collections import Counter
 
 from folders import read_arguments
-from heard import detections_of, poses_of
+from result_values import detections_of, poses_of
 from houghstream.event_log import read_log, write_event
-from studies.encoded import frame_of, utime_of, with_utime
+from studies.wire_patch import frame_of, utime_of, with_utime
 from studies.stream import Process, enter_private_network
 from end_to_end_test import THRESHOLD, VALID
 

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import time
 
-from studies.measured import REPOSITORY, commit_name
+from studies.records import REPOSITORY, commit_name
 
 START = float(os.environ.setdefault("HOUGHSTREAM_START", str(time.time())))  # stays when a command starts itself again
 TEST_SCENES = ("table_small_1", "table_small_2", "desk_1", "desk_2", "kitchen_small_1", "meeting_small_1")

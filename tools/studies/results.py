@@ -8,7 +8,7 @@ import pathlib
 import shutil
 
 from studies.command import die
-from studies.measured import REPOSITORY, commit_name, read_json_if_any
+from studies.records import REPOSITORY, commit_name, read_json_if_any
 from studies.result_tables import (
     attitude_defaults,
     attitude_table,

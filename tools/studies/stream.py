@@ -12,7 +12,7 @@ import sys
 import threading
 import time
 
-from studies.measured import threads
+from studies.records import threads
 
 URL = "udpm://239.255.76.67:7667?ttl=0"
 LAST_WORDS = 20  # lines

@@ -8,7 +8,7 @@ import tempfile
 import unittest
 
 from studies.bench import parts, speed
-from studies.measured import REPOSITORY
+from studies.records import REPOSITORY
 from studies.stream import Usage, cpu_seconds, resident_mb
 
 PROMISED = {

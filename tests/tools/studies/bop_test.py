@@ -10,9 +10,9 @@ import unittest
 
 from bop_fakes import PICTURE, install, write_json
 from studies.bop import figures, report
-from studies.bop.choose import BadSet, choose, chosen_images, names_of
+from studies.bop.subset import BadSet, choose, chosen_images, names_of
 from studies.bop.dataset import open_dataset
-from studies.measured import read_csv
+from studies.records import read_csv
 
 PROMISED = {
     "ar", "ar_nothing_withheld", "auc", "precision", "recall", "published_right_fraction",

@@ -12,7 +12,7 @@ from houghstream import status_t, teaching_t
 from studies import command
 from studies.demo import live, pose_scatter, report, teach
 from studies.demo.__main__ import parse
-from studies.measured import write_json
+from studies.records import write_json
 
 
 def observed(received, processed, skipped, on_bus):

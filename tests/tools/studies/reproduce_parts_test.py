@@ -8,7 +8,7 @@ import tempfile
 import unittest
 
 from studies.reproduce import plan, results, uw_views, variants
-from studies.work import Units
+from studies.unit_runner import Units
 
 
 class UwViews(unittest.TestCase):

@@ -7,7 +7,7 @@ import unittest
 from studies import results
 from studies.bench import speed
 from studies.bop.figures import COUNTS, FIGURES
-from studies.measured import write_json
+from studies.records import write_json
 from studies.reproduce.results import Results
 from studies.reproduce.summary import summarise
 

@@ -17,7 +17,7 @@ import types
 import unittest
 import unittest.mock
 
-from studies.encoded import utime_of
+from studies.wire_patch import utime_of
 from studies.soak import __main__ as soak
 from studies.soak import faults, frames, long_account, long_run, page, relay, time_left, wire
 from studies.stream import ProcessFailed

@@ -11,7 +11,7 @@ import unittest
 
 from houghstream import detection_t, detections_t, teaching_t
 from houghstream.event_log import read_log, write_event
-from studies.encoded import utime_of
+from studies.wire_patch import utime_of
 from studies.teach.joined_log import FIRST_UTIME, Camera, frames_of, write_joined
 from studies.teach.live_teaching import events, times_of
 from studies.teach.report import faults

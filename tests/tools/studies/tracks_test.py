@@ -9,7 +9,7 @@ import unittest
 
 from houghstream import objects_t, stage_time_t, tracked_object_t
 from houghstream.event_log import write_event
-from studies.tracks import hosts, hosts_heard
+from studies.tracks import hosts, host_records
 from studies.tracks.__main__ import SEQUENCES, parse
 from studies.tracks.plan import Plan
 from studies.tracks.report import longest, pooled, tracks_are_equal
@@ -45,21 +45,21 @@ class HostsTest(unittest.TestCase):
         self.assertEqual(hosts.divided(list("abcdefgh"), {"a", "b", "c", "g"}), [["a", "c", "d", "f"], ["b", "g", "e", "h"]])
 
     def test_each_hosts_poses_are_counted_by_their_objects(self):
-        told = hosts_heard.figures(Heard(), 100.0, 101.0, self.PARTS)
+        told = host_records.figures(Heard(), 100.0, 101.0, self.PARTS)
         self.assertEqual(told["sent_hz"], 10.0)
         self.assertEqual((told["a"]["hz"], told["a"]["p50_ms"]), (10.0, 50.0))
         self.assertEqual((told["b"]["hz"], told["b"]["p50_ms"]), (5.0, 100.0))
         self.assertEqual(told["world"]["p50_ms"], 60.0)
         self.assertEqual((told["a"]["objects"], told["b"]["objects"]), (1, 0))
-        self.assertEqual(hosts_heard.figures(Heard(), 100.0, 100.35, self.PARTS)["b"]["objects"], 1)
+        self.assertEqual(host_records.figures(Heard(), 100.0, 100.35, self.PARTS)["b"]["objects"], 1)
 
     def test_a_host_that_says_nothing_has_no_times(self):
         heard = Heard()
         heard.poses = []
-        self.assertEqual(hosts_heard.figures(heard, 100.0, 101.0, self.PARTS)["a"], {"hz": 0.0, "p50_ms": None, "p99_ms": None, "objects": 1})
+        self.assertEqual(host_records.figures(heard, 100.0, 101.0, self.PARTS)["a"], {"hz": 0.0, "p50_ms": None, "p99_ms": None, "objects": 1})
 
     def test_what_becomes_of_a_lost_hosts_objects(self):
-        lost = hosts_heard.lost_host(Heard(), {"cut": 100.2, "joined": 100.75, "end": 101.0}, self.PARTS, 3.1)
+        lost = host_records.lost_host(Heard(), {"cut": 100.2, "joined": 100.75, "end": 101.0}, self.PARTS, 3.1)
         self.assertEqual((lost["said_s"], lost["unseen_s"], lost["gone_s"]), (3.1, 0.26, 0.66))
         self.assertEqual((lost["objects"], lost["probability_in_the_end"]), (1, 0.5))
         self.assertAlmostEqual(lost["back_s"], 0.15)

@@ -5,7 +5,7 @@ import pathlib
 
 from studies.command import Options, positive, recorded_folder
 from studies.stream import enter_network
-from studies.work import main
+from studies.unit_runner import main
 
 PARTS = ("speed", "stream", "growth", "pose", "attitudes")
 TARGETS = ("hs-render", "hs-train", "hs-capture", "hs-detect", "hs-pose", "hs-observe", "hs-evaluate", "hs-fuse", "hs-teach",

@@ -4,7 +4,7 @@ scenes in which the objects lie, lean and are held, and in the scenes in which t
 from studies.bop.figures import of_scenes
 from studies.bop.plan import SceneFolders
 from studies.command import TEST_SCENES
-from studies.measured import about, mean_of, read_json, rounded, write_json
+from studies.records import about, mean_of, read_json, rounded, write_json
 from studies.report.page import show
 
 LYING = ("table_lying", "meeting_lying", "table_tilted", "meeting_held")

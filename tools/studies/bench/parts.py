@@ -8,9 +8,9 @@ from studies.bench import attitudes, pose, speed
 from studies.bop.plan import RANKED as RANKED_POSES
 from studies.bop.plan import teach_seconds
 from studies.command import TEST_SCENES, call, recorded_views, step
-from studies.measured import about, threads, write_json
+from studies.records import about, threads, write_json
 from studies.stream import Stream
-from studies.work import Runner, Store, Units
+from studies.unit_runner import Runner, Store, Units
 
 SPEED_SCENE = "table_small_1"
 DISTANCES = ("--min-distance", "0.75", "--max-distance", "2.1")  # at which the objects of the test scenes stand

@@ -3,7 +3,7 @@
 import json
 import re
 
-from studies.measured import about, read_json, read_json_if_any, write_json
+from studies.records import about, read_json, read_json_if_any, write_json
 from studies.report.page import embedded, render, show
 
 NAMES = {

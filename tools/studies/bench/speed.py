@@ -6,7 +6,7 @@ Beside the run's own figures stand those of earlier releases, history.json: a li
 import math
 import pathlib
 
-from studies.measured import about, read_json, read_json_if_any, write_json
+from studies.records import about, read_json, read_json_if_any, write_json
 from studies.report.charts import Chart
 from studies.report.page import render, show
 

@@ -3,7 +3,7 @@
 import argparse
 import pathlib
 
-from studies import work
+from studies import unit_runner
 from studies.bop.dataset import BadSet, open_dataset, read_store
 from studies.command import Options, positive
 
@@ -68,7 +68,7 @@ def open_all(options):
 
 
 def main():
-    work.main(parse, lambda _: TARGETS, lambda _: None, "studies.bop.report")
+    unit_runner.main(parse, lambda _: TARGETS, lambda _: None, "studies.bop.report")
 
 
 if __name__ == "__main__":

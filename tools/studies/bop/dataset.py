@@ -6,7 +6,7 @@ import json
 import pathlib
 import re
 
-from studies.bop.choose import FILES, BadSet, chosen_images, missing_picture, read, read_targets
+from studies.bop.subset import FILES, BadSet, chosen_images, missing_picture, read, read_targets
 
 MODELS = ("models", "models_cad", "models_eval")  # as sets call them; the first that is there
 TARGETS = "test_targets_bop19.json"

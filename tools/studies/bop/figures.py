@@ -3,9 +3,9 @@
 import json
 import statistics
 
-from studies.measured import read_csv, read_json
+from studies.records import read_csv, read_json
 from studies.reproduce.results import verdicts
-from studies.work import UnitFailed
+from studies.unit_runner import UnitFailed
 
 FIGURES = (
     "ar", "ar_nothing_withheld", "ar_vsd", "ar_mssd", "ar_mspd", "auc", "precision", "recall", "published_right_fraction",

@@ -3,11 +3,11 @@
 import dataclasses
 import pathlib
 
-from studies.bop.choose import BadSet, read_targets
+from studies.bop.subset import BadSet, read_targets
 from studies.bop.dataset import folder_digest, known_objects, true_objects
 from studies.command import step
-from studies.measured import threads
-from studies.work import Runner, Store, Units
+from studies.records import threads
+from studies.unit_runner import Runner, Store, Units
 
 # Every maximum, by its score: what an AUC is measured with; a pose counts whatever its detection's score, as BOP counts.
 RANKED = ("--min-mass", "0.05", "--threshold", "0", "--operating-score", "0")
@@ -116,7 +116,7 @@ class Plan:
         known = folder_digest(one.store)
         targets = ("--targets", dataset.targets.resolve()) if dataset.targets else ()
         names = ",".join(f"{key}={name}" for key, name in sorted(one.names.items()))
-        chosen = units.add(f"{dataset.name}/seed_{one.seed}/scenes/{scene.name}", "", "studies.bop.choose", "--scene",
+        chosen = units.add(f"{dataset.name}/seed_{one.seed}/scenes/{scene.name}", "", "studies.bop.subset", "--scene",
                            scene.resolve(), "--out", "{out}", "--names", names, "--every", self.options.every, "--digest",
                            folder_digest(scene), *targets, **facts)  # fmt: skip
         of_scene = ("--scene", f"{{{chosen}}}", "--threads", threads(), "--out", "{out}")

@@ -4,7 +4,7 @@ from studies.bop import figures
 from studies.bop.figures import COUNTS, FIGURES
 from studies.bop.plan import RANKED, Plan, target_count
 from studies.command import step
-from studies.measured import about, rounded, threads, write_json
+from studies.records import about, rounded, threads, write_json
 from studies.report.charts import Chart
 from studies.report.page import embedded, render, show
 

@@ -5,7 +5,7 @@ import pathlib
 
 from studies.command import Options, die, positive
 from studies.stream import enter_network
-from studies.work import main
+from studies.unit_runner import main
 
 TARGETS = ("hs-render", "hs-train", "hs-capture", "hs-import", "hs-log", "hs-detect", "hs-pose", "hs-view", "hs-observe",
            "hs-spy", "hs-evaluate")  # fmt: skip

@@ -5,7 +5,7 @@ import bisect
 import statistics
 
 from studies.command import die
-from studies.measured import percentiles, read_csv, read_json
+from studies.records import percentiles, read_csv, read_json
 
 HALF_PERIOD_US = 16667
 

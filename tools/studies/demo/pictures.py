@@ -5,7 +5,7 @@ import time
 
 from PIL import Image
 from studies.command import die, step
-from studies.measured import threads
+from studies.records import threads
 from studies.stream import Processes
 from studies.virtual_display import VirtualDisplay, open_viewer
 

@@ -8,7 +8,7 @@ import math
 import statistics
 
 from studies.demo.live import HALF_PERIOD_US
-from studies.measured import read_json
+from studies.records import read_json
 
 
 def rotation_of(quaternion):

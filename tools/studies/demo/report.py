@@ -4,7 +4,7 @@ import json
 import shutil
 
 from studies.command import die
-from studies.measured import about, read_csv, read_json, train_seconds, write_json
+from studies.records import about, read_csv, read_json, train_seconds, write_json
 from studies.report.charts import Chart
 from studies.report.page import embedded, render, show
 

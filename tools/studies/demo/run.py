@@ -8,9 +8,9 @@ import time
 from houghstream.event_log import read_log
 from studies.command import RECORDED_CAMERA, call, die, recorded_views, step
 from studies.demo import live, report, teach
-from studies.measured import threads, write_json
+from studies.records import threads, write_json
 from studies.stream import Stream, virtual_camera_of
-from studies.work import Store, Units, make
+from studies.unit_runner import Store, Units, make
 
 RATE, SINGLE_PICTURES_RATE = 30, 2  # Hz; single pictures are sent slowly enough that each is looked at
 AWAY_S = 3.0  # for which --unplug takes the camera away

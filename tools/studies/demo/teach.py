@@ -8,10 +8,10 @@ from houghstream import known_objects_t, status_t, teaching_t
 from houghstream.event_log import read_log
 from studies.command import call, die, step
 from studies.demo.pose_scatter import pose_figures
-from studies.measured import about, read_json, threads, write_json
+from studies.records import about, read_json, threads, write_json
 from studies.report.page import embedded, render, show
 from studies.stream import Processes, virtual_camera_of
-from studies.work import Store, Units, make
+from studies.unit_runner import Store, Units, make
 
 OBJECT, NAME = "coffee_mug", "mug"
 WORLD = 4  # of the rooms that are for development

@@ -6,8 +6,8 @@ import signal
 import sys
 
 from studies.command import Options, die, positive, prepare, recorded_folder
-from studies.measured import threads
-from studies.work import UnitFailed, locked
+from studies.records import threads
+from studies.unit_runner import UnitFailed, locked
 
 TARGETS = ("hs-render", "hs-train", "hs-import", "hs-log", "hs-evaluate", "hs-study")
 

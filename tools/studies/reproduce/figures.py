@@ -1,6 +1,6 @@
 """The figures of the report as SVG texts; None, or none in a list, where nothing is measured that they could show."""
 
-from studies.measured import mean_of
+from studies.records import mean_of
 from studies.report.charts import COLOURS, NARROW, Chart, grouped_bars, row_bars
 from studies.reproduce import paper
 from studies.reproduce.variants import (

@@ -18,7 +18,7 @@ from studies.reproduce.variants import (
     forest_of,
     is_gall,
 )
-from studies.work import Units
+from studies.unit_runner import Units
 
 CHECK_DEPTH = ("--check-depth",)
 HOUGH_FRAME = 0

@@ -6,7 +6,7 @@ import io
 import json
 import math
 
-from studies.measured import read_csv, read_json, train_seconds
+from studies.records import read_csv, read_json, train_seconds
 
 COLUMNS = ("kind", "what", "scene", "seed", "object", "metric", "value")
 BY_OBJECT = ("auc", "required", "precision", "recall")

@@ -4,14 +4,14 @@ import dataclasses
 import json
 
 from studies.command import die
-from studies.measured import commit_name, cpu_name, rounded, today, write_atomically
+from studies.records import commit_name, cpu_name, rounded, today, write_atomically
 from studies.report.page import picture, render
 from studies.reproduce import figures, tables
 from studies.reproduce.plan import Protocol, make_plan, quick
 from studies.reproduce.results import Results
 from studies.reproduce.summary import summarise
 from studies.reproduce.variants import LEFT_OUT_NAMES
-from studies.work import Runner, Store, with_inputs
+from studies.unit_runner import Runner, Store, with_inputs
 
 HOUGH = {"hough/before.png": "RGB features", "hough/after.png": "with depth value, derivatives and HoG"}
 FAILURES = {"failures/realtime.png": "The gravest of each scene; red: false, yellow: not found"}

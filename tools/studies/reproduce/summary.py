@@ -1,6 +1,6 @@
 """The figures of the comparison as one dictionary. What was not measured is None and is listed under "missing"."""
 
-from studies.measured import mean_of, ratio, relative
+from studies.records import mean_of, ratio, relative
 from studies.reproduce import paper
 from studies.reproduce.results import calibration_error, reliability
 from studies.reproduce.variants import (

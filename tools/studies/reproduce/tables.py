@@ -1,6 +1,6 @@
 """The tables of the report, each a list of rows with its header first."""
 
-from studies.measured import mean_of, relative
+from studies.records import mean_of, relative
 from studies.report.page import milliseconds, percent, show
 from studies.reproduce import paper
 from studies.reproduce.variants import (

@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 from studies.command import Options, die, know_messages, positive, step
-from studies.measured import REPOSITORY
+from studies.records import REPOSITORY
 from studies.soak.long_run import long_runs
 from studies.soak.page import Record
 from studies.soak.time_left import TimeLeft

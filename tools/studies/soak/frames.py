@@ -4,7 +4,7 @@ import struct
 import time
 
 from houghstream.event_log import read_log
-from studies.encoded import utime_of, with_utime
+from studies.wire_patch import utime_of, with_utime
 from studies.soak.wire import Sender
 
 FRAME = "OPENNI_FRAME"

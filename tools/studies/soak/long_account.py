@@ -6,7 +6,7 @@ import math
 import re
 import statistics
 
-from studies.measured import percentiles
+from studies.records import percentiles
 
 SETTLED_S, WINDOW_S = 120, 60  # from minute two on nothing may grow; it is looked at minute by minute
 # Of memory: it may swing, it may not grow.

@@ -11,7 +11,7 @@ import signal
 import time
 
 from studies.command import step
-from studies.measured import write_atomically
+from studies.records import write_atomically
 from studies.soak.faults import account, said
 from studies.soak.long_account import CHAIN, accounts, captured, cost, latencies, looks_of, wrong
 from studies.soak.wire import bus
@@ -87,7 +87,7 @@ class LongRun:
 
     def start_listeners(self):
         models = ("--models", self.options.data / "training" / "models")
-        from studies.following import LOOKS  # needs the messages' package
+        from studies.follow_speed import LOOKS  # needs the messages' package
 
         follows = self.options.follow
         self._start("detect", "hs-detect", "--forest", self.options.data / "forest",

@@ -4,7 +4,7 @@ says of which commit it is."""
 import json
 
 from studies.command import die
-from studies.measured import about, commit_name, read_json_if_any, write_atomically, write_json
+from studies.records import about, commit_name, read_json_if_any, write_atomically, write_json
 
 PARTS = ("faults", "long")
 COUNTS = ("received", "processed", "skipped", "passed_over", "lost", "missing", "refused")

@@ -7,7 +7,7 @@ import struct
 import threading
 import time
 
-from studies.encoded import frame_of, utime_of
+from studies.wire_patch import frame_of, utime_of
 
 GROUP = "239.255.76.67"
 SHORT, LONG = 0x4C433032, 0x4C433033

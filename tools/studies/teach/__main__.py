@@ -4,7 +4,7 @@ import pathlib
 
 from studies.command import Options, positive, some_of
 from studies.stream import enter_private_network
-from studies.work import main
+from studies.unit_runner import main
 
 # As hs-render takes orders them; those of the scenes objects_20_b, _d and _f.
 OBJECTS = ("bowl", "cereal_box", "coffee_mug", "soda_can", "teapot", "tumbler", "shampoo_bottle", "food_tin", "tea_box",

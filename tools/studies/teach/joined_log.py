@@ -4,7 +4,7 @@ utime, which must not repeat."""
 from typing import NamedTuple
 
 from houghstream.event_log import read_log, write_event
-from studies.encoded import with_utime
+from studies.wire_patch import with_utime
 
 FIRST_UTIME = 1_500_000_000_000_000
 

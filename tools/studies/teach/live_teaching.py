@@ -13,7 +13,7 @@ import time
 
 from houghstream import detections_t, teaching_t
 from houghstream.event_log import DamagedLog, read_log
-from studies.measured import read_csv, read_json, threads
+from studies.records import read_csv, read_json, threads
 from studies.stream import ProcessFailed, Processes, Stream
 from studies.teach.joined_log import FIRST_UTIME, Camera, frames_of, write_joined
 

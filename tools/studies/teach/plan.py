@@ -3,8 +3,8 @@
 import dataclasses
 import json
 
-from studies.measured import read_json, read_json_if_any, threads
-from studies.work import Runner, Store, Units, sha256_of_file
+from studies.records import read_json, read_json_if_any, threads
+from studies.unit_runner import Runner, Store, Units, sha256_of_file
 
 # Every maximum, by its score: what an AUC is measured with.
 RANKED = ("--min-mass", "0.05", "--threshold", "0", "--operating-score", "0")

@@ -1,7 +1,7 @@
 """What tools/bench teach leaves: summary.json, and a page with every model beside the true one."""
 
 from studies.command import step
-from studies.measured import about, read_json, rounded, threads, write_json
+from studies.records import about, read_json, rounded, threads, write_json
 from studies.report.page import embedded, render, show
 from studies.teach.plan import FPS, FRAMES, RANKED, Plan
 

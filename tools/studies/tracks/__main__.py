@@ -4,7 +4,7 @@ import pathlib
 
 from studies.command import Options, die, positive, some_of
 from studies.stream import enter_private_network
-from studies.work import main
+from studies.unit_runner import main
 
 # As hs-render takes orders them.
 SEQUENCES = ("walk", "pushed", "carried", "removed", "swapped", "cans", "arm", "jerk", "cameras")

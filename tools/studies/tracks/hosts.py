@@ -13,12 +13,12 @@ import shutil
 import time
 
 from studies.command import step
-from studies.following import make_log
-from studies.measured import about, read_json, threads, write_json
+from studies.follow_speed import make_log
+from studies.records import about, read_json, threads, write_json
 from studies.network import URL, Network
 from studies.stream import Processes, UsageWatch, enter_private_network
-from studies.tracks.hosts_heard import Record, figures, lost_host
-from studies.work import Runner, Store, Units
+from studies.tracks.host_records import Record, figures, lost_host
+from studies.unit_runner import Runner, Store, Units
 
 SCENE = "objects_20_a"  # twelve of the forty stand in it
 SEEN_VIEWS = ("--azimuths", 24, "--pitches", 2)

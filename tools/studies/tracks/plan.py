@@ -2,8 +2,8 @@
 
 import pathlib
 
-from studies.measured import threads
-from studies.work import Runner, Store, Units
+from studies.records import threads
+from studies.unit_runner import Runner, Store, Units
 
 WRONG = "0.02"  # metres by which one of three cameras is said to be elsewhere
 CAMERAS = ("CAMERA_1", "CAMERA_2", "CAMERA_3")

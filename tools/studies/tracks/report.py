@@ -8,8 +8,8 @@ import subprocess
 from houghstream import objects_t
 from houghstream.event_log import read_log
 from studies.command import step
-from studies.following import RATES, Replays, measure
-from studies.measured import about, read_json, write_json
+from studies.follow_speed import RATES, Replays, measure
+from studies.records import about, read_json, write_json
 from studies.report.page import render, show
 from studies.tracks import hosts
 from studies.tracks.plan import CAMERAS, WRONG, Plan

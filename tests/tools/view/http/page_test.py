@@ -9,7 +9,7 @@ import time
 
 from browser import Browser, find_chromium
 from studies.stream import Processes, enter_private_network
-from told_stream import CAMERA, ToldStream
+from scripted_stream import CAMERA, ToldStream
 
 SKIPPED = 77
 ROWS = "document.querySelectorAll('#objects tr[data-key]:not(.gone)').length"

@@ -1,4 +1,4 @@
-"""Tests of what is told of encoded messages, and of logs. Usage: PYTHONPATH=tools:build/python encoded_test.py"""
+"""Tests of what is told of encoded messages, and of logs. Usage: PYTHONPATH=tools:build/python wire_patch_test.py"""
 
 import pathlib
 import struct
@@ -8,7 +8,7 @@ import zlib
 
 from houghstream import detections_t
 from houghstream.event_log import DamagedLog, read_log, write_event
-from studies.encoded import frame_of, utime_of, with_utime
+from studies.wire_patch import frame_of, utime_of, with_utime
 
 
 class Log(unittest.TestCase):

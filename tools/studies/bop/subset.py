@@ -1,12 +1,12 @@
 """Writes a scene of a BOP set that holds the chosen images and the known objects only; pictures are links.
 
-Usage: choose.py --scene FOLDER --out FOLDER --names 2=cracker,5=mustard [--every N] [--targets FILE] [--digest TEXT]"""
+Usage: subset.py --scene FOLDER --out FOLDER --names 2=cracker,5=mustard [--every N] [--targets FILE] [--digest TEXT]"""
 
 import argparse
 import json
 import pathlib
 
-from studies.work import UnitFailed
+from studies.unit_runner import UnitFailed
 
 PICTURES = ("rgb", "depth", "mask_visib")
 FILES = ("scene_camera.json", "scene_gt.json", "scene_gt_info.json")

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from houghstream import detections_t, object_poses_t
-from studies.encoded import utime_of
+from studies.wire_patch import utime_of
 
 
 class FoundObject(NamedTuple):

@@ -1,6 +1,6 @@
 """What one viewer of hs-view's page costs the stream: paired replays, without and with him, and what hs-view takes meanwhile.
 
-    cd tools && PYTHONPATH=../build/python python3 -m studies.viewed --scene SCENE --forest FOREST --models MODELS --out OUT
+    cd tools && PYTHONPATH=../build/python python3 -m studies.page_load --scene SCENE --forest FOREST --models MODELS --out OUT
 
 SCENE is a folder in BOP format. The viewer asks for what a browser's page asks for; his browser's own work is not counted, as it
 is another machine's."""
@@ -14,8 +14,8 @@ import statistics
 import threading
 
 from studies.command import step
-from studies.following import make_log
-from studies.measured import about, read_json, write_json
+from studies.follow_speed import make_log
+from studies.records import about, read_json, write_json
 from studies.stream import Process, Stream, UsageWatch, enter_private_network
 
 CAMERA_HZ, PAGE_HZ = 30, 10
@@ -128,7 +128,7 @@ def main():
     enter_private_network()
     options.out.mkdir(parents=True, exist_ok=True)
     measured = measure(options)
-    write_json(options.out / "viewed.json", {**measured, **about("studies.viewed")})
+    write_json(options.out / "viewed.json", {**measured, **about("studies.page_load")})
     print(json.dumps({name: value for name, value in measured.items() if name != "runs"}, indent=2))
 
 

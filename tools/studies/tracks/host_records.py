@@ -2,8 +2,8 @@
 
 from houghstream import object_pose_t, object_poses_t, objects_t, tracked_object_t
 from houghstream.event_log import read_log
-from studies.encoded import utime_of
-from studies.measured import percentiles
+from studies.wire_patch import utime_of
+from studies.records import percentiles
 
 
 class Record:

@@ -17,7 +17,7 @@ import sys
 import time
 
 from studies.command import die, prepare, step
-from studies.measured import cpu_name, today, write_atomically
+from studies.records import cpu_name, today, write_atomically
 from studies.stream import ProcessFailed
 
 INPUT = re.compile(r"\{([^{}]+)\}")

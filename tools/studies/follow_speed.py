@@ -1,7 +1,7 @@
 """How fast hs-pose --follow is: frame to pose, and to the world's objects of hs-track, at several rates, what is lost, and
 what it costs. tools/bench tracks asks measure(); by itself:
 
-    cd tools && PYTHONPATH=../build/python python3 -m studies.following --scene SCENE --forest FOREST --models MODELS --out OUT
+    cd tools && PYTHONPATH=../build/python python3 -m studies.follow_speed --scene SCENE --forest FOREST --models MODELS --out OUT
 
 SCENE is a folder in BOP format whose frames follow one another closely (hs-render scene NAME --frames 300)."""
 
@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 from houghstream.event_log import read_log, write_event
 from studies.command import call, step
-from studies.encoded import with_utime
-from studies.measured import about, read_json, write_json
+from studies.wire_patch import with_utime
+from studies.records import about, read_json, write_json
 from studies.stream import Stream, enter_private_network
-from studies.work import sha256_of
+from studies.unit_runner import sha256_of
 
 RATES = (30, 60, 90)  # Hz
 LOOKS = 5  # of the detector, a second
@@ -111,7 +111,7 @@ def main():
     data = {name: getattr(options, name) for name in ("scene", "forest", "models")}
     rates = tuple(int(rate) for rate in options.rates.split(","))
     measured = measure(options.programs, data, options.out, Replays(rates, options.seconds, options.rounds))
-    write_json(options.out / "following.json", {**measured, **about("studies.following")})
+    write_json(options.out / "following.json", {**measured, **about("studies.follow_speed")})
     print(json.dumps({name: {key: value for key, value in rate.items() if key != "runs"} for name, rate in measured.items()},
                      indent=2))  # fmt: skip
 

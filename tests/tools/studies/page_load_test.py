@@ -1,11 +1,11 @@
-"""Tests of what is measured of a viewer of hs-view's page. Usage: PYTHONPATH=tools:build/python viewed_test.py"""
+"""Tests of what is measured of a viewer of hs-view's page. Usage: PYTHONPATH=tools:build/python page_load_test.py"""
 
 import http.server
 import threading
 import time
 import unittest
 
-from studies import viewed
+from studies import page_load
 from studies.stream import Usage
 
 FRAMES = 5
@@ -41,7 +41,7 @@ class Viewer(unittest.TestCase):
         server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Page)
         server.asked, server.leave = [], threading.Event()
         threading.Thread(target=server.serve_forever, daemon=True).start()
-        viewer = viewed.Viewer(server.server_address[1])
+        viewer = page_load.Viewer(server.server_address[1])
         end = time.monotonic() + 20
         while viewer.bytes < 2000 * FRAMES and time.monotonic() < end:
             time.sleep(0.01)
@@ -61,7 +61,7 @@ class Figures(unittest.TestCase):
             "processes": {"hs-pose": {"received": 1798, "skipped": 3, "lost": 0}},
         }
         self.assertEqual(
-            viewed.figures(observed, 1800, 3.0, 60),
+            page_load.figures(observed, 1800, 3.0, 60),
             {"p50_ms": 25.0, "p99_ms": 48.0, "lost": 2, "skipped": 3, "page_cores": 0.05},
         )
 
@@ -69,14 +69,14 @@ class Figures(unittest.TestCase):
         usage = Usage()
         for now, cpu in ((0.0, 2.0), (1.0, 2.5), (9.0, 5.0)):
             usage.add(now, cpu, 100.0)
-        self.assertEqual(viewed.cpu_seconds(usage), 3.0)
+        self.assertEqual(page_load.cpu_seconds(usage), 3.0)
 
     def test_differences_are_of_pairs(self):
         pairs = [
             {"alone": {"p50_ms": alone, "p99_ms": 40.0}, "viewed": {"p50_ms": alone + more, "p99_ms": 41.0}}
             for alone, more in ((20.0, 1.0), (30.0, -1.0), (25.0, 0.5))
         ]
-        found = viewed.compare(pairs)
+        found = page_load.compare(pairs)
         self.assertEqual(found["alone"]["p50_ms"], 25.0)
         self.assertEqual(found["difference"]["p50_ms"], {"median": 0.5, "least": -1.0, "greatest": 1.0})
         self.assertEqual(found["difference"]["p99_ms"]["median"], 1.0)
