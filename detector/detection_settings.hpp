@@ -13,8 +13,8 @@ namespace houghstream {
 
 struct Forest;
 
-/// How a frame is searched: each stage's settings, which stand beside the stage; the defaults are those of the profile
-/// "realtime".
+/// Settings of a search: those of each stage, which are declared beside the stage. The defaults are those of the
+/// profile "realtime".
 struct DetectionSettings {
   int threads = 2;  ///< any number gives the same detections
   PatchSpacing spacing;
@@ -41,10 +41,11 @@ constexpr const char* kRealtimeProfile = "realtime";
 /// The profiles that the product trains and searches by, see training/profiles.hpp.
 std::vector<std::string> profile_names();
 
-/// How forests of a profile are searched. Throws InputError that lists the names for an unknown name.
+/// Returns the settings with which forests of a profile are searched. Throws InputError that lists the names for an
+/// unknown name.
 DetectionSettings detection_settings(const std::string& profile);
 
-/// How a forest wants to be searched: by the profile that it was trained by.
+/// Returns the settings of the profile that the forest was trained with.
 DetectionSettings detection_settings(const Forest& forest);
 
 }  // namespace houghstream

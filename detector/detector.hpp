@@ -31,7 +31,7 @@ class Detector {
   Detections detect(const RgbdFrame& frame, DetectorWorkspace& workspace,
                     const std::vector<ChromaPair>& camera_colours = {}) const;
 
-  /// The same with memory of its own: for a single frame.
+  /// Searches a single frame, with a workspace that it makes for this call.
   Detections detect(const RgbdFrame& frame) const;
 
   const Forest& forest() const;

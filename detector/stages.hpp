@@ -39,7 +39,7 @@ struct DetectorWorkspace {
   PatchGrid patches;
   std::vector<FeatureImage> features;  ///< one for each level
   PatchPosteriors posteriors;
-  // What stages need for themselves:
+  // Workspaces of the stages:
   FeatureWorkspace feature_workspace;
   LeafWorkspace leaf_workspace;
   VotingWorkspace voting_workspace;

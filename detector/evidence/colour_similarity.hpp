@@ -35,33 +35,33 @@ class ColourSimilarity {
   /// -1 to 1; near 0 for plain surfaces, whose differences are noise, and 0 for fewer than a dozen pairs.
   float correlation() const;
 
-  /// Logarithm of the contrast of the colours seen over that of the remembered ones, -2 to 2; 0 for fewer than a dozen
-  /// pairs. Dim, hazy and blurred pictures show less than was taught.
+  /// Returns the logarithm of observed over expected contrast, -2 to 2; 0 for fewer than twelve pairs. Dim, hazy and
+  /// blurred images show less contrast than the training views.
   float log_contrast_ratio() const;
 
   MeanColours means() const;
 
-  /// How far the mean colour seen is from the remembered one, at any strength that haze or a camera gives it: distance
-  /// in the a*b* plane over the spread of the colours seen, at most 4; 0 for fewer than a dozen pairs. Tells plain
-  /// surfaces apart, which correlation cannot.
+  /// Returns the distance of the mean chroma from the expected one in the a*b* plane, over the standard deviation of
+  /// the observed chroma, at most 4; 0 for fewer than twelve pairs. The strength of the expected chroma is free, since
+  /// haze and cameras change it. This separates uniform surfaces, which correlation cannot.
   float mean_chroma_distance() const;
 
-  /// How far the hues differ, pair by pair, where both colours are strong: what the scalar product of the colours in
-  /// the a*b* plane lacks to the largest that colours of their strengths can have, over that largest, which pale
-  /// colours keep from reaching it. 0 for the same hues at any strength, as haze and exposure change it, 1 for hues at
-  /// right angles, at most 2; 0 for fewer than a dozen pairs. A purple can is no red one, however alike their print.
+  /// Returns how much the sum of the scalar products of the chroma vectors lacks to the largest value that vectors of
+  /// these lengths can have, over that value; a constant in the divisor keeps pale colours from mattering. It is 0 for
+  /// equal hues at any saturation (haze and exposure change that), 1 for hues at right angles, at most 2, and 0 for
+  /// fewer than twelve pairs. A purple can thereby differs from a red one with the same texture.
   float hue_mismatch() const;
 
-  /// How much weaker the colours seen are than the remembered ones, beyond what their brightness explains: logarithm of
-  /// the expected strength in the a*b* plane over the one seen in the remembered hues, -1 to 2; 0 where no colour is
-  /// remembered, and for fewer than a dozen pairs. A black carton is no dark red one.
+  /// Returns the logarithm of expected over observed chroma along the template's hues after correction for brightness,
+  /// clamped to [-1, 2]. A black carton thereby differs from a dark red one. Returns 0 for achromatic templates and for
+  /// fewer than twelve pairs.
   float chroma_deficit() const;
 
  private:
   /// Sums of a, b, a * a, b * b and a * b.
   using Sums = std::array<std::int32_t, 5>;  // exact for 33 000 pairs, many times what a view has
 
-  /// Of the colours in the a*b* plane, about grey and not about their mean: sums over all pairs.
+  /// Sums over all pairs of the products of chroma vectors, about grey and not about their mean.
   struct Strengths {
     double product = 0.0;
     double expected_sq = 0.0;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-
 namespace houghstream {
 namespace {
 
@@ -26,8 +25,8 @@ void for_places(cv::Size size, int stride, const Visit& visit) {
 
 constexpr int kThinnings = 8;  // at most: then patches stand 16 times as far apart
 
-/// How often the places of a grid may be thinned out before this one goes. What is left stands by turns in the order of
-/// a chess board's black fields and in rows and columns.
+/// Returns how often a grid may be thinned out before this place is dropped. The remaining places alternate between a
+/// chess board's black fields and rows and columns.
 int thinnings_survived(int column, int row) {
   int halvings = 0;
   while (2 * halvings < kThinnings && ((column | row) >> halvings & 1) == 0) ++halvings;
@@ -35,7 +34,7 @@ int thinnings_survived(int column, int row) {
   return std::min(kThinnings, 2 * halvings + (black ? 1 : 0));
 }
 
-/// How often places are thinned out at a depth.
+/// Returns how often places are thinned out at a depth.
 class Thinning {
  public:
   Thinning(const PatchSpacing& spacing, const Camera& camera) {
@@ -45,7 +44,7 @@ class Thinning {
     }
   }
 
-  /// Of a place that survives so many: whether it is still there at this depth.
+  /// Returns whether a place that survives so many thinnings is kept at this depth.
   bool leaves(int survived, float z) const { return survived == kThinnings || z > farthest_[survived]; }
 
   int count(float z) const {

@@ -32,7 +32,7 @@ struct PatchGrid {
   void clear();  ///< keeps the memory
 };
 
-/// What the patches of a frame are like.
+/// Settings of the patches of a frame.
 struct PatchLayout {
   PatchSettings patch;
   PatchSpacing spacing;

@@ -76,7 +76,7 @@ HWY_INLINE void retire(hn::Mask<Int> arrived, Ints who, Ints way, std::int32_t* 
   for (std::size_t i = 0; i < count; ++i) leaves[patches[i]] = numbers[i];
 }
 
-/// Those who have arrived leave, and the others close up, so that nobody waits for the slowest.
+/// Patches that have reached a leaf are retired and the others compacted, so that no lane waits for the deepest path.
 void compact(Walkers& w, std::int32_t* leaves) {
   const Int d;
   const Ints leaf = hn::Set(d, packed::kLeaf);

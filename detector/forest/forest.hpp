@@ -13,7 +13,7 @@
 
 namespace houghstream {
 
-/// What a detection's score is. Stored in the forest file.
+/// Kind of a detection's score. Stored in the forest file.
 enum class Scoring : std::uint32_t {
   kEvidence = 0,  ///< a calibrated probability from votes and from how remembered views fit, see evidence/score.hpp
   kVotes = 1,     ///< vote mass over that of a wholly visible object, at most 1 (the paper's confidence)
@@ -39,7 +39,7 @@ struct LeafView {
   float weight = 0.0F;
 };
 
-/// What a leaf knows of one class.
+/// Statistics of one class in a leaf.
 struct LeafClass {
   std::uint32_t first_vote = 0;   ///< into Forest::votes
   std::uint32_t first_view = 0;   ///< into Forest::leaf_views

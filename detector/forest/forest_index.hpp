@@ -9,7 +9,7 @@
 
 namespace houghstream {
 
-/// What detection asks of every leaf it meets, side by side: one cache miss instead of two.
+/// Values that detection reads of each leaf, side by side, so that a leaf costs one cache miss instead of two.
 struct LeafSummary {
   float max_posterior = 0.0F;     ///< the largest p(class | leaf)
   std::uint32_t first_class = 0;  ///< as Forest::leaves

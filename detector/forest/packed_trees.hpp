@@ -21,7 +21,7 @@ struct PackedTrees {
   std::vector<std::int32_t> roots;  ///< per tree, into nodes
 };
 
-/// How a PackedNode is read, from the lowest bits on.
+/// Layout of a PackedNode, from the lowest bits on.
 namespace packed {
 constexpr int kStepBits = 5;  ///< of dx1, dy1, dx2 and dy2 each, with sign
 constexpr int kPlaneShift = 20;

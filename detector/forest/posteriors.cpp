@@ -18,7 +18,7 @@ void sum_certainties(const ForestIndex& index, const RunLeaves& seen, std::vecto
   }
 }
 
-/// What a leaf knows, which is little even where there are many classes.
+/// Adds the statistics of a leaf, which has few classes even where the forest has many.
 struct Known {
   const LeafClass* begin;
   const LeafClass* end;
@@ -47,7 +47,7 @@ void sum_by_class(const ForestIndex& index, const std::vector<std::uint32_t>& so
   }
 }
 
-/// What the leaves of a run's patch number `i` know of a class.
+/// Returns the posterior of a class at the leaves of a run's patch number `i`.
 void append_entries(const ForestIndex& index, std::size_t class_index, std::size_t i, const RunLeaves& seen,
                     std::vector<std::uint32_t>& entries) {
   for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree) {

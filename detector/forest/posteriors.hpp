@@ -59,7 +59,7 @@ class PatchPosteriors {
   PerWorker<Worker> workers_;
 };
 
-/// Of which patches posteriors are wanted.
+/// Patches whose posteriors are computed.
 struct PosteriorInput {
   const ForestIndex& index;
   const std::vector<FeatureImage>& features;  ///< one image for each level

@@ -4,8 +4,8 @@
 
 namespace houghstream {
 
-/// One number for each thing that a score weighs: what score_terms() makes of the evidence, or the weights that
-/// multiply it. Of all products of two measures those that are here helped most on development worlds.
+/// Terms of the logistic regression, as score_terms() computes them from the evidence, or the weights of these terms.
+/// Of all products of two measures the ones listed here reduced the loss most on the development worlds.
 struct ScoreTerms {
   float constant = 0.0F;
   float log_vote_mass = 0.0F;         ///< logarithm of the vote mass over the expected one
@@ -16,28 +16,28 @@ struct ScoreTerms {
   float colour_correlation = 0.0F;    ///< correlation of colours
   float hue_mismatch = 0.0F;          ///< see ColourSimilarity
   float mean_chroma_distance = 0.0F;  ///< squared: light makes a little of it
-  float depth_residual = 0.0F;        ///< error of the visible depth
-  // What is mostly unknown: mass and likeness say something else there, and near surfaces lose their depth, far ones
-  // seldom.
+  /// Error of the visible depth Objects mostly without depth: vote mass and colour correlation are.
+  float depth_residual = 0.0F;
+  ///< distributed differently there, and near surfaces lose their depth more often than far ones.
   float no_depth_log_vote_mass = 0.0F;
   float no_depth_colour_correlation = 0.0F;
   float no_depth_distance = 0.0F;                ///< with the distance's logarithm
   float colour_correlation_hue_mismatch = 0.0F;  ///< print of other colours may be as like as can be
   float alternative_scale_gain = 0.0F;           ///< gain of another size, see alternative_scale_gain
-  float log_certainty = 0.0F;  ///< logarithm: as many votes of patches that are less sure come from elsewhere
-  // Products for which those above are too straight.
+  float log_certainty = 0.0F;  ///< logarithm: as many votes of patches that are less sure come from elsewhere Products,
+                               ///< where the terms above are not linear in the logit.
   float log_visible_sq = 0.0F;
   float alternative_scale_gain_sq = 0.0F;
   float free_space_violation_log_certainty = 0.0F;
   float hue_mismatch_chroma_distance = 0.0F;
   float depth_residual_sq = 0.0F;
-  // How well the object can be seen: what is small or faint looks less like itself than what is large and clear.
+  // Visibility of the object: small or faint objects match their templates less well than large and clear ones.
   float extent = 0.0F;                     ///< logarithm of its radius in pixels, over 40
   float log_contrast_ratio = 0.0F;         ///< see ColourSimilarity
   float extent_colour_correlation = 0.0F;  ///< products
   float contrast_colour_correlation = 0.0F;
-  float chroma_deficit = 0.0F;  ///< see ColourSimilarity
-  // Whether it ends where its outline is, see BoundaryContinuation.
+  /// See ColourSimilarity Continuation of the scene across the boundary, see BoundaryContinuation.
+  float chroma_deficit = 0.0F;
   float boundary_continuation = 0.0F;
   float surface_continuation = 0.0F;
   float colour_continuation = 0.0F;
@@ -46,7 +46,7 @@ struct ScoreTerms {
 
 constexpr std::size_t kScoreTerms = 30;
 
-/// All of them, in the order in which the fit sums them and the forest file holds them.
+/// The terms in the order in which the fit sums them and the forest file stores them.
 constexpr std::array<float ScoreTerms::*, kScoreTerms> kScoreTermList = {
     &ScoreTerms::constant,
     &ScoreTerms::log_vote_mass,
@@ -80,7 +80,7 @@ constexpr std::array<float ScoreTerms::*, kScoreTerms> kScoreTermList = {
     &ScoreTerms::boundary_continuation_correlation};
 static_assert(sizeof(ScoreTerms) == kScoreTerms * sizeof(float), "a term is missing in the list");
 
-/// Their names, in the order of the list.
+/// Names of the terms, in the order of kScoreTermList.
 constexpr std::array<const char*, kScoreTerms> kScoreTermNames = {"constant",
                                                                   "log_vote_mass",
                                                                   "log_visible",
@@ -113,10 +113,9 @@ constexpr std::array<const char*, kScoreTerms> kScoreTermNames = {"constant",
                                                                   "boundary_continuation_correlation"};
 static_assert(kScoreTermNames.back() != nullptr, "a term has no name");
 
-/// The weights that are assumed before any example is seen: what sixteen household objects have in common. hs-teach
-/// learnt them from 64257 hypotheses, 3599 of them true, in 240 practice rooms each of two stores of seven and nine
-/// objects of `hs-render training --objects all_20` (`hs-teach practise -v` says what a store's objects have in
-/// common).
+/// Returns the prior weights: the ones that sixteen household objects have in common. hs-teach learnt them from 64257
+/// hypotheses, 3599 of them true positives, in 240 synthetic scenes for each of two stores of seven and nine objects of
+/// `hs-render training --objects all_20` (`hs-teach practise -v` prints the common weights of a store's objects).
 constexpr ScoreTerms prior_weights() {
   ScoreTerms weights;
   weights.constant = 3.04F;
@@ -152,8 +151,8 @@ constexpr ScoreTerms prior_weights() {
   return weights;
 }
 
-/// How evidence becomes a probability: the weights of its terms, each object's own. hs-train learns them
-/// (training/score_training.hpp) on pictures that it composes of the training views.
+/// Weights of the logistic regression that turns evidence into a probability, for each object. hs-train learns them
+/// (training/score_training.hpp) on images composed of the training views.
 struct ScoreModel {
   ScoreTerms weights = prior_weights();
 };

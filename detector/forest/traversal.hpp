@@ -41,7 +41,7 @@ struct RunLeaves {
 
 using LeafVisitor = std::function<void(const RunLeaves&)>;
 
-/// What find_leaves needs for itself, to be kept from frame to frame.
+/// Workspace of find_leaves(), reused from frame to frame.
 struct LeafWorkspace {
   struct Worker {
     std::vector<std::int32_t> leaves;    ///< tree by tree, of the patches that are left

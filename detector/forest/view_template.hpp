@@ -8,7 +8,7 @@
 
 namespace houghstream {
 
-/// Two cells of one row or one column, across a view's outline.
+/// Two cells of one row or one column, on both sides of a view's boundary.
 struct OutlineCells {
   struct Cell {
     std::uint8_t row = 0;
@@ -16,13 +16,13 @@ struct OutlineCells {
   };
   static constexpr int kApart = 3;  ///< cells
   Cell inside;                      ///< the object's, one cell in from its outline
-  Cell beyond;                      ///< two cells out
-  /// What depth gains from one to the other where the object's surface goes on straight, millimetres, relative as
-  /// TemplateGrid::mm; TemplateGrid::kNoDepth where it is not known.
+  Cell beyond;  ///< two cells out Expected change of depth from one to the other where the object's surface continues
+                ///< straight, millimetres, relative as TemplateGrid::mm; TemplateGrid::kNoDepth where it is unknown.
   std::int16_t gained_mm = 0;
 };
 
-/// What a training view shows, over its box and a rim around it: depth relative to the object's centre, and colour.
+/// Depth relative to the object's centre, and colour, on a grid of cells over a training view's box and a rim around
+/// it.
 struct TemplateGrid {
   static constexpr int kBoxSide = 20;  ///< cells per side of the box
   static constexpr int kRim = 2;       ///< cells around it
@@ -38,8 +38,8 @@ struct TemplateGrid {
   std::array<OutlineCells, 4 * kBoxSide> outline{};
 };
 
-/// What is to be remembered of a view: `mask` is CV_8UC1, 255 on the object, `box_px` its bounding box, `centre_camera`
-/// the object's centre, metres.
+/// Returns the grid of a view. `mask` is CV_8UC1, 255 on the object, `box_px` its bounding box, `centre_camera` the
+/// object's centre, metres.
 TemplateGrid make_template_grid(const RgbdFrame& view, const cv::Mat& mask, const cv::Rect& box_px,
                                 const Eigen::Vector3f& centre_camera);
 

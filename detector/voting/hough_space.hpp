@@ -13,8 +13,8 @@ namespace houghstream {
 
 constexpr float kVoteReach = 2.5F;  ///< of vote_kernel, in sigmas
 
-/// How much a vote this far from a maximum supports it: (1 - d^2 / reach^2)^2 with a reach of 2.5 sigma, close to a
-/// Gaussian, but it needs no exponential and ends at the reach.
+/// Returns the weight of a vote at this distance from a maximum: (1 - d^2 / reach^2)^2 with a reach of 2.5 sigma. It
+/// approximates a Gaussian, needs no exponential and is zero beyond the reach.
 inline float vote_kernel(float distance_sq, float vote_sigma) {
   const float reach = kVoteReach * vote_sigma;
   const float q = 1.0F - distance_sq / (reach * reach);
@@ -49,7 +49,7 @@ struct HoughSpace {
                                           ///< a patch's footprint and the spread of its votes shrink with it
 };
 
-/// What votes are cast of.
+/// Input of the voting.
 struct VotingInput {
   const Forest& forest;
   const PatchGrid& patches;
@@ -68,13 +68,13 @@ struct CastVotes {
   std::vector<std::uint32_t> voters;  ///< index of who cast it
 };
 
-/// What meets in a cell.
+/// Votes of a cell.
 struct CellSum {
   std::uint32_t votes = 0;
   float weight = 0.0F;
 };
 
-/// What cast_votes needs for itself, to be kept from class to class.
+/// Workspace of cast_votes(), reused from class to class.
 struct CastWorkspace {
   CastVotes cast;
   std::vector<CellSum> sums;
@@ -99,7 +99,7 @@ struct CellGrid {
   float cy = 0.0F;
 };
 
-/// Who casts votes, and where to.
+/// Patches that cast votes, and the grid that receives them.
 struct CastInput {
   const Forest& forest;
   const PatchGrid& patches;

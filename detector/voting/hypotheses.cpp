@@ -75,7 +75,7 @@ Hypothesis score_maximum(const VotingInput& input, const Eigen::Vector3f& centre
   return hypothesis;
 }
 
-/// What supports it, by patch and by view.
+/// Adds the supporting patches and templates to the hypothesis.
 void add_support(const Forest& forest, const SparseSums::Weights& by_voter, VotingWorkspace::Worker& workspace,
                  Hypothesis& hypothesis) {
   workspace.by_patch.clear();

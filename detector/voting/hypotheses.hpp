@@ -39,7 +39,7 @@ class SparseSums {
   std::vector<std::uint64_t> touched_;  // a bit for each sum, so that they need no sorting
 };
 
-/// What find_hypotheses needs for itself, to be kept from frame to frame.
+/// Workspace of find_hypotheses(), reused from frame to frame.
 struct VotingWorkspace {
   struct Worker {
     HoughSpace space;
@@ -55,8 +55,8 @@ struct VotingWorkspace {
   PerWorker<Worker> workers;
 };
 
-/// Of the maxima of a class's votes in own.space the heaviest, as many as the settings say and heaviest first: those of
-/// the Hough image's highest that have the mass that is asked for.
+/// Returns the maxima of a class's votes in workspace.space with the largest vote mass, in descending order, at most as
+/// many as the settings allow and each with the minimum mass.
 std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t class_index,
                                          VotingWorkspace::Worker& workspace);
 

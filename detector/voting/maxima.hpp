@@ -8,8 +8,8 @@
 
 namespace houghstream {
 
-/// How many of each of so many classes are looked at: `per_class` of up to four, of more so many fewer that the sum
-/// stays, but at least six, so that time grows less than the number of classes.
+/// Returns the number of maxima that are scored for each class: `per_class` for up to four classes, fewer for more
+/// classes so that their sum stays, but at least six. Time thereby grows less than the number of classes.
 int per_class_budget(std::size_t classes, int per_class);
 
 /// A local maximum of the Hough image.
@@ -19,7 +19,7 @@ struct HoughCell {
   float value = 0.0F;
 };
 
-/// What find_maxima needs for itself, to be kept from class to class.
+/// Workspace of find_maxima(), reused from class to class.
 struct MaximaWorkspace {
   std::vector<HoughCell> cells;
   std::vector<VoteRange> ranges;

@@ -17,7 +17,7 @@ struct VoteRange {
 /// The votes seen within `radius_cells` of a cell, row by row. `ranges` is overwritten.
 void ranges_near(const HoughSpace& space, int cell_x, int cell_y, int radius_cells, std::vector<VoteRange>& ranges);
 
-/// The same for all votes within reach of a centre (camera frame, metres), and for some beyond it.
+/// Lists the ranges of all votes within reach of a centre (camera frame, metres), and of some beyond it.
 void ranges_around(const HoughSpace& space, const Camera& camera, const Eigen::Vector3f& centre, float vote_sigma,
                    std::vector<VoteRange>& ranges);
 

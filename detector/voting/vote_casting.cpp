@@ -58,7 +58,7 @@ HWY_INLINE hn::Vec<Int> cells_of(Floats x, Floats y, Floats z, const CellGrid& g
   return hn::IfThenElse(hn::RebindMask(di, seen), cell, hn::Set(di, static_cast<std::int32_t>(grid.outside())));
 }
 
-/// What the votes of one voter have in common.
+/// Values that the votes of one voter share.
 struct VoteBatch {
   float probability;  // p(class | leaf)
   float fraction;     // of one tree

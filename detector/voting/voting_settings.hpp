@@ -4,7 +4,7 @@
 
 namespace houghstream {
 
-/// How votes are cast and their maxima found.
+/// Settings of the voting and of the search for its maxima.
 struct VotingSettings {
   float min_mass_fraction = 0.02F;  ///< of a class's expected mass, for a maximum to be looked at
   int maxima_per_class = 64;        ///< highest of the Hough image that are looked at in 3-D, see per_class_budget
