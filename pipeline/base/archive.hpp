@@ -47,7 +47,7 @@ struct ArchiveReader {
     std::memcpy(to, bytes.data(), size);
     bytes.remove_prefix(size);
   }
-  /// Of a list whose items take at least so many bytes each.
+  /// Reads the length of a list whose items take at least so many bytes each.
   std::size_t count(std::size_t item_bytes) {
     std::uint64_t items = 0;
     take(&items, sizeof items);

@@ -12,7 +12,7 @@
 
 namespace houghstream {
 
-/// Of a member that is in its settings' list of fields.
+/// Returns the description of a member that is in its settings' list of fields.
 template <typename Settings, typename Value>
 NumberRange range_of(Value Settings::*member) {
   NumberRange range;
@@ -43,7 +43,7 @@ void check_number(const NumberField<Settings, Value>& field, Value value, const 
 template <typename Settings>
 void check_settings(const Settings& settings, const std::string& source);
 
-/// What a list of fields says, and no more: for a check_settings() that goes on from there.
+/// Checks the fields of a list alone, for a check_settings() that adds checks of its own.
 template <typename Settings>
 void check_fields(const Settings& settings, const std::string& source) {
   fields(settings, [&](const auto& field) {

@@ -39,7 +39,7 @@ bool is_same(int open_file, const fs::path& file) {
   return fstat(open_file, &a) == 0 && stat(file.c_str(), &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
-/// Whether the place is the folder or lies in it, at any depth and by whatever name; it need not be there.
+/// Returns whether the path is the folder or lies in it, at any depth and by whatever name; it need not exist.
 bool lies_in(const fs::path& place, const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) return false;
@@ -71,7 +71,7 @@ int open_locked(const fs::path& partial, const fs::path& file) {
   }
 }
 
-/// Of some network and FUSE file systems, and of some special files.
+/// Some network and FUSE file systems, and some special files, return this error.
 bool knows_no_sync(int error) {
   return error == EINVAL || error == ENOSYS || error == ENOTSUP || error == EROFS;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-// How every program of this project reads and writes its files.
+// Reading and writing of files, which every program of this project uses.
 
 namespace houghstream {
 
@@ -16,13 +16,13 @@ void require_regular_file(const std::filesystem::path& file, const char* expecte
 /// All bytes of an ordinary file. Throws InputError where it is none, or cannot be read to its end.
 std::string read_file(const std::filesystem::path& file, const char* expected);
 
-// What a text of a file holds within one another, asked before it is parsed; whether it is JSON or YAML is not.
+// Checks the nesting depth of a text before it is parsed; the text may be JSON or YAML.
 
 /// Throws InputError where the JSON holds lists or objects within one another more than 64 times: who reads, copies or
 /// prints it goes down as deep as it goes.
 void check_json_nesting(std::string_view text, const std::string& source);
 
-/// What the name of a file that is being written ends with.
+/// Ending of the name of a file that is being written.
 inline constexpr const char* kPartialEnding = ".partial";
 
 /// Throws InputError where the output, or the FILE.partial that it is first written to, is the input itself, by
@@ -33,29 +33,29 @@ void require_other_file(const std::filesystem::path& output, const std::filesyst
 /// files. Asked before the work whose result is to go there.
 void require_writable(const std::filesystem::path& file);
 
-/// The same for a folder, which may be missing with those above it. Makes none.
+/// Throws InputError where the folder could not be written; it and its parents may be missing. Makes no folder.
 void require_writable_folder(const std::filesystem::path& folder);
 
 /// Returns when what was written to the file, or the names in the folder, are on the disk, so that a power cut leaves
 /// them. Throws InputError where the disk fails; a file system that knows no such thing is taken as it is.
 void sync_to_disk(const std::filesystem::path& path);
 
-/// What becomes of what is there already: of a FILE, and of the FILE.partial that a killed program left.
+/// Treatment of existing files: of FILE, and of the FILE.partial that a killed program left.
 enum class Existing {
   kReplaced,           ///< both go: what is written can be had again
   kRecordingReplaced,  ///< FILE is replaced; what a killed program recorded stays, as FILE.interrupted-N
   kRecordingKept       ///< both stay: the new recording takes the next number, FILE_2, FILE_3, ...
 };
 
-/// Of a recording, as the option --replace says.
+/// Returns the treatment that the option --replace asks for, for a recording.
 constexpr Existing existing_of_recording(bool replace) {
   return replace ? Existing::kRecordingReplaced : Existing::kRecordingKept;
 }
 
-/// An output that is there as a whole or not at all: it is written as FILE.partial beside FILE and takes FILE's place
-/// in one step. Until then, and for good where it fails, FILE is what it was. A FILE.partial that a killed program left
-/// is removed by the next one that writes FILE, or, of a recording, renamed (recording_names.hpp). Where FILE is a
-/// device or a pipe, it is written as it is. Not thread-safe.
+/// Writes a file atomically: data go to FILE.partial, and commit() renames it to FILE. Before commit(), and after a
+/// failure, FILE keeps its previous content. A FILE.partial that a killed program left is removed by the next one that
+/// writes FILE, or, of a recording, renamed (recording_names.hpp). Where FILE is a device or a pipe, it is written as
+/// it is. Not thread-safe.
 class AtomicFile {
  public:
   /// `ending` of the file that is written, for libraries that go by it. Throws InputError where it cannot be made, or
@@ -77,13 +77,13 @@ class AtomicFile {
   /// Where to write: an empty file.
   const std::filesystem::path& partial() const { return partial_; }
 
-  /// What was written, and has been closed by who wrote it, becomes FILE, and is on the disk when this returns. An
-  /// older FILE goes only once the new one is on the disk. Where there is none, FILE has its name first: who is killed
-  /// while a slow disk takes a long recording leaves it whole. Throws InputError; what was written can then still be
-  /// kept.
+  /// Renames the partial file, which its writer has closed, to FILE, and returns once it is on the disk. An older FILE
+  /// is replaced only once the new one is on the disk. Where there is none, the rename comes first, so that a program
+  /// that is killed while a slow disk syncs a long recording leaves it whole. Throws InputError; the data can then
+  /// still be kept by keep_partial().
   void commit();
   [[deprecated("is commit() now")]] void publish() { commit(); }
-  /// What was written stays as FILE.partial: what cannot be had again, like a recording on a full disk.
+  /// Keeps the data as FILE.partial, for data that cannot be had again, like a recording on a full disk.
   void keep_partial();
   [[deprecated("is keep_partial() now")]] void keep() { keep_partial(); }
 

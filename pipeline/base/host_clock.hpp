@@ -11,7 +11,7 @@ inline std::int64_t utime_now() {
   return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
 }
 
-/// The same of a moment that a steady clock has shown.
+/// Converts a time of the steady clock.
 inline std::int64_t utime_of(std::chrono::steady_clock::time_point moment) {
   const auto ago = std::chrono::steady_clock::now() - moment;
   return utime_now() - std::chrono::duration_cast<std::chrono::microseconds>(ago).count();

@@ -52,7 +52,7 @@ void walk_jpeg(const std::uint8_t* jpeg, std::size_t size, const Visit& visit) {
   }
 }
 
-/// Of its largest frame; 0 where it has none.
+/// Returns the pixels of its largest frame; 0 where it has none.
 std::uint64_t jpeg_pixels(const std::uint8_t* jpeg, std::size_t size) {
   std::uint64_t maximum = 0;
   walk_jpeg(jpeg, size, [&](std::uint8_t marker, std::size_t at) {
@@ -63,7 +63,7 @@ std::uint64_t jpeg_pixels(const std::uint8_t* jpeg, std::size_t size) {
   return maximum;
 }
 
-/// Whether anything ends its last scan: a decoder fills up what is missing of one.
+/// Returns whether a marker ends the last scan; a decoder would fill up a truncated scan.
 bool has_jpeg_end(const std::uint8_t* jpeg, std::size_t size) {
   constexpr std::array<std::uint8_t, 2> kEnd = {0xFF, 0xD9};
   std::size_t scan = size;
@@ -71,7 +71,7 @@ bool has_jpeg_end(const std::uint8_t* jpeg, std::size_t size) {
   return std::search(jpeg + scan, jpeg + size, kEnd.begin(), kEnd.end()) != jpeg + size;
 }
 
-/// What is of neither format is OpenCV's to judge.
+/// Other formats are left to OpenCV.
 bool is_modest(const std::uint8_t* bytes, std::size_t size) {
   if (is_jpeg(bytes, size)) return jpeg_pixels(bytes, size) <= kMaxPixels && count_jpeg_scans(bytes, size) <= kMaxScans;
   if (size < kPngHeader || !std::equal(kPngStart.begin(), kPngStart.end(), bytes)) return true;
@@ -80,7 +80,7 @@ bool is_modest(const std::uint8_t* bytes, std::size_t size) {
   return width * height <= kMaxPixels;
 }
 
-/// Of a JPEG all of it, of others what their header may have.
+/// A JPEG is read whole, other files as far as their header may reach.
 std::vector<std::uint8_t> bytes_to_judge(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::vector<std::uint8_t> bytes(kPngHeader);

@@ -16,8 +16,8 @@ struct LogisticExample {
   bool is_true = false;
 };
 
-/// What the weights of a logistic regression are pulled to, and how strongly: `stiffness` is the inverse variance of a
-/// weight about the prior's, as strong as so many examples; a weight that is `held` stays the prior's.
+/// Gaussian prior of a logistic regression's weights. `precision` is the inverse variance about the prior's weights; a
+/// weight that is `fixed` keeps the prior's value.
 template <int N>
 struct LogisticPrior {
   Eigen::Matrix<double, N, 1> weights = Eigen::Matrix<double, N, 1>::Zero();
@@ -25,7 +25,7 @@ struct LogisticPrior {
   std::optional<int> fixed = std::nullopt;
 };
 
-/// Minus the logarithm of what the weights make of the examples and of how far they leave the prior.
+/// Returns the negative log posterior of the weights, up to a constant.
 template <int N>
 double logistic_loss(const std::vector<LogisticExample<N>>& examples, const Eigen::Matrix<double, N, 1>& weights,
                      const LogisticPrior<N>& prior) {
@@ -37,8 +37,8 @@ double logistic_loss(const std::vector<LogisticExample<N>>& examples, const Eige
   return loss;
 }
 
-/// The weights of smallest loss, by Newton's method (Bishop 2006, section 4.3.3). The prior keeps them finite where a
-/// plane parts the examples, and is what comes of none.
+/// Returns the weights of smallest loss by Newton's method (Bishop 2006, section 4.3.3). The prior keeps them finite
+/// where the examples are linearly separable, and is returned for no examples.
 template <int N>
 Eigen::Matrix<double, N, 1> fit_logistic(const std::vector<LogisticExample<N>>& examples,
                                          const LogisticPrior<N>& prior) {

@@ -4,8 +4,8 @@
 
 namespace houghstream {
 
-/// What stands where nothing was measured: depth without a return, a normal or colour that is not known. Ask for it by
-/// std::isfinite or std::isnan, it equals nothing.
+/// Value of what was not measured: depth without a return, an unknown normal or colour. It is NaN and equals nothing;
+/// test with std::isfinite or std::isnan.
 inline constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace houghstream

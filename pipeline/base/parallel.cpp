@@ -125,7 +125,7 @@ class IdleHelpers {
   std::vector<std::unique_ptr<Helper>> helpers_;
 };
 
-/// Of the calling thread; null where it may have helpers.
+/// Scope of the calling thread; null where it may use helper threads.
 const SerialScope*& working_alone() {
   thread_local const SerialScope* alone = nullptr;
   return alone;

@@ -32,8 +32,9 @@ using WorkerItemFunction = FunctionRef<int, int>;  ///< of a worker and an item
 /// several threads at once and from within work. The other threads are kept from call to call.
 void parallel_for(int threads, int count, const ItemFunction& work);
 
-/// The same, but calls work(worker, i): no two items of one worker are worked on at the same time, so that they may
-/// share memory. Workers are numbered from 0; there are at most max(threads, 1). Which items a worker gets is chance.
+/// Calls work(worker, i) for each item. No two items of one worker are processed at the same time, so that they may
+/// share a workspace. Workers are numbered from 0; there are at most max(threads, 1). The assignment of items to
+/// workers is not deterministic.
 void parallel_for_workers(int threads, int count, const WorkerItemFunction& work);
 
 /// Work that nobody waits for any more: what SerialScope's calls end with.
@@ -41,9 +42,9 @@ struct WorkCancelled : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// As long as one lives, the calls above work alone on the thread that made it, whatever `threads` says: for a thread
-/// of low priority, whose new threads would be of its priority and be kept for others' calls. Before each item they ask
-/// `is_cancelled`, if there is one, and throw WorkCancelled where it says so.
+/// While a SerialScope exists, parallel_for() runs serially on the thread that created it, whatever `threads` says: for
+/// a thread of low priority, whose new threads would be of its priority and be kept for others' calls. Before each item
+/// they ask `is_cancelled`, if there is one, and throw WorkCancelled where it says so.
 class SerialScope {
  public:
   explicit SerialScope(std::function<bool()> is_cancelled = {});

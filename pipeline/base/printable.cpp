@@ -22,8 +22,8 @@ std::size_t utf8_length(std::string_view text) {
   return overlong || surrogate || too_large ? 0 : length;
 }
 
-/// What turns the direction of text, or begins a line (Unicode 15, sections 23.2 and 5.8): U+200E, U+200F, U+2028 to
-/// U+202E, U+2066 to U+2069.
+/// Returns whether a character changes the direction of text or begins a line (Unicode 15, sections 23.2 and 5.8):
+/// U+200E, U+200F, U+2028 to U+202E, U+2066 to U+2069.
 bool turns_text(std::string_view character) {
   if (character.size() != 3 || character[0] != '\xE2') return false;
   const auto middle = static_cast<std::uint8_t>(character[1]);

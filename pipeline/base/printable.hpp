@@ -10,10 +10,10 @@ namespace houghstream {
 /// not UTF-8 become \xNN, a line's end too. What may be shown stays as it is.
 std::string printable(std::string_view text);
 
-/// The same for what may have several lines.
+/// Makes a text of several lines printable.
 std::string printable_lines(std::string_view text);
 
-/// Whether all of it is UTF-8 (RFC 3629).
+/// Returns whether the whole text is UTF-8 (RFC 3629).
 bool is_utf8(std::string_view text);
 
 }  // namespace houghstream

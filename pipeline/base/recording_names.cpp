@@ -33,7 +33,7 @@ class OpenFile {
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
 
-  /// Whether it is an ordinary file with bytes in it that no program writes any more; it stays locked.
+  /// Returns whether it is a regular, non-empty file that no program writes any more; it stays locked.
   bool is_left_over() const {
     struct stat is {};
     return descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) == 0 && fstat(descriptor_, &is) == 0 &&

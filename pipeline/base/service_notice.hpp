@@ -39,9 +39,9 @@ class StillFinishing {
   std::thread thread_;
 };
 
-/// Whether the thread that does a program's work still does it: it beats, others ask. What stands still for longer than
-/// any step of work takes hangs; a program that hangs says nothing more of itself, and is started again by who listens
-/// (hs-stream, systemd). May be used from any thread.
+/// Heartbeat of the thread that does a program's work. A thread without a heartbeat for longer than any step of work
+/// takes counts as hung; a hung program publishes no status and is restarted by its supervisor (hs-stream, systemd).
+/// May be used from any thread.
 class Heartbeat {
  public:
   /// The longest that a step of work may take.

@@ -8,7 +8,7 @@ namespace houghstream {
 // unit stand nowhere else: what refuses settings (check_settings.hpp), what stores them and what offers them on a
 // command line read this list.
 
-/// What a number may be; both ends are allowed.
+/// Range of a number, with both ends.
 struct NumberRange {
   double min = 0.0;
   double max = 0.0;

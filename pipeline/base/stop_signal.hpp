@@ -9,7 +9,7 @@ namespace houghstream {
 /// models) has been read, and before it is said that the program is ready.
 void catch_stop_signals();
 
-/// Whether one of them has come since.
+/// Returns whether one of the signals has arrived since.
 bool stop_requested();
 
 /// From now on they end the program again, as before catch_stop_signals().

@@ -17,7 +17,7 @@ YAML::Node parse_yaml(const std::string& text, const std::string& source);
 /// yaml-cpp keeps both, and gives the first.
 std::vector<std::string> yaml_names(const YAML::Node& map, const std::string& of);
 
-/// What stands in `map` under the name; a node that is not defined where there is nothing, or `map` is no map.
+/// Returns the node in `map` under the name; an undefined node where there is none, or `map` is no map.
 YAML::Node yaml_member(const YAML::Node& map, const std::string& name);
 
 /// Nothing where the node is no number.

@@ -9,8 +9,8 @@
 
 namespace houghstream {
 
-/// Whether a bus can be reached, since when it cannot, and how many messages could not be sent. Logs one line when an
-/// outage begins and one when it ends. May be used from any thread.
+/// State of the link to a bus: whether it can be reached, since when it cannot, and how many messages could not be
+/// sent. Logs one line when an outage begins and one when it ends. May be used from any thread.
 class BusLink {
  public:
   using Clock = std::chrono::steady_clock;

@@ -20,7 +20,7 @@ class ChannelPattern {
 
   bool matches(const std::string& channel) const { return matches_(channel); }
 
-  /// Whether it stands for one channel, which it names; otherwise several may match.
+  /// Returns whether the pattern names a single channel; otherwise several may match.
   bool is_name() const { return is_name_; }
 
   const std::string& text() const { return text_; }

@@ -85,10 +85,10 @@ class LogReader {
   /// Bytes before the next event, and of the whole file.
   std::uint64_t position() const { return position_; }
   std::uint64_t size() const { return size_; }
-  /// Whether a seal has come so far.
+  /// Returns whether a seal has been read so far.
   bool is_sealed() const { return is_sealed_; }
 
-  /// What skip_damage() passed over.
+  /// Bytes that skip_damage() skipped.
   struct Damage {
     std::uint64_t bytes = 0;
     bool last_event_too = false;  ///< the event that next() returned last was damaged itself: it held later ones

@@ -28,10 +28,10 @@ class FrameSilence {
   /// While it is listened to all channels: a frame has come on this one.
   void note_elsewhere(const std::string& channel);
 
-  /// Whether all channels are to be listened to now.
+  /// Returns whether all channels are to be received now.
   bool wants_to_listen(Clock::time_point now);
 
-  /// What is to be said, once for each different finding.
+  /// Returns the line to log, once for each different finding.
   std::optional<std::string> words(Clock::time_point now);
 
  private:

@@ -43,7 +43,7 @@ constexpr std::size_t kQueueBytes = std::size_t{128} << 20U;
 // For a service manager, which otherwise gives a start some time and no more.
 const std::string kStartTakesTime = "EXTEND_TIMEOUT_USEC=60000000";
 
-// How long an outage, or its end, may go unnoticed.
+// Interval at which an outage, or its end, is detected.
 constexpr std::chrono::milliseconds kLookPeriod(250);
 
 // LCM states of shorter messages only whether they were sent.
@@ -120,7 +120,7 @@ bool subscribe_at(lcm_t* lcm, Subscription& subscription) {
   return true;
 }
 
-/// How many messages each channel of a log holds, for people.
+/// Returns the number of messages of each channel of a log, as text for people.
 class ChannelCounts {
  public:
   void note(const std::string& channel) {

@@ -20,7 +20,7 @@ struct ReceivedMessage {
   std::int64_t event_us = 0;  ///< when it was received, microseconds since the epoch; of a log, the event's time
 };
 
-/// What LcmBus does where its network cannot be reached at its start.
+/// Behaviour of LcmBus where its network cannot be reached at its start.
 enum class AtStart { kWait, kFail };
 
 /// Where messages come from and go to: an LCM network, or, for a file:// URL, a log that is read event by event and
@@ -49,8 +49,8 @@ class LcmBus {
   /// InputError as it does, and where the pattern is none.
   void subscribe(const std::string& channels, Handler handler);
 
-  /// The same for frames: where none comes on these channels for three seconds while the network can be reached, it is
-  /// logged on which channels frames come.
+  /// Subscribes to frames: where none arrives on these channels for three seconds while the network can be reached, the
+  /// channels on which frames arrive are logged.
   void subscribe_to_frames(const std::string& channels, Handler handler);
 
   /// Network: waits for one message and handles it, or for `timeout`. Log: handles the next event. False at the end
@@ -68,7 +68,7 @@ class LcmBus {
     return publish(channel, {bytes.data(), bytes.size()}, message.utime);
   }
 
-  /// Whether the network could be reached when it was last looked at, which handle() and publish() do four times a
+  /// Returns whether the network could be reached at the last check, which handle() and publish() make four times a
   /// second. May be called from any thread, as may the next two.
   bool is_reachable() const;
 

@@ -27,7 +27,7 @@ bool begins_with(const std::string& url, const std::string& scheme) {
   return url.rfind(scheme, 0) == 0;
 }
 
-/// What stands between scheme and options.
+/// Returns the text between scheme and options.
 std::string place_in(const std::string& url, const std::string& scheme) {
   return url.substr(scheme.size(), url.find('?') - scheme.size());
 }

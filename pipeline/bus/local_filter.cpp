@@ -45,7 +45,8 @@ std::vector<int> find_receive_sockets(const std::string& url) {
 }
 
 bool attach_local_filter(int socket) {
-  // What this machine sends to a group comes back as PACKET_LOOPBACK, what it sends to itself through the interface lo.
+  // Packets that this machine sends to a group come back as PACKET_LOOPBACK, packets that it sends to itself through
+  // the interface lo.
   const auto ancillary = [](int what) { return static_cast<std::uint32_t>(SKF_AD_OFF + what); };
   std::array<sock_filter, 6> program = {{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, ancillary(SKF_AD_PKTTYPE)),
                                          BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, PACKET_LOOPBACK, 3, 0),

@@ -5,7 +5,7 @@
 
 namespace houghstream {
 
-/// Whether an LCM URL is of multicast that stays on this machine: udpm with ttl=0, which is also LCM's default.
+/// Returns whether an LCM URL is of multicast that stays on this machine: udpm with ttl=0, which is also LCM's default.
 bool is_host_local(const std::string& url);
 
 /// LCM listens at the group's port on all of the machine's addresses, so that a host on the network reaches it by plain

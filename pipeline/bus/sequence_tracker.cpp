@@ -65,7 +65,7 @@ bool SequenceTracker::is_duplicate(const Seen& seen, const Seen& frame) {
          microseconds_between(seen.arrival_us, frame.arrival_us) <= kRepeatUs;
 }
 
-/// Whether the number lies close to the newest one, and no other frame has had it.
+/// Returns whether the number lies close to the newest one and no other frame has had it.
 bool SequenceTracker::has_place(const SequenceRange& range, std::int64_t number) {
   if (number > range.newest) return number - range.newest <= kProbation;
   return number >= range.first && range.newest - number < kWindow && range.seen[slot(number)].number != number;
@@ -95,7 +95,7 @@ FrameOrder SequenceTracker::note_probation(Run& run, const Seen& frame) {
   return FrameOrder::kNext;
 }
 
-/// Two numbers beside each other are believed: those before a jump go on, or others begin.
+/// Two neighbouring numbers end the probation: an earlier range is resumed, or a new one begins.
 void SequenceTracker::resync(Run& run, std::int64_t low, std::int64_t high) {
   const auto earlier = std::find_if(run.before.begin(), run.before.end(), [&](const SequenceRange& range) {
     return high > range.newest && has_place(range, low);

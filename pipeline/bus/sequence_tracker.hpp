@@ -14,26 +14,25 @@
 
 namespace houghstream {
 
-/// What a frame's source says of it.
+/// Number and time that its source gives a frame.
 struct FrameNumber {
   std::optional<std::int64_t> sequence;  ///< the source's frame counter, if it has one
   std::int64_t utime = 0;                ///< of the frame, microseconds
   std::int64_t run = 0;                  ///< of the source: another one begins counting anew; 0 = it does not say
 };
 
-/// How a frame follows those before it.
+/// Order of a frame relative to those before it.
 enum class FrameOrder {
   kNext,       ///< newer than all before
   kLate,       ///< of those that were overtaken on the way
   kDuplicate,  ///< has come before: to be dropped, and counted as none
 };
 
-/// Counts the frames of a source that were sent and have not come, from their numbers, after the way in which RTP does
-/// (RFC 3550, appendix A.1). What is overtaken counts as lost until it comes. A number that lies far from those before
-/// it (forged, or of a sender that was started again) is not believed until another one beside it has come; where the
-/// numbers go on as before it all the same, it is as if it had never been believed. Numbers a hundred thousand apart
-/// are no loss, but another beginning. A frame whose number, time and run have come within the last second is a
-/// duplicate. Not thread-safe.
+/// Counts the lost frames of a source from their sequence numbers, as RTP does (RFC 3550, appendix A.1). An overtaken
+/// frame counts as lost until it arrives. A number far from those before it (forged, or of a restarted sender) is on
+/// probation until another one close to it has arrived; where the numbers then continue as before, the tracker returns
+/// to the earlier range. A gap of more than a hundred thousand is a restart and no loss. A frame whose number, time and
+/// run have arrived within the last second is a duplicate. Not thread-safe.
 class SequenceTracker {
  public:
   /// `now_us`: when it arrived, on a clock that does not jump, microseconds.
@@ -77,7 +76,7 @@ class SequenceTracker {
   bool has_number_ = false;
 };
 
-/// Tells messages that a network has delivered twice: the same frame's, byte for byte, within a second. Not
+/// Detects messages that a network has delivered twice: of the same frame, equal byte for byte, within a second. Not
 /// thread-safe.
 class DuplicateFilter {
  public:

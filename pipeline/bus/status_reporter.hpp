@@ -28,8 +28,9 @@ class StatusReporter {
   explicit StatusReporter(std::string process);
 
   void count_received();
-  /// What its source says of a frame that has arrived; missing numbers count as lost frames (SequenceTracker). Each
-  /// source (a camera's channel) counts its own. A duplicate is to be dropped, and counts as a duplicate only.
+  /// Counts a frame that has arrived, by the number of its source; missing numbers count as lost frames
+  /// (SequenceTracker). Each source (a camera's channel) is counted separately. A duplicate is to be dropped, and
+  /// counts as a duplicate only.
   FrameOrder note_number(const FrameNumber& number, const std::string& source = "");
   /// Another message than a frame that has come before.
   void note_duplicate();
@@ -50,9 +51,9 @@ class StatusReporter {
   /// Publishes the status, and the objects that are known where it was told of any. An outage of the bus that has ended
   /// is remembered as the last error. Throws InputError where the bus does not take it.
   void publish(LcmBus& bus);
-  /// The same when a second has passed since the last time; whether it has.
+  /// Publishes the status if a second has passed since the last time, and returns whether it has.
   bool publish_if_due(LcmBus& bus);
-  /// The same in a thread that must not end where the bus does not take it: that is logged, and false.
+  /// Publishes the status from a thread that must not end on a bus error: logs the error and returns false.
   bool try_publish_if_due(LcmBus& bus);
 
   /// The account in one line.

@@ -6,7 +6,7 @@
 
 namespace houghstream {
 
-/// What is seen from within a thing's supposed outline to beyond it.
+/// A pair of pixels across an object's predicted boundary: the change of depth and colour from inside to outside.
 struct BoundarySample {
   float lateral_distance = 0.0F;  ///< metres from one to the other, across the ray
   float depth_change = 0.0F;      ///< depth, metres; NaN where it is not measured
@@ -21,13 +21,14 @@ inline float colour_distance_sq(const cv::Vec3b& a, const cv::Vec3b& b) {
   return 0.25F * difference(0) * difference(0) + difference(1) * difference(1) + difference(2) * difference(2);
 }
 
-/// 1 at 0, falling as a Gaussian of variance 1 does, to nothing at 8. Its exponential would take most of the time.
+/// Approximates exp(-square / 2) by (1 - square / 8)^4, which is zero from 8 on and needs no exponential.
 inline float approximate_gaussian(float square) {
   const float base = std::max(0.0F, 1.0F - 0.125F * square);
   return (base * base) * (base * base);
 }
 
-/// Something stands in front there: the outline is another one's. `tolerance`: of depth, metres, here and below.
+/// Returns whether a nearer surface begins at the boundary, which then is an occluder's. `tolerance`: of depth, metres,
+/// here and below.
 inline bool is_foreground_step(const BoundarySample& seen, float tolerance) {
   constexpr float kSteepest = 2.5F;  // what a table gains towards the camera, over the distance across the ray
   return seen.depth_change < -kSteepest * seen.lateral_distance - 2.0F * tolerance;
@@ -37,7 +38,8 @@ inline bool is_background_step(const BoundarySample& seen, float tolerance) {
   return seen.depth_change > 2.0F * tolerance + seen.lateral_distance;
 }
 
-/// 1 where the surface goes straight on, 0 where it does not; between where that is not known.
+/// Returns the continuation of the surface, 1 where it continues straight, 0 where it does not, 0.5 where that is
+/// unknown.
 inline float surface_continuation(const BoundarySample& seen, float tolerance) {
   constexpr float kUnknown = 0.5F;
   const float slack = 0.4F * seen.lateral_distance + 0.25F * tolerance;  // surfaces bend
@@ -46,12 +48,12 @@ inline float surface_continuation(const BoundarySample& seen, float tolerance) {
   return std::isnan(off) ? kUnknown : straight;
 }
 
-/// The same of the colour of a plain thing.
+/// Returns the continuation of the colour of an untextured object, 0 to 1.
 inline float uniform_colour_continuation(const BoundarySample& seen) {
   return approximate_gaussian(seen.colour_sq / 16.0F);
 }
 
-/// The same of the colour of one that may be printed.
+/// Returns the continuation of the colour of an object that may be textured, 0 to 1.
 inline float textured_colour_continuation(const BoundarySample& seen) {
   return approximate_gaussian(seen.colour_sq / 36.0F);
 }

@@ -5,7 +5,7 @@
 
 #include "pipeline/geometry/mesh.hpp"
 
-// How a file's materials become one mesh's colours or one texture; for mesh_io.cpp only.
+// Merges a file's materials into vertex colours or one texture; for mesh_io.cpp only.
 
 namespace houghstream {
 

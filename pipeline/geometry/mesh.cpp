@@ -46,8 +46,8 @@ SurfacePoints random_points(const Mesh& mesh, std::size_t count, std::uint64_t s
   return out;
 }
 
-/// How far each point is from the nearest of those that were chosen, coordinate by coordinate, so that several are
-/// worked on at once.
+/// Distance of each point from the nearest chosen one, stored coordinate by coordinate, so that several are processed
+/// at once.
 class FarthestPoints {
  public:
   explicit FarthestPoints(const std::vector<Eigen::Vector3f>& points)

@@ -65,7 +65,7 @@ Words split_words(std::string_view line) {
   }
 }
 
-/// Whether a word stands in " a list of words ".
+/// Returns whether a word occurs in " a list of words ".
 bool is_word_of(std::string_view list, std::string_view word) {
   return list.find(fmt::format(" {} ", word)) != std::string_view::npos;
 }
@@ -415,8 +415,7 @@ void check_mtl_line(const Words& words, bool& has_material, const std::string& w
   check_mtl_numbers(words, is_colour ? 3 : 1, where);
 }
 
-/// What the library looks for: what stands behind the word in its line, and where that is not there, the OBJ's own
-/// name.
+/// The library looks for the file named behind the word in its line, and where that is missing, for the OBJ's own name.
 std::vector<std::filesystem::path> material_files(std::string_view obj, const std::filesystem::path& file) {
   const std::string folder = file.has_parent_path() ? file.parent_path().string() + "/" : std::string();
   std::vector<std::filesystem::path> found;

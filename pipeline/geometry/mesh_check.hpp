@@ -4,10 +4,10 @@
 #include <string>
 #include <string_view>
 
-// Whether the file of a mesh is whole, checked before a library that believes its counts reads it: cut or damaged ones
-// would make it loop for ever, end the process, or give a part of the mesh. What it notices itself is left to it;
-// corners are compared with the vertices once they have been read (mesh_io.cpp). Everything here throws InputError that
-// names the file and the place.
+// Validates a mesh file before a library reads it that trusts its counts: truncated or damaged files would make it loop
+// forever, end the process, or return a part of the mesh. Errors that the library detects are left to it; corners are
+// compared with the vertices once they have been read (mesh_io.cpp). All functions throw InputError that names the file
+// and the place.
 
 namespace houghstream {
 

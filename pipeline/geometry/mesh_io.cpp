@@ -52,8 +52,8 @@ void require_whole(const std::filesystem::path& file) {
   check_gltf(bytes, file.string());
 }
 
-/// What the steps behind the reading believe: corners may be wherever a buffer of its own says, and a polygon takes the
-/// cube of its corners to be cut into triangles.
+/// Later steps trust these counts: corners may refer to any position of a buffer, and triangulation of a polygon takes
+/// time cubic in its corners.
 void check_faces(const aiMesh& part, const std::string& file) {
   constexpr unsigned kMaxCorners = 1024;
   for (unsigned i = 0; i < part.mNumFaces; ++i) {
@@ -137,7 +137,7 @@ std::string texture_name(const aiMaterial& material) {
   return "";
 }
 
-/// What the material of a part says about its looks.
+/// Appearance of a part, from its material.
 MeshPart describe_part(const aiScene& scene, const aiMesh& part, std::size_t first_vertex,
                        const std::filesystem::path& file) {
   const aiMaterial& material = *scene.mMaterials[part.mMaterialIndex];

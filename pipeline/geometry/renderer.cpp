@@ -49,8 +49,8 @@ void place_vertices(const RenderItem& item, const Camera& camera, const cv::Poin
   }
 }
 
-/// What is covered of an axis that has `size` pixels, from its first to behind its last one, by what is snapped within
-/// these bounds: pixels whose centres lie there.
+/// Returns the pixels of an axis with `size` pixels whose centres lie within these snapped bounds: the first and one
+/// past the last.
 std::array<int, 2> covered_pixels(std::int64_t low, std::int64_t high, int size) {
   const std::int64_t first = std::clamp<std::int64_t>((low + kSubpixels - 1) >> kSubpixelBits, 0, size);
   const std::int64_t end = std::clamp<std::int64_t>((high >> kSubpixelBits) + 1, first, size);
@@ -72,7 +72,7 @@ cv::Rect covered_part(const std::vector<ClipVertex>& vertices, const Camera& cam
   return {left, top, right - left, bottom - top};
 }
 
-/// What a visible pixel needs of its triangle: dot products with the pixel's ray.
+/// Coefficients of a triangle, whose dot products with a pixel's ray give the pixel's values.
 struct Surface {
   Eigen::Vector3d second = Eigen::Vector3d::Zero();  // weight of the 2nd vertex, divided by z
   Eigen::Vector3d third = Eigen::Vector3d::Zero();
@@ -99,7 +99,7 @@ class Rasteriser {
   Rasteriser(const Camera& camera, const cv::Rect& region, bool with_owners);
 
   void draw(const RenderItem& item);
-  /// Of vertices that are snapped on this part of the image.
+  /// Renders vertices that are snapped to this part of the image.
   void draw_placed(const RenderItem& item, std::vector<ClipVertex> vertices);
   cv::Mat depth() const;
   RenderedGeometry geometry() const;

@@ -28,13 +28,13 @@ struct RenderedGeometry {
 /// cross it are clipped). Same input, same output, bit for bit.
 RenderedGeometry render_geometry(const std::vector<RenderItem>& items, const Camera& camera);
 
-/// The same inside `region_px` of the image; the result has the region's size.
+/// Renders the part of the image inside `region_px`; the result has the region's size.
 RenderedGeometry render_geometry(const std::vector<RenderItem>& items, const Camera& camera, const cv::Rect& region_px);
 
 /// Depth only, inside `region_px` of the image, in half the time. Returns an image of the region's size, NaN = nothing.
 cv::Mat render_depth(const std::vector<RenderItem>& items, const Camera& camera, const cv::Rect& region_px);
 
-/// Of one mesh.
+/// Renders one mesh.
 cv::Mat render_depth(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera,
                      const cv::Rect& region_px);
 

@@ -228,7 +228,7 @@ RgbdFrame decode_without_colour(const images_t& message, const std::string& chan
   return frame;
 }
 
-/// What `decode` gives of a message; its errors name the frame.
+/// Returns the result of `decode` for a message; its errors name the frame.
 template <typename Decode>
 auto decode_named(const FrameId& frame, const Decode& decode) {
   try {

@@ -24,7 +24,7 @@
 
 namespace houghstream {
 
-/// How images travel.
+/// Encoding of images on the wire.
 struct WireFormat {
   bool jpeg = true;       ///< colour as JPEG, else raw RGB
   int jpeg_quality = 94;  ///< 1 to 100
@@ -49,8 +49,8 @@ void add_run(houghstream::images_t& message, std::int64_t run);
 RgbdFrame frame_from_message(const houghstream::images_t& message, const std::string& channel,
                              const std::optional<Camera>& fallback_camera);
 
-/// The same for who looks at depth only: its colours, which take longer to decode than all the rest, are left empty,
-/// and whether they are damaged is not found.
+/// Decodes a frame for readers of depth only: its colours, which take longer to decode than all the rest, stay empty,
+/// and damage of them is not detected.
 RgbdFrame depth_frame_from_message(const houghstream::images_t& message, const std::string& channel,
                                    const std::optional<Camera>& fallback_camera);
 
@@ -60,7 +60,7 @@ struct FrameImages {
   cv::Mat depth_mm;  ///< CV_16UC1, 0 = none
 };
 
-/// What frame_from_message() finds, of frames without a camera too.
+/// Checks a message as frame_from_message() does; frames without a camera are allowed.
 FrameImages images_from_message(const houghstream::images_t& message);
 
 /// The camera that the message carries, unchecked, if any. Throws InputError where its bytes are none.
@@ -104,7 +104,7 @@ Eigen::Isometry3d transform_from_message(const houghstream::rigid_transform_t& m
 houghstream::objects_t to_message(const WorldObjects& objects);
 WorldObjects world_from_message(const houghstream::objects_t& message);
 
-/// Who sends it, and when, is left to the sender.
+/// The sender fills in its name and the time.
 houghstream::known_objects_t to_message(const KnownObjects& known);
 
 houghstream::teaching_t to_message(const Teaching& teaching);

@@ -40,7 +40,7 @@ constexpr std::size_t kKnownObject = 5 + 8;
 constexpr std::size_t kTeachingNumbers = 4 + 4 + 4 + 4 * 4 + 3 * 8 + 4 * 8;  // progress to quat
 constexpr std::size_t kSeenDirection = 3 * 4 + 1;
 
-/// What is kept, told and printed must not be as long as a message may be.
+/// Texts that are stored, published and printed have a length limit below that of a message.
 std::string read_within(WireReader& reader, std::size_t maximum, const char* what) {
   std::string text = reader.read_string();
   require(text.size() <= maximum, "{}: {} of {} bytes, expected at most {}", reader.source(), what, text.size(),

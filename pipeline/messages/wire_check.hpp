@@ -9,7 +9,7 @@
 #include "pipeline/messages/wire_reader.hpp"
 #include "pipeline/types/frame_id.hpp"
 
-// What lcm-gen's decoders do not check: they believe every count, and a damaged one makes them ask for gigabytes.
+// Checks that lcm-gen's decoders leave out: they trust every count, and a damaged one makes them allocate gigabytes.
 
 namespace houghstream {
 
@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxFrameBytes = std::size_t{64} << 20U;
 inline constexpr std::size_t kMaxStages = 256;
 inline constexpr std::size_t kMaxNameLength = 255;
 
-/// What names a frame, read without decoding its images.
+/// Returns the identity of a frame, read without decoding its images.
 struct FrameHeader {
   std::int64_t utime = 0;
   std::optional<std::int64_t> sequence;  ///< the source's frame counter, if the message carries one
@@ -38,7 +38,8 @@ std::int64_t read_utime(ByteView bytes, const std::string& source);
 /// Throws InputError, naming `source`, where the message is of another type or cut.
 FrameId read_result_frame(ByteView bytes, const std::string& source);
 
-/// Whether the bytes begin with the fingerprint of images_t: all that is asked of what a pattern of channels brings.
+/// Returns whether the bytes begin with the fingerprint of images_t. Messages that match a channel pattern are checked
+/// for nothing else.
 bool is_frame_message(ByteView bytes);
 
 /// A frame counter, or a run, as it stands in the metadata, decimal text. Throws InputError.

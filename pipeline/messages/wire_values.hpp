@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-// What a pose or a box off the wire may be.
+// Checks of a pose or a box received from the wire.
 
 namespace houghstream {
 

@@ -47,14 +47,14 @@ class DetectProcess {
     if (!throttle_.is_due(frame.id) || push(frame)) status_.count_skipped(1);
   }
 
-  /// Whether another frame is passed over for it, or it for another.
+  /// Returns whether another frame is dropped for it, or it for another.
   bool push(const ReceivedFrame& frame) {
     EncodedFrame waiting{frame.id, shared_copy(frame.bytes), frame.time};
     return frame.order == FrameOrder::kLate ? newest_.push_late(frame.id.channel, std::move(waiting), frame.bytes.size)
                                             : newest_.push(frame.id.channel, std::move(waiting), frame.bytes.size);
   }
 
-  /// Of what is followed: where something is lost, the camera is looked at soon.
+  /// Receives the poses of followed objects: where one is lost, the camera's next detection is expedited.
   void note_losses(const ReceivedResult& result) {
     const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(result.bytes));
     for (const ObjectPose& pose : poses.poses) {

@@ -9,8 +9,7 @@
 
 namespace houghstream {
 
-/// Which frames of each camera a detector looks at that is to look so many times a second. Goes by the frames' own
-/// times. Not thread-safe.
+/// Limits the rate at which a detector searches each camera's frames, by the frames' times. Not thread-safe.
 class DetectionThrottle {
  public:
   /// Cameras whose looks are remembered; every frame of a further one is looked at. A sender of rubbish may make up
@@ -20,12 +19,12 @@ class DetectionThrottle {
   /// 0: at every frame.
   explicit DetectionThrottle(double max_rate_hz) : max_rate_hz_(max_rate_hz) {}
 
-  /// Whether this frame is looked at: where enough time has passed since the camera's last look. Times that go back by
-  /// more than a second begin anew; a frame that is older by less has been overtaken on its way.
+  /// Returns whether this frame is searched: enough time has passed since the camera's last detection. Times that go
+  /// back by more than a second restart the interval; a frame that is older by less was overtaken in transit.
   bool is_due(const FrameId& frame);
 
-  /// The camera's next look comes after a quarter of the time, once. One that has had no look is left alone: results
-  /// may name any camera.
+  /// Shortens the camera's next interval to a quarter, once. Cameras without a detection yet are left alone, since
+  /// results may name any camera.
   void expedite(const std::string& channel);
 
  private:

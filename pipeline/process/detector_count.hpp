@@ -10,8 +10,8 @@
 
 namespace houghstream {
 
-/// How many detectors work on each camera's frames: as many as one frame had results of late. No message names its
-/// detector. Not thread-safe.
+/// Estimates the number of detectors of each camera: the maximum of results per frame among recent frames. No message
+/// names its detector. Not thread-safe.
 class DetectorCount {
  public:
   /// Cameras whose results are counted; of a further one nothing is known. Results may name any camera.

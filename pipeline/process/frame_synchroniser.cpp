@@ -198,8 +198,8 @@ FrameSynchroniser::Camera* FrameSynchroniser::next_camera() {
   return next;
 }
 
-// Of each detector of the camera the newest complete result stays; what came before these is given up, since results
-// do not say which detector they are of.
+// The newest complete result of each detector of the camera stays; results before these are dropped, since results do
+// not name their detector.
 void FrameSynchroniser::drop_stale(const std::string& channel, Camera& camera) {
   int left = detectors_.of(channel);
   auto oldest = camera.waiting.end();

@@ -61,7 +61,7 @@ class FrameSynchroniser {
   static constexpr std::size_t kHistoryBytes = std::size_t{192} << 20U;
   /// Detections of each camera that wait, for their frame or their turn; the oldest go.
   static constexpr std::size_t kWaiting = 128;
-  /// Of the detections of all cameras that wait; where there are more, the camera with the most gives up its oldest.
+  /// Bytes of the waiting detections of all cameras; above this, the camera with the most drops its oldest.
   static constexpr std::size_t kAllWaitingBytes = std::size_t{128} << 20U;
   /// Frames on more channels are refused: a sender of rubbish may make up channels without end.
   static constexpr std::size_t kCameras = 64;
@@ -93,7 +93,7 @@ class FrameSynchroniser {
   /// time to decode it while its detections are on the way. It stays here for them.
   std::optional<ArrivedFrame> pop_unmatched_frame();
 
-  /// What was dropped since the last call.
+  /// Frames and detections that were dropped since the last call.
   struct Refused {
     FrameId id;
     std::string reason;

@@ -14,8 +14,9 @@
 
 namespace houghstream {
 
-/// Holds the newest item of each channel between two threads. LCM's own queue would keep the oldest instead, and a slow
-/// receiver would lag behind further and further. Channels are served in turn: a fast one does not starve the others.
+/// Keeps the newest item of each channel between two threads (DDS KEEP_LAST with depth 1). LCM's queue would keep the
+/// oldest instead, and a slow receiver would lag further and further. Channels are served in turn, so that a fast one
+/// does not starve the others.
 template <typename T>
 class LatestPerChannel {
  public:

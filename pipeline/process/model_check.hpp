@@ -25,7 +25,7 @@ class ModelCheck {
   /// with a model.
   std::optional<std::string> note(const Detections& detections);
 
-  /// The same where fewer have come and no more will.
+  /// Checks at the end of the stream, where fewer have arrived and no more will.
   std::optional<std::string> at_end();
 
  private:

@@ -48,8 +48,8 @@ void run_pose_process(LcmBus& bus, const PoseProcessOptions& options, const Esti
 /// Nothing for a frame that newer ones have overtaken on its way.
 using FollowFrame = std::function<std::optional<ObjectPoses>(const RgbdFrame&)>;
 
-/// Who follows objects from frame to frame. Both functions are called at the same time from two threads on a network,
-/// one after the other where a log is worked on.
+/// Functions that follow objects from frame to frame. Both are called concurrently from two threads on a network, one
+/// after the other where a log is processed.
 struct FollowPoses {
   FollowFrame follow;
   /// Poses of a frame's detections, which come later; what is found is followed from then on.

@@ -17,7 +17,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// How long a stop signal may go unnoticed.
+// Interval at which stop signals are polled.
 constexpr milliseconds kTimeout(100);
 
 void play_log(LcmBus& bus, const WorkStep& work, const WorkStep& background) {
@@ -58,7 +58,7 @@ class Receiver {
     try {
       while (running_) {
         bus_.handle(kTimeout);
-        // Who hangs says nothing more.
+        // A hung process publishes no status.
         if (work_.is_beating() && status_.publish_if_due(bus_)) notify_service("WATCHDOG=1");
       }
     } catch (...) {

@@ -42,8 +42,8 @@ struct ReceivedResult {
   std::chrono::steady_clock::time_point time;
 };
 
-/// Whether the messages of a subscription are those that status_t counts as received and refused, or others, whose
-/// faults are counted apart.
+/// Account of a subscription: messages that status_t counts as received and refused, or others, whose faults are
+/// counted separately.
 enum class Account { kReceived, kOthers };
 
 /// Subscribes to what a process works on, and checks and counts each message before the process sees it. A message that
@@ -52,7 +52,7 @@ enum class Account { kReceived, kOthers };
 /// it is there. The handlers are called by who calls LcmBus::handle(). Must outlive the bus' last call of handle().
 class Reception {
  public:
-  /// Of a result; two thousand detections have so many. Larger ones are refused.
+  /// Maximum size of a result, which two thousand detections have; larger ones are refused.
   static constexpr std::size_t kMaxResultBytes = std::size_t{1} << 20U;
 
   using FrameHandler = std::function<void(const ReceivedFrame&)>;

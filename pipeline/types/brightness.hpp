@@ -26,7 +26,8 @@ void fields(const BrightnessRange& /*settings*/, const Visit& visit) {
 /// As pipeline/base/check_settings.hpp says; the means are in order too.
 void check_settings(const BrightnessRange& range, const std::string& source);
 
-/// What brings a picture into a range: the same for all coded values of all its channels, value * gain + offset.
+/// Affine brightness transfer, value * gain + offset, equal for all coded values of all channels (DSO, Engel et al.
+/// 2018).
 struct AffineBrightness {
   float gain = 1.0F;
   float offset = 0.0F;

@@ -30,7 +30,7 @@ struct Detection {
   std::vector<RotationVote> rotations;                      ///< heaviest first, capped
 };
 
-/// What one detector found in one frame, strongest first.
+/// Detections of one detector in one frame, strongest first.
 struct Detections {
   FrameId frame;  ///< that they were found in
   std::vector<Detection> detections;

@@ -12,21 +12,21 @@ namespace houghstream {
 /// The stage of following objects from frame to frame: poses with its time answer no detections.
 inline constexpr const char* kFollowingStage = "pose.following";
 
-/// What one detector found in a frame, and the poses that were computed of it.
+/// Detections of one detector in a frame, and the poses that were computed from them.
 struct FrameResult {
   Detections detections;
   std::optional<ObjectPoses> poses;
 };
 
-/// Whether the poses are those of these detections: of the same frame, of its classes at the places that they name, and
-/// some where there are detections. The messages do not say which detector they are of.
+/// Returns whether the poses belong to these detections: they are of the same frame, name their classes and positions,
+/// and exist where there are detections. The messages do not name their detector.
 bool is_result_of(const ObjectPoses& poses, const Detections& detections);
 
-/// Whether these are poses of objects that hs-pose follows from frame to frame, which answer no detections.
+/// Returns whether these are poses of objects that hs-pose follows from frame to frame, which belong to no detections.
 bool has_followed_poses(const ObjectPoses& poses);
 
-/// All that was published of one frame. Several detectors may work on a camera's frames, each with a forest of its own
-/// objects: each result stands by itself, with its own poses. Results and poses may come in any order.
+/// Results that were published for one frame. Several detectors may process a camera's frames, each with a forest of
+/// different objects: each result is kept separately, with its poses. Results and poses may arrive in any order.
 class FrameResults {
  public:
   /// Results of one frame, and poses of none of them, that are kept: nobody has so many detectors, and each new one is
@@ -39,7 +39,7 @@ class FrameResults {
   void add(ObjectPoses poses);
 
   const std::vector<FrameResult>& results() const { return results_; }
-  /// Whether each result has its poses.
+  /// Returns whether each result has its poses.
   bool has_all_poses() const;
   /// The poses of the objects that are followed, where hs-pose follows any.
   const std::optional<ObjectPoses>& followed() const { return followed_; }

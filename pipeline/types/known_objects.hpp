@@ -12,7 +12,7 @@ struct KnownObject {
   std::int64_t since_utime = 0;  ///< when it got to know it by this name, microseconds since the epoch
 };
 
-/// What a process knows of its object store.
+/// Objects that a process has loaded from its object store.
 struct KnownObjects {
   std::string store;                 ///< folder
   std::int64_t since_utime = 0;      ///< when it took over the store as it knows it, microseconds since the epoch

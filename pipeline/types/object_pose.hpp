@@ -13,7 +13,7 @@
 
 namespace houghstream {
 
-/// Whether a detection has a pose, and if not, why. Values are those of object_pose_t.
+/// Status of a pose: valid, or the reason why there is none. Values are those of object_pose_t.
 enum class PoseStatus : std::int8_t {
   kInvalid = 0,
   kValid = 1,
@@ -31,7 +31,7 @@ enum class PoseStatus : std::int8_t {
       12,  ///< a pose, of which the print does not tell that it is not one that looks alike by its shape
 };
 
-/// Whether a pose of this status is published.
+/// Returns whether a pose of this status is published.
 constexpr bool has_pose(PoseStatus status) {
   return status == PoseStatus::kValid || status == PoseStatus::kValidUpToSymmetry;
 }
@@ -60,8 +60,8 @@ struct ObjectPose {
   ChromaMap camera_colours;           ///< that its colours were judged by, learnt without it; not published
 };
 
-/// Whether the object counts as found: its detection is sure enough by itself and not refuted by its pose, or it is a
-/// candidate whose pose is valid. `pose` is that of the detection; null where there is none.
+/// Returns whether the object counts as found: its detection is above the threshold and not refuted by its pose, or it
+/// is a candidate whose pose is valid. `pose` is that of the detection; null where there is none.
 bool is_reported(const Detection& detection, const ObjectPose* pose);
 
 /// The poses of one detector's detections in one frame, in their order.

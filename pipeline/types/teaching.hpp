@@ -32,7 +32,7 @@ struct ViewDirection {
   bool seen = false;
 };
 
-/// How it goes with an object that is shown to a camera to be taught.
+/// Progress of the teaching of an object that is shown to a camera.
 struct Teaching {
   FrameId frame;  ///< looked at last; box and pose are those in it; its channel is empty where it is not from the bus
   std::string name;
@@ -46,7 +46,7 @@ struct Teaching {
   std::vector<ViewDirection> directions;  ///< evenly over the sphere
 };
 
-/// How many of the directions were seen.
+/// Returns the number of directions that are covered.
 int count_covered(const Teaching& teaching);
 
 // The names of before, for one release.

@@ -10,7 +10,7 @@
 
 namespace houghstream {
 
-/// How an object of the world was found in the last frame. Values are those of tracked_object_t.
+/// Visibility of a tracked object in the last frame. Values are those of tracked_object_t.
 enum class TrackState : std::int8_t {
   kInvalid = 0,
   kVisible = 1,       ///< a pose of it was measured, or no camera has looked there since
