@@ -6,7 +6,7 @@
 
 namespace houghstream::fusion {
 
-/// How the views of a model are laid on each other.
+/// Settings of the registration of a model's views to each other.
 struct AlignmentSettings {
   int iterations = 15;         ///< of Gauss-Newton; 0 = none
   int neighbours = 8;          ///< views that each one is compared with, the nearest in direction
@@ -16,7 +16,7 @@ struct AlignmentSettings {
   int threads = 1;             ///< any number gives the same result
 };
 
-/// How well views agree: point to plane, over all compared points.
+/// Point-to-plane error of views, over all compared points.
 struct AlignmentError {
   int pairs = 0;
   double median_m = 0.0;  ///< of the absolute distances; 0 without pairs

@@ -32,7 +32,7 @@ struct DepthView {
   /// Pixel that shows a point of the camera frame; none where that is not in the image.
   std::optional<cv::Point> pixel_of(const Eigen::Vector3d& point_camera) const;
 
-  /// Whether the whole picture shows a point of the camera frame, though the images may be cut out beside it.
+  /// Returns whether the whole image shows a point of the camera frame, even where the cropped images do not.
   bool is_in_image(const Eigen::Vector3d& point_camera) const;
 };
 

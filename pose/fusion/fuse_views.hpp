@@ -10,7 +10,7 @@
 
 namespace houghstream::fusion {
 
-/// How a model is made of an object's training views.
+/// Settings of the fusion of an object's training views into a model.
 struct FusionSettings {
   TsdfSettings grid;
   AlignmentSettings alignment;

@@ -25,7 +25,7 @@ Neighbours neighbours_of(const Mesh& mesh) {
   return neighbours;
 }
 
-/// How alike two normals are, 1 for equal ones.
+/// Returns the kernel weight of two normals, 1 for equal ones.
 float normal_kernel(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   constexpr float kWidth = 0.35F;  // difference of unit vectors: 20 degrees
   return std::exp(-(a - b).squaredNorm() / (2.0F * kWidth * kWidth));

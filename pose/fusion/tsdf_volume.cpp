@@ -10,7 +10,7 @@
 namespace houghstream::fusion {
 namespace {
 
-/// What of the space around the views' points holds the object.
+/// Part of the space around the views' points that holds the object.
 struct Extent {
   Eigen::Vector3d low, high;                     ///< object frame, metres
   bool stands = false;                           ///< all views look from one side
@@ -81,7 +81,7 @@ TsdfVolume make_grid(const Extent& extent, const TsdfSettings& settings) {
   return grid;
 }
 
-/// What one view says of one point: a distance in truncation distances, and how much it counts (0: nothing).
+/// Signed distance of one point in one view, in truncation distances, and its weight (0: unobserved).
 struct Observation {
   float distance = 0.0F;
   float weight = 0.0F;

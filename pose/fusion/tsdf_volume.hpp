@@ -22,7 +22,7 @@ struct TsdfVolume {
   Eigen::Vector3d centre(int i, int j, int k) const { return origin + voxel * Eigen::Vector3d(i, j, k); }
 };
 
-/// How a grid is laid out and filled.
+/// Settings of a TSDF volume and of its integration.
 struct TsdfSettings {
   double voxel = 0.0015;           ///< metres
   double truncation_voxels = 4.0;  ///< distances beyond are only "in front"
@@ -40,8 +40,8 @@ struct TsdfSettings {
 /// without views or points, or where they need more than `max_voxels`.
 TsdfVolume integrate_views(const std::vector<DepthView>& views, const TsdfSettings& settings);
 
-/// The same in a box of the object frame, metres, whatever else the views show there: what no view has seen is inside,
-/// with weight 0. Throws InputError where the box needs more than `max_voxels`.
+/// Integrates the views in a box of the object frame, metres: voxels that no view has observed are inside, with weight
+/// 0. Throws InputError where the box needs more than `max_voxels`.
 TsdfVolume integrate_box(const std::vector<DepthView>& views, const Eigen::AlignedBox3d& box,
                          const TsdfSettings& settings);
 

@@ -15,7 +15,7 @@ struct Sum {
   double weight = 0.0;
 };
 
-/// How a view sees a vertex.
+/// Observation of a vertex in a view.
 struct Sight {
   cv::Vec3b colour;
   double facing = 0.0;  ///< cosine between surface and line of sight; 0: it does not see it
@@ -33,7 +33,7 @@ bool is_clipped(const cv::Vec3b& colour) {
   return std::max({colour[0], colour[1], colour[2]}) > 250 || std::max({colour[0], colour[1], colour[2]}) < 8;
 }
 
-/// What the cameras and the light did to the colours of a mesh's vertices.
+/// Effect of exposure and lighting on the colours of a mesh's vertices.
 class Lighting {
  public:
   Lighting(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh);
@@ -174,7 +174,8 @@ std::vector<bool> colour_mesh(const std::vector<DepthView>& views, double tolera
       as_seen[i].weight += weight;
     }
   });
-  // What is paint and what is light is known but for a factor: what is bright stays as bright as it was seen.
+  // Albedo and shading are known up to a common factor, which is chosen so that bright surfaces keep their observed
+  // brightness.
   const double level = bright_level(sums);
   const double factor = level > 0.0 ? bright_level(as_seen) / level : 1.0;
   for (Sum& sum : sums) sum.colour *= factor;

@@ -19,13 +19,13 @@ struct ColourSample {
   double weight = 0.0;  ///< more for a frontal view
 };
 
-/// How much brighter than the others each view was exposed, log; its median is 0. Brightness is taken to be
-/// exposure times what the vertex sends out; medians, so that shine and shadows that come and go do not matter. A view
-/// that shares no vertex with others has 0. (Gain compensation of panoramas: Brown and Lowe 2007, with medians.)
+/// Estimates the log exposure of each view relative to the others, with median 0. Brightness is modelled as exposure
+/// times the radiance of the vertex; medians make the estimate robust to moving highlights and shadows. A view that
+/// shares no vertex with others has 0. (Gain compensation of panoramas: Brown and Lowe 2007, with medians.)
 std::vector<double> estimate_exposures(const std::vector<ColourSample>& samples, int vertices, int views);
 
-/// How brightly light that stands still about the object falls on surface that faces one way: log, spherical harmonics
-/// to the second order (Ramamoorthi and Hanrahan 2001 show that these hold diffuse light).
+/// Log irradiance of a lighting that is static relative to the object, as a function of the normal: spherical harmonics
+/// of second order (which represent diffuse lighting, Ramamoorthi and Hanrahan 2001).
 class ShadingModel {
  public:
   /// Log of the light on a surface of this normal, but for a constant.

@@ -167,7 +167,8 @@ void ViewMaker::add_print(const Eigen::Vector3f& direction, SurfacePrintMaker& p
     print.add(seen.point, seen.normal, colour_.at(seen.triangle, seen.bary));
 }
 
-/// Of fewer directions than the views have: all of the surface is seen from them, and all that is seen is kept.
+/// Views from fewer directions than the model has suffice here: they see the whole surface, and all visible points are
+/// kept.
 SurfacePrint make_print(const ViewMaker& maker, double detail_m) {
   constexpr int kParts = 2;
   if (!maker.has_colours()) return {};
@@ -176,7 +177,7 @@ SurfacePrint make_print(const ViewMaker& maker, double detail_m) {
   return print.make();
 }
 
-/// Of the directions from which something is seen.
+/// Views from the directions in which some of the surface is visible.
 std::vector<ModelView> make_views(const ViewMaker& maker, const ModelSettings& settings, int threads) {
   const std::vector<Eigen::Vector3f> directions = sphere_directions(settings.views_per_edge);
   std::vector<ModelView> made(directions.size());
@@ -268,7 +269,7 @@ void set_alternatives(const MeasuredMesh& measured, const Symmetries& same_print
   model.unround_points = unround_points(measured, *model.nearly_round);
 }
 
-/// Of the surface's second moments: those of a triangle are A / 12 (aa' + bb' + cc' + (a+b+c)(a+b+c)').
+/// Accumulates the surface's second moments: those of a triangle are A / 12 (aa' + bb' + cc' + (a+b+c)(a+b+c)').
 Eigen::Matrix3f principal_axes(const Mesh& mesh) {
   double area = 0.0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();

@@ -14,7 +14,7 @@
 
 namespace houghstream {
 
-/// What is kept of a model: for view directions spread over the sphere, points that are visible from there.
+/// Settings of an object model: the view directions spread over the sphere, and the visible points of each.
 struct ModelSettings {
   int views_per_edge = 4;        ///< each edge of an icosahedron in so many parts: 10 n^2 + 2 directions
   int points_per_view = 600;     ///< at most
@@ -77,8 +77,8 @@ struct ObjectModel {
   std::vector<Eigen::Vector3f> unround_points;
 };
 
-/// The same for any number of threads. Throws InputError naming `name` when the mesh has no triangles, is flat to a
-/// point, or shows nothing.
+/// Makes the model; the result is the same for any number of threads. Throws InputError naming `name` when the mesh has
+/// no triangles, is degenerate to a point, or is visible from nowhere.
 ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSettings& settings, int threads = 1);
 
 /// The stored view nearest to how the camera sees the model.

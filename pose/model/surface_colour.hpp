@@ -19,7 +19,7 @@ class SurfaceColour {
   /// `detail_m`: what is smaller than this is averaged. The mesh must outlive this.
   SurfaceColour(const Mesh& mesh, double detail_m);
 
-  /// Whether the mesh has a texture or vertex colours.
+  /// Returns whether the mesh has a texture or vertex colours.
   bool has_colour() const;
 
   /// Colour at a point of a triangle: `bary` holds the weights of its second and third vertex.

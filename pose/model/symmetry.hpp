@@ -20,12 +20,12 @@ std::vector<Eigen::Isometry3d> expand_symmetries(const Symmetries& symmetries, d
 Eigen::Isometry3d symmetry_towards(const Eigen::Quaterniond& R_camera_object, const Eigen::Quaterniond& R_reference,
                                    const Symmetries& symmetries);
 
-/// Of the rotations that look the same, the one nearest to the reference: votes must be brought together like this
-/// before they are averaged, errors before they are measured.
+/// Returns the equivalent rotation that is nearest to the reference. Votes are brought together like this before they
+/// are averaged, errors before they are measured.
 Eigen::Quaterniond nearest_equivalent(const Eigen::Quaterniond& R_camera_object, const Eigen::Quaterniond& R_reference,
                                       const Symmetries& symmetries);
 
-/// The same for poses; the rotation decides.
+/// Returns the equivalent pose whose rotation is nearest to the reference's.
 Eigen::Isometry3d nearest_equivalent(const Eigen::Isometry3d& T_camera_object, const Eigen::Isometry3d& T_reference,
                                      const Symmetries& symmetries);
 

@@ -69,7 +69,7 @@ class MotionFilter {
   std::int64_t utime() const { return utime_; }
   const Eigen::Isometry3d& T_world_object() const { return T_; }
   Vector6 velocity() const { return velocity_; }
-  /// Of the pose, with the error that its measurements have in common.
+  /// Returns the covariance of the pose, with the error that its measurements share.
   Covariance6 covariance() const {
     return P_.topLeftCorner<6, 6>() + consider_.topRows<6>() * consider_.topRows<6>().transpose();
   }

@@ -75,8 +75,8 @@ struct RotationCandidate {
 std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>& votes,
                                                  const InitialSettings& settings);
 
-/// How much the votes speak for a pose's rotation: weight of the modes about it, as near as the clusters are wide,
-/// relative to the heaviest mode's, 0 to 1.
+/// Returns the support of a pose's rotation by the votes: the weight of the modes within the clusters' width of it,
+/// relative to the heaviest mode, 0 to 1.
 float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Isometry3d& T_camera_object,
                    const InitialSettings& settings);
 
@@ -92,8 +92,8 @@ std::vector<PoseCandidate> place_candidates(const ObjectObservation& seen,
                                             const std::vector<RotationCandidate>& rotations,
                                             const SearchSettings& settings);
 
-/// What an earlier frame's poses add: those of the class that lie near the detected centre, as they were then. None of
-/// a frame that is later than this one or too long before it.
+/// Returns an earlier frame's poses of the class near the detected centre as candidates; none of a frame that is later
+/// than this one or too long before it.
 std::vector<PoseCandidate> earlier_candidates(const ObjectObservation& seen, const std::string& class_name,
                                               const ObjectPoses& earlier, const WarmStartSettings& settings);
 

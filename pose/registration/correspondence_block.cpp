@@ -43,7 +43,7 @@ HWY_INLINE hn::Mask<Int> within(Ints value, int limit) {
   return hn::And(hn::Gt(value, hn::Set(di, -1)), hn::Lt(value, hn::Set(di, limit)));
 }
 
-/// Of the points of one vector.
+/// Processes the points of one vector.
 HWY_INLINE void find_some(const PixelRays& rays, const float* depth, const CorrespondenceSearch& search,
                           std::size_t first, CorrespondenceBlock& block) {
   const Float d;

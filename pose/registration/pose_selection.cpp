@@ -82,7 +82,7 @@ class PoseSelector {
     return result;
   }
 
-  /// How depth, colour and votes speak for the result.
+  /// Returns the joint score of a result by depth, colour and votes.
   float score_of(const RegistrationResult& result) const {
     const ScoredPose judged =
         score_pose_jointly(seen_, result.T_camera_object, settings_.registration.fine_points, tolerance_);

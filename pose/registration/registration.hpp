@@ -20,8 +20,7 @@ struct RegistrationResult {
   float residual = std::numeric_limits<float>::quiet_NaN();  ///< RMS distance of the inliers along normals, metres
 };
 
-/// How far one registration goes: pairs farther apart than the distance, which shrinks from start to end, have no
-/// weight. Distances in metres.
+/// Maximum correspondence distances of a registration, which shrink from start to end, metres.
 struct RegistrationStage {
   int iterations = 0;
   int points = 0;  ///< of the model's view, at most

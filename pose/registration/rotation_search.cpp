@@ -9,7 +9,7 @@
 namespace houghstream {
 namespace {
 
-/// Those that are better than both neighbours; `ring`: the last one's next is the first.
+/// Returns the poses that score higher than both neighbours; `ring`: the last one's next is the first.
 std::vector<ScoredPose> local_maxima(const std::vector<ScoredPose>& rotations, bool ring) {
   std::vector<ScoredPose> best;
   const std::size_t count = rotations.size();

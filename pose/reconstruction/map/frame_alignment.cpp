@@ -10,7 +10,7 @@
 namespace houghstream::reconstruction {
 namespace {
 
-/// Normal equations and counts of one look at all points.
+/// Normal equations and counts of one evaluation of all points.
 struct NormalEquations {
   Matrix6 hessian = Matrix6::Zero();
   Vector6 gradient = Vector6::Zero();
@@ -23,7 +23,7 @@ struct NormalEquations {
   }
 };
 
-/// Depth at a place between pixels; that of the nearest pixel at an edge, NaN where there is none.
+/// Interpolates the depth between pixels; returns that of the nearest pixel at an edge, NaN where there is none.
 float depth_between(const cv::Mat& depth, float u, float v) {
   const int x = static_cast<int>(u);
   const int y = static_cast<int>(v);
@@ -38,7 +38,7 @@ float depth_between(const cv::Mat& depth, float u, float v) {
   return (1 - dv) * ((1 - du) * above[0] + du * above[1]) + dv * ((1 - du) * below[0] + du * below[1]);
 }
 
-/// Light between pixels and its slope there.
+/// Intensity between pixels and its gradient there.
 struct IntensitySample {
   float value, slope_u, slope_v;
 };
@@ -54,7 +54,7 @@ IntensitySample interpolate_intensity(const cv::Mat& intensity, float u, float v
   return {above + dv * (below - above), (1 - dv) * (a[1] - a[0]) + dv * (b[1] - b[0]), below - above};
 }
 
-/// Tukey's weight of a residual in deviations.
+/// Returns Tukey's weight of a residual in standard deviations.
 double tukey(double r) {
   constexpr double kLimit_sq = 4.685 * 4.685;
   const double rest = 1.0 - r * r / kLimit_sq;
@@ -120,9 +120,9 @@ class ResidualEvaluator {
     const Eigen::Vector3f in_world = R_.transpose() * Eigen::Vector3f(a, b, -(a * p.x() + b * p.y()) / p.z());
     Vector6 row;
     row << in_world.cast<double>(), point.point.cross(in_world).cast<double>();
-    // What is far from the object says little of it, and repeats itself: wallpaper, tiles.
+    // Points far from the object constrain its pose little, and their texture often repeats: wallpaper, tiles.
     const double far = point.point.norm() / kNear_m;
-    // Faint slopes are shade and shine, which do not move with the surface.
+    // Small gradients are shading and highlights, which do not move with the surface.
     const double slope_sq = seen.slope_u * seen.slope_u + seen.slope_v * seen.slope_v;
     const double edge = slope_sq / (slope_sq + kMinSlope * kMinSlope);
     equations.add(row, residual,
@@ -155,7 +155,7 @@ double bearing_error_at(const Eigen::Vector3d& p, const LandmarkObservation& cor
   return (p.head<2>() / p.z() - corner.in_camera.head<2>() / corner.in_camera.z()).norm();
 }
 
-/// A corner's bearing hardly depends on its depth, so what is far away says which way the camera looks.
+/// A landmark's bearing hardly depends on its depth, so far landmarks constrain the camera's rotation.
 void add_corner(const LandmarkObservation& corner, const Eigen::Isometry3d& T, NormalEquations& equations) {
   constexpr double kSigma = 0.003;  // of a bearing: one to two pixels
   const Eigen::Vector3d p = T * corner.in_world;

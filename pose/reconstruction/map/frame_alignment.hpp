@@ -10,7 +10,7 @@ namespace houghstream::reconstruction {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// The table, where it is known to the camera: its height and slope hold three of six degrees of freedom.
+/// The support plane, where it is known: its height and slope constrain three of six degrees of freedom.
 struct PlanePrior {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< camera frame, unit length, upwards
   double offset = 0.0;                                ///< normal.X + offset = 0 on the table
@@ -18,13 +18,13 @@ struct PlanePrior {
   double sigma_rad = 0.004;                           ///< of the world's z axis
 };
 
-/// A corner that has been recognised.
+/// A landmark that was observed again.
 struct LandmarkObservation {
   Eigen::Vector3d in_world = Eigen::Vector3d::Zero();   ///< metres
   Eigen::Vector3d in_camera = Eigen::Vector3d::Zero();  ///< where the frame shows it, metres; its bearing counts
 };
 
-/// What holds a frame besides surface and light.
+/// Constraints of a frame's pose besides geometry and intensity.
 struct PoseConstraints {
   std::optional<PlanePrior> plane;
   std::vector<LandmarkObservation> corners;
@@ -40,7 +40,7 @@ struct AlignmentLimits {
   bool use_photometric = true;
 };
 
-/// A frame laid on surface points, and what speaks for it.
+/// Registration of a frame to surface points, with its statistics.
 struct Alignment {
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
   Matrix6 information = Matrix6::Zero();  ///< of a twist for retract_about_body(), at the end
@@ -51,19 +51,19 @@ struct Alignment {
   double photometric_rms = 0.0;           ///< of the pairs, robust
 };
 
-/// Lays a frame on points of surface: distances along the points' normals (Chen & Medioni 1992), partners found by
-/// projection (Blais & Levine 1995), and differences of light (Steinbruecker, Sturm, Cremers, "Real-time visual
-/// odometry from dense RGB-D images", ICCVW 2011), and bearings of corners are lowered together by Gauss-Newton under
-/// Tukey's weights, from coarse to fine. `points` lie in the world frame, as many levels as the frame's. Thread-safe.
+/// Registers a frame to surface points: point-to-plane distances (Chen & Medioni 1992) of projective correspondences
+/// (Blais & Levine 1995), intensity differences (Steinbruecker, Sturm, Cremers, "Real-time visual odometry from dense
+/// RGB-D images", ICCVW 2011), and bearings of corners are minimised jointly by Gauss-Newton with Tukey's weights, from
+/// coarse to fine. `points` lie in the world frame, as many levels as the frame's. Thread-safe.
 Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
                       const PoseConstraints& constraints, const AlignmentLimits& limits);
 
-/// The statistics of a frame at a pose that is left as it is, on one level.
+/// Returns the statistics of a frame at a fixed pose, on one level.
 Alignment compare_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
                         int level);
 
-/// Radians by which a frame shows a corner elsewhere than its pose says, in the pinhole's plane (tangents); infinite
-/// where the corner is not before the camera.
+/// Returns the distance between a landmark's observed and predicted bearing in the pinhole's plane (tangents), radians;
+/// infinite where the landmark is behind the camera.
 double bearing_error(const LandmarkObservation& corner, const Eigen::Isometry3d& T_camera_world);
 
 }  // namespace houghstream::reconstruction

@@ -17,7 +17,7 @@ struct FrameLevel {
                         ///< nowhere
 };
 
-/// How good a picture is, for leaving out what would blur a model.
+/// Quality of an image, by which frames that would blur a model are left out.
 struct ImageQuality {
   double sharpness = 0.0;        ///< mean square of the Laplacian over the mean square of the brightness' deviation
   double dark_fraction = 0.0;    ///< pixels that are black
@@ -30,7 +30,7 @@ struct FrameLevels {
   ImageQuality quality;
 };
 
-/// What of a frame is taken.
+/// Region and resolution of a frame that registration uses.
 struct LevelSettings {
   cv::Rect region_px;   ///< of the frame; empty = all
   int min_width = 400;  ///< pixels: what is wider is halved before

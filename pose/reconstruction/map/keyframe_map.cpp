@@ -115,7 +115,7 @@ std::optional<LoopClosureError> KeyframeMap::add(Keyframe keyframe, const Alignm
   return gap;
 }
 
-/// Those of the keyframes that have enough corners in common with a frame.
+/// Returns the keyframes that share enough landmarks with a frame.
 std::vector<LandmarkReobservation> KeyframeMap::match_keyframes(const std::vector<int>& keyframes,
                                                                 const Landmarks& seen) const {
   std::vector<LandmarkReobservation> again;
@@ -200,8 +200,8 @@ void KeyframeMap::correct_poses() {
   steps_ = graph_distances(static_cast<int>(keyframes_.size()) - 1, static_cast<int>(keyframes_.size()), edges_);
 }
 
-/// What the neighbours of a keyframe say of it. `again`: by neighbour, how its corners were found there; asked for in
-/// each round, and the same in all of them.
+/// Registers a keyframe to its neighbours. `again` caches its landmark matches by neighbour, which are the same in all
+/// rounds.
 std::vector<PoseEdge> KeyframeMap::edges_from(int from, int coarsest,
                                               std::map<int, std::vector<LandmarkReobservation>>& again) const {
   constexpr std::size_t kNeighbours = 8;

@@ -8,7 +8,7 @@
 
 namespace houghstream::reconstruction {
 
-/// A frame that is kept.
+/// A frame of the map.
 struct Keyframe {
   RgbdFrame frame;
   int number = 0;  ///< of the frame in its take, from 0
@@ -18,13 +18,13 @@ struct Keyframe {
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< metres; world: z up from the table
 };
 
-/// What the loop missed when it was closed.
+/// Error of a loop before it was closed.
 struct LoopClosureError {
   double shift_m = 0.0;    ///< of the world's origin
   double angle_rad = 0.0;  ///< radians
 };
 
-/// When two views are alike enough to be laid on each other, and how well that must go.
+/// Thresholds for the registration of two views.
 struct MapSettings {
   double max_local_angle = 0.44;  ///< radians between views: a keyframe of the local map
   double max_loop_angle = 0.35;   ///< radians between views: a loop may be closed
@@ -42,25 +42,25 @@ struct MapSettings {
   int threads = 1;
 };
 
-/// Some keyframes, and their points in the world frame.
+/// A subset of the keyframes, and their points in the world frame.
 struct MapPart {
   std::vector<int> keyframes;
   LevelPoints points;
 };
 
-/// A keyframe whose corners a frame shows again.
+/// A keyframe whose landmarks were matched with a frame.
 struct LandmarkReobservation {
   int keyframe = 0;
   LandmarkMatch match;  ///< from the keyframe's camera to the frame's
 };
 
-/// How a frame is laid on keyframes that it is not tied to yet.
+/// Limits of a frame's registration to keyframes without an edge to it.
 struct RegistrationLimits {
   int coarsest = 0;          ///< level to begin on
   bool may_be_lost = false;  ///< the likely pose may be far off: corners may contradict it
 };
 
-/// All keyframes of a take, what ties them together, and the part of them that the next frame is laid on.
+/// Keyframes of a take, the pose graph between them, and the local map to which the next frame is registered.
 class KeyframeMap {
  public:
   /// `keyframes`: such as are there already, with poses that are nearly right.
@@ -69,27 +69,29 @@ class KeyframeMap {
   MapSettings& settings() { return settings_; }
   const MapSettings& settings() const { return settings_; }
 
-  /// Adds a keyframe; `alignment` is how it was laid on the local map (not asked for with the first). Closes a loop
-  /// where one is found, and corrects all poses then: the gap that was closed.
+  /// Adds a keyframe; `alignment` is its registration to the local map (unused for the first). Closes a loop where one
+  /// is found, corrects all poses then, and returns the error of the loop.
   std::optional<LoopClosureError> add(Keyframe keyframe, const Alignment& alignment);
 
-  /// Points of the keyframes that see most of what a camera there sees, without such as are across an open loop.
+  /// Returns the points of the local map: keyframes whose views overlap most with a camera there, without those across
+  /// an open loop.
   const LevelPoints& local_map(const Eigen::Isometry3d& T_camera_world);
   LevelPoints points_of(const std::vector<int>& keyframes) const;  ///< world frame
 
-  /// How a frame lies on the keyframes of the local map, given how it lies on their surface and light: where these
-  /// leave a turn open or misread it (something plain and round on a plain table), corners of the surroundings say it.
+  /// Refines a frame's alignment with the local map by landmarks of the surroundings, which constrain the rotation
+  /// where geometry and intensity do not (an untextured round object on an untextured table).
   Alignment constrain_by_landmarks(const FrameLevels& levels, const Landmarks& seen, const Alignment& alignment) const;
 
-  /// Whether an alignment is one.
+  /// Returns whether an alignment is accepted.
   bool is_good(const Alignment& alignment) const;
-  /// Angle between two views of the object, and how far nearer one is, as an angle; radians.
+  /// Returns the angle between two views of the object, plus their difference in distance expressed as an angle,
+  /// radians.
   double view_angle(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) const;
-  /// The keyframe whose view is nearest.
+  /// Returns the keyframe whose view is nearest.
   int nearest(const Eigen::Isometry3d& T_camera_world) const;
 
-  /// Registers all keyframes to their neighbours all round and corrects the poses until all agree. Thread-count makes
-  /// no difference to the result.
+  /// Registers all keyframes to their neighbours and optimises the pose graph, for so many rounds. The result is the
+  /// same for any number of threads.
   void refine(int rounds);
 
   std::vector<Keyframe>& keyframes() { return keyframes_; }

@@ -60,7 +60,7 @@ Pairs agreeing(const Pairs& pairs, const Eigen::Isometry3d& T) {
   return inliers;
 }
 
-/// How many pairs fit a motion; given up with 0 as soon as they cannot be more than `most`.
+/// Returns the number of inliers of a motion, or 0 as soon as they cannot exceed `maximum`.
 std::size_t count_fitting(const Pairs& pairs, const Eigen::Isometry3d& T, std::size_t maximum) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {

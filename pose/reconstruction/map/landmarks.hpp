@@ -19,7 +19,7 @@ struct Landmarks {
 /// ORB (Rublee, Rabaud, Konolige, Bradski 2011). `mask` (CV_8UC1 of the frame's size, or empty) says where.
 Landmarks detect_landmarks(const RgbdFrame& frame, const cv::Mat& mask);
 
-/// How one picture's landmarks lie on another's.
+/// Match of the landmarks of two images.
 struct LandmarkMatch {
   Eigen::Isometry3d T_b_a = Eigen::Isometry3d::Identity();           ///< from camera a to camera b
   std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> inliers;  ///< in a and in b, within a few millimetres of it

@@ -8,7 +8,7 @@
 namespace houghstream::reconstruction {
 namespace {
 
-/// Where the motion that an edge misses is large, the edge is wrong rather than the poses.
+/// Returns the weight of an edge by its residual: where this is large, the edge is an outlier.
 double robust_weight(const Vector6& error) {
   constexpr double kShift_m = 0.006;
   constexpr double kAngle = 0.02;

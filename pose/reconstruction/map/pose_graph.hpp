@@ -7,7 +7,7 @@
 
 namespace houghstream::reconstruction {
 
-/// What the registration of one keyframe to another says of their poses.
+/// Relative pose of two keyframes from their registration.
 struct PoseEdge {
   int from = 0;                                                 ///< its points were laid on ...
   int to = 0;                                                   ///< ... this one's picture

@@ -8,10 +8,11 @@ namespace houghstream::reconstruction {
 
 constexpr int kSphereDirections = 60;
 
-/// Which of the directions of a sphere have been seen.
+/// Directions of the viewing sphere that are covered.
 using ViewCoverage = std::array<bool, kSphereDirections>;
 
-/// Evenly spread unit vectors in the object frame (z up), from the top down: a Fibonacci lattice (Gonzalez 2010).
+/// Returns evenly spread unit vectors in the object frame (z up), from the top down: a Fibonacci lattice (Gonzalez
+/// 2010).
 const std::array<Eigen::Vector3d, kSphereDirections>& view_directions();
 
 /// Marks those sides of the object that a camera in this direction (object frame, from the object's middle) looks at

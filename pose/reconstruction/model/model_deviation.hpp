@@ -22,19 +22,20 @@ struct ViewsOfTake {
   const std::vector<MaskedKeyframe>* views = nullptr;
 };
 
-/// Median distance of all that the takes' views measure on their masks from the model, along its normals, metres; 0
-/// where they measure nothing. Thread-count makes no difference.
+/// Returns the median distance, along the model's normals, of the depth that the takes' views measure on their masks,
+/// metres; 0 where they measure none. The result is the same for any number of threads.
 double surface_deviation(const Mesh& mesh, const std::vector<ViewsOfTake>& of_takes, int threads);
 
-/// Pixels of the frame in which the model is seen at this pose, and neither hidden nor seen through.
+/// Returns the pixels of the frame in which the model is visible at this pose: neither occluded nor a free-space
+/// violation.
 cv::Mat render_visible_mask(const Mesh& mesh, const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_object);
 
-/// Share of the model's pixels in its views behind which depth is measured. A hand or a piece of the table that was
-/// taken for the object is seen through in all views in which it has gone.
+/// Returns the fraction of the model's rendered pixels that violate free space. A hand or a piece of the table that was
+/// fused into the model violates it in all views in which it has gone.
 double free_space_violation(const Mesh& mesh, const Take& take, const std::vector<MaskedKeyframe>& views, int threads);
 
-/// The most that a model without such parts has: of development takes those without had up to 0.004, those with from
-/// 0.06 on.
+/// Maximum for a model without such parts: of the development takes those without had up to 0.004, those with at least
+/// 0.06.
 constexpr double kMaxFreeSpaceViolation = 0.02;
 
 }  // namespace houghstream::reconstruction

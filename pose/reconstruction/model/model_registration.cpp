@@ -110,7 +110,8 @@ Eigen::Isometry3d refine(const Target& a, const Points& b, Eigen::Isometry3d T, 
   return T;
 }
 
-/// What speaks against a pose: distance where both were seen, colour, and how little that is. `median_m` of distances.
+/// Cost of a pose: distance and colour difference where both models were observed, and the lack of overlap. `median_m`
+/// is the median distance.
 double cost_of(const Target& a, const Points& b, const Eigen::Isometry3d& T, double& median_m) {
   constexpr double kFar_m = 0.01;
   constexpr double kColour = 60.0;

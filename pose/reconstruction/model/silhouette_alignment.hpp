@@ -7,14 +7,14 @@
 
 namespace houghstream::reconstruction {
 
-/// Share of the pixels of a view's mask and of the model's outline that both have, 0 to 1. The mask must not have been
-/// made of the model.
+/// Returns the intersection over union of a view's mask and the model's silhouette, 0 to 1. The mask must be
+/// independent of the model.
 double silhouette_iou(const Mesh& mesh, const TrainingView& view);
 
-/// Moves each view's T_camera_object, without turning it, to where the model's outline fits the mask best and its
-/// surface lies at the measured depth. For views whose turn is known better than their place, such as those of a
-/// turntable whose axis is not known exactly. `mesh`: metres, object frame. Any number of threads gives the same
-/// result.
+/// Translates each view's T_camera_object to where the model's silhouette fits the mask best and its surface lies at
+/// the measured depth. It is meant for views whose rotation is known better than their position, such as those of a
+/// turntable whose axis is not known exactly. `mesh`: metres, object frame. The result is the same for any number of
+/// threads.
 void align_silhouettes(const Mesh& mesh, int threads, std::vector<TrainingView>& views);
 
 }  // namespace houghstream::reconstruction

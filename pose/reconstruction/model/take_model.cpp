@@ -203,8 +203,7 @@ void widen(const ReconstructionSettings& settings, Filled& filled) {
   filled.slices = std::move(wide);
 }
 
-/// What is not about the object becomes outside; below the foot's height it is continued down to the table, which ends
-/// it.
+/// Space away from the object is marked as free; below the foot's height the object is continued down to the table.
 void cut_out(const Filled& filled, const ReconstructionSettings& settings, TsdfVolume& grid) {
   const double truncation = 4.0 * grid.voxel;
   const int foot =

@@ -10,7 +10,7 @@
 
 namespace houghstream::reconstruction {
 
-/// What a take says of its object.
+/// Result of a take: model and views of its object.
 struct ReconstructedModel {
   Mesh mesh;               ///< metres; origin at the middle of its foot, z up as it stood; closed, normals, colours
   std::vector<bool> seen;  ///< per vertex: some view shows it; the others close the surface

@@ -77,7 +77,7 @@ ChosenObject make_object(const RgbdFrame& frame, const Plane& plane, const Plane
   return object;
 }
 
-/// Whether the surface about a pixel is level.
+/// Returns whether the surface about a pixel is horizontal.
 bool is_level(const RgbdFrame& frame, const Plane& plane, int x, int y) {
   constexpr int kApart_px = 3;
   constexpr double kCosine = 0.9;
@@ -89,7 +89,7 @@ bool is_level(const RgbdFrame& frame, const Plane& plane, int x, int y) {
   return normal.allFinite() && std::abs(normal.normalized().dot(plane.normal)) > kCosine;
 }
 
-/// What looks like one thing may be a thing on a disc, a book or a box lid: a wide level that carries something
+/// A cluster may be an object on a disc, a book or a box lid: a wide horizontal surface that supports something
 /// smaller.
 std::optional<Plane> carried_by(const RgbdFrame& frame, const ChosenObject& object) {
   constexpr double kBin_m = 0.002;
@@ -142,7 +142,7 @@ std::string nothing_there(const SelectionSettings& settings) {
          "has no depth)";
 }
 
-/// What stands on this plane and is meant.
+/// Selects the object on this plane.
 ObjectSelection choose_on(const RgbdFrame& frame, const Plane& plane, const SelectionSettings& settings) {
   const cv::Point2d meant = meant_place(frame, settings);
   const PlaneAxes axes(plane, frame.camera.backproject(meant.x, meant.y, 1.0));

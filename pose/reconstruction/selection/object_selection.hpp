@@ -11,7 +11,7 @@
 
 namespace houghstream::reconstruction {
 
-/// The object that is meant.
+/// The selected object.
 struct ChosenObject {
   Plane plane;                                                       ///< on which it stands
   Eigen::Isometry3d T_camera_stand = Eigen::Isometry3d::Identity();  ///< origin on the plane below its middle, z up
@@ -23,7 +23,7 @@ struct ChosenObject {
   bool boxed = false;      ///< by a person: what touches it there is not of it
 };
 
-/// The object, or in words why there is none.
+/// The selected object, or the reason why there is none.
 struct ObjectSelection {
   std::optional<ChosenObject> object;
   std::string reason;  ///< empty with an object
@@ -39,18 +39,18 @@ struct SelectionSettings {
   std::uint64_t seed = 1;
 };
 
-/// Pixels of a colour that skin has, CV_8UC1 (Chai & Ngan, "Face segmentation using skin-color map", 1999).
+/// Returns the pixels with a colour of skin, CV_8UC1 (Chai & Ngan, "Face segmentation using skin-color map", 1999).
 cv::Mat skin_pixels(const cv::Mat& colour);
 
-/// The rectangle about a box as the camera sees it, also beyond the picture; none where a corner is nearer than 5 cm.
+/// Returns the rectangle about a projected box, also beyond the image; none where a corner is nearer than 5 cm.
 std::optional<cv::Rect> seen_box(const Eigen::AlignedBox3d& box, const Camera& camera,
                                  const Eigen::Isometry3d& T_camera_box);
 
-/// What stands on the dominant plane nearest to the image's middle or to a place there, or in the box: points above the
-/// plane that hang together. Planes are tried in their order until one carries something.
+/// Selects the cluster of points above the dominant plane that is nearest to the image's centre, to a given pixel, or
+/// in the box. Planes are tried in order until one supports a cluster.
 ObjectSelection select_object(const RgbdFrame& frame, const SelectionSettings& settings);
 
-/// In words, so that a person sees what is meant: where it is in the picture, and how large.
+/// Describes the selected object for a person: its position in the image, and its size.
 std::string describe_selection(const ChosenObject& object);
 
 }  // namespace houghstream::reconstruction

@@ -39,14 +39,14 @@ struct Clusters {
   std::vector<Cluster> list;  ///< the first is none
 };
 
-/// What of a picture is looked at.
+/// Region of an image that is searched.
 struct SearchedPart {
   cv::Rect region_px;           ///< within the picture
   cv::Point2d target_px;        ///< the place that is meant
   double max_distance_m = 0.0;  ///< from the camera
 };
 
-/// All that stands on a plane, or floats above it.
+/// Clusters of points above a plane.
 Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes, const SearchedPart& searched);
 
 }  // namespace houghstream::reconstruction

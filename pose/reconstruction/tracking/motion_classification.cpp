@@ -12,7 +12,7 @@
 namespace houghstream::reconstruction {
 namespace {
 
-/// Of the pixels with a clear edge in the first picture, where `mask` is set: the share that looks the same now.
+/// Returns the fraction of the first image's edge pixels inside `mask` whose intensity is unchanged.
 double unchanged_fraction(const cv::Mat& intensity, const cv::Mat& first, const cv::Mat& mask) {
   constexpr float kEdge_sq = 0.16F;
   constexpr float kSame = 0.4F;

@@ -12,9 +12,10 @@
 
 namespace houghstream::reconstruction {
 
-/// Tells from the first frame of a take and the later ones what moves. The camera stands still as long as the corners
-/// of the surroundings are where they were at first; where there are few, as long as the surroundings look as they did
-/// then rather than as a moved camera would see them. The object moves where it alone looks different.
+/// Classifies the motion in a take by comparing each frame with the first one: either the camera moves, or the object
+/// moves before a static camera. The camera stands still as long as the corners of the surroundings are where they were
+/// at first; where there are few, as long as the surroundings look as they did then rather than as a moved camera would
+/// see them. The object moves where it alone looks different.
 class MotionClassifier {
  public:
   MotionClassifier() = default;
@@ -45,11 +46,11 @@ class MotionClassifier {
   int camera_moves_ = 0;
 };
 
-/// The light of the last frames before a camera that stands still, while the object turns.
+/// Intensities of the last frames of a static camera, while the object turns.
 class StaticShadingDetector {
  public:
-  /// Shade and shine stay where they are while the object turns: what looks as it did some frames ago tells nothing of
-  /// the turn, unless all of it does, and the object rests. Marks it in the next frame's levels
+  /// Shading and highlights stay in place while the object turns: pixels that are unchanged since some frames ago do
+  /// not constrain the rotation, unless all pixels are and the object rests. Marks them in the next frame's levels
   /// (FrameLevel::static_mask). `on_object`: as for MotionClassifier.
   void mark_static_intensity(const cv::Mat& on_object, FrameLevels& levels);
 

@@ -31,7 +31,7 @@ std::optional<Alignment> register_to_keyframe(const KeyframeMap& map, int keyfra
   return found;
 }
 
-/// How a keyframe's corners lie on those of the frame.
+/// Match of a keyframe's landmarks with those of the frame.
 const LandmarkCache::Place& place_by_corners(const KeyframeMap& map, int keyframe, LandmarkCache& corners) {
   const auto [known, is_new] = corners.by_keyframe.try_emplace(keyframe);
   LandmarkCache::Place& place = known->second;

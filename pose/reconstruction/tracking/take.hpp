@@ -13,11 +13,11 @@
 
 namespace houghstream::reconstruction {
 
-/// What moves: the camera about the object, the object before a camera that stands still, or a turntable with
-/// known masks (not of the placer).
+/// Motion of a take: the camera about the object, the object before a static camera, or a turntable with known masks
+/// (not by the placer).
 enum class Motion : std::uint8_t { kUnknown, kCamera, kObject, kTurntable };
 
-/// What became of a frame.
+/// Result of placing a frame.
 struct PlacedFrame {
   FrameId id;
   bool tracked = false;
@@ -49,7 +49,7 @@ struct Take {
   Eigen::Isometry3d pose_of(const PlacedFrame& frame) const;
 };
 
-/// What is left of the take's lost spans, where frames of them have been placed since.
+/// Returns the take's lost spans without frames that have been placed since.
 std::vector<LostSpan> still_lost(const Take& take);
 
 }  // namespace houghstream::reconstruction

@@ -116,7 +116,7 @@ bool TakePlacer::is_fit_for_model(const ImageQuality& quality) {
 
 std::optional<Alignment> TakePlacer::relocalise(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
                                                 LandmarkCache& corners) {
-  // What is round or a box looks alike from several sides.
+  // Round objects and boxes look similar from several sides.
   const LastPlace last{step_.T_last, motion_ == Motion::kObject ? 0.5 : 1e9};
   if (std::optional<Alignment> found = relocalise_by_neighbours(map_, levels, last)) return found;
   if (motion_ == Motion::kObject) corners = {};  // they are of where the object is believed to be
@@ -258,7 +258,7 @@ void TakePlacer::describe() {
     state_.message = describe_selection(chosen_) + "; move the camera once around it, or turn it";
 }
 
-/// What was lost when it came may be found now that more of the surroundings is known.
+/// Frames that were lost on arrival may be relocalised in the map of the whole take.
 void TakePlacer::relocalise_lost_frames() {
   for (bool any = true; any;) {
     any = false;

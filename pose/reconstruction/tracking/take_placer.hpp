@@ -26,7 +26,7 @@ struct TakePlacerSettings {
   double max_bright_fraction = 0.4;
 };
 
-/// What can be said at any time.
+/// Status of the placer, which is valid at any time.
 struct TakePlacerStatus {
   TakePlacerState state = TakePlacerState::kChoosing;
   std::string message;  ///< for a person, one line
