@@ -18,7 +18,8 @@ class FrameSource {
   /// Frames per second at which the source was recorded, or runs.
   virtual double rate_hz() const = 0;
 
-  /// Whether frames come at their own time, as a camera's do; those of a recording come as soon as they are asked for.
+  /// Returns whether frames arrive in real time, as a camera's do; those of a recording come as soon as they are
+  /// requested.
   virtual bool is_live() const { return false; }
 };
 

@@ -65,7 +65,7 @@ cv::Rect parse_box(const json& info, const Camera& camera, const std::string& wh
           static_cast<int>(std::lround(b[3]))};
 }
 
-/// What scene_gt.json says of an object.
+/// Entry of scene_gt.json for an object.
 GroundTruthObject parse_ground_truth(const json& entry, const std::string& where) {
   GroundTruthObject object;
   object.object_id = json_integer(entry, "obj_id", where);
@@ -75,7 +75,7 @@ GroundTruthObject parse_ground_truth(const json& entry, const std::string& where
   return object;
 }
 
-/// What scene_gt_info.json says of it.
+/// Entry of scene_gt_info.json for it.
 void add_info(const json& info, const Camera& camera, const std::string& where, GroundTruthObject& object) {
   object.box_visible_px = parse_box(info, camera, where);
   object.visible_fraction = json_number(info, "visib_fract", where);

@@ -78,8 +78,8 @@ BopModels read_bop_models(const std::filesystem::path& models_folder);
 std::map<std::string, Mesh> load_class_models(const std::filesystem::path& models_folder, double unit_m = 1e-3,
                                               int threads = 1);
 
-/// What models_info.json of a models folder says of the classes' symmetries, by class name; nothing where there is no
-/// such file. Throws InputError as read_bop_models() does.
+/// Reads the classes' symmetries from models_info.json of a models folder, by class name; empty where there is no such
+/// file. Throws InputError as read_bop_models() does.
 std::map<std::string, Symmetries> load_class_symmetries(const std::filesystem::path& models_folder);
 
 /// {"1": "bowl", ...}

@@ -58,7 +58,7 @@ TrainingView object_view(const BopScene& scene, std::size_t index, std::size_t o
   return view;
 }
 
-/// What came of an image.
+/// Outcome of an image.
 struct ImageViews {
   std::vector<TrainingView> views;
   int hidden = 0;  ///< objects that are less visible than kMinTrainingVisibility
@@ -94,7 +94,7 @@ ImageViews read_views(const BopScene& scene, std::size_t index, const std::map<i
   return out;
 }
 
-/// What was left out of a scene, or of all.
+/// Counts of what was left out of a scene, or of all scenes.
 struct LeftOut {
   int hidden = 0;
   int empty = 0;

@@ -30,7 +30,7 @@ class BopWriter {
   std::vector<BopImage> images_;
 };
 
-/// Whether a scene folder holds pictures, among which a BopWriter's would come to lie.
+/// Returns whether a scene folder holds images already, which a BopWriter would mix with its own.
 bool has_images(const std::filesystem::path& scene_folder);
 
 /// Removes them. Throws InputError where it cannot.
@@ -45,7 +45,7 @@ struct NamedModel {
 };
 void write_bop_models(const std::vector<NamedModel>& models, const std::filesystem::path& models_folder);
 
-/// Whether a folder holds models, in BOP's format or as NAME.ply or NAME.obj.
+/// Returns whether a folder holds models, in BOP's format or as NAME.ply or NAME.obj.
 bool has_models(const std::filesystem::path& models_folder);
 
 /// Writes {"1": "bowl", ...}, for models/names.json or SCENE/names.json.

@@ -17,7 +17,7 @@ struct ColouredPoint {
 /// Pixels of `mask` (CV_8UC1) that have depth (CV_32FC1, NaN = none).
 int count_depth_pixels(const cv::Mat& depth, const cv::Mat& mask);
 
-/// Those pixels as points, row by row.
+/// Returns the pixels as points, row by row.
 std::vector<ColouredPoint> object_points(const cv::Mat& colour, const cv::Mat& depth, const cv::Mat& mask,
                                          const Camera& camera);
 

@@ -22,7 +22,7 @@ std::vector<double> numbers_of(const YAML::Node& list) {
   return numbers;
 }
 
-/// Those of a calibration's matrix, else of the message's list.
+/// Reads the intrinsics of a calibration's matrix, else of the message's list.
 std::vector<double> numbers_of_either(const YAML::Node& yaml, const char* matrix,
                                       std::initializer_list<const char*> lists) {
   if (const YAML::Node data = yaml_member(yaml_member(yaml, matrix), "data"); data.IsDefined()) return numbers_of(data);

@@ -16,7 +16,7 @@ Camera read_camera_info(const std::filesystem::path& file);
 /// The value of an option --camera: such a file, or "WIDTHxHEIGHT,fx,fy,cx,cy". Throws InputError.
 Camera camera_of_option(const std::string& text);
 
-/// What an option --camera for frames says of itself.
+/// Help text of an option --camera for frames.
 inline constexpr const char* kCameraOptionHelp =
     "a ROS camera_info YAML file or WIDTHxHEIGHT,fx,fy,cx,cy, for frames without a camera of their own";
 

@@ -15,8 +15,8 @@ struct FrameFiles {
   std::filesystem::path depth;   ///< NAME_depth.png or NAME-depth.png, uint16 millimetres
 };
 
-/// Whether a folder, which is there, holds image pairs or parts of them: a picture without depth counts too, so that
-/// its folder is refused, not passed over.
+/// Returns whether an existing folder holds image pairs or parts of them. An image without depth counts too, so that
+/// its folder is refused and not passed over.
 bool has_frame_pairs(const std::filesystem::path& folder);
 
 /// All pairs of a folder in natural order. Throws InputError when the folder is missing or without pairs, or a

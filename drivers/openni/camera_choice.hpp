@@ -7,7 +7,7 @@
 
 namespace houghstream::openni {
 
-/// What is known of a camera that is plugged in.
+/// Identity of a camera that is plugged in.
 struct CameraDescription {
   std::string uri;  ///< OpenNI2's name of it; for USB cameras it holds bus and port
   std::string vendor;

@@ -8,7 +8,7 @@
 
 #include "pipeline/types/camera.hpp"
 
-// What a user says of a camera, and what a camera says back.
+// Settings of a camera, and the callbacks of its events.
 
 namespace houghstream::openni {
 
@@ -32,7 +32,7 @@ std::string modes_text(const std::vector<CameraMode>& modes);
 /// Parses WIDTHxHEIGHT or WIDTHxHEIGHT@RATE, the form of the option --mode; 30 Hz without a rate. Throws InputError.
 CameraMode parse_camera_mode(const std::string& text);
 
-/// How a camera is to be run.
+/// Settings of a camera.
 struct CameraOptions {
   CameraMode mode;
   bool auto_exposure = true;
@@ -46,10 +46,10 @@ struct CameraOptions {
   bool record_jpeg = false;      ///< colour as JPEG in it: a fifth of the size, but no longer bit by bit what was seen
 };
 
-/// Whether the process that runs a camera is to end. May be empty: never.
+/// Returns whether the process that runs a camera is to end. An empty function means never.
 using StopRequested = std::function<bool()>;
 
-/// What a camera says to the process that runs it, and asks it. Each may be left empty.
+/// Callbacks of a camera to the process that runs it. Each may be empty.
 struct CameraListener {
   StopRequested stop_requested;                              ///< asked ten times a second or more
   std::function<void(const std::string& reason)> on_error;   ///< the camera is gone, is back, cannot be opened

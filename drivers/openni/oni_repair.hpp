@@ -12,7 +12,7 @@ namespace houghstream::openni {
 /// file that cannot be read so far is left as it was.
 std::size_t repair_oni(const std::filesystem::path& file);
 
-/// The same of a copy; `from` stays as it is. Throws InputError likewise, and then there is no copy.
+/// Repairs a copy; `from` stays as it is. Throws InputError likewise, and then there is no copy.
 std::size_t copy_repaired_oni(const std::filesystem::path& from, const std::filesystem::path& to);
 
 }  // namespace houghstream::openni

@@ -25,7 +25,7 @@ std::vector<std::uint64_t> times_in(const OniRecordHeader& record, std::uint64_t
   return places;
 }
 
-/// What a stream states, and what there is of it.
+/// Frames that a stream's header states, and those that are there.
 struct StreamContent {
   std::uint32_t stated = 0;             // images
   std::vector<std::uint64_t> times;     // of its images

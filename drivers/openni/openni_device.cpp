@@ -69,8 +69,8 @@ std::shared_ptr<const void> keep_openni_running() {
   return std::make_shared<OpenniLibrary>();
 }
 
-// What OpenNI2 has made ends in turn: who reads the streams, the streams' images, the recorder (it and a driver that
-// hands over an image would wait for each other), the streams, the device.
+// OpenNI2's objects are destroyed in this order: the reader of the streams, the streams' images, the recorder (it and a
+// driver that hands over an image would deadlock), the streams, the device.
 struct OpenniDevice::State {
   State(const std::string& name, StopRequested stop) : uri(name), stop_requested(std::move(stop)), departure(name) {}
 

@@ -12,10 +12,10 @@
 
 namespace houghstream::openni {
 
-/// How long a stop request or an unplugged camera may go unnoticed.
+/// Interval at which stop requests and unplugged cameras are polled.
 inline constexpr std::chrono::milliseconds kPollInterval(50);
 
-/// How long a file's image is waited for: disks may be asleep.
+/// Timeout for an image of a file: disks may be asleep.
 inline constexpr std::chrono::seconds kFileTimeout(5);
 
 /// The cameras that OpenNI2's drivers have found. `closely` also opens each for its serial number and modes, which

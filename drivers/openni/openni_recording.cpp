@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMaxThumbnails = 300;  // ten seconds: as late as a sleeping disk may let the recorder begin
 
-/// What cannot be mended stays as it is.
+/// A file that cannot be repaired stays as it is.
 void end_interrupted(const std::filesystem::path& file) {
   try {
     const std::size_t images = repair_oni(file);

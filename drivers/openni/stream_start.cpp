@@ -12,7 +12,8 @@ constexpr int kStep = 8;
 constexpr std::size_t kMin = 4;                // images that tell a place from others
 constexpr std::int64_t kMaxApartUs = 500'000;  // one recorder starts both streams
 
-/// How well what is recorded fits what was seen at the same times, if the recording begins at `start_us`.
+/// Returns how well the recorded images match the observed thumbnails of the same times, if the recording begins at
+/// `start_us`.
 StreamStart start_at(std::int64_t start_us, const std::vector<ImageThumbnail>& recorded,
                      const std::vector<ImageThumbnail>& live) {
   StreamStart start{start_us, 0.0, 0};

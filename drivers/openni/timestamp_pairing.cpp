@@ -54,7 +54,7 @@ void TimestampPairing::give_up_front(Queue& queue, std::size_t count) {
   queue.erase(queue.begin(), queue.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-/// What was taken too long before `image` cannot meet a later one of that sensor either.
+/// Images taken too long before `image` cannot match a later one of that sensor either.
 void TimestampPairing::give_up_older(Queue& queue, const SensorImage& image) {
   std::size_t count = 0;
   while (count < queue.size() && queue[count].device_us < image.device_us &&

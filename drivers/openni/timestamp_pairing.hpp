@@ -30,7 +30,7 @@ struct ImagePair {
 /// The pair as a frame; its utime is the caller's.
 RgbdFrame frame_of_pair(const ImagePair& pair, const Camera& camera, std::int64_t utime);
 
-/// How far apart depth and colour may be taken: half the time between two images, and a little for jitter.
+/// Maximum time between depth and colour of a pair: half the time between two images, and some reserve for jitter.
 std::int64_t pairing_tolerance_us(const CameraMode& mode);
 
 /// Brings depth and colour together by their capture times, whichever arrives first and however late. The last colour

@@ -123,7 +123,7 @@ void require_file(const fs::path& file, const fs::path& store) {
           file.string(), store.string());
 }
 
-/// Of an object store, a torn one included: its version is what it begins with.
+/// Recognises an object store, a truncated one included, by the version at its beginning.
 bool is_list_of_store(const fs::path& file) {
   if (!fs::is_regular_file(file)) return false;
   return read_file(file, "the list of an object store").find(fmt::format("\"{}\"", kVersionKey)) != std::string::npos;

@@ -16,7 +16,7 @@
 
 namespace houghstream::store {
 
-/// Of store.json; another one is refused.
+/// Version of store.json; another one is refused.
 constexpr int kStoreVersion = 1;
 
 /// A vote centre is nearer to the origin than this, metres: farther away coordinates lose what a mesh shows.
@@ -90,8 +90,8 @@ std::vector<std::string> find_stores(const std::filesystem::path& folder);
 /// else in the folder is foreign and is kept (pipeline/base/folder_exchange.hpp).
 bool is_store_entry(const std::filesystem::path& relative);
 
-/// Whether the folder is empty or holds a store or what is left of one, which may be replaced; nothing else may. A
-/// store.json of anybody else makes no store.
+/// Returns whether the folder may be replaced: it is empty, or holds a store or the remains of one. A foreign
+/// store.json makes no store.
 bool is_replaceable(const std::filesystem::path& folder);
 
 }  // namespace houghstream::store

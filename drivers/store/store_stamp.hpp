@@ -13,7 +13,7 @@ std::string file_stamp(const std::filesystem::path& file);
 /// The same of all that lies in a folder, a line each.
 std::string folder_stamp(const std::filesystem::path& folder);
 
-/// The same of a store's list and all that lies beside its meshes, a line each.
+/// Returns the stamp of a store's list and of all files beside its meshes, a line each.
 std::string mesh_stamp(const ObjectStore& store);
 
 }  // namespace houghstream::store

@@ -35,8 +35,9 @@ int open_folder(const fs::path& folder) {
   return open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 }
 
-/// Who looks whether anybody works on a store, and says then that he does, is alone with that: two who begin together
-/// would both find nobody. Waits for those before, who take a moment. Leaves no file beside the store.
+/// Lock under which a process checks for another writer of the store and registers as one: two processes that begin
+/// together would otherwise both find none. It waits for earlier holders, who hold it briefly, and leaves no file
+/// beside the store.
 class StoreLock {
  public:
   explicit StoreLock(const fs::path& folder) : file_(open_folder(folder)) {
@@ -68,8 +69,8 @@ std::string partial_prefix(const fs::path& store) {
   return "." + store.filename().string() + ".partial-";
 }
 
-/// What earlier teachings left; somebody's files in it go back to the store. Throws InputError where one of them is
-/// still at work.
+/// Removes the remains of earlier transactions; foreign files in them go back to the store. Throws InputError where one
+/// of them is still running.
 void remove_leftovers(const fs::path& store) {
   std::vector<fs::path> left;
   for (const auto& entry : fs::directory_iterator(store.parent_path())) {

@@ -36,8 +36,8 @@ std::string state_of_store(const fs::path& folder) {
   return state_of_store(store);
 }
 
-/// Of the calling thread only, as Linux has it: frames go first, and still it gets its turn. A robot's processes may be
-/// scheduled in real time; this is none of that.
+/// Lowers the priority of the calling thread only, as Linux defines it: frames go first, and the thread still runs. A
+/// robot's real-time scheduling is not inherited.
 void lower_priority() {
   constexpr int kPolite = 10;
   const sched_param none{};
@@ -62,7 +62,7 @@ fs::path folder_above(const fs::path& folder) {
   return fs::absolute(folder / "").lexically_normal().parent_path().parent_path();
 }
 
-/// What else may have been meant by the folder, in words.
+/// Returns a hint at folders with a similar name, as text.
 std::string describe_neighbours(const fs::path& folder) {
   constexpr std::size_t kMax = 5;
   const fs::path above = folder_above(folder);

@@ -15,10 +15,10 @@
 
 namespace houghstream::store {
 
-/// Follows an object store that changes while a program runs: what the program needs of it is loaded in a thread of low
-/// priority, and is there as a whole once it is. A store that is torn or bad leaves what was there before; one line of
-/// the log says why, and known(). It is tried again after five periods, then after twice as many each time, up to 300:
-/// what was missing may have been memory or file descriptors. Every function may be called from any thread.
+/// Watches an object store that changes while a program runs: the program's part of it is loaded in a thread of low
+/// priority, and replaces the previous one atomically. A truncated or invalid store leaves the previous state; one line
+/// of the log and known() state the reason. It is retried after five periods, then with exponential backoff up to 300,
+/// since memory or file descriptors may have been missing. Every function may be called from any thread.
 class StoreWatcherBase {
  public:
   using Load = std::function<std::shared_ptr<const void>(const ObjectStore&)>;
@@ -39,7 +39,7 @@ class StoreWatcherBase {
   /// Instead of follow(), where all is to go by the same: throws InputError if there is no store yet.
   void require_store() const;
 
-  /// What was loaded last; null while there is no store yet.
+  /// Returns the object that was loaded last; null while there is no store yet.
   std::shared_ptr<const void> current() const;
 
   KnownObjects known() const;
@@ -70,7 +70,7 @@ class StoreWatcherBase {
   std::thread thread_;
 };
 
-/// The same with the type of what is loaded.
+/// A StoreWatcherBase with the type of the loaded object.
 template <typename T>
 class StoreWatcher {
  public:

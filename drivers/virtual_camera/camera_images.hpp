@@ -15,7 +15,7 @@ struct CameraImage {
   cv::Mat depth_mm;  ///< CV_16UC1, 0 = none
 };
 
-/// What the virtual camera sees.
+/// Images of the virtual camera.
 struct CameraImages {
   Camera camera;
   std::vector<CameraImage> images;  ///< shown one after another, again and again

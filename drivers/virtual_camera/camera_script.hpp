@@ -9,9 +9,9 @@
 
 namespace houghstream::virtual_camera {
 
-/// How the virtual camera behaves, read from a text file with one "key value" a line; the value may have blanks in it,
-/// and # starts a comment. The file may be rewritten while the camera runs: what concerns only new images takes effect
-/// with the next one.
+/// Behaviour of the virtual camera, read from a text file with one "key value" per line; the value may contain blanks,
+/// and # starts a comment. The file may be rewritten while the camera runs: keys that concern only new images take
+/// effect with the next one.
 struct CameraScript {
   std::string scene;                   ///< BOP scene folder that is played, again and again; empty: the test pattern
   std::vector<std::string> serials;    ///< one for each camera; default: VC0001

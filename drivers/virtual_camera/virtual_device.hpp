@@ -39,7 +39,7 @@ class VirtualDevice : public oni::driver::DeviceBase {
   bool synchronise();
   void unsynchronise() { synchronised_ = false; }
 
-  /// How far an unregistered depth image lies beside the colour image: to the right, pixels at a width of 640.
+  /// Offset of an unregistered depth image from the colour image, to the right, pixels at a width of 640.
   static constexpr int kParallaxPx = 20;
 
  private:
