@@ -4,8 +4,8 @@
 
 namespace houghstream::baseline {
 
-/// How forests with these settings are taught: those of a scale space with the original's training, depth-normalised
-/// ones as by the product, and both with surface features where the settings have some.
+/// Returns the scales with which forests of these settings are trained: a scale space as in the original, depth
+/// normalisation as in the product, each with surface features where the settings have some.
 const training::Scales& scales_of(const FeatureSettings& settings);
 
 }  // namespace houghstream::baseline

@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::array<float, kMaxScales> kFiveScales = {0.33F, 0.66F, 1.0F, 1.66F, 2.33F};  // Section 4
 
-/// What each of so many objects and the background would have if nothing were known: the released detector of the
-/// paper's authors lets a patch vote for an object from there on (its threshold_hierarchy is 1).
+/// Prior probability of each of so many objects and the background: the released detector of the paper's authors lets a
+/// patch vote for an object from this posterior on (its threshold_hierarchy is 1).
 float even_fraction(std::size_t objects) {
   return 1.0F / static_cast<float>(objects + 1);
 }

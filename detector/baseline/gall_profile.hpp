@@ -17,7 +17,7 @@ Profile make_profile(const std::string& name, std::size_t objects = 4);
 
 std::vector<std::string> profile_names();
 
-/// How a forest wants to be searched: by the profile that it was trained by, for as many objects as it knows.
+/// Returns the settings of the profile that the forest was trained with, for its number of objects.
 DetectionSettings detection_settings_of(const Forest& forest);
 
 /// The profile by which a forest was trained, see training::profile_of.
@@ -27,8 +27,8 @@ Profile profile_of(const Forest& forest);
 /// that it covers as much of the frame as before; lengths in metres stay. To be called before set_scale_handling.
 void set_image_scale(Profile& profile, float image_scale);
 
-/// How distances are handled: "five" (scales, Gall et al. 2011), "single" (scale 1 only) or "normalised" (by depth,
-/// Section 5.1.2; patches as large as at 1 m, about where turntables stand). Throws InputError for another word.
+/// Returns the handling of distances: "five" (scales, Gall et al. 2011), "single" (scale 1 only) or "normalised" (by
+/// depth, Section 5.1.2; patches as large as at 1 m, about where turntables stand). Throws InputError for another word.
 void set_scale_handling(Profile& profile, const std::string& handling);
 
 }  // namespace houghstream::baseline

@@ -24,7 +24,7 @@ Curvature curvature_of(const Eigen::Matrix3d& covariance, const Eigen::Vector3d&
   const double mean = 0.5 * (uu + vv);
   const double half = 0.5 * (uu - vv);
   const double root = std::sqrt(half * half + uv * uv);
-  // Of the two rows that give the eigenvector, the one that does not cancel.
+  // Two rows give the eigenvector; the one without cancellation is taken.
   const Eigen::Vector3d along = half > 0.0 ? (half + root) * u + uv * v : uv * u + (root - half) * v;
   Curvature out;
   out.max = static_cast<float>(std::max(0.0, mean + root));

@@ -16,7 +16,7 @@ constexpr int kFull = 255;  // vote of one normal; a window of them must fit 16 
 constexpr auto kPlanes = static_cast<std::size_t>(HonvLayout::kPlanes);
 using Votes = std::array<float, kPlanes>;
 
-/// What a unit normal gives to each azimuth: 1 in all.
+/// Weights of a unit normal for each azimuth bin, which sum to 1.
 std::array<float, HonvLayout::kAzimuths> azimuth_shares(const cv::Vec3f& normal, float zenith_bin) {
   const float angle = std::atan2(normal[1], normal[0]) / (2.0F * kPi);
   const float bin = (angle < 0.0F ? angle + 1.0F : angle) * static_cast<float>(HonvLayout::kAzimuths);

@@ -43,7 +43,8 @@ float support_radius(const PointHistogramSettings& settings, int neighbours) {
   return settings.spacing * std::sqrt(static_cast<float>(neighbours) / static_cast<float>(M_PI));
 }
 
-/// Of the plane through the pixels at these places of a disk of so many metres; NaN where too few are on the surface.
+/// Fits the plane through the pixels at these offsets of a disk of so many metres; NaN where too few are on the
+/// surface.
 Eigen::Vector3f normal_at(const WorkingFrame& frame, cv::Point at, const std::vector<cv::Point2f>& places,
                           float radius) {
   constexpr float kMinReach = 1.5F;  // pixels

@@ -34,7 +34,7 @@ struct CloudNeighbours {
 
 HistogramCloud make_histogram_cloud(const WorkingFrame& frame, const PointHistogramSettings& settings, int threads);
 
-/// Those of a point that lie on its own surface, itself first; none where there is no surface.
+/// Lists the neighbours of a point on its surface, the point first; none where there is no surface.
 CloudNeighbours neighbours_of(const HistogramCloud& cloud, int x, int y);
 
 }  // namespace houghstream::baseline

@@ -12,7 +12,7 @@ namespace houghstream::baseline {
 /// NaN where depth is missing and where less than a quarter of the window lies on the same surface.
 cv::Mat surface_normals(const WorkingFrame& frame, int neighbours, int threads);
 
-/// Of the plane that fits points of this covariance best, turned against the ray that sees it.
+/// Returns the normal of the least-squares plane of points with this covariance, oriented towards the camera.
 Eigen::Vector3d facing_normal(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& ray);
 
 /// The normals as vectors whose windows can be summed.

@@ -24,12 +24,12 @@ enum FeatureFamily : std::uint32_t {
 /// The programs that search a scale space and compute surface families, for refusals.
 constexpr const char* kStudyPrograms = "detector/baseline (hs-study train, hs-study evaluate, hs-study hough)";
 
-/// Those that the product computes, and all.
+/// Families that the product computes, and all families.
 constexpr std::uint32_t kTileFamilies = kIntensity | kDepthValue | kDepthDerivatives | kDepthHog;
 constexpr std::uint32_t kAllFamilies = kTileFamilies | kHonv | kCurvature | kPointHistogram | kFastHistogram;
 
-/// Whether a family describes the surface around a point: studied in the paper, not among its final features, and
-/// implemented in detector/baseline.
+/// Returns whether a family describes the surface around a point. These were studied in the paper, are not among its
+/// final features, and are implemented in detector/baseline.
 constexpr bool is_surface_family(FeatureFamily family) {
   return family >= kHonv;
 }
@@ -64,7 +64,7 @@ struct FeatureBlock {
   int planes() const { return min_max ? 2 * count : count; }
 };
 
-/// What a plane holds, as far as the tests on it care.
+/// Kind of a plane, which decides about the tests on it.
 enum class PlaneKind : std::uint8_t {
   kIntensity,     ///< lightness, colour and their changes: another light, other values
   kWrappedDepth,  ///< depth / kWrapStep modulo 256: only differences mean something, and they wrap too

@@ -27,7 +27,7 @@ class FeatureImage {
   FeatureImage() = default;
   /// `pixel_stride`: room per pixel, bytes; FeatureLayout says which are used.
   FeatureImage(int width, int height, int pixel_stride) { reset(width, height, pixel_stride); }
-  /// The same, but keeps its memory: what it held stays there, as other pixels' values where the size is another.
+  /// Resizes the image and reuses its memory: its previous content stays, at other pixels where the size differs.
   void reset(int width, int height, int pixel_stride);
 
   int width() const { return width_; }

@@ -9,7 +9,7 @@
 
 namespace houghstream {
 
-/// How one object is known at every distance.
+/// Handling of an object's distance.
 enum class ScaleHandling : std::uint32_t {
   kDepthNormalised = 0,  ///< tests and offsets are divided by the measured depth (paper, Section 5.1.2)
   /// The image is searched in several sizes (Gall et al. 2011), by detector/baseline. Nothing is known of depth:
@@ -20,7 +20,7 @@ enum class ScaleHandling : std::uint32_t {
 
 constexpr int kMaxScales = 5;
 
-/// How a frame becomes feature planes. Stored in the forest file: training and detection must agree.
+/// Settings of the feature planes. Stored in the forest file, since training and detection must agree.
 struct FeatureSettings {
   std::uint32_t families = 15;  ///< see FeatureFamily; default: the paper's final features (Section 4, end)
   ScaleHandling handling = ScaleHandling::kDepthNormalised;

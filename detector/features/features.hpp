@@ -28,7 +28,7 @@ struct FeatureInput {
   const ExtraPlanes* extra = nullptr;  ///< of each surface family among the settings'
 };
 
-/// What compute_features needs for itself, to be kept from picture to picture.
+/// Workspace of compute_features(), reused from image to image.
 struct FeatureWorkspace {
   struct Worker {
     ImageBuffer lab_row;  ///< a row of tiles
@@ -49,7 +49,7 @@ struct FeatureWorkspace {
 /// Throws InputError for a surface family that FeatureInput::extra lacks.
 void compute_features(const FeatureInput& input, int threads, FeatureWorkspace& workspace, FeatureImage& image);
 
-/// The same in all tiles.
+/// Computes the features in all tiles.
 FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& settings, int threads,
                               const ExtraPlanes* extra = nullptr);
 

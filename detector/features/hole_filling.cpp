@@ -28,7 +28,7 @@ struct Step {
   int length = 0;
 };
 
-/// Those above and to the left; the others lie opposite.
+/// Neighbours above and to the left; the others are opposite.
 constexpr std::array<Step, 8> kSteps = {{{-1, -2, kKnight},
                                          {1, -2, kKnight},
                                          {-2, -1, kKnight},

@@ -6,7 +6,7 @@
 
 namespace houghstream {
 
-/// How far from measured depth a hole may lie and still borrow it.
+/// Maximum distance between a hole's pixel and the measured depth that fills it.
 struct HoleReach {
   float px = 0.0F;  ///< from any surface, pixels
   /// ... and from one at depth z as many pixels divided by z, where that is more. 0: what is nearest in pixels lends.
@@ -19,7 +19,7 @@ struct Hole {
   std::int16_t y = 0;
 };
 
-/// What fill_holes needs for itself, to be kept from picture to picture.
+/// Workspace of fill_holes(), reused from image to image.
 struct HoleWorkspace {
   std::vector<Hole> holes;              ///< row by row
   std::vector<std::int32_t> distances;  ///< to the pixel that a hole has borrowed from; 0 where there is no hole

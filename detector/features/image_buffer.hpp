@@ -27,10 +27,10 @@ struct LineAllocator {
 
 using LineBytes = std::vector<std::uint8_t, LineAllocator<std::uint8_t>>;
 
-/// Memory for a picture that is made again and again in several sizes: cv::Mat would ask for other memory each time.
+/// Memory of an image that is made repeatedly in several sizes: cv::Mat would reallocate it each time.
 class ImageBuffer {
  public:
-  /// What it shows is what was there before; it ends with the next one, and with the memory.
+  /// Returns an image with undefined content, which is valid until the next call and while the buffer exists.
   cv::Mat image(cv::Size size, int type) {
     const std::size_t bytes = static_cast<std::size_t>(size.area()) * CV_ELEM_SIZE(type);
     if (bytes_.size() < bytes) bytes_.resize(bytes);

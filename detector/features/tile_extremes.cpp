@@ -17,7 +17,7 @@ struct Extremes {
   V minimum;
 };
 
-/// Of `side` vectors, `step` values apart.
+/// Returns the extremes of `side` vectors, `step` values apart.
 template <int kSide, class D, typename T, class V = hn::Vec<D>>
 HWY_INLINE Extremes<V> extremes(D d, const T* largest, const T* smallest, std::ptrdiff_t step, int side) {
   Extremes<V> found{hn::LoadU(d, largest), hn::LoadU(d, smallest)};

@@ -22,10 +22,10 @@ struct ExtremePlanes {
 /// Largest and smallest value around each pixel of a part, which has a margin of at least `around.before()` pixels.
 void byte_extremes(const TilePlane<std::uint8_t>& plane, Neighbourhood around, ExtremePlanes planes, TileRows& rows);
 
-/// How steps of depth become bytes.
+/// Quantisation of depth steps to bytes.
 enum class StepBytes : std::uint8_t { kWrapped, kLimited };
 
-/// The same of 16 bits a value, which become bytes afterwards.
+/// Computes extremes of 16-bit values, which are quantised to bytes afterwards.
 void step_extremes(const TilePlane<std::uint16_t>& plane, Neighbourhood around, StepBytes bytes, ExtremePlanes planes,
                    TileRows& rows);
 

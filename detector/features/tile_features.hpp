@@ -13,7 +13,7 @@
 
 namespace houghstream {
 
-/// What the planes of a part are made of.
+/// Inputs of a part's planes.
 struct TileSources {
   const WorkingFrame& frame;
   const FeatureSettings& settings;
@@ -65,7 +65,7 @@ struct DepthSteps {
 };
 DepthSteps depth_steps(const WorkingFrame& frame, const FeatureSettings& settings);
 
-/// How far beyond a part its intensity planes look, pixels.
+/// Margin around a part that its intensity planes need, pixels.
 int lab_margin(const FeatureSettings& settings);
 
 }  // namespace houghstream

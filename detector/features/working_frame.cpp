@@ -35,7 +35,7 @@ float nearest_surface(const cv::Mat& depth, int x0, int x1, int y0, int y1) {
   return count > 0 && std::isfinite(nearest) ? sum / static_cast<float>(count) : kNoValue;
 }
 
-/// The same of a block of 2x2 pixels, without branches: NaN fails every comparison.
+/// Averages a block of 2x2 pixels without branches: NaN fails every comparison.
 float nearest_of_four(float a, float b, float c, float d) {
   float nearest = std::numeric_limits<float>::infinity();
   for (const float depth : {a, b, c, d}) nearest = depth < nearest ? depth : nearest;

@@ -32,11 +32,11 @@ struct FeatureLevel {
 /// Focal length of the 640x480 cameras that the paper's patches, and all supports in pixels, were counted in.
 constexpr float kReferenceFocal_px = 525.0F;
 
-/// Those of a depth-normalised search, of the cameras whose frames supports in pixels were chosen for.
+/// Settings of a depth-normalised search, for cameras with the focal length for which supports in pixels were chosen.
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings);
-/// Of any camera: a tele lens shows an object in more pixels, of which supports in pixels would cover less. Sizes are
-/// an octave smaller, or larger, for each that its focal length is longer, or shorter. The paper's cameras are all
-/// alike.
+/// Returns the scale for a camera: with a longer focal length an object has more pixels, and supports in pixels would
+/// cover less of it. Images are an octave smaller, or larger, for each octave of a longer, or shorter, focal length.
+/// The paper's cameras have equal focal lengths.
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings, const Camera& camera);
 
 /// The power of two that brings a camera's focal length nearest to kReferenceFocal_px.
@@ -47,7 +47,7 @@ float focal_octave_scale(const Camera& camera);
 /// there.
 WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings);
 
-/// The same for a level of a scale space.
+/// Returns the scale of a level of a scale space.
 WorkingFrame make_working_frame(const RgbdFrame& frame, const FeatureLevel& level, const FeatureSettings& settings);
 
 /// A picture, and this at half the size, a quarter and an eighth.

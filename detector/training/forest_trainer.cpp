@@ -22,7 +22,7 @@ std::int32_t moved(std::int32_t child, std::int32_t first_node, std::int32_t fir
   return child >= 0 ? child + first_node : child - first_leaf;
 }
 
-/// What a profile says of a forest; classes, views and trees are to follow.
+/// Makes a forest with the settings of a profile; classes, views and trees follow.
 Forest without_trees(const Profile& profile) {
   Forest forest;
   forest.profile = profile.name;
@@ -63,7 +63,7 @@ bool learns_scores(const TrainingSettings& settings) {
   return settings.scoring == Scoring::kEvidence && settings.validation_frames > 0;
 }
 
-/// Who learns from which views: the score must not learn from rooms that the trees know by heart.
+/// Split of the views between trees and score: the score must not learn from backgrounds that the trees have memorised.
 struct TrainingSplit {
   std::vector<const TrainingView*> objects;
   std::vector<const TrainingView*> for_trees;  ///< objects and rooms

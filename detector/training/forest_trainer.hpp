@@ -28,7 +28,7 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
 
 /// The profile by which a forest was trained, as add_objects wants it; seed and threads are the profile's.
 Profile profile_of(const Forest& forest);
-/// The same where the profile of the forest's name is `named`.
+/// Trains the forest where the profile of its name is `named`.
 Profile profile_of(const Forest& forest, Profile named);
 
 }  // namespace houghstream::training

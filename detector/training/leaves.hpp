@@ -9,7 +9,7 @@
 
 namespace houghstream::training {
 
-/// What the leaves of one tree are made of.
+/// Inputs of the leaves of one tree.
 struct LeafSource {
   const TrainingSet& set;
   const TrainingSettings& settings;
@@ -21,7 +21,7 @@ struct LeafSource {
 /// start with a single 0.
 std::int32_t add_leaf(const LeafSource& source, const std::vector<std::uint32_t>& samples, Forest& forest);
 
-/// What becomes of a leaf's weight when objects are added.
+/// Change of a leaf's weight when objects are added.
 struct LeafMixture {
   float added = 0.0F;       ///< of the new objects' leaf
   float known = 1.0F;       ///< of what the known leaf holds of objects

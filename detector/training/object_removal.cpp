@@ -18,7 +18,7 @@ std::size_t class_index_of(const Forest& forest, const std::string& name) {
   return static_cast<std::size_t>(found - names.begin());
 }
 
-/// What a tree's leaves hold of the objects, over what one object has of a tree: the same for every object.
+/// Ratio between the objects' weight in a tree's leaves and that of one object: equal for all objects.
 struct Shares {
   float object = 0.0F;      ///< of all that a tree learnt from
   float background = 0.0F;  ///< over the object's
@@ -59,7 +59,7 @@ void keep_entry(const Forest& from, const LeafClass& known, const std::vector<st
   to.leaf_classes.push_back(entry);
 }
 
-/// How leaves change.
+/// Change of the leaves.
 struct Removal {
   std::size_t object = 0;                   ///< index of its class
   float of_background = 1.0F;               ///< what the background weighs, over what it weighed
@@ -89,7 +89,7 @@ void keep_leaf(const Forest& from, std::size_t leaf, const Removal& removal, For
   to.leaves.push_back(static_cast<std::uint32_t>(to.leaf_classes.size()));
 }
 
-/// What is not of the leaves or views.
+/// Copies the members other than leaves and views.
 Forest without_leaves(const Forest& forest, std::size_t removed) {
   Forest out;
   out.profile = forest.profile;

@@ -16,7 +16,7 @@
 namespace houghstream::training {
 namespace {
 
-/// What counts as found in the paper's protocol (Section 4).
+/// Criterion of the paper's protocol for a detected object (Section 4).
 constexpr float kMinIou = 0.5F;
 constexpr double kMinVisible = 0.1;
 
@@ -71,7 +71,7 @@ ValidationSource frames_from(int first, const ComposedThings& things, const std:
           }};
 }
 
-/// Of all frames together.
+/// Merges the examples of all frames.
 ScoreExamples joined(const std::vector<ScoreExamples>& by_frame) {
   ScoreExamples by_class;
   for (const ScoreExamples& part : by_frame) {
@@ -83,7 +83,7 @@ ScoreExamples joined(const std::vector<ScoreExamples>& by_frame) {
   return by_class;
 }
 
-/// Of log odds: (factor, offset).
+/// Scale of the logits: (factor, offset).
 using OddsScale = Eigen::Vector2d;
 using OddsExamples = std::vector<LogisticExample<2>>;
 

@@ -15,7 +15,8 @@
 
 namespace houghstream::training {
 
-/// What scores are learnt from: frame `index`, from 0 to count - 1, with the truth. Called from several threads.
+/// Source of the frames that scores learn from: returns frame `index`, from 0 to count - 1, with its ground truth.
+/// Called from several threads.
 struct ValidationSource {
   int count = 0;
   std::function<ValidationFrame(int index)> frame;
@@ -33,11 +34,11 @@ ValidationSource compose_hard_negative_frames(const std::vector<const TrainingVi
                                               const std::vector<const TrainingView*>& backgrounds,
                                               const TrainingSettings& settings);
 
-/// What the forest finds in a frame, compared with what is there: by class id.
+/// Labelled hypotheses of a frame, by class id.
 using ScoreExamples = std::map<int, std::vector<ScoreExample>>;
 
-/// Of each frame, in their order. The first of the views that ValidationFrame names is the forest's number
-/// `first_view`. Same result for any number of threads.
+/// Returns the examples of each frame, in order. View 0 of a ValidationFrame is the forest's view `first_view`. The
+/// result is the same for any number of threads.
 std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, std::uint32_t first_view,
                                                const Profile& profile, const Forest& forest,
                                                const Scales& scales = depth_normalised_scales());

@@ -11,7 +11,7 @@
 
 namespace houghstream::training {
 
-/// What a node's test should bring (Gall et al. 2011, Section 3.2): pure classes or agreeing offsets.
+/// Objective of a node's test (Gall et al. 2011, Section 3.2): pure classes or agreeing offsets.
 enum class Objective { kClass, kOffset };
 
 /// Finds the best of many random tests for a node. They look at few pixels of a patch, drawn anew for every node, so
@@ -77,7 +77,7 @@ class SplitSearch {
   /// Among which planes a node's tests choose: the point histograms or all others, where there are both.
   const Planes& draw_planes(Random& random) const;
   void draw_tests(std::size_t test_count, Random& random);
-  /// Of the tests on a plane of this kind look at one pixel, see TrainingSettings.
+  /// Returns the fraction of the tests on a plane of this kind that read a single pixel, see TrainingSettings.
   double single_pixel_fraction(PlaneKind kind) const;
   PixelTest random_test(const Planes& planes, PlacePair& pair, Random& random) const;
   void prepare_tests(std::size_t test_count, int pixel_stride);

@@ -8,7 +8,7 @@
 
 namespace houghstream::training {
 
-/// How a forest is trained: the pictures, and what is learnt from them.
+/// Settings of the training of a forest: the images, and what is learnt from them.
 struct TrainingSettings : AugmentationSettings {
   int trees = 15;
   int max_depth = 25;         ///< levels
@@ -21,8 +21,9 @@ struct TrainingSettings : AugmentationSettings {
   /// At least so many of the tests on depth and on the surface, point histograms aside: these are the same in any
   /// light, without a comparison.
   double shape_single_pixel_fraction = 0.0;
-  /// Of the nodes look at point feature histograms, and only at those; the others never. What is shaped like an object
-  /// stands in no room that is learnt from: they would win nearly every node, and the object's colours go unlearnt.
+  /// Fraction of the nodes that test point feature histograms only; the others never do. Background images contain
+  /// nothing with the shape of an object, so point histograms would win nearly every node and the forest would not
+  /// learn the object's colours.
   double histogram_fraction = 0.3;
   int node_samples = 1500;  ///< at most so many samples choose a node's test; all are then split by it
   /// The background weighs as much as all objects together, but at most as so many: what a patch is worth to an object

@@ -6,8 +6,8 @@
 
 namespace houghstream::training {
 
-/// Whether a tree learns from a picture. Whole pictures are in or out, since patches of one picture are not
-/// independent; what is out tests the tree (Breiman 2001).
+/// Returns whether a tree learns from an image. Whole images are in the bag or out, since patches of one image are not
+/// independent; out-of-bag images test the tree (Breiman 2001).
 bool in_bag(const TrainingSettings& settings, int tree, std::int32_t image);
 
 /// Grows tree number `tree` alone: a forest of one. Depends on the seed and the tree's number only.

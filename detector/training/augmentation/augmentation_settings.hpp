@@ -6,7 +6,7 @@
 
 namespace houghstream::training {
 
-/// How pictures are made to learn from.
+/// Settings of the augmentation of training images.
 struct AugmentationSettings {
   int patches_per_view = 250;        ///< of a training view
   int patches_per_background = 250;  ///< of a background frame

@@ -72,7 +72,7 @@ void blur(const ColourVariation& camera, cv::Mat& colour) {
   cv::filter2D(colour, colour, -1, kernel, {-1, -1}, 0.0, cv::BORDER_REPLICATE);
 }
 
-/// What automatic exposure makes of the picture's brightness, times what it is off by.
+/// Gain of the automatic exposure, times its error.
 double exposure(const ColourVariation& camera, const cv::Mat& colour) {
   constexpr double kMiddleGrey = 110.0;
   constexpr double kMaxStops = 1.0;

@@ -109,7 +109,7 @@ void blur_edges(const DepthVariation& camera, const Edges& edges, cv::Mat& depth
   }
 }
 
-/// What the noise and the holes go by.
+/// Inputs of the noise and of the holes.
 struct Surfaces {
   cv::Mat slant_sq;     ///< CV_32FC1: tangent of the incidence, squared; 0 where it is not known
   cv::Mat reflectance;  ///< CV_32FC1: about that of linear light
@@ -152,7 +152,7 @@ Surfaces find_surfaces(const cv::Mat& depth, const cv::Mat& colour, double focal
   return surfaces;
 }
 
-/// What axial noise grows by on surfaces seen at more than 60 degrees (Nguyen et al.).
+/// Growth of the axial noise on surfaces seen at more than 60 degrees (Nguyen et al.).
 float oblique_noise(float slant_sq, float z) {
   constexpr float kMaxSlant = 4.0F;  // the term grows without bound
   const float angle = std::atan(std::min(kMaxSlant, std::sqrt(slant_sq)));

@@ -7,8 +7,8 @@
 #include "pipeline/base/random.hpp"
 #include "pipeline/types/frame.hpp"
 
-// What widely varied RGB-D cameras would have recorded of a picture that is put together or rendered. A score that is
-// learnt from one camera's pictures believes in what only that camera does.
+// Domain randomisation (Tobin et al. 2017) of RGB-D cameras for composed or rendered images. A score that is learnt
+// from one camera's images would rely on what is specific to that camera.
 //
 // Colour goes through the steps of a camera in their order (Karaimer & Brown, "A Software Platform for Manipulating the
 // Camera Imaging Pipeline", ECCV 2016): lens, exposure, sensor noise, white balance, demosaicing, tone curve, colour
@@ -17,14 +17,14 @@
 //
 // Depth is that of structured light or of a time-of-flight camera:
 // - Nguyen, Izadi & Lovell, "Modeling Kinect Sensor Noise for Improved 3D Reconstruction and Tracking", 3DIMPVT 2012:
-//   axial noise with distance and slant, outlines that are uncertain by about a pixel.
+// axial noise with distance and slant, outlines that are uncertain by about a pixel.
 // - Khoshelham & Elberink, "Accuracy and Resolution of Kinect Depth Data for Indoor Mapping Applications", Sensors
-//   12(2), 2012: disparity is measured in steps of 1/8 pixel, other cameras' steps are finer or coarser.
+// 12(2), 2012: disparity is measured in steps of 1/8 pixel, other cameras' steps are finer or coarser.
 // - Foix, Alenya & Torras, "Lock-in Time-of-Flight (ToF) Cameras: A Survey", IEEE Sensors Journal 11(9), 2011: depth
-//   distortion that changes periodically with distance ("wiggling"), errors that depend on the amplitude of the light
-//   that returns, flying pixels between the surfaces at an edge.
+// distortion that changes periodically with distance ("wiggling"), errors that depend on the amplitude of the light
+// that returns, flying pixels between the surfaces at an edge.
 //
-// How widely each of them varies is ours.
+// The ranges were chosen for this project.
 
 namespace houghstream::training {
 
@@ -93,17 +93,18 @@ CameraRandomisation sample_camera(double strength, Random& random);
 /// Another camera looks, in a share of all pictures: one that differs by anything up to `strength`.
 void randomise_camera(double fraction, double strength, RgbdFrame& frame, Random& random);
 
-/// What the camera makes of a picture, in place: CV_8UC3 BGR. Random gives the noise.
+/// Applies the camera's colour processing in place: CV_8UC3 BGR. `random` gives the noise.
 void apply_colour(const CameraRandomisation& camera, cv::Mat& colour, Random& random);
 
-/// The same for depth: CV_32FC1, metres, NaN = none; `view` is the picture's camera. `colour` (CV_8UC3 BGR, as it was
-/// before apply_colour()) says what is dark; without one, all is of middle grey. Holes stay holes.
+/// Applies the camera's depth errors in place: CV_32FC1, metres, NaN = none; `view` is the image's camera. `colour`
+/// (CV_8UC3 BGR, as it was before apply_colour()) gives the brightness; without it all pixels count as middle grey.
+/// Holes stay holes.
 void apply_depth(const CameraRandomisation& camera, const Camera& view, cv::Mat& depth, Random& random,
                  const cv::Mat& colour = cv::Mat());
 
-/// Of the colours of a camera alone what it does to coded values: gamma, contrast, levels, saturation, hue. More widely
-/// than sample_camera(): what trees have learnt from may be stranger than what scores are learnt from, which would only
-/// trust colours less.
+/// Samples a camera's processing of coded values alone: gamma, contrast, levels, saturation, hue. The ranges are wider
+/// than those of sample_camera(): trees may learn from less realistic images than scores, which would only trust
+/// colours less.
 void jitter_tone(double fraction, double strength, cv::Mat& colour, Random& random);
 
 }  // namespace houghstream::training

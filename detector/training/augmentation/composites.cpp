@@ -110,7 +110,7 @@ Patchwork resized_object(const TrainingView& view, double scale, double sharpnes
   return part;
 }
 
-/// Of the object that is to be pasted into `out`, whose place is known.
+/// Returns the part of the object that is pasted into `out`, whose position is known.
 DepthChange depth_change(const TrainingView& view, double distance, const Composite& out) {
   const Eigen::Vector3d centre = view.T_camera_object.translation();
   const Eigen::Vector2d view_px = view.frame.camera.project(centre);

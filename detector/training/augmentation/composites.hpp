@@ -8,7 +8,7 @@
 
 namespace houghstream::training {
 
-/// What a view's depth becomes at another place: at another distance, and beside the axis (OffAxisSlope).
+/// Change of a view's depth at another position: another distance, and off the axis (OffAxisSlope).
 struct DepthChange {
   float shift = 0.0F;      ///< metres, at the object's centre
   cv::Point2d tilt;        ///< metres per pixel of the composite right and down from there
@@ -44,7 +44,7 @@ double axial_noise(double z);
 /// noise.
 void jitter_lighting(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random);
 
-/// The same with the limits of a camera's exposure: dim rooms are commoner than overexposed ones.
+/// Jitters the exposure within a camera's limits: dim images are more frequent than overexposed ones.
 void jitter_exposure(cv::Mat& colour, double strength, Random& random);
 
 /// Puts something in front of the composite's object: a patch of the room, nearer than the object, of random shape

@@ -15,15 +15,15 @@ struct DistanceRange {
   double farthest = 0.0;
 };
 
-/// What a pixel of a composed picture shows of a view.
+/// Pixel of a view that a pixel of a composed image shows.
 struct ShownPoint {
   cv::Point2d view_px;
   float depth = 0.0F;  ///< as the view knows it, metres
   double scale = 1.0;  ///< size in the picture over size in the view
 };
 
-/// How one object is taught at every distance, as far as training depends on it: ScaleHandling and the features beyond
-/// the product's own. The product has depth_normalised_scales() alone, the baseline hands its own to the trainer.
+/// Handling of distances during training: ScaleHandling, and the features beyond the product's. The product has
+/// depth_normalised_scales() only; the baseline passes others to the trainer.
 class Scales {
  public:
   Scales() = default;
@@ -40,7 +40,7 @@ class Scales {
   /// The level that sees an object at this distance.
   virtual FeatureLevel level_for(double distance, const Camera& camera, const FeatureSettings& settings,
                                  Random& random) const = 0;
-  /// Whether a level is taught a surface at this depth.
+  /// Returns whether a level learns from a surface at this depth.
   virtual bool teaches(const FeatureLevel& level, float depth) const = 0;
   /// The frame as a level works on it, its holes filled as far as holes reach.
   virtual WorkingFrame working_frame(const RgbdFrame& frame, const FeatureLevel& level,
@@ -52,7 +52,7 @@ class Scales {
   virtual DistanceRange distances(double taught, const DistanceRange& wanted) const = 0;
   /// The distance at which areas and boxes count that are seen at this one.
   virtual double counted_distance(double distance) const = 0;
-  /// Whether patches of an object need measured depth, not what holes borrow.
+  /// Whether patches of an object need measured depth, and not depth filled into holes.
   virtual bool needs_measured_depth() const = 0;
   /// Adds what the other sizes of a picture do to the depth of an object at this distance.
   virtual void vary_depth(double distance, const FeatureSettings& settings, cv::Mat& depth, Random& random) const = 0;
@@ -61,7 +61,7 @@ class Scales {
   /// From a surface point to the object's centre, as a leaf remembers it.
   virtual Eigen::Vector3f centre_offset(const TrainingView& view, const ShownPoint& point) const = 0;
 
-  /// What the forest offers in a frame, by the stages of a search up to the evidence.
+  /// Returns the scored hypotheses of the forest in a frame, by the stages of a search up to the evidence.
   virtual std::vector<ScoredHypothesis> search(const SearchContext& search, const RgbdFrame& frame,
                                                DetectorWorkspace& workspace) const = 0;
 };

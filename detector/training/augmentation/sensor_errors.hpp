@@ -7,9 +7,9 @@
 
 namespace houghstream::training {
 
-/// What a depth camera does wrong. Pictures put together from training views agree with these better than any camera's:
-/// the same depth beside the same colour, cut out along the same outline. Who learns from them what a disagreement
-/// means must have seen such as do no harm.
+/// Errors of a depth camera. Images composed of training views agree with these better than any camera's images: equal
+/// depth and colour, cut along the same boundary. Scores that are learnt from composed images must therefore see
+/// harmless deviations.
 
 /// Depth that is registered to colour only within two pixels either way, its nearer surfaces grown by up to as many, as
 /// the windows make them that a structured-light camera matches. CV_32FC1, metres, NaN = none: holes stay holes.
@@ -25,12 +25,13 @@ TrainingView perturb_shape(const TrainingView& view, double strength, Random& ra
 /// and it may be less sharp. More or less with `strength`, 0 = none.
 TrainingView perturb_appearance(const TrainingView& view, double strength, Random& random);
 
-/// The same, in a picture: `colour` is CV_8UC3, `mask` CV_8UC1 of its size and not 0 on the object.
+/// Changes the object's appearance within an image: `colour` is CV_8UC3, `mask` CV_8UC1 of its size and not 0 on the
+/// object.
 void perturb_appearance_in(const cv::Mat& mask, double strength, Random& random, cv::Mat& colour);
 
-/// What a structured-light camera makes of what stands too near: its own pattern dazzles it. Surfaces nearer than
-/// `limit` metres keep their depth in patches only, of random size and together a share of `kept`, 0 to 1. `depth` is
-/// CV_32FC1, metres, NaN = none.
+/// Simulates the depth dropout of a structured-light camera at short range, where its pattern saturates. Surfaces
+/// nearer than `limit` metres keep their depth in patches of random size only, together a fraction `kept`, 0 to 1.
+/// `depth` is CV_32FC1, metres, NaN = none.
 void drop_near_depth(double limit, double kept, cv::Mat& depth, Random& random);
 
 /// A scale space shows an object `ratio` times as far away as taught in an enlarged image: its size is the same then,

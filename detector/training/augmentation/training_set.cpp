@@ -49,7 +49,7 @@ TrainingSample sample_at(cv::Point at, const WorkingFrame& frame, const ImageInp
   return sample;
 }
 
-/// What a pixel of the composite shows of its view.
+/// Pixel of the view that a pixel of the composite shows.
 ShownPoint shown_point(const Composite& composite, cv::Point2d frame_px, float depth) {
   const cv::Point2d view_px = (frame_px - composite.origin_px) / composite.scale;
   return {view_px, depth - composite.depth_change.at(frame_px), composite.scale};
@@ -89,7 +89,7 @@ const FeatureImage& all_features(const WorkingFrame& frame, const ImageInput& in
   return workspace.features;
 }
 
-/// What the patches of a picture look at.
+/// Region that the patches of an image read.
 cv::Rect seen_by(const TrainingImage& image, const PatchSettings& patch) {
   cv::Rect seen;
   for (const auto* list : {&image.samples, &image.negative_pool}) {
@@ -195,7 +195,7 @@ TrainingImage background_image(const RgbdFrame& background, const FeatureLevel& 
 
 namespace {
 
-/// What the pose process and the boxes need to remember of a view.
+/// Makes the view template, which poses and boxes need.
 ViewTemplate trained_view(const TrainingView& view, std::uint32_t class_index, const Scales& scales) {
   const Eigen::Vector3d centre = view.T_camera_object.translation();
   const Eigen::Matrix3f R_camera_object = view.T_camera_object.rotation().cast<float>();

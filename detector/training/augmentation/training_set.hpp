@@ -42,7 +42,7 @@ struct TrainingSet {
   std::vector<float> visible_areas;  ///< per class: mean over its pictures, square metres
 };
 
-/// How pictures are made.
+/// Input of the augmentation.
 struct ImageInput {
   const FeatureSettings& features;
   const PatchSettings& patch;

@@ -120,7 +120,7 @@ TrainingView painted(const TrainingView& shape, const TrainingView& paint) {
   return out;
 }
 
-/// What is no object, into a frame in which no object stands yet.
+/// Adds distractors to a frame without objects.
 class Others {
  public:
   Others(const std::vector<const TrainingView*>& objects, Stage& stage) : objects_(objects), stage_(stage) {}

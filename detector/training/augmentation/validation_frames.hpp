@@ -22,7 +22,7 @@ struct ValidationFrame {
   std::vector<std::uint32_t> distractor_views;  ///< training views of which altered copies stand there too: not objects
 };
 
-/// How many things are put into a room.
+/// Numbers of objects that are composed into a background.
 struct ComposedThings {
   int objects = 0;          ///< at most 255
   int near_duplicates = 0;  ///< of either sort: an object's shape and pattern in other colours, and in another size
