@@ -7,7 +7,7 @@
 
 namespace houghstream {
 
-/// What BOP asks for: so many objects of a kind in an image.
+/// Target of BOP: a number of instances of an object in an image.
 struct BopTarget {
   int scene_id = 0;
   int image_id = 0;
@@ -19,9 +19,9 @@ struct BopTarget {
 /// hold that, asks for the same twice, or for nothing.
 std::vector<BopTarget> read_bop_targets(const std::filesystem::path& file);
 
-/// Those of a scene's frames for which there are targets, with their objects marked: where an image holds more than are
-/// asked for, the most visible ones are targets. Throws InputError naming `source`, the targets' file, where there are
-/// none for the scene, for an image that the scene lacks, and where it asks for more than the truth has there.
+/// Returns a scene's frames that have targets, with the target objects marked: where an image holds more instances than
+/// are asked for, the most visible ones are targets. Throws InputError naming `source`, the targets' file, where there
+/// are none for the scene, for an image that the scene lacks, and where it asks for more than the truth has there.
 std::vector<EvaluatedFrame> targeted_frames(std::vector<EvaluatedFrame> frames, const std::vector<BopTarget>& targets,
                                             const std::filesystem::path& source);
 

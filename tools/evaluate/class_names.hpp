@@ -20,10 +20,10 @@ struct NamedSide {
 /// Throws InputError naming what each side has, unless they have a name in common.
 void require_shared_name(const NamedSide& a, const NamedSide& b);
 
-/// Of all objects in the truth; none for a scene without objects.
+/// Returns the class names of all objects in the ground truth; none for a scene without objects.
 std::set<std::string> ground_truth_names(const std::vector<EvaluatedFrame>& frames);
 
-/// Of all detections.
+/// Returns the class names of all detections.
 std::set<std::string> detected_names(const std::vector<Detections>& results);
 
 }  // namespace houghstream

@@ -8,9 +8,9 @@
 
 namespace houghstream {
 
-/// How a program searches a forest in-process.
+/// Settings of a search in the same process.
 struct EvaluateSearch {
-  /// How a forest wants to be searched.
+  /// Returns the settings with which a forest is searched.
   std::function<DetectionSettings(const Forest&)> settings = [](const Forest& it) { return detection_settings(it); };
   MakeSearch make = detector_search;
   std::function<void(CommandLine& app)> add_options = [](CommandLine&) {};  ///< its own, beside those of all searches

@@ -54,7 +54,7 @@ std::vector<JudgedPose> counted_poses(std::vector<JudgedPose> judged, const std:
   return judged;
 }
 
-/// How far quality holds, and how many of the published poses are right.
+/// Calibration of the quality, and the number of published poses that are correct.
 void score_qualities(const std::vector<EvaluatedFrame>& frames, const std::map<std::string, PoseModel>& models,
                      Evaluation& out) {
   const std::vector<EvaluatedFrame> all = with_unfiltered_poses(frames);

@@ -23,7 +23,7 @@ struct EvaluationRules {
   std::optional<float> min_quality;  ///< poses of lower quality were withheld; nothing where others decided that
 };
 
-/// What was reported of one class.
+/// Detections of one class at the operating score.
 struct OperatingPoint {
   ReportedCount correct;  ///< objects that are there
   ReportedCount incorrect;
@@ -47,8 +47,8 @@ struct Evaluation {
   /// Of the scores of all detections of listed classes that there are, however low, but ignored ones; its recall is
   /// over all required objects. Below the threshold with which they were found nothing is known.
   Calibration detection_calibration;
-  /// Of the quality of the poses of these detections (pose_predictions()), those that were withheld among them where
-  /// they are known; its recall is over all that are right.
+  /// Calibration of the quality of these detections' poses (pose_predictions()), with the rejected ones where they are
+  /// known; its recall is over all correct poses.
   Calibration pose_calibration;
   Calibration pose_calibration_up_to_shape;  ///< the same of ADD-S
   std::optional<PublishedPoses> published;   ///< nothing unless a listed class has a model to judge poses with

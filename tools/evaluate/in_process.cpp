@@ -31,7 +31,7 @@ DetectionSettings as_published(DetectionSettings settings, const PublishingRules
   return settings;
 }
 
-/// Those that would be sent to hs-pose: the first ones, which are the strongest.
+/// Returns the detections that would be sent to hs-pose: the first ones, which are the strongest.
 Detections sent_of(Detections found, const PublishingRules& rules, int max_candidates) {
   std::vector<Detection>& all = found.detections;
   const auto sent = std::find_if(all.begin(), all.end(), [&](const Detection& it) {

@@ -23,7 +23,7 @@ using MakeSearch = std::function<FrameSearch(Forest forest, const DetectionSetti
 /// A search by Detector.
 FrameSearch detector_search(Forest forest, const DetectionSettings& settings);
 
-/// What would be published of what is found.
+/// Rules of publication.
 struct PublishingRules {
   float score = 0.0F;            ///< least of a detection that is reported by itself
   float candidates_from = 1.0F;  ///< see EvidenceSettings

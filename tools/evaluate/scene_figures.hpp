@@ -22,14 +22,14 @@ struct OpenScene {
   std::vector<EvaluatedFrame> frames;
 };
 
-/// What poses are measured with, by class name.
+/// Models for pose errors, by class name.
 struct ScoredModels {
   std::map<std::string, PoseModel> scored;
   std::map<std::string, BopModel> bop;  ///< of listed classes only
 };
 
-/// Of the `meshes` of a folder of models (load_class_models()); empty where there are none. Throws InputError
-/// as read_bop_models() does.
+/// Makes the models of a folder's `meshes` (load_class_models()); empty where there are none. Throws InputError as
+/// read_bop_models() does.
 ScoredModels make_scored_models(const std::filesystem::path& folder, const std::map<std::string, Mesh>& meshes,
                                 const std::vector<std::string>& classes);
 

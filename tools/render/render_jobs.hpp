@@ -9,7 +9,7 @@
 
 namespace houghstream::render {
 
-/// What all jobs share.
+/// Options of all jobs.
 struct RenderOptions {
   std::filesystem::path out;  ///< folder to write to
   std::uint64_t seed = 1;     ///< of training rooms; test scenes have seeds of their own

@@ -16,7 +16,7 @@
 namespace houghstream {
 namespace {
 
-/// What the command line changes of a profile.
+/// Options of the command line that override a profile.
 struct Overrides {
   std::string profile = "realtime";
   std::string features;

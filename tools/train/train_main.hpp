@@ -9,7 +9,7 @@
 
 namespace houghstream {
 
-/// How a program trains; the defaults are those of hs-train.
+/// Settings of a program that trains; the defaults are those of hs-train.
 struct TrainProgram {
   std::string name = "hs-train";
   std::vector<std::string> profiles = profile_names();  ///< those that it offers

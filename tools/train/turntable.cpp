@@ -82,8 +82,7 @@ double trimmed_distance_sq(const Features& from, const Features& to) {
   return sum / static_cast<double>(kept);
 }
 
-/// How far the views lie apart when they are turned back: mean squared residual of each against the next and the one
-/// after it.
+/// Returns the mean squared residual of each view, rotated back, against the next two.
 double mean_residual_sq(const std::vector<Sample>& samples, const Turntable& table) {
   std::vector<Features> features;
   features.reserve(samples.size());

@@ -7,7 +7,7 @@
 
 namespace houghstream {
 
-/// What one view from a turntable saw of the object.
+/// Object points of one view from a turntable.
 struct TurntableView {
   double yaw = 0.0;                   ///< radians, as counted by the turntable; its direction is unknown
   std::vector<ColouredPoint> points;  ///< camera frame

@@ -20,7 +20,7 @@ struct DrawnFrame {
   std::vector<DrawnBox> boxes;
 };
 
-/// What a person has drawn around the objects of a folder of frames.
+/// Boxes that a person has drawn around the objects of a folder of frames.
 struct DrawnBoxes {
   Camera camera;
   std::vector<DrawnFrame> frames;

@@ -73,8 +73,8 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-/// What uw_boxes.py prints of SCENE_K.mat. Its refusal is ours. The library that it reads with dies of some damaged
-/// files, so that it runs in a process of its own.
+/// Returns the output of uw_boxes.py for SCENE_K.mat, whose error becomes this one's. Its library crashes on some
+/// damaged files, so it runs in a separate process.
 std::string run_uw_boxes(const fs::path& file, const Camera& camera) {
   const std::string command = fmt::format("/usr/bin/python3 -I -c {} {} {} {} 2>&1", quoted(kUwBoxesScript),
                                           quoted(file.string()), camera.width, camera.height);

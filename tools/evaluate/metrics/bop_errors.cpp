@@ -52,7 +52,7 @@ cv::Rect seen_region(const Vertices& vertices, const Eigen::Isometry3d& T_estima
   return cv::Rect(low.x(), low.y(), high.x() - low.x(), high.y() - low.y()) & image;
 }
 
-/// What VSD counts over the pixels.
+/// Pixel counts of VSD.
 struct PixelCounts {
   int in_either = 0;
   int in_both = 0;

@@ -37,7 +37,7 @@ constexpr double bop_step(std::size_t index) {
 std::array<double, kBopSteps> vsd_errors(const Mesh& mesh, double diameter, const Eigen::Isometry3d& T_estimated,
                                          const Eigen::Isometry3d& T_ground_truth, const RgbdFrame& frame);
 
-/// What poses of a class are measured with in BOP's way.
+/// Model of a class for BOP's pose errors.
 struct BopModel {
   Mesh mesh;                                  ///< object frame, metres
   double diameter = 0.0;                      ///< metres

@@ -27,7 +27,7 @@ struct ProposedThreshold {
   double recall = 0.0;          ///< what is true from there on, over all that could be; NaN without a score
 };
 
-/// How far statements hold (Guo et al., "On Calibration of Modern Neural Networks", ICML 2017).
+/// Calibration of predicted probabilities (Guo et al., "On Calibration of Modern Neural Networks", ICML 2017).
 struct Calibration {
   int count = 0;
   /// Expected calibration error: the bins' differences between mean score and true fraction, each weighted by its

@@ -8,7 +8,7 @@
 
 namespace houghstream {
 
-/// What counts as found (Haensch et al. 2017, Section 4, after Everingham et al. 2010).
+/// Criteria of a match (Haensch et al. 2017, Section 4, after Everingham et al. 2010).
 struct DetectionRules {
   double min_iou = 0.5;      ///< overlap of the detected with the true visible box
   double min_visible = 0.1;  ///< objects less visible than this are neither required nor false, unless they are targets
@@ -53,7 +53,7 @@ std::vector<CurvePoint> precision_recall_curve(const std::vector<MatchedDetectio
 /// `required` > 0.
 double average_precision(const std::vector<MatchedDetection>& judged, int required);
 
-/// How one class was detected.
+/// Detection result of one class.
 struct ClassResult {
   std::string class_name;
   int required = 0;
@@ -64,7 +64,7 @@ struct ClassResult {
 ClassResult evaluate_class(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                            const DetectionRules& rules);
 
-/// What the scores of all detections say that are true or false.
+/// Returns the scores of all detections that are true or false positives, as predictions.
 std::vector<Prediction> score_predictions(const std::vector<ClassResult>& classes);
 
 /// Mean AUC over the classes that appear, each counting once; NaN where none appears.
@@ -73,7 +73,7 @@ double mean_auc(const std::vector<ClassResult>& classes);
 /// Mean AUC weighted by the number of required objects; NaN where none appears.
 double weighted_auc(const std::vector<ClassResult>& classes);
 
-/// What is reported of a class, judged.
+/// Detections of a class at a score, matched with the ground truth.
 struct ReportedCount {
   int detections = 0;  ///< by their score
   int confirmed = 0;   ///< candidates by their pose

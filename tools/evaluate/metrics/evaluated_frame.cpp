@@ -30,7 +30,7 @@ void check_poses(const FrameResults& results, const std::string& where) {
        poses.poses.empty() ? "" : poses.poses.front().class_name, results.results().size());
 }
 
-/// All that was published, by the frames' times; all of it is of one camera.
+/// Published results by the frames' times; all are of one camera.
 std::map<std::int64_t, FrameResults> by_utime(const PublishedResults& published) {
   std::map<std::int64_t, FrameResults> results;
   for (const Detections& detections : published.detections) results[detections.frame.utime].add(detections);

@@ -17,8 +17,8 @@ namespace houghstream {
 struct NamedObject {
   std::string class_name;
   GroundTruthObject truth;
-  /// Whether it is to be found, where a list of targets says (bop_targets.hpp); else that is a matter of how much of it
-  /// is visible.
+  /// Whether the object is a target, where a list of targets is given (bop_targets.hpp); otherwise its visible fraction
+  /// decides.
   std::optional<bool> is_target = std::nullopt;
 };
 

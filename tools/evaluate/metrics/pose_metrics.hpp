@@ -26,7 +26,7 @@ double add_error(const Points& model, const Eigen::Isometry3d& T_estimated, cons
 /// under the estimated one; blind to symmetries.
 double add_s_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_ground_truth);
 
-/// What poses of a class are measured with.
+/// Model of a class for pose errors.
 struct PoseModel {
   Points points;          ///< on the surface, object frame, metres
   double diameter = 0.0;  ///< metres
@@ -70,7 +70,7 @@ struct JudgedPose {
 std::vector<JudgedPose> match_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
                                     const PoseModel& model);
 
-/// What is said of a pose: how probably it is right, and right up to its shape.
+/// Predicted probabilities that a pose is correct, and correct up to its shape.
 struct PosePrediction : Prediction {
   bool is_correct_up_to_shape = false;
   double confidence_up_to_shape = 0.0;  ///< ObjectPose::shape_quality
@@ -85,11 +85,10 @@ std::vector<PosePrediction> pose_predictions(const std::vector<EvaluatedFrame>& 
 /// pose has none. NaN where there is no such detection.
 double strict_recall(const std::vector<JudgedPose>& poses, double diameter, double min_visible);
 
-/// The same by ADD-S: right up to what the shape cannot tell.
+/// Returns whether a pose is correct by ADD-S: up to the ambiguity of the shape.
 double add_s_recall(const std::vector<JudgedPose>& poses, double diameter, double min_visible);
 
-/// The same by the error that Hinterstoisser et al. 2012 use for the object, called ADD(-S): ADD, but ADD-S for one
-/// that is symmetric.
+/// Returns whether a pose is correct by ADD(-S) (Hinterstoisser et al. 2012): ADD, but ADD-S for symmetric objects.
 double add_or_add_s_recall(const std::vector<JudgedPose>& poses, const PoseModel& model, double min_visible);
 
 }  // namespace houghstream

@@ -9,7 +9,7 @@
 
 namespace houghstream {
 
-/// What was published, in the order of the log.
+/// Published results, in the order of the log.
 struct PublishedResults {
   std::vector<Detections> detections;
   std::vector<ObjectPoses> poses;

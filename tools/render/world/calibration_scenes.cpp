@@ -21,7 +21,7 @@ constexpr int kMaxDistractors = 12;
 constexpr int kMaxLookAlikes = 3;
 constexpr double kTaughtColours = 0.3;  // share of the distractors' surfaces
 
-/// Of its box, in its own frame.
+/// Centre of its bounding box, object frame.
 Eigen::Vector3d middle_of(const Asset& thing) {
   return mesh_bounds(thing.mesh).center().cast<double>();
 }

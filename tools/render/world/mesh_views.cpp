@@ -46,7 +46,7 @@ Mesh about_its_middle(Mesh mesh) {
   return mesh;
 }
 
-/// What stands firmest comes first; what differs by less than kSameAttitudeDeg is left out.
+/// Poses are sorted by stability, most stable first; those that differ by less than kSameAttitudeDeg are left out.
 std::vector<Eigen::Vector3d> stable_ups(const Mesh& mesh) {
   std::vector<StablePose> all;
   for (const StablePoseFamily& family : find_stable_poses(about_its_middle(mesh), kNearlyFlat_m))
@@ -87,7 +87,7 @@ Camera cropped_around(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object
   return whole.cropped(low.x(), low.y(), high.x() - low.x() + 1, high.y() - low.y() + 1);
 }
 
-/// What is beside the object: nothing would make the camera's exposure rise and its depth end without an edge.
+/// Surroundings of the object: without them the camera's exposure would rise and its depth end without an edge.
 void put_wall_behind(double distance, Random& random, ShadedView& view) {
   const auto grey = static_cast<float>(random.uniform(0.03, 0.5));
   const cv::Scalar colour(grey * random.uniform(0.7, 1.3), grey, grey * random.uniform(0.7, 1.3));

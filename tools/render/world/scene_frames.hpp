@@ -17,8 +17,8 @@ struct RenderedFrame {
   std::vector<cv::Mat> visible_masks;      ///< CV_8UC1 0/255, one per object
 };
 
-/// What kind of camera looks. Everything that is taught is seen by the first: the second is there to find out how much
-/// of a result is the sensor's.
+/// Kind of the depth sensor. All training views are rendered with the first; the second shows how much a result depends
+/// on the sensor.
 enum class SensorKind : std::uint8_t {
   kStructuredLight,  ///< optics/depth_sensor.hpp, and a picture in plain sRGB
   kTimeOfFlight      ///< optics/time_of_flight.hpp, and the picture of other_colour_camera() (optics/photo.hpp)
@@ -31,7 +31,8 @@ SensorKind parse_sensor(const std::string& name);
 RenderedFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed,
                            SensorKind sensor = SensorKind::kStructuredLight);
 
-/// What the sensors make of a view of the world, structured light unless the sensor says otherwise, and the truth.
+/// Renders the sensors' images of a view of the world, structured light unless the sensor says otherwise, with the
+/// ground truth.
 RenderedFrame record_view(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, const ShadedView& view,
                           std::uint64_t noise_seed, SensorKind sensor = SensorKind::kStructuredLight);
 

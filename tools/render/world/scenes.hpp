@@ -21,7 +21,7 @@ struct Scene {
 /// Which of the sixteen further classes (ids 101-116) stand beside the four.
 enum class FurtherClasses : std::uint8_t { kNone, kOddIds, kEvenIds };
 
-/// How the taught objects are put down.
+/// Placement of the taught objects.
 enum class ObjectPlacement : std::uint8_t {
   kStanding,  ///< once each
   kLying,     ///< twice: once lying and once on a wedge; their like lie too
@@ -29,7 +29,7 @@ enum class ObjectPlacement : std::uint8_t {
   kHeld       ///< twice: in somebody's hand in any attitude, and standing or lying
 };
 
-/// What stands on the table.
+/// Objects on the table.
 struct Clutter {
   bool taught_objects = false;                     ///< the four classes, once each
   int hard_negatives = 0;                          ///< how many of the second instances (ids 5-8)

@@ -36,7 +36,7 @@ Mesh box(const Eigen::Vector3d& size, const cv::Mat& texture);
 /// Round rod along a path with closed ends (handles, legs, spouts).
 Mesh tube(const std::vector<Eigen::Vector3d>& path, double radius, const cv::Mat& texture, int segments = 12);
 
-/// The same with a radius for each point of the path, metres.
+/// Makes a tube with a radius for each point of the path, metres.
 Mesh tapered_tube(const std::vector<Eigen::Vector3d>& path, const std::vector<double>& radii, const cv::Mat& texture,
                   int segments = 12);
 

@@ -6,7 +6,7 @@
 
 namespace houghstream::world {
 
-/// What a rendered world is for.
+/// Split of the rendered worlds.
 enum class DatasetSplit : std::uint8_t { kTraining, kTest };
 
 /// The one rule that keeps training and test apart: every seed of a room, texture, light or distractor comes from

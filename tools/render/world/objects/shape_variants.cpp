@@ -14,7 +14,7 @@ namespace {
 /// A smooth displacement: a few waves of random directions, none of which is much shorter than the thing.
 class Bending {
  public:
-  /// Of a thing of so many metres across, by so many in the middle.
+  /// Returns the deformation of an object with this diameter, by this displacement at its centre, metres.
   Bending(double across_m, double by_m, Random& random) {
     for (Wave& wave : waves_) {
       const auto direction = [&random] {
@@ -68,7 +68,7 @@ cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
   return out;
 }
 
-/// The same picture, begun elsewhere: what is printed where changes.
+/// Shifts the texture cyclically, so that it lies elsewhere on the surface.
 cv::Mat moved_round(const cv::Mat& image, Random& random) {
   const int right = static_cast<int>(image.cols * random.uniform(0.2, 0.8));
   const int down = static_cast<int>(image.rows * random.uniform(0.2, 0.8));

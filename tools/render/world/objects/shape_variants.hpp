@@ -3,13 +3,14 @@
 #include "pipeline/base/random.hpp"
 #include "tools/render/world/objects/asset.hpp"
 
-// What is like a taught object and is not quite it.
+// Variants of a taught object.
 
 namespace houghstream::world {
 
-/// The same object to everybody who looks for it: up to 1.5 % larger or smaller, and bent smoothly by up to 3 mm or 2 %
-/// of its size, root of the mean square. A mesh is a scan or a drawing of one thing; scanners err by
-/// millimetres, and the next thing was filled, pressed and handled otherwise. How widely is ours.
+/// Makes an instance of the object that still counts as the object: up to 1.5 % larger or smaller, and smoothly
+/// deformed by up to 3 mm or 2 % of its size, root mean square. A mesh is a scan or a drawing of one instance; scanners
+/// err by millimetres, and instances are filled, pressed and handled differently. The ranges were chosen for this
+/// project.
 AssetPtr make_instance_variant(const Asset& thing, Random& random);
 
 /// Another object: clearly smaller or larger, of other proportions, or in other colours and often with another print,

@@ -20,7 +20,7 @@ struct ClassColours {
   Hsv accent;
 };
 
-/// Of class 1 to 4 (objects.hpp). Throws InputError for another class.
+/// Returns the colours of class 1 to 4 (objects.hpp). Throws InputError for another class.
 const ClassColours& class_colours(int class_id);
 
 cv::Scalar bgr(const Hsv& colour);

@@ -24,7 +24,7 @@ struct MugShape {
 /// With a handle to +x.
 Mesh mug_mesh(const MugShape& shape, const Palette& palette, Random& random);
 
-/// The same without a handle: glasses, cups, pots.
+/// Makes a vessel without a handle: glasses, cups, pots.
 Mesh cup_mesh(const MugShape& shape, const cv::Mat& texture);
 
 /// Drinks can: label round the side, metal ends with necks.

@@ -27,7 +27,7 @@ struct Light {
   bool casts_shadow = true;
 };
 
-/// How the colour camera turns light into a picture.
+/// Settings of the simulated colour camera.
 struct ColourCameraSettings {
   double mean_level = 0.2;         ///< automatic exposure brings the picture's mean towards this, linear, 0 to 1
   double exposure_bias = 1.0;      ///< factor on what automatic exposure chose

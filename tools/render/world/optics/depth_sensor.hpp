@@ -30,7 +30,7 @@ struct DepthSensorSettings {
   double glare = 0.27;               ///< mirror-like return above this blinds the camera
 };
 
-/// What the sensor looks at, one value per pixel; all of one size.
+/// Inputs of the sensor, one value per pixel; all of one size.
 struct SensorView {
   cv::Mat depth;          ///< CV_32FC1, metres, NaN = nothing
   cv::Mat cos_incidence;  ///< CV_32FC1, 0 to 1

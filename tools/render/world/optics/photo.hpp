@@ -14,10 +14,10 @@ double automatic_exposure(const cv::Mat& radiance, const ColourCameraSettings& s
 /// unless the settings fix it, white balance, shot and read noise, sRGB. Returns CV_8UC3 BGR. Same seed, same picture.
 cv::Mat simulate_colour_camera(const cv::Mat& radiance, const ColourCameraSettings& settings, std::uint64_t seed);
 
-/// How a camera's own processing departs from plain sRGB; as it stands, not at all. The steps and their order are those
-/// of Karaimer & Brown, "A Software Platform for Manipulating the Camera Imaging Pipeline", ECCV 2016; cameras differ
-/// in each of them (Kim, Lin, Lu, Suesstrunk, Lin & Brown, "A New In-Camera Imaging Model for Color Computer Vision and
-/// Its Application", PAMI 34(12), 2012). The numbers of other_colour_camera() are ours.
+/// Deviation of a camera's processing from plain sRGB; the defaults have none. The steps and their order are those of
+/// Karaimer & Brown, "A Software Platform for Manipulating the Camera Imaging Pipeline", ECCV 2016; cameras differ in
+/// each of them (Kim, Lin, Lu, Suesstrunk, Lin & Brown, "A New In-Camera Imaging Model for Color Computer Vision and
+/// Its Application", PAMI 34(12), 2012). The numbers of other_colour_camera() were chosen for this project.
 struct ColourResponse {
   double further_vignetting = 0.0;                              ///< light lost in the corners besides, 0 to 1
   Eigen::Vector3d white_balance_bgr = Eigen::Vector3d::Ones();  ///< gain on each coded channel
@@ -30,7 +30,7 @@ struct ColourResponse {
 /// A camera of another make: a cooler white, brighter middle tones, stronger colours and sharpened edges.
 ColourResponse other_colour_camera();
 
-/// What such a camera makes of a photo (CV_8UC3 BGR, as simulate_colour_camera() gives it).
+/// Applies the camera's processing to an image (CV_8UC3 BGR, as simulate_colour_camera() returns it).
 cv::Mat apply_camera_response(const cv::Mat& photo, const ColourResponse& response);
 
 }  // namespace houghstream::world

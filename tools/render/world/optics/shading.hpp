@@ -15,7 +15,7 @@ struct ShadowMap {
   cv::Mat inverse_depth;  ///< CV_32FC1, 1/m, 0 = nothing
 };
 
-/// Of the world's first `focus_radius_m` around its origin.
+/// Renders the shadow map of the world within `focus_radius_m` of its origin.
 ShadowMap make_shadow_map(const World& world, const Light& light);
 
 /// Looks points up in a shadow map, from camera coordinates.
@@ -40,7 +40,7 @@ struct LitWorld {
 };
 LitWorld light_world(World world);
 
-/// What each pixel sees. Ids in `geometry` are index in World::items plus 1.
+/// Geometry and radiance of each pixel. Ids in `geometry` are the index in World::items plus 1.
 struct ShadedView {
   RenderedGeometry geometry;
   cv::Mat radiance;       ///< CV_32FC3 BGR, linear, 0 = black
@@ -52,7 +52,7 @@ struct ShadedView {
 /// Geometry, then texture (mip-mapped, bilinear), Lambert and Blinn-Phong light per pixel.
 ShadedView shade_view(const LitWorld& lit_world, const Camera& camera, const Eigen::Isometry3d& T_camera_world);
 
-/// The same inside `region_px` of the image; the result has the region's size.
+/// Shades the part of the image inside `region_px`; the result has the region's size.
 ShadedView shade_view(const LitWorld& lit_world, const Camera& camera, const Eigen::Isometry3d& T_camera_world,
                       const cv::Rect& region_px);
 

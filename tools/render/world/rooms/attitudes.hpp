@@ -8,7 +8,7 @@
 
 namespace houghstream::world {
 
-/// How an object is put down.
+/// Attitude in which an object is placed.
 enum class Attitude : std::uint8_t {
   kUpright,  ///< z up
   kTilted,   ///< at a slant, as if held or leaning: its lowest point touches
@@ -18,7 +18,7 @@ enum class Attitude : std::uint8_t {
 /// "upright", "tilted" or "lying". Throws InputError listing them for another name.
 Attitude parse_attitude(const std::string& name);
 
-/// How far tilted ones slant, degrees.
+/// Range of the tilt, degrees.
 inline constexpr double kMinTiltDeg = 10.0;
 inline constexpr double kMaxTiltDeg = 40.0;
 
@@ -28,7 +28,7 @@ class AttitudeChoice {
   /// Works out how the mesh rests. Throws InputError for a mesh without volume, or that rests upright only.
   explicit AttitudeChoice(const Mesh& mesh);
 
-  /// How many ways of lying are told apart: one of a family of one, two of a larger one.
+  /// Number of lying poses that are distinguished: one for a family of one, two for a larger one.
   int lying_count() const { return static_cast<int>(turns_.size()); }
 
   /// Rotation from the object into the table frame (z up). Consecutive indices go through the ways of lying; the

@@ -20,8 +20,8 @@ constexpr double kPalmRadiusM = 0.021;
 constexpr double kArmLengthM = 0.75;
 constexpr double kOverTableM = 0.004;  // that the hand keeps
 
-/// How the hand takes hold. Axes: `back` from the thing towards the arm, `close` from the thumb to the fingers, `along`
-/// from finger to finger.
+/// Grip of the hand. Axes: `back` from the object towards the arm, `close` from the thumb to the fingers, `along` from
+/// finger to finger.
 struct Grip {
   Eigen::Matrix3d axes;  ///< columns back, close, along; world
   double reach_m;        ///< of the fingers round the thing, from where the palm touches it

@@ -11,11 +11,11 @@ struct HeldPlace {
   std::vector<Eigen::Isometry3d> views;            ///< T_camera_world from which it will be looked at
 };
 
-/// How high things are held, from the table to their lowest point, metres.
+/// Height at which objects are held, from the table to their lowest point, metres.
 inline constexpr double kMinHeldM = 0.05;
 inline constexpr double kMaxHeldM = 0.30;
 
-/// How much of a held thing the hand hides, over the views.
+/// Fraction of a held object that the hand occludes, over the views.
 inline constexpr double kMinGripped = 0.10;
 inline constexpr double kMaxGripped = 0.35;
 

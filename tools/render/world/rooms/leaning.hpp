@@ -4,7 +4,7 @@
 
 namespace houghstream::world {
 
-/// How far things lean that lean on something, degrees from a resting attitude.
+/// Tilt of leaning objects, degrees from a stable pose.
 inline constexpr double kMinLeanDeg = 10.0;
 inline constexpr double kMaxLeanDeg = 60.0;
 

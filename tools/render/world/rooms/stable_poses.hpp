@@ -26,7 +26,7 @@ using StablePoseFamily = std::vector<StablePose>;
 /// quite flat. Same result on every call. Throws InputError for a mesh without volume.
 std::vector<StablePoseFamily> find_stable_poses(const Mesh& mesh, double nearly_m = 0.0);
 
-/// Those without the family that stands upright, z up. Throws InputError where nothing is left.
+/// Returns the families without the one that stands upright, z up. Throws InputError where none is left.
 std::vector<StablePoseFamily> lying_families(const std::vector<StablePoseFamily>& families);
 
 }  // namespace houghstream::world

@@ -24,7 +24,7 @@ std::array<Eigen::Vector2d, 4> corners(const Footprint& footprint) {
           footprint.centre + rotation * Eigen::Vector2d(h.x(), -h.y())};
 }
 
-// Whether an axis of `a` separates the two.
+// Returns whether an axis of `a` separates the two.
 bool separated_by(const Footprint& a, const Footprint& b, double gap_m) {
   const Eigen::Rotation2Dd back(-a.yaw_rad);
   Eigen::AlignedBox2d extent;

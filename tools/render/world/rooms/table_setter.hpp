@@ -17,7 +17,7 @@ struct Footprint {
   double yaw_rad = 0.0;
 };
 
-/// Whether two footprints come nearer than `gap_m` (separating axes of the rectangles).
+/// Returns whether two footprints are nearer than `gap_m` (separating axes of the rectangles).
 bool footprints_touch(const Footprint& a, const Footprint& b, double gap_m);
 
 /// Stands things on a table so that no two of them touch.

@@ -92,7 +92,7 @@ TippingBody::TippingBody(const Mesh& mesh) {
 
 Support TippingBody::support(const Eigen::Vector3d& down, double nearly_m) const {
   Support support;
-  // Of an open surface, the centre of mass may lie below all of it.
+  // The centre of mass of an open surface may lie below all of it.
   support.height_m = down.dot(points_.front());
   for (const Eigen::Vector3d& point : points_) support.height_m = std::max(support.height_m, down.dot(point));
   support.along = down.unitOrthogonal();

@@ -30,7 +30,8 @@ class TippingBody {
 
   const Eigen::Vector3d& centre_of_mass() const { return centre_of_mass_; }  ///< object frame, metres
 
-  /// What touches the plane, or is within `nearly_m` of it, when `down` (unit length, object frame) points at it.
+  /// Returns the vertices that touch the plane, or are within `nearly_m` of it, when `down` (unit length, object frame)
+  /// points at it.
   Support support(const Eigen::Vector3d& down, double nearly_m = 0.0) const;
 
   /// The direction that points down when the body, let go with `down` below, has come to rest. Round things are made of

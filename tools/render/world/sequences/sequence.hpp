@@ -10,7 +10,7 @@
 
 namespace houghstream::world {
 
-/// What is so at a time of a sequence.
+/// State of a sequence at a time.
 struct SequenceGroundTruth {
   std::vector<std::optional<Eigen::Isometry3d>> T_world_object;  ///< per actor; nothing where it has been taken away
   std::vector<Eigen::Isometry3d> T_camera_world;                 ///< per camera
@@ -26,7 +26,8 @@ class Sequence {
   int cameras() const;
   SequenceGroundTruth truth(double seconds) const;
 
-  /// What a camera sees then. Its objects are those of RenderedFrame; the utime is left 0. `index` names the noise.
+  /// Renders a camera's frame at that time. Its objects are those of RenderedFrame; the utime stays 0. `index` seeds
+  /// the noise.
   RenderedFrame render(int camera, double seconds, int index) const;
 
  private:

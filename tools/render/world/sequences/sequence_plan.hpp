@@ -20,7 +20,7 @@ struct Actor {
   std::vector<Stop> stops;
 };
 
-/// What the cameras of a sequence do.
+/// Motion of a sequence's cameras.
 enum class CameraWork : std::uint8_t {
   kWalk,       ///< one is carried half round the table
   kStill,      ///< one stands still

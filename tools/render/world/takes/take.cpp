@@ -26,8 +26,8 @@ std::vector<Eigen::Isometry3d> places(World& world, const SceneMotion& motion, d
   return result;
 }
 
-/// How far what each pixel sees moves within half an exposure: CV_32FC2, pixels. The view's first row is the image's
-/// row `first`.
+/// Computes the image motion of each pixel within half an exposure: CV_32FC2, pixels. The view's first row is the
+/// image's row `first`.
 cv::Mat half_ways(const ShadedView& view, const Camera& camera, int first,
                   const std::vector<Eigen::Isometry3d>& T_later_now) {
   cv::Mat ways(view.radiance.size(), CV_32FC2, cv::Scalar::all(0));

@@ -12,7 +12,7 @@
 
 namespace houghstream::world {
 
-/// How an object is shown to a camera.
+/// Kind of a take.
 enum class TakeKind : std::uint8_t {
   kHandHeld,   ///< it stands on a table, the camera is carried round it
   kTurntable,  ///< it stands on a turntable before a camera that stands still
@@ -43,7 +43,7 @@ class TakeStage {
   /// Puts what moves where it is at a time; `world` is a copy of world(). Returns T_camera_world.
   Eigen::Isometry3d move(World& world, double seconds) const;
 
-  /// Whether anything but the camera moves: shadows do then too.
+  /// Returns whether anything but the camera moves, and the shadows with it.
   bool things_move() const { return kind_ != TakeKind::kHandHeld; }
 
   /// Seed of one aspect of the take that has nothing to do with the stage.
