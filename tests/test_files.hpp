@@ -21,7 +21,7 @@ inline std::filesystem::path fresh_folder(const std::string& name) {
   return folder;
 }
 
-/// What an InputError of the work says; empty where it throws none.
+/// Returns the text of the InputError that `work` throws; empty where it throws none.
 inline std::string error_of(const std::function<void()>& work) {
   try {
     work();

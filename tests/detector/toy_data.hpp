@@ -15,7 +15,7 @@ RgbdFrame background(std::uint64_t seed);
 /// (u, v), and returns its mask. It faces the camera: it lies across the ray to its middle.
 cv::Mat put_tile(int kind, double u_px, double v_px, double distance, RgbdFrame& frame);
 
-/// The same, across the optical axis, as who knows nothing of rays takes a taught view to stand everywhere.
+/// A place perpendicular to the optical axis, as a search without OffAxisSlope assumes everywhere.
 cv::Mat put_upright_tile(int kind, double u_px, double v_px, double distance, RgbdFrame& frame);
 
 /// A few views of both kinds (classes 1 "stripes" and 2 "rings") and background frames.
@@ -24,7 +24,7 @@ std::vector<TrainingView> training_views();
 /// Taught those views by quick_profile, once in a process.
 const Forest& forest();
 
-/// What a search needs of it.
+/// Returns its index for searches.
 const ForestIndex& forest_index();
 
 /// The default profile with training settings that take a second.

@@ -17,7 +17,7 @@ namespace houghstream::fuzz {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// What a reader took of an input.
+/// Items that a reader took from an input.
 struct Taken {
   std::size_t items = 0;    ///< events, frames, nodes, pixels, triangles: of what the format holds many
   bool tells_loss = false;  ///< it went on behind damage, and says so

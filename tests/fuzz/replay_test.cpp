@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the target takes of the input; nothing where it refuses it in one line. Anything else is a fault.
+/// Returns the items that the target takes from the input; nothing where it refuses it in one line. Any other result is
+/// a failure.
 std::optional<Taken> taken_of(const FuzzTarget& target, const Bytes& input, const std::string& what) {
   try {
     return target.run({input.data(), input.size()});
@@ -30,7 +31,7 @@ std::optional<Taken> taken_of(const FuzzTarget& target, const Bytes& input, cons
   return std::nullopt;
 }
 
-/// Of a damaged input no less may be taken than these items, but with a word about it.
+/// At least these items are taken from a damaged input, with a warning.
 void expect_no_less(const std::optional<Taken>& taken, std::size_t items, const std::string& what) {
   if (taken && !taken->tells_loss) {
     EXPECT_GE(taken->items, items) << what << ": taken without a word";

@@ -12,7 +12,7 @@
 #include "tools/common/key_values.hpp"
 #include "tools/stream/stream_plan.hpp"
 
-// What people write: options, configurations, lists.
+// Texts that people write: options, configurations, lists.
 
 namespace houghstream::fuzz {
 namespace {
@@ -21,7 +21,7 @@ std::string text_of(ByteView input) {
   return {reinterpret_cast<const char*>(input.data), input.size};
 }
 
-/// What people and messages name in words: a first letter says which reader takes the rest.
+/// Names of people and messages; the first letter selects the reader of the rest.
 Taken read_words(ByteView input) {
   if (input.size == 0) return {};
   const std::string text = text_of({input.data + 1, input.size - 1});

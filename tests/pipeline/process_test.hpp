@@ -57,7 +57,7 @@ class ProcessOnMemq {
     return at<Message>(name, count(name) - 1);
   }
 
-  /// Of a type that this project sends and never reads.
+  /// A message of a type that this project sends and never reads.
   template <typename Message>
   Message only_sent(const std::string& name, std::size_t index) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -91,7 +91,7 @@ class ProcessOnMemq {
   std::thread thread_;
 };
 
-/// What a detector says of a frame in which it has found a bowl.
+/// Detections of a frame with a bowl.
 inline Detections one_bowl(std::int64_t utime, const std::string& camera = channel::kFrame) {
   Detection bowl;
   bowl.class_id = 1;

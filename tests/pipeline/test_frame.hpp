@@ -27,7 +27,7 @@ inline RgbdFrame make_test_frame(std::int64_t utime, int width = 64, int height 
   return frame;
 }
 
-/// Whether two depth images agree bit for bit, NaN with NaN.
+/// Returns whether two depth images are equal bit for bit, NaN with NaN.
 inline bool same_depth(const cv::Mat& a, const cv::Mat& b) {
   if (a.size() != b.size()) return false;
   for (int y = 0; y < a.rows; ++y) {

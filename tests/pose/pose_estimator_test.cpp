@@ -197,7 +197,7 @@ TEST(PoseEstimator, AReportedDetectionIsRefutedWhereItsObjectIsLessProbablyThere
   EXPECT_NE(found(), PoseStatus::kRefuted) << "a candidate is not reported by its score";
 }
 
-/// Of the box in the frame, from votes for the box turned over.
+/// Estimates the box's pose from votes for the box upside down.
 ObjectPose found_from_turned_votes(const Mesh& taught, const Eigen::Isometry3d& truth, const RgbdFrame& frame) {
   Detection detection = detection_of("box", taught, truth, 5);
   for (RotationVote& vote : detection.rotations)

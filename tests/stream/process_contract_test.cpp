@@ -15,8 +15,8 @@
 #include "tests/tools/track/one_bowl.hpp"
 #include "tools/track/track_process.hpp"
 
-// What holds of each process that works on frames, whatever its step does. The steps are fakes; their own tests are
-// beside the processes.
+// Contract of each process that works on frames, whatever its step does. The steps are fakes; their tests are beside
+// the processes.
 
 namespace houghstream {
 namespace {
@@ -133,7 +133,7 @@ Bytes frame_bytes(int frame) {
   return encode_message(to_message(make_test_frame(utime_of(frame)), WireFormat{}, frame));
 }
 
-/// Of an input of the process; `copies` times the bowl in it.
+/// Makes a message of an input of the process, with the bowl `copies` times.
 Bytes result_bytes(const Process& process, const FrameId& frame, std::size_t copies = 1) {
   if (process.input == channel::kPoses) {
     ObjectPoses poses = posed_bowl(frame);
@@ -292,7 +292,7 @@ TEST_P(ProcessContract, ItEndsWithinASecond) {
   EXPECT_LT(run.milliseconds_to_end, 1000.0);
 }
 
-/// Those that bring results together with their frames.
+/// Processes that match results with their frames.
 class JoiningProcess : public testing::TestWithParam<Process> {};
 
 TEST_P(JoiningProcess, AnotherCamerasResultsAreLeftToOthers) {
@@ -395,7 +395,7 @@ TEST_P(ProcessContract, OfALogEverythingIsWorkedOnAsOftenAsItIsThere) {
   EXPECT_EQ(results.size(), 2 * (GetParam().per_frame + GetParam().per_result));
 }
 
-/// Those that keep frames, and what they bring together with them, in their output log.
+/// Processes that keep frames and the results that belong to them in their output log.
 class KeepingProcess : public testing::TestWithParam<Process> {};
 
 TEST_P(KeepingProcess, FramesOfALogAreKeptWhereAskedEachBeforeWhatComesOfIt) {

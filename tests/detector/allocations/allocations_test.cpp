@@ -11,9 +11,9 @@
 #include "detector/training/forest_trainer.hpp"
 #include "tests/detector/toy_data.hpp"
 
-// What the whole process asks the C library for, OpenCV's pictures and operator new among it: glibc lets a program
-// bring its own of these, and has the same ones under other names.
-// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): its names
+// Counts the allocations of the whole process, OpenCV's images and operator new included: glibc lets a program replace
+// these functions, and provides the originals under other names. NOLINTBEGIN(bugprone-reserved-identifier,
+// readability-identifier-naming): its names
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -72,7 +72,7 @@ struct Allocations {
   std::size_t large = 0;
 };
 
-/// Of one frame.
+/// Returns the allocations of one frame.
 Allocations allocations_of(const Detector& detector, const RgbdFrame& frame, DetectorWorkspace& workspace) {
   const Allocations before{small_ones, large_ones};
   const Detections found = detector.detect(frame, workspace);

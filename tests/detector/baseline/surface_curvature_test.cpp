@@ -22,7 +22,7 @@ Values curvature_at_centre(const WorkingFrame& frame) {
   return curvature_at_centre(curvature_planes(frame, 1));
 }
 
-/// What a surface of this radius shows when its front is at the middle pixel, 15 pixels being looked at.
+/// Returns the features of a surface of this radius with its front at the middle pixel, for a window of 15 pixels.
 double expected_spread(double radius, double distance) {
   const double width = 15.0 / 260.0 * distance;
   return 255.0 * width / (radius * std::sqrt(12.0)) / Layout::kFullSpread;

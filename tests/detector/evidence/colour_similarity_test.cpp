@@ -68,7 +68,7 @@ float hue_mismatch(cv::Point expected, cv::Point observed) {
   return of_plain(expected, observed).hue_mismatch();
 }
 
-/// Of a plain colour, remembered with L* 120 and seen in another brightness.
+/// Compares a uniform colour, expected with L* 120, with an observation of another brightness.
 float chroma_deficit(cv::Point expected, int observed_brightness, cv::Point observed) {
   ColourSimilarity similarity;
   for (int i = 0; i < 100; ++i) {

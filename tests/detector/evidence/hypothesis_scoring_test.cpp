@@ -79,7 +79,8 @@ ViewTemplate middle_part() {
   return view;
 }
 
-/// What is found at the toy view's place by its view and that of its middle part, of a class of so many views.
+/// Returns the evidence at the toy view's position from its template and that of its middle part, for a class of so
+/// many views.
 Evidence evidence_among(std::size_t views, const RgbdFrame& frame) {
   Forest forest;
   forest.classes.emplace_back().radius = 0.08F;

@@ -124,7 +124,7 @@ BoundaryContinuation outline_of(const RgbdFrame& frame, const Eigen::Vector3f& c
   return measure_boundary_continuation(toy::template_view(), centre, toy::lab_frame(frame, frame.colour, 1.0F));
 }
 
-/// What lies around the tile, `behind` metres behind its edges and painted in `colour`.
+/// Surroundings of the tile, `behind` metres behind its edges and of this `colour`.
 BoundaryContinuation outline_fit(double behind, const cv::Scalar& colour) {
   RgbdFrame frame = tile_frame();
   cv::Mat outside;

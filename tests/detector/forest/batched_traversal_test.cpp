@@ -61,7 +61,7 @@ bool walks_like_find_leaf(const Forest& forest, const FeatureImage& image, const
   return walks_like_find_leaf(forest, {0, trees}, image, patches) && some;
 }
 
-/// What the processor can do, one instruction set at a time.
+/// Runs the test with each instruction set of the processor.
 class WideWalk : public ::testing::Test {
  protected:
   void TearDown() override { use(0); }

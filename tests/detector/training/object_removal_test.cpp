@@ -21,7 +21,7 @@ const Forest& both() {
   return forest;
 }
 
-/// What the trees' leaves hold of a class, mean over the trees.
+/// Returns the weight of a class in the leaves, mean over the trees.
 double share_of(const Forest& forest, std::size_t class_index) {
   double sum = 0.0;
   for (std::size_t l = 0; l + 1 < forest.leaves.size(); ++l) {

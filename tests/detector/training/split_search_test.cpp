@@ -177,7 +177,7 @@ TEST(SplitSearch, ANodeLooksAtPointHistogramsOrAtTheRestAsOftenAsAsked) {
   }
 }
 
-/// How many of the set's samples the test sends to the wrong side, each looked at by test_value.
+/// Returns the number of samples that the test sends to the wrong side, by test_value.
 int misplaced(const TrainingSet& set, const PixelTest& test) {
   int object_right = 0;
   int background_right = 0;

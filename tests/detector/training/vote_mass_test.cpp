@@ -86,7 +86,7 @@ TEST(Calibration, AnyNumberOfThreadsGivesTheSame) {
   EXPECT_EQ(serial, masses(set_of(7), settings, forest_of(5, 0.01F)));
 }
 
-/// Of this object: half of its patches in leaves that give it one probability, half in such that give it another.
+/// Makes a set in which half of the object's patches reach leaves with one probability, half leaves with another.
 Forest giving(float one, float other) {
   Forest forest;
   forest.classes.resize(2);

@@ -128,7 +128,7 @@ TEST(BopScene, AbsurdNumbersAreRefused) {
   expect_refused("scene_gt_info.json", "{", "[");
 }
 
-// What one flipped bit makes of an image's number.
+// An image's number with one flipped bit.
 TEST(BopScene, ObjectsOfAnImageThatIsNotThereAreRefused) {
   expect_refused("scene_camera.json", "\"11\": {", "\"31\": {");
   expect_refused("scene_camera.json", "\"11\": {", "\"10\": {");

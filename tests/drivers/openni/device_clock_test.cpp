@@ -23,7 +23,7 @@ struct Device {
   }
   std::int64_t arrival() { return shutter + 2'000 + static_cast<std::int64_t>(random() % 20'000); }
 
-  /// How much later than its shutter the clock believes the next image was taken, microseconds.
+  /// Returns the clock's delay of the next image relative to its shutter, microseconds.
   std::int64_t error_of_next(DeviceClock& clock) {
     shutter += kPeriod;
     return clock.utime(device_time(), arrival()) - shutter;

@@ -29,7 +29,7 @@ class TinyOni {
     std::memcpy(&value, bytes_.data() + place, sizeof(value));
     return value;
   }
-  /// Of a node: its range, its images and their entries in the seek table.
+  /// Records of a node: its range, its images and their entries in the seek table.
   const std::vector<std::size_t>& times(std::uint32_t node) const { return times_[node]; }
 
  private:

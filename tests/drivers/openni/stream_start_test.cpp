@@ -8,7 +8,7 @@ namespace {
 constexpr std::int64_t kOpened = 5'000'000;
 constexpr std::int64_t kPeriod = 33'333;
 
-/// What a sensor sees, image after image, with a noise of its own each.
+/// Images of a sensor, each with independent noise.
 std::vector<ImageThumbnail> seen(int count) {
   cv::RNG random(7);
   std::vector<ImageThumbnail> images;
@@ -38,7 +38,7 @@ std::vector<ImageThumbnail> some_of(const std::vector<ImageThumbnail>& images, s
   return some;
 }
 
-/// Of two streams that saw the same.
+/// Makes two streams of the same scene.
 std::optional<RecordedStarts> starts_in(const std::vector<ImageThumbnail>& recorded,
                                         const std::vector<ImageThumbnail>& live) {
   return find_stream_starts({recorded, recorded}, {live, live});

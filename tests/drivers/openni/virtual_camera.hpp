@@ -55,7 +55,7 @@ inline cv::Point2d disc_in_depth_mm(const cv::Mat& depth_mm) {
   return centre_of(depth_mm == virtual_camera::kPatternDiscMm);
 }
 
-/// How far the disc's colour lies beside its depth, pixels.
+/// Offset of the disc's colour from its depth, pixels.
 inline double disc_error_px(const cv::Mat& bgr, const cv::Mat& depth_mm) {
   return cv::norm(disc_in_colour(bgr) - disc_in_depth_mm(depth_mm));
 }

@@ -162,7 +162,7 @@ TEST(ObjectStore, AToneIsARangeOfGreyValuesOrHoldsEveryPicture) {
   EXPECT_EQ(read_store(folder).tone.max_deviation, 255.0F);
 }
 
-// What may be missing would be, without a word.
+// Keys that may be missing would be ignored silently.
 TEST(ObjectStore, ADamagedNameOfAValueIsRefused) {
   const std::vector<std::vector<std::string>> damaged = {
       {"store.json", "\"tone\"", "\"tonf\""},

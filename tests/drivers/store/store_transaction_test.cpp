@@ -240,7 +240,8 @@ TEST(StoreTransaction, SomebodysFilesInWhatAnInterruptedTeachingLeftComeBack) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
 }
 
-/// What a StoreTransaction says of a store with a folder that takes no files, to a user who is not root.
+/// Returns the error of a StoreTransaction for a store in a folder without write permission, for a user who is not
+/// root.
 std::string said_of_shut_folder() {
   const fs::path folder = whole_store("store_foreign_shut");
   fs::create_directories(folder / "recordings");

@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPeriod(10);
 
-/// What is made of a store here: the name of its second object.
+/// Loads the name of the store's second object.
 using Second = StoreWatcher<std::string>;
 
 std::shared_ptr<const std::string> load_second(const ObjectStore& store) {
@@ -40,7 +40,7 @@ std::vector<std::string> names_of(const KnownObjects& known) {
   return names;
 }
 
-/// How often the words stand in the text.
+/// Returns how often the words occur in the text.
 int count_of(const std::string& text, const std::string& words) {
   int count = 0;
   for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) ++count;

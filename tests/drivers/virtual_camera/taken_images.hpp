@@ -9,7 +9,7 @@
 
 namespace houghstream::virtual_camera {
 
-/// What OpenNI2 is to a stream: gives room for images, and takes them.
+/// Stands in for OpenNI2: provides buffers for a stream's images, and takes them.
 class TakenImages {
  public:
   struct Image {

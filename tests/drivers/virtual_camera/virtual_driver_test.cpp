@@ -9,8 +9,7 @@
 #include "tests/drivers/virtual_camera/taken_images.hpp"
 #include "tests/test_files.hpp"
 
-// What OpenNI2 asks of a driver library, by its names.
-// NOLINTBEGIN(readability-identifier-naming)
+// Functions that OpenNI2 calls in a driver library, by their names. NOLINTBEGIN(readability-identifier-naming)
 extern "C" {
 void oniDriverCreate(OniDriverServices* services);
 void oniDriverDestroy();

@@ -7,7 +7,7 @@
 namespace houghstream {
 namespace {
 
-/// What is said, and when, over some seconds in which frames come on some channels.
+/// Returns the lines that are logged, and when, over some seconds in which frames arrive on some channels.
 struct Watched {
   explicit Watched(const std::string& wanted) : silence(wanted, now) {}
 

@@ -128,7 +128,7 @@ TEST(SequenceTracker, IsExactUnderLossReorderingDuplicatesForgeriesAndRestarts) 
   }
 }
 
-// The same with numbers closer by; whether one that a lost frame had is forged nobody can know.
+// Numbers closer to the range: a forged number that a lost frame had cannot be detected.
 TEST(SequenceTracker, IsExactWhereForgeriesLieCloseBy) {
   const std::vector<std::int64_t> forged = {0, 1, 450, 470, 700, 99'000, 1'000'000, 1'000'000'000'000'000};
   for (unsigned seed = 1; seed <= 300; ++seed) {

@@ -135,7 +135,7 @@ TEST(MeshGltf, WhatIsNotThereIsRefused) {
   }
 }
 
-// Those of a GLB are looked at in its bytes; here they lie in another file.
+// The buffers of a GLB are checked in its bytes; here they lie in another file.
 TEST(MeshGltf, CornersThatAreNoVerticesAreRefusedBeforeTheyAreUsed) {
   const fs::path folder = fresh_folder("far_corners");
   const std::vector<float> numbers = {0, 0, 0, 0.2F, 0, 0, 0, 0.2F, 0};

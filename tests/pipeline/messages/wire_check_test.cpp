@@ -111,7 +111,7 @@ TEST(WireCheck, DamagedResultsNeverCrash) {
   }
 }
 
-/// What the check says of a message; empty where it passes.
+/// Returns the error of the check; empty where the message passes.
 template <typename Message>
 std::string fault_of(const Message& message) {
   const std::vector<std::uint8_t> bytes = encode_message(message);

@@ -223,7 +223,7 @@ class ResultLog {
 
   std::string out() const { return path.string() + ".out"; }
 
-  /// What hs-pose logs when it works on it.
+  /// Runs hs-pose on the log and returns its log.
   std::string run() const {
     catch_stop_signals();
     testing::internal::CaptureStderr();

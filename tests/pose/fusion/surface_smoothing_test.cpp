@@ -33,7 +33,7 @@ Mesh box_surface(double noise_m) {
   return largest_part(extract_surface(grid));
 }
 
-/// Of the vertices on the box's top, away from its edges: how far they are from it, and their normals from upright.
+/// Errors of the vertices on the box's top, away from its edges: distance, and angle of the normals.
 struct Roughness {
   double off_m = 0.0, rotated = 0.0;
 };

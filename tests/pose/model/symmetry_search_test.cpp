@@ -171,7 +171,7 @@ Mesh subdivided(const Mesh& mesh, int times) {
   return subdivided(fine, times - 1);
 }
 
-/// What of a tilted mesh looks the same, without what is round but for a handle.
+/// Returns the shape symmetry of a tilted mesh, without axes that only a handle breaks.
 Symmetries of_shape(const Mesh& mesh) {
   return find_shape_symmetry(tilted(mesh)).symmetries;
 }

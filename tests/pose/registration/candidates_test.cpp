@@ -91,7 +91,7 @@ TEST(RotationClusters, VotesSupportWhatTheyAgreeOn) {
   EXPECT_EQ(vote_support({}, Eigen::Isometry3d::Identity(), {}), 0.0F);
 }
 
-/// Of a box, from votes for this point of it.
+/// Places candidates of a box from votes for this point of it.
 void expect_best_placed_first(const Eigen::Vector3f& vote_centre) {
   const Mesh object = cereal_box();
   const Mesh ground = table();

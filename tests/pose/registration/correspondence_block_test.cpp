@@ -49,7 +49,7 @@ struct PointLattice {
   int stride = 1;
 };
 
-/// Of point `k`.
+/// Returns the values of point `k`.
 void find_one(const RgbdFrame& frame, const CorrespondenceSearch& search, const PointLattice& at, std::size_t k,
               CorrespondenceBlock& block) {
   const PixelRays rays(frame);
@@ -72,7 +72,7 @@ void find_one(const RgbdFrame& frame, const CorrespondenceSearch& search, const 
   }
 }
 
-/// What find_correspondences() does with vector units, point by point.
+/// Reference implementation of find_correspondences(), point by point.
 void reference_find_correspondences(const RgbdFrame& frame, const CorrespondenceSearch& search,
                                     CorrespondenceBlock& block) {
   const PixelRays rays(frame);
@@ -91,7 +91,7 @@ void reference_find_correspondences(const RgbdFrame& frame, const Correspondence
   }
 }
 
-/// What accumulate_outer_products() does with vector units, row by row.
+/// Reference implementation of accumulate_outer_products(), row by row.
 void reference_accumulate_outer_products(const ResidualRows& rows, const CorrespondenceBlock::Values& weights,
                                          std::size_t count, OuterProductSum& sums) {
   for (std::size_t i = 0; i < count; ++i) {

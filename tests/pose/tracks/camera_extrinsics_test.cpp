@@ -143,7 +143,7 @@ TEST(CameraExtrinsics, BadFilesAreOneLine) {
             std::string::npos);
 }
 
-// What has them would be left out without a word.
+// Entries with these would be ignored silently.
 TEST(CameraExtrinsics, NamesThatNobodyReadsOrThatStandTwiceAreRefused) {
   const std::string place = "translation: [0, 0, 0], rotation: [1, 0, 0, 0]}\n";
   const auto error_with = [&](const std::string& text) {

@@ -4,7 +4,7 @@
 
 #include "tests/pose/tracks/tracked_scene.hpp"
 
-// What becomes of the objects of a world when the object store changes.
+// Objects of a world when the object store changes.
 
 namespace houghstream::tracks {
 namespace {

@@ -24,7 +24,7 @@ inline Mesh block() {
   return mesh;
 }
 
-/// The same with its origin at its foot.
+/// The model with its origin at its foot.
 inline Mesh block_on_foot() {
   Mesh mesh;
   test_scene::add_box(mesh, {-0.035F, -0.035F, 0.0F}, {0.035F, 0.035F, 0.12F});
@@ -58,7 +58,7 @@ inline Eigen::Isometry3d on_table(double x, double y, double angle_rad = 0.0) {
   return Eigen::Translation3d(x, y, 0.06) * Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ());
 }
 
-/// Of a block that hides from the camera what stands in the middle of the table.
+/// Depth of a block that occludes the middle of the table.
 inline Eigen::Isometry3d before_the_middle() {
   return Eigen::Isometry3d(Eigen::Translation3d(0.0, -0.22, 0.22));
 }
@@ -91,7 +91,7 @@ class TrackedScene {
   std::int64_t utime = 1000000000;
   FrameNumber number = {};  ///< of the camera's next frame
 
-  /// What is there is also posed.
+  /// Objects that are present have poses.
   void show(const std::vector<std::pair<std::string, Eigen::Isometry3d>>& objects) { standing = posed = objects; }
 
   WorldObjects frame() {

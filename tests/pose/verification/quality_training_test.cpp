@@ -35,7 +35,7 @@ TEST(QualityTraining, ManyExamplesGiveTheWeightsThatDrewThem) {
   for (const auto term : kQualityTerms) EXPECT_NEAR(found.weights.*term, kWeights.*term, 0.1);
 }
 
-/// How far the weights are from the default ones.
+/// Returns the distance of the weights from the default ones.
 double way_from_prior(const QualitySettings& settings) {
   const QualitySettings prior;
   double sum_sq = (settings.bias - prior.bias) * (settings.bias - prior.bias);
@@ -106,8 +106,8 @@ TEST(QualityTraining, TypicalValuesAreTheMeansOfRightPosesAndTheLeastQualityIsTh
   EXPECT_LT(none_right.bias, prior.bias) << "a wrong pose speaks against all";
 }
 
-/// Of each of two halves the same examples. The object is there where the pose is right, and where it is not in
-/// `there_anyway` of all cases.
+/// Makes equal examples in both halves. The object is present where the pose is correct, and in a fraction
+/// `there_anyway` of the other cases.
 std::vector<QualityExample> calibrated(double there_anyway) {
   std::vector<QualityExample> examples = drawn(600);
   Random random(11);

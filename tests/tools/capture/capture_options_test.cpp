@@ -10,7 +10,7 @@
 namespace houghstream::capture {
 namespace {
 
-/// What the command line makes of the words.
+/// Parses the words as a command line.
 SourceOptions parsed(const std::vector<std::string>& words) {
   CommandLine line("words", "name");
   SourceOptions options;

@@ -18,7 +18,7 @@ void expect_refused(CommandLine& line, const std::vector<std::string>& words) {
   EXPECT_NE(testing::internal::GetCapturedStderr().find(words.front()), std::string::npos) << words.back();
 }
 
-/// What is said of words that are refused.
+/// Returns the error for words that are refused.
 std::string fault(CommandLine& line, const std::vector<std::string>& words) {
   testing::internal::CaptureStderr();
   EXPECT_NE(line.parse(words).value_or(0), 0);
@@ -291,7 +291,7 @@ TEST(CommandLine, AnUnknownKeyOfAFileIsRefusedWithTheNearestOne) {
                 ": 'object' is no key, expected one of the options' long names; the nearest is 'objects'\n");
 }
 
-/// What is said of a file, behind its name.
+/// Returns the error for a file, behind its name.
 std::string fault_of_file(const std::string& text) {
   Configured given(text);
   const std::string said = fault(given.line, {"--config", given.file.string()});

@@ -7,7 +7,7 @@
 namespace houghstream {
 namespace {
 
-/// What run_tool makes of `words`; `body` may be looked at through the captured streams.
+/// Runs run_tool with `words`; the captured streams show the output of `body`.
 int run(std::vector<std::string> words, const std::function<void()>& body) {
   words.insert(words.begin(), "path/of/the/tool");
   std::vector<char*> argv;

@@ -9,7 +9,7 @@ namespace {
 
 using Level = Finding::Level;
 
-/// What was found under a name, in order.
+/// Returns the findings of a name, in order.
 std::vector<std::string> told(const Findings& findings, const std::string& name) {
   std::vector<std::string> what;
   for (const Finding& finding : findings) {

@@ -57,7 +57,7 @@ TEST_F(FilterLog, ByChannel) {
   EXPECT_EQ(pass(filter).size(), 10U);
 }
 
-/// What a log keeps whose events have these dates, seconds, when it is filtered; and what is said of it.
+/// Filters a log whose events have these dates, seconds; returns the events that it keeps and the output.
 class DatedLog {
  public:
   explicit DatedLog(const std::vector<double>& dates_s) : folder_(fresh_folder("filter_log_dates")) {

@@ -44,7 +44,7 @@ TEST(MessageTypes, BotCoreHasOurFingerprints) {
   EXPECT_EQ(type_name(pose_t::getHash()), "pose_t (bot_core)");
 }
 
-// Those that lcm-gen makes of Drake's own lcmt_viewer_*.lcm.
+// Fingerprints that lcm-gen makes for Drake's lcmt_viewer_*.lcm.
 TEST(MessageTypes, DrakeHasOurFingerprints) {
   EXPECT_EQ(static_cast<std::uint64_t>(drake_viewer_load_robot_t::getHash()), 0x8987209b10aa2d39U);
   EXPECT_EQ(static_cast<std::uint64_t>(drake_viewer_draw_t::getHash()), 0x414f0bfe5b2f4244U);

@@ -7,7 +7,7 @@
 #include "tests/tools/track/one_bowl.hpp"
 #include "tools/track/track_process.hpp"
 
-// What becomes of objects when the frames of their camera have another size from some frame on.
+// Objects when the frames of their camera change their size.
 
 namespace houghstream::track {
 namespace {
@@ -18,7 +18,7 @@ images_t picture(int frame, int width, int height) {
   return to_message(make_test_frame(time_of(frame), width, height), WireFormat{}, frame);
 }
 
-/// What a driver of somebody else sends.
+/// Message of a third-party driver.
 images_t without_camera(images_t message) {
   for (image_t& image : message.images) {
     image.metadata.clear();

@@ -23,7 +23,7 @@ inline ObjectPoses one_bowl(std::int64_t utime, const std::string& camera = chan
   return poses;
 }
 
-/// Of the frame of that number, at 25 Hz.
+/// Makes the message of the frame with this number, at 25 Hz.
 inline std::int64_t time_of(int frame) {
   return 1000000000 + 40000 * static_cast<std::int64_t>(frame);
 }

@@ -18,7 +18,7 @@ Eigen::Isometry3d axis_pose(double elevation, const Eigen::Vector3d& t) {
   return T_camera_axis;
 }
 
-/// What the camera sees of a box 8 x 5 x 12 cm, beside the axis, with a colour per side, at 1 mm noise.
+/// Points that a camera sees of a box of 8 x 5 x 12 cm off the axis, with a colour per side, at 1 mm noise.
 std::vector<ColouredPoint> see_box(const Eigen::Isometry3d& T_camera_object, Random& random) {
   const Eigen::Vector3d half(0.04, 0.025, 0.06);
   const Eigen::Vector3d beside(0.01, -0.005, 0.0);

@@ -26,7 +26,7 @@ struct WatchedBus {
     bus.publish(camera, to_message(make_test_frame(utime), WireFormat{}, utime - 1));
   }
 
-  /// What a detector of this object and hs-pose say of a frame.
+  /// Results of a detector of this object and of hs-pose for a frame.
   void publish_results(const FrameId& frame, const std::string& object = "bowl") {
     Detections detections;
     detections.frame = frame;
@@ -53,7 +53,7 @@ struct WatchedBus {
     return condition();
   }
 
-  /// What hs-view says about its frames at its end.
+  /// Returns the summary of hs-view at its end.
   status_t last_words() {
     std::optional<status_t> last;
     watcher.stop();  // from here on this thread receives
@@ -78,7 +78,7 @@ inline MatchedFrame matched_frame(std::int64_t utime) {
   return matched;
 }
 
-/// The same as another program sends it: without a camera.
+/// A frame as a third-party program sends it: without a camera.
 inline MatchedFrame matched_frame_without_camera(std::int64_t utime) {
   images_t message = to_message(make_test_frame(utime), WireFormat{}, 0);
   for (image_t& image : message.images) {

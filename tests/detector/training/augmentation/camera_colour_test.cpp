@@ -24,7 +24,7 @@ cv::Mat chart() {
   return out;
 }
 
-/// Of each patch's middle.
+/// Returns the values at each patch's centre.
 cv::Vec3d patch(const cv::Mat& colour, int x, int y) {
   const cv::Scalar mean = cv::mean(colour(cv::Rect(12 * x + 3, 12 * y + 3, 6, 6)));
   return {mean[0], mean[1], mean[2]};

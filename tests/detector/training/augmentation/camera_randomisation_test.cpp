@@ -125,7 +125,7 @@ TEST(CameraRandomisation, AnySizeAndAnyStrengthIsTaken) {
   }
 }
 
-/// Whether another camera's picture of a room came out.
+/// Returns whether the image of a background was randomised.
 bool looks_through_another(double fraction, double strength, std::uint64_t seed) {
   const RgbdFrame room = toy::background(3);
   RgbdFrame frame = room;

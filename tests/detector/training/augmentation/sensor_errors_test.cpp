@@ -183,7 +183,7 @@ double deviation(const cv::Mat& values) {
   return sigma[0];
 }
 
-/// Of pixels side by side, over that of all pixels: 1.41 where they know nothing of each other.
+/// Returns the deviation of neighbouring pixels' difference over that of all pixels: 1.41 where they are independent.
 double contrast_of(const cv::Mat& values) {
   cv::Mat difference = values.colRange(1, values.cols) - values.colRange(0, values.cols - 1) + 0.7;
   return deviation(difference) / deviation(values);

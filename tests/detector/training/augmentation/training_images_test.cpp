@@ -48,7 +48,7 @@ TrainingImage image_of(const TrainingView& view, const Profile& profile, std::ui
   return object_image({view, 2, 5}, toy::background(3), input_of(profile), random, workspace);
 }
 
-/// How much larger the picture shows the object than the view does, `image_scale` aside.
+/// Returns the scale of the object in the image relative to the view, without `image_scale`.
 double size_of(const TrainingImage& image, double image_scale) {
   return (image.features.width() / image_scale - 2 * kMargin) / (2 * kRadius + 1);
 }
@@ -101,7 +101,7 @@ TEST(TrainingImages, SamplesOfTheObjectLieOnItsMaskAndTheOthersBeside) {
   }
 }
 
-/// How unevenly steep the middle of the object seems, 0 to 127; the derivatives are the first planes.
+/// Returns the deviation of the slope at the object's centre, 0 to 127; the derivatives are the first planes.
 double unevenness(const TrainingImage& image) {
   constexpr int kReach = 8;  // pixels
   const cv::Point middle(image.features.width() / 2, image.features.height() / 2);
@@ -131,7 +131,7 @@ TEST(TrainingImages, AScaleSpaceIsTaughtTheNoiseOfTheDistancesItSearches) {
   EXPECT_GT(rough, 2.0 * smooth);
 }
 
-/// Whether a picture holds all that its patches look at, and how much more it could hold.
+/// Checks that an image holds all pixels that its patches read, and few more.
 void expect_held(const TrainingImage& image, const PatchSettings& patch) {
   const cv::Rect held = image.features.held();
   for (const auto* list : {&image.samples, &image.negative_pool}) {

@@ -34,7 +34,7 @@ Take go_round(const Mesh& mesh, int from, int to, const std::vector<int>& black)
   return placer.finish();
 }
 
-/// How far the last tracked pose is from the first, beside how far it should be: metres at the object.
+/// Returns the drift of the last tracked pose relative to the first, metres at the object.
 double drift_m(const Take& take, int first, int last) {
   const auto pose = [&](int i) { return take.pose_of(take.frames[static_cast<std::size_t>(i)]); };
   const Eigen::Isometry3d at_first = pose(first).inverse() * ground_truth_pose(first);
@@ -162,7 +162,7 @@ void step_depth(RgbdFrame& frame) {
   }
 }
 
-/// How far the placer believes to have gone round when it has gone 70 degrees.
+/// Returns the placer's rotation about the object after 70 degrees.
 double degrees_gone(std::size_t min_corners) {
   const Mesh mesh = plain_tin_among_boxes();
   TakePlacerSettings settings;

@@ -13,7 +13,7 @@
 
 namespace houghstream {
 
-/// What a field of an annotation is written as.
+/// Type of an annotation's field.
 struct MatField {
   const char* name;
   std::string text;  ///< written as a number where empty

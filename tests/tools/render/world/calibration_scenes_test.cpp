@@ -36,7 +36,7 @@ bool identical(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && std::equal(a.datastart, a.dataend, b.datastart);
 }
 
-/// How the second object stands to the first, in a frame that shows both.
+/// Pose of the second object relative to the first, in a frame that shows both.
 Eigen::Matrix4d between(const RenderedFrame& view) {
   if (view.objects.size() != 2) throw std::runtime_error("both bricks expected");
   return (view.objects[0].T_camera_object.inverse() * view.objects[1].T_camera_object).matrix();
@@ -89,7 +89,7 @@ TEST(CalibrationScenes, TheTruthAgreesWithTheMeasuredDepth) {
   EXPECT_GE(judged, kFrames);
 }
 
-/// The same object, its origin somewhere else.
+/// The object with another origin.
 CalibrationSceneObject displaced(CalibrationSceneObject object, const Eigen::Vector3f& away) {
   Mesh mesh = object.thing->mesh;
   for (Eigen::Vector3f& vertex : mesh.vertices) vertex += away;

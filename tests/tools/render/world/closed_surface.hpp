@@ -9,7 +9,7 @@
 
 namespace houghstream::world {
 
-/// Whether every edge, with vertices at equal positions taken as one, is passed once in each direction.
+/// Returns whether every edge, with vertices at equal positions merged, is used once in each direction.
 inline bool is_closed(const Mesh& mesh) {
   std::map<std::array<int, 3>, int> places;
   const auto place = [&](std::uint32_t index) {

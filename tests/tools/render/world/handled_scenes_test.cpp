@@ -33,7 +33,7 @@ double lowest(const PlacedAsset& placed) {
   return z;
 }
 
-/// What the item behind this one in the list is carried by: "block", "hand", or nothing.
+/// Returns the support of the item behind this one in the list: "block", "hand", or nothing.
 std::string carrier(const std::vector<PlacedAsset>& items, std::size_t index) {
   const std::string name = index > 0 ? items[index - 1].thing->name : "";
   return name == "block" || name == "hand" ? name : "";

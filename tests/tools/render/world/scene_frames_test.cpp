@@ -55,7 +55,7 @@ TEST_F(SceneFrames, TruthAgreesWithThePicture) {
       if (object.visible_fraction < 0.95) continue;
       const Eigen::Vector2d centre = view.frame.camera.project(object.T_camera_object.translation());
       EXPECT_TRUE(object.box_visible_px.contains({static_cast<int>(centre.x()), static_cast<int>(centre.y())}));
-      // What is measured on the object lies about where its pose says.
+      // Depth measured on the object agrees with its pose.
       const cv::Scalar depth =
           cv::mean(view.frame.depth, view.visible_masks[i] & (view.frame.depth == view.frame.depth));
       EXPECT_NEAR(depth[0], object.T_camera_object.translation().z(), 0.12);

@@ -50,7 +50,7 @@ TEST(TrackMetrics, NumbersThatChangePlacesAreSwitchesAndHalveTheAssociation) {
   const OrderedJson json = measured(sequence, published);
   EXPECT_EQ(json["id_switches"], 2);
   EXPECT_EQ(json["recall"], 1.0);
-  // Of each number half its frames are of either can: 50 / (100 + 100 - 50).
+  // Half the frames of each number are of either can: 50 / (100 + 100 - 50).
   EXPECT_NEAR(json["hota"].get<double>(), std::sqrt(1.0 / 3.0), 1e-9);
 }
 

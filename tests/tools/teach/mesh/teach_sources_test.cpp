@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is said when the sources are refused; empty where they are not.
+/// Returns the error when the sources are refused; empty where they are not.
 std::string refusal(const MeshSources& sources) {
   return error_of([&] { read_meshes(sources); });
 }
@@ -26,7 +26,7 @@ MeshSources from(const fs::path& source) {
   return sources;
 }
 
-/// What the log says meanwhile.
+/// Returns the log of the call.
 std::string warnings_of(const std::function<void()>& work) {
   start_log("teach_tests", LogLevel::kInfo);
   testing::internal::CaptureStderr();

@@ -94,7 +94,7 @@ TEST(WorldView, FromAboveObjectsAndCamerasAreDrawn) {
   EXPECT_EQ(pixels_of(draw_world_from_above({}, {320, 240}), class_colour(2)), 0);
 }
 
-/// What stands in words above the world.
+/// Caption of the world.
 cv::Mat caption_of(const WorldObjects& world) {
   WorldState state;
   state.add(world);

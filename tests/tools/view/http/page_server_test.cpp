@@ -49,7 +49,7 @@ class RawClient {
     return connected_ && send(opened_, words.data(), words.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(words.size());
   }
 
-  /// What comes until the server ends the connection.
+  /// Reads until the server closes the connection.
   std::string heard() const {
     std::string all;
     std::array<char, 4096> part{};

@@ -13,14 +13,14 @@
 namespace houghstream::world {
 namespace {
 
-// All that can be taught: the four classes, their look-alikes and the sixteen further ones.
+// Objects that can be taught: the four classes, their look-alikes and the sixteen further ones.
 std::vector<int> taught_ids() {
   std::vector<int> ids = twenty_class_ids();
   for (int id = kClassCount + 1; id <= kTaughtObjectCount; ++id) ids.push_back(id);
   return ids;
 }
 
-// Whether a step of the lathe's 48 about z brings every vertex to the place of another.
+// Returns whether a rotation by one of the lathe's 48 steps about z maps every vertex onto another.
 bool turns_onto_itself(const Mesh& mesh) {
   const Eigen::AngleAxisf step(static_cast<float>(2.0 * M_PI / 48.0), Eigen::Vector3f::UnitZ());
   return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const Eigen::Vector3f& vertex) {

@@ -26,7 +26,7 @@ Light lamp() {
   return light;
 }
 
-/// Of a point in the world.
+/// Returns the shadow at a point of the world.
 float light_at(const World& world, const Light& light, const Eigen::Vector3f& point_world) {
   const ShadowMap map = make_shadow_map(world, light);
   return ShadowLookup(map, Eigen::Isometry3d::Identity(), light.penumbra_m).lit(point_world, 0.3F);

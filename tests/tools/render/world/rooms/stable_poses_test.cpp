@@ -41,7 +41,7 @@ double lowest_point(const Mesh& mesh, const StablePose& attitude) {
   return lowest;
 }
 
-// Whether a line over the table through the centre of mass's foot has touching points on both of its sides, all round.
+// Returns whether every line on the table through the centre of mass's foot has contact points on both sides.
 bool foot_is_between_touching_points(const Mesh& mesh, const StablePose& attitude) {
   const Eigen::Vector3d foot = attitude.R_table_object * TippingBody(mesh).centre_of_mass();
   for (int degrees = 0; degrees < 360; degrees += 5) {
