@@ -113,7 +113,7 @@ std::string fault_of_key(const CLI::App& app, const std::string& words) {
                      config_file(app), key, nearest_word(key, long_names(app.get_options(is_key))));
 }
 
-/// Whether what is said about an option, which it begins with, is about a value of the configuration file.
+/// Returns whether an error about an option, with whose name it begins, is about a value of the configuration file.
 bool is_about_config(const CLI::App& app, const std::string& words) {
   const CLI::Option* option = app.get_option_no_throw(words.substr(0, words.find(':')));
   if (option == nullptr || option->count() == 0) return false;
@@ -150,7 +150,7 @@ std::string fault_of(const CLI::App& app, const CLI::App& command, const CLI::Pa
     return config_file(app) + ": cannot be read, expected a file of lines key = value";
   const bool is_missing = is_of(error, CLI::ExitCodes::RequiredError);
   const std::vector<std::string> others = left_over(command);
-  // What is missing may be there, misspelt.
+  // A missing option may be given misspelt.
   if (!others.empty() && (is_missing || is_of(error, CLI::ExitCodes::ExtrasError)))
     return unknown_word(command, others.front());
   if (is_missing && command.get_subcommands().size() < command.get_require_subcommand_min())

@@ -13,7 +13,7 @@ namespace houghstream {
 /// command, the option or the word, and what was expected.
 std::string fault_line(const CLI::App& app, const CLI::ParseError& error);
 
-/// The same for a fault of a line of the configuration file.
+/// Describes an error of a line of the configuration file.
 std::string config_fault_line(const CLI::App& app, const std::string& fault);
 
 }  // namespace houghstream

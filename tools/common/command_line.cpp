@@ -39,7 +39,7 @@ std::string said(const std::string& word) {
   return word.empty() ? "nothing" : word;
 }
 
-/// What an option holds when it holds anything.
+/// Value of an option when it has one.
 template <typename T>
 struct Held {
   using Type = T;

@@ -51,7 +51,7 @@ class CommandLine {
   template <typename T>
   CommandOption add_option(const std::string& names, T& value, const std::string& words = "");
   CommandOption add_flag(const std::string& names, bool& value, const std::string& words);
-  /// Of this command and of all that it has by now, before or behind their names.
+  /// Adds the option to this command and its subcommands so far, before or behind their names.
   void add_common_flag(const std::string& names, bool& value, const std::string& words);
   /// `clears` becomes false where the flag is given.
   CommandOption add_clearing_flag(const std::string& names, bool& clears, const std::string& words);
@@ -63,7 +63,7 @@ class CommandLine {
   /// Such a file with every option, its default and what it does; what has no default stands behind a '#'.
   std::string config_template() const;
 
-  /// What stands behind the subcommand and is no option of it may be one of this line: -v.
+  /// Options behind the subcommand that are not its own may be those of this command: -v.
   CommandLine add_subcommand(const std::string& name, const std::string& words);
   void require_subcommand();  ///< exactly one
   bool given() const;         ///< this subcommand was asked for

@@ -11,7 +11,7 @@ namespace houghstream {
 /// across), with the values of the option `unit` that would make it one. Empty where it is one.
 std::string mesh_size_error(double size_m, double unit_m, const std::string& unit);
 
-/// The same in one line for models by name, by the diagonals of their boxes, which are quickly known.
+/// Checks models by name, by the diagonals of their boxes, which are quickly known; one line for all.
 std::string fault_of_sizes(const std::map<std::string, Mesh>& models, double unit_m, const std::string& unit);
 
 }  // namespace houghstream

@@ -7,8 +7,8 @@
 
 namespace houghstream {
 
-/// What every executable shares: -h, --version, -v, the log on stderr under the tool's name, and its way to fail: one
-/// clear line and a non-zero exit status.
+/// Frame of every executable: -h, --version, -v, the log on stderr under the tool's name, and errors as one line with a
+/// non-zero exit status.
 int run_tool(CommandLine& line, int argc, char** argv, const std::function<void()>& body);
 
 /// The option -l, --lcm-url, the same for every process.

@@ -41,7 +41,7 @@ std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& sto
   return std::make_shared<const ReadyDetector>(make_detector(load_store_forest(store), search), made_up);
 }
 
-/// What a command line asks for.
+/// Options of the command line.
 struct DetectOptions {
   std::string objects;
   std::string forest_file;

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is known of a kind of RGB-D camera.
+/// Properties of a kind of RGB-D camera.
 struct CameraKind {
   const char* vendor;        ///< USB id
   const char* product;       ///< USB id; "" = all of the vendor's

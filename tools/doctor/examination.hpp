@@ -24,7 +24,7 @@ Findings examine(const Machine& machine, const ExaminationSettings& settings);
 /// A line for each finding, and below it the command that mends it.
 std::string to_text(const Findings& findings);
 
-/// How many findings keep the stream from working.
+/// Returns the number of findings that keep the stream from working.
 int count_wrong(const Findings& findings);
 
 }  // namespace houghstream::doctor

@@ -5,7 +5,7 @@
 
 namespace houghstream::doctor {
 
-/// What one check found.
+/// Result of one check.
 struct Finding {
   enum class Level {
     kOk,

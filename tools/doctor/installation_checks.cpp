@@ -140,7 +140,7 @@ std::vector<fs::path> python_folders(const Machine& machine) {
   return folders;
 }
 
-/// Those of the folders that hold it.
+/// Returns the folders that hold it.
 std::vector<fs::path> folders_with(const char* package, const std::vector<fs::path>& folders) {
   std::vector<fs::path> found;
   std::copy_if(folders.begin(), folders.end(), std::back_inserter(found), [&](const fs::path& folder) {

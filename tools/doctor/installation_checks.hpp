@@ -11,8 +11,9 @@ namespace houghstream::doctor {
 /// `types_jar`: our message types for Java.
 Findings check_tools(const Machine& machine, const std::filesystem::path& types_jar);
 
-/// Whether another installation, an old one perhaps, lies beside this one, whose programs are in the folder `programs`:
-/// on $PATH, or where Debian's Python looks for packages; and what our Python package needs. Notes, never wrong.
+/// Checks for another installation, perhaps an old one, beside this one, whose programs are in the folder `programs`:
+/// on $PATH, or where Debian's Python looks for packages; and for the requirements of the Python package. The findings
+/// are notes, never wrong.
 Findings check_installation(const Machine& machine, const std::filesystem::path& programs);
 
 }  // namespace houghstream::doctor

@@ -14,14 +14,14 @@
 
 namespace houghstream::doctor {
 
-/// What became of messages that were sent on the bus to be received by the sender itself.
+/// Result of a loopback test: messages sent on the bus and received by the sender.
 struct SelfTest {
   int sent = 0;
   int received = 0;   ///< whole and unchanged
   std::string error;  ///< why the bus could not be used at all, else ""
 };
 
-/// How the doctor looks at a machine: files below `root`, and probes for what files do not tell. Tests put in others.
+/// The doctor's view of a machine: files below `root`, and probes for the rest. Tests substitute others.
 struct Machine {
   std::filesystem::path root = "/";
   /// Value of an environment variable, "" where it is not set.
@@ -32,21 +32,21 @@ struct Machine {
   std::function<std::size_t(const std::string& url, const std::string& channel)> heard_bytes;
   /// Channels on which frames are heard within a second and a half.
   std::function<std::set<std::string>(const std::string& url)> heard_frame_channels;
-  /// What processes on the bus say of their last error, by name, within a second and a half; those without one are left
+  /// Returns the last errors of processes on the bus, by name, within a second and a half; those without one are left
   /// out.
   std::function<std::map<std::string, std::string>(const std::string& url)> heard_errors;
   /// What is heard of cameras' colours within a second and a half, the last of each camera.
   std::function<std::vector<CameraChroma>(const std::string& url)> heard_camera_colours;
   /// Sends messages of so many bytes and waits for them.
   std::function<SelfTest(const std::string& url, std::size_t bytes)> self_test;
-  /// Whether this user may read and write the file (a full path below root).
+  /// Returns whether this user may read and write the file (a full path below root).
   std::function<bool(const std::filesystem::path&)> may_use;
   /// Why the shared library cannot be loaded, "" where it can.
   std::function<std::string(const std::filesystem::path&)> load_error;
-  /// Whether a firewall of ours is in force: what other hosts send to the port is dropped (nftables, table
+  /// Returns whether this project's firewall is active: packets of other hosts to the port are dropped (nftables, table
   /// houghstream).
   std::function<bool(const std::string& port)> refuses_others;
-  /// Whether the program runs when started with the argument.
+  /// Returns whether the program runs when started with the argument.
   std::function<bool(const std::filesystem::path& program, const std::string& argument)> runs;
 
   /// The file's text, "" where it cannot be read. `path` from the root on, without a leading slash.

@@ -67,7 +67,7 @@ std::optional<std::string> interface_to(const Machine& machine, const std::strin
   return best ? std::optional<std::string>(std::get<2>(*best)) : std::nullopt;
 }
 
-/// Whether a stream can run at the URL at all.
+/// Checks whether a stream can run at the URL.
 Finding check_url(const std::string& url) {
   const std::string remedy = "export LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0', and no -l";
   if (url.rfind("file://", 0) == 0) return wrong(kBus, fmt::format("{} is a log, expected a network", url), remedy);
@@ -129,7 +129,7 @@ Finding check_self_test(const Machine& machine, const std::string& url, std::siz
   return wrong(kSelfTest, what + "; the machine is overloaded or its buffers are too small", receive_buffer_remedy());
 }
 
-/// What runs on the bus and complains: two cameras whose places contradict each other make a world that is wrong.
+/// Reports errors of processes on the bus: two cameras with inconsistent extrinsics make a wrong world.
 Findings check_processes(const Machine& machine, const std::string& url) {
   Findings findings;
   for (const auto& [process, error] : machine.heard_errors(url)) {
@@ -162,7 +162,7 @@ Findings check_camera_colours(const Machine& machine, const std::string& url) {
   return findings;
 }
 
-/// Whether frames come on another channel than the one that is listened to.
+/// Checks whether frames arrive on another channel than the one that is subscribed.
 Findings check_channel(const Machine& machine, const BusSettings& settings) {
   const std::set<std::string> channels = machine.heard_frame_channels(settings.url);
   if (channels.empty()) return {};
@@ -182,7 +182,7 @@ bool has_neighbours(const Machine& machine) {
   return false;
 }
 
-/// Who may send on the bus. LCM asks nobody who he is.
+/// Checks which hosts may send on the bus, since LCM has no authentication.
 Finding check_senders(const Machine& machine, const std::string& url) {
   const std::optional<Endpoint> server = parse_tcp_server(url);
   const std::optional<Endpoint> place = server ? server : parse_multicast_group(url);

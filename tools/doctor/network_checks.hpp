@@ -14,9 +14,9 @@ struct BusSettings {
   std::size_t frame_bytes;    ///< taken where no frame is heard
 };
 
-/// What is wrong with the URL; or multicast route, receive buffers for the frames in use and for Java, who may send,
-/// messages of that size sent and received, on which channels frames come where none comes on the one that is listened
-/// to, and what processes on the bus complain of.
+/// Checks the URL; then the multicast route, receive buffers for the frames in use and for Java, the permitted senders,
+/// a loopback of messages of that size, the channels of frames where none arrives on the subscribed one, and errors of
+/// processes on the bus.
 Findings check_network(const Machine& machine, const BusSettings& settings);
 
 }  // namespace houghstream::doctor

@@ -16,7 +16,7 @@ struct FinderOptions {
   std::optional<float> min_quality;  ///< smallest quality of a pose that is valid, 0 to 1; default: that of hs-pose
 };
 
-/// What one frame shows. Both have the same frame; poses[i] is of detections[i]. The object is found where
+/// Objects of one frame. Both lists are of the same frame; poses[i] belongs to detections[i]. The object is found where
 /// is_reported() says so: other detections are candidates that no pose has confirmed.
 struct FoundObjects {
   Detections detections;  ///< strongest first: class, score, box in pixels, centre in metres

@@ -11,7 +11,7 @@ namespace houghstream {
 /// right in 98 % of the cases confirm half of the objects among them; from 0.1 on they bring as many that are wrong.
 constexpr float kCandidatesFrom = 0.2F;
 
-/// What a command line changes of a forest's own detection settings.
+/// Options of a command line that override a forest's detection settings.
 struct SearchOptions {
   std::optional<int> stride;
   std::optional<float> threshold;

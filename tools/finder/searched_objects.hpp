@@ -8,7 +8,7 @@
 
 namespace houghstream {
 
-/// What is looked for, as a command line names it.
+/// Objects to search for, as a command line names them.
 struct ObjectArguments {
   std::string store;  ///< of hs-teach, instead of the other two
   std::string forest;

@@ -30,7 +30,7 @@ QualityTerms terms_from(const nlohmann::json& entry, const std::string& name, co
   return terms;
 }
 
-/// Of a store that was written before it was learnt: what `otherwise` says.
+/// A store that was written before this was learnt has the value of `otherwise`.
 PresenceSettings presence_from(const nlohmann::json& entry, const PresenceSettings& otherwise,
                                const std::string& where) {
   if (!entry.contains("presence")) return otherwise;
@@ -42,7 +42,7 @@ PresenceSettings presence_from(const nlohmann::json& entry, const PresenceSettin
   return presence;
 }
 
-/// Of a store that was written before it was learnt: what `otherwise` says.
+/// A store that was written before this was learnt has the value of `otherwise`.
 PrintSettings print_from(const nlohmann::json& entry, const PrintSettings& otherwise, const std::string& where) {
   if (!entry.contains("print")) return otherwise;
   const nlohmann::json& stored = entry["print"];

@@ -20,9 +20,9 @@ constexpr float kStoreCandidateQuality = 0.75F;
 /// "of_quality"}, "print": {"bias", "of_margin"}}.
 nlohmann::json quality_to_json(const QualitySettings& settings);
 
-/// What the store has learnt of its objects' qualities, by name; the limits of each are those of `others`. Throws
-/// InputError naming the store for a missing or unknown number, and for one out of its range. A store that was taught
-/// before presence or print was learnt has that of `others`.
+/// Returns the quality settings that the store has learnt for its objects, by name; the thresholds of each are those of
+/// `others`. Throws InputError naming the store for a missing or unknown number, and for one out of its range. A store
+/// that was taught before presence or print was learnt has that of `others`.
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects, const QualitySettings& others);
 
 /// How poses are looked for and published, put together in this order: `common`; of a store, where there is one, the
@@ -31,7 +31,7 @@ std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& 
 PoseSettings pose_settings_of(PoseSettings common, const std::optional<store::ObjectStore>& objects,
                               std::optional<float> min_quality);
 
-/// The same, but that every pose is published: for who judges them all.
+/// Makes settings with which every pose is published, for an evaluation of all poses.
 inline PoseSettings without_rejection(PoseSettings settings) {
   set_min_quality(0.0F, settings);
   return settings;

@@ -22,7 +22,7 @@ struct ObjectViews {
 /// with the most views is taken, the first of equals. Background is left out. Throws InputError when nothing is left.
 std::vector<ObjectViews> group_views(std::vector<TrainingView> views);
 
-/// What hs-fuse makes.
+/// Outputs of hs-fuse.
 struct FuseOutputs {
   std::filesystem::path models;  ///< BOP models folder: obj_NNNNNN.ply, models_info.json, names.json
   std::filesystem::path images;  ///< folder for CLASS.png of each model from several sides; empty = none

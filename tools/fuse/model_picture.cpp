@@ -26,7 +26,7 @@ Eigen::Isometry3d looking_at(const Eigen::Vector3d& centre, double azimuth, doub
   return T_camera_object;
 }
 
-/// Of the three corners of a seen triangle.
+/// Values at the three corners of a visible triangle.
 Eigen::Vector3d mixed(const cv::Vec2f& bary, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                       const Eigen::Vector3d& c) {
   return (1.0 - bary[0] - bary[1]) * a + static_cast<double>(bary[0]) * b + static_cast<double>(bary[1]) * c;

@@ -18,7 +18,7 @@
 namespace houghstream::log_tools {
 namespace {
 
-/// What is written of a frame, each object once.
+/// Returns the rows of a frame, each object once.
 struct ExportedFrame {
   FrameResult look;                  ///< what its detectors found, joined; where none looked, nothing
   std::vector<ObjectPose> followed;  ///< from frame to frame, those that no detection of the look stands for

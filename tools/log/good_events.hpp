@@ -10,7 +10,7 @@
 
 namespace houghstream::log_tools {
 
-/// What of a recording could not be kept.
+/// Events of a recording that could not be kept.
 class LossReport {
  public:
   void note_damage(std::uint64_t bytes, const std::string& reason);

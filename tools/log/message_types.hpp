@@ -14,7 +14,7 @@ std::int64_t fingerprint_of(ByteView message);
 /// "?? 20ba4f05e8f5e33a" where it is not known, "no message" for 0.
 std::string type_name(std::int64_t fingerprint);
 
-/// Whether it is a type of RGB-D frames: ours, or one that to_images() makes ours of.
+/// Returns whether it is a type of RGB-D frames: images_t, or one that to_images() converts to it.
 bool is_frame_type(std::int64_t fingerprint);
 
 }  // namespace houghstream::log_tools

@@ -43,7 +43,7 @@ bool is_frame_source(const std::string& source) {
   return source.find(':') != std::string::npos && !std::filesystem::exists(source);
 }
 
-/// What somebody may take for a recording that can be read, by its first bytes.
+/// Returns the name of a file format that users take for a readable recording, by its first bytes.
 struct OtherKind {
   std::string_view begin;
   const char* name;

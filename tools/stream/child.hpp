@@ -29,7 +29,7 @@ class NoticeSocket {
   std::string name_;
 };
 
-/// How a process ended, in words; whether it did what it was to do.
+/// Exit status of a process, as text, and whether it succeeded.
 struct ExitStatus {
   bool success = false;    ///< exit status 0
   bool by_signal = false;  ///< killed, or crashed
@@ -49,11 +49,12 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// How it ended; nothing while it runs. Passes on what it has written; call it often.
+  /// Returns the exit status, nothing while it runs. Forwards its stderr; call it often.
   std::optional<ExitStatus> poll_exit();
   /// The last line of its stderr, for people; "" where it has written none, or is not heard.
   const std::string& last_stderr_line() const { return last_stderr_line_; }
-  /// Whether it has said of late that it is ending and needs more time ($NOTIFY_SOCKET, EXTEND_TIMEOUT_USEC).
+  /// Returns whether it has recently announced that it is ending and needs more time ($NOTIFY_SOCKET,
+  /// EXTEND_TIMEOUT_USEC).
   bool needs_time();
   /// Sends a signal to it and to what it has started.
   void signal(int number) const;

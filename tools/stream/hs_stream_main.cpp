@@ -81,7 +81,7 @@ class StatusEar {
     require(!bus_.is_log(), "{}: is a log; the stream runs on a network", bus_.url());
   }
 
-  /// Who is told from here on. Processes that are started before do not inherit the sockets that receive.
+  /// Subscribes to the bus. Processes that were started before do not inherit the receiving sockets.
   void hear(LcmBus::Handler handler) { bus_.subscribe(channel::kStatus, std::move(handler)); }
 
   /// Hands on one message, or waits for `timeout`. False while nothing can be heard.

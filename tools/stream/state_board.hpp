@@ -13,7 +13,7 @@
 
 namespace houghstream::stream {
 
-/// What the processes say of themselves, and since when.
+/// Status of the processes, and its time.
 class StatusBoard {
  public:
   using Clock = std::chrono::steady_clock;
@@ -35,9 +35,9 @@ class StatusBoard {
   std::map<pid_t, Entry> entries_;
 };
 
-/// Whether what a source has sent before it ended has gone through all the others, as their statuses tell: one after
-/// another, in the order in which frames pass them, each says that it has nothing left to do, a moment after the one
-/// before it has. Each sends a status once a second. Not thread-safe.
+/// Detects that a pipeline is drained after its source has ended, from the statuses of the processes: in the order of
+/// the pipeline, each reports an empty queue a moment after the one before it. Each sends a status once a second. Not
+/// thread-safe.
 class DrainMonitor {
  public:
   using Clock = std::chrono::steady_clock;

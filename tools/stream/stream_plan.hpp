@@ -13,7 +13,7 @@ namespace houghstream::stream {
 /// backslash. Throws InputError that names `source` where a quote has no end or nothing follows a backslash.
 std::vector<std::string> shell_words(const std::string& text, const std::string& source);
 
-/// What hs-stream starts.
+/// Processes that hs-stream starts.
 struct StreamOptions {
   std::filesystem::path executables;  ///< folder of hs-capture, hs-detect, hs-pose, hs-track, hs-view
   /// Of hs-capture; "" = the frames come from somebody else's driver. Of several cameras CHANNEL=SOURCE for each, with

@@ -16,20 +16,23 @@ struct ChildPlan {
   std::string name;                  ///< for people, for instance "detect"
   std::vector<std::string> command;  ///< program with its path, arguments
   bool ends_stream = false;          ///< when it ends with status 0, all do: the source's end, the closed window
-  bool is_started_last = false;      ///< started when all others have spoken: the source, whose frames they are to hear
+  /// Started when all others have sent a heartbeat: the source, whose frames they receive.
+  bool is_started_last = false;
 };
 
 struct SupervisorSettings {
   std::chrono::milliseconds initial_backoff{250};  ///< before a second restart; doubled by each failure that follows
   std::chrono::milliseconds max_backoff{10'000};
-  std::chrono::milliseconds backoff_reset{10'000};      ///< after so long a run the next failure counts as the first
-  int max_failures = 8;                                 ///< in a row: then it is given up, and the stream ends
-  std::chrono::milliseconds start_time{3000};           ///< who runs that long has started
-  std::chrono::milliseconds stop_timeout{1500};         ///< for a process to end by itself when it is asked to
-  std::chrono::milliseconds finishing{600'000};         ///< instead, for one that says that it is still writing
-  std::chrono::milliseconds heartbeat_timeout{10'000};  ///< who has spoken and then says nothing for so long hangs
-  std::chrono::milliseconds startup_timeout{60'000};    ///< the same for one that has not spoken yet: it may still read
-  std::chrono::milliseconds others_timeout{10'000};     ///< who awaits the others starts after so long without them
+  std::chrono::milliseconds backoff_reset{10'000};  ///< after so long a run the next failure counts as the first
+  int max_failures = 8;                             ///< in a row: then it is given up, and the stream ends
+  std::chrono::milliseconds start_time{3000};       ///< who runs that long has started
+  std::chrono::milliseconds stop_timeout{1500};     ///< for a process to end by itself when it is asked to
+  std::chrono::milliseconds finishing{600'000};     ///< instead, for one that says that it is still writing
+  std::chrono::milliseconds heartbeat_timeout{
+      10'000};  ///< a process without a heartbeat for so long, after its first, counts as hung
+  std::chrono::milliseconds startup_timeout{
+      60'000};  ///< timeout of the first heartbeat: the process may still be loading
+  std::chrono::milliseconds others_timeout{10'000};  ///< maximum wait of a process that is started last
 };
 
 /// Keeps the processes of a stream running: one that dies is started again, at once the first time, after a pause that
@@ -68,7 +71,7 @@ class Supervisor {
   /// Returns the names of those that had to be killed.
   std::vector<std::string> stop();
 
-  /// What there is to know of a process.
+  /// State of a process.
   struct State {
     std::string name;
     pid_t pid = 0;  ///< 0 while it waits for its restart

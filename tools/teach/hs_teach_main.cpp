@@ -15,7 +15,7 @@ namespace {
 using namespace houghstream;
 using namespace houghstream::teach;
 
-/// What lists hold between commas: an option that took several words would take the sources that follow it.
+/// Lists are separated by commas: an option that takes several words would take the sources that follow it.
 struct Lists {
   std::string names;
   std::string ids;
@@ -42,7 +42,7 @@ void add_calibration_options(CommandLine& command, TeachOptions& options) {
       .capture_default_str();
 }
 
-/// What becomes of a store that is there; with neither it is refused.
+/// Treatment of an existing store; without either option it is refused.
 void add_store_flags(CommandLine& command, bool& add, bool& replace) {
   const CommandOption adding = command.add_flag("--add", add, "what is taught joins the objects of the store");
   command.add_flag("--replace", replace, "a new store takes the place of the one that is there, when all is done")
@@ -90,7 +90,7 @@ cv::Point parse_place(const std::string& text) {
   return place;
 }
 
-/// What is not of ShowOptions, or in other words there.
+/// Options of the command line that are not in ShowOptions, or have another form there.
 struct ShowWords {
   std::string box;
   std::string at;

@@ -13,22 +13,22 @@
 
 namespace houghstream::track {
 
-/// A moment in microseconds of the clock that nobody sets.
+/// Returns a time of the steady clock, microseconds.
 inline std::int64_t steady_us(std::chrono::steady_clock::time_point moment) {
   return std::chrono::duration_cast<std::chrono::microseconds>(moment.time_since_epoch()).count();
 }
 
-/// Processes that find objects, and those of them that have fallen silent. May be used from any thread.
+/// Heartbeats of the processes that detect objects, with a timeout. May be used from any thread.
 class HeartbeatMonitor {
  public:
-  /// Takes note of a process' status. What is no status is somebody else's.
+  /// Records the heartbeat of a process' status; other messages are ignored.
   void on_status(const ReceivedMessage& arrival);
 
-  /// Names of those that have been silent for too long since they were asked for last; each is told once. `now_us` as
-  /// steady_us() has it.
+  /// Returns the processes whose heartbeat has timed out since the last call; each is returned once. `now_us` is a time
+  /// of steady_us().
   std::vector<std::string> pop_timed_out(std::int64_t now_us);
 
-  /// Logs those.
+  /// Logs the processes whose heartbeat has timed out.
   void log_timed_out(std::int64_t now_us);
 
  private:

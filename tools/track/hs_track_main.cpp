@@ -14,7 +14,7 @@ namespace {
 
 using namespace houghstream;
 
-/// What a command line asks for.
+/// Options of the command line.
 struct TrackOptions {
   std::string objects;
   std::string models;

@@ -10,7 +10,7 @@
 
 namespace houghstream::track {
 
-/// What detectors found in the last frames of all cameras. May be used from any thread.
+/// Detections in the last frames of all cameras. May be used from any thread.
 class RecentDetections {
  public:
   static constexpr std::size_t kKept = 64;  ///< results; of more the oldest goes
@@ -28,7 +28,7 @@ class RecentDetections {
                 kept_.end());
   }
 
-  /// All that any detector found in the frame.
+  /// Returns the detections of all detectors in the frame.
   Detections of(const FrameId& frame) const {
     Detections all;
     all.frame = frame;

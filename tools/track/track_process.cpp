@@ -211,7 +211,7 @@ class TrackProcess {
   std::shared_ptr<HeartbeatMonitor> heartbeats_ = std::make_shared<HeartbeatMonitor>();
   std::int64_t without_frame_ = 0;  // poses
   RecentDetections detections_;
-  // What the receiving thread writes.
+  // Members written by the receiving thread.
   mutable std::mutex mutex_;
   std::map<std::string, std::int64_t> newest_;  // utimes of the frames that came last, by channel
   std::atomic<std::int64_t> poses_{0};

@@ -8,7 +8,7 @@
 namespace houghstream::track {
 namespace {
 
-/// Of a type that has no utime.
+/// The type has no utime.
 template <typename Message>
 void publish_timeless(LcmBus& bus, const std::string& channel, const Message& message, std::int64_t utime) {
   const std::vector<std::uint8_t> bytes = encode_message(message);

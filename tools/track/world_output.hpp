@@ -9,7 +9,7 @@
 
 namespace houghstream::track {
 
-/// What is published beside the objects_t, for tools of others.
+/// Messages for third-party tools, published beside the objects_t.
 struct WorldOutputOptions {
   std::optional<std::filesystem::path> drake_meshes;  ///< for Drake's viewers, whose mesh files go there
   bool pose_channels = false;                         ///< a pose_t of each object on a channel of its own

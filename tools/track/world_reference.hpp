@@ -12,9 +12,9 @@
 
 namespace houghstream::track {
 
-/// The frame that objects are given in, and where cameras are in it: the world, or, as long as the place of no camera
-/// is known, the frame of the one camera. Transforms may be added from any thread; all else is for the thread that
-/// works on the frames.
+/// Reference frame of the objects, and the cameras' poses in it: the world, or, as long as no camera's pose is known,
+/// the frame of the single camera. Transforms may be added from any thread; all else is for the thread that processes
+/// the frames.
 class WorldReference {
  public:
   /// `fixed`: cameras that stand still, T_world_camera by the channels of their frames.
@@ -24,14 +24,14 @@ class WorldReference {
   /// many.
   void add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera);
 
-  /// Where the frame's camera was; `may_come` only while it is worth waiting, for the `may_wait`. Where the place is
-  /// one in another world than the last, that begins.
+  /// Returns the pose of the frame's camera; `may_come` is set only where `may_wait` and a transform may still arrive.
+  /// A pose in another world than the last one resets the world.
   tracks::CameraPose camera_pose(const FrameId& frame, bool may_wait);
 
   /// "WORLD", or the channel of the camera whose frame it is; empty until a place was known.
   const std::string& name() const { return name_; }
 
-  /// Whether a world has begun after another one since the last call: nothing seen before has a place in it.
+  /// Returns whether the world was reset since the last call: earlier observations have no pose in it.
   bool consume_reset() { return std::exchange(begun_, false); }
 
  private:

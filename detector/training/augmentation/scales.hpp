@@ -52,7 +52,7 @@ class Scales {
   virtual DistanceRange distances(double taught, const DistanceRange& wanted) const = 0;
   /// The distance at which areas and boxes count that are seen at this one.
   virtual double counted_distance(double distance) const = 0;
-  /// Whether patches of an object need measured depth, and not depth filled into holes.
+  /// Patches of an object need measured depth, and not depth filled into holes.
   virtual bool needs_measured_depth() const = 0;
   /// Adds what the other sizes of a picture do to the depth of an object at this distance.
   virtual void vary_depth(double distance, const FeatureSettings& settings, cv::Mat& depth, Random& random) const = 0;

@@ -82,7 +82,8 @@ TEST(StoreTransaction, AStoreJsonOfAnybodyElseMakesNoStore) {
   EXPECT_TRUE(is_replaceable(torn)) << "what is left of a store";
 }
 
-/// Of another process: says 'y' where it works on the store, else 'n', and works until `accept_poor_model` is closed.
+/// Runs in another process: writes 'y' where it holds the store, else 'n', and holds it until `accept_poor_model` is
+/// closed.
 [[noreturn]] void begin_and_tell(const fs::path& folder, int told, int accept_poor_model) {
   const auto tell = [&](char byte) {
     if (write(told, &byte, 1) != 1) _exit(2);

@@ -7,8 +7,8 @@
 
 namespace houghstream {
 
-/// Whether the scene is as far away as the template where the template was found: the median difference of depth is
-/// within `tolerance` times the template's distance. True where the scene has no depth to compare.
+/// Returns whether the scene has the template's depth where the template matched: the median difference is within
+/// `tolerance` times the template's distance. True where the scene has no depth there.
 bool depth_agrees(const LinemodMatch& match, const cv::Mat& depth, float tolerance);
 
 /// The strongest of the matches (given strongest first) as detections: score is similarity / 100, the box that of the

@@ -22,7 +22,7 @@ struct LinemodTemplateSettings {
   int threads = 2;              ///< share the templates; any number finds the same
 };
 
-/// What of a frame is reported.
+/// Settings of the reported detections.
 struct LinemodSelection {
   /// Smallest similarity, percent. cv::linemod looks for (100 + match_threshold) / 2 percent in the half-size image
   /// first: with a threshold as high as the similarities one wants, it misses valid matches without a word.

@@ -17,7 +17,7 @@ const char* const kOneClass = "object";  // classes are told apart by our own li
 cv::Ptr<cv::linemod::Detector> new_linemod(const LinemodTemplateSettings& settings) {
   const auto features = static_cast<std::size_t>(settings.features);
   const int max_distance_mm = static_cast<int>(settings.max_distance * 1000.0F) + 500;
-  // What is not set is as cv::linemod has it by default.
+  // Settings that are not listed have cv::linemod's defaults.
   constexpr float kStrongGradient = 55.0F;
   const std::vector<cv::Ptr<cv::linemod::Modality>> modalities = {
       cv::makePtr<cv::linemod::ColorGradient>(settings.weak_gradient, features, kStrongGradient),

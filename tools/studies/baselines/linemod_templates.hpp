@@ -10,7 +10,7 @@
 
 namespace houghstream {
 
-/// What cv::linemod's templates do not keep themselves. Pixels count from where a match is reported.
+/// Data of a template that cv::linemod does not keep. Pixels count from the position of a match.
 struct LinemodTemplate {
   struct DepthSample {
     cv::Point at_px;
@@ -31,7 +31,7 @@ struct LinemodMatch {
   cv::Point at_px;
 };
 
-/// What became of the training views.
+/// Outcome of the training views.
 struct LinemodTraining {
   int templates = 0;
   int refused_templates = 0;  ///< too small or too plain for the number of features
@@ -65,7 +65,7 @@ class LinemodShare {
  public:
   explicit LinemodShare(const LinemodTemplateSettings& settings);
 
-  /// Whether a template could be made; counts it. `rank` as in LinemodTemplate.
+  /// Makes a template and counts it; returns whether that succeeded. `rank` as in LinemodTemplate.
   bool add(const TrainingView& view, double distance, int rank);
   void count_refused_view() { ++training_.refused_views; }
 

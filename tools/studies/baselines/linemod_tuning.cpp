@@ -63,7 +63,7 @@ void score_trial(const ComposedExamples& examples, const Matches& matches, Linem
   find_best_f1(classes, trial);
 }
 
-/// All that is chosen after matching.
+/// Settings that are applied after matching.
 std::vector<LinemodSelection> selections(LinemodSelection selection) {
   selection.check_depth = false;
   std::vector<LinemodSelection> out = {selection};

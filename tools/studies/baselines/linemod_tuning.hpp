@@ -24,7 +24,7 @@ struct ComposedExamples {
 ComposedExamples compose_examples(const std::vector<TrainingView>& views, float min_distance, float max_distance,
                                   int images);
 
-/// How one choice of settings fared on composed pictures.
+/// Result of one choice of settings on composed images.
 struct LinemodTrial {
   LinemodTemplateSettings templates;
   LinemodSelection selection;

@@ -18,7 +18,7 @@ struct Failure {
   double weight = 0.0;    ///< score of the detection, or how much of the object is visible; 0 to 1
 };
 
-/// What is a failure, and how many of them are shown.
+/// Criteria of a failure, and the number of failures that are drawn.
 struct FailureRules {
   DetectionRules detection;
   float operating_score = 0.0F;  ///< from which a detection counts

@@ -35,7 +35,7 @@ cv::Scalar colour_of(const Forest& forest, const std::string& class_name) {
   return {170, 170, 170};
 }
 
-/// Those that are visible enough to be required of a detector.
+/// Returns the objects that are visible enough to be required of a detector.
 std::vector<NamedBox> ground_truth_boxes(const EvaluatedFrame& frame, const Forest& forest) {
   std::vector<NamedBox> boxes;
   for (const NamedObject& object : frame.objects) {

@@ -29,7 +29,7 @@ namespace houghstream {
 // PPF, 41 objects, reference share 0.2: 40 | step 0.05: 41, several times the training | 10 poses: 41
 //   reference share 0.5: 41, twice the time | spacing and step 0.05: over a minute of training a model
 
-/// How a point cloud is made of a region.
+/// Settings of a region's point cloud.
 struct SurfaceSettings {
   double spacing_m = 0.004;        ///< of the points that are kept
   double normal_radius_m = 0.015;  ///< of the neighbours whose plane gives a measured normal
@@ -70,9 +70,9 @@ struct PpfSettings {
   int icp_levels = 4;            ///< of the pyramid, each of half as many points
 };
 
-/// What others' libraries offer in place of our PoseEstimator, given the same detections. They look at depth only, and
-/// at what ours looks at: the pixels with depth inside find_region(). Of several poses the one is given for which the
-/// depth speaks most (score_pose()), as among ours.
+/// Pose estimators of other libraries as baselines of PoseEstimator, given the same detections. They use depth only, of
+/// the same pixels: those with depth inside find_region(). Of several poses the one with the best depth score
+/// (score_pose()) is returned, as in PoseEstimator.
 class BaselineEstimator {
  public:
   virtual ~BaselineEstimator() = default;

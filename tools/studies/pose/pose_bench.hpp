@@ -42,7 +42,7 @@ struct BenchedMakers {
   std::map<std::string, PoseMaker> baselines;
 };
 
-/// What each variant made of frames: pooled over scenes by add().
+/// Results of each variant, pooled over scenes by add().
 struct VariantResult {
   std::vector<PoseTrial> trials;
   std::vector<FrameErrors> errors;  ///< by BOP's measures, of all classes
@@ -65,7 +65,7 @@ struct DetectedScene {
   std::vector<EvaluatedFrame> frames;
 };
 
-/// How a scene is benched.
+/// Settings of a scene's benchmark.
 struct BenchRules {
   int baselines_every = 10;  ///< the rivals look at frames 0, N, 2N, ... of those that were detected in
   double baselines_s = 0.0;  ///< of those, at as many as can be done in this time, spread over the scene; 0: at all

@@ -49,7 +49,7 @@ struct WithheldPoses {
 std::map<std::string, WithheldPoses> count_withheld(const std::vector<PoseTrial>& trials,
                                                     const std::vector<PoseTrial>& unchecked);
 
-/// What is not finite becomes null (finite_or_null).
+/// Non-finite numbers become null (finite_or_null).
 OrderedJson to_json(const PoseFigures& figures);
 OrderedJson to_json(const std::map<std::string, WithheldPoses>& withheld);
 

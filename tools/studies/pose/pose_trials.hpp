@@ -17,7 +17,7 @@
 
 namespace houghstream {
 
-/// What came of one detection's pose, beside the truth. Where a number cannot be known it is NaN.
+/// Result of one detection's pose compared with the ground truth; unknown numbers are NaN.
 struct PoseTrial {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -49,7 +49,7 @@ struct PoseTrial {
   bool is_correct_up_to_shape() const { return outcome == MatchOutcome::kTruePositive && add_s < kCorrectBelow; }
 };
 
-/// What the poses of a class are compared with the truth by.
+/// Models for the comparison of a class' poses with the ground truth.
 struct ScoredModel {
   PoseModel surface;
   Symmetries symmetries;
@@ -62,8 +62,8 @@ struct SceneModels {
   std::map<std::string, ScoredModel> scored;
 };
 
-/// Those of the listed classes; others are nobody's targets. Throws InputError for a folder that is no models/ of a BOP
-/// dataset, or that has none of them.
+/// Loads the models of the listed classes. Throws InputError for a folder that is no models/ of a BOP dataset, or that
+/// has none of them.
 SceneModels load_scene_models(const std::filesystem::path& models, const std::set<std::string>& classes);
 
 /// Frames of a scene with detections and poses, one pose for each detection in their order.

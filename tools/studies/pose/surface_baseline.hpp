@@ -24,14 +24,14 @@ SurfaceCloud::Ptr thinned(const SurfaceCloud& cloud, double spacing_m);
 /// A view's points, object frame.
 SurfaceCloud view_surface(const ModelView& view);
 
-/// What of a model can be seen from somewhere, object frame, thinned; normals outwards.
+/// Points of a model that are visible from somewhere, object frame, thinned; normals outwards.
 SurfaceCloud::Ptr model_surface(const ObjectModel& model, double spacing_m);
 
 /// The measured points of a region, camera frame, thinned; normals towards the camera. Points without a normal (fewer
 /// than three neighbours) are left out.
 SurfaceCloud::Ptr measured_surface(const RgbdFrame& frame, const DepthRegion& region, const SurfaceSettings& settings);
 
-/// What is seen of a detection, as the rivals get it.
+/// Observation of a detection, as the baselines receive it.
 struct SeenSurface {
   const RgbdFrame& frame;
   const ObjectModel& model;
@@ -45,7 +45,7 @@ struct SeenSurface {
   }
 };
 
-/// What the rivals have in common: the region that they look at, and the choice among their poses.
+/// Common part of the baselines: the region, and the selection among their poses.
 class SurfaceRival : public BaselineEstimator {
  public:
   SurfaceRival(const std::map<std::string, Mesh>& models, const PoseSettings& pose, const SurfaceSettings& surface);

@@ -27,7 +27,7 @@ struct LearnOptions {
   SearchOptions search;
 };
 
-/// Those of the classes that the forest knows: others are never detected.
+/// Returns the models of the forest's classes, since others are never detected.
 std::map<std::string, Mesh> models_of(const LearnOptions& options, const Forest& forest) {
   std::map<std::string, Mesh> known;
   const std::map<std::string, Mesh> all = load_class_models(options.models);

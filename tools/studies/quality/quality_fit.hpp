@@ -28,7 +28,7 @@ std::vector<CheckedPose> check_by(const QualitySettings& settings, const std::ve
 /// are. Throws InputError where there are fewer scenes than parts, and as fit_quality().
 std::vector<CheckedPose> check_by_scene(const std::vector<Example>& examples, int parts);
 
-/// What is published from a quality on.
+/// Poses that are published from a quality on.
 struct Published {
   int poses = 0;
   int correct = 0;
@@ -49,7 +49,7 @@ struct Learnt {
   Published in_use;                  ///< by the numbers that hs-pose uses, from their `least` on
 };
 
-/// Of so many at least learn_quality() needs poses.
+/// Minimum number of scenes with poses for learn_quality().
 inline constexpr int kMinScenes = 4;
 
 /// fit_quality(), and its `least` by four parts of the scenes. Throws InputError as those, and where no quality is

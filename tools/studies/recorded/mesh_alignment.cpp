@@ -25,7 +25,7 @@ struct Fit {
   double rms_m = std::numeric_limits<double>::infinity();
 };
 
-/// How far one registration goes; pairs farther apart than the limit, which shrinks, have no weight.
+/// Maximum correspondence distance of a registration, which shrinks.
 struct Descent {
   int iterations = 0;
   double first_limit_m = 0.0;
@@ -126,7 +126,7 @@ void sort_by_rms(std::vector<Fit>& fits) {
   std::stable_sort(fits.begin(), fits.end(), [](const Fit& a, const Fit& b) { return a.rms_m < b.rms_m; });
 }
 
-/// Those that are no worse copy of a better one, at most `most`. `fits` is sorted.
+/// Returns the best fits without duplicates, at most `maximum`. `fits` is sorted.
 std::vector<Fit> distinct(const std::vector<Fit>& fits, double apart_rad, std::size_t maximum) {
   std::vector<Fit> kept;
   for (const Fit& fit : fits) {

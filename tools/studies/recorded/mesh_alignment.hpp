@@ -12,8 +12,8 @@ struct MeshAlignment {
   /// Root mean square distance from the source's surface to the target's, metres; what is far off (parts that the
   /// target lacks) counts as 10 mm.
   double rms_m = 0.0;
-  /// The same where the next best turn, at least 20 degrees from the best, settled; NaN where all turns ended at the
-  /// best. Near `rms_m`, the shape does not tell the two apart.
+  /// RMS of the next best rotation, at least 20 degrees from the best; NaN where all rotations converged to the best.
+  /// Near `rms_m` the shape is ambiguous between the two.
   double next_rms_m = 0.0;
 };
 

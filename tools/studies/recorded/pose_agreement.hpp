@@ -21,14 +21,14 @@ struct ReferencePose {
 /// x_camera = R x_object + t. Throws InputError when it is missing or unreadable, or R is no rotation.
 std::map<std::string, ReferencePose> read_reference_poses(const std::filesystem::path& file);
 
-/// How far two poses of one object are apart.
+/// Difference of two poses of one object.
 struct PoseDifference {
   double shift_m = 0.0;  ///< between the places of the object frame's origin
   double angle_deg = 0.0;
 };
 
-/// Of the poses equivalent to `T_estimated` by symmetry, the one whose turn is nearest to the reference. The object
-/// frame's origin should lie in the object: far from it, a small turn becomes a large shift.
+/// Returns the pose equivalent to `T_estimated` by symmetry whose rotation is nearest to the reference. The object
+/// frame's origin should lie in the object: far from it, a small rotation becomes a large translation.
 PoseDifference compare_poses(const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_reference,
                              const Symmetries& symmetries);
 

@@ -11,7 +11,7 @@
 namespace houghstream {
 namespace {
 
-/// Of a seen point of a triangle; `bary` holds the weights of its second and third vertex.
+/// Returns the colour of a visible point of a triangle; `bary` holds the weights of its second and third vertex.
 cv::Vec3b colour_at(const Mesh& mesh, int triangle, const cv::Vec2f& bary) {
   if (mesh.colours.empty()) return cv::Vec3b::all(255);
   const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(triangle)];

@@ -23,14 +23,14 @@ struct ComparedObject {
   std::map<std::string, ReferencePose> references;
 };
 
-/// What came of a folder of frames.
+/// Result of a folder of frames.
 struct RealBench {
   std::vector<ComparedFrame> compared;  ///< frames with a reference, in natural order
   int poses = 0;                        ///< valid ones, of all classes in all frames
   std::vector<cv::Mat> images;          ///< of every frame two: draw_poses, paint_models
 };
 
-/// What makes the poses.
+/// Estimator of the poses.
 struct BenchedMethod {
   const Detector& detector;
   const PoseEstimator& estimator;

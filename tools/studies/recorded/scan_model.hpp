@@ -7,9 +7,9 @@
 
 namespace houghstream {
 
-/// What of a mesh lies on the plane's positive side (signed distance 0 or above, the mesh's frame and unit): triangles
-/// with all three corners there, and the vertices that they use, with their normals, colours and texture coordinates.
-/// The edge follows the triangles; nothing is cut. A mesh that lies below as a whole becomes an empty one.
+/// Returns the part of a mesh on the plane's positive side (signed distance 0 or above, the mesh's frame and unit):
+/// triangles with all three corners there, and the vertices that they use, with their normals, colours and texture
+/// coordinates. The edge follows the triangles; nothing is cut. A mesh that lies below as a whole becomes an empty one.
 Mesh crop_below(const Mesh& mesh, const Eigen::Hyperplane<float, 3>& plane);
 
 /// The mesh's shape with vertices of one place made one, so that triangles that touch are connected: files give a

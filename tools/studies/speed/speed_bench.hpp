@@ -30,7 +30,7 @@ BenchmarkedDetector parse_contender(const std::string& text);
 /// The frame with its image `scale` times as large: colour interpolated, depth of the nearest pixel.
 RgbdFrame resized_frame(const RgbdFrame& frame, double scale);
 
-/// What one contender's frames took, milliseconds of wall time.
+/// Time of one detector's frames, milliseconds of wall time.
 struct SpeedResult {
   std::vector<double> ms;                               ///< by frame, in the order they were looked at
   std::map<std::string, std::vector<double>> stage_ms;  ///< likewise

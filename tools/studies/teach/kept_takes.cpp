@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 using FramePlace = std::pair<std::size_t, std::size_t>;  // scene, frame
 
-/// Of the pixels.
+/// Statistics of the pixels.
 std::uint64_t fingerprint(const cv::Mat& image) {
   std::uint64_t hash = fnv1a(nullptr, 0);
   for (int y = 0; y < image.rows; ++y)

@@ -7,7 +7,7 @@
 
 #include "drivers/datasets/bop_dataset.hpp"
 
-// What hs-render takes wrote of an object, and what hs-teach show --keep made of it.
+// Ground truth of an object from hs-render takes, and its reconstruction by hs-teach show --keep.
 
 namespace houghstream::studies {
 

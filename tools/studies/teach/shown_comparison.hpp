@@ -19,7 +19,7 @@ struct Spread {
   double maximum = 0.0;
 };
 
-/// What was made of an object that was shown, beside the truth.
+/// Reconstruction of a shown object compared with the ground truth.
 struct ShownComparison {
   /// The taught model's frame in that of the true mesh: as the poses of the first take's frames say on average, then
   /// registered by shape.

@@ -34,7 +34,7 @@ const ScoredHypothesis* strongest_of(const NamedObject& object, const std::vecto
   return best;
 }
 
-/// What the detector would find without a threshold; each detection has its candidate's number for a vote_count.
+/// Returns the detections without a threshold; each has its candidate's number as vote_count.
 Detections numbered_detections(const std::vector<ScoredHypothesis>& candidates, const SuppressionSettings& settings) {
   std::vector<Detection> all;
   for (std::size_t i = 0; i < candidates.size(); ++i) {

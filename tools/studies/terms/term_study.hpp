@@ -29,7 +29,7 @@ struct Sample {
   ScoreTerms contributions{};  ///< term times weight; their sum is the score's log odds
 };
 
-/// What was found in a group of scenes.
+/// Detections in a group of scenes.
 struct Group {
   std::string name;
   int frames = 0;

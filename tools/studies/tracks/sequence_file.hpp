@@ -25,7 +25,7 @@ struct SequenceCamera {
   std::vector<Eigen::Isometry3d> T_world_camera;  ///< per frame
 };
 
-/// What `hs-render sequences` writes of a sequence (tools/render/sequence_jobs.hpp).
+/// File of a sequence by `hs-render sequences` (tools/render/sequence_jobs.hpp).
 struct SequenceFile {
   std::string name;
   double fps = 30.0;

@@ -21,7 +21,7 @@ constexpr double kZeroAtM = 0.1;  // two places that far apart are not alike at 
 /// A true object and a published one.
 using TrackPair = std::pair<int, std::int64_t>;
 
-/// What counts of a frame.
+/// Objects of a frame that count.
 struct CountedFrame {
   std::vector<int> instances;     // true objects that must be seen
   std::vector<std::int64_t> ids;  // published objects
@@ -76,7 +76,7 @@ struct Alignment {
     }
   }
 
-  /// Of all frames of the two, the share that would be common to them.
+  /// Returns the fraction of common frames among all frames of the two.
   double jaccard(const TrackPair& pair, double common) const {
     return common / (of_truth.at(pair.first) + of_track.at(pair.second) - common);
   }
@@ -209,7 +209,7 @@ OrderedJson counts_json(const std::vector<HotaCount>& counts) {
   return out;
 }
 
-/// Those of the sequence of which nothing was published too, as that nothing is: in their order.
+/// Returns the frames of the sequence in order, those without a publication as empty ones.
 std::vector<PublishedFrame> with_silent_frames(const SequenceFile& sequence, std::vector<PublishedFrame> published) {
   std::vector<bool> told(sequence.frames.size(), false);
   for (const PublishedFrame& frame : published) told[frame.index] = true;
@@ -221,7 +221,7 @@ std::vector<PublishedFrame> with_silent_frames(const SequenceFile& sequence, std
   return published;
 }
 
-/// What became of one true object.
+/// Life of one ground-truth object.
 struct Life {
   std::int64_t last_id = 0;          // that it was given last; 0: none yet
   std::optional<std::size_t> since;  // frame in which it was seen first, or anew, and not yet found
@@ -314,7 +314,7 @@ class Comparison {
     if (!stands || object == nullptr) life.window.clear();
   }
 
-  /// Whether it was in the same place a frame before: several publications may be of one frame.
+  /// Whether it was at rest since the frame before: several publications may be of one frame.
   bool stood(const TrueInstance& truth, std::size_t index) const {
     if (!truth.T_world_object || index == 0) return false;
     const std::vector<TrueInstance>& before = sequence_.frames[index - 1];

@@ -18,11 +18,11 @@ struct PublishedObject {
   std::int64_t track_id = 0;  ///< 0 where objects have none: poses of single frames
   std::string class_name;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
-  /// Of its place, as it was published with it (root of the variances' sum), metres; NaN where it was not.
+  /// Published standard deviation of its position (root of the variances' sum), metres; NaN without one.
   double deviation_m = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What was published of a frame of the sequence.
+/// Published objects of a frame of the sequence.
 struct PublishedFrame {
   std::size_t index = 0;  ///< in the sequence
   std::vector<PublishedObject> objects;
@@ -75,7 +75,7 @@ double apart_m(const TrueInstance& truth, const PublishedObject& object, const C
 std::vector<int> matches(const std::vector<TrueInstance>& truth, const std::vector<PublishedObject>& objects,
                          const ClassSymmetries& symmetries, double reach_m);
 
-/// Of one threshold of similarity.
+/// Metrics at one threshold of similarity.
 struct HotaCount {
   double true_positives = 0.0;
   double false_negatives = 0.0;

@@ -10,10 +10,10 @@
 
 namespace houghstream::teach {
 
-/// What of a shape looks the same: "3 half turns", "a spin and a half turn", "a spin but for its handle", "none".
+/// Describes the symmetries of a shape: "3 half turns", "a spin and a half turn", "a spin but for its handle", "none".
 std::string symmetry_words(const ShapeSymmetry& shape);
 
-/// What stands above an object's views.
+/// Caption of an object's views.
 std::string title_of(const store::StoredObject& object);
 
 /// Two dozen of an object's views, spread over all of them, side by side under a title, for a person to look at.

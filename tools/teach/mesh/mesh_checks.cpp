@@ -44,7 +44,7 @@ std::vector<std::uint32_t> weld(const Mesh& mesh) {
   return welded;
 }
 
-/// How a surface hangs together.
+/// Topology of a surface.
 struct Topology {
   double open_m = 0.0;      ///< length of edges that one face has alone
   std::size_t edges = 0;    ///< between two faces

@@ -7,11 +7,11 @@
 
 namespace houghstream::teach {
 
-/// Whether a mesh, in metres, can be taught. A surface that faces inwards is turned around, normals that do are made
-/// anew, with a line of the log; an open surface and one whose faces are wound against each other are taught, with a
-/// line of the log. Throws InputError where it is smaller or larger than what a camera sees (10 mm to 1.5 m across),
-/// naming the unit that would fit, and where its middle lies farther from its origin than a store can say
-/// (store::kMaxCentre_m). `where` names the file, `unit_m` the unit that it was read in.
+/// Checks that a mesh, in metres, can be taught. Inward faces are flipped and inward normals recomputed, with a line of
+/// the log; open surfaces and inconsistently wound faces are accepted, with a line of the log. Throws InputError where
+/// it is smaller or larger than what a camera sees (10 mm to 1.5 m across), naming the unit that would fit, and where
+/// its middle lies farther from its origin than a store can say (store::kMaxCentre_m). `where` names the file, `unit_m`
+/// the unit that it was read in.
 void check_mesh(const std::string& where, double unit_m, Mesh& mesh);
 
 /// Throws InputError naming `where` for a symmetry that takes a point of the surface farther from it than a tenth of

@@ -19,12 +19,12 @@ struct Example : QualityExample {
   std::size_t frame = 0;  ///< of the scene
 };
 
-/// What a pose that was found is judged by.
+/// Model and settings for the labels of a pose.
 struct PoseTerms {
   QualityTerms own;
   std::optional<QualityTerms> with_swapped_texture = std::nullopt;  ///< see evidence_with_swapped_texture()
-  std::optional<double> print_margin =
-      std::nullopt;  ///< PrintComparison::margin; nothing where there are no alternatives
+  /// PrintComparison::margin; nothing where there are no alternatives.
+  std::optional<double> print_margin = std::nullopt;
 };
 
 /// Frames of a scene with detections and poses, one pose for each detection in their order, and what each pose is

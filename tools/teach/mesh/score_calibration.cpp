@@ -76,7 +76,7 @@ int half_of(std::size_t frame) {
   return static_cast<int>(frame) / world::CalibrationScenes::kFramesPerScene % kHalves;
 }
 
-/// What practice has seen, and of which classes it is to learn.
+/// Examples of the calibration, and the classes that it is for.
 struct Calibrated {
   const std::vector<world::RenderedFrame>& frames;
   const std::vector<training::ScoreExamples>& examples;  ///< of each frame

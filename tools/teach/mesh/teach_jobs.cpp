@@ -138,7 +138,7 @@ void write_store(ObjectStore list, const std::vector<NamedModel>& models, const 
   load_store_forest(store::read_store(list.folder));
 }
 
-/// What stays of a store goes into the one that is being made.
+/// Copies the unchanged part of a store into the new one.
 void keep(const Contents& old, const std::string& except, ObjectStore& made, std::vector<NamedModel>& models) {
   for (const StoredObject& object : old.list.objects) {
     if (object.name == except) continue;
@@ -152,7 +152,7 @@ void keep(const Contents& old, const std::string& except, ObjectStore& made, std
   }
 }
 
-/// Of all where no names are given.
+/// All objects are meant where no names are given.
 std::set<int> ids_of(const ObjectStore& list, const std::vector<std::string>& names) {
   std::set<int> ids;
   for (const std::string& name : names) ids.insert(store::find_object(list, name).id);

@@ -16,7 +16,7 @@ namespace houghstream::teach {
 /// rooms': some two fifths of these are as bright as this, nine in ten no more contrasty.
 constexpr BrightnessRange kCalibrationBrightness{100.0F, 130.0F, 50.0F};
 
-/// What hs-teach mesh is asked for.
+/// Options of hs-teach mesh.
 struct TeachOptions {
   MeshSources meshes;
   std::vector<TaughtMesh> shown;        ///< beside those: checked as they are (mesh_checks.hpp)

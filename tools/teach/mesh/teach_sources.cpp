@@ -149,11 +149,11 @@ void require_different(const std::vector<TaughtMesh>& meshes) {
 
 namespace fs = std::filesystem;
 
-/// Of the rendered rooms; to be raised when they come to look otherwise.
+/// Version of the rendered backgrounds, to be raised when they change.
 constexpr int kRoomsVersion = 1;
 constexpr std::uint64_t kRoomsSeed = 1;
 
-/// What renderings that were interrupted have left; the name ends in the number of their process.
+/// Removes the remains of interrupted renderings; their names end in the process' number.
 void remove_leftovers(const fs::path& cache, const std::string& prefix) {
   for (const auto& entry : fs::directory_iterator(cache)) {
     const std::string name = entry.path().filename().string();

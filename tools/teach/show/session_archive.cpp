@@ -116,7 +116,7 @@ cv::Mat outline_image(const Mesh& mesh, const TrainingView& view) {
   return image;
 }
 
-/// What was taken for the object in a take's first frame; that of turntable videos is given by their masks.
+/// Draws the selected object in a take's first frame; that of turntable videos is given by their masks.
 void write_choices(const ShowResult& shown, const fs::path& folder) {
   for (std::size_t t = 0; t < shown.takes.size(); ++t) {
     const Take& take = shown.takes[t];

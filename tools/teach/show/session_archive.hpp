@@ -12,7 +12,7 @@ namespace houghstream::teach {
 /// replaced, or could not be written.
 void require_keepable(const std::filesystem::path& folder);
 
-/// What was asked to be kept, in a folder that appears as a whole: model.ply, views/ (BOP: the keyframes with poses and
+/// Archives the session in a folder that is committed atomically: model.ply, views/ (BOP: the keyframes with poses and
 /// masks), contact_sheet.jpg, chosen.png, outlines/, camera_poses.csv, report.json and report.html. One of an earlier
 /// time is replaced, anything else is not. Throws InputError where it cannot be written.
 void archive_session(const ShowResult& shown, const ModelAssessment& assessment, const std::filesystem::path& folder);

@@ -31,7 +31,7 @@ using reconstruction::ReconstructedModel;
 using reconstruction::Take;
 using reconstruction::TakePlacer;
 
-/// What is taught of a view: the object with a margin, in the tone in which it is looked for.
+/// Makes a training view: the object with a margin, in the brightness in which it is searched.
 void crop_to_object(TrainingView& view) {
   constexpr int kMargin_px = 8;
   const AffineBrightness tone = fit_affine_brightness(view.frame.colour, kCalibrationBrightness);
@@ -64,8 +64,8 @@ void bring_into_tone(const std::vector<Take>& takes, std::vector<cv::Vec3b>& col
   apply_affine_brightness({mean.gain / count, mean.offset / count}, all, all);
 }
 
-/// What teaches a shown object: its mesh as one that hs-teach mesh could have read, and the keyframes' views of it, all
-/// in the tone in which objects are looked for. Throws InputError for a mesh that cannot be taught.
+/// Makes the teaching of a shown object: its mesh as if hs-teach mesh had read it, and the keyframes' views of it, all
+/// in the brightness in which objects are searched. Throws InputError for a mesh that cannot be taught.
 TeachOptions options_to_teach(const ShowOptions& options, const ShowResult& shown) {
   TeachOptions teach;
   TaughtMesh mesh;
@@ -106,7 +106,7 @@ void check_second(const ShowOptions& options) {
             source);
 }
 
-/// What can be said before the take, which nobody wants to show twice.
+/// Checks all conditions before the take, which is laborious to repeat.
 void check_show_options(const ShowOptions& options) {
   store::require_new_name(options.name, "--name");
   if (!options.keep.empty()) require_keepable(options.keep);
@@ -124,7 +124,7 @@ void check_show_options(const ShowOptions& options) {
           options.name, options.out.string());
 }
 
-/// What a first frame lacks, in words; empty where it lacks nothing.
+/// Returns the defect of a first frame as text; empty where there is none.
 std::string lack_of(const RgbdFrame& frame) {
   const std::string name = fmt::format("frame {}", to_string(frame.id));
   check_frame(frame, name);
@@ -143,7 +143,7 @@ reconstruction::ReconstructionSettings making_of(const ShowOptions& options) {
   return making;
 }
 
-/// What is followed.
+/// The selected object.
 struct TakeSource {
   std::string name;             ///< for messages
   const ShownFrames& frames;    ///< of it

@@ -12,7 +12,7 @@ namespace houghstream::teach {
 int show_object(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second,
                 ShowObserver* observer);
 
-/// The same, with the frames of `options.source` and `options.second`.
+/// Teaches from the frames of `options.source` and `options.second`.
 int show_sources(const ShowOptions& options, ShowObserver* observer);
 
 }  // namespace houghstream::teach

@@ -11,7 +11,7 @@
 
 namespace houghstream::teach {
 
-/// What hs-teach show is asked for.
+/// Options of hs-teach show.
 struct ShowOptions {
   std::string source;              ///< log:FILE, bop:DIR, uw:DIR, openni2 ...: what hs-log import and hs-capture read
   std::string second;              ///< a recording of a second take, with the object in another attitude; empty = none

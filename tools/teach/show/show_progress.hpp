@@ -26,7 +26,7 @@ enum class ShowState : std::uint8_t {
 /// "choosing", "tracking" ... "failed".
 const char* name_of(ShowState state);
 
-/// What can be said while an object is shown: after each frame, and as fusing and teaching go on.
+/// Progress of showing an object: after each frame, and during fusion and teaching.
 struct ShowProgress {
   static constexpr int kDirections = 60;  ///< of a sphere about the object: reconstruction::view_directions()
 
@@ -51,7 +51,7 @@ struct ShowObserver {
 /// Tells the observer and, where something new happens, the terminal how far a showing is. Not thread-safe.
 class ProgressReporter {
  public:
-  /// Of the object's `name`. `observer` may be null.
+  /// Reports on the object `name`. `observer` may be null.
   ProgressReporter(const std::string& name, ShowObserver* observer);
 
   /// After a frame of the take.

@@ -31,7 +31,7 @@ std::string unused_frames(const Take& take) {
                      take.frames.size(), take.blurred, take.badly_exposed);
 }
 
-/// What speaks against a take.
+/// Adds the objections to a take.
 void assess_take(const Take& take, std::vector<std::string>& reasons) {
   constexpr int kNearlyRound = 300;
   constexpr int kRound = 350;
@@ -58,7 +58,7 @@ void assess_take(const Take& take, std::vector<std::string>& reasons) {
                                   1e3 * take.gap->shift_m, degrees_of(*take.gap)));
 }
 
-/// What speaks against each of the takes.
+/// Adds the objections to each of the takes.
 void assess_takes(const ShowResult& shown, std::vector<std::string>& reasons) {
   constexpr std::size_t kMinKeyframes = 8;
   for (std::size_t t = 0; t < shown.takes.size(); ++t) {
@@ -80,7 +80,8 @@ const char* what_moved(Motion motion) {
   return "nothing moved";
 }
 
-/// How it went, a few lines. Turntable videos are not tracked, nor is their turn closed: their masks place them.
+/// Describes the takes in a few lines. Turntable videos are neither tracked nor closed as a loop: their masks place
+/// them.
 std::string describe_take(const Take& take) {
   if (take.motion == Motion::kTurntable)
     return fmt::format("  {} pictures with masks; {}\n", take.keyframes.size(), what_moved(take.motion));

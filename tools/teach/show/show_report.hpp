@@ -8,7 +8,7 @@
 
 namespace houghstream::teach {
 
-/// What is judged: takes that were followed, and the model of all of them.
+/// Result of a showing: the takes, and the model of all of them.
 struct ShowResult {
   std::string name;
   std::vector<reconstruction::Take> takes;
@@ -25,13 +25,13 @@ struct ShowResult {
 /// Share of vertices.
 double covered_fraction(const std::vector<bool>& seen);
 
-/// Whether a model is worth teaching.
+/// Assessment of whether a model is worth teaching.
 struct ModelAssessment {
   bool good = true;
   std::vector<std::string> reasons;  ///< why not, a line each
 };
 
-/// Of all takes that were merged, and of the model.
+/// Assesses the merged takes and the model.
 ModelAssessment assess_model(const ShowResult& shown);
 
 /// Second of the take at which a frame was taken.

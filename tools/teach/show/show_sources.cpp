@@ -20,8 +20,8 @@ bool starts_with(const std::string& text, const std::string& start) {
   return text.rfind(start, 0) == 0;
 }
 
-/// How long a take of a camera lasts, by a clock that nobody sets: frames may stop coming, and a camera that is gone is
-/// waited for no longer than the take.
+/// Limits the length of a camera's take by a steady clock: frames may stop arriving, and a disconnected camera is
+/// awaited no longer than the take.
 class TakeTime {
  public:
   explicit TakeTime(double max_duration_s) : max_s_(max_duration_s) {}

@@ -12,7 +12,7 @@ namespace houghstream::teach {
 /// be opened.
 ShownFrames open_shown(const std::string& source, const ShowOptions& options);
 
-/// Whether a source's frames come at their own time: openni2 or openni2:CAMERA, or a stream's, stream:CHANNEL.
+/// Returns whether a source's frames arrive in real time: openni2 or openni2:CAMERA, or a stream's, stream:CHANNEL.
 bool is_live(const std::string& source);
 
 /// A take of a camera, which somebody carries who cannot reach the keyboard: it ends when enough was seen, or when the

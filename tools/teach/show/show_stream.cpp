@@ -13,7 +13,7 @@
 namespace houghstream::teach {
 namespace {
 
-/// Of all threads, on Linux: what is done after the take keeps no frame of the stream waiting.
+/// Lowers the priority of all threads, on Linux: work after the take delays no frame of the stream.
 void let_others_first() {
   constexpr int kPolite = 10;
   std::error_code error;

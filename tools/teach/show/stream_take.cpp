@@ -57,7 +57,7 @@ void StreamTake::note_outage(Clock::duration time) {
   if (first_) *first_ += time;
 }
 
-// What is no frame never waits: it would take the place of frames.
+// Messages that are no frames are never queued: they would displace frames.
 void StreamTake::put(const ReceivedMessage& arrival) {
   const std::lock_guard lock(mutex_);
   if (ended_) return;

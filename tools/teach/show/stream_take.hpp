@@ -49,7 +49,7 @@ class StreamTake {
   /// The take is long enough. May be called from any thread.
   void end();
 
-  /// Of the frames that wait, only the newest is taken.
+  /// Drops all waiting frames but the newest.
   void skip_to_newest();
 
   /// Frames that came too fast: of those that wait the oldest goes.

@@ -17,7 +17,7 @@
 
 namespace houghstream::teach {
 
-/// What is said while an object is shown, for the bus; `directions` are those of its sphere.
+/// Converts the progress for the bus; `directions` are those of the viewing sphere.
 Teaching teaching_of(const ShowProgress& now, const std::array<Eigen::Vector3d, ShowProgress::kDirections>& directions);
 
 /// Publishes how far the showing of an object is, as teaching_t: at most ten times a second, each change of state at

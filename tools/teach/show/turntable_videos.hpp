@@ -7,8 +7,8 @@
 
 namespace houghstream::teach {
 
-/// Whether a source is uw:DIR of one instance's turntable videos in the layout of the UW RGB-D Object Dataset:
-/// DIR/INSTANCE_V_N_crop.png with depth, mask and place.
+/// Returns whether a source is uw:DIR of one instance's turntable videos in the layout of the UW RGB-D Object Dataset:
+/// DIR/INSTANCE_V_N_crop.png with depth, mask and position.
 bool is_turntable_videos(const std::string& source);
 
 /// The model of the videos: poses from the turntable's axis, or from registration of the views to one another where
