@@ -42,12 +42,12 @@ struct PoseSelectionSettings {
   double tolerance_m = kDepthTolerance_m;  ///< VerificationSettings::tolerance_m
 };
 
-/// Of the registered candidates the one for which depth, colour and votes speak most is registered finely and turned
-/// about its principal axes by half a turn each, and about its z axis, where votes err most; of the turns, each
-/// registered again and moved a little uphill, the one for which they speak most goes on; then its print may turn it a
-/// little, and registration has the last word. Behind it come half turns that score nearly as well, registered finely:
-/// points of a view part them badly, verification better. A single one without inliers where no candidate ended near
-/// the detected centre. `votes` are the modes of the detection's rotations.
+/// Selects poses by the joint score of depth, colour and votes. The best registered candidate is registered finely,
+/// flipped about each of its principal axes, and rotated about its z axis, where votes err most. Each of these
+/// rotations is registered again and improved by hill climbing, and the best is kept; then its texture may rotate it a
+/// little, and a last registration follows. Behind it come flips that score nearly as well, registered finely, since
+/// verification separates them better than the points of a view. The result is a single pose without inliers where no
+/// candidate ended near the detected centre. `votes` are the modes of the detection's rotations.
 std::vector<RegistrationResult> select_poses(const ObjectObservation& seen,
                                              const std::vector<RegistrationResult>& registered,
                                              const std::vector<RotationCandidate>& votes,

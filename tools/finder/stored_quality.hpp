@@ -25,9 +25,9 @@ nlohmann::json quality_to_json(const QualitySettings& settings);
 /// that was taught before presence or print was learnt has that of `others`.
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects, const QualitySettings& others);
 
-/// How poses are looked for and published, put together in this order: `common`; of a store, where there is one, the
-/// qualities that it has learnt, what its poses are published from, where detections' centres are, what looks alike,
-/// and its tone; `min_quality` of a command line, from which all poses are published then.
+/// Returns the pose settings, composed in this order: `common`; of a store, where there is one, its learnt qualities,
+/// the threshold of its poses, the centres of its detections, its symmetries, and its brightness; `min_quality` of a
+/// command line, which then is the threshold of all poses.
 PoseSettings pose_settings_of(PoseSettings common, const std::optional<store::ObjectStore>& objects,
                               std::optional<float> min_quality);
 

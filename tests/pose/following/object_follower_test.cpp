@@ -221,8 +221,8 @@ TEST(ObjectFollower, WhatIsFoundFramesLaterIsFollowedFromThere) {
   EXPECT_LT((poses.poses[2].T_camera_object->translation() - it.film.truth(2).translation()).norm(), 0.004);
 }
 
-/// How far the mug's handle is from where it is, radians, after the mug was turned at one blow and looked at again,
-/// where hardly a pose is rejected for what is seen of it.
+/// Returns the error of the mug's handle, radians, after the mug was rotated at once and re-estimated, with settings
+/// that reject hardly any pose.
 double handle_error_after_a_turn(FollowerSettings settings) {
   PoseSettings lenient;
   lenient.quality.minimum = 0.01F;

@@ -15,7 +15,7 @@ using namespace test_scene;
 constexpr double kTolerance_m = 0.008;
 const Eigen::Isometry3d kTruth = standing(30.0, 30.0, 0.8);
 
-/// Of the box in the frame, at a pose.
+/// Compares the box in the frame with alternatives of a pose.
 std::optional<PrintComparison> compared_at(const Eigen::Isometry3d& T_camera_object, const Mesh& taught,
                                            const RgbdFrame& frame) {
   const ObjectModel model = make_object_model("box", taught, {});

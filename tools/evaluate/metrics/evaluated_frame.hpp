@@ -17,7 +17,7 @@ namespace houghstream {
 struct NamedObject {
   std::string class_name;
   GroundTruthObject truth;
-  /// Whether the object is a target, where a list of targets is given (bop_targets.hpp); otherwise its visible fraction
+  /// Target flag of the object, where a list of targets is given (bop_targets.hpp); otherwise its visible fraction
   /// decides.
   std::optional<bool> is_target = std::nullopt;
 };

@@ -314,7 +314,7 @@ class Comparison {
     if (!stands || object == nullptr) life.window.clear();
   }
 
-  /// Whether it was at rest since the frame before: several publications may be of one frame.
+  /// Rest flag since the frame before: several publications may be of one frame.
   bool stood(const TrueInstance& truth, std::size_t index) const {
     if (!truth.T_world_object || index == 0) return false;
     const std::vector<TrueInstance>& before = sequence_.frames[index - 1];
