@@ -163,7 +163,10 @@ Take take_of(const std::vector<TrainingView>& views, std::vector<MaskedKeyframe>
     keyframe.frame = views[i].frame;
     keyframe.number = static_cast<int>(i);
     keyframe.T_camera_world = views[i].T_camera_object;
-    take.frames.push_back({views[i].frame.id, true, false, static_cast<int>(i), Eigen::Isometry3d::Identity()});
+    reconstruction::PlacedFrame& placed = take.frames.emplace_back();
+    placed.id = views[i].frame.id;
+    placed.tracked = true;
+    placed.keyframe = static_cast<int>(i);
     take.keyframes.push_back(std::move(keyframe));
     reconstruction::mark_covered(views[i].T_camera_object.inverse().translation(), take.seen);
     shown.push_back({static_cast<int>(i), views[i].T_camera_object, views[i].mask});
