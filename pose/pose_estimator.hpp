@@ -57,8 +57,8 @@ class PoseEstimator {
   /// model.
   Eigen::Vector3d vote_centre(const PlacedObject& object) const;
 
-  /// Whether the middles of two objects are closer together than `apart` of the smaller one's radius: both cannot be
-  /// there. False where a class has no model.
+  /// Whether the middles of two objects are closer together than `max_distance_ratio` of the smaller one's radius: both
+  /// cannot be there. False where a class has no model.
   bool is_duplicate(const PlacedObject& a, const PlacedObject& b, double max_distance_ratio) const;
 
  private:

@@ -70,7 +70,7 @@ struct Tally {
   Lines rows = 0;               // with cells that are visible or unknown
   Lines columns = 0;
   std::size_t unoccluded = 0;                        // number of cells that are visible or unknown
-  std::array<Cell, kSide * kSide> unoccluded_cells;  // the first `shown` of them
+  std::array<Cell, kSide * kSide> unoccluded_cells;  // the first `unoccluded` of them
 
   float fraction(int count) const {
     return static_cast<float>(count) / static_cast<float>(std::max<std::size_t>(cells, 1));

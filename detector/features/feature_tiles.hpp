@@ -31,7 +31,7 @@ class FeatureTiles {
 
   cv::Size image() const { return image_; }
   int rows() const { return rows_; }  ///< of tiles
-  /// Wanted pixels of a row of tiles, at most `longest` (a multiple of kSide) side by side, appended to `parts`.
+  /// Wanted pixels of a row of tiles, at most `max_length` (a multiple of kSide) side by side, appended to `parts`.
   void list_parts(int row, int max_length, std::vector<cv::Rect>& parts) const;
 
  private:

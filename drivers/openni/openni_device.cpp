@@ -22,7 +22,7 @@ using Sensor = SensorImage::Sensor;
 constexpr int kDepthBeforeModes = 3;
 constexpr milliseconds kFirstImage(1000);  // cameras take that long to start
 
-/// Calls `wait` with parts of `patience` until it returns something, the patience has run out or a stop is asked for.
+/// Calls `wait` with parts of `timeout` until it returns something, the patience has run out or a stop is asked for.
 template <typename Wait>
 auto wait_in_parts(milliseconds timeout, const StopRequested& stop_requested, const Wait& wait) {
   auto result = wait(std::min(timeout, kPollInterval));

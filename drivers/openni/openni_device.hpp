@@ -42,7 +42,7 @@ class OpenniDevice {
 
   ~OpenniDevice();
 
-  /// The next image in the order of arrival; nothing after `patience`. A camera's first images, which may be from
+  /// The next image in the order of arrival; nothing after `timeout`. A camera's first images, which may be from
   /// before its depth was registered, are left out, and so is one that is not as the mode says, for instance cut short
   /// on the way; in a file it makes this throw InputError, as does a file's end before all its images have come.
   std::optional<SensorImage> wait(std::chrono::milliseconds timeout);

@@ -9,7 +9,7 @@ namespace houghstream {
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
-/// From here on the log goes to stderr, each line with the time and `name`; what is below `least` is left out.
+/// From here on the log goes to stderr, each line with the time and `name`; what is below `minimum` is left out.
 void start_log(const std::string& name, LogLevel minimum);
 
 /// Leaves out all but errors from here on, unless debug lines were asked for.

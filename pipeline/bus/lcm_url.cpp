@@ -41,7 +41,7 @@ std::optional<Endpoint> place_of(const std::string& url, const std::string& sche
   return Endpoint{address.empty() ? usual.address : address, port.empty() ? usual.port : port};
 }
 
-/// 0 to `most`, as people write it: LCM takes 010 for 8 and 0x10 for 16.
+/// 0 to `maximum`, as people write it: LCM takes 010 for 8 and 0x10 for 16.
 bool is_number(const std::string& text, int maximum) {
   constexpr std::size_t kMaxDigits = 10;
   const bool digits = std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });

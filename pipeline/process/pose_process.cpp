@@ -24,7 +24,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// More detections at once could not be worked on within Heartbeat::kPatience.
+// More detections at once could not be worked on within Heartbeat::kHeartbeatTimeout.
 void require_max_detections(const Detections& detections) {
   constexpr std::size_t kMax = 512;
   require(detections.detections.size() <= kMax, "frame {}: {} detections, expected at most {}",

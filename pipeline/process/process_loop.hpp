@@ -13,9 +13,9 @@ using WorkStep = std::function<bool(std::chrono::milliseconds)>;
 
 /// Runs a process until SIGINT or SIGTERM, or to the end of a log. On a network one thread receives, so that
 /// nothing waits in LCM, and reports the status once a second, while the calling thread works; where that hangs for
-/// longer than Heartbeat::kPatience, the reports end. A log is read by the calling thread, and every event is worked on
-/// before the next is read. A network that cannot be reached is waited for (LcmBus). Throws InputError where the log is
-/// damaged or was not read to its end.
+/// longer than Heartbeat::kHeartbeatTimeout, the reports end. A log is read by the calling thread, and every event is
+/// worked on before the next is read. A network that cannot be reached is waited for (LcmBus). Throws InputError where
+/// the log is damaged or was not read to its end.
 ///
 /// `background` is work that the rest does not wait for: on a network a second thread, of low priority and without
 /// helpers, does it; of a log it has its turn where `work` has nothing left.

@@ -59,8 +59,8 @@ void follow_clock(std::int64_t utime, FollowedCamera& camera) {
 /// A frame's detections beside what was followed in it.
 struct DetectionAssociation {
   FollowedFrame followed_frame;
-  std::vector<int> matches;  ///< each detection's followed object: its place in `shown`, or -1
-  int recheck = -1;          ///< the place in `shown` of what is looked for as if it were not followed
+  std::vector<int> matches;  ///< each detection's followed object: its place in `followed_frame`, or -1
+  int recheck = -1;          ///< the place in `followed_frame` of what is looked for as if it were not followed
 
   bool needs_estimate(std::size_t detection) const { return matches[detection] < 0 || matches[detection] == recheck; }
 };
@@ -72,8 +72,8 @@ FollowedObject* find_followed(std::int64_t number, FollowedCamera& camera) {
   return found == camera.objects.end() ? nullptr : &*found;
 }
 
-/// Each detection's place in `shown`, or -1. The nearest ones first, each pose of one detection; withheld ones are
-/// nobody's.
+/// Each detection's place in `followed_frame`, or -1. The nearest ones first, each pose of one detection; withheld ones
+/// are nobody's.
 std::vector<int> match_detections(const PoseEstimator& estimator, const Detections& detections,
                                   const FollowedFrame& followed_frame, double reach_m) {
   struct Pair {
@@ -124,7 +124,7 @@ void update_from_detections(const Detections& detections, const DetectionAssocia
   }
 }
 
-/// The place in `shown` of the detected object whose last doubt lies farthest back, if it is time; else -1.
+/// The place in `followed_frame` of the detected object whose last doubt lies farthest back, if it is time; else -1.
 int choose_recheck(const DetectionAssociation& look, const FollowerSettings& settings, FollowedCamera& camera) {
   const FollowedFrame& followed_frame = look.followed_frame;
   FollowedObject* chosen = nullptr;

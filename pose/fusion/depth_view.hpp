@@ -47,7 +47,7 @@ struct SurfaceSample {
   Eigen::Vector3d normal;  ///< camera frame, unit length, towards the camera
 };
 
-/// At most about `most` points of the view, evenly over its pixels.
+/// At most about `maximum` points of the view, evenly over its pixels.
 std::vector<SurfaceSample> sample_view(const DepthView& view, int maximum);
 
 }  // namespace houghstream::fusion

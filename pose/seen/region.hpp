@@ -61,7 +61,7 @@ struct DepthRegion {
 DepthRegion find_region(const RgbdFrame& frame, const Detection& detection, const ObjectModel& model,
                         const RegionSettings& settings);
 
-/// At most about `most` points of the region, camera frame, metres, evenly over the image.
+/// At most about `maximum` points of the region, camera frame, metres, evenly over the image.
 std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRegion& region, int maximum);
 
 /// The colours of a part of a frame.

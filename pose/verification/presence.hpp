@@ -34,7 +34,7 @@ struct PresenceExample {
   bool is_present = false;
 };
 
-/// The settings that explain the examples best; `prior` and `stiffness` as for fit_quality_settings().
+/// The settings that explain the examples best; `prior` and `precision` as for fit_quality_settings().
 PresenceSettings fit_presence(const std::vector<PresenceExample>& examples, const PresenceSettings& prior,
                               double precision);
 

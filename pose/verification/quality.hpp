@@ -89,11 +89,11 @@ void fields(const PrintSettings& /*settings*/, const Visit& visit) {
 float print_probability(double margin, const PrintSettings& settings);
 
 /// The probability that a pose is right up to its shape's symmetries, by logistic regression on the evidence.
-/// hs-study quality (tools/studies/quality) learns these numbers, and tells how many poses are right from which `least`
-/// on in scenes that the fit has not seen (a quarter in turn). They are of 1279 poses of detections from score 0.1 on
-/// in 14 frames each of development_world_0 to 13, every other world seen by the time-of-flight camera; 678 were right.
-/// In scenes that the fit has not seen 642 of 653 are right from `least` on. That of `seen_through` is older: it is not
-/// learnt. What hs-teach learns of an object takes their place.
+/// hs-study quality (tools/studies/quality) learns these numbers, and tells how many poses are right from which
+/// `min_quality` on in scenes that the fit has not seen (a quarter in turn). They are of 1279 poses of detections from
+/// score 0.1 on in 14 frames each of development_world_0 to 13, every other world seen by the time-of-flight camera;
+/// 678 were right. In scenes that the fit has not seen 642 of 653 are right from `min_quality` on. That of
+/// `free_space_violation` is older: it is not learnt. What hs-teach learns of an object takes their place.
 struct QualitySettings {
   double bias = -5.54;
   QualityTerms weights = terms_of({1.56, 0.45, 1.18, 2.87, 2.79, 7.25, 1.42, -0.27});

@@ -29,7 +29,7 @@ PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, co
                                  double precision);
 
 /// Bias, weights and typical values that explain the examples best (maximum a posteriori, a Gaussian about each weight
-/// of `prior`, as strong as `stiffness` examples): few examples move them little from there. `least` is the prior's,
+/// of `prior`, as strong as `precision` examples): few examples move them little from there. `least` is the prior's,
 /// and so is the weight of seen_through.
 QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples, const QualitySettings& prior,
                                      double precision);

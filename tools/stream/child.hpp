@@ -41,7 +41,7 @@ struct ExitStatus {
 /// that lives as long as the process does.
 class ChildProcess {
  public:
-  /// `command`: program with its path, arguments. With `hears_words` what it writes to stderr goes through this
+  /// `command`: program with its path, arguments. With `capture_stderr` what it writes to stderr goes through this
   /// process, which remembers its last line. Throws InputError when it cannot be started.
   explicit ChildProcess(const std::vector<std::string>& command, bool capture_stderr = false);
   /// Kills it if it still runs.

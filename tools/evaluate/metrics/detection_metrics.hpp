@@ -80,7 +80,7 @@ struct ReportedCount {
   int all() const { return detections + confirmed; }
 };
 
-/// Detections of verdict `verdict` with at least `min_score`, and candidates with a pose whatever their score.
+/// Detections of verdict `outcome` with at least `min_score`, and candidates with a pose whatever their score.
 ReportedCount count_reported(const ClassResult& result, MatchOutcome outcome, float min_score);
 
 }  // namespace houghstream

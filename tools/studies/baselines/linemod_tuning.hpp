@@ -19,7 +19,7 @@ struct ComposedExamples {
   std::set<std::string> class_names;
 };
 
-/// `pictures` of up to four views each at these distances (metres), lit and partly hidden as make_validation_frame()
+/// `images` of up to four views each at these distances (metres), lit and partly hidden as make_validation_frame()
 /// does; the same for the same views. Throws InputError without background or with less than four views of each class.
 ComposedExamples compose_examples(const std::vector<TrainingView>& views, float min_distance, float max_distance,
                                   int images);
@@ -36,7 +36,7 @@ struct LinemodTrial {
   double selection_ms = 0.0;  ///< median a frame
 };
 
-/// Tries a grid of settings on `pictures` composed of one view in four over the background views; templates are made of
+/// Tries a grid of settings on `images` composed of one view in four over the background views; templates are made of
 /// the other three, so that no picture shows what a template was made of. `report` gets each trial as it is done.
 /// The match threshold is that of `base_selection`: what it costs and loses shows by tuning again with another.
 void tune_linemod(const std::vector<TrainingView>& views, const LinemodTemplateSettings& base,

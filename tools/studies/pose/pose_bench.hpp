@@ -36,7 +36,7 @@ struct TimedPoses {
 /// does lengthens it little.
 TimedPoses make_poses(const PoseMaker& maker, const RgbdFrame& frame, const Detections& detections);
 
-/// The makers of poses by name; those of `rivals` are slow and try few frames.
+/// The makers of poses by name; those of `baselines` are slow and try few frames.
 struct BenchedMakers {
   std::map<std::string, PoseMaker> each_frame;
   std::map<std::string, PoseMaker> baselines;
@@ -50,7 +50,7 @@ struct VariantResult {
   void add(const PoseRun& run, const BopScene& scene, const SceneModels& models, int threads);
 };
 
-/// By variant; `on_rival_frames` holds the rivals, and the others on the rivals' frames only, so that they compare.
+/// By variant; `on_baseline_frames` holds the rivals, and the others on the rivals' frames only, so that they compare.
 struct PoseBench {
   int frames = 0;
   int baseline_frames = 0;

@@ -11,7 +11,7 @@
 namespace houghstream::quality {
 
 /// Bias, weights and typical values of the examples, the former drawn to the numbers in use as strongly as by ten
-/// poses: where nearly all that is detected is there, what depth says of nothing is hardly seen. `least` is the
+/// poses: where nearly all that is detected is there, what depth says of nothing is hardly seen. `min_quality` is the
 /// default's. Throws InputError unless some are right and some are wrong.
 QualitySettings fit_quality(const std::vector<Example>& examples);
 
@@ -46,14 +46,14 @@ struct Learnt {
   int correct = 0;
   QualitySettings settings;
   std::vector<CheckedPose> checked;  ///< each by a fit that has not seen its scene
-  Published in_use;                  ///< by the numbers that hs-pose uses, from their `least` on
+  Published in_use;                  ///< by the numbers that hs-pose uses, from their `min_quality` on
 };
 
 /// Minimum number of scenes with poses for learn_quality().
 inline constexpr int kMinScenes = 4;
 
-/// fit_quality(), and its `least` by four parts of the scenes. Throws InputError as those, and where no quality is
-/// enough for 98 %.
+/// fit_quality(), and its `min_quality` by four parts of the scenes. Throws InputError as those, and where no quality
+/// is enough for 98 %.
 Learnt learn_quality(const std::vector<Example>& examples);
 
 /// The initialisers of QualitySettings' members in C++.

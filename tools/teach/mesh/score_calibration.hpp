@@ -28,7 +28,7 @@ struct CalibrationSettings {
   static constexpr int kMaxScenes = 500;  ///< whose pictures, 4.3 MB a room, are all in memory at once: 2 GB
 
   std::optional<int>
-      scenes;  ///< each is looked at world::CalibrationScenes::kFramesPerRoom times; default: scene_count_for()
+      scenes;  ///< each is looked at world::CalibrationScenes::kFramesPerScene times; default: scene_count_for()
   double surface_variation = 0.6;     ///< strength of the changes of objects' colours, see training::resurface
   double camera_fraction = 0.8;       ///< of the frames, that another camera sees than the one that taught
   double camera_randomisation = 0.8;  ///< see detector/training/augmentation/camera_randomisation.hpp
@@ -48,7 +48,7 @@ std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFra
 /// Looks for the objects in rendered rooms (world::CalibrationScenes) through widely varied cameras, and learns what
 /// its detections and poses are worth: the scores' weights in `forest`, and the qualities, by name; both of the classes
 /// in `new_ids` only. A line of the log names those of them that stand in no room. Same result for any number of
-/// threads. Throws InputError for more rooms than CalibrationSettings::kMaxRooms.
+/// threads. Throws InputError for more rooms than CalibrationSettings::kMaxScenes.
 std::map<std::string, QualitySettings> calibrate_on_scenes(const std::vector<CalibrationObject>& objects,
                                                            const std::set<int>& new_ids,
                                                            const CalibrationSettings& settings, Forest& forest);

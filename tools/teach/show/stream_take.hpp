@@ -40,7 +40,7 @@ class StreamTake {
   StreamTake(const StreamTake&) = delete;
   StreamTake& operator=(const StreamTake&) = delete;
 
-  /// The next frame; waits for it. Nothing at the take's end: after end() or a stop signal, as soon as `longest` has
+  /// The next frame; waits for it. Nothing at the take's end: after end() or a stop signal, as soon as `max_length` has
   /// passed since the first frame, or where no frame comes for `frame_timeout`. Throws InputError where none comes
   /// within `first_frame_timeout`, or receiving fails. Time in which the bus cannot be reached counts for none of
   /// these.

@@ -26,7 +26,7 @@ class TableLayout {
   explicit TableLayout(const Eigen::Vector2d& table_half) : table_half_(table_half) {}
 
   /// A free place for `thing` with its centre within `low` to `high` (world x and y, metres), turned about the
-  /// vertical by up to `turn_rad` either way; nothing when none is found.
+  /// vertical by up to `angle_rad` either way; nothing when none is found.
   std::optional<Eigen::Isometry3d> place(const Asset& thing, const Eigen::AlignedBox2d& region, double angle_rad,
                                          Random& random);
 
@@ -53,7 +53,7 @@ class TableSetter {
   TableSetter(World& world, const Eigen::Vector2d& table_half, std::uint64_t seed)
       : world_(world), half_(table_half.cwiseMin(Eigen::Vector2d(0.62, 0.5))), layout_(table_half), random_(seed) {}
 
-  /// Upright, turned by up to `turn_rad` either way. Whether there was room.
+  /// Upright, turned by up to `angle_rad` either way. Whether there was room.
   bool stand(const AssetPtr& thing, const Eigen::AlignedBox2d& region, double angle_rad, int object_id);
 
   /// Turned any way. Whether there was room.
