@@ -23,7 +23,7 @@ namespace houghstream {
 struct SearchContext {
   const ForestIndex& index;
   const DetectionSettings& settings;
-  /// Into Forest::views: not compared with the frame. A picture composed for training must not be recognised by the
+  /// Into Forest::views: not compared with the frame. An image composed for training must not be recognised by the
   /// very views that it shows.
   std::vector<std::uint32_t> excluded_views = {};
   /// Objects that were seen by the frame's camera before: what its colours are learnt from, beside those of the frame.
@@ -33,7 +33,7 @@ struct SearchContext {
 };
 
 /// The memory of a search, which is used again for the next frame's: a frame asks the system for nothing that grows
-/// with the picture. For one search at a time; what is in it belongs to the last frame.
+/// with the image. For one search at a time; what is in it belongs to the last frame.
 struct DetectorWorkspace {
   WorkingImages images;
   PatchGrid patches;

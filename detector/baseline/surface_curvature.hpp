@@ -31,7 +31,7 @@ struct Curvature {
 };
 
 /// kPlanes planes CV_8UC1. Spread is the root of the eigenvalue, so that it grows as curvature does. An angle in the
-/// picture is known up to half a turn, so its double is kept: 128 + 127 cos and sin, drawn towards 128 as far as
+/// image is known up to half a turn, so its double is kept: 128 + 127 cos and sin, drawn towards 128 as far as
 /// the two curvatures are alike and no direction is the principal one. Where there is no normal: 0, direction 128.
 std::vector<cv::Mat> curvature_planes(const WorkingFrame& frame, int threads);
 

@@ -11,7 +11,7 @@ namespace houghstream::baseline {
 /// neighbours for the normals and for the histogram, in the organised image.
 struct HonvLayout {
   static constexpr int kNeighbours = 120;
-  static constexpr int kAzimuths = 4;  ///< the normal points right, down, left, up in the picture
+  static constexpr int kAzimuths = 4;  ///< the normal points right, down, left, up in the image
   static constexpr int kZeniths = 3;   ///< it leaves the optical axis by about 15, 45, 75 degrees
   static constexpr int kPlanes = kAzimuths * kZeniths;
   static constexpr int plane(int azimuth, int zenith) { return zenith * kAzimuths + azimuth; }

@@ -15,7 +15,7 @@ namespace houghstream::baseline {
 struct HistogramCloud {
   cv::Size size;  ///< points
   int step_px = 1;
-  std::vector<float> reaches;             ///< how far neighbours lie in the picture, points
+  std::vector<float> reaches;             ///< how far neighbours lie in the image, points
   float limit = 0.0F;                     ///< see same_surface_limit
   pcl::PointCloud<pcl::PointXYZ> points;  ///< NaN where there is no surface
   pcl::PointCloud<pcl::Normal> normals;

@@ -10,7 +10,7 @@
 
 namespace houghstream::baseline {
 
-/// The paper's surface features (Section 3, items 5 to 7) look at the k nearest neighbours of a point. Here the picture
+/// The paper's surface features (Section 3, items 5 to 7) look at the k nearest neighbours of a point. Here the image
 /// itself says who is near: the neighbours of a pixel are those in a square window of about k pixels that lie on its
 /// own side of any depth step. No search is needed, and on a surface that faces the camera the two are the same.
 

@@ -13,7 +13,7 @@ namespace houghstream {
 struct BoxWorkspace {
   std::vector<float> weights;
   std::array<std::vector<float>, 4> sides;               ///< of the supporting patches
-  std::vector<std::pair<float, float>> template_values;  ///< a side of the remembered views, and their weights
+  std::vector<std::pair<float, float>> template_values;  ///< a side of the view templates, and their weights
 };
 
 /// Returns the box of a hypothesis by back-projection of all supporting patches (paper, Section 2), frame pixels.

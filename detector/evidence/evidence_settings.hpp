@@ -12,7 +12,7 @@ struct EvidenceSettings {
   float candidates_from = 1.0F;
   int max_candidates = 16;  ///< the strongest; a frame full of weak maxima must not hold up the poses of the others
   int max_rotations = 48;   ///< rotations handed to the pose process
-  /// Views are brought to the colours of the camera (camera_chroma.hpp). Scores are learnt without: rendered pictures
+  /// Views are brought to the colours of the camera (camera_chroma.hpp). Scores are learnt without: rendered images
   /// have the models' own colours, and what a map leaves of them is less than what it leaves of a real camera's.
   bool learn_camera_colours = true;
 };

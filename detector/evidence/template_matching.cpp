@@ -15,7 +15,7 @@ namespace {
 constexpr int kSide = TemplateGrid::kSide;
 
 struct Cell {
-  std::uint16_t index = 0;  // in the relief
+  std::uint16_t index = 0;  // in the depth template
   std::uint8_t row = 0;
   std::uint8_t column = 0;
 };
@@ -30,7 +30,8 @@ struct Comparison {
   std::array<float, kSide * kSide> excess_beside;  // the first beside_cells: beside the outline
   std::array<int, kSide> column_px{};              // frame pixels that the cells' centres lie in
   std::array<int, kSide> row_px{};
-  std::array<float, kSide> row_depth{};     // depth that the relief is counted from, in a row at the centre's column...
+  std::array<float, kSide>
+      row_depth{};  // depth that the depth template is counted from, in a row at the centre's column...
   std::array<float, kSide> column_depth{};  // ...and more in a column
   float left = 0.0F;                        // of the first cell, frame pixels
   float top = 0.0F;
@@ -184,7 +185,7 @@ Comparison compare(const ViewTemplate& view, const Eigen::Vector3f& centre, cons
     out.column_depth[i] = tilt.right * metres_per_px * (px.x - out.centre_px.x);
     out.row_depth[i] = centre.z() + tilt.down * metres_per_px * (px.y - out.centre_px.y);
   }
-  std::array<float, kSide> expected{};  // depth that the relief is counted from, in a row
+  std::array<float, kSide> expected{};  // depth that the depth template is counted from, in a row
   for (std::size_t row = 0; row < kSide; ++row) {
     const int y = out.row_px[row];
     if (y < 0 || y >= frame.depth.rows) continue;

@@ -16,7 +16,7 @@ struct PatchView {
   int pixel_stride = 0;    ///< bytes
 };
 
-/// Feature planes of one picture, interleaved: all values of a pixel lie side by side, in one or few cache lines, since
+/// Feature planes of one image, interleaved: all values of a pixel lie side by side, in one or few cache lines, since
 /// a test reads one plane at two places and a patch runs many tests. The border is replicated `kPad` pixels
 /// outwards, so that no test needs a clamp.
 class FeatureImage {
@@ -35,7 +35,7 @@ class FeatureImage {
   int pixel_stride() const { return pixel_stride_; }
   int row_stride() const { return held_.width * pixel_stride_; }
 
-  /// The pixels that there are: the picture and its border, or what cut_out() has kept.
+  /// The pixels that there are: the image and its border, or what cut_out() has kept.
   const cv::Rect& held() const { return held_; }
 
   /// The values of pixel (x,y), which must be one of held().
@@ -46,7 +46,7 @@ class FeatureImage {
 
   /// Fills the border from the nearest inner pixels.
   void replicate_border() { replicate_border({0, 0, width_, height_}); }
-  /// The border beside a part of the picture; nothing where the part lies inside.
+  /// The border beside a part of the image; nothing where the part lies inside.
   void replicate_border(cv::Rect part);
 
   /// Only these of the pixels, under the same x and y, for those who look nowhere else.

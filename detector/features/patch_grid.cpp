@@ -67,7 +67,7 @@ void reserve_places(cv::Size size, int stride, PatchGrid& grid) {
   grid.cell_px.reserve(count);
 }
 
-/// Where a patch stands and the side of the part of the picture that it stands for, working pixels.
+/// Where a patch stands and the side of the part of the image that it stands for, working pixels.
 struct Place {
   int x;
   int y;

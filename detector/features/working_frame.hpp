@@ -50,10 +50,10 @@ WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const Featu
 /// Returns the scale of a level of a scale space.
 WorkingFrame make_working_frame(const RgbdFrame& frame, const FeatureLevel& level, const FeatureSettings& settings);
 
-/// A picture, and this at half the size, a quarter and an eighth.
+/// An image, and this at half the size, a quarter and an eighth.
 using LabLevels = std::array<cv::Mat, 4>;
 
-/// The colours of a BGR image as remembered views are compared with: CV_8UC3, CIE L*a*b*, each pixel the mean of 3x3,
+/// The colours of a BGR image as view templates are compared with: CV_8UC3, CIE L*a*b*, each pixel the mean of 3x3,
 /// since dim light is noisy. `blurred` is overwritten.
 void make_smoothed_lab(const cv::Mat& colour, cv::Mat& blurred, LabLevels& lab);
 

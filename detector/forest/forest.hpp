@@ -15,7 +15,7 @@ namespace houghstream {
 
 /// Kind of a detection's score. Stored in the forest file.
 enum class Scoring : std::uint32_t {
-  kEvidence = 0,  ///< a calibrated probability from votes and from how remembered views fit, see evidence/score.hpp
+  kEvidence = 0,  ///< a calibrated probability from votes and from how view templates fit, see evidence/score.hpp
   kVotes = 1,     ///< vote mass over that of a wholly visible object, at most 1 (the paper's confidence)
 };
 

@@ -13,7 +13,7 @@ namespace houghstream::training {
 
 /// Teaches the objects in `views` (backgrounds are those of class_id 0). Same views, settings and seed: same forest,
 /// bit for bit, for any number of threads. `progress` is called with one line per finished step, from any thread
-/// but never from two at once. The views' pictures are let go as soon as nothing needs them. Throws InputError where
+/// but never from two at once. The views' images are let go as soon as nothing needs them. Throws InputError where
 /// `scales` cannot teach by the profile's features.
 using Progress = std::function<void(const std::string&)>;
 Forest train_forest(std::vector<TrainingView> views, const Profile& profile, const Progress& progress,

@@ -20,7 +20,7 @@ namespace {
 constexpr float kMinIou = 0.5F;
 constexpr double kMinVisible = 0.1;
 
-/// As many objects as make most of a picture without hiding each other, and nearly twice as many that look like them.
+/// As many objects as make most of an image without hiding each other, and nearly twice as many that look like them.
 constexpr ComposedThings kThings = {6, 5, 0};
 constexpr ComposedThings kHardNegativeObjects = {6, 5, 5};
 

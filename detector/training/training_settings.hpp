@@ -29,12 +29,12 @@ struct TrainingSettings : AugmentationSettings {
   /// The background weighs as much as all objects together, but at most as so many: what a patch is worth to an object
   /// does not depend on how many others were taught.
   float max_background_weight = 4.0F;
-  double in_bag = 0.75;         ///< share of the pictures that a tree sees
+  double in_bag = 0.75;         ///< share of the images that a tree sees
   int max_leaf_votes = 12;      ///< offsets kept per leaf and class after merging
   int max_leaf_views = 12;      ///< remembered training views per leaf and class
   float merge_radius = 0.008F;  ///< offsets nearer than this to each other become one vote, metres
   Scoring scoring = Scoring::kEvidence;
-  int validation_frames = 300;  ///< composed pictures on which the score learns what it is worth
+  int validation_frames = 300;  ///< composed images on which the score learns what it is worth
 };
 
 template <typename Visit>

@@ -69,7 +69,7 @@ class TreeGrower {
       std::swap(chosen[i], chosen[i + static_cast<std::size_t>(random_.below(static_cast<int>(chosen.size() - i)))]);
     }
     chosen.resize(limit);
-    std::sort(chosen.begin(), chosen.end());  // pictures in order: kinder to the cache
+    std::sort(chosen.begin(), chosen.end());  // images in order: kinder to the cache
     return chosen;
   }
 

@@ -7,7 +7,7 @@
 namespace houghstream::training {
 
 /// Sets each class's nominal_vote_mass: the vote mass (see Hypothesis) of a wholly visible object, as trees see it that
-/// did not learn from the picture. A score of 1 then means "as well seen as an average training view",
+/// did not learn from the image. A score of 1 then means "as well seen as an average training view",
 /// for every class and at every distance. `forest` must be that of the set and the settings.
 void estimate_nominal_vote_mass(const TrainingSet& set, const TrainingSettings& settings, float vote_sigma,
                                 Forest& forest);

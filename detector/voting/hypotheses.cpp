@@ -36,7 +36,7 @@ int sum_by_voter(const VotingInput& input, const Eigen::Vector3f& centre, Voting
   return count;
 }
 
-/// Sums the support by remembered view, heaviest first.
+/// Sums the support by view template, heaviest first.
 void sum_by_view(const Forest& forest, const SparseSums::Weights& by_voter, VotingWorkspace::Worker& workspace,
                  SparseSums::Weights& by_view) {
   constexpr std::size_t kAhead = 8;  // voters, so that their cache misses overlap

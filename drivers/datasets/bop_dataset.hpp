@@ -91,7 +91,7 @@ std::optional<std::filesystem::path> find_bop_models(const std::filesystem::path
 /// Names of a scene's objects by id: its own names.json, else those of find_bop_models(); empty without either.
 std::map<int, std::string> find_bop_names(const std::filesystem::path& scene_folder);
 
-/// Objects that are less visible (visib_fract) are not taught from: what hides them would be part of their picture.
+/// Objects that are less visible (visib_fract) are not taught from: what hides them would be part of their image.
 constexpr double kMinTrainingVisibility = 0.75;
 
 /// All training views of a BOP training folder, rendered (also PBR) or recorded: every scene in or under it, one view

@@ -20,7 +20,7 @@ struct FrameFiles {
 bool has_frame_pairs(const std::filesystem::path& folder);
 
 /// All pairs of a folder in natural order. Throws InputError when the folder is missing or without pairs, or a
-/// picture lacks its partner.
+/// image lacks its partner.
 std::vector<FrameFiles> list_frame_pairs(const std::filesystem::path& folder);
 
 /// `folder` itself and those anywhere below it that hold image pairs, in natural order, for instance the background

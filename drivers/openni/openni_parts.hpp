@@ -71,7 +71,7 @@ std::optional<SensorImage::Sensor> wait_for_image(::openni::VideoStream& depth, 
                                                   std::chrono::milliseconds timeout);
 
 /// Reads the stream's newest image, colour still as RGB: OpenCV would convert it with the help of other threads, for
-/// which the one that reads a camera must not wait. Its picture is empty where the device gave less than the frame
+/// which the one that reads a camera must not wait. Its image is empty where the device gave less than the frame
 /// should hold.
 std::optional<SensorImage> read_image(::openni::VideoStream& stream, SensorImage::Sensor sensor);
 

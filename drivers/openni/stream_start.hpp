@@ -40,7 +40,7 @@ struct RecordedStarts {
 /// Finds the first images of both recorded streams, with times that count from some zero, among those that were seen
 /// live, with times of the device: intervals are the same in both. Either may lack images, as where this machine is too
 /// busy to see all. Both streams start within half a second of one another. Where several places fit equally well (a
-/// sensor that sees nothing, a picture that comes again), those with most images, then those closest together, then the
+/// sensor that sees nothing, an image that comes again), those with most images, then those closest together, then the
 /// earliest. Nothing where no places have four images of each stream, or half of those of a short recording.
 std::optional<RecordedStarts> find_stream_starts(const FirstImages& recorded, const FirstImages& live);
 

@@ -65,7 +65,7 @@ OrderedJson to_json(const ShapeSymmetry& shape) {
   return json;
 }
 
-/// That of a store that does not say it holds every picture.
+/// That of a store that does not say it holds every image.
 BrightnessRange parse_tone(const nlohmann::json& json, const std::string& file) {
   BrightnessRange tone;
   const auto found = json.find("tone");
@@ -326,7 +326,7 @@ bool is_store_entry(const fs::path& relative) {
   fs::path entry = relative;
   if (entry.extension() == kPartialEnding) entry.replace_extension();
   if (entry == "models" || entry == "views" || files.count(entry.string()) > 0) return true;
-  // A mesh, its texture or a picture of its views: obj_000001.ply.
+  // A mesh, its texture or an image of its views: obj_000001.ply.
   const std::string name = entry.stem().string();
   const bool is_of_object = name.size() > 4 && name.rfind("obj_", 0) == 0 &&
                             name.find_first_not_of("0123456789", 4) == std::string::npos && entry.has_extension();

@@ -39,14 +39,14 @@ struct StoredObject {
 struct ObjectStore {
   std::filesystem::path folder;
   std::vector<StoredObject> objects;               ///< by id
-  BrightnessRange tone;                            ///< of the pictures in which they were practised
+  BrightnessRange tone;                            ///< of the images in which they were practised
   OrderedJson settings;                            ///< of the last teaching, for people
   std::map<int, Symmetries> symmetries;            ///< by id, of models_info.json; empty for an object without any
   std::filesystem::path json_file() const;         ///< the list
   std::filesystem::path forest_file() const;       ///< of the detector
   std::filesystem::path models_folder() const;     ///< a BOP models folder
   std::filesystem::path view_image(int id) const;  ///< some of its views, side by side
-  std::filesystem::path contact_sheet() const;     ///< the pictures of all objects
+  std::filesystem::path contact_sheet() const;     ///< the images of all objects
   std::map<std::string, nlohmann::json> quality() const;          ///< by name, of those that have any
   std::map<std::string, Eigen::Vector3f> vote_centres() const;    ///< by name
   std::map<std::string, ShapeSymmetry> shape_symmetries() const;  ///< by name, of those whose are known

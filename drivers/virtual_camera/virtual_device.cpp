@@ -189,7 +189,7 @@ void VirtualDevice::open_shutters(int number, Clock::time_point now) {
   note_shutter(*script, number, device_us, now);  // last: the disk may keep it waiting
 }
 
-/// A copy: OpenNI2 may destroy a stream while another thread of it waits for a picture to be taken in.
+/// A copy: OpenNI2 may destroy a stream while another thread of it waits for an image to be taken in.
 std::vector<std::shared_ptr<VirtualStream>> VirtualDevice::streams() {
   const std::lock_guard<std::mutex> lock(streams_mutex_);
   return streams_;

@@ -16,7 +16,7 @@
 
 namespace houghstream::virtual_camera {
 
-/// Pictures by {width, height}: one test pattern for each mode, or a scene.
+/// Images by {width, height}: one test pattern for each mode, or a scene.
 using ImagesBySize = std::map<std::pair<int, int>, CameraImages>;
 
 /// One virtual camera: a thread that opens both shutters at the script's rate, and its streams.

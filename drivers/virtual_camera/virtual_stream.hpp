@@ -16,7 +16,7 @@ struct VirtualSensor {
 
 class VirtualDevice;
 
-/// One sensor's stream: answers OpenNI2's questions, and sends the pictures that the device hands it.
+/// One sensor's stream: answers OpenNI2's questions, and sends the images that the device hands it.
 class VirtualStream : public oni::driver::StreamBase {
  public:
   VirtualStream(VirtualDevice& device, const VirtualSensor& sensor);
@@ -32,7 +32,7 @@ class VirtualStream : public oni::driver::StreamBase {
   OniVideoMode mode() const;
   bool is_running() const;
 
-  /// Sends a picture (CV_8UC3 RGB or CV_16UC1) if the stream is running; `number` and `device_us` go with it.
+  /// Sends an image (CV_8UC3 RGB or CV_16UC1) if the stream is running; `number` and `device_us` go with it.
   void send(const cv::Mat& image, int number, std::uint64_t device_us);
 
  private:
@@ -48,7 +48,7 @@ class VirtualStream : public oni::driver::StreamBase {
   OniBool auto_white_balance_ = TRUE;
   int exposure_ = 10;
   int gain_ = 100;
-  mutable std::mutex sending_;  // held while a picture is on its way, so that none comes after stop()
+  mutable std::mutex sending_;  // held while an image is on its way, so that none comes after stop()
   bool running_ = false;
 };
 

@@ -102,7 +102,7 @@ class AtomicFile {
   int lock_ = -1;  // the open file, locked; ends with the process, however that ends
 };
 
-/// Writes a whole file in this way. One that replaces nothing is not waited for: pictures are written by the thousand,
+/// Writes a whole file in this way. One that replaces nothing is not waited for: images are written by the thousand,
 /// and who puts them into a folder that replaces another one waits for all at once (folder_exchange.hpp). Throws
 /// InputError.
 void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);

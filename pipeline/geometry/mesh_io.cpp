@@ -118,7 +118,7 @@ void append_triangles(const aiMesh& part, std::uint32_t first_vertex, const std:
 /// A texture that the file itself holds, CV_8UC3 BGR. Throws InputError where it cannot be decoded.
 cv::Mat decode_texture(const aiTexture& texture, const std::string& where) {
   cv::Mat image;
-  if (texture.mHeight == 0) {  // a picture file of mWidth bytes
+  if (texture.mHeight == 0) {  // an image file of mWidth bytes
     image = decode_image(reinterpret_cast<const std::uint8_t*>(texture.pcData), texture.mWidth, cv::IMREAD_COLOR);
   } else {
     const cv::Mat bgra(static_cast<int>(texture.mHeight), static_cast<int>(texture.mWidth), CV_8UC4, texture.pcData);

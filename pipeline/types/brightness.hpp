@@ -7,8 +7,8 @@
 
 namespace houghstream {
 
-/// Brightness and contrast of pictures: mean and standard deviation of their grey values (ITU-R BT.601), 0 to 255. As
-/// it stands, every picture is in the range.
+/// Brightness and contrast of images: mean and standard deviation of their grey values (ITU-R BT.601), 0 to 255. As
+/// it stands, every image is in the range.
 struct BrightnessRange {
   float min_mean = 0.0F;
   float max_mean = 255.0F;
@@ -34,7 +34,7 @@ struct AffineBrightness {
   bool changes() const { return gain != 1.0F || offset != 0.0F; }
 };
 
-/// Cameras make brightness and contrast as they like, and many too much of both: what is common to all of a picture
+/// Cameras make brightness and contrast as they like, and many too much of both: what is common to all of an image
 /// says nothing about an object in it. The curve moves the mean no farther than into the range, and flattens contrast
 /// that is greater than the range's, to no less than 0.6 of it. From a sixteenth of the pixels. CV_8UC3 BGR, not empty.
 AffineBrightness fit_affine_brightness(const cv::Mat& colour, const BrightnessRange& range);

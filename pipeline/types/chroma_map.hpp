@@ -29,7 +29,7 @@ struct CameraChroma {
 /// How a camera renders known colours under the present light: measured = gain * model + (L* + 16) / 116 * cast, in the
 /// a*b* plane of CIE L*a*b*. Where a light scales X, Y and Z, as von Kries has it, the cast of a colour goes with the
 /// cube root of its luminance, which is (L* + 16) / 116. Lightness itself is not mapped: exposure and shading decide
-/// it. As it stands, it is the identity, and as uncertain as the cameras in which practice looks for objects differ.
+/// it. As it stands, it is the identity, and as uncertain as the cameras in which calibration looks for objects differ.
 class ChromaMap {
  public:
   static constexpr int kParameters = 6;
@@ -82,7 +82,7 @@ bool is_chroma_pair(const ChromaPair& pair);
 /// For each pair the map without its class.
 std::vector<ChromaMap> fit_chroma_maps_without_each(const std::vector<ChromaPair>& pairs);
 
-/// Whether the picture is of a camera in black and white or of infrared light: there is no chroma to learn from. From
+/// Whether the image is of a camera in black and white or of infrared light: there is no chroma to learn from. From
 /// one of 64 pixels. False for what is no CV_8UC3.
 bool is_colourless(const cv::Mat& image);
 

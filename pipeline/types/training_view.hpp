@@ -7,7 +7,7 @@
 
 namespace houghstream {
 
-/// One picture of one object to be taught, or of a room without the objects: what a training folder gives
+/// One image of one object to be taught, or of a room without the objects: what a training folder gives
 /// and the trainer takes.
 struct TrainingView {
   RgbdFrame frame;         ///< whole image or a crop of it (then frame.camera is the crop's)

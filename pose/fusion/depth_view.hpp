@@ -18,7 +18,7 @@ struct DepthView {
   cv::Mat depth;            ///< CV_32FC1, metres, NaN off the object and where no normal is
   cv::Mat normals;          ///< CV_32FC3, camera frame, unit length, towards the camera; meaningless where depth is NaN
   cv::Mat free_space_mask;  ///< CV_8UC1, 255 where the ray through the pixel misses the object
-  /// The whole picture that the images are cut out of, in their pixels: beside it nothing is known. None: the cut keeps
+  /// The whole image that the images are cut out of, in their pixels: beside it nothing is known. None: the cut keeps
   /// away from its edges, and all around it is within.
   std::optional<cv::Rect> image;
   /// Views of one number, from 0 on, have a light that stands still about the object; -1: who knows.

@@ -34,7 +34,7 @@ struct TsdfSettings {
 
 /// Weighted mean of the views' signed distances (Curless & Levoy 1996): along the surface's normal, weighted by how
 /// frontally the surface is seen, less and less behind it (as Bylow et al. 2013: walls have another side); rays beside
-/// the mask carve free space, beside the view's images too, unless they miss DepthView::picture. What no view has seen
+/// the mask carve free space, beside the view's images too, unless they miss DepthView::image. What no view has seen
 /// lies behind surfaces and counts as inside, so that the solid is closed. Where all views look from one side, it ends
 /// at the lowest that was seen, on which the object stands, and what is unseen at the highest. Throws InputError
 /// without views or points, or where they need more than `max_voxels`.

@@ -19,7 +19,7 @@ struct ModelSettings {
   int views_per_edge = 4;        ///< each edge of an icosahedron in so many parts: 10 n^2 + 2 directions
   int points_per_view = 600;     ///< at most
   double view_distance_m = 1.2;  ///< from the model's centre
-  int pixels_per_diameter = 72;  ///< of the pictures from which visible points are drawn
+  int pixels_per_diameter = 72;  ///< of the images from which visible points are drawn
   double min_facing = 0.15;      ///< cosine between normal and line of sight below which a point is too grazing
   std::map<std::string, Eigen::Vector3f> vote_centres;  ///< ObjectModel::vote_centre by name; of others the origin
   /// By name, motions after which the object looks as before, its print too (models_info.json); of others none. A

@@ -158,7 +158,7 @@ std::optional<ColourComparison> compare_texture(const ObjectObservation& seen, c
   const double averaged_px = std::min(kDetails * detail_m / seen.frame.camera.metres_per_px(look.depth), kMax);
   const int side = 2 * static_cast<int>(0.5 * averaged_px) + 1;
   const int reach = side > kAlready ? 2 : 1;
-  LabRegion moved{{}, {}, colours.clipped};  // a copy of the picture would be the picture, and change with it
+  LabRegion moved{{}, {}, colours.clipped};  // a copy of the image would be the image, and change with it
   if (side > kAlready) {
     cv::blur(colours.lab, moved.lab, cv::Size(side, side));
   } else {

@@ -7,7 +7,7 @@
 namespace houghstream {
 
 /// The probability that an object is there, whether its pose is right or not, by logistic regression on the log odds of
-/// the detection's score and of the pose's quality. These numbers are of 3108 detections in hs-teach's practice rooms
+/// the detection's score and of the pose's quality. These numbers are of 3108 detections in hs-teach's synthetic scenes
 /// (seven objects of YCB-V, three stores). What hs-teach learns of an object takes their place: how much a bad pose
 /// says differs most between what is easily posed and what is not.
 struct PresenceSettings {

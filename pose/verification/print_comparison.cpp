@@ -18,7 +18,7 @@ constexpr int kMinCells = 60;  // compared; fewer tell nothing
 constexpr int kFine = 5;       // sides of the means that part the bands, cells
 constexpr int kCoarse = 13;
 // Of what is compared, so many cells count as one observation: neighbours are alike. All of them are measured with one
-// picture, one mesh and one pose, so that even so they are no independent witnesses: kTemper is what is left of it.
+// image, one mesh and one pose, so that even so they are no independent witnesses: kTemper is what is left of it.
 constexpr double kFineCells = 4.0;
 constexpr double kMiddleCells = 25.0;
 constexpr double kCoarseCells = 85.0;
@@ -37,7 +37,7 @@ constexpr std::size_t kBands = 8;  // fine L a b, middle L a b, coarse a b
 constexpr std::array<double, kBands> kCellsOfOne = {kFineCells,   kFineCells,   kFineCells,   kMiddleCells,
                                                     kMiddleCells, kMiddleCells, kCoarseCells, kCoarseCells};
 
-/// The bands of a picture, and its mean chroma.
+/// The bands of an image, and its mean chroma.
 struct Print {
   std::array<Band, kBands> bands;
   Eigen::Vector2d chroma = Eigen::Vector2d::Zero();  ///< mean a* and b*, about grey

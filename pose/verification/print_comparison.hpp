@@ -10,10 +10,10 @@ namespace houghstream {
 
 /// What the print says of a pose beside its alternatives (ObjectModel::alternatives).
 struct PrintComparison {
-  /// How much likelier the picture is under the pose than under the alternatives together, log odds. About minus the
+  /// How much likelier the image is under the pose than under the alternatives together, log odds. About minus the
   /// logarithm of their number where the print cannot tell: the model has no colours, is plain, or is hardly seen.
   double margin = 0.0;
-  /// The alternative under which the picture is clearly likelier than under the pose, camera from object; nothing where
+  /// The alternative under which the image is clearly likelier than under the pose, camera from object; nothing where
   /// there is none.
   std::optional<Eigen::Isometry3d> better;
 };

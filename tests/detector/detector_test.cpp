@@ -17,7 +17,7 @@ namespace {
 Detections detect(const RgbdFrame& frame, int threads) {
   DetectionSettings settings;
   settings.threads = threads;
-  settings.evidence.threshold = 0.5F;  // toys have learnt their scores from few pictures
+  settings.evidence.threshold = 0.5F;  // toys have learnt their scores from few images
   return Detector(toy::forest(), settings).detect(frame);
 }
 

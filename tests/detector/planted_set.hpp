@@ -7,11 +7,11 @@
 
 namespace houghstream::toy {
 
-constexpr int kClassPlane = 7;   ///< rises across every picture of the object and is flat elsewhere
+constexpr int kClassPlane = 7;   ///< rises across every image of the object and is flat elsewhere
 constexpr int kOffsetPlane = 8;  ///< rises where the offset is +0.05 m and is flat where it is -0.05 m
 constexpr int kNoisePlane = 20;  ///< tells nothing
 
-/// A set whose answer is known: 16 pictures, every other one background, and 50 samples of each.
+/// A set whose answer is known: 16 images, every other one background, and 50 samples of each.
 inline training::TrainingSet planted_set() {
   training::TrainingSet set;
   set.classes.resize(1);

@@ -159,7 +159,7 @@ Findings check_camera(const Machine& machine, bool needed) {
   if (!list_drivers(folder).named_right.empty()) {
     for (const UsbCamera& camera : cameras) findings.push_back(check_driver_of(machine, camera, folder));
   }
-  // The kernel's own driver for the Kinect's pictures holds the device.
+  // The kernel's own driver for the Kinect's images holds the device.
   const bool kinect =
       std::any_of(cameras.begin(), cameras.end(), [](const UsbCamera& camera) { return camera.id == "045e:02ae"; });
   if (kinect && fs::exists(machine.root / "sys/module/gspca_kinect")) {

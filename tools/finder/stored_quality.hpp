@@ -10,7 +10,7 @@
 
 namespace houghstream {
 
-/// Smallest quality of a published pose of a store's objects: in practice rooms that the fit has not seen 98 % of the
+/// Smallest quality of a published pose of a store's objects: in synthetic scenes that the fit has not seen 98 % of the
 /// poses from there on were right. Of a candidate's: the same share in the development rooms, where most candidates are
 /// false.
 constexpr float kStoreQuality = 0.6F;

@@ -8,7 +8,7 @@ namespace houghstream::log_tools {
 
 /// Writes a recording's frames as a scene folder in BOP format without objects: depth in millimetres as it is, colour
 /// as PNG. Every frame needs a camera: its own or the settings'; one without is left out and counted. Returns the
-/// number of frames. Throws InputError where nothing can be exported or written, or pictures of a scene are there
+/// number of frames. Throws InputError where nothing can be exported or written, or images of a scene are there
 /// already.
 std::int64_t export_bop(const RecordingSettings& settings, const std::filesystem::path& folder, LossReport& losses);
 

@@ -67,7 +67,7 @@ std::shared_ptr<const PoseEstimator> warmed_up(PoseEstimator cold, const RgbdFra
 /// The estimator may be another one for each frame.
 using CurrentEstimator = std::function<std::shared_ptr<const PoseEstimator>()>;
 
-/// Says once for each camera that its pictures have no colours.
+/// Says once for each camera that its images have no colours.
 void report_colourless(const RgbdFrame& frame, std::set<std::string>& reported) {
   if (reported.count(frame.id.channel) > 0 || !is_colourless(frame.colour)) return;
   reported.insert(frame.id.channel);

@@ -43,7 +43,7 @@ class BusWatcher {
   StreamState stream_state();
   std::int64_t frames_lost() const { return status_.message().frames_lost; }
 
-  /// Sends a picture to those for whom frames are too large.
+  /// Sends an image to those for whom frames are too large.
   void publish_preview(const cv::Mat& image, std::int64_t utime);
 
   /// Stops listening; frames that wait can still be taken.

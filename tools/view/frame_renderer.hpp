@@ -21,7 +21,7 @@ struct FrameRendererSettings {
   double model_unit_m = 1e-3;    ///< unit of the models' coordinates
   std::string objects;           ///< object store with the models, instead; followed while it changes; "" = none
   FrameViewSettings image;
-  bool preview = false;                 ///< send each picture on the preview channel
+  bool preview = false;                 ///< send each image on the preview channel
   std::string http;                     ///< where to serve a page for browsers, [ADDRESS:]PORT; "" = nowhere
   std::vector<std::string> http_hosts;  ///< names, beside its own, that the page answers to
   OutputSettings outputs;
@@ -67,7 +67,7 @@ class FrameRenderer {
   std::shared_ptr<const ClassModels> models_;
   std::unique_ptr<store::StoreWatcher<ClassModels>> store_;
   std::unique_ptr<LivePage> page_;
-  bool page_alone_;  // nobody but the page wants pictures
+  bool page_alone_;  // nobody but the page wants images
   ViewOutputs outputs_;
   std::optional<Camera> camera_;
   FrameViewSettings image_settings_;

@@ -10,14 +10,14 @@ namespace houghstream::view {
 /// Java's among them, with room for what else is on the bus.
 constexpr std::size_t kMaxPreviewBytes = 90'000;
 
-/// A picture as JPEG of at most so many bytes.
+/// An image as JPEG of at most so many bytes.
 struct PreviewImage {
   int width = 0;   ///< pixels
   int height = 0;  ///< pixels
   std::vector<std::uint8_t> jpeg;
 };
 
-/// The picture (CV_8UC3, BGR) at the best quality, and if need be at a smaller size, that fits `max_bytes`.
+/// The image (CV_8UC3, BGR) at the best quality, and if need be at a smaller size, that fits `max_bytes`.
 /// Throws InputError where even a few pixels do not fit.
 PreviewImage encode_preview(const cv::Mat& image, std::size_t max_bytes = kMaxPreviewBytes);
 

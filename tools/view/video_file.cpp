@@ -101,7 +101,7 @@ bool is_video_name(const std::filesystem::path& file) {
   return needs_end(file) || ending == ".mkv" || ending == ".avi";
 }
 
-// H.264 wants even sides, and its encoders refuse very long ones. The first picture may be of a single row or column of
+// H.264 wants even sides, and its encoders refuse very long ones. The first image may be of a single row or column of
 // pixels; those after it must be legible all the same.
 cv::Size video_size(const cv::Size& image) {
   constexpr int kMaxSide = 8192;  // pixels

@@ -17,7 +17,7 @@ void remux_video(const std::filesystem::path& from, const std::filesystem::path&
 
 /// Writes an MP4 with H.264, which every browser plays, at a constant rate. Until it is finished the frames are in a
 /// FILE.mp4.partial.mkv, which can be played however the program ends, but for the last hundred frames or so: an MP4
-/// without its end cannot. A picture belongs to a slot of 1/rate seconds; a slot without a picture repeats the one
+/// without its end cannot. An image belongs to a slot of 1/rate seconds; a slot without an image repeats the one
 /// before, so that the video lasts as long as the stream did; but once the program is asked to end, a gap of more than
 /// ten seconds is left out.
 class VideoFile {
@@ -25,7 +25,7 @@ class VideoFile {
   /// Throws InputError where the file's name does not say that it is a video, or it cannot be written.
   VideoFile(std::filesystem::path file, double rate_hz, Existing existing = Existing::kReplaced);
 
-  /// Slots must grow. The video has the size of the first picture, made even in both directions; one of another size
+  /// Slots must grow. The video has the size of the first image, made even in both directions; one of another size
   /// (the camera's mode has changed) is fitted into it. Throws InputError when the file cannot be written.
   void add(const cv::Mat& image, std::int64_t slot);
 

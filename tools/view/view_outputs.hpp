@@ -9,17 +9,17 @@
 
 namespace houghstream::view {
 
-/// Where pictures go without a display; an empty path is not written.
+/// Where images go without a display; an empty path is not written.
 struct OutputSettings {
-  std::filesystem::path snapshot;   ///< one picture, PNG or JPEG by its ending
+  std::filesystem::path snapshot;   ///< one image, PNG or JPEG by its ending
   std::int64_t snapshot_after = 1;  ///< the Nth image drawn; the last one where the stream ends before
   std::filesystem::path video;      ///< MP4
-  std::filesystem::path images;     ///< folder for every picture drawn, UTIME.jpg
+  std::filesystem::path images;     ///< folder for every image drawn, UTIME.jpg
   double rate_hz = 10.0;            ///< of the video
-  bool replace = false;             ///< a video and pictures that are there, instead of taking the next number
+  bool replace = false;             ///< a video and images that are there, instead of taking the next number
 };
 
-/// Writes pictures to files.
+/// Writes images to files.
 class ViewOutputs {
  public:
   /// Makes the folders. Throws InputError where that fails, or a file that is wanted cannot be written.
@@ -27,10 +27,10 @@ class ViewOutputs {
 
   void add(const cv::Mat& image, std::int64_t utime, std::int64_t slot);
 
-  /// Writes a snapshot that did not come to its turn. Throws InputError when there was no picture at all.
+  /// Writes a snapshot that did not come to its turn. Throws InputError when there was no image at all.
   void finish();
 
-  /// Whether everything asked for is there: a snapshot alone needs no more pictures.
+  /// Whether everything asked for is there: a snapshot alone needs no more images.
   bool complete() const;
 
  private:

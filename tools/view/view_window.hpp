@@ -26,7 +26,7 @@ KeyAction apply_key(int key, FrameViewSettings& settings);
 /// moved.
 void apply_mark(const cv::Rect& dragged, FrameViewSettings& settings);
 
-/// The window; its keys are those of apply_key, and s, which saves the picture; where that fails it is logged.
+/// The window; its keys are those of apply_key, and s, which saves the image; where that fails it is logged.
 class ViewWindow {
  public:
   /// Throws InputError, naming the headless options, where there is no display.
@@ -43,7 +43,7 @@ class ViewWindow {
 
   cv::Mat shown_;
   FrameId id_;
-  double scale_ = 1.0;                // of what the window shows; below 1 for a picture that no window holds
+  double scale_ = 1.0;                // of what the window shows; below 1 for an image that no window holds
   std::optional<cv::Point> pressed_;  // where the mouse's button went down
   std::optional<cv::Rect> dragged_;   // from there to where it is or went up; not yet handed on
 };

@@ -16,7 +16,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Drawing yields to the stream: on a busy machine pictures are late, results are not. On Linux this holds for the
+// Drawing yields to the stream: on a busy machine images are late, results are not. On Linux this holds for the
 // calling thread and those that it starts later (the video encoder's), not for the one that receives. One thread draws:
 // several that share so little work spend more time on waking than they save.
 void step_back() {

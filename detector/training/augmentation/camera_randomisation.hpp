@@ -34,12 +34,12 @@ enum class DepthSmoothing : std::uint8_t { kNone, kMedian, kBilateral };
 /// A colour camera. As it stands, it changes nothing.
 struct ColourVariation {
   double blur_px = 0.0;    ///< of the lens: standard deviation
-  double motion_px = 0.0;  ///< way of the picture while the shutter is open
+  double motion_px = 0.0;  ///< way of the image while the shutter is open
   double motion_angle = 0.0;
   double exposure_stops = 0.0;                             ///< what is too bright then is clipped
-  double exposure_follow = 0.0;                            ///< automatic: 1 = every picture as bright as others
+  double exposure_follow = 0.0;                            ///< automatic: 1 = every image as bright as others
   double vignetting = 0.0;                                 ///< light lost in the farthest corner, 0 to 1
-  std::array<double, 2> vignette_centre{0.5, 0.5};         ///< in picture sizes: pictures are parts of frames
+  std::array<double, 2> vignette_centre{0.5, 0.5};         ///< in image sizes: images are parts of frames
   double shot_noise = 0.0;                                 ///< deviation of full light, 1 = full scale
   double read_noise = 0.0;                                 ///< deviation without light, 1 = full scale
   double flare = 0.0;                                      ///< light from everywhere, 1 = full scale
@@ -90,7 +90,7 @@ struct CameraRandomisation {
 /// A camera. `strength` 0 = one that changes nothing, 1 = as widely as real ones differ; more is allowed.
 CameraRandomisation sample_camera(double strength, Random& random);
 
-/// Another camera looks, in a share of all pictures: one that differs by anything up to `strength`.
+/// Another camera looks, in a share of all images: one that differs by anything up to `strength`.
 void randomise_camera(double fraction, double strength, RgbdFrame& frame, Random& random);
 
 /// Applies the camera's colour processing in place: CV_8UC3 BGR. `random` gives the noise.

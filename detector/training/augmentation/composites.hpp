@@ -40,7 +40,7 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
 /// noise).
 double axial_noise(double z);
 
-/// Changes a picture's light in place: gain between two limits in stops (powers of two), contrast, colour cast, haze,
+/// Changes an image's light in place: gain between two limits in stops (powers of two), contrast, colour cast, haze,
 /// noise.
 void jitter_lighting(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random);
 

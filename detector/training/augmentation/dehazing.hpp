@@ -11,7 +11,7 @@ namespace houghstream::training {
 void remove_haze(const cv::Mat& mask, cv::Mat& colour, Random& random);
 
 /// An object taught out of focus, or through a lens that blurs, as a sharper camera may see it: what a Gaussian of 1.5
-/// pixels takes from the picture (CV_8UC3) is added `sharpness` times. 0: the picture itself, its pixels shared.
+/// pixels takes from the image (CV_8UC3) is added `sharpness` times. 0: the image itself, its pixels shared.
 cv::Mat apply_unsharp_mask(const cv::Mat& colour, double sharpness);
 
 }  // namespace houghstream::training

@@ -19,7 +19,7 @@ struct DistanceRange {
 struct ShownPoint {
   cv::Point2d view_px;
   float depth = 0.0F;  ///< as the view knows it, metres
-  double scale = 1.0;  ///< size in the picture over size in the view
+  double scale = 1.0;  ///< size in the image over size in the view
 };
 
 /// Handling of distances during training: ScaleHandling, and the features beyond the product's. The product has
@@ -35,7 +35,7 @@ class Scales {
   /// taught in this way.
   virtual void require_teachable(const FeatureSettings& settings, const std::string& source) const = 0;
 
-  /// The sizes at which the pictures of a camera are looked at.
+  /// The sizes at which the images of a camera are looked at.
   virtual std::vector<FeatureLevel> levels(const FeatureSettings& settings, const Camera& camera) const = 0;
   /// The level that sees an object at this distance.
   virtual FeatureLevel level_for(double distance, const Camera& camera, const FeatureSettings& settings,
@@ -54,7 +54,7 @@ class Scales {
   virtual double counted_distance(double distance) const = 0;
   /// Patches of an object need measured depth, and not depth filled into holes.
   virtual bool needs_measured_depth() const = 0;
-  /// Adds what the other sizes of a picture do to the depth of an object at this distance.
+  /// Adds what the other sizes of an image do to the depth of an object at this distance.
   virtual void vary_depth(double distance, const FeatureSettings& settings, cv::Mat& depth, Random& random) const = 0;
   /// PatchView::scale of a patch whose centre lies at this depth.
   virtual std::int32_t scale_of_patch(const PatchSettings& patch, const Camera& camera, float depth) const = 0;

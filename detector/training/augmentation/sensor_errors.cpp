@@ -76,7 +76,7 @@ TrainingView perturb_shape(const TrainingView& view, double strength, Random& ra
   const double down = metres * random.uniform(-1.0, 1.0);
   const Eigen::Vector2d middle = view.frame.camera.project(centre);
   const cv::Mat error = ripples(view.frame.depth.size(), strength * kMaxRipple * random.uniform(), random);
-  cv::Mat depth = view.frame.depth + error;  // a picture of its own: the view's stays as it is
+  cv::Mat depth = view.frame.depth + error;  // an image of its own: the view's stays as it is
   for (int y = 0; y < error.rows; ++y) {
     for (int x = 0; x < error.cols; ++x) {
       depth.at<float>(y, x) += static_cast<float>(right * (x - middle.x()) + down * (y - middle.y()));

@@ -20,7 +20,7 @@ void misregister(double strength, cv::Mat& depth, Random& random);
 /// millimetres here and there; its colours and its outline stay. Less or more with `strength`, 0 = none.
 TrainingView perturb_shape(const TrainingView& view, double strength, Random& random);
 
-/// The view as of the next thing of its kind, in a light of its own: a taught picture's colours are what one camera,
+/// The view as of the next thing of its kind, in a light of its own: a taught image's colours are what one camera,
 /// lamp and printer made of the object. Light varies smoothly over it; a cast, tone and strength of its colours change,
 /// and it may be less sharp. More or less with `strength`, 0 = none.
 TrainingView perturb_appearance(const TrainingView& view, double strength, Random& random);
@@ -36,7 +36,7 @@ void drop_near_depth(double limit, double kept, cv::Mat& depth, Random& random);
 
 /// A scale space shows an object `ratio` times as far away as taught in an enlarged image: its size is the same then,
 /// but not the sensor's noise, which is that of the larger distance and as much coarser. Adds what is missing of it to
-/// a picture taken at `distance` metres; `depth` is CV_32FC1, metres. What smooth surfaces' normals have
+/// an image taken at `distance` metres; `depth` is CV_32FC1, metres. What smooth surfaces' normals have
 /// told nearby would not be true of rough ones farther away.
 void add_far_noise(double distance, double ratio, cv::Mat& depth, Random& random);
 

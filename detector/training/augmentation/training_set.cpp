@@ -80,7 +80,7 @@ Canvas make_canvas(const Composite& composite, const FeatureLevel& level, const 
   return canvas;
 }
 
-/// All features of a picture; they stay until the next one.
+/// All features of an image; they stay until the next one.
 const FeatureImage& all_features(const WorkingFrame& frame, const ImageInput& input, ImageWorkspace& workspace) {
   workspace.tiles.want_all(frame.colour.size());
   const ExtraPlanes extra = input.scales.extra_planes(frame, input.features);
@@ -266,7 +266,7 @@ void measure_classes(const std::vector<TrainingImage>& images, TrainingSet& set)
   }
 }
 
-/// Moves the pictures and their samples to the set.
+/// Moves the images and their samples to the set.
 void take_samples(std::vector<TrainingImage>& images, TrainingSet& set) {
   for (std::size_t i = 0; i < images.size(); ++i) {
     for (TrainingSample& sample : images[i].samples) {

@@ -20,7 +20,7 @@ namespace houghstream::training {
 
 /// One patch to learn from.
 struct TrainingSample {
-  std::int32_t image = 0;  ///< into TrainingSet::pictures
+  std::int32_t image = 0;  ///< into TrainingSet::images
   std::int16_t x = 0;      ///< patch centre, working pixels
   std::int16_t y = 0;
   std::int32_t scale = 0;                            ///< patch_scale of its depth
@@ -31,15 +31,15 @@ struct TrainingSample {
 
 /// Everything the trees see.
 struct TrainingSet {
-  FeatureLayout layout;  ///< of the pictures
+  FeatureLayout layout;  ///< of the images
   std::vector<FeatureImage> images;
-  std::vector<TrainingSample> samples;        ///< grouped by picture
+  std::vector<TrainingSample> samples;        ///< grouped by image
   std::vector<TrainingSample> negative_pool;  ///< more background patches, from which the hard ones are chosen
   std::vector<ObjectClass> classes;           ///< by class id
   std::vector<ViewTemplate> views;
   std::uint16_t first_class = 0;  ///< classes and views that the forest has already
   std::uint32_t first_view = 0;
-  std::vector<float> visible_areas;  ///< per class: mean over its pictures, square metres
+  std::vector<float> visible_areas;  ///< per class: mean over its images, square metres
 };
 
 /// Input of the augmentation.
@@ -57,12 +57,12 @@ struct ImageInput {
 TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const ImageInput& input,
                               const std::function<void(const TrainingView*)>& is_done);
 
-/// A picture that trees learn from.
+/// An image that trees learn from.
 struct TrainingImage {
   FeatureImage features;
   std::vector<TrainingSample> samples;
   std::vector<TrainingSample> negative_pool;
-  float whole_area = 0.0F;  ///< of the object, square metres; 0 in a background picture
+  float whole_area = 0.0F;  ///< of the object, square metres; 0 in a background image
 };
 
 /// A view that objects are taught by.
@@ -72,7 +72,7 @@ struct LabelledView {
   std::uint32_t index = 0;  ///< into TrainingSet::views
 };
 
-/// Memory that pictures share, one after another: it is written to much faster than new memory, which the system has to
+/// Memory that images share, one after another: it is written to much faster than new memory, which the system has to
 /// clear first.
 struct ImageWorkspace {
   FeatureTiles tiles;

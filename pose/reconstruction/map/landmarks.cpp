@@ -105,7 +105,7 @@ cv::Mat grey_of(const RgbdFrame& frame) {
   return grey;
 }
 
-/// Where a picture has depth within reach, camera frame.
+/// Where an image has depth within reach, camera frame.
 std::optional<Eigen::Vector3d> surface_at(const RgbdFrame& frame, const cv::Point2f& at) {
   const cv::Point px(cvRound(at.x), cvRound(at.y));
   if (!cv::Rect({0, 0}, frame.depth.size()).contains(px)) return std::nullopt;

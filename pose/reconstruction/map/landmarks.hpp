@@ -10,7 +10,7 @@
 
 namespace houghstream::reconstruction {
 
-/// Corners of a picture that have depth, as they are found again from elsewhere.
+/// Corners of an image that have depth, as they are found again from elsewhere.
 struct Landmarks {
   std::vector<Eigen::Vector3d> points;  ///< camera frame, metres
   cv::Mat descriptors;                  ///< a row each

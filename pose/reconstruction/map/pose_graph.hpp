@@ -10,7 +10,7 @@ namespace houghstream::reconstruction {
 /// Relative pose of two keyframes from their registration.
 struct PoseEdge {
   int from = 0;                                                 ///< its points were laid on ...
-  int to = 0;                                                   ///< ... this one's picture
+  int to = 0;                                                   ///< ... this one's image
   Eigen::Isometry3d T_to_from = Eigen::Isometry3d::Identity();  ///< camera to camera
   Matrix6 information = Matrix6::Identity();                    ///< of a motion of the world, see Alignment
 };

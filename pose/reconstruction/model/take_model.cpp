@@ -21,7 +21,7 @@ namespace {
 using fusion::DepthView;
 using fusion::TsdfVolume;
 
-/// Where a box is seen, a few pixels wider; the whole picture where the camera is too near.
+/// Where a box is seen, a few pixels wider; the whole image where the camera is too near.
 cv::Rect region_of(const Eigen::AlignedBox3d& box, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
   constexpr int kMargin_px = 8;
   const cv::Rect image(0, 0, camera.width, camera.height);

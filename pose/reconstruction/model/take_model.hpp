@@ -50,7 +50,7 @@ struct MaskedViews {
 };
 
 /// Fuses masked views from all sides (Curless & Levoy 1996). What hides the object in a view, within the outline of
-/// `known`, says nothing; what is beside that outline is free, but beside whole pictures nothing is known. Where
+/// `known`, says nothing; what is beside that outline is free, but beside whole images nothing is known. Where
 /// `foot_m` is set, the object ends there: nobody has seen it from below. Throws InputError naming `name` where nothing
 /// is left.
 ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views, const Mesh& known,

@@ -41,7 +41,7 @@ struct Clusters {
 
 /// Region of an image that is searched.
 struct SearchedPart {
-  cv::Rect region_px;           ///< within the picture
+  cv::Rect region_px;           ///< within the image
   cv::Point2d target_px;        ///< the place that is meant
   double max_distance_m = 0.0;  ///< from the camera
 };

@@ -22,7 +22,7 @@ struct TakePlacerSettings {
   int max_frames_to_choose = 45;   ///< without an object in so many frames, there is none
   double keyframe_angle = 0.12;    ///< radians between the views of keyframes
   double min_sharpness = 0.5;      ///< of the median of the frames around; what is less is blurred
-  double max_dark_fraction = 0.7;  ///< of a picture; what is more is badly exposed
+  double max_dark_fraction = 0.7;  ///< of an image; what is more is badly exposed
   double max_bright_fraction = 0.4;
 };
 

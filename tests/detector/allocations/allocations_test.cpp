@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::size_t kLarge = 16 << 10;  // bytes
 // The lists of maxima, hypotheses and candidates, of which the last ones' rotations are handed to the caller, some
-// lists of the levels and their planes, and what OpenCV's filters need for themselves: none grows with the picture.
+// lists of the levels and their planes, and what OpenCV's filters need for themselves: none grows with the image.
 constexpr std::size_t kFew = 150;
 constexpr int kInARow = 8;  // frames that ask for no more
 std::atomic<std::size_t> small_ones{0};

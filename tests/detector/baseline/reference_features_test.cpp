@@ -108,7 +108,7 @@ TEST(ReferenceFeatures, WantedTilesDoNotDependOnTheOthers) {
   FeatureTiles all;
   all.want_all({210, 150});
   const WorkingFrame other = rough_frame(210, 150, random);
-  compute_features({other, {}, all}, 1, workspace, found);  // another picture, left in the memory
+  compute_features({other, {}, all}, 1, workspace, found);  // another image, left in the memory
   compute_features({frame, {}, tiles}, 2, workspace, found);
   const int planes = FeatureLayout().planes();
   std::vector<cv::Rect> parts;

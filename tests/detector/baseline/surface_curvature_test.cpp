@@ -57,7 +57,7 @@ TEST(SurfaceCurvature, ASphereIsCurvedAlikeInAllDirections) {
 
 TEST(SurfaceCurvature, ACylinderIsCurvedAcrossItsAxis) {
   for (int angle = 0; angle < 4; ++angle) {
-    const double axis_angle = angle * M_PI / 4.0;  // in the picture; the principal direction is at right angles to it
+    const double axis_angle = angle * M_PI / 4.0;  // in the image; the principal direction is at right angles to it
     WorkingFrame frame = round(0.08, {std::cos(axis_angle), std::sin(axis_angle), 0.0});
     scene::add_noise(frame, 0.0003, 1);
     const Values values = curvature_at_centre(frame);

@@ -91,7 +91,7 @@ TEST(SurfaceHistograms, AThinnerCloudKeepsItsSupport) {
   for (std::size_t i = 0; i < dense.size(); ++i) EXPECT_NEAR(thin[i], dense[i], 40) << i;
 }
 
-/// A ball before nothing, in the middle of a picture.
+/// A ball before nothing, in the middle of an image.
 WorkingFrame ball_at(double distance, double radius, double enlarged) {
   const scene::Round ball{Eigen::Vector3d(0.0, 0.0, distance), radius};
   WorkingFrame frame = scene::see(80, 60, [&](const Eigen::Vector3d& ray) {

@@ -145,7 +145,7 @@ TEST(TemplateMatch, AnObjectEndsAtItsOutlineWhereDepthOrColourDoes) {
   EXPECT_LT(lying_on_another.joint(), 0.05F);
 }
 
-/// The remembered view is a window of a plain wall.
+/// The view template is a window of a plain wall.
 TEST(TemplateMatch, APartOfALargerThingDoesNotEndAtTheOutline) {
   RgbdFrame wall = tile_frame();
   wall.depth.setTo(kDistance);

@@ -11,7 +11,7 @@
 namespace houghstream {
 namespace {
 
-/// A picture with everything that its tiles are made of; base planes are noise.
+/// An image with everything that its tiles are made of; base planes are noise.
 struct Image {
   WorkingFrame frame;
   FeatureSettings settings;

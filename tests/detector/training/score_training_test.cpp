@@ -92,7 +92,7 @@ TEST(ScoreTraining, AnyNumberOfThreadsGivesTheSameModel) {
   }
 }
 
-/// A picture that is not composed of views: a tile of each kind in a room; `is_there` says whether the truth names
+/// An image that is not composed of views: a tile of each kind in a room; `is_there` says whether the truth names
 /// them.
 ValidationFrame tiles_on_a_background(int index, bool is_there) {
   ValidationFrame frame;

@@ -71,7 +71,7 @@ TEST(Calibration, OnlyPicturesThatTheTreeDidNotLearnFromCount) {
   TrainingSettings settings;
   settings.in_bag = 0.5;
   TrainingSet set = set_of(40);
-  for (TrainingSample& sample : set.samples) {  // a tree would know nothing of its own pictures' centres
+  for (TrainingSample& sample : set.samples) {  // a tree would know nothing of its own images' centres
     if (in_bag(settings, 0, sample.image)) sample.offset = {3, 3, 3};
   }
   EXPECT_NEAR(masses(set, settings, forest_of(1, 0.0F))[0], kArea * 0.6F, 1e-6F);

@@ -50,7 +50,7 @@ double colour_difference(const RgbdFrame& a, const RgbdFrame& b) {
   return cv::norm(a.colour, b.colour, cv::NORM_L1) / static_cast<double>(3 * a.colour.total());
 }
 
-/// The device's number of a frame, which runs through the pattern's pictures.
+/// The device's number of a frame, which runs through the pattern's images.
 std::int64_t number_of(const RgbdFrame& frame) {
   const std::vector<virtual_camera::CameraImage> images = virtual_camera::make_test_pattern(frame.camera).images;
   const cv::Mat depth_mm = depth_to_millimetres(frame.depth);

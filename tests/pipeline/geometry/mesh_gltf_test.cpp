@@ -31,7 +31,7 @@ void write_glb(std::string json, std::string binary, const fs::path& file) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-/// A triangle, 0.2 m along x and y, with texture coordinates and a picture of 4 x 2 pixels: left red, right blue.
+/// A triangle, 0.2 m along x and y, with texture coordinates and an image of 4 x 2 pixels: left red, right blue.
 std::string triangle_bytes(std::size_t& image_bytes) {
   const std::vector<float> numbers = {0, 0, 0, 0.2F, 0, 0, 0, 0.2F, 0, 0.1F, 0.25F, 0.9F, 0.25F, 0.1F, 0.75F};
   std::string binary(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float));

@@ -105,7 +105,7 @@ TEST(PoseProcess, DetectionsOfAFrameThatIsNotThereAreCountedAndDropped) {
   EXPECT_NE(status.last_error.find("frame OPENNI_FRAME 2"), std::string::npos) << status.last_error;
 }
 
-/// Poses that tell which picture they were computed on: the depth of its first pixel with one.
+/// Poses that tell which image they were computed on: the depth of its first pixel with one.
 ObjectPoses by_image(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) {
   ObjectPoses poses = at_one_metre(frame, detections, earlier);
   const double depth = static_cast<double>(frame.depth.at<float>(0, 1));

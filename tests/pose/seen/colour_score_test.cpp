@@ -66,7 +66,7 @@ TEST(ColourScore, WhereTheCameraWasAtItsLimitNothingIsCompared) {
   EXPECT_FALSE(compare(frame, box, kPose)) << "one channel is enough";
 }
 
-/// The picture with its colours' distance from grey times `strength`.
+/// The image with its colours' distance from grey times `strength`.
 RgbdFrame with_saturation(RgbdFrame frame, double strength) {
   cv::Mat grey;
   cv::cvtColor(frame.colour, grey, cv::COLOR_BGR2GRAY);

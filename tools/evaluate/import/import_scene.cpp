@@ -44,7 +44,7 @@ void require_free(const fs::path& scene_folder, const fs::path& source) {
           scene_folder.string());
 }
 
-/// The scene of frames whose pictures are called NAME`colour_ending` and NAME_depth.png.
+/// The scene of frames whose images are called NAME`colour_ending` and NAME_depth.png.
 int write_scene(const DrawnBoxes& drawn, const fs::path& source, const std::string& colour_ending,
                 const fs::path& scene_folder) {
   std::set<std::string> objects_seen;

@@ -1,4 +1,4 @@
-// Finds the objects of a store in one picture, without LCM:
+// Finds the objects of a store in one image, without LCM:
 //   find_in_images STORE COLOUR DEPTH FX,FY,CX,CY      depth: 16 bits, millimetres, registered to colour
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>

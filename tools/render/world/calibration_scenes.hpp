@@ -8,7 +8,7 @@
 
 namespace houghstream::world {
 
-/// A mesh that stands about in practice scenes.
+/// A mesh that stands about in calibration scenes.
 struct CalibrationSceneObject {
   int id = 0;
   AssetPtr thing;
@@ -17,9 +17,9 @@ struct CalibrationSceneObject {
   bool is_calibrated = true;         ///< one of these stands in each room; others are company
 };
 
-/// Pictures in which taught objects are looked for before they count as taught: furnished rooms with the objects, all
+/// Images in which taught objects are looked for before they count as taught: furnished rooms with the objects, all
 /// round and in their attitudes, among things that are none of them; some of those have an object's shape in other
-/// colours or its look in another size. Standing on something, beside and behind other things, as pictures put together
+/// colours or its look in another size. Standing on something, beside and behind other things, as images put together
 /// from views never are. Rooms of training seeds that neither views nor backgrounds use.
 class CalibrationScenes {
  public:

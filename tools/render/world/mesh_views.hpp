@@ -34,7 +34,7 @@ struct MeshViewSettings {
   int max_views = 2200;          ///< of one object; so many are shown of kAny
   double lowest_pitch_deg = 12.0;  ///< of the camera over the level
   double highest_pitch_deg = 80.0;
-  double distance_m = 0.7;        ///< camera to object; more where it would not fit the picture
+  double distance_m = 0.7;        ///< camera to object; more where it would not fit the image
   double leaning_fraction = 0.2;  ///< of the views of kResting
   bool has_colour = true;         ///< false: another plain colour in every view
 };

@@ -20,8 +20,8 @@ struct RenderedFrame {
 /// Kind of the depth sensor. All training views are rendered with the first; the second shows how much a result depends
 /// on the sensor.
 enum class SensorKind : std::uint8_t {
-  kStructuredLight,  ///< optics/depth_sensor.hpp, and a picture in plain sRGB
-  kTimeOfFlight      ///< optics/time_of_flight.hpp, and the picture of other_colour_camera() (optics/photo.hpp)
+  kStructuredLight,  ///< optics/depth_sensor.hpp, and an image in plain sRGB
+  kTimeOfFlight      ///< optics/time_of_flight.hpp, and the image of other_colour_camera() (optics/photo.hpp)
 };
 
 /// "structured_light" or "time_of_flight". Throws InputError naming them for another.

@@ -16,7 +16,7 @@ bool depth_agrees(const LinemodMatch& match, const cv::Mat& depth, float toleran
 std::vector<Detection> select_detections(const std::vector<LinemodMatch>& matches, const RgbdFrame& frame,
                                          const LinemodSelection& selection);
 
-/// The rival that the paper compares with (Haensch et al. 2017, Section 6): LINEMOD (Hinterstoisser et al. 2011) as
+/// The baseline that the paper compares with (Haensch et al. 2017, Section 6): LINEMOD (Hinterstoisser et al. 2011) as
 /// OpenCV implements it. OpenCV's colour features lie on the outline only, and matching ignores distance: the check of
 /// depth is ours, off by default.
 class LinemodDetector {

@@ -2,7 +2,7 @@
 
 namespace houghstream {
 
-// The defaults were chosen by `hs-study linemod --tune` on rendered training data (4 objects of 108 views; 60 pictures
+// The defaults were chosen by `hs-study linemod --tune` on rendered training data (4 objects of 108 views; 60 images
 // composed over 60 rooms, of views that no template was made of). Mean AUC without and with the check of depth:
 //   features 63, step 1.1, gradient 10: 0.474, 0.533 | 31 features: 0.392, 0.499 | step 1.3: 0.387, 0.381
 //   step 1.15: 0.449, 0.532 | gradient 30: 0.425, 0.485

@@ -11,7 +11,7 @@
 
 namespace houghstream {
 
-/// Training data parted into what to teach and pictures to choose settings on.
+/// Training data parted into what to teach and images to choose settings on.
 struct ComposedExamples {
   std::vector<TrainingView> taught;   ///< three views in four of each class
   std::vector<RgbdFrame> frames;      ///< the others, put into the background views
@@ -37,7 +37,7 @@ struct LinemodTrial {
 };
 
 /// Tries a grid of settings on `images` composed of one view in four over the background views; templates are made of
-/// the other three, so that no picture shows what a template was made of. `report` gets each trial as it is done.
+/// the other three, so that no image shows what a template was made of. `report` gets each trial as it is done.
 /// The match threshold is that of `base_selection`: what it costs and loses shows by tuning again with another.
 void tune_linemod(const std::vector<TrainingView>& views, const LinemodTemplateSettings& base,
                   const LinemodSelection& base_selection, int images,

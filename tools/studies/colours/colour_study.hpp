@@ -6,7 +6,7 @@
 
 #include "tools/studies/colours/strange_cameras.hpp"
 
-// What cameras of strange colours cost, and what of it the map of a camera's colours brings back: rendered practice
+// What cameras of strange colours cost, and what of it the map of a camera's colours brings back: rendered calibration
 // rooms with the objects of a store, seen through each of the cameras.
 
 namespace houghstream::colours {

@@ -7,7 +7,7 @@
 
 namespace houghstream::colours {
 
-/// A camera whose colours are not those of the pictures that taught.
+/// A camera whose colours are not those of the images that taught.
 struct StrangeCamera {
   double white_balance_k = 0.0;  ///< temperature of the light, which the camera takes for one of 5500 K
   training::CameraRandomisation camera;

@@ -20,7 +20,7 @@ struct HoughPanel {
   std::vector<NamedBox> found;  ///< strongest first; those that follow the first few are counted only
 };
 
-/// One picture: the colour image with the true boxes, then each class's votes in colours over the darkened image. All
+/// One image: the colour image with the true boxes, then each class's votes in colours over the darkened image. All
 /// panels share one scale, up to the highest value of any; the captions name it. Throws InputError where sizes differ.
 cv::Mat draw_hough_panels(const cv::Mat& colour, const std::vector<NamedBox>& truth,
                           const std::vector<HoughPanel>& panels);

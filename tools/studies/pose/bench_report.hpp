@@ -18,7 +18,7 @@ namespace houghstream {
 std::vector<PoseTrial> worst_poses(const std::vector<PoseTrial>& trials, std::size_t count);
 
 /// The surroundings of a trial's box in its frame with the outline of its model, and below it what it is. The trial
-/// has a pose. Pictures of all trials have one size, CV_8UC3.
+/// has a pose. Images of all trials have one size, CV_8UC3.
 cv::Mat draw_trial(const PoseTrial& trial, const RgbdFrame& frame, const Mesh& mesh);
 
 // The variants. The unchecked one is ours with a verification that accepts everything: what it publishes beyond ours is

@@ -23,7 +23,7 @@ using PoseMaker = std::function<ObjectPose(const RgbdFrame&, const Detection&)>;
 /// PoseEstimator on one thread. Models by class name, metres.
 PoseMaker estimator_maker(const std::map<std::string, Mesh>& models, PoseSettings settings);
 
-/// A rival; where it finds a pose, that is published, else the status is kNotConverged.
+/// A baseline; where it finds a pose, that is published, else the status is kNotConverged.
 PoseMaker baseline_maker(std::unique_ptr<BaselineEstimator> baseline);
 
 /// The poses of a frame's detections, in their order, and the CPU time that each took, milliseconds.
@@ -50,7 +50,8 @@ struct VariantResult {
   void add(const PoseRun& run, const BopScene& scene, const SceneModels& models, int threads);
 };
 
-/// By variant; `on_baseline_frames` holds the rivals, and the others on the rivals' frames only, so that they compare.
+/// By variant; `on_baseline_frames` holds the baselines, and the others on the baselines' frames only, so that they
+/// compare.
 struct PoseBench {
   int frames = 0;
   int baseline_frames = 0;
@@ -67,13 +68,13 @@ struct DetectedScene {
 
 /// Settings of a scene's benchmark.
 struct BenchRules {
-  int baselines_every = 10;  ///< the rivals look at frames 0, N, 2N, ... of those that were detected in
+  int baselines_every = 10;  ///< the baselines look at frames 0, N, 2N, ... of those that were detected in
   double baselines_s = 0.0;  ///< of those, at as many as can be done in this time, spread over the scene; 0: at all
   int threads = 1;           ///< for measuring errors; the makers run on one
 };
 
-/// Has every maker give poses to all detections, rivals to those of their frames, and adds what came of it. All rivals
-/// look at the same frames.
+/// Has every maker give poses to all detections, baselines to those of their frames, and adds what came of it. All
+/// baselines look at the same frames.
 void bench_scene(const DetectedScene& detected, const SceneModels& models, const BenchedMakers& makers,
                  const BenchRules& rules, PoseBench& bench);
 

@@ -33,7 +33,7 @@ struct PoseTrial {
   double distance_m = kUnknown;        ///< of the object along the optical axis; known for true detections
   double ms = kUnknown;                ///< CPU time of the pose, or of finding none
   PoseStatus status = PoseStatus::kInvalid;
-  float quality = 0.0F;                              ///< ObjectPose::quality; 0 for the rivals
+  float quality = 0.0F;                              ///< ObjectPose::quality; 0 for the baselines
   std::optional<Eigen::Isometry3d> T_camera_object;  ///< metres; present exactly when status is kValid
 
   // Errors of the pose, unknown without one and without an object to compare it with: that of a true detection, for

@@ -35,13 +35,13 @@ struct ShownPose {
 /// matrix row by row, metres; of the first take. Throws InputError naming file and line.
 std::vector<ShownPose> read_camera_poses(const std::filesystem::path& file);
 
-/// A kept view, found again among the takes' frames by its picture.
+/// A kept view, found again among the takes' frames by its image.
 struct KeptView {
   ShownPose pose;
   double mask_iou = 0.0;  ///< of its mask with the true one
 };
 
-/// The views of KEPT/views/: those whose picture is in none of the takes are left out.
+/// The views of KEPT/views/: those whose image is in none of the takes are left out.
 std::vector<KeptView> read_kept_views(const std::filesystem::path& folder, const TrueTakes& takes);
 
 }  // namespace houghstream::studies

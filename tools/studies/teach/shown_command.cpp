@@ -26,7 +26,7 @@ cv::Vec3b texel(const cv::Mat& texture, const Eigen::Vector2f& uv) {
   return texture.at<cv::Vec3b>(y, x);
 }
 
-/// A mesh with a texture, cut so finely that colours of vertices show it: pictures of models have no others.
+/// A mesh with a texture, cut so finely that colours of vertices show it: images of models have no others.
 Mesh finely_coloured(const Mesh& mesh) {
   constexpr double kSide_m = 0.002;
   if (mesh.texture.empty()) return mesh;

@@ -23,7 +23,7 @@ cv::Mat view_image(const std::vector<TrainingView>& views, const std::string& ti
 /// Another title above them.
 void write_title(const std::string& title, cv::Mat& view_image);
 
-/// The pictures below one another. Throws InputError where one cannot be read or has another width, or the sheet cannot
+/// The images below one another. Throws InputError where one cannot be read or has another width, or the sheet cannot
 /// be written.
 void write_contact_sheet(const std::vector<std::filesystem::path>& images, const std::filesystem::path& sheet);
 

@@ -14,7 +14,7 @@
 
 namespace houghstream::teach {
 
-/// A taught object as practice needs it.
+/// A taught object as calibration needs it.
 struct CalibrationObject {
   std::string name;
   Mesh mesh;                                              ///< as poses are compared with it, metres
@@ -25,7 +25,7 @@ struct CalibrationObject {
 };
 
 struct CalibrationSettings {
-  static constexpr int kMaxScenes = 500;  ///< whose pictures, 4.3 MB a room, are all in memory at once: 2 GB
+  static constexpr int kMaxScenes = 500;  ///< whose images, 4.3 MB a room, are all in memory at once: 2 GB
 
   std::optional<int>
       scenes;  ///< each is looked at world::CalibrationScenes::kFramesPerScene times; default: scene_count_for()

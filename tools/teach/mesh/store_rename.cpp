@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using store::ObjectStore;
 using store::StoredObject;
 
-/// The meshes, what is known of them, and the pictures of views. What else lies there is somebody's, which
+/// The meshes, what is known of them, and the images of views. What else lies there is somebody's, which
 /// StoreTransaction carries over.
 void copy_files(const ObjectStore& from, const fs::path& to) {
   for (const char* folder : {"models", "views"}) {

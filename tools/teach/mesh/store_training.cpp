@@ -136,7 +136,7 @@ Forest train_store_forest(std::vector<TrainingView> views, const std::optional<F
   constexpr int kPatches = 26000;        // of an object: what trees are grown of, and how long that takes
   constexpr int kMinPatches = 100;
   constexpr int kMaxPatches = 250;
-  constexpr int kViewsPerImage = 2;  // a remembered view costs a tenth of one that trees learn from
+  constexpr int kViewsPerImage = 2;  // a view template costs a tenth of one that trees learn from
   // Many attitudes want many patches and small leaves; that fewer of them choose a test pays for it.
   constexpr int kNodeSamples = 700;
   constexpr int kTestsPerNode = 1000;
@@ -150,7 +150,7 @@ Forest train_store_forest(std::vector<TrainingView> views, const std::optional<F
     profile.training.trees = trees;
     profile.training.scoring = scoring;
   }
-  profile.training.validation_frames = 0;    // practice tells more
+  profile.training.validation_frames = 0;    // calibration tells more
   profile.training.composites_per_view = 1;  // another view tells more than another room
   profile.training.tone_jitter_fraction = kToneFraction;
   if (!old) profile.features.tone = kCalibrationBrightness;

@@ -17,7 +17,7 @@ namespace houghstream::teach {
 std::vector<NamedModel> models_of(const std::vector<TaughtMesh>& meshes);
 
 /// Training views of all objects, in order, those of a camera behind the rendered ones; their votes are for the middle
-/// of each mesh's box. The objects join `made`, their pictures its folder, and a dump the views where one is wanted;
+/// of each mesh's box. The objects join `made`, their images its folder, and a dump the views where one is wanted;
 /// `report` gets a line for each object. Throws InputError for a mesh of which no view shows any depth.
 std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, const TeachOptions& options,
                                      store::ObjectStore& made, const std::function<void(const std::string&)>& report);

@@ -123,7 +123,7 @@ void take_ids(const ObjectStore& list, Forest& forest) {
   }
 }
 
-/// Everything but the pictures of views, which are there, and store.json last. All of it is read back: a store that
+/// Everything but the images of views, which are there, and store.json last. All of it is read back: a store that
 /// nothing can read must not take the place of one that works.
 void write_store(ObjectStore list, const std::vector<NamedModel>& models, const Forest& forest) {
   std::sort(list.objects.begin(), list.objects.end(),

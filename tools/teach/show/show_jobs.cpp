@@ -46,7 +46,7 @@ void crop_to_object(TrainingView& view) {
   view.mask = view.mask(crop).clone();
 }
 
-/// Gives the model of the takes the colours that it has in pictures of the tone in which it is looked for.
+/// Gives the model of the takes the colours that it has in images of the tone in which it is looked for.
 void bring_into_tone(const std::vector<Take>& takes, std::vector<cv::Vec3b>& colours) {
   if (colours.empty()) return;
   AffineBrightness mean{0.0F, 0.0F};
@@ -228,7 +228,7 @@ ShowResult show_takes(const ShowOptions& options, const ShownFrames& frames, con
   return shown;
 }
 
-/// Into the store twice: with scores and qualities of a little practice, so that a stream that runs finds the object
+/// Into the store twice: with scores and qualities of a little calibration, so that a stream that runs finds the object
 /// soon, and again when they were learnt as thoroughly as those of any other.
 void teach_shown(const ShowOptions& options, const ShowResult& shown, ProgressReporter& reporter) {
   constexpr int kFirstScenes = 18;

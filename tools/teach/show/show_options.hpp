@@ -21,7 +21,7 @@ struct ShowOptions {
   bool replace = false;            ///< that store; with neither one that is there is refused before the take
   std::optional<cv::Rect> box;     ///< of the object in the first frame, pixels; none = nearest to `at`
   std::optional<cv::Point> at;     ///< a place on it there; none = the middle
-  std::filesystem::path keep;      ///< where model, views, pictures and report go; empty = nowhere
+  std::filesystem::path keep;      ///< where model, views, images and report go; empty = nowhere
   bool accept_poor_model = false;  ///< teaches a poor model too
   bool teach = true;               ///< false: the model only, the store is left alone
   double max_duration_s = 60.0;    ///< of a take from a live source

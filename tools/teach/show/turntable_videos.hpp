@@ -12,7 +12,7 @@ namespace houghstream::teach {
 bool is_turntable_videos(const std::string& source);
 
 /// The model of the videos: poses from the turntable's axis, or from registration of the views to one another where
-/// that agrees better; the videos are laid on one another and merged. `options.camera` is that of the whole pictures,
+/// that agrees better; the videos are laid on one another and merged. `options.camera` is that of the whole images,
 /// else the dataset's nominal one. Throws InputError where there is nothing to fuse.
 ShowResult show_turntable(const ShowOptions& options);
 

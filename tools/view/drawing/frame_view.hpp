@@ -21,7 +21,7 @@ struct ViewedFrame {
   std::size_t weak = 0;                     ///< detections that were sent and are not among these
 };
 
-/// What the picture shows beside the overlay.
+/// What the image shows beside the overlay.
 struct FrameViewSettings {
   float min_score = 0.0F;       ///< weaker detections and their poses are not drawn; 0: all that were sent
   bool show_depth = true;       ///< depth, colour-mapped, to the right
@@ -36,7 +36,7 @@ struct FrameViewSettings {
   std::optional<cv::Point> at;  ///< or where it has clicked
 };
 
-/// What the panel below the pictures shows of the stream as a whole.
+/// What the panel below the images shows of the stream as a whole.
 struct StreamView {
   StreamState state;
   std::int64_t frames_lost = 0;      ///< frames that never arrived here
@@ -54,7 +54,7 @@ ViewedFrame without_weak(ViewedFrame viewed, float min_score);
 cv::Mat draw_over_colour(const ViewedFrame& viewed, const ClassModels& models, const FrameViewSettings& settings,
                          const StreamView& stream);
 
-/// The whole picture, CV_8UC3: overlay, depth or 3-D beside it, and below them the panel. Its size is
+/// The whole image, CV_8UC3: overlay, depth or 3-D beside it, and below them the panel. Its size is
 /// even in both directions, as video encoders want. Throws InputError as draw_overlay does.
 cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const FrameViewSettings& settings,
                         const StreamView& stream = {});
@@ -66,7 +66,7 @@ std::string camera_heading(const FrameId& frame, const std::vector<std::string>&
 /// below which it sends nothing, is not on the wire.
 std::string objects_heading(const ViewedFrame& viewed, float min_score);
 
-/// Four blocks of text and charts below the pictures: the stream's rates and losses, the objects of the frame, the
+/// Four blocks of text and charts below the images: the stream's rates and losses, the objects of the frame, the
 /// times of its stages, and the latency of the last frames. They stand side by side as far as `width` pixels allow,
 /// the others below. With `settings.show_keys` a line that names the keys follows.
 cv::Mat draw_panel(const ViewedFrame& viewed, const StreamView& stream, const FrameViewSettings& settings, int width);

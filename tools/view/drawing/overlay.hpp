@@ -16,7 +16,7 @@ namespace houghstream::view {
 using ClassModels = std::map<std::string, Mesh>;
 
 inline constexpr float kNearPlane = 0.05F;  ///< metres; nothing nearer is drawn
-inline constexpr double kPanelText = 0.42;  ///< scale of the text beside the picture
+inline constexpr double kPanelText = 0.42;  ///< scale of the text beside the image
 inline const cv::Scalar kPanelGround(38, 34, 32);
 
 /// The colour (BGR) in which a class is drawn everywhere: eight that stay apart for colour-blind eyes

@@ -27,7 +27,7 @@ double middle_depth(const cv::Mat& depth) {
   return static_cast<double>(*middle);
 }
 
-/// A picture of points; the nearest one is seen.
+/// An image of points; the nearest one is seen.
 class PointImage {
  public:
   explicit PointImage(const Camera& camera)

@@ -30,10 +30,10 @@ bool is_of(const Teaching& teaching, const FrameId& frame) {
   return same_camera && apart_us <= kNearlyUs && apart_us >= -kNearlyUs;
 }
 
-/// A part of the picture, made darker for what is written on it.
+/// A part of the image, made darker for what is written on it.
 cv::Mat darkened(cv::Mat& image, const cv::Rect& area) {
   cv::Mat part = image(area & cv::Rect({}, image.size()));
-  if (part.empty()) return part;  // a picture of a single row or column of pixels
+  if (part.empty()) return part;  // an image of a single row or column of pixels
   cv::Mat ground(part.size(), part.type(), kPanelGround);
   cv::addWeighted(part, 0.25, ground, 0.75, 0.0, part);
   return part;

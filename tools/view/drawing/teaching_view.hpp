@@ -7,7 +7,7 @@
 
 namespace houghstream::view {
 
-/// Draws over a picture of the frame (CV_8UC3, BGR) how it goes with an object that is shown: its box and axes, where
+/// Draws over an image of the frame (CV_8UC3, BGR) how it goes with an object that is shown: its box and axes, where
 /// the teaching is of this camera and of about this time; at the upper right the sphere of directions, filled where the
 /// object was seen from, once from where the camera is now and once from behind; at the lower edge state and words,
 /// with a bar as long as the state's progress.

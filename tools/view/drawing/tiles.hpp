@@ -5,7 +5,7 @@
 
 namespace houghstream::view {
 
-/// Pictures of one size and type CV_8UC3 row by row, `columns` in a row, with a little grey between them. At least one.
+/// Images of one size and type CV_8UC3 row by row, `columns` in a row, with a little grey between them. At least one.
 cv::Mat tiled(const std::vector<cv::Mat>& tiles, int columns);
 
 }  // namespace houghstream::view

@@ -31,7 +31,7 @@ std::string label_of(const TrackedObject& object) {
   return text;
 }
 
-/// From metres of the world to pixels of the picture from above.
+/// From metres of the world to pixels of the image from above.
 struct MapScale {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   double px_per_m = 300.0;

@@ -22,7 +22,7 @@ struct WorldState {
   void add(const WorldObjects& world);
 };
 
-/// Draws over a picture of a frame (CV_8UC3, BGR) the objects of the world in it: a ring as wide as the place is
+/// Draws over an image of a frame (CV_8UC3, BGR) the objects of the world in it: a ring as wide as the place is
 /// uncertain (two standard deviations), number, class and probability, and the way of the last seconds. What is not
 /// seen is drawn thin, with its state in words. Nothing where the world's camera was elsewhere: it is of another time.
 void draw_tracks(cv::Mat& image, const WorldState& world, const RgbdFrame& frame);

@@ -30,9 +30,9 @@ class LivePage {
 
   /// Tells of a frame and draws what is wanted of it. Throws InputError as draw_overlay does.
   void show(const PageContent& content);
-  /// Whether somebody waits for a picture of the frame that was shown last, or the stream was not told of for a second.
+  /// Whether somebody waits for an image of the frame that was shown last, or the stream was not told of for a second.
   bool is_due() const;
-  /// Draws that picture, and tells of the stream. Throws where a picture cannot be drawn; nobody waits for it then.
+  /// Draws that image, and tells of the stream. Throws where an image cannot be drawn; nobody waits for it then.
   void catch_up(const std::optional<ViewedFrame>& viewed, const ClassModels& models, const FrameViewSettings& settings,
                 const StreamView& stream);
 

@@ -43,13 +43,13 @@ class PageBoard {
   static constexpr int kMaxViewers = 8;
   static constexpr std::chrono::seconds kViewTimeout{2};  ///< after a request its view is drawn for so long
 
-  /// For the thread that draws. Somebody listens, or asked for a picture of late.
+  /// For the thread that draws. Somebody listens, or asked for an image of late.
   bool has_viewers() const;
   /// Views that were asked for of late.
   std::vector<PageView> wanted() const;
   /// Views that somebody waits for, and that were not drawn of the frame that is shown.
   std::vector<PageView> missing() const;
-  /// The next frame. Its pictures follow.
+  /// The next frame. Its images follow.
   void put_frame(std::string json);
   void put_image(PageView view, std::vector<std::uint8_t> jpeg);
   void put_stream(std::string json);
@@ -60,7 +60,7 @@ class PageBoard {
   void leave();
   /// Waits until there is more than `seen`, or for `timeout`; what is not new is empty. Nothing once it is closed.
   std::optional<PageUpdates> updates_after(const PageUpdates& seen, std::chrono::milliseconds timeout);
-  /// The picture of the frame that is shown, waited for if need be; an older one, or nothing, after `timeout`.
+  /// The image of the frame that is shown, waited for if need be; an older one, or nothing, after `timeout`.
   Jpeg image(PageView view, std::chrono::milliseconds timeout);
   void push_command(const PageCommands& commands);
 

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kThreads = 4 * PageBoard::kMaxViewers;  // a page has one for events, two or three for the rest
 constexpr std::chrono::milliseconds kEventTimeout(1000);      // for an event
-constexpr std::chrono::milliseconds kImageTimeout(2000);      // for a picture of the frame that is shown
+constexpr std::chrono::milliseconds kImageTimeout(2000);      // for an image of the frame that is shown
 constexpr std::size_t kMaxOrderLength = 4096;                 // bytes
 constexpr const char* kTokenHeader = "X-Houghstream-Token";
 // Nothing from elsewhere is loaded or asked, and no other page shows this one.

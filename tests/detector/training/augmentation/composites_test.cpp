@@ -20,7 +20,7 @@ AugmentationSettings plain() {
   return settings;
 }
 
-/// Stripes, 0.7 m away in the middle of the picture; a relief of 15 mm behind the tile's middle.
+/// Stripes, 0.7 m away in the middle of the image; a relief of 15 mm behind the tile's middle.
 TrainingView tile_view() {
   return toy::training_views().front();
 }

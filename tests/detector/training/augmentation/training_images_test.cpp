@@ -61,7 +61,7 @@ TEST(TrainingImages, OffsetsOfAScaleSpaceLeadToTheCentresPixel) {
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
       const TrainingImage image = image_of(view, profile, seed);
       const double size = size_of(image, image_scale);
-      // the mask's middle is the picture's; the object's centre lies half a pixel of the view beside it
+      // the mask's middle is the image's; the object's centre lies half a pixel of the view beside it
       const double x = 0.5 * (image.features.width() - 1) - 0.5 * size * image_scale;
       const double y = 0.5 * (image.features.height() - 1) - 0.5 * size * image_scale;
       for (const TrainingSample& sample : image.samples) {

@@ -47,7 +47,7 @@ TEST(TrainingSet, OffsetsPointFromTheSurfaceToTheCentre) {
     if (sample.label == 0) continue;
     ++objects;
     ASSERT_EQ(sample.label, 1);
-    // The picture is the tile with equal margins, at its own size, as its lens is half as long as the usual one: its
+    // The image is the tile with equal margins, at its own size, as its lens is half as long as the usual one: its
     // middle shows the view's principal point.
     const FeatureImage& image = set.images[static_cast<std::size_t>(sample.image)];
     const double right_px = sample.x - 0.5 * (image.width() - 1);

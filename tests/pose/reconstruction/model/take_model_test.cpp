@@ -32,7 +32,7 @@ TEST(FuseMaskedViews, PicturesThatCutTheObjectOffDoNotCutTheModelOff) {
   EXPECT_NEAR(bounds.sizes().z(), scene.box.z(), 0.01);
 }
 
-/// Pictures of the box on its table from all round, from an azimuth on.
+/// Images of the box on its table from all round, from an azimuth on.
 Take take_about_box(double azimuth) {
   constexpr int kImages = 12;
   const test_scene::ShownScene scene;

@@ -27,7 +27,7 @@ struct Looked {
 
   void show(const ViewedFrame& viewed) { page.show({viewed, models, settings, stream}); }
 
-  /// The picture, while the page's own thread goes on as hs-view's loop does.
+  /// The image, while the page's own thread goes on as hs-view's loop does.
   cv::Mat fetched(const std::string& view, const ViewedFrame& viewed) {
     std::optional<httplib::Result> answer;
     std::atomic<bool> answered{false};

@@ -29,9 +29,9 @@ struct Light {
 
 /// Settings of the simulated colour camera.
 struct ColourCameraSettings {
-  double mean_level = 0.2;         ///< automatic exposure brings the picture's mean towards this, linear, 0 to 1
+  double mean_level = 0.2;         ///< automatic exposure brings the image's mean towards this, linear, 0 to 1
   double exposure_bias = 1.0;      ///< factor on what automatic exposure chose
-  std::optional<double> exposure;  ///< factor on the light, where it is not chosen from the picture itself
+  std::optional<double> exposure;  ///< factor on the light, where it is not chosen from the image itself
   double blur_px = 0.6;            ///< standard deviation of the lens's blur, pixels
   double shot_noise = 0.008;       ///< deviation of the noise at full level; grows with the square root of the level
   double read_noise = 0.003;       ///< deviation of the noise at level 0
@@ -51,7 +51,7 @@ struct World {
   Camera camera = synthetic_camera();
 };
 
-/// Camera at `eye` looking at `target` with the picture upright.
+/// Camera at `eye` looking at `target` with the image upright.
 Eigen::Isometry3d look_at(const Eigen::Vector3d& eye_world, const Eigen::Vector3d& target_world);
 
 }  // namespace houghstream::world

@@ -6,12 +6,12 @@
 
 namespace houghstream::world {
 
-/// The factor on the light that automatic exposure settles at for a picture (CV_32FC3, linear). Cameras do not follow
+/// The factor on the light that automatic exposure settles at for an image (CV_32FC3, linear). Cameras do not follow
 /// the scene's brightness all the way: dark rooms stay darker.
 double automatic_exposure(const cv::Mat& radiance, const ColourCameraSettings& settings);
 
-/// The picture a colour camera takes of linear light (CV_32FC3 BGR): lens blur, vignetting, automatic exposure
-/// unless the settings fix it, white balance, shot and read noise, sRGB. Returns CV_8UC3 BGR. Same seed, same picture.
+/// The image a colour camera takes of linear light (CV_32FC3 BGR): lens blur, vignetting, automatic exposure
+/// unless the settings fix it, white balance, shot and read noise, sRGB. Returns CV_8UC3 BGR. Same seed, same image.
 cv::Mat simulate_colour_camera(const cv::Mat& radiance, const ColourCameraSettings& settings, std::uint64_t seed);
 
 /// Deviation of a camera's processing from plain sRGB; the defaults have none. The steps and their order are those of

@@ -22,7 +22,7 @@ World shaded_floor() {
 
 Light lamp() {
   Light light;
-  light.position_world = {0.0, 0.001, 3.0};  // not straight above, where the picture has no upright
+  light.position_world = {0.0, 0.001, 3.0};  // not straight above, where the image has no upright
   return light;
 }
 
