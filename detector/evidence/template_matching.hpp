@@ -55,9 +55,9 @@ class BoundaryContinuation {
     both_ += surface * houghstream::textured_colour_continuation(seen);
   }
 
-  float surface_goes_on() const { return fraction(surface_); }  ///< straight on from within
-  float colour_goes_on() const { return fraction(colour_); }    ///< the same colour, with no step back in depth
-  float goes_on() const { return fraction(both_); }             ///< the surface, in the same colour
+  float surface() const { return fraction(surface_); }  ///< straight on from within
+  float colour() const { return fraction(colour_); }    ///< the same colour, with no step back in depth
+  float joint() const { return fraction(both_); }       ///< the surface, in the same colour
 
  private:
   float fraction(float sum) const { return count_ > 0 ? sum / static_cast<float>(count_) : 0.0F; }

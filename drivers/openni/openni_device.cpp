@@ -40,7 +40,7 @@ FirstImages read_first_images(const std::string& file) {
   FirstImages first;
   while (std::min(first.depth.size(), first.colour.size()) < kCompared && !device->ended()) {
     const std::optional<SensorImage> image = device->wait(kFileTimeout);
-    if (image && first.of(image->sensor).size() < kCompared) first.of(image->sensor).push_back(remember(*image));
+    if (image && first.of(image->sensor).size() < kCompared) first.of(image->sensor).push_back(make_thumbnail(*image));
   }
   return first;
 }

@@ -111,10 +111,10 @@ VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model
   const Verification seen = verify_pose(frame, model.mesh, T_camera_object, {kToleranceM, DepthNoise{}});
   const int judged = seen.depth_inliers + seen.free_space_violations + seen.occluded;
   if (seen.rendered < kMinPx || judged < kMeasured * seen.rendered) return {};
-  VisibilityCheck look;
+  VisibilityCheck visibility;
   visibility.free_space_violation =
       static_cast<double>(seen.free_space_violations) / std::max(1, seen.depth_inliers + seen.free_space_violations);
-  look.is_boundary_continued = seen.boundary_continuations > 0.5F * static_cast<float>(seen.boundary_samples);
+  visibility.is_boundary_continued = seen.boundary_continuations > 0.5F * static_cast<float>(seen.boundary_samples);
   visibility.state = TrackState::kUnrecognised;
   if (visibility.free_space_violation > kThrough) visibility.state = TrackState::kGone;
   if (seen.occluded > kHidden * judged) visibility.state = TrackState::kHidden;
