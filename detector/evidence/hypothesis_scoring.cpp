@@ -138,7 +138,7 @@ void HypothesisScorer::add_best_match(const Hypothesis& hypothesis, float spread
     const PlacedTemplate best = refine_over_neighbours(seed);
     Evidence refined = unrefined;
     set_match(best, refined);
-    refined.other_size = alternative_scale_gain(views_[best.view], best, input_.frame);
+    refined.alternative_scale_gain = alternative_scale_gain(views_[best.view], best, input_.frame);
     const double odds = score_logit(kCommon, score_terms(refined));
     if (odds <= max_log_odds) continue;
     max_log_odds = odds;

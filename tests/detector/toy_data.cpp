@@ -87,17 +87,17 @@ std::vector<TrainingView> training_views() {
     TrainingView view;
     view.class_id = 1 + i % 2;
     view.class_name = view.class_id == 1 ? "stripes" : "rings";
-    view.frame = room(1000 + static_cast<std::uint64_t>(i));
+    view.frame = background(1000 + static_cast<std::uint64_t>(i));
     view.mask = put_tile(view.class_id - 1, 159.5, 119.5, 0.7, view.frame);
     view.T_camera_object.translation() = Eigen::Vector3d(0, 0, 0.7);
     view.source = "toy view " + std::to_string(i);
     views.push_back(view);
   }
   for (int i = 0; i < 10; ++i) {
-    TrainingView background;
-    background.frame = room(2000 + static_cast<std::uint64_t>(i));
-    background.source = "toy room " + std::to_string(i);
-    views.push_back(background);
+    TrainingView empty;
+    empty.frame = background(2000 + static_cast<std::uint64_t>(i));
+    empty.source = "toy room " + std::to_string(i);
+    views.push_back(empty);
   }
   return views;
 }

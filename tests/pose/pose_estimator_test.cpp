@@ -172,7 +172,7 @@ TEST(PoseEstimator, AClassThatHasAQualityOfItsOwnIsJudgedByThat) {
   EXPECT_LT(withheld.quality, 0.01F);
   EXPECT_EQ(withheld.status, PoseStatus::kLowScore) << "by its own weights and typical values";
   EXPECT_FALSE(withheld.T_camera_object.has_value());
-  doubtful.minimum = 0.0F;
+  doubtful.min_quality = 0.0F;
   EXPECT_EQ(found("mug", doubtful).status, PoseStatus::kValid) << "by its own least quality";
   EXPECT_EQ(found("box", doubtful).quality, by_default.quality) << "another class's";
 }

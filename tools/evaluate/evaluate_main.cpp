@@ -160,7 +160,7 @@ void run(EvaluateOptions options) {
   if (!options.log.empty()) add_log(options, !forest, truth, scenes.front());
   choose_frames(options, scenes);
   if (options.log.empty()) {
-    options.rules.min_quality = options.pose.quality.minimum;
+    options.rules.min_quality = options.pose.quality.min_quality;
     options.rules.ranked_from = search_in_process(options, *std::move(forest), meshes, scenes);
   }
   const SceneFigures figures =

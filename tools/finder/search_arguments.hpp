@@ -31,7 +31,7 @@ inline CommandOption add_min_mass_option(CommandLine& app, SearchOptions& option
 }
 
 inline CommandOption add_min_quality_option(CommandLine& app, std::optional<float>& min_quality) {
-  return app.add_option("--min-quality", min_quality).range(range_of(&QualitySettings::minimum));
+  return app.add_option("--min-quality", min_quality).range(range_of(&QualitySettings::min_quality));
 }
 
 }  // namespace houghstream

@@ -188,7 +188,7 @@ int main(int argc, char** argv) {
       .description(
           fmt::format("poses that are right with a lower probability are withheld, and it is said why; default: {}, of "
                       "a store's objects {}, of candidates of these {}",
-                      options.settings.quality.minimum, kStoreQuality, kStoreCandidateQuality));
+                      options.settings.quality.min_quality, kStoreQuality, kStoreCandidateQuality));
   app.add_flag(
       "--follow", options.follow,
       "follow known objects from frame to frame: poses for each frame, at once, whether detections come or not");

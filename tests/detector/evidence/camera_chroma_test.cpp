@@ -44,7 +44,7 @@ std::vector<ScoredHypothesis> weighed(const Forest& forest, const RgbdFrame& fra
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     hypotheses[i].class_index = i;
     hypotheses[i].centre_camera = {0.0F, 0.0F, toy::kDistance};
-    hypotheses[i].mass = 0.02F;
+    hypotheses[i].vote_mass = 0.02F;
     hypotheses[i].weight = 1.0F;
     hypotheses[i].views = {{static_cast<std::uint32_t>(i), 1.0F}};
   }

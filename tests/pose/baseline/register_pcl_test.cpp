@@ -58,7 +58,7 @@ TEST(RegisterPcl, SurvivesOneFlatFace) {
 TEST(RegisterPcl, IsAnEngineOfTheEstimator) {
   PoseSettings settings;
   settings.registration.engine = register_pcl;
-  settings.quality.minimum = 0.3F;  // it places the box less exactly, and its outline beside where the colour ends
+  settings.quality.min_quality = 0.3F;  // it places the box less exactly, and its outline beside where the colour ends
   const PoseEstimator estimator({{"box", cereal_box()}}, settings);
   for (int i = 0; i < 3; ++i) {
     const RegistrationScene scene(cereal_box(), -0.13, standing(70.0 * i + 20.0, 30.0, 0.8 + 0.2 * i));

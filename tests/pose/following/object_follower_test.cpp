@@ -225,7 +225,7 @@ TEST(ObjectFollower, WhatIsFoundFramesLaterIsFollowedFromThere) {
 /// that reject hardly any pose.
 double handle_error_after_a_turn(FollowerSettings settings) {
   PoseSettings lenient;
-  lenient.quality.minimum = 0.01F;
+  lenient.quality.min_quality = 0.01F;
   const PoseEstimator estimator({{"mug", mug()}}, lenient);
   Following it(Film().with("mug", mug(), 0.0, 0.05), settings);
   it.follower.follow(estimator, it.film.next());

@@ -48,7 +48,7 @@ TEST(SurfaceColour, ATextureIsReadWhereItIsMappedAndFinePrintIsAveraged) {
 
 TEST(SurfaceColour, AMeshWithoutColoursHasNone) {
   const Mesh mesh = square();
-  EXPECT_FALSE(SurfaceColour(mesh, 0.002).known());
+  EXPECT_FALSE(SurfaceColour(mesh, 0.002).has_colour());
 }
 
 }  // namespace

@@ -96,11 +96,11 @@ TEST(QualityTraining, TypicalValuesAreTheMeansOfRightPosesAndTheLeastQualityIsTh
   examples[1].is_correct_up_to_shape = true;
   examples[2].terms.outline = -2.0;
   QualitySettings prior;
-  prior.minimum = 0.77F;
+  prior.min_quality = 0.77F;
   const QualitySettings found = fit_quality_settings(examples, prior, 1.0);
   EXPECT_DOUBLE_EQ(found.mean_of_correct.outline, 3.0);
   EXPECT_DOUBLE_EQ(found.mean_of_correct.visible, 0.0);
-  EXPECT_EQ(found.minimum, 0.77F);
+  EXPECT_EQ(found.min_quality, 0.77F);
   const QualitySettings none_right = fit_quality_settings({examples[2]}, prior, 1.0);
   EXPECT_DOUBLE_EQ(none_right.mean_of_correct.outline, prior.mean_of_correct.outline);
   EXPECT_LT(none_right.bias, prior.bias) << "a wrong pose speaks against all";

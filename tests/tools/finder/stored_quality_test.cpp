@@ -32,7 +32,7 @@ store::ObjectStore store_with(const nlohmann::json& quality) {
 TEST(StoredQuality, ComesBackFromJsonAsItWas) {
   const auto json = nlohmann::json::parse(quality_to_json(learnt()).dump());
   QualitySettings others;
-  others.minimum = 0.35F;
+  others.min_quality = 0.35F;
   const std::map<std::string, QualitySettings> read = stored_quality(store_with(json), others);
   ASSERT_EQ(read.size(), 1U) << "nothing was learnt of the bowl";
   const QualitySettings& mug = read.at("mug");
@@ -44,7 +44,7 @@ TEST(StoredQuality, ComesBackFromJsonAsItWas) {
   EXPECT_EQ(mug.presence.bias, learnt().presence.bias);
   EXPECT_EQ(mug.presence.score_weight, learnt().presence.score_weight);
   EXPECT_EQ(mug.presence.quality_weight, learnt().presence.quality_weight);
-  EXPECT_EQ(mug.minimum, 0.35F) << "the threshold is its reader's";
+  EXPECT_EQ(mug.min_quality, 0.35F) << "the threshold is its reader's";
 }
 
 TEST(StoredQuality, AStoreThatKnowsNothingOfPresenceIsReadWithThatOfOthers) {

@@ -24,7 +24,7 @@ void expect_same(const ObjectModel& a, const ObjectModel& b) {
   EXPECT_TRUE(same_bytes(a.mesh.texture, b.mesh.texture));
   EXPECT_EQ(a.centre, b.centre);
   EXPECT_EQ(a.vote_centre, b.vote_centre);
-  EXPECT_EQ(a.middle, b.middle);
+  EXPECT_EQ(a.surface_median, b.surface_median);
   EXPECT_EQ(a.axes, b.axes);
   EXPECT_EQ(a.radius, b.radius);
   ASSERT_EQ(a.shape_symmetries.discrete.size(), b.shape_symmetries.discrete.size());

@@ -81,7 +81,7 @@ class Study {
     }
     constexpr std::uint64_t kRooms = 0x636F6C6F757273ULL;
     const world::CalibrationScenes scenes(std::move(objects), settings_.seed ^ kRooms);
-    constexpr int kEach = world::CalibrationScenes::kFramesPerRoom;
+    constexpr int kEach = world::CalibrationScenes::kFramesPerScene;
     frames_.resize(static_cast<std::size_t>(settings_.rooms * kEach));
     parallel_for(settings_.threads, settings_.rooms, [&](int room) {
       auto rendered = scenes.render(room);
@@ -125,7 +125,7 @@ class Study {
     const PoseEstimator as_taught = estimator(false);
     const PoseEstimator learning = estimator(true);
     PerWorker<DetectorWorkspace> workspaces;
-    workspaces.make_room(settings_.threads);
+    workspaces.resize(settings_.threads);
     std::vector<Found> found(cameras.size());
     ProgressLine progress("cameras", static_cast<double>(cameras.size()));
     parallel_for_workers(settings_.threads, static_cast<int>(cameras.size()), [&](int worker, int camera) {

@@ -70,11 +70,11 @@ void run(const LearnOptions& options) {
           scenes, scenes == 1 ? "" : "s", quality::kMinScenes);
   if (!options.out.empty()) require_writable(options.out);
   const quality::Learnt learnt = quality::learn_quality(gather(options));
-  const quality::Published published = quality::published_from(learnt.checked, learnt.settings.minimum);
+  const quality::Published published = quality::published_from(learnt.checked, learnt.settings.min_quality);
   fmt::print(
       "// {} poses in {} scenes, {} right; from {:.2f} on {} of {} right in scenes that the fit has not seen\n"
       "// the numbers in use: {} of {} right\n{}",
-      learnt.examples, learnt.scenes, learnt.correct, learnt.settings.minimum, published.correct, published.poses,
+      learnt.examples, learnt.scenes, learnt.correct, learnt.settings.min_quality, published.correct, published.poses,
       learnt.in_use.correct, learnt.in_use.poses, quality::to_initialisers(learnt.settings));
   if (!options.out.empty()) write_json(quality::to_json(learnt), options.out);
 }

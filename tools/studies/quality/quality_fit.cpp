@@ -131,7 +131,7 @@ Learnt learn_quality(const std::vector<Example>& examples) {
           examples.size(), 100.0 * kCorrectFraction);
   learnt.settings.min_quality = *minimum;
   const QualitySettings in_use;
-  learnt.in_use = published_from(check_by(in_use, examples), in_use.minimum);
+  learnt.in_use = published_from(check_by(in_use, examples), in_use.min_quality);
   return learnt;
 }
 

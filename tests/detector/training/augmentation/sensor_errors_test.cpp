@@ -14,18 +14,18 @@ namespace houghstream::training {
 namespace {
 
 constexpr int kSide = 60;
-const cv::Rect kNear(20, 20, 20, 20);
+const cv::Rect kNearSquare(20, 20, 20, 20);
 
 /// Something near in the middle, a hole at the left.
-cv::Mat near_square() {
+cv::Mat image_with_near_square() {
   cv::Mat depth(kSide, kSide, CV_32FC1, cv::Scalar(1.5));
-  depth(kNear) = 0.5;
+  depth(kNearSquare) = 0.5;
   depth.colRange(0, 10) = std::numeric_limits<float>::quiet_NaN();
   return depth;
 }
 
 cv::Mat misregistered(std::uint64_t seed) {
-  cv::Mat depth = near_square();
+  cv::Mat depth = image_with_near_square();
   Random random(seed);
   misregister(1.0, depth, random);
   return depth;
@@ -39,12 +39,12 @@ TEST(Misregistration, MisregisteredDepthIsGrownAndMovedByAtMostTwoPixels) {
     const cv::Rect near = cv::boundingRect(depth == 0.5F);
     EXPECT_EQ(near.area(), cv::countNonZero(depth == 0.5F)) << "no other depth comes up";
     EXPECT_EQ(cv::countNonZero(depth == 0.5F) + cv::countNonZero(depth == 1.5F), cv::countNonZero(depth == depth));
-    for (const int grown : {near.width - kNear.width, near.height - kNear.height}) {
+    for (const int grown : {near.width - kNearSquare.width, near.height - kNearSquare.height}) {
       EXPECT_GE(grown, 0);
       EXPECT_LE(grown, 4);
       was_grown = was_grown || grown == 4;
     }
-    const cv::Point moved = (near.tl() + near.br()) - (kNear.tl() + kNear.br());
+    const cv::Point moved = (near.tl() + near.br()) - (kNearSquare.tl() + kNearSquare.br());
     EXPECT_LE(std::abs(moved.x), 4) << "twice the way of the middle";
     EXPECT_LE(std::abs(moved.y), 4);
     was_moved = was_moved || std::abs(moved.x) == 4;
@@ -61,10 +61,10 @@ TEST(Misregistration, HolesStayHoles) {
 }
 
 TEST(Misregistration, WithoutStrengthDepthStaysAsItIs) {
-  cv::Mat depth = near_square();
+  cv::Mat depth = image_with_near_square();
   Random random(1);
   misregister(0.0, depth, random);
-  EXPECT_EQ(cv::countNonZero(depth == near_square()), 50 * kSide) << "a hole is not equal to itself";
+  EXPECT_EQ(cv::countNonZero(depth == image_with_near_square()), 50 * kSide) << "a hole is not equal to itself";
   const TrainingView view = toy::training_views().front();
   const TrainingView same = perturb_shape(view, 0.0, random);
   EXPECT_EQ(cv::norm(same.frame.depth, view.frame.depth, cv::NORM_INF, view.mask), 0.0);
@@ -175,7 +175,7 @@ cv::Mat noisy(double ratio) {
   return depth;
 }
 
-double deviation(const cv::Mat& values) {
+double stddev_of(const cv::Mat& values) {
   cv::Scalar mean;
   cv::Scalar sigma;
   cv::meanStdDev(values, mean, sigma);
@@ -186,13 +186,13 @@ double deviation(const cv::Mat& values) {
 /// Returns the deviation of neighbouring pixels' difference over that of all pixels: 1.41 where they are independent.
 double contrast_of(const cv::Mat& values) {
   cv::Mat difference = values.colRange(1, values.cols) - values.colRange(0, values.cols - 1) + 0.7;
-  return deviation(difference) / deviation(values);
+  return stddev_of(difference) / stddev_of(values);
 }
 
 TEST(FarNoise, AddsWhatTheLargerDistanceHasMore) {
   for (const double ratio : {1.5, 2.3}) {
     const double expected = std::sqrt(std::pow(axial_noise(0.7 * ratio), 2) - std::pow(axial_noise(0.7), 2));
-    EXPECT_NEAR(deviation(noisy(ratio)), expected, 0.25 * expected) << ratio;  // interpolation takes some of it
+    EXPECT_NEAR(stddev_of(noisy(ratio)), expected, 0.25 * expected) << ratio;  // interpolation takes some of it
   }
 }
 
