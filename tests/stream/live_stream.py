@@ -6,7 +6,7 @@ import os
 import subprocess
 import time
 
-from result_values import detections_by_utime
+from heard import detections_by_utime
 from houghstream.event_log import read_log
 from studies.stream import Process
 
@@ -87,6 +87,6 @@ def check_live_stream(tools, folder, start_stream, offline):
     assert back["t_frame"] < 2.0, back
     known = list(offline.values())
     heard = detections_by_utime(read_log(folder / "live_results.log"))
-    for utime, found in result_values.items():
+    for utime, found in heard.items():
         assert found in known, f"frame {utime}: other detections than of any of the scene's pictures"
     print(f"{len(heard)} frames detected live, each with the detections of its picture")

@@ -10,7 +10,7 @@ import sys
 import time
 
 from folders import read_arguments
-from result_values import detections_by_utime, detections_of
+from heard import detections_by_utime, detections_of
 from houghstream.event_log import read_log
 from studies.wire_patch import frame_of
 from studies.network import URL, Network
@@ -90,7 +90,7 @@ def main():
     offline = detections_by_utime(read_log(made / "results.log"))
     with Network("b") as network:
         heard = stream(tools, made, folder, network)
-    for channel, detections in result_values.items():
+    for channel, detections in heard.items():
         assert detections, f"{channel}: nothing was heard"  # how many depends on how busy the machine is
         for utime, found in detections.items():
             assert found == offline[utime], (channel, utime)
