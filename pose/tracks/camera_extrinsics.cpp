@@ -72,7 +72,7 @@ void add_cameras(const YAML::Node& cameras, const std::string& file, Links& link
     const std::string& name = entry.first.Scalar();
     const YAML::Node& node = entry.second;
     const std::string of = fmt::format("{}: camera {}", file, printable(name));
-    require(links.count(name) == 0, "duplicate {}", of);
+    require(links.count(name) == 0, "{}: duplicate camera {}", file, printable(name));
     require(node.IsMap(), "{}: expected translation and rotation", of);
     const YAML::Node parent = yaml_member(node, "parent");
     links[name] = {parent.IsDefined() && parent.IsScalar() ? parent.Scalar() : "world",

@@ -14,7 +14,7 @@ import sys
 COMMAND = re.compile(r"(?:[\w$./-]*/)?(hs-[a-z-]+)\s+(\S.*)")
 SPAN = re.compile(r"`([^`\n]+)`")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]+")
-WITH_SUBCOMMANDS = ("hs-teach", "hs-log", "hs-render", "hs-import")
+WITH_SUBCOMMANDS = ("hs-teach", "hs-log", "hs-render", "hs-import", "hs-study")
 NO_HELP = ("hs-spy",)  # a script of Java's, whose options are lcm-spy's
 MADE = ("out", "build")
 

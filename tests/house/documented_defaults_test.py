@@ -5,7 +5,7 @@ import unittest
 import documented_defaults
 import seeded_faults
 
-ROWS = (("pose/README.md", r"from quality ([\d.]+) on", "pose/quality.hpp", r"least = ([\d.]+)F"),)
+ROWS = (("pose/README.md", r"from quality ([\d.]+) on", "pose/quality.hpp", r"min_quality = ([\d.]+)F"),)
 
 
 def faults_of(document, source):

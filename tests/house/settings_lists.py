@@ -16,7 +16,7 @@ from named_fields import closing_of, code_of, fields_of, plain
 TOP = ("pipeline", "drivers", "detector", "pose", "tools")
 ANY_VALUE = {
     "FeatureSettings::families",  # a set of bits, of which check_settings(FeatureSettings) knows the names
-    "PictureSettings::seed",
+    "AugmentationSettings::seed",
 }
 LIST = re.compile(r"void fields\(const ([\w:]+)&[^)]*\)\s*\{")
 NUMBER = re.compile(r"(?:std::)?(?:float|double|int|unsigned|long|size_t|u?int(?:8|16|32|64)_t)$")

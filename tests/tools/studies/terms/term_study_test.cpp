@@ -131,9 +131,9 @@ TEST(TermStudy, TableAndJsonHaveTheGroupsSideBySide) {
               {}, group);
   }
   const std::string text = table(groups, {});
-  EXPECT_NE(text.find("likeness                       0.75   1.50      -      -   0.25   0.50"), std::string::npos)
+  EXPECT_NE(text.find("colour_correlation             0.75   1.50      -      -   0.25   0.50"), std::string::npos)
       << text;
-  EXPECT_NE(text.find("true ones of cat against rendered: likeness -1.00"), std::string::npos) << text;
+  EXPECT_NE(text.find("true ones of cat against rendered: colour_correlation -1.00"), std::string::npos) << text;
   const OrderedJson json = to_json(groups, {});
   EXPECT_EQ(json["cat"]["true"]["colour_correlation"]["contribution"], 0.5);
   EXPECT_EQ(json["rendered"]["reported"], 1);
