@@ -6,7 +6,7 @@ import os
 import subprocess
 import time
 
-from heard import detections_by_utime
+from result_values import detections_by_utime
 from houghstream.event_log import read_log
 from studies.stream import Process
 

@@ -10,7 +10,7 @@ import sys
 import time
 
 from folders import read_arguments
-from heard import detections_by_utime, detections_of
+from result_values import detections_by_utime, detections_of
 from houghstream.event_log import read_log
 from studies.wire_patch import frame_of
 from studies.network import URL, Network
