@@ -237,9 +237,10 @@ def start(tools, made, folder):
     (folder / "first").mkdir()
     (folder / "second").mkdir()
     threads = ("--threads", 1, "-c", "LEFT|RIGHT")
+    alone = (*threads, "--no-camera-colours")
     return [
-        Process(folder / "first", tools / "hs-detect", "--forest", made / "small.forest", "--threshold", THRESHOLD, *threads),
-        Process(folder / "second", tools / "hs-detect", "--forest", folder / "twin.forest", "--threshold", THRESHOLD, *threads),
+        Process(folder / "first", tools / "hs-detect", "--forest", made / "small.forest", "--threshold", THRESHOLD, *alone),
+        Process(folder / "second", tools / "hs-detect", "--forest", folder / "twin.forest", "--threshold", THRESHOLD, *alone),
         Process(folder, tools / "hs-pose", "--models", folder / "models", *threads),
         Process(folder, tools / "hs-view", "--models", folder / "models", "-c", "LEFT|RIGHT", "--rate", 2,
                 "--pictures", folder / "pictures"),
