@@ -86,6 +86,16 @@ class Manager:
         for folder in sorted((self.group, *filter(pathlib.Path.is_dir, self.group.rglob("*"))), reverse=True):
             folder.rmdir()
 
+    def rights_of(self, unit, seconds):
+        """What the kernel says of the unit's process: of the next one where that ends meanwhile."""
+        end = time.monotonic() + seconds
+        while True:
+            try:
+                return pathlib.Path(f"/proc/{self.show(unit, 'MainPID')}/status").read_text()
+            except (FileNotFoundError, ProcessLookupError):
+                assert time.monotonic() < end, self.tell("status", "--no-pager", f"houghstream-{unit}")
+                time.sleep(0.05)
+
     def wait_for_another(self, unit, pid, seconds):
         """How long until another process than this one has started."""
         start = time.monotonic()
@@ -113,7 +123,7 @@ def check_units(tools, made, folder):
     manager.tell("start", *(f"houghstream-{name}" for name in names))
     for name in names:
         manager.wait_for_another(name, 0, 30)  # capture ends with its scene while pose gets ready, and begins anew
-        rights = pathlib.Path(f"/proc/{manager.show(name, 'MainPID')}/status").read_text()
+        rights = manager.rights_of(name, 30)
         assert "NoNewPrivs:\t1" in rights and "Seccomp:\t2" in rights, rights
     killed = int(manager.show("pose", "MainPID"))
     assert killed > 1
