@@ -15,9 +15,13 @@ struct Witness {
   float probability = 0.0F;  ///< that it is an object of its class, whatever the camera's colours
 };
 
+/// Of a candidate that has a view.
+std::size_t class_index_of(const Forest& forest, const ScoredHypothesis& candidate) {
+  return forest.views[candidate.evidence.view].class_index;
+}
+
 const ObjectClass& class_of(const Forest& forest, const ScoredHypothesis& candidate) {
-  return *std::find_if(forest.classes.begin(), forest.classes.end(),
-                       [&](const ObjectClass& object) { return object.class_id == candidate.detection.class_id; });
+  return forest.classes[class_index_of(forest, candidate)];
 }
 
 bool is_beside(const ScoredHypothesis& a, const ScoredHypothesis& b, float radius) {
@@ -118,6 +122,7 @@ void judge_again(const ScoringInput& input, int threads, std::vector<ScoredHypot
     ScoredHypothesis& candidate = candidates[static_cast<std::size_t>(i)];
     Evidence& evidence = candidate.evidence;
     if (evidence.view == Evidence::kNoView) return;
+    if (!input.frame.cameras[class_index_of(forest, candidate)].is_learnt()) return;  // its colours are as taught
     const ScoreModel& model = class_of(forest, candidate).score_model;
     if (score_as_taught(model, evidence) < kHopeless) return;
     evidence.fit = match_template(forest.views[evidence.view], evidence.view_centre, input.frame);

@@ -10,10 +10,10 @@ namespace houghstream {
 /// score_hypotheses(), with the view templates brought to the colours of the camera (ChromaMap), so that a cast,
 /// which all objects of a frame share, speaks against none of them. How the camera renders colours is learnt of what
 /// earlier frames told (`colours`) and of the likely candidates of the frame together, for each class without itself:
-/// what an object is judged by may not be learnt of itself. Where nothing was remembered and the camera turns out to be
-/// far from what was taught, everything is weighed again. Where no other class is known or likely, scores are as
-/// taught; in an image without colours chroma speaks neither for a candidate nor against it. The same for any number
-/// of threads.
+/// what an object is judged by may not be learnt of itself. Where the camera turns out to be far from what was
+/// remembered of it, or from what was taught if nothing was, everything is weighed again. Where no other class is known
+/// or likely, scores are as taught; in an image without colours chroma speaks neither for a candidate nor against it.
+/// The same for any number of threads.
 std::vector<ScoredHypothesis> weigh_in_camera_colours(const ScoringInput& input, const std::vector<ChromaPair>& colours,
                                                       const std::vector<Hypothesis>& hypotheses, int threads,
                                                       ScoringWorkspace& workspace);

@@ -50,11 +50,7 @@ std::vector<ChromaPair> CameraColours::pairs() const {
 }
 
 ChromaMap CameraColours::map_without(const std::string& class_name) const {
-  std::vector<ChromaPair> others;
-  for (const auto& [name, pair] : remembered_) {
-    if (name != class_name) others.push_back(pair);
-  }
-  return fit_chroma_map(others);
+  return fit_chroma_map_without(class_name, pairs());
 }
 
 ChromaMap CameraColours::map() const {

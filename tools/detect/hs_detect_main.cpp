@@ -82,11 +82,7 @@ class KnownColours {
 };
 
 /// A forest stays what it is.
-void run_with_forest(DetectOptions options) {
-  KnownColours colours;
-  if (!options.ignore_camera_colours)
-    if (!options.ignore_camera_colours)
-      options.process.on_camera_colours = [&](const CameraChroma& learnt) { colours.update(learnt); };
+void run_with_forest(const DetectOptions& options, const KnownColours& colours) {
   const std::shared_future<RgbdFrame> made_up = start_warm_up();
   const ReadyDetector ready(make_detector(load_forest(options.forest_file), options.search), made_up.get());
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
@@ -96,9 +92,7 @@ void run_with_forest(DetectOptions options) {
 }
 
 /// A store may change while frames go by: each frame is searched by what is there when its turn comes.
-void run_with_store(DetectOptions options) {
-  KnownColours colours;
-  options.process.on_camera_colours = [&](const CameraChroma& learnt) { colours.update(learnt); };
+void run_with_store(DetectOptions options, const KnownColours& colours) {
   const std::shared_future<RgbdFrame> made_up = start_warm_up();
   store::StoreWatcher<ReadyDetector> watch(options.objects, [&](const store::ObjectStore& store) {
     return load_detector(store, options.search, made_up.get());
@@ -154,6 +148,9 @@ int main(int argc, char** argv) {
     require_output_log(options.url, options.output_log);
     for (const std::string& input : {options.forest_file, options.objects})
       require_other_file(options.output_log, input);
-    options.objects.empty() ? run_with_forest(options) : run_with_store(options);
+    KnownColours colours;
+    if (!options.ignore_camera_colours)
+      options.process.on_camera_colours = [&](const CameraChroma& learnt) { colours.update(learnt); };
+    options.objects.empty() ? run_with_forest(options, colours) : run_with_store(options, colours);
   });
 }
