@@ -54,13 +54,19 @@ class DetectProcess {
                                             : newest_.push(frame.id.channel, std::move(waiting), frame.bytes.size);
   }
 
-  /// Receives the poses of followed objects: where one is lost, the camera's next detection is expedited.
+  /// Of what is followed: where something is lost, or has become doubtful, the camera is looked at soon.
   void note_losses(const ReceivedResult& result) {
     const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(result.bytes));
+    constexpr float kDoubtful = 0.5F;
+    int followed = 0;
+    int doubtful = 0;
     for (const ObjectPose& pose : poses.poses) {
       const bool is_lost = !has_pose(pose.status) && pose.status != PoseStatus::kOccluded;
       if (pose.detection_index < 0 && is_lost) throttle_.expedite(poses.frame.channel);
+      followed += pose.detection_index < 0 ? 1 : 0;
+      doubtful += pose.detection_index < 0 && has_pose(pose.status) && pose.quality < kDoubtful ? 1 : 0;
     }
+    if (followed > 0) throttle_.note_doubts(poses.frame.channel, doubtful);
   }
 
   bool step(std::chrono::milliseconds timeout) {

@@ -16,8 +16,9 @@ class DetectionThrottle {
   /// channels without end.
   static constexpr std::size_t kCameras = 64;
 
-  /// 0: at every frame.
-  explicit DetectionThrottle(double max_rate_hz) : max_rate_hz_(max_rate_hz) {}
+  /// 0: at every frame. Of a camera's first `start_s` seconds every frame is looked at: nothing is followed yet, and
+  /// what is not found in one frame may be found in the next.
+  explicit DetectionThrottle(double max_rate_hz, double start_s = 0.5) : max_rate_hz_(max_rate_hz), start_s_(start_s) {}
 
   /// Returns whether this frame is searched: enough time has passed since the camera's last detection. Times that go
   /// back by more than a second restart the interval; a frame that is older by less was overtaken in transit.
@@ -27,14 +28,21 @@ class DetectionThrottle {
   /// results may name any camera.
   void expedite(const std::string& channel);
 
+  /// So many of a camera's followed poses are doubtful: where they are more than the last time, the next look comes
+  /// forward as after hurry(). What stays doubtful, an object without colours, hurries nobody.
+  void note_doubts(const std::string& channel, int doubtful);
+
  private:
   struct Camera {
     bool was_due = false;
     bool is_expedited = false;
-    std::int64_t last_utime = 0;  // of a look
+    int doubtful = 0;
+    std::int64_t last_utime = 0;   // of a look
+    std::int64_t first_utime = 0;  // of the first one
   };
 
   double max_rate_hz_;
+  double start_s_;
   std::map<std::string, Camera> cameras_;  // by channel
 };
 

@@ -45,34 +45,45 @@ ObjectObservation see_expected(const FrameContext& frame, const ObjectModel& mod
   return observe_object(frame, expected, model, settings.region);
 }
 
-RegistrationResult register_near(const ObjectObservation& seen, const Eigen::Isometry3d& start,
-                                 const ExpectedObject& expected, const FollowerInput& input) {
-  const PoseSettings& settings = input.pose;
-  const FollowSettings& follow = input.follow;
-  const CorrespondenceDistances distances = correspondence_distances(seen, settings.registration);
-  const double end_m = distances.end;
-  const double start_m = expected.is_lost ? distances.start : std::max(end_m, follow.max_correspondence_start_m);
-  RegistrationStage coarse;
-  coarse.iterations = expected.is_lost ? settings.registration.coarse_iterations : follow.coarse_iterations;
-  coarse.points = follow.coarse_points;
-  coarse.max_correspondence_start_m = start_m;
-  coarse.max_correspondence_end_m = end_m;
-  RegistrationResult result = settings.registration.engine(seen, start, coarse, settings.registration);
-  if (expected.refine_by_texture && result.inliers > 0) {
+bool has_depth(const ObjectObservation& seen, const FollowerInput& input) {
+  return seen.region.points >= input.pose.region.min_points;
+}
+
+/// Whether any depth is measured where the object should be, at whatever distance.
+bool is_depth_measured(const ObjectObservation& seen, const FollowerInput& input) {
+  const cv::Mat part = seen.frame.depth(seen.region.box_px);
+  return cv::countNonZero(part == part) >= input.pose.region.min_points;  // NaN differs from itself
+}
+
+/// The print moves the pose a little, where depth and silhouette leave it free.
+RefinePose texture_refinement(const ObjectObservation& seen, const FollowerInput& input) {
+  return [&](const Eigen::Isometry3d& T_camera_object) {
+    const FollowSettings& follow = input.follow;
     const HillClimb hill_climb{follow.refine_step_deg * kRadPerDeg, follow.refine_step_m, follow.refine_rounds,
                                follow.refine_points};
-    const DepthTolerance tolerance{settings.verification.tolerance_m, seen.noise};
-    result.T_camera_object = hill_climb_pose(seen, result.T_camera_object, hill_climb, tolerance).T_camera_object;
+    const DepthTolerance tolerance{input.pose.verification.tolerance_m, seen.noise};
+    return hill_climb_pose(seen, T_camera_object, hill_climb, tolerance).T_camera_object;
+  };
+}
+
+JointResult register_near(const ObjectObservation& seen, const Eigen::Isometry3d& start, const ExpectedObject& expected,
+                          const FollowerInput& input) {
+  const RegistrationSettings& registration = input.pose.registration;
+  JointStart joint;
+  joint.T_camera_object = start;
+  joint.appearance = expected.appearance;
+  joint.depth_lag_m = expected.depth_lag_m;
+  int iterations = 0;
+  if (expected.is_lost) {
+    const RegistrationResult near =
+        register_coarsely(seen, start, correspondence_distances(seen, registration).start, registration);
+    joint.T_camera_object = near.T_camera_object;
+    iterations = near.iterations;
   }
-  RegistrationStage fine;
-  fine.iterations = follow.fine_iterations;
-  fine.points = follow.fine_points;
-  fine.max_correspondence_start_m = end_m;
-  fine.max_correspondence_end_m = end_m;
-  fine.search_steps = 1;
-  RegistrationResult last = settings.registration.engine(seen, result.T_camera_object, fine, settings.registration);
-  last.iterations += result.iterations;
-  return last;
+  if (expected.refine_by_texture && has_depth(seen, input)) joint.refine_by_texture = texture_refinement(seen, input);
+  JointResult result = register_jointly(seen, joint, input.follow.joint, registration);
+  result.registration.iterations += iterations;
+  return result;
 }
 
 /// Judges the pose, of an object that was reported before, by points of the view and the outline of an earlier frame,
@@ -94,12 +105,33 @@ void decide_followed(const ObjectObservation& seen, const ExpectedObject& expect
     followed.verified = expected.verified;
     followed.pose.chroma = chroma_pair(followed.pose.class_name, evidence, quality);
     decide_status(evidence, T, true, quality, followed.pose);
-    if (has_pose(followed.pose.status)) return;
+    // An outline of before says nothing for what the camera sees through by now.
+    const auto judged = static_cast<float>(evidence.depth.depth_inliers + evidence.depth.free_space_violations);
+    const bool is_present =
+        static_cast<float>(evidence.depth.free_space_violations) <= input.follow.max_free_space_violation * judged;
+    if (has_pose(followed.pose.status) && is_present) return;
+    followed.pose.T_camera_object.reset();
   }
   evidence.depth = verify_pose(seen.frame, seen.model.mesh, T, tolerance, &seen.colours);
   followed.verified = evidence.depth;
   followed.pose.chroma = chroma_pair(followed.pose.class_name, evidence, quality);
   decide_status(evidence, T, true, quality, followed.pose);
+}
+
+/// Judges the pose where no depth is measured: as it was judged last, less what its colours leave unexplained.
+void judge_without_depth(const ExpectedObject& expected, const JointResult& result, const FollowerInput& input,
+                         FollowedPose& followed) {
+  ObjectPose& pose = followed.pose;
+  const int judged = result.edges + result.blank;
+  const float explained = judged == 0 ? 0.0F : static_cast<float>(result.edges) / static_cast<float>(judged);
+  pose.shape_quality = expected.shape_quality * explained;
+  pose.quality = pose.shape_quality * expected.print_probability;
+  followed.verified = expected.verified;
+  const float minimum = class_quality_of(input.pose, pose.class_name).min_quality;
+  pose.status = PoseStatus::kTooFewPoints;
+  if (pose.shape_quality < minimum) return;
+  pose.status = pose.quality >= minimum ? PoseStatus::kValid : PoseStatus::kValidUpToSymmetry;
+  pose.T_camera_object = followed.T_camera_object;
 }
 
 /// Of an object of which nothing is known yet in this frame.
@@ -120,20 +152,30 @@ FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, co
   ObjectPose& pose = followed.pose;
   followed.T_camera_object = start;
   const ObjectObservation seen = see_expected(frame, model, start, settings);
-  if (seen.region.points < settings.region.min_points) {
+  followed.has_depth = has_depth(seen, input);
+  if (!followed.has_depth && (is_depth_measured(seen, input) || !expected.appearance.colours)) {
     pose.status = PoseStatus::kTooFewPoints;
     return followed;
   }
-  const RegistrationResult result = register_near(seen, start, expected, input);
-  copy_registration_evidence(result, pose);
-  const double jump_m = (middle_of(model, result.T_camera_object) - middle_of(model, start)).norm();
+  const JointResult result = register_near(seen, start, expected, input);
+  const RegistrationResult& registration = result.registration;
+  copy_registration_evidence(registration, pose);
+  followed.silhouette = result.silhouette;
+  followed.information = result.information;
+  followed.is_refined = expected.refine_by_texture && followed.has_depth;
+  const double jump_m = (middle_of(model, registration.T_camera_object) - middle_of(model, start)).norm();
   const double max_m = expected.is_lost ? settings.registration.max_shift_m : input.follow.max_jump_m;
-  if (result.inliers == 0 || !(jump_m <= max_m)) {
-    pose.status = PoseStatus::kNotConverged;
+  const bool is_measured = followed.has_depth ? registration.inliers > 0 : result.edges >= input.follow.min_edges;
+  if (!is_measured || !(jump_m <= max_m)) {
+    pose.status = followed.has_depth ? PoseStatus::kNotConverged : PoseStatus::kTooFewPoints;
     return followed;
   }
-  followed.T_camera_object = result.T_camera_object;
-  decide_followed(seen, expected, input, followed);
+  followed.T_camera_object = registration.T_camera_object;
+  if (followed.has_depth) {
+    decide_followed(seen, expected, input, followed);
+  } else {
+    judge_without_depth(expected, result, input, followed);
+  }
   return followed;
 }
 

@@ -8,6 +8,7 @@
 #include "pipeline/base/settings_fields.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
+#include "pose/following/joint_registration.hpp"
 #include "pose/pose_estimator.hpp"
 
 namespace houghstream {
@@ -15,12 +16,10 @@ namespace houghstream {
 /// How an object is found again in the next frame from where it is expected, without a detection. Between two frames it
 /// moves by little: few points and steps of registration do.
 struct FollowSettings {
-  int coarse_iterations = 5;
-  int coarse_points = 150;
-  double max_correspondence_start_m = 0.02;  ///< pairs farther apart have no weight, at first
-  int fine_iterations = 8;
-  int fine_points = 400;
+  JointSettings joint;
   double max_jump_m = 0.04;  ///< of the middle, from where it was expected: what ended farther away is something else
+
+  int min_edges = 40;  ///< lines of the silhouette by which a pose is measured where there is no depth
 
   // The print turns a round thing back, which depth alone lets drift.
   double refine_step_deg = 2.0;
@@ -35,12 +34,9 @@ struct FollowSettings {
 template <typename Visit>
 void fields(const FollowSettings& /*settings*/, const Visit& visit) {
   using S = FollowSettings;
-  visit(number("coarse_iterations", &S::coarse_iterations, 0, 1000));
-  visit(number("coarse_points", &S::coarse_points, 1, 100000));
-  visit(number("max_correspondence_start_m", &S::max_correspondence_start_m, 0, 1, "m"));
-  visit(number("fine_iterations", &S::fine_iterations, 0, 1000));
-  visit(number("fine_points", &S::fine_points, 1, 100000));
+  visit(group("joint", &S::joint));
   visit(number("max_jump_m", &S::max_jump_m, 0, 10, "m"));
+  visit(number("min_edges", &S::min_edges, 1, 100000));
   visit(number("refine_step_deg", &S::refine_step_deg, 0, 180, "degrees"));
   visit(number("refine_step_m", &S::refine_step_m, 0, 1, "m"));
   visit(number("refine_rounds", &S::refine_rounds, 0, 1000));
@@ -61,6 +57,9 @@ struct ExpectedObject {
   std::optional<Verification> verified;  ///< of an earlier frame: its outline is taken for this one's
   float print_probability = 1.0F;  ///< PoseEvidence::print_probability of the detection's pose that it goes on from
   ChromaMap camera_colours = {};   ///< by which its colours are judged
+  float shape_quality = 0.0F;      ///< of its last pose for which depth spoke
+  FollowedAppearance appearance;   ///< learnt in earlier frames
+  double depth_lag_m = 0.0;        ///< as JointStart has it
 };
 
 /// What came of it.
@@ -68,11 +67,16 @@ struct FollowedPose {
   ObjectPose pose;  ///< without a detection; its status says why where there is none, its residual is NaN then
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< where the best attempt ended, withheld or not
   std::optional<Verification> verified;                               ///< of the last rendering
+  bool has_depth = false;                                             ///< that it was judged by
+  bool is_refined = false;                       ///< its texture has moved it (ExpectedObject::refine_by_texture)
+  Matrix6d information = Matrix6d::Zero();       ///< JointResult::information of that attempt
+  std::shared_ptr<const Silhouette> silhouette;  ///< that it used last, or nothing
 };
 
 /// Finds objects that were posed in earlier frames in this one, in their order, without detections, on
-/// PoseSettings::threads threads. Registers the model from each start in turn until the evidence suffices: coarsely and
-/// finely as Stoiber et al. (2022) follow objects, by few points of the view, then verified as any pose is. Rendering
+/// PoseSettings::threads threads. Registers the model from each start in turn until the evidence suffices, to depth and
+/// to the edges of its colours (joint_registration.hpp), then verified as any pose is. Where no depth is measured the
+/// edges alone carry the pose on, with the quality that it had less what they leave unexplained. Rendering
 /// the model costs most: with an outline of an earlier frame, points of the view take its place as long as they
 /// suffice. What is withheld has always been rendered. Where nothing suffices and the object is hidden where it was
 /// expected first, its status is kOccluded (ExpectedObject::check_occlusion). Of a class without a model it is

@@ -25,6 +25,8 @@ ExpectedObject expected_at(const Eigen::Isometry3d& T_camera_object, const Follo
   expected.score = probability(object.score_logit);
   expected.initial_poses = {T_camera_object};
   expected.print_probability = object.print_probability;
+  expected.shape_quality = object.shape_quality;
+  expected.appearance = object.appearance;
   return expected;
 }
 
@@ -124,7 +126,8 @@ void update_from_detections(const Detections& detections, const DetectionAssocia
   }
 }
 
-/// The place in `followed_frame` of the detected object whose last doubt lies farthest back, if it is time; else -1.
+/// The place in `followed_frame` of the detected object whose last doubt lies farthest back, if it is time, or of one
+/// that is doubtful; else -1.
 int choose_recheck(const DetectionAssociation& look, const FollowerSettings& settings, FollowedCamera& camera) {
   const FollowedFrame& followed_frame = look.followed_frame;
   FollowedObject* chosen = nullptr;
@@ -132,8 +135,10 @@ int choose_recheck(const DetectionAssociation& look, const FollowerSettings& set
   for (const int match : look.matches) {
     FollowedObject* object =
         match >= 0 ? find_followed(followed_frame.numbers[static_cast<std::size_t>(match)], camera) : nullptr;
-    if (object == nullptr || seconds_between(object->recheck_us, followed_frame.clock_us) < settings.recheck_interval_s)
-      continue;
+    if (object == nullptr) continue;
+    const float quality = followed_frame.poses[static_cast<std::size_t>(match)].pose.shape_quality;
+    const double wait_s = quality < settings.doubtful_quality ? 0.0 : settings.recheck_interval_s;
+    if (seconds_between(object->recheck_us, followed_frame.clock_us) < wait_s) continue;
     if (chosen != nullptr && chosen->recheck_us <= object->recheck_us) continue;
     chosen = object;
     place = match;
@@ -173,6 +178,7 @@ void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, con
   if (std::max(by_shape, by_all) < settings.better_log_odds) return;
   object.T_camera_object = object.T_camera_object * followed.T_camera_object.inverse() * *pose.T_camera_object;
   object.print_probability = print_probability_of(pose);
+  object.appearance.texture.reset();  // was where the pose was wrong
 }
 
 /// What the object's colours are judged by.
@@ -205,7 +211,9 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
   camera.is_colourless = is_colourless(frame.colour);
   FollowedFrame followed_frame{frame.id.utime, clock_us, {}, follow_all(estimator, frame, camera)};
   for (std::size_t i = 0; i < camera.objects.size(); ++i) {
-    note_result(followed_frame.poses[i], clock_us, camera.objects[i]);
+    note_result(estimator, followed_frame.poses[i], clock_us, camera.objects[i]);
+    if (has_pose(followed_frame.poses[i].pose.status))
+      learn_appearance(estimator, frame, followed_frame.poses[i].is_refined, camera.objects[i]);
     followed_frame.numbers.push_back(camera.objects[i].number);
   }
   remove_lost(estimator, camera, followed_frame);
@@ -224,15 +232,17 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
 std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                                      FollowedCamera& camera) const {
   constexpr double kMaxLength = 0.25;  // seconds; no speed says anything about a later frame
-  constexpr std::int64_t kSettle = 4;  // settled and rendered in one frame of so many, not all objects in the same one
+  constexpr std::int64_t kRefineEvery =
+      4;  // refined and rendered in one frame of so many, not all objects in the same one
   std::vector<ExpectedObject> expected;
   for (const FollowedObject& object : camera.objects) {
     const double dt = seconds_between(object.clock_us, clock_of(frame.id.utime, camera));
     const double used = dt <= kMaxLength ? dt : 0.0;
-    const bool refine_by_texture = (camera.frames + object.number) % kSettle == 0;
+    const bool refine_by_texture = (camera.frames + object.number) % kRefineEvery == 0;
     ExpectedObject& it =
         expected.emplace_back(expected_at(object.velocity.predict(object.T_camera_object, used), object));
     it.refine_by_texture = refine_by_texture;
+    it.depth_lag_m = settings_.depth_lag_s * object.velocity.speed();
     if (!refine_by_texture) it.verified = object.verified;
     it.camera_colours = colours_for(object, estimator, camera);
   }
@@ -282,18 +292,47 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
 }
 
 /// Goes on from the result; without evidence it stays where it was, or where the camera's motion has brought it.
-void ObjectFollower::note_result(const FollowedPose& result, std::int64_t clock_us, FollowedObject& object) const {
+void ObjectFollower::note_result(const PoseEstimator& estimator, const FollowedPose& result, std::int64_t clock_us,
+                                 FollowedObject& object) const {
   const bool valid = has_pose(result.pose.status);
   const bool kept = valid || result.pose.shape_quality >= settings_.min_kept_quality;
   const double dt = seconds_between(object.clock_us, clock_us);
   if (valid && dt > 0.0)
     object.velocity.update(object.T_camera_object, result.T_camera_object, dt, settings_.velocity_gain);
   if (!kept) object.velocity.reset();
+  const auto model = estimator.models().find(object.class_name);
+  if (valid && model != estimator.models().end()) {
+    object.velocity.limit_rotation(observed_rotation(result.information, model->second.radius, settings_.follow.joint));
+  }
   object.failures = kept || result.pose.status == PoseStatus::kOccluded ? 0 : object.failures + 1;
   object.T_camera_object = result.T_camera_object;
   object.verified = result.verified;
   object.clock_us = clock_us;
   if (valid) object.valid_us = clock_us;
+  if (valid && result.has_depth) object.shape_quality = result.pose.shape_quality;
+  if (result.silhouette) object.appearance.silhouette = result.silhouette;
+}
+
+/// From where the object is in this frame. Its texture is kept from one frame to the next that was refined: in between
+/// it does not drift.
+void ObjectFollower::learn_appearance(const PoseEstimator& estimator, const RgbdFrame& frame, bool is_refined,
+                                      FollowedObject& object) const {
+  const JointSettings& settings = settings_.follow.joint;
+  const auto found = estimator.models().find(object.class_name);
+  if (found == estimator.models().end() || settings.region.lines == 0) return;
+  const ObjectModel& model = found->second;
+  const RegionView view{frame, model, estimator.settings().noise};
+  const Eigen::Isometry3d& T = object.T_camera_object;
+  FollowedAppearance& known = object.appearance;
+  if (!known.silhouette || !is_silhouette_of(*known.silhouette, model, T))
+    known.silhouette = std::make_shared<const Silhouette>(make_silhouette(model, T, settings.region.lines));
+  auto colours =
+      known.colours ? std::make_shared<ColourStatistics>(*known.colours) : std::make_shared<ColourStatistics>();
+  learn_colours(view, *known.silhouette, T, settings.region, *colours);
+  if (!colours->empty()) known.colours = std::move(colours);
+  if (settings.texture.points == 0 || (known.texture && !is_refined)) return;
+  const BrightnessImage image = make_brightness(frame, silhouette_box(view, *known.silhouette, T));
+  known.texture = std::make_shared<const TextureKeyframe>(make_texture_keyframe(view, image, T, settings.texture));
 }
 
 bool ObjectFollower::is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const {
@@ -356,7 +395,7 @@ ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, c
         adopt_better_pose(pose, look.followed_frame.poses[place], settings_, *object);
       pose = look.followed_frame.poses[place].pose;
     } else if (pose.T_camera_object) {
-      add_object(estimator, detections.frame, pose, camera);
+      add_object(estimator, frame, pose, camera);
     }
     pose.detection_index = static_cast<int>(i);
     pose.detection_score = detections.detections[i].score;
@@ -367,7 +406,7 @@ ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, c
 
 /// Takes the place of one of its class that is withheld, or of one of another class that is less sure; is known where
 /// one of its class is followed there.
-void ObjectFollower::add_object(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose,
+void ObjectFollower::add_object(const PoseEstimator& estimator, const RgbdFrame& frame, const ObjectPose& pose,
                                 FollowedCamera& camera) {
   FollowedObject found;
   found.number = found_++;
@@ -378,10 +417,12 @@ void ObjectFollower::add_object(const PoseEstimator& estimator, const FrameId& f
   found.T_camera_object = *pose.T_camera_object;
   const auto then =
       std::find_if(camera.recent_frames.rbegin(), camera.recent_frames.rend(),
-                   [&](const FollowedFrame& followed_frame) { return followed_frame.utime == frame.utime; });
-  found.clock_us = then == camera.recent_frames.rend() ? clock_of(frame.utime, camera) : then->clock_us;
+                   [&](const FollowedFrame& followed_frame) { return followed_frame.utime == frame.id.utime; });
+  found.clock_us = then == camera.recent_frames.rend() ? clock_of(frame.id.utime, camera) : then->clock_us;
   found.valid_us = found.found_us = found.recheck_us = found.clock_us;
-  propagate_to_latest(frame.utime, camera, found);
+  found.shape_quality = pose.shape_quality;
+  learn_appearance(estimator, frame, true, found);
+  propagate_to_latest(frame.id.utime, camera, found);
   const PlacedObject here{found.class_name, found.T_camera_object};
   std::vector<FollowedObject> others;
   for (const FollowedObject& object : camera.objects) {

@@ -30,8 +30,10 @@ struct FollowerSettings {
   float miss_score = 0.3F;                ///< what a look is worth that does not find an object in full view...
   double missed_after_s = 1.0;            ///< ...once none has found it for so long
   double recheck_interval_s = 0.15;       ///< a detection's pose is looked for anew, beside the followed one...
+  float doubtful_quality = 0.85F;         ///< below it that does not wait: the next detection of it is posed anew
   double better_log_odds = 0.3;           ///< ...and takes its place where its quality is so much better
   double velocity_gain = 0.5;             ///< how much the last step moves the speed
+  double depth_lag_s = 0.02;              ///< by which a camera's depth and colours may be apart in time
 };
 
 template <typename Visit>
@@ -48,8 +50,10 @@ void fields(const FollowerSettings& /*settings*/, const Visit& visit) {
   visit(number("miss_score", &S::miss_score, 0, 1));
   visit(number("missed_after_s", &S::missed_after_s, 0, 3600, "s"));
   visit(number("recheck_interval_s", &S::recheck_interval_s, 0, 3600, "s"));
+  visit(number("doubtful_quality", &S::doubtful_quality, 0, 1));
   visit(number("better_log_odds", &S::better_log_odds, 0, 100));
   visit(number("velocity_gain", &S::velocity_gain, 0, 1));
+  visit(number("depth_lag_s", &S::depth_lag_s, 0, 1, "s"));
 }
 
 /// An object that is followed from frame to frame of one camera. Its times are on the camera's clock
@@ -67,7 +71,9 @@ struct FollowedObject {
   std::int64_t found_us = 0;    ///< of its last detection
   std::int64_t recheck_us = 0;  ///< when it was last looked for as if it were not followed
   int failures = 0;
+  float shape_quality = 0.0F;            ///< of its last pose for which depth spoke
   std::optional<Verification> verified;  ///< of the last rendering
+  FollowedAppearance appearance;         ///< learnt from its valid poses
 };
 
 /// A frame's poses, and whose they are.
@@ -93,7 +99,8 @@ struct FollowedCamera {
 };
 
 /// What hs-pose --follow remembers: the objects of each camera that are followed from frame to frame by registration
-/// from where they are expected (constant velocity), each for as long as the evidence lasts. Detections, which come
+/// from where they are expected (constant velocity, of rotations those that the last frame observed), each for as long
+/// as the evidence lasts. Detections, which come
 /// later and seldom, add objects, take the place of lost ones, and say how sure it is that those are there that are
 /// followed. Now and then one that is followed is looked for as if it were not, since registration from the last pose
 /// alone never leaves a wrong turn. Every function may be called from any thread; answer() keeps follow() waiting for
@@ -122,10 +129,14 @@ class ObjectFollower {
                                        FollowedCamera& camera) const;
   void retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
                   std::vector<FollowedPose>& poses) const;
-  void note_result(const FollowedPose& result, std::int64_t clock_us, FollowedObject& object) const;
+  void note_result(const PoseEstimator& estimator, const FollowedPose& result, std::int64_t clock_us,
+                   FollowedObject& object) const;
+  void learn_appearance(const PoseEstimator& estimator, const RgbdFrame& frame, bool is_refined,
+                        FollowedObject& object) const;
   bool is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const;
   void remove_lost(const PoseEstimator& estimator, FollowedCamera& camera, FollowedFrame& followed_frame) const;
-  void add_object(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose, FollowedCamera& camera);
+  void add_object(const PoseEstimator& estimator, const RgbdFrame& frame, const ObjectPose& pose,
+                  FollowedCamera& camera);
   static void propagate_to_latest(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found);
 
   FollowerSettings settings_;

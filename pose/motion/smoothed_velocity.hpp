@@ -16,10 +16,17 @@ class SmoothedVelocity {
   /// Takes a step of `seconds`, more than 0. At gain 1 its velocity takes the place of the one before.
   void update(const Eigen::Isometry3d& T_before, const Eigen::Isometry3d& T_after, double seconds, double gain);
 
+  /// Keeps of its rotation only what `observed` leaves of it: a rotation that nothing measures would confirm itself, as
+  /// each pose begins where the one before predicts it.
+  void limit_rotation(const Eigen::Matrix3d& observed) { angular_velocity_ = observed * angular_velocity_; }
+
   /// From here on it stands.
   void reset();
 
   bool is_zero() const;
+
+  /// Metres a second.
+  double speed() const { return speed_.norm(); }
 
  private:
   Eigen::Vector3d speed_ = Eigen::Vector3d::Zero();             // m/s

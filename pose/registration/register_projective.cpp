@@ -1,139 +1,23 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "pose/registration/correspondence_block.hpp"
+#include "pose/registration/depth_equations.hpp"
 #include "pose/registration/registration.hpp"
 
 namespace houghstream {
 namespace {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
 constexpr int kMinPairs = 12;      // for a step: twice the unknowns
 constexpr double kDamping = 1e-3;  // of the Hessian's mean diagonal; holds rotations that symmetric surfaces leave open
 
-/// Weighted sums of products over the correspondences. Arms lead from the model's centre to the points, in its radius.
-struct CorrespondenceSums {
-  OuterProductSum across = OuterProductSum::Zero();  // of (arm x normal, normal, residual along the normal, 0)
-  OuterProductSum along = OuterProductSum::Zero();   // of (arm, 1, residual, 0)
-  int count = 0;
-  double squares = 0.0;  // of the distances along the normals
-};
-
-/// Normal equations of a step (rotation about the model's centre times its radius, shift), all in metres.
-struct LinearSystem {
-  Matrix6d hessian = Matrix6d::Zero();  // lower triangle
-  Vector6d gradient = Vector6d::Zero();
-};
-
-/// A block of points with the normals that go with them.
-struct Visible {
-  CorrespondenceBlock block;
-  std::array<Eigen::Vector3f, CorrespondenceBlock::kSize> normals;
-
-  void add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) {
-    block.x[block.count] = point.x();
-    block.y[block.count] = point.y();
-    block.z[block.count] = point.z();
-    normals[block.count++] = normal;
-  }
-};
-
-ResidualRow across_row(const Eigen::Vector3f& a, const Eigen::Vector3f& n, float apart) {
-  return {{a.y() * n.z() - a.z() * n.y(), a.z() * n.x() - a.x() * n.z(), a.x() * n.y() - a.y() * n.x(), n.x(), n.y(),
-           n.z(), apart, 0.0F}};
-}
-
-/// Adds the block's correspondences under Tukey's weights, and empties the block.
-void accumulate_correspondences(const ObjectModel& model, const Eigen::Vector3f& centre, float limit_sq,
-                                Visible& visible, CorrespondenceSums& totals) {
-  const CorrespondenceBlock& block = visible.block;
-  ResidualRows across;
-  ResidualRows along;
-  CorrespondenceBlock::Values weights;
-  std::size_t pairs = 0;
-  for (std::size_t i = 0; i < block.count; ++i) {
-    if (!(block.distance_sq[i] < limit_sq)) continue;
-    const Eigen::Vector3f arm = (Eigen::Vector3f(block.x[i], block.y[i], block.z[i]) - centre) / model.radius;
-    const Eigen::Vector3f residual(block.residual_x[i], block.residual_y[i], block.residual_z[i]);
-    const float apart = residual.dot(visible.normals[i]);
-    const float left = 1.0F - block.distance_sq[i] / limit_sq;
-    across[pairs] = across_row(arm, visible.normals[i], apart);
-    along[pairs] = {{arm.x(), arm.y(), arm.z(), 1.0F, residual.x(), residual.y(), residual.z(), 0.0F}};
-    weights[pairs++] = left * left;  // Tukey's biweight
-    totals.squares += static_cast<double>(apart * apart);
-  }
-  accumulate_outer_products(across, weights, pairs, totals.across);
-  accumulate_outer_products(along, weights, pairs, totals.along);
-  totals.count += static_cast<int>(pairs);
-  visible.block.count = 0;
-}
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d out;
-  out << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
-  return out;
-}
-
-/// Builds the normal equations of E = sum w ((n.r)^2 + point_weight r^2), where r leads from a model point to its
-/// measured point (point-to-plane ICP, Chen & Medioni 1992).
-LinearSystem build_linear_system(const CorrespondenceSums& totals, double point_weight) {
-  const Eigen::Matrix<double, 8, 8> along = point_weight * totals.along.cast<double>();
-  const Eigen::Matrix3d arms = along.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d moments = along.block<3, 3>(0, 4);  // arm times residual
-  LinearSystem equations;
-  equations.hessian = totals.across.topLeftCorner<6, 6>().cast<double>();
-  equations.hessian.topLeftCorner<3, 3>() += arms.trace() * Eigen::Matrix3d::Identity() - arms;
-  equations.hessian.bottomLeftCorner<3, 3>() -= cross_matrix(along.block<3, 1>(0, 3));
-  equations.hessian.bottomRightCorner<3, 3>().diagonal().array() += along(3, 3);
-  equations.gradient = totals.across.block<6, 1>(0, 6).cast<double>();
-  equations.gradient.head<3>() +=
-      Eigen::Vector3d(moments(1, 2) - moments(2, 1), moments(2, 0) - moments(0, 2), moments(0, 1) - moments(1, 0));
-  equations.gradient.tail<3>() += along.block<3, 1>(4, 3);
-  return equations;
-}
-
-/// Finds the correspondences of the first `count` points of the view nearest to the pose, and sums them up.
-CorrespondenceSums find_and_accumulate_correspondences(const ObjectObservation& seen,
-                                                       const Eigen::Isometry3d& T_camera_object, std::size_t count,
-                                                       const CorrespondenceSearch& search) {
-  const ObjectModel& model = seen.model;
-  const ModelView& view = nearest_view(model, T_camera_object);
-  const Eigen::Isometry3f T = T_camera_object.cast<float>();
-  const Eigen::Vector3f centre = T * model.centre;
-  const std::size_t used = std::min(count, view.points.size());
-  Visible visible;
-  CorrespondenceSums totals;
-  for (std::size_t i = 0; i < used; ++i) {
-    const Eigen::Vector3f point = T * view.points[i];
-    const Eigen::Vector3f normal = T.linear() * view.normals[i];
-    const bool in_sight = point.z() > 0.0F && normal.dot(point) < 0.0F;  // not turned away since the view was chosen
-    if (in_sight) visible.add(point, normal);
-    if (visible.block.count < CorrespondenceBlock::kSize && i + 1 < used) continue;
-    find_correspondences(seen.frame, search, visible.block);
-    accumulate_correspondences(model, centre, search.distance_m * search.distance_m, visible, totals);
-  }
-  return totals;
-}
-
 /// Moves the model by the damped Gauss-Newton step and returns the step's length, metres.
-double apply_gauss_newton_step(LinearSystem equations, const ObjectModel& model, Eigen::Isometry3d& T_camera_object) {
+double apply_gauss_newton_step(MotionEquations equations, const ObjectModel& model,
+                               Eigen::Isometry3d& T_camera_object) {
   const double damping = kDamping * equations.hessian.trace() / 6.0;
   equations.hessian.diagonal().array() += damping;
   const Vector6d step = equations.hessian.selfadjointView<Eigen::Lower>().ldlt().solve(equations.gradient);
-  if (!step.allFinite()) return 0.0;
-  const Eigen::Vector3d centre = T_camera_object * model.centre.cast<double>();
-  const Eigen::Vector3d rotation = step.head<3>() / model.radius;
-  const double angle = rotation.norm();
-  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  motion.translate(centre + step.tail<3>());
-  if (angle > 0.0) motion.rotate(Eigen::AngleAxisd(angle, rotation / angle));
-  motion.translate(-centre);
-  T_camera_object = motion * T_camera_object;
-  return step.norm();
+  return step.allFinite() ? move_by_step(step, model, T_camera_object) : 0.0;
 }
 
 }  // namespace
@@ -148,16 +32,16 @@ RegistrationResult register_projective(const ObjectObservation& seen, const Eige
                                  1.0 / std::max(1, stage.iterations - 1));
   double distance = stage.max_correspondence_start_m;
   for (; result.iterations < stage.iterations; ++result.iterations) {
-    const CorrespondenceSums pairs = find_and_accumulate_correspondences(
-        seen, result.T_camera_object, points, {static_cast<float>(distance), stage.search_steps});
+    const CorrespondenceSums pairs =
+        sum_correspondences(seen, result.T_camera_object, points, {static_cast<float>(distance), stage.search_steps});
     result.converged = false;
     if (pairs.count < kMinPairs) break;
-    const LinearSystem equations = build_linear_system(pairs, settings.point_weight);
+    const MotionEquations equations = build_equations(pairs, settings.point_weight);
     result.converged = apply_gauss_newton_step(equations, model, result.T_camera_object) < settings.converged_m;
     if (result.converged && distance <= stage.max_correspondence_end_m * 1.01) break;
     distance = std::max(distance * shrink, stage.max_correspondence_end_m);
   }
-  const CorrespondenceSums last = find_and_accumulate_correspondences(
+  const CorrespondenceSums last = sum_correspondences(
       seen, result.T_camera_object, points, {static_cast<float>(stage.max_correspondence_end_m), stage.search_steps});
   const std::size_t used = std::min(points, nearest_view(model, result.T_camera_object).points.size());
   result.inliers = last.count;

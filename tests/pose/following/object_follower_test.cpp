@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "tests/pose/test_scene.hpp"
 
@@ -247,6 +248,7 @@ double handle_error_after_a_turn(FollowerSettings settings) {
 TEST(ObjectFollower, AWrongTurnIsNoticedByLookingAsIfItWereNotFollowed) {
   FollowerSettings trusting;
   trusting.recheck_interval_s = 3600.0;
+  trusting.doubtful_quality = 0.0F;
   trusting.missed_after_s = 3600.0;
   EXPECT_GT(handle_error_after_a_turn(trusting), 1.0);
   EXPECT_LT(handle_error_after_a_turn({}), 0.45) << "as good as a single look at it";
@@ -368,6 +370,79 @@ TEST(ObjectFollower, LooksGoOnAfterAClockWasSetBackWhileOneWasOnItsWay) {
     it.follower.process_detections(estimator(), frame, {frame.id, {}, {}});
   }
   EXPECT_LT(it.next().poses.at(0).detection_score, 0.9F) << "an hour is not waited for until it counts";
+}
+
+TEST(ObjectFollower, AFrameWithoutDepthIsFollowedByItsColours) {
+  Following it(box_and_mug());
+  for (int i = 0; i < 8; ++i) {
+    it.film.walk();
+    it.next();
+  }
+  for (int i = 0; i < 3; ++i) {
+    it.film.walk();
+    RgbdFrame frame = it.film.next();
+    frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
+    const ObjectPoses poses = it.follower.follow(estimator(), frame).value();
+    ASSERT_EQ(poses.poses.size(), 2U) << i;
+    ASSERT_TRUE(poses.poses[0].T_camera_object.has_value()) << i << " " << to_string(poses.poses[0].status);
+    EXPECT_EQ(poses.poses[0].visible_fraction, 0.0F) << "no depth speaks for it";
+    EXPECT_LT((poses.poses[0].T_camera_object->translation() - it.film.truth(0).translation()).norm(), 0.01) << i;
+  }
+  it.film.walk();
+  EXPECT_EQ(valid_ones(it.next()), 2);
+}
+
+TEST(ObjectFollower, AWhiteFrameAndABlackOneAreFollowedByTheirDepth) {
+  Following it(box_and_mug());
+  const SurfaceError of_box(it.film.things[0].mesh);
+  for (int i = 0; i < 8; ++i) {
+    it.film.walk();
+    RgbdFrame frame = it.film.next();
+    if (i >= 4) frame.colour.setTo(cv::Scalar::all(i < 6 ? 255 : 0));
+    const ObjectPoses poses = it.follower.follow(estimator(), frame).value();
+    ASSERT_EQ(valid_ones(poses), 2) << i;
+    EXPECT_LT(of_box(it.film.truth(0), *poses.poses[0].T_camera_object), 0.003) << i;
+  }
+}
+
+TEST(ObjectFollower, WhatIsTakenAwayIsNotFollowedByColoursWhereDepthIsMeasured) {
+  Following it(Film().with("box", cereal_box(), 0.0, 0.13));
+  it.next();
+  it.film.things.clear();
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(valid_ones(it.next()), 0) << i;
+}
+
+/// How far the mug turns off about its axis, radians at most, while it stands: it was turned until a finger hid its
+/// handle.
+double turn_behind_a_finger(const FollowerSettings& settings) {
+  Film film = Film().with("mug", mug(), 0.0, 0.05);
+  film.things[0].T_table_object.rotate(Eigen::AngleAxisd(-1.9, Eigen::Vector3d::UnitZ()));
+  Following it(std::move(film), settings);
+  EXPECT_EQ(valid_ones(it.next()), 1);
+  for (int i = 0; i < 12; ++i) {
+    it.film.things[0].T_table_object.rotate(Eigen::AngleAxisd(0.06, Eigen::Vector3d::UnitZ()));
+    it.next();
+  }
+  const Eigen::Vector3d handle = it.film.truth(0) * Eigen::Vector3d(0.055, 0.0, 0.0);
+  Mesh finger;
+  const Eigen::Vector3f at = (0.6 * handle).cast<float>();
+  add_box(finger, at - Eigen::Vector3f(0.025F, 0.035F, 0.01F), at + Eigen::Vector3f(0.025F, 0.035F, 0.01F));
+  it.film.screens.push_back(finger);
+  double worst = 0.0;
+  for (int i = 0; i < 30; ++i) {
+    const ObjectPoses poses = it.next();
+    if (valid_ones(poses) == 0) continue;
+    const Eigen::Matrix3d left = poses.poses[0].T_camera_object->linear().transpose() * it.film.truth(0).linear();
+    worst = std::max(worst, Eigen::AngleAxisd(left).angle());
+  }
+  return worst;
+}
+
+TEST(ObjectFollower, ATurnDoesNotGoOnByItselfWhereNothingObservesIt) {
+  EXPECT_LT(turn_behind_a_finger({}), 0.7);
+  FollowerSettings free;
+  free.follow.joint.tikhonov_rad = 1e6;  // every turn is predicted, and none is held
+  EXPECT_GT(turn_behind_a_finger(free), 0.8);
 }
 
 TEST(ObjectFollower, AClassWithoutAModelAnyMoreIsGivenUp) {

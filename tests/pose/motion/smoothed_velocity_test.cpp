@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace houghstream {
 namespace {
 
@@ -29,6 +31,20 @@ TEST(SmoothedVelocity, TurnsAboutTheObjectsOrigin) {
   SmoothedVelocity velocity;
   velocity.update(kStart, rotated, 0.1, 1.0);
   EXPECT_TRUE(velocity.predict(kStart, 0.1).isApprox(rotated, 1e-12));
+}
+
+TEST(SmoothedVelocity, ATurnThatIsNotObservedIsNotPredicted) {
+  const Eigen::AngleAxisd rotation(0.1, Eigen::Vector3d(1.0, 0.0, 1.0).normalized());
+  Eigen::Isometry3d rotated = Eigen::Translation3d(0.01, 0.0, 0.0) * kStart;
+  rotated.linear() = rotation * kStart.linear();
+  SmoothedVelocity velocity;
+  velocity.update(kStart, rotated, 0.1, 1.0);
+  velocity.limit_rotation(Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal());
+  const Eigen::Isometry3d next = velocity.predict(kStart, 0.1);
+  EXPECT_TRUE(next.translation().isApprox(rotated.translation(), 1e-12));
+  const Eigen::AngleAxisd left(next.linear() * kStart.linear().transpose());
+  EXPECT_NEAR(left.angle(), 0.1 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(left.axis().x(), 1.0, 1e-9);
 }
 
 TEST(SmoothedVelocity, TheMotionThatTwoAgreeOnCarriesTheRestAndOneAloneDoesNot) {

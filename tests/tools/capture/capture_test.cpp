@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <thread>
@@ -77,7 +78,20 @@ TEST_F(CaptureLog, IsStampedAtTheRateAskedFor) {
   const std::vector<Line> lines = capture(3, settings);
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[2].timestamp, 1000 + 200000);
-  EXPECT_EQ(lines[2].utime, 3000) << "a frame keeps its name";
+  EXPECT_EQ(lines[2].utime, 1000 + 200000) << "what is played faster or slower is so by its own stamps too";
+}
+
+TEST_F(CaptureLog, IsStampedAtTheRateAskedForOverLoopsToo) {
+  CaptureSettings settings;
+  settings.rate_hz = 15.0;
+  settings.loop = true;
+  settings.frames = 7;
+  const std::vector<Line> lines = capture(3, settings);
+  ASSERT_EQ(lines.size(), 7U);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    EXPECT_EQ(lines[i].utime, 1000 + std::llround(static_cast<double>(i) * 1e6 / 15.0)) << i;
+    EXPECT_EQ(lines[i].utime, lines[i].timestamp) << i;
+  }
 }
 
 TEST_F(CaptureLog, LoopsWithoutRepeatingATime) {

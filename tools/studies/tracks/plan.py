@@ -40,22 +40,26 @@ class Plan:
         self.tracked(name, folder, found, channels)
         self.add(f"single/{name}.json", "hs-study", "tracks", "compare", "--single-frames", folder, f"{{{found}}}", "--models",
                  self.models, "--out", "{out}")  # fmt: skip
+        if self.options.follow:
+            slow = self.found(name, folder, every=3, kind="_10hz")
+            self.add(f"single_10hz/{name}.json", "hs-study", "tracks", "compare", "--single-frames", "--every", 3, folder, f"{{{slow}}}",
+                     "--models", self.models, "--out", "{out}")  # fmt: skip
         if name == "cameras":
             for camera in CAMERAS:
                 self.tracked(camera, folder, found, camera)
             self.add("wrong.lcmlog", "hs-study", "tracks", "log", folder, "{out}", "--wrong", f"CAMERA_2={WRONG},0,0")
             self.add("wrong_found.lcmlog", "hs-study", "tracks", "join", "{wrong.lcmlog}", f"{{{found}}}", "--out", "{out}")
 
-    def found(self, name, folder):
-        """The sequence's log with detections and poses."""
-        frames = self.add(f"frames/{name}.lcmlog", "hs-study", "tracks", "log", folder, "{out}")
+    def found(self, name, folder, every=1, kind=""):
+        """The log of the sequence, or of every n-th of its frames, with detections and poses."""
+        frames = self.add(f"frames{kind}/{name}.lcmlog", "hs-study", "tracks", "log", folder, "{out}", "--every", every)
         search = ("-c", "CAMERA_.*", "--threads", threads())
-        detected = self.add(f"detected/{name}.lcmlog", "hs-detect", "-l", f"file://{{{frames}}}", "--output-log", "{out}",
+        detected = self.add(f"detected{kind}/{name}.lcmlog", "hs-detect", "-l", f"file://{{{frames}}}", "--output-log", "{out}",
                             "--keep-frames", "--forest", self.forest, *search)  # fmt: skip
         follow = ("--follow",) if self.options.follow else ()
-        posed = self.add(f"posed/{name}.lcmlog", "hs-pose", "-l", f"file://{{{detected}}}", "--output-log", "{out}", "--models",
+        posed = self.add(f"posed{kind}/{name}.lcmlog", "hs-pose", "-l", f"file://{{{detected}}}", "--output-log", "{out}", "--models",
                          self.models, *search, *follow)  # fmt: skip
-        return self.add(f"found/{name}.lcmlog", "hs-study", "tracks", "join", f"{{{frames}}}", f"{{{detected}}}", f"{{{posed}}}",
+        return self.add(f"found{kind}/{name}.lcmlog", "hs-study", "tracks", "join", f"{{{frames}}}", f"{{{detected}}}", f"{{{posed}}}",
                         "--out", "{out}")  # fmt: skip
 
     def tracked(self, name, folder, found, channels):

@@ -50,6 +50,12 @@ def longest(lists):
     return None if not values or None in values else max(values)
 
 
+def wrong_share(counts):
+    """Of all sequences; None where nothing was published that surely."""
+    published = sum(one["published"] for one in counts)
+    return sum(one["wrong"] for one in counts) / published if published else None
+
+
 def check_extrinsics(options, plan, store):
     """What hs-track --check says of right places, and of one that is wrong."""
     out = {}
@@ -111,6 +117,11 @@ def summarise(options, plan, store):
         summary["jitter"] = {"mm": max(one["mm"] for one in known), "deg": max(one["deg"] for one in known),
                              "mm_worst": max(one["mm_worst"] for one in known),
                              "deg_worst": max(one["deg_worst"] for one in known)}  # fmt: skip
+    summary["add"] = {name: one["add"] for name, one in single.items()}
+    summary["wrong_above_0_9"] = wrong_share([one["wrong_above_0_9"] for one in single.values()])
+    if options.follow:
+        slow = {name: read_json(store.path(f"single_10hz/{name}.json")) for name in names}
+        summary["add_10hz"] = {name: one["add"] for name, one in slow.items()}
     summary["seconds_to_find"] = longest(one["seconds_to_find"] for one in tracked.values())
     summary["seconds_to_gone"] = longest(one["seconds_to_gone"] for one in tracked.values())
     summary["hidden_kept"] = {name: one["hidden_kept"] for name, one in tracked.items() if one["hidden_frames"]}

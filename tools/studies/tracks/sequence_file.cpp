@@ -70,6 +70,21 @@ std::optional<std::size_t> SequenceFile::index_of(std::int64_t utime) const {
   return static_cast<std::size_t>(found - utimes.begin());
 }
 
+SequenceFile thinned(const SequenceFile& sequence, std::size_t every) {
+  SequenceFile out = sequence;
+  out.fps = sequence.fps / static_cast<double>(every);
+  out.utimes.clear();
+  out.frames.clear();
+  for (SequenceCamera& camera : out.cameras) camera.T_world_camera.clear();
+  for (std::size_t i = 0; i < sequence.utimes.size(); i += every) {
+    out.utimes.push_back(sequence.utimes[i]);
+    out.frames.push_back(sequence.frames[i]);
+    for (std::size_t c = 0; c < out.cameras.size(); ++c)
+      out.cameras[c].T_world_camera.push_back(sequence.cameras[c].T_world_camera[i]);
+  }
+  return out;
+}
+
 SequenceFile read_sequence(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "sequence.json";
   const nlohmann::json json = read_json_object(file);
@@ -83,11 +98,11 @@ SequenceFile read_sequence(const std::filesystem::path& folder) {
 }
 
 void write_sequence_log(const SequenceFile& sequence, const std::filesystem::path& log,
-                        const std::map<std::string, Eigen::Vector3d>& wrong_m) {
+                        const std::map<std::string, Eigen::Vector3d>& wrong_m, std::size_t every) {
   LogWriter writer(log);
   std::vector<BopScene> scenes;
   for (const SequenceCamera& camera : sequence.cameras) scenes.emplace_back(camera.scene);
-  for (std::size_t i = 0; i < sequence.utimes.size(); ++i) {
+  for (std::size_t i = 0; i < sequence.utimes.size(); i += every) {
     for (std::size_t c = 0; c < scenes.size(); ++c) {
       const SequenceCamera& camera = sequence.cameras[c];
       Eigen::Isometry3d T_world_camera = camera.T_world_camera[i];

@@ -36,14 +36,17 @@ struct SequenceFile {
   std::optional<std::size_t> index_of(std::int64_t utime) const;
 };
 
+/// The sequence as a camera of a lower rate would have seen it: of `every` frames one.
+SequenceFile thinned(const SequenceFile& sequence, std::size_t every);
+
 /// Reads FOLDER/sequence.json. Throws InputError naming file and entry.
 SequenceFile read_sequence(const std::filesystem::path& folder);
 
 /// Writes a sequence as the cameras and whoever knows their places would have sent it: each frame on its camera's
 /// channel, and before it the transform <CAMERA>_TO_WORLD. `wrong_m` is added to the places of cameras by channel, to
-/// see whether it is noticed.
+/// see whether it is noticed. Of `every` frames one is written.
 void write_sequence_log(const SequenceFile& sequence, const std::filesystem::path& log,
-                        const std::map<std::string, Eigen::Vector3d>& wrong_m);
+                        const std::map<std::string, Eigen::Vector3d>& wrong_m, std::size_t every = 1);
 
 /// A log of frames with the results of other logs behind each frame (same name): first those of the first log. Throws
 /// InputError where a log cannot be read or written.

@@ -26,6 +26,7 @@ struct PublishedObject {
 struct PublishedFrame {
   std::size_t index = 0;  ///< in the sequence
   std::vector<PublishedObject> objects;
+  std::vector<double> qualities = {};  ///< of poses of single frames, in the order of `objects`; empty of tracks
 };
 
 struct TrackMetricsSettings {

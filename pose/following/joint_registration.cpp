@@ -1,0 +1,164 @@
+#include "pose/following/joint_registration.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace houghstream {
+namespace {
+
+constexpr int kUpdates = 2;    // with the same lines
+constexpr int kMinPairs = 12;  // of depth: fewer are chance
+
+/// Where a frame is looked at how coarsely.
+struct JointLevel {
+  double points = 1.0;  // fraction of JointSettings::points
+  int search_steps = 2;
+  RegionScale scale;
+  EdgeStep step = EdgeStep::kAlongGradient;
+  std::size_t texture = 0;  // of BrightnessImage::levels
+};
+
+/// Scales and deviations are those of M3T's defaults (Stoiber et al. 2023), but for the finest deviation, there 1.5:
+/// neighbouring lines err alike.
+constexpr std::array<JointLevel, 4> kLevels = {{{0.25, 2, {6, 15.0, 3}, EdgeStep::kToMean, 1},
+                                                {0.4, 2, {4, 5.0, 2}, EdgeStep::kAlongGradient, 1},
+                                                {0.7, 1, {2, 3.5, 1}, EdgeStep::kAlongGradient, 0},
+                                                {1.0, 1, {1, 2.0, 1}, EdgeStep::kAlongGradient, 0}}};
+
+/// One registration on its way.
+class JointRegistration {
+ public:
+  JointRegistration(const ObjectObservation& seen, const JointStart& start, const JointSettings& settings,
+                    const RegistrationSettings& registration)
+      : seen_(seen),
+        view_{seen.frame, seen.model, seen.noise},
+        start_(start),
+        settings_(settings),
+        registration_(registration),
+        end_m_(correspondence_distances(seen, registration).end),
+        sigma_m_(std::hypot(settings.depth_sigmas * seen.noise.sigma(seen.centre_camera.z()), start.depth_lag_m)) {
+    result_.silhouette = start.appearance.silhouette;
+    result_.registration.T_camera_object = start.T_camera_object;
+    if (start.appearance.texture) brightness_ = make_brightness(seen.frame, seen.region.box_px);
+  }
+
+  JointResult run() {
+    const double start_m = std::max(settings_.start_m, end_m_);
+    const double shrink = std::pow(end_m_ / start_m, 1.0 / static_cast<double>(kLevels.size() - 1));
+    double distance_m = start_m;
+    for (std::size_t i = 0; i < kLevels.size(); ++i) {
+      if (2 * i == kLevels.size() && start_.refine_by_texture) {
+        pose() = start_.refine_by_texture(pose());
+        brightness_ = {};
+      }
+      work_on(kLevels[i], distance_m);
+      distance_m = std::max(end_m_, distance_m * shrink);
+    }
+    note_evidence();
+    return std::move(result_);
+  }
+
+ private:
+  Eigen::Isometry3d& pose() { return result_.registration.T_camera_object; }
+
+  void work_on(const JointLevel& level, double distance_m) {
+    const RegionLines lines = find_lines(level);
+    result_.edges = static_cast<int>(lines.lines.size());
+    result_.blank = lines.blank;
+    result_.covered = lines.covered;
+    for (int i = 0; i < kUpdates; ++i) {
+      MotionEquations all = region_equations(view_, lines.lines, pose(), level.scale, level.step, settings_.region);
+      if (start_.appearance.texture)
+        add(texture_equations(view_, brightness_, *start_.appearance.texture, pose(), level.texture, settings_.texture),
+            1.0, all);
+      result_.information = all.hessian;
+      const bool has_depth = add_depth(level, distance_m, all);
+      if (!has_depth && lines.lines.empty()) return;
+      move(all);
+    }
+  }
+
+  static void add(const MotionEquations& part, double weight, MotionEquations& all) {
+    all.hessian += weight * part.hessian;
+    all.gradient += weight * part.gradient;
+  }
+
+  /// False where there is too little depth.
+  bool add_depth(const JointLevel& level, double distance_m, MotionEquations& all) {
+    const auto points = static_cast<std::size_t>(std::lround(level.points * settings_.points));
+    const CorrespondenceSums pairs =
+        sum_correspondences(seen_, pose(), points, {static_cast<float>(distance_m), level.search_steps});
+    if (pairs.count < kMinPairs) return false;
+    // So many pairs stand for all that the finest level would have had.
+    const double weight = 1.0 / (level.points * sigma_m_ * sigma_m_);
+    add(build_equations(pairs, registration_.point_weight), weight, all);
+    result_.information += weight * build_equations(pairs, 0.0).hessian;
+    return true;
+  }
+
+  RegionLines find_lines(const JointLevel& level) {
+    const std::shared_ptr<const ColourStatistics>& colours = start_.appearance.colours;
+    if (!colours || settings_.region.lines == 0) return {};
+    if (!result_.silhouette || !is_silhouette_of(*result_.silhouette, seen_.model, pose()))
+      result_.silhouette =
+          std::make_shared<const Silhouette>(make_silhouette(seen_.model, pose(), settings_.region.lines));
+    return find_region_lines(view_, *result_.silhouette, *colours, pose(), level.scale, settings_.region);
+  }
+
+  void move(MotionEquations& all) {
+    const double turn_m = settings_.tikhonov_rad * seen_.model.radius;
+    all.hessian.diagonal().head<3>().array() += 1.0 / (turn_m * turn_m);
+    all.hessian.diagonal().tail<3>().array() += 1.0 / (settings_.tikhonov_m * settings_.tikhonov_m);
+    const Vector6d step = all.hessian.selfadjointView<Eigen::Lower>().ldlt().solve(all.gradient);
+    ++result_.registration.iterations;
+    result_.registration.converged =
+        step.allFinite() && move_by_step(step, seen_.model, pose()) < registration_.converged_m;
+  }
+
+  void note_evidence() {
+    RegistrationResult& out = result_.registration;
+    const auto points = static_cast<std::size_t>(settings_.points);
+    const CorrespondenceSums last = sum_correspondences(seen_, pose(), points, {static_cast<float>(end_m_), 1});
+    const std::size_t used = std::min(points, nearest_view(seen_.model, pose()).points.size());
+    out.inliers = last.count;
+    out.inlier_fraction = static_cast<float>(last.count) / static_cast<float>(used);
+    out.residual = static_cast<float>(std::sqrt(last.squares / last.count));  // 0/0 is NaN
+  }
+
+  const ObjectObservation& seen_;
+  const RegionView view_;
+  const JointStart& start_;
+  const JointSettings& settings_;
+  const RegistrationSettings& registration_;
+  const double end_m_;
+  const double sigma_m_;  // of a pair of depth
+  BrightnessImage brightness_;
+  JointResult result_;
+};
+
+}  // namespace
+
+JointResult register_jointly(const ObjectObservation& seen, const JointStart& start, const JointSettings& settings,
+                             const RegistrationSettings& registration) {
+  return JointRegistration(seen, start, settings, registration).run();
+}
+
+Eigen::Matrix3d observed_rotation(const Matrix6d& information, double radius, const JointSettings& settings) {
+  const Matrix6d full = information.selfadjointView<Eigen::Lower>();
+  // A shift may make up for a rotation: what is left of the rotation's information when the shift is free as well.
+  constexpr double kAlmostNone = 1.0;  // 1/m^2
+  const Eigen::Matrix3d shift = full.bottomRightCorner<3, 3>() + kAlmostNone * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d mixed = full.topRightCorner<3, 3>();
+  const Eigen::Matrix3d rotation = full.topLeftCorner<3, 3>() - mixed * shift.ldlt().solve(mixed.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(rotation);
+  const double held = 1.0 / std::pow(settings.tikhonov_rad * radius, 2.0);
+  const Eigen::Vector3d known = parts.eigenvalues().cwiseMax(0.0);
+  const Eigen::Vector3d gains = known.array() / (known.array() + held);
+  return parts.eigenvectors() * gains.asDiagonal() * parts.eigenvectors().transpose();
+}
+
+}  // namespace houghstream

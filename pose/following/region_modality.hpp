@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <vector>
+
+#include "pipeline/base/settings_fields.hpp"
+#include "pipeline/types/frame.hpp"
+#include "pose/following/colour_statistics.hpp"
+#include "pose/following/silhouette.hpp"
+#include "pose/registration/depth_equations.hpp"
+#include "pose/seen/region.hpp"
+
+namespace houghstream {
+
+/// Region modality: where along lines across the silhouette the colours of the object end and those beside it begin
+/// (Prisacariu and Reid 2012; Tjaden et al. 2018). Lines, smoothed step functions and their posterior in closed form
+/// are those of Stoiber et al. (2022, "SRT3D: A Sparse Region-Based 3D Object Tracking Approach for the Real World";
+/// 2022, "Iterative Corresponding Geometry").
+struct RegionModalitySettings {
+  int lines = 200;             ///< across the silhouette, at most; 0: colours play no part
+  double colour_rate = 0.2;    ///< by which a frame moves the histograms
+  double occlusion_m = 0.015;  ///< a line is covered where depth is nearer than the model by so much and 3 sigma
+  /// Standard deviation by which all edges of an object err outwards alike, and by which those err towards the darker
+  /// side alike: a lens and a tone curve move edges of light, and mixed pixels look like the side of more colours.
+  double common_error_px = 3.0;
+};
+
+template <typename Visit>
+void fields(const RegionModalitySettings& /*settings*/, const Visit& visit) {
+  using S = RegionModalitySettings;
+  visit(number("lines", &S::lines, 0, 10000));
+  visit(number("colour_rate", &S::colour_rate, 0, 1));
+  visit(number("occlusion_m", &S::occlusion_m, 0, 1, "m"));
+  visit(number("common_error_px", &S::common_error_px, 0, 100, "pixels"));
+}
+
+/// How coarsely a frame is looked at: pixels along a line that make one segment, and the standard deviation that a
+/// line's edge is given, pixels.
+struct RegionScale {
+  int segment_px = 1;
+  double sigma_px = 1.5;
+  int every = 1;  ///< of the silhouette's points; each line stands for as many
+};
+
+/// Segments of a line over which the posterior of its edge is computed.
+constexpr int kEdgePositions = 12;
+
+/// A line across the silhouette, and where the frame has its edge.
+struct RegionLine {
+  const SilhouettePoint* at = nullptr;
+  Eigen::Vector2f centre_px = Eigen::Vector2f::Zero();  ///< of the point when the line was drawn
+  Eigen::Vector2f normal = Eigen::Vector2f::Zero();     ///< unit, out of the model
+  float segments_per_px = 1.0F;                         ///< along the normal
+  float first = 0.0F;     ///< position of the first of `posterior`, segments outwards from the point
+  float mean = 0.0F;      ///< of the edge's position, segments outwards from the point
+  float variance = 1.0F;  ///< of it
+  float contrast = 0.0F;  ///< brightness of the side of the model beside the other one, -1 to 1
+  std::array<float, kEdgePositions> posterior{};  ///< at one segment after the other; their sum is 1
+};
+
+/// What became of the points of a silhouette in a frame.
+struct RegionLines {
+  std::vector<RegionLine> lines;  ///< that have an edge
+  int covered = 0;                ///< points behind nearer depth
+  int blank = 0;                  ///< lines in whose colours there is no edge
+};
+
+/// What lines are drawn in.
+struct RegionView {
+  const RgbdFrame& frame;
+  const ObjectModel& model;
+  DepthNoise noise;
+};
+
+/// Draws a line through each point of the silhouette at the pose and finds its edge. Points that nearer depth covers,
+/// or has beside them, say nothing; neither do lines on which the model begins again or ends within three segments, nor
+/// lines all of whose colours are those of one side.
+RegionLines find_region_lines(const RegionView& view, const Silhouette& silhouette, const ColourStatistics& colours,
+                              const Eigen::Isometry3d& T_camera_object, const RegionScale& scale,
+                              const RegionModalitySettings& settings);
+
+/// From where on a line's edge draws: the mean of its posterior brings in what is far off, its gradient at the pose is
+/// more exact.
+enum class EdgeStep { kToMean, kAlongGradient };
+
+/// Normal equations of the motion that brings the silhouette of a pose to the edges, as build_equations() has them, in
+/// the inverse square of metres: the hessian is the information of the edges.
+MotionEquations region_equations(const RegionView& view, const std::vector<RegionLine>& lines,
+                                 const Eigen::Isometry3d& T_camera_object, const RegionScale& scale, EdgeStep step,
+                                 const RegionModalitySettings& settings);
+
+/// Learns a frame's colours inside the silhouette at the pose and outside it, near to it and not covered.
+void learn_colours(const RegionView& view, const Silhouette& silhouette, const Eigen::Isometry3d& T_camera_object,
+                   const RegionModalitySettings& settings, ColourStatistics& colours);
+
+/// The part of the image about the silhouette at the pose, a little enlarged; may be empty.
+cv::Rect silhouette_box(const RegionView& view, const Silhouette& silhouette, const Eigen::Isometry3d& T_camera_object);
+
+}  // namespace houghstream
