@@ -19,8 +19,8 @@ struct JointSettings {
   double depth_sigmas = 1.0;  ///< standard deviation that a pair of depth is given, over its noise
   // Regularisation after Tikhonov (Stoiber et al. 2022, "Iterative Corresponding Geometry", equation 21): what nothing
   // observes stays as it was.
-  double tikhonov_rad = 0.03;  ///< standard deviation of a step's rotation
-  double tikhonov_m = 0.006;   ///< and of its shift
+  double tikhonov_rad = 0.015;  ///< standard deviation of a step's rotation
+  double tikhonov_m = 0.006;    ///< and of its shift
   RegionModalitySettings region;
   TextureModalitySettings texture;
 };

@@ -18,7 +18,7 @@ namespace houghstream {
 /// are those of Stoiber et al. (2022, "SRT3D: A Sparse Region-Based 3D Object Tracking Approach for the Real World";
 /// 2022, "Iterative Corresponding Geometry").
 struct RegionModalitySettings {
-  int lines = 200;             ///< across the silhouette, at most; 0: colours play no part
+  int lines = 100;             ///< across the silhouette, at most; 0: colours play no part
   double colour_rate = 0.2;    ///< by which a frame moves the histograms
   double occlusion_m = 0.015;  ///< a line is covered where depth is nearer than the model by so much and 3 sigma
   /// Standard deviation by which all edges of an object err outwards alike, and by which those err towards the darker
