@@ -146,8 +146,8 @@ void decide_one(const PoseSettings& settings, Estimation& it) {
   it.pose = *std::move(best);
 }
 
-/// Of the poses that look alike by their shape takes the one for which the print speaks, and says how surely; also
-/// where it is withheld, since its quality is told too.
+/// Selects the pose that the texture supports among those that are equivalent by shape, with its probability; also for
+/// rejected poses, whose quality is reported too.
 void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
   constexpr float kWorthTelling = 0.1F;  // what is wrong already by its shape stays wrong
   if (it.pose.shape_quality < kWorthTelling) return;

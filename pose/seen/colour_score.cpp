@@ -9,7 +9,7 @@
 namespace houghstream {
 namespace {
 
-// What exposure and haze make of a remembered contrast.
+// Range of the gain by which exposure and haze change the model's contrast.
 constexpr double kMinGain = 0.4;
 constexpr double kMaxGain = 2.5;
 
@@ -33,7 +33,7 @@ double chroma_left_over(const ColourProducts& products, Eigen::Index template_va
   return std::max(0.0, variance(products, seen) - gain * (2.0 * covariance - gain * model_variance));
 }
 
-/// The same for lightness on the remembered one and the surface's normal.
+/// Returns the residual variance of the lightness after regression on the model's and on the surface's normal.
 double lightness_left_over(const ColourProducts& products) {
   constexpr double kRidge = 1e-4;   // terms that do not vary are left alone
   constexpr int kTerms = kOne + 1;  // remembered value, normal (3), 1
@@ -68,7 +68,7 @@ struct SummedColours {
   ColourSums compared;
   ColourSums clipped;
 
-  /// Of both. `compared_means` is that of the former, and mostly all there is.
+  /// Returns the means of both sums. `compared_means` are those of the former, which mostly are all.
   ColourProducts all_means(const ColourProducts& compared_means) const {
     if (clipped.count() == 0) return compared_means;
     ColourSums all = compared;

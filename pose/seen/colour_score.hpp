@@ -22,8 +22,8 @@ struct ChromaMeans {
   Eigen::Vector2d variance = Eigen::Vector2d::Zero();  ///< of the measured a* and b*
 };
 
-/// How the colours that the model has at a pose and those that are seen compare, where measured and model depth agree
-/// and, unless said otherwise, the camera was not at its limit.
+/// Comparison of the model's colours at a pose with the observed ones, where measured and model depth agree and, unless
+/// stated otherwise, the camera was not clipped.
 struct ColourComparison {
   int points = 0;  ///< compared
   /// 1 less the share of the seen variance that is left over, with each channel's gain (within limits) and offset free,
@@ -46,13 +46,14 @@ struct ColourComparison {
 /// ColourComparison::chroma_conflict with the model's colours brought to the camera's.
 float chroma_difference(const ChromaMeans& means, const ChromaMap& camera);
 
-/// Compares the points that were looked at. Nothing where the model has no colours or too few points agree.
+/// Compares the colours of the projected points. Returns nothing where the model has no colours or too few points
+/// agree.
 std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ProjectedView& seen,
                                                 const DepthTolerance& tolerance);
 
-/// The same with the seen colours averaged over little more than the model's are, and moved by up to two pixels to
-/// where they agree best (less where the object is small): cameras' colours are registered to their depth, and poses
-/// found, no better than that. For judging a pose, not for choosing between poses, which differ by less.
+/// Compares the colours after averaging the observed ones over slightly more than the model's, and shifting them by up
+/// to two pixels to the best agreement (less for small objects): the registration of colour to depth, and poses, are no
+/// more accurate. It is meant for the decision about a pose, not for the selection between poses, which differ by less.
 std::optional<ColourComparison> compare_texture(const ObjectObservation& seen, const ProjectedView& look,
                                                 const DepthTolerance& tolerance);
 
@@ -61,9 +62,9 @@ std::optional<ColourComparison> compare_texture(const ObjectObservation& seen, c
 /// `depth_value` itself where that is not above 0.
 float joint_score(float depth_value, const std::optional<ColourComparison>& colour);
 
-// What compare_colours() sums, to be tested by itself.
+// Sums of compare_colours(), declared here for tests.
 
-/// What is noted of a compared point; values about 0, so that single precision is enough.
+/// Columns of a compared point; values are centred, so that single precision suffices.
 enum ColourColumn : Eigen::Index {
   kLightness,
   kNormal,
@@ -111,7 +112,7 @@ class ColourSums {
     return *this;
   }
 
-  /// Of at least one point. Entries that were not summed are 0.
+  /// Returns the mean products of at least one point. Entries that were not summed are 0.
   ColourProducts means() const {
     ColourProducts products = ColourProducts::Zero();
     const auto set = [&](Eigen::Index a, Eigen::Index b, float sum) {

@@ -13,7 +13,7 @@ namespace houghstream {
 /// Metres within which measured and model depth agree, where settings say nothing else.
 constexpr double kDepthTolerance_m = 0.008;
 
-/// Where a model's point falls in a frame, and what was measured there.
+/// A model point projected into the frame, with the difference between measured and predicted depth at its pixel.
 struct ProjectedPoint {
   /// Measured minus model depth along the ray, metres; NaN where nothing was measured or the image ends.
   float depth_difference = std::numeric_limits<float>::quiet_NaN();
@@ -31,18 +31,18 @@ struct ProjectedView {
 ProjectedView project_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                            int points);
 
-/// How the measured depth speaks for a pose, judged at the visible points of the model.
+/// Score of a pose by the measured depth at the visible points of the model.
 struct DepthScore {
   float inlier_fraction = 0.0F;       ///< fraction of the points where measured and model depth agree
   float free_space_violation = 0.0F;  ///< fraction in front of what was measured: the camera saw through them
   float value = 0.0F;  ///< (agreeing - violating) times the view's silhouette: explained minus contradicted area
 };
 
-/// Judges the points that were looked at. Points behind what was measured (occluded),
-/// without depth, or outside the image speak neither way.
+/// Scores the projected points. Points behind the measured surface (occluded), without depth, or outside the image
+/// count neither way.
 DepthScore score_projected_view(const ProjectedView& seen, const DepthTolerance& tolerance);
 
-/// The same for the first `points` points of the view nearest to the pose.
+/// Scores the first `points` points of the view nearest to the pose.
 DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                       int points, const DepthTolerance& tolerance);
 

@@ -82,8 +82,7 @@ struct FrameContext {
 };
 FrameContext make_frame_context(const RgbdFrame& frame, const RegionSettings& settings, const DepthNoise& noise);
 
-/// What is seen of a detected object, and the model that it is compared with: what every later stage looks at. Frame
-/// and model must outlive it.
+/// Observation of a detected object, with its model: the input of all later stages. Frame and model must outlive it.
 struct ObjectObservation {
   const RgbdFrame& frame;
   const ObjectModel& model;

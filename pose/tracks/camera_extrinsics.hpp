@@ -34,7 +34,7 @@ class CameraExtrinsics {
   /// InputError for one camera too many.
   void add_transform(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera);
 
-  /// Whether anything is known of any camera.
+  /// Returns whether any camera has extrinsics.
   bool any() const { return !static_.empty() || !moving_.empty(); }
 
   /// Interpolated at the very time; a camera that stood still for its last two transforms still stands there.

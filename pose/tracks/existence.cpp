@@ -10,7 +10,7 @@
 namespace houghstream::tracks {
 namespace {
 
-/// Whether an object of another class is recognised in its place.
+/// Returns whether an object of another class is recognised in its place.
 bool is_displaced(const UnobservedContext& frame, const Track& track) {
   const Eigen::Vector3d place = track.pose.filter().T_world_object() * centre_of(frame.models, track.class_name);
   return std::any_of(frame.poses.begin(), frame.poses.end(), [&](const PoseObservation& pose) {
@@ -20,7 +20,7 @@ bool is_displaced(const UnobservedContext& frame, const Track& track) {
   });
 }
 
-/// Whether the class is detected at a place, which is where such a detection has its centre; camera frame, metres.
+/// Returns whether the class is detected at a position, camera frame, metres.
 bool is_detected(const UnobservedContext& frame, const std::string& class_name,
                  const Eigen::Vector3d& expected_centre) {
   const Detections* detections = frame.observation.detections;

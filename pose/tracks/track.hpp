@@ -72,7 +72,7 @@ struct PoseObservation {
 std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
                                            const TrackModels& models);
 
-/// Log odds of a pose's quality, which is cut to 0.02 and 0.98.
+/// Returns the logit of a pose's quality, which is clamped to 0.02 and 0.98.
 double quality_logit(double quality);
 
 /// Result of check_visibility().

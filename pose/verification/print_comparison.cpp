@@ -70,7 +70,7 @@ cv::Mat cells_about(const cv::Mat& mask, int side) {
   return weights;
 }
 
-/// Of a grid of CIE L*a*b* colours, CV_32FC3, 0 where nothing is compared.
+/// Makes the bands of a grid of CIE L*a*b* colours, CV_32FC3, 0 where nothing is compared.
 Print print_of(const cv::Mat& lab, const Face& face) {
   const cv::Mat fine = box_sum(lab, kFine) / face.fine_weights;
   const cv::Mat coarse = box_sum(lab, kCoarse) / face.coarse_weights;
@@ -97,7 +97,7 @@ Print print_of(const cv::Mat& lab, const Face& face) {
   return print;
 }
 
-/// How much likelier a camera makes what is seen of the model's print than of a plain surface, log of the ratio.
+/// Returns the log likelihood ratio of the observation under the model's texture and under a uniform surface.
 double log_likelihood(const Print& model, const Print& seen) {
   double sum = 0.0;
   for (std::size_t i = 0; i < kBands; ++i) {
@@ -122,8 +122,8 @@ cv::Rect whole_cells(const cv::Rect& part, int cell_px) {
   return {part.x, part.y, part.width / cell_px * cell_px, part.height / cell_px * cell_px};
 }
 
-/// Whether a pixel has lost its colour. One that is at the camera's limit in a channel or two has not: it is as red as
-/// the camera shows things.
+/// Returns whether a pixel is clipped in all channels. A pixel that is clipped in one or two channels keeps its colour,
+/// as far as the camera can show it.
 bool is_overexposed(const cv::Vec3b& bgr) {
   constexpr std::uint8_t kLimit = 245;
   return std::min({bgr[0], bgr[1], bgr[2]}) >= kLimit;
@@ -169,7 +169,7 @@ Face visible_face(const ObjectObservation& seen, const Eigen::Isometry3d& T_came
   return face;
 }
 
-/// What the camera shows of the face, read `shift_px` beside it.
+/// Returns the observed texture of the face, read at an offset of `shift_px`.
 Print seen_print(const ObjectObservation& seen, const Face& face, const cv::Point& shift_px) {
   const cv::Mat& lab = seen.colours.lab;
   const cv::Point last(lab.cols - face.part_px.width, lab.rows - face.part_px.height);
@@ -182,7 +182,7 @@ Print seen_print(const ObjectObservation& seen, const Face& face, const cv::Poin
   return print_of(grid, face);
 }
 
-/// What the model would show there if it were moved by `motion` first; nothing where much of it would not be there.
+/// Returns the model's texture there after `motion`; nothing where much of the surface would be missing.
 std::optional<Print> model_print(const ObjectModel& model, const Face& face, const Eigen::Isometry3d& motion) {
   constexpr double kMaxMissing = 0.2;
   const Eigen::Isometry3f back = motion.inverse().cast<float>();
@@ -222,7 +222,7 @@ double best_log_likelihood(const Print& model, const std::vector<Print>& seen) {
   return best;
 }
 
-/// How what breaks a nearly round shape, a handle, is seen at a pose.
+/// Visibility of the part that breaks a nearly round shape, such as a handle, at a pose.
 struct HandleCounts {
   int depth_inliers = 0;
   int free_space_violations = 0;
@@ -300,8 +300,8 @@ struct Alternative {
   double likelihood = 0.0;  ///< log
 };
 
-/// Those at which the model's surface is where it is seen. Of many turns only the likeliest are compared a little
-/// beside.
+/// Returns the alternatives at which the model's surface agrees with the depth. Of many rotations only the likeliest
+/// are compared with small offsets.
 std::vector<Alternative> likely_alternatives(const ObjectObservation& seen, const Face& face,
                                              const Eigen::Isometry3d& T_camera_object,
                                              const std::vector<Eigen::Isometry3d>& poses,

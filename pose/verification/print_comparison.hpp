@@ -8,7 +8,7 @@
 
 namespace houghstream {
 
-/// What the print says of a pose beside its alternatives (ObjectModel::alternatives).
+/// Comparison of a pose's texture with that of its alternatives (ObjectModel::alternatives).
 struct PrintComparison {
   /// How much likelier the image is under the pose than under the alternatives together, log odds. About minus the
   /// logarithm of their number where the print cannot tell: the model has no colours, is plain, or is hardly seen.

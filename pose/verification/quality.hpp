@@ -13,7 +13,7 @@
 
 namespace houghstream {
 
-/// What speaks for a pose and against it.
+/// Evidence for and against a pose.
 struct PoseEvidence {
   float detection_score = 0.0F;
   Verification depth;
@@ -57,7 +57,7 @@ inline constexpr std::array<double QualityTerms::*, 8> kQualityTerms = {&Quality
 inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames = {
     "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "print", "left_over", "contrast"};
 
-/// Of a value for each term, in their order.
+/// Returns the terms of a list of values, in the order of kQualityTerms.
 inline QualityTerms terms_of(const std::array<double, kQualityTerms.size()>& values) {
   QualityTerms terms;
   for (std::size_t i = 0; i < values.size(); ++i) terms.*kQualityTerms[i] = values[i];

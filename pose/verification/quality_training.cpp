@@ -20,7 +20,7 @@ Weights to_vector(double bias, const QualityTerms& terms) {
   return out;
 }
 
-/// Those of `otherwise` where no pose is right.
+/// Returns the mean terms of correct poses; those of `otherwise` where there are none.
 QualityTerms average_correct(const std::vector<QualityExample>& examples, const QualityTerms& otherwise) {
   QualityTerms sum;
   int count = 0;
@@ -36,7 +36,7 @@ QualityTerms average_correct(const std::vector<QualityExample>& examples, const 
 
 using ExamplesByName = std::map<std::string, std::vector<QualityExample>>;
 
-// Of what objects have in common: few poses of one object do not tell its weights.
+// Precision of the prior of the objects' common weights: few poses of one object do not determine its weights.
 constexpr double kPriorPrecision = 10.0;
 constexpr double kCommonStiffness = 5.0;  // of the numbers in use: nor do those of the few objects of a store
 
@@ -78,7 +78,7 @@ std::map<std::string, std::vector<PresenceExample>> presence_examples(const Exam
 
 PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, const PrintSettings& prior,
                                  double precision) {
-  // What is sure beyond this is sure: a few examples far out must not decide about those near to the border.
+  // Margins are clamped here, so that a few extreme examples do not dominate those near the decision boundary.
   constexpr double kMax = 8.0;
   std::vector<LogisticExample<2>> judged;
   for (const QualityExample& example : examples) {

@@ -23,8 +23,8 @@ struct QualityExample {
   int half = 0;             ///< 0 or 1: of which half of all that was practised
 };
 
-/// What the print's margins say of which of the poses that look alike by their shape is right: of the examples that are
-/// right up to the shape and have alternatives, by logistic regression with a prior as for fit_quality_settings().
+/// Fits the probability of the texture's margins by logistic regression over the examples that are correct up to their
+/// shape and have alternatives, with a prior as for fit_quality_settings().
 PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, const PrintSettings& prior,
                                  double precision);
 
@@ -34,9 +34,9 @@ PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, co
 QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples, const QualitySettings& prior,
                                      double precision);
 
-/// What the poses of several objects, by name, teach of each: its quality, which is drawn to what they have in common,
-/// and what that says of its presence. The latter is learnt from qualities that did not know the examples (those of one
-/// half from the other half), as later ones will not.
+/// Learns the quality settings of several objects from their poses, by name, with the objects' common weights as a
+/// prior, and the presence settings from these qualities. The latter use cross-fitted qualities (those of one half from
+/// the other half), since later ones will not have been trained on their examples either.
 std::map<std::string, QualitySettings> learn_qualities(
     const std::map<std::string, std::vector<QualityExample>>& examples);
 

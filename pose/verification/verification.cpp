@@ -11,7 +11,7 @@
 namespace houghstream {
 namespace {
 
-/// What is looked at across the outline of a rendered model.
+/// View of a rendered model, across whose boundary samples are taken.
 struct BoundaryView {
   const RgbdFrame& frame;
   const cv::Mat& rendered;  ///< depth, metres; NaN beside the model

@@ -35,9 +35,8 @@ struct Verification {
   float free_space_violation() const;   ///< violating of rendered, 0 if nothing is rendered
 };
 
-/// The same counts, without the outline's, at the points that were looked at instead of the rendered pixels: they are
-/// spread over the view as pixels are. Those that are seen from their edge are left out, since the view's direction is
-/// only near the pose's.
+/// Returns the counts, without the boundary's, at the projected points instead of the rendered pixels, which cover the
+/// view evenly. Points at grazing angles are left out, since the view's direction is only near the pose's.
 Verification verify_projected_view(const ProjectedView& look, const DepthTolerance& tolerance);
 
 /// `colours`: of the frame, about the object; nullptr: any colour counts as going on.

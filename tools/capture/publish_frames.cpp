@@ -109,7 +109,7 @@ class StatusTicker {
     const BlockStopSignals block;
     thread_ = std::thread([this, &status, &bus, &work] {
       while (running_) {
-        // Who hangs says nothing more.
+        // A hung process publishes no status.
         if (work.is_beating() && status.try_publish_if_due(bus)) notify_service("WATCHDOG=1");
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
       }

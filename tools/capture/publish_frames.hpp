@@ -21,7 +21,7 @@ struct CaptureSettings {
   bool replace = false;                ///< a log that is there, instead of taking the next number
 };
 
-/// What became of the frames.
+/// Counts of the frames.
 struct CaptureResult {
   std::int64_t frames = 0;
   std::int64_t bytes = 0;

@@ -23,7 +23,7 @@ namespace {
 
 using namespace houghstream;
 
-/// What a command line asks for.
+/// Options of the command line.
 struct PoseOptions {
   std::string objects;
   std::string cache;

@@ -148,7 +148,7 @@ std::string state_of_program() {
   return state;
 }
 
-/// Whether nobody else can have written it.
+/// Returns whether nobody else can have written it.
 bool is_own(const fs::path& file) {
   struct stat is {};
   constexpr mode_t kOthersWrite = S_IWGRP | S_IWOTH;
