@@ -14,7 +14,7 @@
 
 namespace houghstream {
 
-/// An object of a class at a place.
+/// Gives the class and pose of an object.
 struct PlacedObject {
   const std::string& class_name;
   const Eigen::Isometry3d& T_camera_object;
@@ -37,14 +37,13 @@ class PoseEstimator {
   ~PoseEstimator();
   PoseEstimator(PoseEstimator&&) noexcept;
 
-  /// By class name.
+  /// Returns the models by class name.
   const std::map<std::string, ObjectModel>& models() const;
   const PoseSettings& settings() const;
 
-  /// One ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
-  /// pose.registration, pose.choice and pose.verification are appended to those of the detections.
-  /// The detections must be of this frame (same name); throws std::logic_error otherwise, and InputError for a frame
-  /// that is none.
+  /// Returns one ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
+  /// pose.registration, pose.choice and pose.verification are appended to those of the detections. The detections must
+  /// be of this frame (same name); throws std::logic_error otherwise, and InputError for an invalid frame.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 
   /// Estimates with the poses of an earlier frame as a warm start: they are candidates beside those of the votes, never
@@ -53,8 +52,8 @@ class PoseEstimator {
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier,
                        const std::vector<ChromaPair>& remembered = {}) const;
 
-  /// Where a detection of the object would have its centre, camera frame, metres; its origin where the class has no
-  /// model.
+  /// Returns where a detection of the object would have its centre, camera frame, metres; its origin where the class
+  /// has no model.
   Eigen::Vector3d vote_centre(const PlacedObject& object) const;
 
   /// Returns whether the centres of two objects are closer than `max_distance_ratio` times the smaller radius, so that

@@ -41,13 +41,13 @@ struct DepthView {
 /// the object: only what is beside its convex hull is outside then.
 DepthView make_depth_view(const TrainingView& view);
 
-/// One point of the object's surface.
+/// Holds one point of the object's surface.
 struct SurfaceSample {
   Eigen::Vector3d point;   ///< camera frame, metres
   Eigen::Vector3d normal;  ///< camera frame, unit length, towards the camera
 };
 
-/// At most about `maximum` points of the view, evenly over its pixels.
+/// Returns at most about `maximum` points of the view, evenly over its pixels.
 std::vector<SurfaceSample> sample_view(const DepthView& view, int maximum);
 
 }  // namespace houghstream::fusion

@@ -88,7 +88,7 @@ class SurfaceNet {
 
   const TsdfVolume& grid_;
   Mesh mesh_;
-  std::unordered_map<std::size_t, std::uint32_t> vertices_;  // by cell
+  std::unordered_map<std::size_t, std::uint32_t> vertices_;  // index of the vertex, by cell
 };
 
 /// The part that each vertex belongs to, named by one of its vertices.

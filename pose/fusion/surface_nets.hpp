@@ -7,9 +7,10 @@
 
 namespace houghstream::fusion {
 
-/// The surface between inside and outside, by surface nets (Gibson 1998): one vertex in each cell that the surface
-/// crosses, at the mean of where it crosses the cell's edges; closed, with normals, triangles counter-clockwise from
-/// outside. The border of the grid counts as outside. Vertices: object frame, metres.
+/// Extracts the surface between inside and outside by surface nets (Gibson 1998): one vertex in each cell that the
+/// surface crosses, at the mean of the crossings of the cell's edges. The mesh is closed, has normals, and its
+/// triangles are counter-clockwise from outside. The border of the grid counts as outside. Vertices: object frame,
+/// metres.
 Mesh extract_surface(const TsdfVolume& grid);
 
 /// The connected part of a mesh with the most triangles, with the vertices it uses; for meshes with vertices and

@@ -6,9 +6,9 @@
 
 namespace houghstream::fusion {
 
-/// A pixel's colour in linear light: what its bytes mean as sRGB (IEC 61966-2-1), BGR in [0,1].
+/// Returns a pixel's colour in linear light, from its bytes as sRGB (IEC 61966-2-1), BGR in [0,1].
 Eigen::Vector3d srgb_to_linear(const cv::Vec3b& colour);
-/// The inverse, clipped.
+/// Returns the inverse of srgb_to_linear(), clipped.
 cv::Vec3b linear_to_srgb(const Eigen::Vector3d& linear);
 
 /// A vertex as a view shows it.
@@ -16,7 +16,7 @@ struct ColourSample {
   int vertex = 0;
   int view = 0;
   double level = 0.0;   ///< log of the linear brightness
-  double weight = 0.0;  ///< more for a frontal view
+  double weight = 0.0;  ///< larger for a frontal view
 };
 
 /// Estimates the log exposure of each view relative to the others, with median 0. Brightness is modelled as exposure
@@ -28,7 +28,7 @@ std::vector<double> estimate_exposures(const std::vector<ColourSample>& samples,
 /// of second order (which represent diffuse lighting, Ramamoorthi and Hanrahan 2001).
 class ShadingModel {
  public:
-  /// Log of the light on a surface of this normal, but for a constant.
+  /// Returns the logarithm of the shading on a surface of this normal, up to a constant.
   double operator()(const Eigen::Vector3d& normal) const;
 
  private:

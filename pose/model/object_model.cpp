@@ -63,7 +63,8 @@ Eigen::Vector3f surface_median(const Mesh& mesh) {
   return median;
 }
 
-/// Camera at `distance` from the model's centre, looking at it; the turn about the optical axis does not matter.
+/// Returns the pose of a camera at `distance` from the model's centre that looks at it. The rotation about the optical
+/// axis does not matter.
 Eigen::Isometry3d looking_from(const Eigen::Vector3f& direction, const Eigen::Vector3f& centre, double distance) {
   const Eigen::Quaterniond R_camera_object =
       Eigen::Quaterniond::FromTwoVectors(direction.cast<double>(), -Eigen::Vector3d::UnitZ());
@@ -73,7 +74,7 @@ Eigen::Isometry3d looking_from(const Eigen::Vector3f& direction, const Eigen::Ve
   return T_camera_object;
 }
 
-/// A point of a view on its way to a place in it.
+/// Holds a visible surface point of a view, with where it lies in its triangle.
 struct SeenPoint {
   Eigen::Vector3f point;
   Eigen::Vector3f normal;
@@ -100,7 +101,8 @@ class ViewMaker {
         colour_(model.mesh, 2.0 * model.radius / settings.pixels_per_diameter),
         face_normals_(face_normals(model.mesh)) {}
 
-  /// At most ModelSettings::points_per_view of the points that are seen, in random order.
+  /// Makes the view from a direction, with at most ModelSettings::points_per_view of the visible points, in random
+  /// order.
   ModelView make(const Eigen::Vector3f& direction, std::uint64_t seed) const;
 
   /// The colours of all that is seen from one direction.
@@ -212,7 +214,7 @@ double moved_by(const Eigen::Isometry3d& motion, const std::vector<Eigen::Vector
 /// to: a pose of a nearly square box that is a quarter turn wrong settles where depth speaks for it.
 std::vector<Eigen::Isometry3d> near_symmetries(const MeasuredMesh& measured, const ObjectModel& model) {
   SymmetrySearch search;
-  search.tolerance = 0.1;  // with which BOP finds candidates (Hodan et al. 2020)
+  search.tolerance = 0.1;  // diameters, with which BOP finds candidates (Hodan et al. 2020)
   const RotationSymmetryTest check(measured, model.surface_median.cast<double>(), search);
   std::vector<Eigen::Isometry3d> rotations;
   for (int i = 0; i < 3; ++i) {

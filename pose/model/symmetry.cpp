@@ -12,7 +12,7 @@ Eigen::Isometry3d rotate_about(const Eigen::Quaterniond& rotation_step, const Ei
   return Eigen::Translation3d(offset) * rotation_step * Eigen::Translation3d(-offset);
 }
 
-/// Cosine of half the angle of a rotation.
+/// Returns the cosine of half the angle of a rotation.
 double nearness(const Eigen::Quaterniond& rotation) {
   return std::abs(rotation.w());
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr double kMinGain = 0.4;
 constexpr double kMaxGain = 2.5;
 
-/// About grey.
+/// Returns the colour about grey.
 template <typename Lab>
 Eigen::Array4f about_grey(const Lab& lab) {
   constexpr float kGrey = 128.0F;
@@ -53,8 +53,8 @@ double lightness_left_over(const ColourProducts& products) {
 }
 
 ChromaMeans chroma_means(const ColourProducts& products) {
-  constexpr double kOffset = 128.0;        // of 8-bit values about grey
-  constexpr double kUnit = 100.0 / 255.0;  // of 8-bit lightness
+  constexpr double kOffset = 128.0;        // grey of 8-bit a* and b*
+  constexpr double kUnit = 100.0 / 255.0;  // step of 8-bit lightness
   ChromaMeans means;
   means.model = {products(kA, kOne), products(kB, kOne)};
   means.measured = {products(kObservedA, kOne), products(kObservedB, kOne)};
@@ -150,8 +150,8 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
 std::optional<ColourComparison> compare_texture(const ObjectObservation& seen, const ProjectedView& look,
                                                 const DepthTolerance& tolerance) {
   constexpr double kDetails = 2.5;  // averaged over so many of the model's details, so that a little beside is near,
-  constexpr double kMax = 5.0;      // or so many pixels,
-  constexpr int kAlready = 3;       // which LabRegion's are averaged over
+  constexpr double kMax = 5.0;      // or at most over so many pixels
+  constexpr int kAlready = 3;       // pixels over which LabRegion's colours are averaged already
   const LabRegion& colours = seen.colours;
   if (colours.lab.empty() || !(look.depth > 0.0)) return std::nullopt;
   const double detail_m = 2.0 * static_cast<double>(seen.model.radius) / ModelSettings{}.pixels_per_diameter;

@@ -13,7 +13,7 @@ DepthScore score_of(const ProjectedView& seen, float shift, float width) {
   DepthScore score;
   for (const ProjectedPoint& look : seen.points) {
     const float ratio = (look.depth_difference - shift) / width;
-    // Without branches, as the case changes from point to point: NaN is not above 0 and adds nothing.
+    // The sum has no branches, since the case changes from point to point: NaN is not above 0 and adds nothing.
     score.inlier_fraction += std::max(0.0F, 1.0F - ratio * ratio);
     score.free_space_violation += std::min(1.0F, std::max(0.0F, ratio - 1.0F));
   }

@@ -21,17 +21,17 @@ struct ProjectedPoint {
   int y = 0;
 };
 
-/// A model's view at a pose, against a frame.
+/// Holds the projected points of a model's view at a pose.
 struct ProjectedView {
   const ModelView& view;               ///< nearest to the pose
   Eigen::Isometry3f T;                 ///< camera from object
-  double depth = 0.0;                  ///< of the model's middle, metres: tolerances are those of there
-  std::vector<ProjectedPoint> points;  ///< of the first points of the view
+  double depth = 0.0;                  ///< depth of the model's middle, metres, at which tolerances are taken
+  std::vector<ProjectedPoint> points;  ///< first points of the view, projected
 };
 ProjectedView project_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                            int points);
 
-/// Score of a pose by the measured depth at the visible points of the model.
+/// Scores a pose by the measured depth at the visible points of the model.
 struct DepthScore {
   float inlier_fraction = 0.0F;       ///< fraction of the points where measured and model depth agree
   float free_space_violation = 0.0F;  ///< fraction in front of what was measured: the camera saw through them
@@ -49,13 +49,13 @@ DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Ei
 /// A move of the pose along the line of sight, and how the depth speaks for the pose after it.
 struct DepthShift {
   double shift_m = 0.0;
-  DepthScore score;  ///< as score_pose would give it, but for the small change of scale
+  DepthScore score;  ///< score_pose's result there, but for the small change of scale
 };
 
-/// Where such a move is looked for.
+/// Limits the search for such a move.
 struct ShiftSearch {
-  int points = 0;        ///< of the view nearest to the pose, the first
-  double reach_m = 0.0;  ///< to each side
+  int points = 0;        ///< number of first points of the nearest view
+  double reach_m = 0.0;  ///< distance to each side
   DepthTolerance tolerance;
 };
 

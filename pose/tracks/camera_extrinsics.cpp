@@ -35,7 +35,7 @@ Eigen::Isometry3d rigid(const Eigen::Vector3d& translation, const Eigen::Vector4
   return Eigen::Translation3d(translation) * Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
 }
 
-/// A camera, or another frame, in its parent.
+/// Gives the pose of a camera, or of another frame, in its parent.
 struct Link {
   std::string parent;
   Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();

@@ -46,7 +46,7 @@ void fields(const ExistenceSettings& /*settings*/, const Visit& visit) {
 /// A result of a frame, as the tracks see it that it has no pose of.
 struct UnobservedContext {
   const FrameObservation& observation;
-  const std::vector<PoseObservation>& poses;  ///< those that are new in this result
+  const std::vector<PoseObservation>& poses;  ///< poses that are new in this result
   const TrackModels& models;
   double reach_m = 0.0;  ///< distance below which a detection of the class is one of the object, metres
   double coast_s = 0.0;  ///< MotionSettings::coast_s

@@ -100,7 +100,7 @@ VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model
   constexpr double kToleranceM = 0.012;
   constexpr double kNearestM = 0.05;
   constexpr int kMinPx = 30;
-  constexpr double kMeasured = 0.2;  // of the pixels, with depth
+  constexpr double kMeasured = 0.2;  // minimum fraction of the pixels with depth
   constexpr double kHidden = 0.6;
   constexpr double kThrough = 0.35;
   const Eigen::Vector3d centre = T_camera_object * model.centre;
@@ -133,7 +133,7 @@ void PoseTrack::predict(std::int64_t utime) {
 }
 
 void PoseTrack::update(const PoseObservation& pose, const Symmetries& symmetries, bool has_contrary_depth) {
-  constexpr double kLead = 1.0;  // by which another hypothesis has to be ahead
+  constexpr double kLead = 1.0;  // margin of log odds by which another hypothesis must lead
   const double passed = std::max(0.0, seconds_between(weighed_utime_, pose.frame.utime));
   weighed_utime_ = std::max(weighed_utime_, pose.frame.utime);
   for (Hypothesis& hypothesis : hypotheses_) hypothesis.weight *= std::exp(-passed / kForget_s);
@@ -151,7 +151,7 @@ void PoseTrack::update(const PoseObservation& pose, const Symmetries& symmetries
   }
   if (hypothesis.weight > hypotheses_[best_].weight + kLead) best_ = index;
   if (hypothesis.filter.moving() && index == best_ && hypotheses_.size() > 1) {
-    hypotheses_ = {hypothesis};  // what was thought of where it stood is over
+    hypotheses_ = {hypothesis};  // hypotheses from before the motion are obsolete
     best_ = 0;
   }
 }

@@ -24,7 +24,7 @@ void fields(const PresenceSettings& /*settings*/, const Visit& visit) {
   visit(number("of_quality", &S::quality_weight, -1e6, 1e6));
 }
 
-/// In (0, 1); `score` and `quality` are in [0, 1], and the ends of it are no certainty.
+/// Returns a probability in (0, 1); `score` and `quality` are in [0, 1], whose ends are not taken as certain.
 float presence_probability(float score, float quality, const PresenceSettings& settings);
 
 /// A judged detection whose pose was judged too.
@@ -34,7 +34,7 @@ struct PresenceExample {
   bool is_present = false;
 };
 
-/// The settings that explain the examples best; `prior` and `precision` as for fit_quality_settings().
+/// Returns the settings that explain the examples best; `prior` and `precision` are as for fit_quality_settings().
 PresenceSettings fit_presence(const std::vector<PresenceExample>& examples, const PresenceSettings& prior,
                               double precision);
 

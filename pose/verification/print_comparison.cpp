@@ -17,8 +17,8 @@ constexpr int kCells = 48;     // along the longer side of the object in the ima
 constexpr int kMinCells = 60;  // compared; fewer tell nothing
 constexpr int kFine = 5;       // sides of the means that part the bands, cells
 constexpr int kCoarse = 13;
-// Of what is compared, so many cells count as one observation: neighbours are alike. All of them are measured with one
-// image, one mesh and one pose, so that even so they are no independent witnesses: kTemper is what is left of it.
+// Number of compared cells that count as one observation, since neighbours are correlated. All cells share one image,
+// one mesh and one pose, so that even these observations are dependent: kTemper reduces their weight for that.
 constexpr double kFineCells = 4.0;
 constexpr double kMiddleCells = 25.0;
 constexpr double kCoarseCells = 85.0;
@@ -27,7 +27,7 @@ constexpr double kNoise = 8.0;  // variance of a channel that neither print nor 
 constexpr double kMinGain = 0.3;
 constexpr double kMaxGain = 2.5;
 
-/// A band of one colour channel: one number for each compared cell, and how many cells count as one observation.
+/// Holds a band of one colour channel: one number for each compared cell, and the sum of their squares.
 struct Band {
   Eigen::VectorXf values;
   double sum_sq = 0.0;
@@ -46,12 +46,12 @@ struct Print {
 /// Cells of the object's part of the image where its surface is seen.
 struct Face {
   int cell_px = 1;
-  cv::Rect part_px;      ///< of the frame, a whole number of cells
+  cv::Rect part_px;      ///< part of the frame, a whole number of cells
   cv::Mat mask;          ///< CV_32FC1, 1 for the compared cells
   cv::Mat fine_weights;  ///< CV_32FC3, in each channel the compared cells about each cell
   cv::Mat coarse_weights;
-  std::vector<cv::Point> cells;                   ///< those, row by row
-  std::vector<Eigen::Vector3f> points;            ///< of the surface there, object frame, metres
+  std::vector<cv::Point> cells;                   ///< compared cells, row by row
+  std::vector<Eigen::Vector3f> points;            ///< surface points of the cells, object frame, metres
   Eigen::Vector3f eye = Eigen::Vector3f::Zero();  ///< the camera, object frame
 };
 
@@ -129,7 +129,7 @@ bool is_overexposed(const cv::Vec3b& bgr) {
   return std::min({bgr[0], bgr[1], bgr[2]}) >= kLimit;
 }
 
-/// Where in the frame a cell's middle is.
+/// Returns the pixel in the frame at a cell's middle.
 cv::Point middle_px(const cv::Point& cell, const Face& face) {
   return face.part_px.tl() + face.cell_px * cell + cv::Point(face.cell_px / 2, face.cell_px / 2);
 }
@@ -222,7 +222,7 @@ double best_log_likelihood(const Print& model, const std::vector<Print>& seen) {
   return best;
 }
 
-/// Visibility of the part that breaks a nearly round shape, such as a handle, at a pose.
+/// Counts how the part that breaks a nearly round shape, such as a handle, is seen at a pose.
 struct HandleCounts {
   int depth_inliers = 0;
   int free_space_violations = 0;
@@ -322,7 +322,7 @@ std::vector<Alternative> likely_alternatives(const ObjectObservation& seen, cons
   return shown;
 }
 
-/// Where the print cannot tell, the pose is one of as many.
+/// Returns the margin without information from the texture: all alternatives are equally probable.
 PrintComparison undecided(std::size_t alternatives) {
   return {-std::log(static_cast<double>(alternatives)), std::nullopt};
 }

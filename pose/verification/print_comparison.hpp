@@ -8,10 +8,10 @@
 
 namespace houghstream {
 
-/// Comparison of a pose's texture with that of its alternatives (ObjectModel::alternatives).
+/// Compares a pose's texture with that of its alternatives (ObjectModel::alternatives).
 struct PrintComparison {
-  /// How much likelier the image is under the pose than under the alternatives together, log odds. About minus the
-  /// logarithm of their number where the print cannot tell: the model has no colours, is plain, or is hardly seen.
+  /// Log odds of the pose against all alternatives, given the image. It is about minus the logarithm of their number
+  /// where the texture is not informative: the model has no colours, is untextured, or is hardly visible.
   double margin = 0.0;
   /// The alternative under which the image is clearly likelier than under the pose, camera from object; nothing where
   /// there is none.

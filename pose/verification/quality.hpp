@@ -13,12 +13,12 @@
 
 namespace houghstream {
 
-/// Evidence for and against a pose.
+/// Holds the evidence for and against a pose.
 struct PoseEvidence {
   float detection_score = 0.0F;
   Verification depth;
-  std::optional<ColourComparison> colour;  ///< nothing where the model has no colours
-  /// That the pose is the right one of those that its shape cannot tell apart; 1 where there are no others.
+  std::optional<ColourComparison> colour;  ///< empty where the model has no colours
+  /// Probability that the pose is the correct one of those that are equivalent by shape; 1 where there are no others.
   float print_probability = 1.0F;
 };
 
@@ -29,7 +29,7 @@ PoseEvidence gather_evidence(const ObjectObservation& seen, const Eigen::Isometr
 /// Brings the model's colours to the camera's before they are compared.
 void bring_to_camera(const ChromaMap& camera, PoseEvidence& evidence);
 
-/// A number for each term of the regression: a pose's evidence, the larger the better, or a weight of it.
+/// Holds a number for each term of the regression: a pose's evidence, the larger the better, or a weight of it.
 struct QualityTerms {
   double detection_logit = 0.0;  ///< log odds of the detection's score
   /// Log of the share that was seen through, of what agrees or was seen through (negated).
@@ -41,7 +41,7 @@ struct QualityTerms {
   /// plain things agree with little. What the camera was at its limit for counts as plain. At least -0.5.
   double texture = 0.0;
   double unexplained_variance = 0.0;  ///< log of the variance of the seen colours that is left over (negated)
-  /// Log of the variance of the model's colours there (negated): what there was to agree with.
+  /// Logarithm of the variance of the model's colours there (negated): the contrast with which to agree.
   double model_contrast = 0.0;
 };
 
@@ -85,7 +85,7 @@ void fields(const PrintSettings& /*settings*/, const Visit& visit) {
   visit(number("of_margin", &S::margin_weight, -1e6, 1e6));
 }
 
-/// In (0, 1).
+/// Returns a probability in (0, 1).
 float print_probability(double margin, const PrintSettings& settings);
 
 /// The probability that a pose is right up to its shape's symmetries, by logistic regression on the evidence.
@@ -102,8 +102,8 @@ struct QualitySettings {
   QualityTerms mean_of_correct = terms_of({1.95, 3.06, -0.17, 2.89, -0.23, 0.80, -5.29, -5.29});
   float min_quality = 0.75F;            ///< poses of lower quality are not published...
   float min_candidate_quality = 0.75F;  ///< ...nor are these of candidates (Detection::reported): most are false
-  PresenceSettings presence;            ///< what this says of whether the object is there at all
-  PrintSettings print;                  ///< which of the poses that look alike by their shape is right
+  PresenceSettings presence;            ///< presence of the object as a function of score and quality
+  PrintSettings print;                  ///< choice between poses that are equivalent by shape
 };
 
 template <typename Visit>
@@ -124,8 +124,8 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
 /// detected, and its ADD-S error is below a tenth of the diameter.
 float shape_quality(const QualityTerms& terms, const QualitySettings& settings);
 
-/// What the evidence tells of the camera's colours, where the camera was not at its limit: nothing where the model has
-/// none. Its probability is the quality that the pose would have if its chroma were as it usually is.
+/// Returns the chroma that the evidence shows of the camera where it was not clipped; nothing where the model has no
+/// colours. Its probability is the quality that the pose would have with the usual chroma.
 std::optional<ChromaPair> chroma_pair(const std::string& class_name, const PoseEvidence& evidence,
                                       const QualitySettings& settings);
 

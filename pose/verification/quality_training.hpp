@@ -9,16 +9,15 @@
 
 namespace houghstream {
 
-/// A judged pose.
+/// Holds a pose whose correctness is known.
 struct QualityExample {
   QualityTerms terms;
   bool is_correct = false;              ///< the object that was detected, MSSD (or ADD) below a tenth of the diameter
-  bool is_correct_up_to_shape = false;  ///< the same by ADD-S: right but for what the shape cannot tell
-  /// Of a pose that is right up to its shape, what speaks for it if the object had another print: the fit tells the two
-  /// apart.
+  bool is_correct_up_to_shape = false;  ///< the same by ADD-S: correct up to the symmetries of the shape
+  /// Evidence of a pose that is correct up to its shape if the object had another texture: the fit separates the two.
   std::optional<QualityTerms> with_swapped_texture = std::nullopt;
   std::optional<double> print_margin = std::nullopt;  ///< PrintComparison::margin, where the pose has alternatives
-  float score = 0.0F;                                 ///< of the detection
+  float score = 0.0F;                                 ///< score of the detection
   bool is_present = false;  ///< the object that was detected, whether the pose is right or not
   int half = 0;             ///< 0 or 1: of which half of all that was practised
 };
@@ -28,9 +27,9 @@ struct QualityExample {
 PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, const PrintSettings& prior,
                                  double precision);
 
-/// Bias, weights and typical values that explain the examples best (maximum a posteriori, a Gaussian about each weight
-/// of `prior`, as strong as `precision` examples): few examples move them little from there. `least` is the prior's,
-/// and so is the weight of seen_through.
+/// Fits the bias, weights and mean terms that explain the examples best (maximum a posteriori, with a Gaussian about
+/// each weight of `prior`, as strong as `precision` examples): few examples move them little from there. `min_quality`
+/// is the prior's, and so is the weight of `free_space_violation`.
 QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples, const QualitySettings& prior,
                                      double precision);
 

@@ -38,8 +38,8 @@ std::optional<float> colours_apart_sq(const BoundaryView& view, const cv::Point&
   return colour_distance_sq(lab.at<cv::Vec3b>(inside - origin), lab.at<cv::Vec3b>(beyond - origin));
 }
 
-/// From the outline's pixel `at` towards `side`. Nothing where that says nothing: across a notch, beside the frame,
-/// or behind another thing.
+/// Samples the scene from the boundary pixel `at` towards `side`. Returns nothing where the sample is not informative:
+/// across a notch, beside the frame, or behind another object.
 std::optional<BoundarySample> sample_boundary(const BoundaryView& view, const cv::Point& at, const cv::Point& side,
                                               const DepthTolerance& tolerance) {
   constexpr double kInside = 0.004;  // metres: not on the edge, whose depth and colour are mixed
@@ -65,7 +65,7 @@ std::optional<BoundarySample> sample_boundary(const BoundaryView& view, const cv
   return seen;
 }
 
-/// To the left and right of each row's outline, and above and below each column's.
+/// Takes samples to the left and right of each row's boundary, and above and below each column's.
 void compare_boundary(const BoundaryView& view, const DepthTolerance& tolerance, Verification& result) {
   const std::array<cv::Point, 4> sides{cv::Point(1, 0), {-1, 0}, {0, 1}, {0, -1}};
   for (int y = 0; y < view.rendered.rows; ++y) {

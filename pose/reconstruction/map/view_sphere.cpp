@@ -39,7 +39,7 @@ const std::array<Eigen::Vector3d, kSphereDirections>& view_directions() {
 }
 
 void mark_covered(const Eigen::Vector3d& towards_camera, ViewCoverage& seen) {
-  constexpr double kCosine = 0.6428;  // of 50 degrees
+  constexpr double kCosine = 0.6428;  // cosine of 50 degrees
   const Eigen::Vector3d unit = towards_camera.normalized();
   const auto& directions = view_directions();
   for (std::size_t i = 0; i < directions.size(); ++i) seen[i] = seen[i] || directions[i].dot(unit) > kCosine;

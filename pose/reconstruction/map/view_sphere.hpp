@@ -21,8 +21,8 @@ void mark_covered(const Eigen::Vector3d& towards_camera, ViewCoverage& seen);
 
 int count_covered(const ViewCoverage& seen);
 
-/// "seen from 40 of 60 directions; from behind and from low nothing yet". In front is where the camera began, `front`
-/// in the object frame.
+/// Returns a text such as "seen from 40 of 60 directions; from behind and from low nothing yet". The front is where the
+/// camera began, `front` in the object frame.
 std::string describe_coverage(const ViewCoverage& seen, const Eigen::Vector3d& front);
 
 }  // namespace houghstream::reconstruction

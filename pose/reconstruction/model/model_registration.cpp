@@ -15,7 +15,7 @@
 namespace houghstream::reconstruction {
 namespace {
 
-/// Some of a model's seen vertices, with colours as CIE L*a*b*.
+/// Holds some of a model's observed vertices, with colours as CIE L*a*b*.
 struct Points {
   std::vector<Eigen::Vector3f> points, normals, colours;
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
@@ -53,7 +53,7 @@ Points sample(const PartlySeen& model, const std::vector<Eigen::Vector3f>& lab, 
   return out;
 }
 
-/// Model a, asked for its surface.
+/// Searches the surface of model a.
 class Target {
  public:
   explicit Target(const PartlySeen& model) : model_(model), lab_(lab_of(*model.mesh)), tree_(*model.mesh) {}

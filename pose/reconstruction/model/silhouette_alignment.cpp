@@ -46,7 +46,7 @@ cv::Point best_shift(const cv::Mat& outline, const cv::Mat& mask) {
   return best;
 }
 
-/// Median of measured less rendered depth; 0 where there is none.
+/// Returns the median of measured minus rendered depth; 0 where there is none.
 double depth_offset(const cv::Mat& model, const cv::Point& shift, const TrainingView& view) {
   std::vector<float> offsets;
   for (int y = 0; y < view.mask.rows; ++y) {

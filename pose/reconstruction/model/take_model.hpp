@@ -15,16 +15,16 @@ struct ReconstructedModel {
   Mesh mesh;               ///< metres; origin at the middle of its foot, z up as it stood; closed, normals, colours
   std::vector<bool> seen;  ///< per vertex: some view shows it; the others close the surface
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();  ///< world: of the take
-  std::vector<MaskedKeyframe> views;                                 ///< those that show it, in the keyframes' order
+  std::vector<MaskedKeyframe> views;                                 ///< keyframes that show it, in their order
   double agreement_m = 0.0;           ///< see disagreement(), of all views that the model is made of
   double free_space_violation = 0.0;  ///< see free_space_violation()
 };
 
 struct ReconstructionSettings {
-  double voxel_m = 0.0015;  ///< of the model; twice that for what is larger than 0.3 m
+  double voxel_m = 0.0015;  ///< voxels of the model; twice that for an object larger than 0.3 m
   double coarse_voxel_m = 0.004;
   double foot_m = 0.005;   ///< below that table and object are not told apart: the object is continued downwards
-  double beside_m = 0.01;  ///< of the object that may belong to it
+  double beside_m = 0.01;  ///< margin about the object whose surface may belong to it
   int threads = 1;         ///< any number gives the same result
 };
 

@@ -9,7 +9,7 @@
 
 namespace houghstream::reconstruction {
 
-/// normal.X + offset = 0 for its points X; camera frame, metres.
+/// Gives the plane normal.X + offset = 0 for its points X; camera frame, metres.
 struct Plane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit length, towards the camera
   double offset = 0.0;                                ///< the camera's height above it

@@ -37,10 +37,10 @@ class MotionClassifier {
   bool camera_is_still(const FlowFrame& now, const FrameLevels& levels, const Eigen::Isometry3d& T_moved) const;
 
   FlowFrame first_;
-  cv::Mat first_intensity_, about_object_, away_from_object_;  ///< of its finest level
+  cv::Mat first_intensity_, about_object_, away_from_object_;  ///< masks and intensity of its finest level
   Eigen::Isometry3d T_first_ = Eigen::Isometry3d::Identity();
   std::size_t min_corners_ = 0;
-  std::vector<cv::Point2f> corners_;  ///< of it, away from the object
+  std::vector<cv::Point2f> corners_;  ///< corners of the first frame, away from the object
   LevelPoints rest_;                  ///< points away from the object, world frame
   int object_moves_ = 0;
   int camera_moves_ = 0;
@@ -55,7 +55,7 @@ class StaticShadingDetector {
   void mark_static_intensity(const cv::Mat& on_object, FrameLevels& levels);
 
  private:
-  std::deque<std::vector<cv::Mat>> intensities_;  ///< by level, the oldest frame first
+  std::deque<std::vector<cv::Mat>> intensities_;  ///< intensities by level, the oldest frame first
 };
 
 }  // namespace houghstream::reconstruction

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kDegrees = 57.29577951308232;
 
-/// Where the object is seen; empty where the camera is too near for that.
+/// Returns the region in which the object is visible; empty where the camera is too near for that.
 cv::Rect box_of(const ChosenObject& object, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
   const double half = object.radius_m * 0.8;
   const Eigen::AlignedBox3d box(Eigen::Vector3d(-half, -half, 0.0), Eigen::Vector3d(half, half, object.height_m));
@@ -206,8 +206,8 @@ void TakePlacer::tie_to_first_keyframe() {
   }
 }
 
-/// Where corners are looked for: everywhere while the camera moves, else on the object, which may have turned but
-/// stays.
+/// Returns the mask in which corners are detected: everywhere while the camera moves, else on the object, which may
+/// have rotated but stays in place.
 cv::Mat TakePlacer::landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const {
   if (motion_ != Motion::kObject) return {};
   return object_pixels({frame.camera, {}, frame.depth, {}}, chosen_, T_camera_world);
@@ -221,7 +221,7 @@ void TakePlacer::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
   if (!gap) return;
   step_.restart(map_.keyframes().back().T_camera_world);
   const auto seen_round = std::count(round_.begin(), round_.end(), true);
-  constexpr int kNearlyRound = 30;  // of 36
+  constexpr int kNearlyRound = 30;  // of 36 sectors
   if (seen_round >= kNearlyRound && !take_.gap) take_.gap = gap;
 }
 
