@@ -38,7 +38,7 @@ struct ArchiveWriter {
 
 /// Throws InputError, naming `source`, where the bytes end early, before it makes room for what they cannot hold.
 struct ArchiveReader {
-  std::string_view bytes;  ///< what is left
+  std::string_view bytes;  ///< bytes still to read
   std::string source;
 
   void take(void* to, std::size_t size) {

@@ -66,7 +66,7 @@ int open_locked(const fs::path& partial, const fs::path& file) {
       close(opened);
       fail("{}: cannot be written: {}", file.string(), std::strerror(error));
     }
-    close(opened);  // who held it may have put it into its place meanwhile
+    close(opened);  // its previous holder may have renamed it to its final name meanwhile
     require(locked, "{}: another program is writing it ({})", file.string(), partial.string());
   }
 }

@@ -13,7 +13,7 @@ namespace houghstream {
 /// Asked before it is opened: the opening of a named pipe would wait for somebody to write.
 void require_regular_file(const std::filesystem::path& file, const char* expected);
 
-/// All bytes of an ordinary file. Throws InputError where it is none, or cannot be read to its end.
+/// Returns all bytes of an ordinary file. Throws InputError where it is not one, or cannot be read to its end.
 std::string read_file(const std::filesystem::path& file, const char* expected);
 
 // Checks the nesting depth of a text before it is parsed; the text may be JSON or YAML.
@@ -68,13 +68,13 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&&) = delete;
   ~AtomicFile();  ///< removes what was neither published nor kept
 
-  /// FILE, with symbolic links followed.
+  /// Returns FILE, with symbolic links followed.
   const std::filesystem::path& wanted() const { return wanted_; }
-  /// Where it will be: FILE, or the next number of a recording.
+  /// Returns the final name: FILE, or the next number of a recording.
   const std::filesystem::path& file() const { return file_; }
   /// The name that was given to what a killed program had recorded.
   const std::optional<std::filesystem::path>& interrupted() const { return interrupted_; }
-  /// Where to write: an empty file.
+  /// Returns the name of the file to write, which is empty at first.
   const std::filesystem::path& partial() const { return partial_; }
 
   /// Renames the partial file, which its writer has closed, to FILE, and returns once it is on the disk. An older FILE
@@ -94,7 +94,7 @@ class AtomicFile {
   void release();
   bool rename_into_place();
 
-  std::filesystem::path wanted_;   // with symbolic links followed
+  std::filesystem::path wanted_;   // FILE with symbolic links followed
   std::filesystem::path file_;     // = wanted_, or its next number
   std::filesystem::path partial_;  // = file_ for a device
   Existing existing_ = Existing::kReplaced;

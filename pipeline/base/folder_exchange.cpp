@@ -21,18 +21,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Foreign entries on their way from one folder to another.
+/// Holds the state of a move of foreign entries from one folder to another.
 struct Carriage {
   const fs::path& from;
   const fs::path& to;
   const IsOwnEntry& is_own;
 };
 
-/// An entry of `Carriage::from`.
+/// Describes an entry of `Carriage::from`.
 struct CarriedEntry {
   fs::path relative;
   bool is_foreign = false;
-  bool is_folder = false;  ///< not by a symbolic link, which is carried as a link
+  bool is_folder = false;  ///< false for a symbolic link to one, which is carried as a link
 };
 
 /// Returns the entries of a folder, sorted by name. In a foreign folder all of them are foreign.
@@ -140,7 +140,7 @@ std::string describe_left(const std::vector<fs::path>& left, const fs::path& pla
                      left.front().string(), place.string());
 }
 
-/// Where the old folder waits for a moment on a file system that cannot exchange folders.
+/// Returns where the old folder stays for a moment on a file system that cannot exchange folders.
 fs::path place_of_replaced(const fs::path& place) {
   return place.parent_path() / ("." + place.filename().string() + ".before");
 }

@@ -13,7 +13,7 @@
 namespace houghstream {
 namespace {
 
-/// The items of one call of parallel_for_workers.
+/// Distributes the items of one call of parallel_for_workers.
 class Items {
  public:
   Items(const WorkerItemFunction& work, int count) : work_(work), count_(count), error_index_(count) {}
@@ -125,7 +125,7 @@ class IdleHelpers {
   std::vector<std::unique_ptr<Helper>> helpers_;
 };
 
-/// Scope of the calling thread; null where it may use helper threads.
+/// Returns the scope of the calling thread; null where it may use helper threads.
 const SerialScope*& working_alone() {
   thread_local const SerialScope* alone = nullptr;
   return alone;

@@ -23,8 +23,8 @@ class FunctionRef {
   void (*call_)(const void*, Arguments...);
 };
 
-using ItemFunction = FunctionRef<int>;             ///< of an item
-using WorkerItemFunction = FunctionRef<int, int>;  ///< of a worker and an item
+using ItemFunction = FunctionRef<int>;             ///< function of an item
+using WorkerItemFunction = FunctionRef<int, int>;  ///< function of a worker and an item
 
 /// Calls work(i) for every i in [0, count), on `threads` threads, the caller's among them; one thread means no others.
 /// Items are handed out in order, so work must write only to item i's own place: then the result does not depend on
@@ -64,7 +64,7 @@ class SerialScope {
 template <typename T>
 class PerWorker {
  public:
-  /// To be called before the workers start.
+  /// Resizes the parts; called before the workers start.
   void resize(int threads) {
     while (parts_.empty() || parts_.size() < static_cast<std::size_t>(threads < 0 ? 0 : threads)) {
       parts_.push_back(std::make_unique<T>());

@@ -18,13 +18,13 @@ void notify_service(const std::string& words);
 /// more time: a video or a recording is still being written. After ten minutes it is not told any more.
 class StillFinishing {
  public:
-  /// So much more time is asked for each time.
+  /// Each request asks for this much more time.
   static constexpr std::chrono::seconds kExtension{5};
   static constexpr std::chrono::minutes kMaxLength{10};
 
   enum class From {
     kNow,
-    kStopSignal  ///< as soon as one has come: who works at a low priority notices it itself much later
+    kStopSignal  ///< once one has arrived; a low-priority program notices it itself much later
   };
 
   explicit StillFinishing(From from = From::kNow);

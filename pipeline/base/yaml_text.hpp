@@ -20,7 +20,7 @@ std::vector<std::string> yaml_names(const YAML::Node& map, const std::string& of
 /// Returns the node in `map` under the name; an undefined node where there is none, or `map` is no map.
 YAML::Node yaml_member(const YAML::Node& map, const std::string& name);
 
-/// Nothing where the node is no number.
+/// Returns nothing where the node is no number.
 std::optional<double> yaml_number(const YAML::Node& node);
 
 }  // namespace houghstream

@@ -40,9 +40,9 @@ std::vector<std::uint8_t> encode_seal(const std::vector<std::uint32_t>& checksum
 /// Checksums of the events that follow, in their order. Throws InputError, naming `source`, where it is no whole seal.
 std::vector<std::uint32_t> decode_seal(ByteView bytes, const std::string& source);
 
-/// One message of a log.
+/// Holds one message of a log.
 struct LogEvent {
-  std::int64_t timestamp = 0;  ///< when it was received, microseconds since the epoch
+  std::int64_t timestamp = 0;  ///< reception time, microseconds since the epoch
   std::string channel;
   std::vector<std::uint8_t> data;
 };
@@ -54,7 +54,7 @@ class LogWriter {
  public:
   /// Throws InputError when the file cannot be made.
   explicit LogWriter(const std::filesystem::path& file, Existing existing = Existing::kReplaced);
-  /// Where the log will be, and where it is written until then.
+  /// Return the final name of the log, and the one that is written until then.
   const std::filesystem::path& file() const { return whole_.file(); }
   const std::filesystem::path& partial() const { return whole_.partial(); }
   /// Throws InputError when the disk refuses, or no reader would take a channel of this name.
@@ -118,8 +118,8 @@ class LogReader {
   std::string file_;
   std::unique_ptr<std::FILE, Closer> in_;
   std::uint64_t size_ = 0;
-  std::uint64_t position_ = 0;       // of the next event
-  std::uint64_t last_position_ = 0;  // of the event returned last
+  std::uint64_t position_ = 0;       // position of the next event
+  std::uint64_t last_position_ = 0;  // position of the event returned last
   std::uint64_t looked_again_ = 0;   // bytes that were searched once more for events
   std::int64_t events_ = 0;
   bool is_sealed_ = false;

@@ -34,13 +34,13 @@ namespace {
 const std::string kFileScheme = "file://";
 const std::string kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
 
-// The receiving thread hands messages on at once; this many may wait while it is kept from the processor. LCM's
-// own queue keeps the oldest when it is full.
+// The receiving thread hands messages on at once; this many may wait while it has no processor time. LCM's own queue
+// keeps the oldest when it is full.
 constexpr int kQueueCapacity = 100;
-// Where messages are so large that these would have more bytes, fewer wait. LCM lets one more wait than it is told.
+// Fewer messages may wait where these would have more bytes than this. LCM lets one more wait than it is told.
 constexpr std::size_t kQueueBytes = std::size_t{128} << 20U;
 
-// For a service manager, which otherwise gives a start some time and no more.
+// A service manager otherwise limits the time of a start.
 const std::string kStartTakesTime = "EXTEND_TIMEOUT_USEC=60000000";
 
 // Interval at which an outage, or its end, is detected.
@@ -63,11 +63,11 @@ bool is_log_url(const std::string& url) {
   return url.rfind(kFileScheme, 0) == 0;
 }
 
-/// LCM's queue of a subscription.
+/// Manages LCM's queue of a subscription.
 struct MessageQueue {
   lcm_subscription_t* made = nullptr;  // LCM's, while there is one
   int capacity = 0;
-  std::size_t message_bytes = 1;  // of the largest message lately
+  std::size_t message_bytes = 1;  // size of the largest recent message
 
   void set_capacity(int messages) {
     if (messages == capacity) return;
@@ -90,7 +90,7 @@ struct Subscription {
   MessageQueue queue = {};
 };
 
-// Nothing thrown may cross LCM's callback, which is C.
+// No exception may cross LCM's callback, which is C.
 void call_handler(const Subscription& subscription, const ReceivedMessage& arrival) noexcept {
   try {
     if (subscription.channels.matches(arrival.channel)) subscription.handler(arrival);
@@ -157,15 +157,15 @@ struct LcmBus::State {
   AtStart at_start;
   BusLink link;
   std::atomic<bool> has_way{true};  // a route or a connection, when last looked at
-  std::mutex look_mutex;            // of the next two, and of `lcm` where it is exchanged
+  std::mutex look_mutex;            // guards the next two, and `lcm` where it is exchanged
   std::chrono::steady_clock::time_point next_look;
   std::string send_fault;                 // why the last short message could not be sent
-  LogThrottle complaints;                 // of handlers
+  LogThrottle complaints;                 // errors of handlers
   std::list<Subscription> subscriptions;  // LCM keeps pointers to them
   std::optional<FrameSilence> frame_silence;
-  std::optional<Subscription> everything;  // of who looks for frames
+  std::optional<Subscription> everything;  // all channels, while it looks for frames
   std::optional<LogReader> input_log;
-  ChannelCounts heard;  // of it
+  ChannelCounts heard;  // channels of the log
   std::mutex output_mutex;
   std::mutex publish_mutex;  // over tcpq LCM sends a message in several parts
   std::optional<LogWriter> output_log;

@@ -110,7 +110,7 @@ std::string connection_fault(const addrinfo& address) {
 
 std::string no_server_reason(const Endpoint& server) {
   addrinfo wanted{};
-  wanted.ai_family = AF_INET;  // as LCM connects
+  wanted.ai_family = AF_INET;  // the family with which LCM connects
   wanted.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
   const int unknown = getaddrinfo(server.address.c_str(), server.port.c_str(), &wanted, &found);

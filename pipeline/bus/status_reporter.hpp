@@ -43,7 +43,8 @@ class StatusReporter {
   void note_bad_message(const std::string& reason);
   /// Remembers the last error, which somebody else has logged.
   void set_last_error(const std::string& reason);
-  /// Asked for each status from here on: it goes out beside it, and what is wrong with the store is the last error.
+  /// Sets a function that is called for each status from now on: its result is published beside the status, and a fault
+  /// of the store becomes the last error.
   void set_known_objects(std::function<KnownObjects()> objects) { objects_ = std::move(objects); }
 
   status_t message() const;
@@ -56,7 +57,7 @@ class StatusReporter {
   /// Publishes the status from a thread that must not end on a bus error: logs the error and returns false.
   bool try_publish_if_due(LcmBus& bus);
 
-  /// The account in one line.
+  /// Returns the account in one line.
   std::string summary() const;
 
  private:
@@ -76,11 +77,11 @@ class StatusReporter {
   std::int64_t refused_ = 0;
   std::int64_t bad_messages_ = 0;
   std::int64_t duplicates_ = 0;
-  std::map<std::string, SequenceTracker> sequences_;  // by source
+  std::map<std::string, SequenceTracker> sequences_;  // by source name
   std::string last_error_;
   std::string outage_;  // the last one of the bus that was remembered as an error
   std::function<KnownObjects()> objects_;
-  std::deque<Finished> recent_;  // of the last few seconds
+  std::deque<Finished> recent_;  // frames finished within the last few seconds
   Clock::time_point last_published_ = Clock::now();
   LogThrottle complaints_;
 };

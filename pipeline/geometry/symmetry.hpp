@@ -22,7 +22,7 @@ struct Symmetries {
   bool empty() const { return discrete.empty() && continuous.empty(); }
 };
 
-/// Symmetry of a shape within a depth camera's noise, whatever its texture.
+/// Holds the symmetry of a shape within a depth camera's noise, whatever its texture.
 struct ShapeSymmetry {
   Symmetries symmetries;
   std::optional<ContinuousSymmetry> nearly_round;  ///< an axis about which all but a handle or the like looks the same

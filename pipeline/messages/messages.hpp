@@ -19,7 +19,7 @@
 #include "pipeline/types/teaching.hpp"
 #include "pipeline/types/tracked_object.hpp"
 
-// Plain structs to LCM messages and back. Everything that comes off the wire is checked here, once:
+// These functions convert plain structs to LCM messages and back. All data off the wire are checked here, once:
 // functions that read throw InputError and never return a made-up value.
 
 namespace houghstream {
@@ -35,8 +35,8 @@ struct WireFormat {
 /// `sequence` counts the source's frames from 0, so that receivers can tell lost ones.
 houghstream::images_t to_message(const RgbdFrame& frame, const WireFormat& format, std::int64_t sequence);
 
-/// For frames that came without: the camera, and the source's frame counter from 0. Throws InputError where the message
-/// has no image to carry them or the camera is absurd.
+/// Add the camera, and the source's frame counter from 0, to frames that came without them. They throw InputError where
+/// the message has no image to carry them or the camera is absurd.
 void add_camera(houghstream::images_t& message, const Camera& camera);
 void add_sequence(houghstream::images_t& message, std::int64_t sequence);
 
@@ -54,7 +54,7 @@ RgbdFrame frame_from_message(const houghstream::images_t& message, const std::st
 RgbdFrame depth_frame_from_message(const houghstream::images_t& message, const std::string& channel,
                                    const std::optional<Camera>& fallback_camera);
 
-/// Colour and depth of a frame as they travel; equal sizes.
+/// Holds colour and depth of a frame in the format of the wire; both have the same size.
 struct FrameImages {
   cv::Mat colour;    ///< CV_8UC3, BGR
   cv::Mat depth_mm;  ///< CV_16UC1, 0 = none
@@ -84,8 +84,8 @@ Detections detections_from_message(const houghstream::detections_t& message);
 houghstream::object_poses_t to_message(const ObjectPoses& poses);
 ObjectPoses poses_from_message(const houghstream::object_poses_t& message);
 
-/// The probabilities of the poses, which travel beside them. A pose that is read without them has `quality` as its
-/// `shape_quality`.
+/// Returns the probabilities of the poses, which travel beside them. A pose that is read without them has `quality` as
+/// its `shape_quality`.
 houghstream::pose_probabilities_t probabilities_to_message(const ObjectPoses& poses);
 /// Sets ObjectPose::shape_quality where the message is about these poses: of their frame, with their qualities. Returns
 /// whether it is. Throws InputError where a probability is none.

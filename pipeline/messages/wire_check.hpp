@@ -25,7 +25,7 @@ inline constexpr std::size_t kMaxNameLength = 255;
 struct FrameHeader {
   std::int64_t utime = 0;
   std::optional<std::int64_t> sequence;  ///< the source's frame counter, if the message carries one
-  std::int64_t run = 0;                  ///< of the source, 0 where the message does not say
+  std::int64_t run = 0;                  ///< run of the source, 0 where the message does not say
 };
 
 /// Walks through a whole encoded images_t. Throws InputError where its counts and sizes do not add up.

@@ -37,7 +37,7 @@ class DecodedFrames {
 
  private:
   struct Kept {
-    std::weak_ptr<const std::vector<std::uint8_t>> bytes;  // that it was decoded from
+    std::weak_ptr<const std::vector<std::uint8_t>> bytes;  // message from which it was decoded
     Decoded frame;
   };
 

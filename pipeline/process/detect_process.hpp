@@ -16,10 +16,10 @@ namespace houghstream {
 struct DetectProcessOptions {
   std::string process = "hs-detect";             ///< its name in status_t
   std::string frame_channels = channel::kFrame;  ///< a ChannelPattern: one camera's channel, or several cameras'
-  std::optional<Camera> camera;                  ///< for frames that do not bring their own
-  double max_rate_hz = 0.0;                      ///< at each camera's frames; 0 = at each one, as far as there is time
-  bool keep_frames = false;                      ///< of a log: copies the frames' events to the output log too
-  std::function<KnownObjects()> objects;         ///< what its store holds, for the status; empty = no store
+  std::optional<Camera> camera;                  ///< camera of frames that do not bring their own
+  double max_rate_hz = 0.0;                      ///< detections per second of each camera; 0 = as many as possible
+  bool keep_frames = false;                      ///< for a log: copies the frames' events to the output log too
+  std::function<KnownObjects()> objects;         ///< objects of its store, for the status; empty = no store
   /// Told on a network what hs-pose has learnt of a camera's colours, by the thread that receives; empty = nobody is.
   std::function<void(const CameraChroma&)> on_camera_colours;
 };

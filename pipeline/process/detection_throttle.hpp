@@ -16,7 +16,7 @@ class DetectionThrottle {
   /// channels without end.
   static constexpr std::size_t kCameras = 64;
 
-  /// 0: at every frame.
+  /// With 0 it detects in every frame.
   explicit DetectionThrottle(double max_rate_hz) : max_rate_hz_(max_rate_hz) {}
 
   /// Returns whether this frame is searched: enough time has passed since the camera's last detection. Times that go
@@ -31,11 +31,11 @@ class DetectionThrottle {
   struct Camera {
     bool was_due = false;
     bool is_expedited = false;
-    std::int64_t last_utime = 0;  // of a look
+    std::int64_t last_utime = 0;  // time of the last detection
   };
 
   double max_rate_hz_;
-  std::map<std::string, Camera> cameras_;  // by channel
+  std::map<std::string, Camera> cameras_;  // by channel name
 };
 
 }  // namespace houghstream

@@ -27,7 +27,7 @@ class DetectorCount {
   /// Results of this frame are counted anew.
   void forget(const FrameId& frame);
 
-  /// At least 1.
+  /// Returns at least 1.
   int of(const std::string& channel) const;
 
  private:
@@ -38,14 +38,14 @@ class DetectorCount {
   };
   struct Camera {
     std::deque<Frame> frames;         // the last ones with results
-    std::deque<std::int64_t> utimes;  // of the last frames that have come
+    std::deque<std::int64_t> utimes;  // times of the last frames
 
     Frame* find(std::int64_t utime);
   };
 
   Camera* camera_of(const std::string& channel);
 
-  std::map<std::string, Camera> cameras_;  // by channel
+  std::map<std::string, Camera> cameras_;  // by channel name
 };
 
 }  // namespace houghstream

@@ -20,7 +20,7 @@
 
 namespace houghstream {
 
-/// An encoded frame.
+/// Holds an encoded frame.
 struct ArrivedFrame {
   FrameId id;
   SharedBytes bytes;
@@ -30,9 +30,9 @@ struct ArrivedFrame {
 struct SynchronisedMessages {
   FrameId id;
   SharedBytes frame;
-  std::int64_t frame_number = 0;  ///< of all frames in their order of arrival: a name may come again
+  std::int64_t frame_number = 0;  ///< number of the frame in order of arrival, since a name may come again
   std::vector<std::uint8_t> detections;
-  std::chrono::steady_clock::time_point arrival;  ///< of the detections
+  std::chrono::steady_clock::time_point arrival;  ///< arrival of the detections
 };
 
 /// Decides over each pair before it is handed out; without `ask` every pair goes at once. `ask` is called with the
@@ -41,7 +41,7 @@ struct FrameGate {
   enum class Answer { kGo, kWait, kRefuse };
   struct Decision {
     Answer answer = Answer::kGo;
-    std::string reason;  ///< of a refusal
+    std::string reason;  ///< reason of a refusal
   };
   /// The age, in seconds, is that of the pair since it was asked for first.
   std::function<Decision(const FrameId&, double age_s)> ask;
@@ -71,9 +71,9 @@ class FrameSynchroniser {
   /// Detections whose frame is not here wait for this many further frames of the camera, then are given up.
   static constexpr std::int64_t kMaxLagFrames = 30;
 
-  /// `newest_first`: pop() serves the cameras in turn, and passes over older detections of a camera: of each of its
-  /// detectors one result stays. Otherwise everything is worked on in the order of arrival. `ahead`:
-  /// pop_unmatched_frame() is used.
+  /// With `newest_first`, pop() serves the cameras in turn, and drops older detections of a camera: one result of each
+  /// of its detectors stays. Otherwise everything is processed in the order of arrival. `ahead` enables
+  /// pop_unmatched_frame().
   explicit FrameSynchroniser(bool newest_first, bool ahead = true, FrameGate gate = {})
       : newest_first_(newest_first), ahead_(ahead), gate_(std::move(gate)) {}
 
@@ -100,8 +100,8 @@ class FrameSynchroniser {
   };
   struct Dropped {
     std::int64_t skipped = 0;            ///< passed over for newer ones, or for too many
-    std::vector<FrameId> without_frame;  ///< of detections whose frame never came
-    std::vector<Refused> refused;        ///< by the gate, or while they waited for it
+    std::vector<FrameId> without_frame;  ///< detections whose frame never came
+    std::vector<Refused> refused;        ///< refused by the gate, or while they waited for it
   };
   Dropped pop_dropped();
 
@@ -118,14 +118,14 @@ class FrameSynchroniser {
     FrameId id;
     std::vector<std::uint8_t> bytes;
     std::chrono::steady_clock::time_point arrival;
-    std::int64_t number = 0;         // in the order of arrival, of all cameras
+    std::int64_t number = 0;         // order of arrival, over all cameras
     std::int64_t frames_before = 0;  // frames of the camera that had arrived when it did
     ByteBudget::Reservation reservation;
   };
   struct HeldBack {
     SynchronisedMessages pair;
-    std::int64_t since_us = 0;            // on the gate's clock
-    ByteBudget::Reservation reservation;  // of the frame, which may have gone from those that are kept
+    std::int64_t since_us = 0;            // time on the gate's clock
+    ByteBudget::Reservation reservation;  // bytes of the frame, which may have left the history
   };
   struct Camera {
     std::deque<Kept> frames;      // the last ones
@@ -157,14 +157,14 @@ class FrameSynchroniser {
   FrameGate gate_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  ByteBudget frame_bytes_;                 // of all cameras
-  ByteBudget waiting_bytes_;               // of their detections
-  ByteBudget held_back_bytes_;             // of the frames of those that the gate tells to wait
-  std::map<std::string, Camera> cameras_;  // by channel
+  ByteBudget frame_bytes_;                 // frames of all cameras
+  ByteBudget waiting_bytes_;               // detections of all cameras
+  ByteBudget held_back_bytes_;             // frames of pairs that wait for the gate
+  std::map<std::string, Camera> cameras_;  // by channel name
   std::deque<HeldBack> held_back_;         // oldest first
   DetectorCount detectors_;
-  std::int64_t arrivals_ = 0;  // of detections
-  std::int64_t frames_ = 0;    // that have arrived
+  std::int64_t arrivals_ = 0;  // detections that have arrived
+  std::int64_t frames_ = 0;    // frames that have arrived
   std::int64_t turns_ = 0;
   Dropped dropped_;
 };

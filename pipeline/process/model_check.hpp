@@ -12,13 +12,13 @@ namespace houghstream {
 /// stands in every single pose only. Not thread-safe.
 class ModelCheck {
  public:
-  /// `models`: classes that have one. Without any nothing is noticed; there is nothing to compare with.
+  /// `models` are the classes that have one. Without any it notices nothing, since there is nothing to compare with.
   explicit ModelCheck(std::set<std::string> models) : models_(std::move(models)) {}
 
   /// A class that has one from here on.
   void add_model(const std::string& name) { models_.insert(name); }
 
-  /// Nothing more will be said.
+  /// Returns whether it will log nothing more.
   bool settled() const { return settled_; }
 
   /// A warning that names both sides' classes, once, where the first ten detections_t that hold something hold no class

@@ -38,8 +38,8 @@ class PoseHistory {
     std::set<std::string> names;
   };
 
-  std::map<std::string, std::deque<ObjectPoses>> cameras_;  // by channel, oldest first
-  std::deque<FrameClasses> classes_;                        // of the last frames, oldest first
+  std::map<std::string, std::deque<ObjectPoses>> cameras_;  // by channel name, oldest first
+  std::deque<FrameClasses> classes_;                        // classes of the last frames, oldest first
   DetectorCount detectors_;
 };
 

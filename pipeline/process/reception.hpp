@@ -111,7 +111,7 @@ class Reception {
   StatusReporter& status_;
   ChannelPattern pattern_;
   bool keep_;
-  std::optional<std::int64_t> event_us_;  // of a log's last event
+  std::optional<std::int64_t> event_us_;  // time of a log's last event
   std::int64_t log_us_ = 0;
 };
 

@@ -9,7 +9,7 @@
 
 namespace houghstream {
 
-/// The stage of following objects from frame to frame: poses with its time answer no detections.
+/// Name of the stage that follows objects from frame to frame: poses with its time belong to no detections.
 inline constexpr const char* kFollowingStage = "pose.following";
 
 /// Detections of one detector in a frame, and the poses that were computed from them.
@@ -33,8 +33,8 @@ class FrameResults {
   /// compared with all.
   static constexpr std::size_t kMax = 64;
 
-  /// One that finds the very same objects as an earlier one takes its place: it is a log that is played again. Throws
-  /// InputError for one too many.
+  /// Adds a result. One that finds exactly the same objects as an earlier one replaces it, since it comes from a log
+  /// that is played again. Throws InputError for one too many.
   void add(Detections detections);
   void add(ObjectPoses poses);
 
