@@ -6,7 +6,7 @@
 
 namespace houghstream {
 
-/// Where frames come from: a dataset folder, a recording, a camera. One of the few virtual interfaces,
+/// Delivers frames from a source: a dataset folder, a recording, a camera. It is one of the few virtual interfaces,
 /// since several sensors stand behind it.
 class FrameSource {
  public:

@@ -26,7 +26,7 @@ std::vector<fs::path> scene_folders(const fs::path& folder) {
   return scenes;
 }
 
-/// The object with some room around it: whole images of every view would fill the memory for nothing.
+/// Crops the view to the object with some margin: whole images of every view would fill the memory for nothing.
 void crop_around_mask(TrainingView& view) {
   constexpr int kMargin_px = 40;
   const cv::Rect box = cv::boundingRect(view.mask);
@@ -42,7 +42,7 @@ std::string image_name(const BopScene& scene, std::size_t index) {
   return fmt::format("{} image {}", scene.folder().string(), scene.images()[index].image_id);
 }
 
-/// One object of an image as a view; `frame` is the whole image.
+/// Returns one object of an image as a view; `frame` is the whole image.
 TrainingView object_view(const BopScene& scene, std::size_t index, std::size_t object_index, const RgbdFrame& frame,
                          const std::map<int, std::string>& names) {
   const GroundTruthObject& object = scene.images()[index].objects[object_index];
@@ -58,7 +58,7 @@ TrainingView object_view(const BopScene& scene, std::size_t index, std::size_t o
   return view;
 }
 
-/// Outcome of an image.
+/// Holds the outcome of an image.
 struct ImageViews {
   std::vector<TrainingView> views;
   int hidden = 0;  ///< objects that are less visible than kMinTrainingVisibility

@@ -8,7 +8,7 @@
 
 namespace houghstream {
 
-/// A coloured point of an object's visible surface.
+/// Holds a coloured point of an object's visible surface.
 struct ColouredPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< camera frame, metres
   cv::Vec3b colour;                                    ///< BGR

@@ -13,7 +13,7 @@ namespace houghstream {
 /// InputError.
 Camera read_camera_info(const std::filesystem::path& file);
 
-/// The value of an option --camera: such a file, or "WIDTHxHEIGHT,fx,fy,cx,cy". Throws InputError.
+/// Reads the value of an option --camera: such a file, or "WIDTHxHEIGHT,fx,fy,cx,cy". Throws InputError.
 Camera camera_of_option(const std::string& text);
 
 /// Help text of an option --camera for frames.

@@ -30,14 +30,14 @@ std::map<int, nlohmann::json> read_json_by_id(const std::filesystem::path& file)
 /// Throws InputError when the file cannot be written.
 void write_json(const OrderedJson& json, const std::filesystem::path& file);
 
-/// The value for a message: what is long is cut.
+/// Returns the value for a message; a long one is cut.
 std::string json_text(const nlohmann::json& value);
 
 // The functions below throw InputError naming `where` (file and entry): those that give a value when the key is missing
 // or of another type.
 
-/// Where the object has a name that is none of these: for what nobody but this project writes. With its name damaged, a
-/// value that may be missing would be.
+/// Throws InputError where the object has a name that is not known. It serves files that only this project writes: a
+/// damaged name would otherwise look like an optional value that is missing.
 void require_known_names(const nlohmann::json& object, const std::vector<std::string>& known, const std::string& where);
 
 double json_number(const nlohmann::json& object, const std::string& key, const std::string& where);

@@ -36,7 +36,7 @@ auto wait_in_parts(milliseconds timeout, const StopRequested& stop_requested, co
 /// The first images of a recorded file, as its times are compared with what was seen live; fewer where it is shorter.
 FirstImages read_first_images(const std::string& file) {
   const auto device = OpenniDevice::open_file(file);
-  constexpr std::size_t kCompared = 24;  // of a stream: enough where only some were seen live
+  constexpr std::size_t kCompared = 24;  // images of a stream: enough where only some were seen live
   FirstImages first;
   while (std::min(first.depth.size(), first.colour.size()) < kCompared && !device->ended()) {
     const std::optional<SensorImage> image = device->wait(kFileTimeout);
@@ -83,10 +83,10 @@ struct OpenniDevice::State {
   ::openni::VideoStream colour;
   CameraMode mode;
   bool is_file = false;
-  int images_left = 0;    // of a file
+  int images_left = 0;    // images of a file still to come
   int depth_to_skip = 0;  // before a camera's images are as its modes say
   ImageQueue inbox;
-  std::optional<StreamReader> reader;  // of a camera
+  std::optional<StreamReader> reader;  // reads a camera's images
   std::optional<OpenniRecording> recording;
 
   ~State() {

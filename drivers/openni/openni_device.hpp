@@ -27,8 +27,8 @@ std::vector<CameraDescription> list_cameras(bool closely);
 /// InputError where it finds no driver.
 std::shared_ptr<const void> keep_openni_running();
 
-/// A camera or a .oni file through OpenNI2, running from construction to destruction. Everything that knows OpenNI2
-/// is behind it. To be used from a thread that lasts as long as the process, see PersistentThread.
+/// Runs a camera or a .oni file through OpenNI2, from construction to destruction. All code that knows OpenNI2 is
+/// behind it. It must be used from a thread that lasts as long as the process, see PersistentThread.
 class OpenniDevice {
  public:
   /// Opens a camera: registered, synchronised where it can, not mirrored. Throws InputError where it lacks the mode
@@ -42,9 +42,9 @@ class OpenniDevice {
 
   ~OpenniDevice();
 
-  /// The next image in the order of arrival; nothing after `timeout`. A camera's first images, which may be from
-  /// before its depth was registered, are left out, and so is one that is not as the mode says, for instance cut short
-  /// on the way; in a file it makes this throw InputError, as does a file's end before all its images have come.
+  /// Returns the next image in the order of arrival; nothing after `timeout`. A camera's first images, which may be
+  /// from before its depth was registered, are left out, and so is one that does not match the mode, for instance cut
+  /// short on the way; in a file it makes this throw InputError, as does a file's end before all its images have come.
   std::optional<SensorImage> wait(std::chrono::milliseconds timeout);
 
   /// The camera has been unplugged, or all images of the file have been given.

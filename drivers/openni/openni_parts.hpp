@@ -12,7 +12,7 @@
 #include "drivers/openni/camera_choice.hpp"
 #include "drivers/openni/timestamp_pairing.hpp"
 
-// OpenNI2 in this project's words. Included by the .cpp files of this folder only.
+// These functions convert OpenNI2's types to this project's. Only the .cpp files of this folder include them.
 
 namespace houghstream::openni {
 

@@ -10,7 +10,7 @@
 #include "drivers/openni/timestamp_pairing.hpp"
 #include "pipeline/base/files.hpp"
 
-// Recording of a camera to a .oni file. Included by the .cpp files of this folder only.
+// The recording of a camera goes to a .oni file. Only the .cpp files of this folder include this header.
 
 namespace houghstream::openni {
 

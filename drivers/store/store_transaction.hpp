@@ -17,7 +17,7 @@ class StoreTransaction {
   StoreTransaction(const StoreTransaction&) = delete;
   StoreTransaction& operator=(const StoreTransaction&) = delete;
 
-  /// Where to write.
+  /// Returns the folder to write to.
   const std::filesystem::path& folder() const { return partial_; }
 
   /// The folder becomes STORE, and what STORE was is removed. Throws InputError where it cannot.
@@ -35,9 +35,10 @@ class StoreTransaction {
 /// makes nothing, whoever works on the store.
 void require_place_for_store(const std::filesystem::path& store);
 
-/// On a file system that cannot exchange folders, a teaching that is interrupted in the wrong moment leaves no STORE,
-/// but the old one beside it: this one is put back into its place. Else nothing is done. For those who read a store
-/// before they change it. Throws InputError where another teaching works on it, or it cannot be moved.
+/// Moves an old store back into its place. On a file system that cannot exchange folders, a teaching that is
+/// interrupted at the wrong moment leaves no STORE, but the old one beside it; otherwise this does nothing. It is
+/// called before a store is read to be changed. Throws InputError where another teaching works on it, or it cannot be
+/// moved.
 void recover_store(const std::filesystem::path& store);
 
 }  // namespace houghstream::store

@@ -32,8 +32,8 @@ class StoreWatcherBase {
   StoreWatcherBase(const StoreWatcherBase&) = delete;
   StoreWatcherBase& operator=(const StoreWatcherBase&) = delete;
 
-  /// From here on looks at it every `period`, and loads it when it has changed and stayed the same for a period: who
-  /// copies into it is at work for a while.
+  /// Starts polling every `period`, and loads the store when it has changed and then stayed the same for a period,
+  /// since copying into it takes a while.
   void follow(std::chrono::milliseconds period);
 
   /// Instead of follow(), where all is to go by the same: throws InputError if there is no store yet.
@@ -56,8 +56,8 @@ class StoreWatcherBase {
   std::filesystem::path folder_;
   Load load_;
   std::string taken_;                                 // the files' state when they were loaded
-  std::string refused_;                               // or when they could not be
-  int polls_since_refusal_ = 0;                       // of the same state
+  std::string refused_;                               // the files' state when they were refused
+  int polls_since_refusal_ = 0;                       // polls of the same state
   int polls_until_retry_ = 0;                         // after the refusal
   int polls_without_folder_ = 0;                      // since the start, while nothing is known
   std::string pending_;                               // seen last: one that may not last
@@ -70,7 +70,7 @@ class StoreWatcherBase {
   std::thread thread_;
 };
 
-/// A StoreWatcherBase with the type of the loaded object.
+/// Watches a store with the type of the loaded object.
 template <typename T>
 class StoreWatcher {
  public:

@@ -152,7 +152,7 @@ bool runs(const fs::path& program, const std::string& argument) {
   return failed == 0 && waitpid(pid, &status, 0) == pid && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/// As far as this user may ask: nftables answers root only.
+/// Returns whether a firewall rule refuses other hosts, as far as this user may ask: nftables answers only root.
 bool refuses_others(const std::string& port) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> answer(
       popen("nft list table inet houghstream 2>/dev/null", "r"), pclose);
@@ -166,7 +166,7 @@ bool refuses_others(const std::string& port) {
 
 std::string Machine::read(const std::string& path) const {
   std::ostringstream text;
-  text << std::ifstream(root / path).rdbuf();  // what fails while it is read, as files of /sys may, does not throw
+  text << std::ifstream(root / path).rdbuf();  // a read error, as for files of /sys, does not throw
   return text.str();
 }
 

@@ -12,7 +12,7 @@ namespace houghstream::doctor {
 /// The OpenNI2 library that a program would load, libOpenNI2.so.0: on $LD_LIBRARY_PATH, then in the system's folders.
 std::optional<std::filesystem::path> find_openni(const Machine& machine);
 
-/// Where that library looks for drivers: Repository= in etc/openni2/OpenNI.ini, else OpenNI2/Drivers beside it.
+/// Returns where that library looks for drivers: Repository= in etc/openni2/OpenNI.ini, else OpenNI2/Drivers beside it.
 std::filesystem::path driver_folder(const Machine& machine, const std::filesystem::path& library);
 
 /// The drivers in it, in the order of their names. Debian's library loads lib*.so.0 and nothing else.

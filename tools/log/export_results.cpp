@@ -20,8 +20,8 @@ namespace {
 
 /// Returns the rows of a frame, each object once.
 struct ExportedFrame {
-  FrameResult look;                  ///< what its detectors found, joined; where none looked, nothing
-  std::vector<ObjectPose> followed;  ///< from frame to frame, those that no detection of the look stands for
+  FrameResult look;                  ///< joined results of its detectors; empty where none processed it
+  std::vector<ObjectPose> followed;  ///< poses followed from frame to frame for which there is no detection
 };
 
 const ObjectPose* pose_of(const FrameResult& look, std::size_t detection) {
@@ -63,7 +63,7 @@ std::vector<ObjectPose> followed_beside(const FrameResult& look, const ObjectPos
   return others;
 }
 
-/// Nothing where the frame has neither detections nor what is followed.
+/// Returns nothing where the frame has neither detections nor followed poses.
 std::optional<ExportedFrame> exported(const FrameResults& all) {
   std::optional<FrameResult> look = all.merge();
   if (!look && !all.followed()) return std::nullopt;
@@ -74,7 +74,7 @@ std::optional<ExportedFrame> exported(const FrameResults& all) {
   return ExportedFrame{std::move(*look), std::move(others)};
 }
 
-/// All frames of the log, of all cameras, in the order of time.
+/// Reads all frames of the log, of all cameras, in the order of time.
 std::vector<ExportedFrame> read_results(const std::filesystem::path& log_file, LossReport& losses) {
   std::map<FrameId, FrameResults> found;
   IntactEvents events(log_file, losses);

@@ -10,7 +10,7 @@ namespace houghstream::log_tools {
 
 struct LogFilter {
   std::optional<double> start_s;  ///< seconds since the log's first event; nothing = from its beginning
-  std::optional<double> end_s;    ///< nothing = to its end
+  std::optional<double> end_s;    ///< end; nothing = the log's end
   std::string channels = ".*";    ///< a ChannelPattern
   bool others = false;            ///< keep the channels that do not match instead
 };

@@ -22,7 +22,7 @@ class LossReport {
   /// Something that looks wrong, though nothing is lost by it.
   void add_warning(const std::string& words) { oddities_ += (oddities_.empty() ? "" : "; ") + words; }
 
-  /// One line that says what was lost and why, and what looks wrong, or "" where nothing was and does.
+  /// Returns one line about losses, their reasons and warnings, or "" where there are none.
   std::string line() const;
 
  private:

@@ -33,7 +33,7 @@ class KlgFile {
   int width_;
   int height_;
   std::uint64_t size_ = 0;
-  std::uint64_t position_ = 0;  // of the next frame
+  std::uint64_t position_ = 0;  // position of the next frame
   std::int32_t frames_ = 0;
   std::int32_t index_ = 0;
 };

@@ -19,10 +19,10 @@ namespace {
 
 /// Seconds.
 struct Pace {
-  double every = 5.0;            ///< between two lines of state
-  double stop_timeout = 1.5;     ///< for the processes to end by themselves
-  double hang_timeout = 10.0;    ///< with a process that was heard and is silent
-  double start_patience = 60.0;  ///< with one that was never heard
+  double every = 5.0;            ///< seconds between two lines of state
+  double stop_timeout = 1.5;     ///< seconds for the processes to end by themselves
+  double hang_timeout = 10.0;    ///< seconds without a heartbeat after which a process hangs
+  double start_patience = 60.0;  ///< seconds until the first heartbeat
 };
 
 void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {

@@ -38,7 +38,7 @@ struct NamedSource {
   std::string source;
 };
 
-/// CHANNEL of CHANNEL=SOURCE. "" where there is none: the name of a file may hold a '=' too.
+/// Returns CHANNEL of CHANNEL=SOURCE; "" where there is none, since the name of a file may hold a '=' too.
 std::string channel_of(const std::string& words) {
   const std::string name = words.substr(0, words.find('='));
   const auto is_of_name = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
@@ -60,7 +60,7 @@ std::vector<NamedSource> sources_of(const StreamOptions& options) {
   return sources;
 }
 
-/// All of its channels, as a regular expression.
+/// Returns all of its channels as a regular expression.
 std::string pattern_of(const std::vector<NamedSource>& sources) {
   std::string pattern;
   for (const NamedSource& each : sources) pattern += (pattern.empty() ? "" : "|") + each.channel;
@@ -90,7 +90,7 @@ std::vector<std::string> shell_words(const std::string& text, const std::string&
   std::vector<std::string> words;
   std::string word;
   bool has_begun = false;  // the word, which may be ""
-  char quote = '\0';       // that has begun
+  char quote = '\0';       // open quotation mark
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     const bool is_blank = c == ' ' || c == '\t' || c == '\n';

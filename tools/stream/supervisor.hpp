@@ -11,11 +11,11 @@
 
 namespace houghstream::stream {
 
-/// A process of the stream.
+/// Describes a process of the stream.
 struct ChildPlan {
-  std::string name;                  ///< for people, for instance "detect"
+  std::string name;                  ///< name for people, for instance "detect"
   std::vector<std::string> command;  ///< program with its path, arguments
-  bool ends_stream = false;          ///< when it ends with status 0, all do: the source's end, the closed window
+  bool ends_stream = false;          ///< its end with status 0 ends all: the source's end, the closed window
   /// Started when all others have sent a heartbeat: the source, whose frames they receive.
   bool is_started_last = false;
 };
@@ -24,9 +24,9 @@ struct SupervisorSettings {
   std::chrono::milliseconds initial_backoff{250};  ///< before a second restart; doubled by each failure that follows
   std::chrono::milliseconds max_backoff{10'000};
   std::chrono::milliseconds backoff_reset{10'000};  ///< after so long a run the next failure counts as the first
-  int max_failures = 8;                             ///< in a row: then it is given up, and the stream ends
-  std::chrono::milliseconds start_time{3000};       ///< who runs that long has started
-  std::chrono::milliseconds stop_timeout{1500};     ///< for a process to end by itself when it is asked to
+  int max_failures = 8;                             ///< consecutive failures after which the stream ends
+  std::chrono::milliseconds start_time{3000};       ///< run time after which a process has started
+  std::chrono::milliseconds stop_timeout{1500};     ///< time for a process to end by itself when it is asked to
   std::chrono::milliseconds finishing{600'000};     ///< instead, for one that says that it is still writing
   std::chrono::milliseconds heartbeat_timeout{
       10'000};  ///< a process without a heartbeat for so long, after its first, counts as hung
@@ -71,12 +71,12 @@ class Supervisor {
   /// Returns the names of those that had to be killed.
   std::vector<std::string> stop();
 
-  /// State of a process.
+  /// Gives the state of a process.
   struct State {
     std::string name;
     pid_t pid = 0;  ///< 0 while it waits for its restart
     int restarts = 0;
-    bool waits = false;  ///< for the others, before its first start
+    bool waits = false;  ///< it waits for the others before its first start
   };
   std::vector<State> states() const;
 
@@ -84,15 +84,15 @@ class Supervisor {
   struct Member {
     ChildPlan plan;
     std::unique_ptr<ChildProcess> child;
-    bool waits = false;    // for the others, before its first start
+    bool waits = false;    // it waits for the others before its first start
     bool has_run = false;  // once, since the stream began
     bool has_heartbeat = false;
-    Clock::duration silent{0};                   // so long, as far as was listened
-    std::optional<Clock::time_point> asked_end;  // when it was asked to end because it hangs
+    Clock::duration silent{0};                   // time without a heartbeat while the watchdog was active
+    std::optional<Clock::time_point> asked_end;  // time at which it was asked to end because it hangs
     int restarts = 0;
-    int failures = 0;  // in a row
+    int failures = 0;  // consecutive failures
     std::chrono::milliseconds wait{0};
-    Clock::time_point since;  // of the start, or when the restart is due
+    Clock::time_point since;  // time of the start, or of the next restart
   };
   void start(Member& member);
   void start_waiting();
@@ -103,7 +103,7 @@ class Supervisor {
   std::string names_of_writing();
 
   std::vector<Member> members_;
-  bool source_has_ended_ = false;  // by itself
+  bool source_has_ended_ = false;  // the source ended by itself
   SupervisorSettings settings_;
   Say say_;
   Clock::time_point begun_ = Clock::now();

@@ -35,12 +35,12 @@ class DrakeScene {
   /// Meshes go to files in this folder, for viewers on this machine.
   explicit DrakeScene(std::filesystem::path mesh_folder);
 
-  /// The classes' meshes from here on. Of one that cannot be written the reason is said, and a box takes its place.
+  /// Replaces the classes' meshes. For a mesh that cannot be written the reason is logged, and a box takes its place.
   void set_models(const tracks::TrackModels& models);
 
   struct Messages {
-    /// To be sent first: at the beginning, when the set of objects changes, and every ten seconds for viewers that
-    /// began later. meldis passes over one that is like its last; drake_visualizer loads its files again.
+    /// Message to send first: at the beginning, when the set of objects changes, and every ten seconds for viewers that
+    /// started later. meldis ignores one that is equal to its last; drake_visualizer loads its files again.
     std::optional<drake_viewer_load_robot_t> load;
     drake_viewer_draw_t draw;
   };
@@ -51,7 +51,7 @@ class DrakeScene {
   drake_viewer_load_robot_t load_message(const WorldObjects& world);
 
   std::filesystem::path folder_;
-  std::map<std::string, ViewerMesh> meshes_;  // by class
+  std::map<std::string, ViewerMesh> meshes_;  // meshes by class
   std::set<std::string> told_;                // classes without a mesh
   std::optional<std::vector<std::string>> loaded_;
   bool changed_ = false;

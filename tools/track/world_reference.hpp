@@ -12,12 +12,12 @@
 
 namespace houghstream::track {
 
-/// Reference frame of the objects, and the cameras' poses in it: the world, or, as long as no camera's pose is known,
-/// the frame of the single camera. Transforms may be added from any thread; all else is for the thread that processes
-/// the frames.
+/// Determines the reference frame of the objects, and the cameras' poses in it: the world, or, as long as no camera's
+/// pose is known, the frame of the single camera. Transforms may be added from any thread; all else is for the thread
+/// that processes the frames.
 class WorldReference {
  public:
-  /// `fixed`: cameras that stand still, T_world_camera by the channels of their frames.
+  /// `fixed` holds the poses of static cameras, T_world_camera by the channels of their frames.
   explicit WorldReference(const std::map<std::string, Eigen::Isometry3d>& fixed);
 
   /// A transform of a camera that moves, as CameraExtrinsics::add() takes it. Throws InputError for one camera too
@@ -40,7 +40,7 @@ class WorldReference {
   std::string name_;
   std::string reference_camera_;  // the camera whose frame is the world, where no place is known
   bool begun_ = false;
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards the following members
   tracks::CameraExtrinsics extrinsics_;
 };
 
