@@ -25,6 +25,7 @@ enum class AtStart { kWait, kFail };
 
 /// Connects to the source and destination of messages: an LCM network, or, for a file:// URL, a log that is read event
 /// by event and never skipped, with results going to another log.
+///
 /// A network that cannot be reached (a link that is down, no route, a server that is gone) is waited for. Each outage
 /// is logged once when it begins and once when it ends; meanwhile nothing is received, and what is published is counted
 /// (unsent()) and lost. Within half a second of the network's return the messages of all subscriptions come again.

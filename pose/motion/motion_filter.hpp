@@ -42,6 +42,7 @@ void fields(const MotionSettings& /*settings*/, const Visit& visit) {
 /// world's axes, twist.hpp). The pose of a static object is averaged: it hardly wanders, and it has no velocity. A
 /// moving object has constant velocity under white acceleration (Bar-Shalom, Li and Kirubarajan 2001, section 6.2). The
 /// owner of the filter decides which of the two applies.
+///
 /// Frames that show an object from the same side have the same errors (model, mesh and depth are the same), which no
 /// average of them removes: of n measurements with the variance R, of which c R in common, the mean has c R + (1 - c) R
 /// / n, not R / n. So the filter averages as if all of R were white, and also propagates the common error in its state,

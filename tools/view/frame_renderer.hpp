@@ -14,15 +14,15 @@
 
 namespace houghstream::view {
 
-/// What is drawn of each frame, and where to.
+/// Settings of the drawing of each frame, and of its outputs.
 struct FrameRendererSettings {
-  std::optional<Camera> camera;  ///< of frames that carry none of their own
+  std::optional<Camera> camera;  ///< camera of frames that carry none of their own
   std::string models;            ///< folder of models for outlines; "" = none
   double model_unit_m = 1e-3;    ///< unit of the models' coordinates
   std::string objects;           ///< object store with the models, instead; followed while it changes; "" = none
   FrameViewSettings image;
   bool preview = false;                 ///< send each image on the preview channel
-  std::string http;                     ///< where to serve a page for browsers, [ADDRESS:]PORT; "" = nowhere
+  std::string http;                     ///< address of a page for browsers, [ADDRESS:]PORT; "" = no page
   std::vector<std::string> http_hosts;  ///< names, beside its own, that the page answers to
   OutputSettings outputs;
 
@@ -50,7 +50,7 @@ class FrameRenderer {
   /// to end.
   bool handle_keys(BusWatcher& watcher);
 
-  /// As ViewOutputs.
+  /// These work as in ViewOutputs.
   bool complete() const { return outputs_.complete(); }
   void finish() { outputs_.finish(); }
 

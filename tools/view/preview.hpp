@@ -10,7 +10,7 @@ namespace houghstream::view {
 /// Java's among them, with room for what else is on the bus.
 constexpr std::size_t kMaxPreviewBytes = 90'000;
 
-/// An image as JPEG of at most so many bytes.
+/// Holds an image as JPEG of at most so many bytes.
 struct PreviewImage {
   int width = 0;   ///< pixels
   int height = 0;  ///< pixels

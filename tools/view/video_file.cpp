@@ -23,7 +23,7 @@ extern "C" {
 namespace houghstream::view {
 namespace {
 
-constexpr int kTicksPerFrame = 1000;  // what a rate of 0.1 Hz and more is counted in
+constexpr int kTicksPerFrame = 1000;  // ticks, which resolve rates of 0.1 Hz and more
 
 struct InputCloser {
   void operator()(AVFormatContext* context) const { avformat_close_input(&context); }
@@ -71,7 +71,7 @@ Output open_output(const std::filesystem::path& file, const AVCodecParameters& v
   return output;
 }
 
-/// The time of a frame in the output's units.
+/// Returns the time of a frame in the output's units.
 std::int64_t at_rate(double frame, const AVStream& stream, double rate_hz) {
   return std::llround(frame / (rate_hz * av_q2d(stream.time_base)));
 }
@@ -95,7 +95,7 @@ bool needs_end(const std::filesystem::path& file) {
   return ending == ".mp4" || ending == ".m4v" || ending == ".mov";
 }
 
-/// FFmpeg chooses the format by it; these may hold H.264.
+/// FFmpeg chooses the format by the ending; these formats may hold H.264.
 bool is_video_name(const std::filesystem::path& file) {
   const std::string ending = lower_extension(file);
   return needs_end(file) || ending == ".mkv" || ending == ".avi";
@@ -174,7 +174,7 @@ void VideoFile::add(const cv::Mat& image, std::int64_t slot) {
     first_slot_ = slot;
   }
   const cv::Mat fitting = fitted(image);
-  // Who is asked to end does not fill a gap of hours first.
+  // A gap of hours is not filled after a request to end.
   constexpr double kLongGapS = 10.0;
   const auto is_given_up = [&] {
     return stop_requested() && static_cast<double>(slot - first_slot_ - frames_written_) > kLongGapS * rate_hz_;
@@ -211,7 +211,7 @@ void VideoFile::finish() {
   try {
     complete();
   } catch (const InputError& error) {
-    whole_->keep_partial();  // what was seen cannot be had again
+    whole_->keep_partial();  // the recording cannot be repeated
     fail("{}; what could be written stays in {}", error.what(), whole_->partial().string());
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;

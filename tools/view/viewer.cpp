@@ -25,7 +25,7 @@ void step_back() {
   if (nice(kPolite) == -1) log_warning("the priority of drawing cannot be lowered");
 }
 
-// For files there is time after the stream: frames may wait. In a window and on a page only the newest matters.
+// Files leave time after the stream, so that frames may wait. In a window and on a page only the newest matters.
 std::size_t waiting_frames(const FrameRendererSettings& settings) {
   constexpr std::size_t kForFiles = 50;
   return settings.writes() ? kForFiles : 1;
@@ -40,7 +40,7 @@ void run_viewer(const ViewerSettings& settings) {
   match.rate_hz = settings.show.outputs.rate_hz;
   LcmBus bus(settings.lcm_url);
   BusWatcher watcher(bus, settings.frame_channels, match, waiting_frames(settings.show));
-  // On a busy machine, and with a long video, the end takes longer than who started this program would wait.
+  // On a busy machine, and with a long video, the end takes longer than the caller of this program would wait.
   std::optional<StillFinishing> finishing;
   if (settings.show.writes()) finishing.emplace(StillFinishing::From::kStopSignal);
   step_back();

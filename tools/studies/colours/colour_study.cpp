@@ -24,7 +24,7 @@
 namespace houghstream::colours {
 namespace {
 
-/// Of all that was found through a camera.
+/// Holds all results through a camera.
 struct Found {
   std::vector<EvaluatedFrame> as_taught;
   std::vector<EvaluatedFrame> in_frame;
@@ -118,7 +118,7 @@ class Study {
     return detector_of(load_store_forest(store_), options);
   }
 
-  /// As hs-detect and hs-pose would, but that no pose is withheld.
+  /// Detects and estimates poses as hs-detect and hs-pose do, except that no pose is rejected.
   std::vector<Found> search(const std::vector<StrangeCamera>& cameras) const {
     const Detector plain_detector = detector(false);
     const Detector learning_detector = detector(true);

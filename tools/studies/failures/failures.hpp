@@ -13,16 +13,16 @@ struct Failure {
   enum class Kind { kFalse, kMissed };
   Kind kind = Kind::kFalse;
   std::string class_name;
-  std::size_t frame = 0;  ///< in the evaluated frames
-  cv::Rect2f box_px;      ///< of the detection or of what is visible of the object
+  std::size_t frame = 0;  ///< index in the evaluated frames
+  cv::Rect2f box_px;      ///< box of the detection, or of the visible part of the object
   double weight = 0.0;    ///< score of the detection, or how much of the object is visible; 0 to 1
 };
 
 /// Criteria of a failure, and the number of failures that are drawn.
 struct FailureRules {
   DetectionRules detection;
-  float operating_score = 0.0F;  ///< from which a detection counts
-  std::size_t count = 0;         ///< at most so many
+  float operating_score = 0.0F;  ///< minimum score of a counted detection
+  std::size_t count = 0;         ///< maximum number
   std::size_t apart = 0;         ///< frames between two of one class and kind, as neighbouring frames fail alike
 };
 

@@ -27,7 +27,7 @@ struct FailureOptions {
   SearchOptions search;
 };
 
-/// An image of each of the scene's gravest failures.
+/// Returns an image of each of the scene's gravest failures.
 std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& detector, const FailureOptions& options) {
   const BopScene scene(folder);
   std::vector<EvaluatedFrame> frames = every_nth(read_ground_truth(scene, find_bop_names(folder)), options.every);

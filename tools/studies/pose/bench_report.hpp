@@ -21,8 +21,8 @@ std::vector<PoseTrial> worst_poses(const std::vector<PoseTrial>& trials, std::si
 /// has a pose. Images of all trials have one size, CV_8UC3.
 cv::Mat draw_trial(const PoseTrial& trial, const RgbdFrame& frame, const Mesh& mesh);
 
-// The variants. The unchecked one is ours with a verification that accepts everything: what it publishes beyond ours is
-// what ours withholds.
+// Names of the variants. The unchecked one is ours with a verification that accepts everything: the poses that it
+// publishes beyond ours are those that ours rejects.
 constexpr const char* kOurs = "ours";
 constexpr const char* kPcl = "pcl";
 constexpr const char* kUnchecked = "unchecked";

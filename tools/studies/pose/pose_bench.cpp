@@ -39,7 +39,7 @@ PoseRun thin_run(const PoseRun& run, const std::vector<std::size_t>& chosen) {
 
 /// Frames with results of baselines.
 struct RivalRuns {
-  std::vector<std::size_t> frames;  ///< of the detected ones, in rising order
+  std::vector<std::size_t> frames;  ///< indices of the frames with detections, ascending
   std::map<std::string, PoseRun> by_baseline;
 };
 

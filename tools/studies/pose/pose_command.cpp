@@ -31,7 +31,7 @@ struct BenchOptions {
   double baselines_s = 0.0;
   bool no_baselines = false;
   SearchOptions search;
-  PoseSettings pose;  ///< what a store knows
+  PoseSettings pose;  ///< settings of the store
 };
 
 BenchedMakers make_makers(const SceneModels& models, const BenchOptions& options) {

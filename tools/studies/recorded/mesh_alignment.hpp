@@ -6,7 +6,7 @@
 
 namespace houghstream {
 
-/// Where one mesh lies on another of the same object, and how sure that is.
+/// Gives the pose of one mesh on another of the same object, and its reliability.
 struct MeshAlignment {
   Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
   /// Root mean square distance from the source's surface to the target's, metres; what is far off (parts that the

@@ -11,7 +11,7 @@
 
 namespace houghstream {
 
-/// The thinnest outline of a posed model, holes and all, into an image of the camera (CV_8UC3, BGR, its size).
+/// Draws the thinnest outline of a posed model, holes and all, into an image of the camera (CV_8UC3, BGR, its size).
 void draw_outline(cv::Mat& image, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera,
                   const cv::Scalar& colour);
 

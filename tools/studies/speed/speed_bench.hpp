@@ -16,7 +16,7 @@ namespace houghstream {
 struct BenchmarkedDetector {
   std::string name;
   std::size_t frames = SIZE_MAX;     ///< looks at no more than so many of the frames; for slow ones
-  std::int64_t instruction_set = 0;  ///< of Highway, that alone; 0 = the best that the processor has
+  std::int64_t instruction_set = 0;  ///< the only one of Highway's to use; 0 = the best of the processor
   double image_scale = 1.0;          ///< size of the frames that it is given over that of the scene's
   std::function<Detections(const RgbdFrame&)> detect;
 };
@@ -27,14 +27,14 @@ struct BenchmarkedDetector {
 /// Loads the forest. Throws InputError naming what was not understood.
 BenchmarkedDetector parse_contender(const std::string& text);
 
-/// The frame with its image `scale` times as large: colour interpolated, depth of the nearest pixel.
+/// Returns the frame with its image `scale` times as large: colour interpolated, depth of the nearest pixel.
 RgbdFrame resized_frame(const RgbdFrame& frame, double scale);
 
-/// Time of one detector's frames, milliseconds of wall time.
+/// Holds the times of one detector's frames, milliseconds of wall time.
 struct SpeedResult {
-  std::vector<double> ms;                               ///< by frame, in the order they were looked at
+  std::vector<double> ms;                               ///< times by frame, in the order of processing
   std::map<std::string, std::vector<double>> stage_ms;  ///< likewise
-  std::size_t detections = 0;                           ///< in all frames
+  std::size_t detections = 0;                           ///< number in all frames
 };
 
 /// Every contender looks at a frame, then all at the next one: what disturbs the machine disturbs all alike. Who begins
@@ -46,7 +46,7 @@ std::vector<SpeedResult> measure_speed(const std::vector<BenchmarkedDetector>& c
 /// {"NAME": {"ms": {"p10", "p50", "p90"}, "frames", "detections", "stage_ms": {"STAGE": median}}}
 nlohmann::json to_json(const std::vector<BenchmarkedDetector>& contenders, const std::vector<SpeedResult>& results);
 
-/// A table for the terminal, fastest first.
+/// Returns a table for the terminal, fastest first.
 std::string speed_table(const std::vector<BenchmarkedDetector>& contenders, const std::vector<SpeedResult>& results);
 
 }  // namespace houghstream

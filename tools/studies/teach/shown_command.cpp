@@ -60,7 +60,7 @@ void run(const CompareOptions& options) {
   const studies::ShownComparison comparison = studies::compare_shown(takes, options.kept, taught);
   std::filesystem::create_directories(options.out);
   write_json(to_json(comparison), options.out / "compared.json");
-  Mesh placed = taught;  // as the true mesh stands
+  Mesh placed = taught;  // in the frame of the ground-truth mesh
   for (Eigen::Vector3f& vertex : placed.vertices) vertex = comparison.T_true_taught.cast<float>() * vertex;
   for (Eigen::Vector3f& normal : placed.normals) normal = comparison.T_true_taught.linear().cast<float>() * normal;
   write_png(draw_model(placed), options.out / "taught.png");

@@ -26,7 +26,7 @@ Spread spread_of(const std::vector<double>& values) {
   return {quantile(values, 0.5), quantile(values, 0.95)};
 }
 
-/// `middle` in the frame that both map from.
+/// `middle` is given in the frame that both map from.
 PoseGap gap_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, const Eigen::Vector3d& middle) {
   return {(a * middle - b * middle).norm(),
           Eigen::Quaterniond(a.linear()).angularDistance(Eigen::Quaterniond(b.linear()))};
@@ -97,7 +97,7 @@ std::vector<double> distances(const std::vector<Eigen::Vector3f>& points, const 
 
 /// Points of the true surface that some frames saw, nothing of the object itself before them.
 std::vector<Eigen::Vector3f> seen_points(const TrueTakes& takes, const std::vector<Eigen::Vector3f>& points) {
-  constexpr std::size_t kFrames = 40;  // of each scene
+  constexpr std::size_t kFrames = 40;  // frames of each scene
   constexpr double kBehind_m = 0.003;
   std::vector<bool> seen(points.size(), false);
   for (std::size_t s = 0; s < takes.scenes.size(); ++s) {

@@ -11,11 +11,11 @@
 
 namespace houghstream::studies {
 
-/// An object of a sequence at a time.
+/// Gives the pose of an object of a sequence at a time.
 struct TrueInstance {
-  int instance = 0;  ///< from 1
+  int instance = 0;  ///< 1 or more
   std::string class_name;
-  std::optional<Eigen::Isometry3d> T_world_object;  ///< nothing where it has been taken away
+  std::optional<Eigen::Isometry3d> T_world_object;  ///< nothing after it has been taken away
   double visible = 0.0;                             ///< share that the camera sees which sees most of it
 };
 
@@ -31,7 +31,7 @@ struct SequenceFile {
   double fps = 30.0;
   std::vector<SequenceCamera> cameras;
   std::vector<std::int64_t> utimes;
-  std::vector<std::vector<TrueInstance>> frames;  ///< by frame, by instance
+  std::vector<std::vector<TrueInstance>> frames;  ///< ground truth by frame and instance
 
   std::optional<std::size_t> index_of(std::int64_t utime) const;
 };

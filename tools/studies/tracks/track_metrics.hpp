@@ -22,9 +22,9 @@ struct PublishedObject {
   double deviation_m = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Published objects of a frame of the sequence.
+/// Holds the published objects of a frame of the sequence.
 struct PublishedFrame {
-  std::size_t index = 0;  ///< in the sequence
+  std::size_t index = 0;  ///< index in the sequence
   std::vector<PublishedObject> objects;
 };
 
@@ -70,8 +70,8 @@ Eigen::Isometry3d as_the_truth(const PublishedObject& object, const TrueInstance
 /// the true one is not there.
 double apart_m(const TrueInstance& truth, const PublishedObject& object, const ClassSymmetries& symmetries);
 
-/// For each true object the published one that it is given, or -1: of its class, nearer than `reach_m`, and so that the
-/// sum of distances is least.
+/// Assigns to each ground-truth object a published one, or -1: of its class, nearer than `reach_m`, and so that the sum
+/// of distances is minimal.
 std::vector<int> matches(const std::vector<TrueInstance>& truth, const std::vector<PublishedObject>& objects,
                          const ClassSymmetries& symmetries, double reach_m);
 
@@ -83,11 +83,11 @@ struct HotaCount {
   double association = 0.0;  ///< sum over the true positives of A(c)
 };
 
-/// Higher Order Tracking Accuracy (Luiten et al., "HOTA: A Higher Order Metric for Evaluating Multi-Object Tracking",
-/// IJCV 2021), as the authors' TrackEval counts it, at thresholds 0.05 to 0.95: in each frame true and published
-/// objects are given to one another once, for all thresholds, so that the sum of similarity times the global alignment
-/// of their tracks is greatest. Similarity is 1 - distance / 0.1 m. Published objects that are given (matches()) to a
-/// true one that need not be seen are left out before, with that one.
+/// Computes Higher Order Tracking Accuracy (Luiten et al., "HOTA: A Higher Order Metric for Evaluating Multi-Object
+/// Tracking", IJCV 2021), as the authors' TrackEval counts it, at thresholds 0.05 to 0.95: in each frame ground-truth
+/// and published objects are matched once, for all thresholds, so that the sum of similarity times the global alignment
+/// of their tracks is maximal. Similarity is 1 - distance / 0.1 m. Published objects that are matched (matches()) to a
+/// ground-truth one that need not be seen are left out before, with that one.
 std::vector<HotaCount> hota_counts(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
                                    const ClassSymmetries& symmetries, const TrackMetricsSettings& settings);
 

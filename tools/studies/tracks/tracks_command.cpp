@@ -13,7 +13,7 @@
 #include "tools/studies/tracks/sequence_file.hpp"
 #include "tools/studies/tracks/track_metrics.hpp"
 
-// hs-study tracks: what tools/bench tracks does with rendered sequences.
+// hs-study tracks is what tools/bench tracks runs on rendered sequences.
 
 using namespace houghstream;
 using namespace houghstream::studies;

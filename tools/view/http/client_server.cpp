@@ -14,7 +14,7 @@ namespace {
 
 using Clock = ClientTable::Clock;
 
-/// The bytes of one connection. Once it is broken it stays so: nothing is read or written any more.
+/// Reads and writes the bytes of one connection. A broken connection stays broken: nothing is read or written any more.
 class ClientStream final : public httplib::Stream {
  public:
   ClientStream(socket_t socket, ClientTable& clients) : socket_(socket), clients_(clients) {}
@@ -45,7 +45,7 @@ class ClientStream final : public httplib::Stream {
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
   std::size_t request_bytes_left_ = 0;
-  Clock::time_point deadline_;  // of the request
+  Clock::time_point deadline_;  // deadline of the request
   bool broken_ = false;
 };
 

@@ -19,7 +19,7 @@ class ClientTable {
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kGrace{100};  ///< nobody yields before he has waited for so long
 
-  /// So many connections may be open.
+  /// Opens at most `max_clients` connections.
   explicit ClientTable(std::size_t max_clients) : max_clients_(max_clients) {}
 
   /// Adds a connection, which is in want of a thread until begin(). Closes it and returns false where too many are
@@ -47,13 +47,13 @@ class ClientTable {
   bool closed_ = false;
 };
 
-/// cpp-httplib's server with limits of its own: a request must be there within kRequestTimeout and have at most
-/// kMaxRequestBytes, what is sent must be taken at kMinBytesPerS, a crowd is handled as ClientTable does, and ranges
-/// are ignored, which HTTP allows: the library would build each of thousands that one header can ask for.
+/// Limits cpp-httplib's server: a request must arrive within kRequestTimeout and have at most kMaxRequestBytes, the
+/// client must accept at least kMinBytesPerS, too many clients are handled as in ClientTable, and ranges are ignored,
+/// which HTTP allows: the library would build each of the thousands that one header can ask for.
 class ClientServer final : public httplib::Server {
  public:
-  static constexpr std::chrono::seconds kRequestTimeout{5};  ///< also how long a connection may idle between requests
-  static constexpr std::chrono::seconds kWriteTimeout{5};    ///< and as long as kMinBytesPerS takes
+  static constexpr std::chrono::seconds kRequestTimeout{5};  ///< also the maximum idle time between requests
+  static constexpr std::chrono::seconds kWriteTimeout{5};    ///< plus the time that kMinBytesPerS takes
   static constexpr std::size_t kMinBytesPerS = 32'768;
   static constexpr std::size_t kMaxRequestBytes = 65'536;
 
