@@ -41,7 +41,7 @@ std::vector<int> classes_of(const Scene& scene) {
   return object_ids({further ? "all_20" : "all"});
 }
 
-/// Known symmetries of its shape; the finished mesh has its origin on the axis.
+/// Returns the known symmetries of its shape; the finished mesh has its origin on the axis.
 Symmetries symmetries_of(const TaughtObject& object) {
   Symmetries symmetries;
   if (object.symmetric_about_z) symmetries.continuous = {{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()}};

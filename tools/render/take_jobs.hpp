@@ -8,12 +8,12 @@
 
 namespace houghstream::render {
 
-/// Which takes are rendered, and how long they are.
+/// Selects the takes to render, and their length.
 struct TakesJob {
   std::vector<std::string> objects = {"all"};  ///< names among the twelve, or only "all"
   std::optional<int> take;                     ///< 1 or 2, without it both
   int frames = 240;
-  double fps = 15.0;         ///< how fast things move between frames; 1 to 120
+  double fps = 15.0;         ///< frames per second of the motion; 1 to 120
   int world = 0;             ///< 0 to 999: another room, light and movement for each
   bool development = false;  ///< rooms of training seeds, to choose settings on
 };

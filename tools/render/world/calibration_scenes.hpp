@@ -14,7 +14,7 @@ struct CalibrationSceneObject {
   AssetPtr thing;
   std::vector<Eigen::Vector3d> ups;  ///< object frame, see up_directions(); empty = any attitude
   bool has_colour = true;            ///< false: another plain colour in every room
-  bool is_calibrated = true;         ///< one of these stands in each room; others are company
+  bool is_calibrated = true;         ///< each room has at least one such object; others accompany it
 };
 
 /// Images in which taught objects are looked for before they count as taught: furnished rooms with the objects, all
@@ -25,7 +25,7 @@ class CalibrationScenes {
  public:
   static constexpr int kFramesPerScene = 2;
 
-  /// One of the `objects` at least is practised.
+  /// At least one of the `objects` must be one to calibrate.
   CalibrationScenes(std::vector<CalibrationSceneObject> objects, std::uint64_t seed)
       : objects_(std::move(objects)), seed_(seed) {}
 

@@ -57,7 +57,7 @@ void add_many_objects(TableSetter& setter, FurtherClasses further) {
   }
 }
 
-// Each class once lying and once tilted.
+// Adds each class once lying and once tilted.
 void add_lying_objects(TableSetter& setter, const Eigen::AlignedBox2d& where) {
   for (int id = 1; id <= kClassCount; ++id) {
     setter.tilt_object(id, where);
@@ -65,14 +65,14 @@ void add_lying_objects(TableSetter& setter, const Eigen::AlignedBox2d& where) {
   }
 }
 
-// Each class leaning, lying and standing; first what needs most room.
+// Adds each class leaning, lying and standing; those that need most room come first.
 void add_tilted_objects(TableSetter& setter, const Eigen::AlignedBox2d& where) {
   for (int id = 1; id <= kClassCount; ++id) setter.lean_object(id, where);
   for (int id = 1; id <= kClassCount; ++id) setter.lay_object(id, where);
   for (int id = 1; id <= kClassCount; ++id) setter.stand_object(id, where);
 }
 
-// Each class in a hand, two from the sides and two from behind, and once more on the table.
+// Adds each class in a hand, two from the sides and two from behind, and once more on the table.
 void add_held_objects(TableSetter& setter, const Trajectory& trajectory) {
   Random& random = setter.random();
   HeldPlace place;
@@ -222,7 +222,7 @@ constexpr std::array<Plan, 25> kPlans = {
       kDay,
       {true, 1, 4, 10, kNone, 0.0, ObjectPlacement::kHeld}}}};
 
-/// The number N of "development_world_N", 0 to 999.
+/// Returns the number N of "development_world_N", 0 to 999.
 std::optional<int> development_number(const std::string& name) {
   const std::string prefix = kDevelopmentWorld;
   const std::string digits = name.substr(std::min(name.size(), prefix.size()));

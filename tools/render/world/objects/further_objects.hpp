@@ -3,12 +3,12 @@
 #include "pipeline/base/random.hpp"
 #include "tools/render/world/objects/asset.hpp"
 
-// The sixteen further classes (ids 101 to 116), by family. Sizes and colours are fixed, the generator only draws
-// prints. Each is finished: origin at the centre of its bounding box, z up, front to -y.
+// These are the sixteen further classes (ids 101 to 116), by family. Sizes and colours are fixed, the generator only
+// draws textures. Each is finished: origin at the centre of its bounding box, z up, front to -y.
 
 namespace houghstream::world {
 
-// Tableware.
+// These make tableware.
 AssetPtr make_plate(Random& random);    ///< plain with a coloured rim
 AssetPtr make_teapot(Random& random);   ///< one colour
 AssetPtr make_pitcher(Random& random);  ///< enamel

@@ -14,7 +14,7 @@ cv::Point point_in(const cv::Rect& region, double x, double y) {
   return {region.x + static_cast<int>(x * region.width), region.y + static_cast<int>(y * region.height)};
 }
 
-// A region given in fractions of the image.
+// Returns a region given in fractions of the image.
 cv::Rect part_of(const cv::Size& size, double x, double y, double width, double height) {
   return {static_cast<int>(x * size.width), static_cast<int>(y * size.height), static_cast<int>(width * size.width),
           static_cast<int>(height * size.height)};
@@ -279,7 +279,7 @@ cv::Mat poster(const cv::Size& size, Random& random) {
 
 namespace {
 
-// White noise in [-1,1], CV_32FC1.
+// Returns white noise in [-1,1], CV_32FC1.
 cv::Mat white_noise(const cv::Size& size, Random& random) {
   cv::Mat noise(size, CV_32FC1);
   const std::uint64_t seed = random.bits();
@@ -291,7 +291,7 @@ cv::Mat white_noise(const cv::Size& size, Random& random) {
   return noise;
 }
 
-// colour * (1 + gain * noise), per pixel.
+// Returns colour * (1 + gain * noise), per pixel.
 cv::Mat tint(const cv::Mat& noise, const cv::Scalar& colour, double gain) {
   cv::Mat factor;
   noise.convertTo(factor, CV_32F, gain, 1.0);

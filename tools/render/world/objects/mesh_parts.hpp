@@ -6,8 +6,8 @@
 
 #include "pipeline/geometry/mesh.hpp"
 
-// Building blocks of all rendered things. Every part is a closed surface with outward normals and its own texture;
-// compose() joins parts into one mesh with one texture.
+// These are the building blocks of all rendered assets. Every part is a closed surface with outward normals and its own
+// texture; compose() joins parts into one mesh with one texture.
 
 namespace houghstream::world {
 
@@ -18,13 +18,14 @@ struct ProfilePoint {
   double v = 0.0;       ///< texture row, 0 (top of the texture) to 1
 };
 
-/// Surface of revolution about z. The profile goes from the axis at the bottom, round the outside, back to the axis.
+/// Makes a surface of revolution about z. The profile goes from the axis at the bottom, round the outside, back to the
+/// axis.
 Mesh lathe(const std::vector<ProfilePoint>& profile, const cv::Mat& texture, int segments = 48);
 
-/// Texture rows v_start to v_end shared out over the profile by arc length (fills ProfilePoint::v).
+/// Distributes texture rows v_start to v_end over the profile by arc length (fills ProfilePoint::v).
 std::vector<ProfilePoint> with_arc_length(std::vector<ProfilePoint> profile, double v_start = 1.0, double v_end = 0.0);
 
-/// The textures of a box's faces. Front looks to -y, right to +x. An empty one takes the front's.
+/// Holds the textures of a box's faces. Front looks to -y, right to +x. An empty one takes the front's.
 struct BoxFaces {
   cv::Mat front, back, left, right, top, bottom;
 };
@@ -40,11 +41,11 @@ Mesh tube(const std::vector<Eigen::Vector3d>& path, double radius, const cv::Mat
 Mesh tapered_tube(const std::vector<Eigen::Vector3d>& path, const std::vector<double>& radii, const cv::Mat& texture,
                   int segments = 12);
 
-/// Straight solid along y, from -depth/2 to depth/2. `outline` holds (x, z), convex, counter-clockwise seen from -y;
-/// `ends` covers its bounding rectangle, `side` each of the flat sides. Lengths in metres.
+/// Makes a straight solid along y, from -depth/2 to depth/2. `outline` holds (x, z), convex, counter-clockwise seen
+/// from -y; `ends` covers its bounding rectangle, `side` each of the flat sides. Lengths are in metres.
 Mesh prism(const std::vector<Eigen::Vector2d>& outline, double depth, const cv::Mat& ends, const cv::Mat& side);
 
-/// Stretched about the origin along each axis.
+/// Returns the mesh scaled about the origin along each axis.
 Mesh scaled(Mesh mesh, const Eigen::Vector3d& factors);
 
 /// A part and where it goes.
@@ -54,7 +55,7 @@ struct Part {
 };
 Part at(Mesh mesh, const Eigen::Vector3d& translation, double yaw_rad = 0.0);
 
-/// One mesh, one texture atlas; textures shared between parts (same pixels in memory) are stored once.
+/// Composes one mesh with one texture atlas; textures shared between parts (same pixels in memory) are stored once.
 Mesh compose(const std::vector<Part>& parts);
 
 /// Moves the origin to the centre of the bounding box and colours the vertices from the texture.

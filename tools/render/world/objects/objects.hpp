@@ -6,7 +6,7 @@
 
 #include "tools/render/world/objects/asset.hpp"
 
-// The objects. Frame of each: origin at the centre of its bounding box, z up, front to -y.
+// These make the objects. Frame of each: origin at the centre of its bounding box, z up, front to -y.
 
 namespace houghstream::world {
 
@@ -17,7 +17,7 @@ namespace houghstream::world {
 struct TaughtObject {
   int id = 0;
   std::string name;
-  bool symmetric_about_z = false;  ///< of its shape; its print may differ all round
+  bool symmetric_about_z = false;  ///< symmetry of its shape; its texture may differ all round
   AssetPtr thing;
 };
 
@@ -29,16 +29,16 @@ inline constexpr int kFurtherClassCount = 16;  ///< ids 101 to 116
 inline constexpr int kFirstInstanceId = 201;
 inline constexpr int kTaughtInstanceCount = 20;  ///< ids 201 to 220
 
-/// The twenty classes' ids: 1-4 and 101-116.
+/// Returns the twenty classes' ids: 1-4 and 101-116.
 std::vector<int> twenty_class_ids();
 
-/// And twenty more: 201-220 behind them.
+/// Returns these and twenty more: 201-220 behind them.
 std::vector<int> forty_object_ids();
 
-/// Object `id`, 1 to 8, 101 to 116 or 201 to 220; the same on every call. Throws InputError for another id.
+/// Makes object `id`, 1 to 8, 101 to 116 or 201 to 220; it is the same on every call. Throws InputError for another id.
 TaughtObject make_taught_object(int id);
 
-/// "bowl" -> 1. Throws InputError listing the known names.
+/// Returns the id of a name: "bowl" -> 1. Throws InputError listing the known names.
 int taught_object_id(const std::string& name);
 
 /// An instance of class 1 to 4 that is never taught: of the taught one's colours in another size, or of its size in

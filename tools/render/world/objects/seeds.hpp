@@ -16,7 +16,8 @@ inline std::uint64_t world_seed(DatasetSplit use, std::uint64_t number) {
   return (mixed & ~1ULL) | (use == DatasetSplit::kTest ? 1ULL : 0ULL);
 }
 
-/// Seed of one `aspect` (object on the table, wall, light ...) of a world; even or odd as the world's own.
+/// Returns the seed of one `aspect` (object on the table, wall, light ...) of a world; it is even or odd as the world's
+/// own.
 inline std::uint64_t aspect_seed(std::uint64_t seed_of_world, std::uint64_t aspect) {
   const std::uint64_t mixed = Random::for_item(seed_of_world, aspect).bits();
   return (mixed & ~1ULL) | (seed_of_world & 1ULL);

@@ -26,7 +26,7 @@ struct FurtherClass {
   AssetPtr (*make)(Random&);
 };
 
-// By id, from kFirstFurtherId on.
+// The table is ordered by id, from kFirstFurtherId on.
 constexpr std::array<FurtherClass, kFurtherClassCount> kFurther = {{{"plate", true, make_plate},
                                                                     {"teapot", false, make_teapot},
                                                                     {"pitcher", false, make_pitcher},

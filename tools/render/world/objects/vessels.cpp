@@ -7,7 +7,7 @@
 namespace houghstream::world {
 namespace {
 
-// Outline of a thick-walled cup: foot, outside, rim, inside, inner bottom.
+// Returns the outline of a thick-walled cup: foot, outside, rim, inside, inner bottom.
 std::vector<ProfilePoint> cup_profile(const MugShape& shape) {
   const double foot = shape.foot_radius;
   const double rim = shape.rim_radius;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMaxIncidence = 1.45;  // radians; the model's terms grow without bound towards pi/2
 
-// Normal noise, deviation 1, that neighbours share: the sensor matches windows, not pixels.
+// Returns normal noise, deviation 1, that neighbours share: the sensor matches windows, not pixels.
 cv::Mat window_noise(const cv::Size& size, std::uint64_t seed) {
   cv::Mat noise(size, CV_32FC1);
   for (int y = 0; y < size.height; ++y) {

@@ -4,10 +4,10 @@
 
 namespace houghstream::world {
 
-/// Where somebody holds something.
+/// Gives the position at which somebody holds something.
 struct HeldPlace {
   Eigen::Vector2d over = Eigen::Vector2d::Zero();  ///< the point of the table below it, metres
-  double arm_azimuth_rad = 0.0;                    ///< where the arm comes from, about z; 0 = from +x
+  double arm_azimuth_rad = 0.0;                    ///< direction of the arm about z; 0 = from +x
   std::vector<Eigen::Isometry3d> views;            ///< T_camera_world from which it will be looked at
 };
 
@@ -19,7 +19,7 @@ inline constexpr double kMaxHeldM = 0.30;
 inline constexpr double kMinGripped = 0.10;
 inline constexpr double kMaxGripped = 0.35;
 
-/// A rotation, uniform over all (Shoemake, "Uniform Random Rotations", Graphics Gems III, 1992).
+/// Returns a rotation, uniform over all (Shoemake, "Uniform Random Rotations", Graphics Gems III, 1992).
 Eigen::Matrix3d any_attitude(Random& random);
 
 /// A hand at the end of an arm that holds a placed thing: it hides 10 to 35 % of it over the views. Its axes are its

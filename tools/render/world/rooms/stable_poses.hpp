@@ -10,9 +10,9 @@ namespace houghstream::world {
 /// A way in which a thing lies still on a level table. Table frame: z up, z = 0 on its top.
 struct StablePose {
   Eigen::Matrix3d R_table_object = Eigen::Matrix3d::Identity();
-  double origin_height_m = 0.0;  ///< of the object frame's origin over the table
-  double centre_height_m = 0.0;  ///< of its centre of mass
-  double margin_m = 0.0;         ///< from the centre of mass's foot to the nearest border of what touches the table
+  double origin_height_m = 0.0;  ///< height of the object frame's origin over the table
+  double centre_height_m = 0.0;  ///< height of its centre of mass
+  double margin_m = 0.0;         ///< distance from the centre of mass's foot to the nearest border of the support
 
   /// Slope on which it tips over or rolls off, whichever way it is turned.
   double steepest_slope_rad() const;

@@ -19,8 +19,8 @@ enum : std::uint64_t { kRoom = 1, kLight, kTable, kHands, kPath, kNoise, kFirstT
 }  // namespace sequence_aspect
 
 constexpr std::uint64_t kFirstWorld = 1ULL << 43U;  // far beyond the numbers of other uses
-constexpr double kComeS = 0.6;                      // how long a hand takes to come, and to go
-constexpr double kTallestBesideM = 0.16;            // what stands about must not hide the objects
+constexpr double kComeS = 0.6;                      // duration of a hand's coming, and of its going
+constexpr double kTallestBesideM = 0.16;            // a maximum, so that surrounding assets do not hide the objects
 const Eigen::Vector3d kOutOfSight(0.0, 0.0, -50.0);
 
 double eased(double fraction) {
@@ -43,7 +43,7 @@ bool is_away(const Eigen::Vector3d& place) {
   return place.head<2>().norm() > kAwayM;
 }
 
-/// Between two stops; the way to a later one may be lifted.
+/// Returns the pose between two stops; the way to a later one may be lifted.
 Eigen::Isometry3d between(const Stop& from, const Stop& to, double seconds, double height_m) {
   const double fraction = eased((seconds - from.at_s) / (to.at_s - from.at_s));
   Eigen::Vector3d place = from.place + fraction * (to.place - from.place);
@@ -203,7 +203,7 @@ World Sequence::world_at(double seconds) const {
     if (away >= 1.0 || is_away(T.translation())) T.translation() = kOutOfSight;
   }
   if (arm_) {
-    // In front of all that stands there, from the right to the left within five seconds, and back.
+    // The arm moves in front of all objects, from the right to the left within five seconds, and back.
     const double fraction = eased((seconds - 1.5) / 3.0) - eased((seconds - 5.0) / 2.5);
     world.items[*arm_].T_world_object = Eigen::Translation3d(0.75 - 1.2 * fraction, 0.0, 0.0) * T_world_arm_;
   }

@@ -24,7 +24,7 @@ constexpr double kShadowRadiusM = 0.5;
 constexpr double kDiscM = 0.02;  // height of the turntable
 constexpr double kTurnRad = 2.0 * M_PI + 0.25;
 constexpr int kStrokes = 6;
-constexpr double kTallestBesideShownM = 0.13;  // what stands about must not hide the object
+constexpr double kTallestBesideShownM = 0.13;  // a maximum, so that surrounding assets do not hide the object
 
 // Parts of a stroke: the hand comes, turns the object, goes, and is away.
 constexpr double kComeFraction = 0.15;
@@ -148,9 +148,9 @@ void TakeStage::add_hands() {
     stroke.start_rad = kTurnRad * i / kStrokes;
     PlacedAsset object = world_.items[object_];
     object.T_world_object = object_at(stroke.start_rad);
-    // From the camera's right, or its left.
+    // The arm comes from the camera's right, or its left.
     place.arm_azimuth_rad = std::atan2(eye.y(), eye.x()) + (i % 2 == 0 ? 1.2 : -1.2);
-    Random random(aspect_seed(seed_, take_aspect::kTurning));  // the same skin and sleeve each time
+    Random random(aspect_seed(seed_, take_aspect::kTurning));  // gives the same skin and sleeve each time
     const PlacedAsset hand = take_hold(object, place, random);
     stroke.T_object_hand = object.T_world_object.inverse() * hand.T_world_object;
     stroke.hand = world_.items.size();
