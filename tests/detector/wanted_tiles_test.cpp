@@ -10,7 +10,8 @@
 namespace houghstream {
 namespace {
 
-/// One tile in a room that is too far away for the near level: most of that one's image is looked at by nobody.
+/// Returns one tile before a background that is too far away for the near level, so that most of that level's image is
+/// unused.
 RgbdFrame tile_on_a_background() {
   RgbdFrame frame = toy::background(90);
   toy::put_tile(0, 100.0, 90.0, 0.7, frame);

@@ -70,7 +70,7 @@ inline Mesh mug() {
   return mesh;
 }
 
-/// Horizontal table, 4 m wide, its top at z = 0 of its own frame.
+/// Returns a horizontal table, 4 m wide, its top at z = 0 of its own frame.
 inline Mesh table() {
   Mesh mesh;
   add_quad(mesh, {Eigen::Vector3f(-2, -2, 0), Eigen::Vector3f(2, -2, 0), Eigen::Vector3f(2, 2, 0),
@@ -108,7 +108,7 @@ inline RgbdFrame noisy_frame(const std::vector<RenderItem>& items, std::uint64_t
   return frame;
 }
 
-/// Truth turned by `degrees` about a random axis and moved by `metres` in a random direction.
+/// Returns the true pose rotated by `degrees` about a random axis and moved by `metres` in a random direction.
 inline Eigen::Isometry3d perturbed(const Eigen::Isometry3d& T_camera_object, double degrees, double metres,
                                    Random& random) {
   const auto direction = [&random] {

@@ -34,8 +34,8 @@ struct Process {
   std::string output;             ///< channel of what it publishes
   std::string input;              ///< channel of the results that it brings together with their frames; empty = of none
   std::size_t per_frame = 0;      ///< messages that it publishes for each frame
-  std::size_t per_result = 0;     ///< and for each result that has its frame
-  bool passes_over_late = false;  ///< what newer frames have overtaken
+  std::size_t per_result = 0;     ///< and one for each result that has its frame
+  bool passes_over_late = false;  ///< true if it drops frames overtaken by newer ones
   std::function<void(LcmBus&, const RunOptions&)> run;
 };
 
@@ -161,7 +161,7 @@ class RunningProcess {
 
   void send_frame(int frame, const std::string& camera = channel::kFrame) { publish(camera, frame_bytes(frame)); }
 
-  /// Nothing where the process takes no results.
+  /// Does nothing where the process receives no results.
   void send_result(int frame, const std::string& camera = channel::kFrame) {
     if (joins()) publish(process_.input, result_bytes(process_, {camera, utime_of(frame)}));
   }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kPad = FeatureImage::kPad;
 
-/// Noise of every contrast, with edges and holes in the depth.
+/// Returns noise of every contrast, with edges and holes in the depth.
 WorkingFrame rough_frame(int width, int height, Random& random) {
   WorkingFrame frame;
   frame.camera = {width, height, 260.0, 260.0, (width - 1) / 2.0, (height - 1) / 2.0};
@@ -51,7 +51,7 @@ void use(std::int64_t target) {
   hwy::GetChosenTarget().DeInit();  // the next call chooses anew
 }
 
-/// With every instruction set that the processor has.
+/// Compares with every instruction set of the processor.
 void expect_the_same(const WorkingFrame& frame, const FeatureSettings& settings) {
   const FeatureImage expected = reference_features(frame, settings);
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {

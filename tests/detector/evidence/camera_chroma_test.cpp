@@ -35,7 +35,7 @@ Forest alike(std::size_t classes) {
   return forest;
 }
 
-/// What is found where the toy's view stands, by a hypothesis of each class.
+/// Returns the results at the position of the toy's view, for a hypothesis of each class.
 std::vector<ScoredHypothesis> weighed(const Forest& forest, const RgbdFrame& frame,
                                       const std::vector<ChromaPair>& reference = {}) {
   const ForestIndex index(forest);

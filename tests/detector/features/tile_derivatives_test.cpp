@@ -59,7 +59,7 @@ const cv::Vec3i kSmooth(1, 2, 1);
 const cv::Vec3i kSlope(-1, 0, 1);
 const cv::Vec3i kBend(1, -2, 1);
 
-/// Half of its size, rounded to even.
+/// Returns half of its size, rounded to even.
 int half_of(int derivative) {
   const int size = std::abs(derivative);
   return std::min(255, size / 2 + (size % 4 == 3 ? 1 : 0));
@@ -116,7 +116,7 @@ TEST(TileDerivatives, KernelsHaveUnitGainAtEverySize) {
     for (std::size_t order = 0; order < 3; ++order) {
       ASSERT_EQ(static_cast<int>(kernels[order].size()), size);
       const double faculty[] = {1.0, 1.0, 2.0};
-      for (std::size_t power = 0; power <= order; ++power) {  // of 1, x and x^2
+      for (std::size_t power = 0; power <= order; ++power) {  // weighted by 1, x and x^2
         double sum = 0.0;
         for (int i = 0; i < size; ++i) {
           sum += kernels[order][static_cast<std::size_t>(i)] * std::pow(i - size / 2, static_cast<double>(power));

@@ -116,7 +116,7 @@ TEST_F(ForestFile, AnOutlineBesideItsViewIsRefused) {
 TEST_F(ForestFile, ALeafThatKnowsAClassTwiceIsRefused) {
   Forest bad = forest;
   bad.leaf_classes.insert(bad.leaf_classes.begin(), bad.leaf_classes[0]);
-  for (std::uint32_t& end : bad.leaves) end += end > 0 ? 1 : 0;  // those of the first leaf that knows anything too
+  for (std::uint32_t& end : bad.leaves) end += end > 0 ? 1 : 0;  // the first non-empty leaf gets the inserted entry
   save_forest(bad, file);
   EXPECT_THROW(load_forest(file), InputError);
 }

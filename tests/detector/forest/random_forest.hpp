@@ -8,7 +8,7 @@
 
 namespace houghstream::chance {
 
-/// Random bytes in every plane, in the border and behind the last pixel's planes too.
+/// Returns random bytes in every plane, in the border and behind the last pixel's planes too.
 inline FeatureImage random_image(int width, int height, int pixel_stride, Random& random) {
   FeatureImage image(width, height, pixel_stride);
   for (int y = -FeatureImage::kPad; y < image.height() + FeatureImage::kPad; ++y) {

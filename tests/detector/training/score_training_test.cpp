@@ -140,7 +140,8 @@ TEST(ScoreTraining, LearnsFromAnySourceOfFrames) {
   }
 }
 
-/// By the object's mass alone, whose log odds the model gives: many are none, whatever it says.
+/// The examples are labelled by the object's mass alone, whose log odds the model gives: many are false, whatever it
+/// says.
 std::vector<ScoreExamples> judged_by_mass(int class_id, double log_odds, double offset) {
   std::vector<ScoreExamples> frames;
   Random random(7);

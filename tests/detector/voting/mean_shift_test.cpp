@@ -26,7 +26,7 @@ HoughSpace random_space(const Eigen::Vector3f& about, int count) {
   return space;
 }
 
-/// sum_support one vote after another.
+/// Reference implementation of sum_support, one vote after another.
 VoteSupport reference_support(const HoughSpace& space, const std::vector<VoteRange>& ranges,
                               const Eigen::Vector3f& centre) {
   SumLanes lanes{};

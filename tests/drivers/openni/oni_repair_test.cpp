@@ -21,7 +21,7 @@ std::string recorded_bytes(const VirtualCamera& camera) {
   return read_text(options.record);
 }
 
-/// As OpenNI2 plays it.
+/// Counts the images as OpenNI2 plays them.
 std::size_t images_played(const std::filesystem::path& file) {
   const auto device = OpenniDevice::open_file(file.string());
   std::size_t images = 0;

@@ -13,7 +13,7 @@ namespace {
 
 struct Recording {
   std::filesystem::path file;
-  std::vector<RgbdFrame> seen;        ///< what the live source gave meanwhile
+  std::vector<RgbdFrame> seen;        ///< frames of the live source meanwhile
   std::vector<std::int64_t> numbers;  ///< the device's numbers of those
 };
 

@@ -31,7 +31,7 @@ std::vector<ImageThumbnail> recorded_from(const std::vector<ImageThumbnail>& liv
   return recorded;
 }
 
-/// Only every `step`-th.
+/// Returns only every `step`-th image.
 std::vector<ImageThumbnail> some_of(const std::vector<ImageThumbnail>& images, std::size_t step) {
   std::vector<ImageThumbnail> some;
   for (std::size_t i = 0; i < images.size(); i += step) some.push_back(images[i]);

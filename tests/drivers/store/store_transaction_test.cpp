@@ -156,7 +156,7 @@ TEST(StoreTransaction, WhoReadsBeforeItsChangesBringsTheOldOneBack) {
   EXPECT_TRUE(fs::exists(aside)) << "he puts his own there in a moment";
 }
 
-/// Somebody's own files in a store's folder: beside the store's, among them, in folders, and links.
+/// Puts foreign files into a store's folder: beside the store's, among them, in folders, and links.
 void put_foreign_files(const fs::path& store) {
   fs::create_directories(store / "recordings" / "monday" / "empty");
   write_text(store / "NOTES.txt", "the handle faces left");

@@ -43,7 +43,7 @@ bool enter_own_network() {
   return true;
 }
 
-/// The exit status of `body` in a process with a network of its own.
+/// Returns the exit status of `body` in a process with a network of its own.
 int in_own_network(const std::function<int()>& body) {
   const pid_t child = fork();
   if (child == 0) _exit(enter_own_network() && plug_in() ? body() : kSkipped);

@@ -21,7 +21,7 @@ Eigen::Vector3d direction(Random& random) {
   }
 }
 
-/// Light from everywhere, and a lamp.
+/// Returns ambient light and the light of a lamp.
 double light_on(const Eigen::Vector3d& normal) {
   return 0.25 + std::max(0.0, normal.dot(Eigen::Vector3d(0.6, -0.2, 0.77)));
 }

@@ -3,7 +3,7 @@
 #include "pose/tracks/tracker.hpp"
 #include "tests/pose/tracks/tracked_scene.hpp"
 
-// Which number an object has after it was carried, pushed past another one of its class, or hidden.
+// These tests check the number of an object after it was carried, pushed past another one of its class, or hidden.
 
 namespace houghstream::tracks {
 namespace {

@@ -84,7 +84,7 @@ TEST(Tracker, WhatMovedBeforeItWasHiddenIsGoneAndSaysWhy) {
     scene.frame();
   }
   scene.posed.clear();
-  // Near the camera: it hides all of the can's way.
+  // The obstacle is near the camera and hides the can's whole way.
   scene.obstacle = Eigen::Isometry3d(Eigen::Translation3d(0.0, -0.51, 0.404));
   WorldObjects world;
   for (int i = 0; i < 120; ++i) {

@@ -96,7 +96,7 @@ TEST(PoseQuality, ColoursThatContradictCountNoMoreThanAsMuch) {
 TEST(PoseQuality, PlainThingsAgreeWithLittle) {
   PoseEvidence evidence = good();
   evidence.colour->observed_contrast = 12.0F;
-  evidence.colour->residual_stddev = 10.0F;  // of shade and highlights, most is
+  evidence.colour->residual_stddev = 10.0F;  // mostly shading and highlights
   evidence.colour->model_contrast = 5.0F;
   const QualityTerms plain = quality_terms(evidence, {});
   EXPECT_GT(plain.texture, 0.7);

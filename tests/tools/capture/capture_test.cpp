@@ -92,7 +92,7 @@ TEST_F(CaptureLog, LoopsWithoutRepeatingATime) {
   }
 }
 
-/// A camera: its frames end with a stop signal.
+/// Simulates a camera whose frames end with a stop signal.
 class StoppedSource : public FrameSource {
  public:
   std::optional<RgbdFrame> next() override {

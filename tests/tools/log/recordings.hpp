@@ -116,7 +116,7 @@ class KlgWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// A log with one message after another, 33 ms apart.
+/// Writes a log with one message after another, 33 ms apart.
 class TestLog {
  public:
   explicit TestLog(const std::filesystem::path& file) : log_(file) {}

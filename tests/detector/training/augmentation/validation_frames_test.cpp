@@ -21,7 +21,7 @@ struct TilesAndBackgrounds {
 
 constexpr ComposedThings kThings = {4, 2, 0};
 
-/// By the camera that taught: another one's depth has other holes and lies a few pixels beside.
+/// Composes frames by the camera used for teaching: another one's depth has other holes and is shifted by a few pixels.
 ValidationFrame compose(const TilesAndBackgrounds& toys, std::uint64_t seed, double occluded_fraction,
                         double camera_fraction = 0.0) {
   TrainingSettings settings = toy::quick_profile().training;

@@ -54,7 +54,7 @@ TEST(CalibrationScenes, TheSameSeedGivesTheSameFrameAndAnotherOneAnotherRoom) {
   EXPECT_GT((between(frame) - between(other)).cwiseAbs().maxCoeff(), 0.02) << "not only the camera's place";
 }
 
-/// Median distance of the measured depth from the mesh's at the true pose, metres.
+/// Returns the median distance of the measured depth from the mesh's at the true pose, metres.
 float median_error(const RenderedFrame& view, std::size_t index, const Mesh& mesh) {
   const cv::Rect all({0, 0}, view.frame.depth.size());
   const cv::Mat rendered = render_depth(mesh, view.objects[index].T_camera_object, view.frame.camera, all);
@@ -89,7 +89,7 @@ TEST(CalibrationScenes, TheTruthAgreesWithTheMeasuredDepth) {
   EXPECT_GE(judged, kFrames);
 }
 
-/// The object with another origin.
+/// Returns the object with another origin.
 CalibrationSceneObject displaced(CalibrationSceneObject object, const Eigen::Vector3f& away) {
   Mesh mesh = object.thing->mesh;
   for (Eigen::Vector3f& vertex : mesh.vertices) vertex += away;

@@ -14,7 +14,7 @@
 namespace houghstream::world {
 namespace {
 
-/// 8 x 12 x 18 cm, its lower corner at `low`: a mesh's origin means nothing.
+/// Makes a brick of 8 x 12 x 18 cm with its lower corner at `low`, since a mesh's origin has no meaning.
 Mesh brick(const cv::Vec3b& colour, const Eigen::Vector3f& low = {0.3F, -0.2F, 0.1F}) {
   Mesh mesh = box({0.08, 0.12, 0.18}, cv::Mat(8, 8, CV_8UC3, cv::Scalar::all(0)));
   mesh.texture.release();
@@ -192,7 +192,7 @@ Eigen::Vector2d chroma(const TrainingView& view) {
   return {mean[1] - 128.0, mean[2] - 128.0};
 }
 
-/// Largest distance between the chroma of two views.
+/// Returns the largest distance between the chroma of two views.
 double spread_of_chroma(const MeshViews& views) {
   std::vector<Eigen::Vector2d> all;
   for (int index = 0; index < views.count(); index += 3) all.push_back(chroma(views.render(index)));

@@ -41,7 +41,7 @@ ObjectPoses one_pose(const Eigen::Isometry3d& T_camera_object) {
   return ObjectPoses{{"TEST", 7}, {pose}, {}};
 }
 
-// A square plate of 0.2 m, facing the camera.
+// Returns a square plate of 0.2 m, facing the camera.
 Mesh plate() {
   Mesh mesh;
   mesh.vertices = {{-0.1F, -0.1F, 0}, {0.1F, -0.1F, 0}, {0.1F, 0.1F, 0}, {-0.1F, 0.1F, 0}};

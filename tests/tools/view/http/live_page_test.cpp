@@ -99,7 +99,7 @@ TEST(LivePage, AViewThatCannotBeDrawnIsSaidToBeSoAndTheOthersAreDrawn) {
   ViewedFrame viewed = viewed_frame(5);
   looked.show(viewed);
   ViewedFrame wrong = viewed;
-  wrong.detections.frame.utime = 6;  // of another frame
+  wrong.detections.frame.utime = 6;  // time of another frame
   std::optional<httplib::Result> answer;
   std::atomic<bool> answered{false};
   std::thread browser([&] {

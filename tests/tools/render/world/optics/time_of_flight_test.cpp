@@ -12,7 +12,7 @@ namespace {
 const cv::Size kTofSize(160, 120);
 const TimeOfFlightSettings kTofSettings;
 
-/// A wall at one depth, facing the camera, of matt paint.
+/// Returns a wall at one depth, facing the camera, of matt paint.
 SensorView plane_wall(double z, double reflectance = 0.5) {
   return {cv::Mat(kTofSize, CV_32FC1, cv::Scalar(z)), cv::Mat(kTofSize, CV_32FC1, cv::Scalar(1.0)),
           cv::Mat(kTofSize, CV_32FC1, cv::Scalar(reflectance)), cv::Mat(kTofSize, CV_32FC1, cv::Scalar(0.0))};
