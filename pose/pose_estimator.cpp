@@ -55,7 +55,7 @@ PoseStatus reason_to_pass_over(const Detection& detection, bool has_model, const
   return PoseStatus::kInvalid;
 }
 
-/// The detections whose pose is looked for; `poses` of the others say why not.
+/// Returns the detections whose pose is estimated; `poses` of the others get the reason why not.
 std::vector<Estimation> begin_estimations(const Detections& detections,
                                           const std::map<std::string, ObjectModel>& models,
                                           const PoseSettings& settings, std::vector<ObjectPose>& poses) {
@@ -133,7 +133,7 @@ ObjectPose judged_pose(const Estimation& it, const RegistrationResult& result, c
   return judged;
 }
 
-/// Publishes the pose for which the evidence speaks most, or says why not.
+/// Publishes the pose with the strongest evidence, or the status that names the reason against it.
 void decide_one(const PoseSettings& settings, Estimation& it) {
   std::optional<ObjectPose> best;
   for (std::size_t i = 0; i < it.chosen.size(); ++i) {

@@ -47,8 +47,8 @@ class PoseEstimator {
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 
   /// Estimates with the poses of an earlier frame as a warm start: they are candidates beside those of the votes, never
-  /// the only ones, so that a wrong pose does not persist and a lost object is found again. `remembered`: what earlier
-  /// frames of the camera told of its colours (CameraColours::pairs).
+  /// the only ones, so that a wrong pose does not persist and a lost object is found again. `remembered` holds the
+  /// camera's colours learnt from earlier frames (CameraColours::pairs).
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier,
                        const std::vector<ChromaPair>& remembered = {}) const;
 

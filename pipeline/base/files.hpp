@@ -9,8 +9,8 @@
 
 namespace houghstream {
 
-/// Throws InputError unless `file` is an ordinary file that exists; `expected` says what was wanted ("an LCM log").
-/// Asked before it is opened: the opening of a named pipe would wait for somebody to write.
+/// Throws InputError unless `file` is an ordinary file that exists; `expected` names what was wanted ("an LCM log").
+/// Called before the file is opened, since opening a named pipe would wait for a writer.
 void require_regular_file(const std::filesystem::path& file, const char* expected);
 
 /// Returns all bytes of an ordinary file. Throws InputError where it is not one, or cannot be read to its end.
@@ -18,8 +18,8 @@ std::string read_file(const std::filesystem::path& file, const char* expected);
 
 // Checks the nesting depth of a text before it is parsed; the text may be JSON or YAML.
 
-/// Throws InputError where the JSON holds lists or objects within one another more than 64 times: who reads, copies or
-/// prints it goes down as deep as it goes.
+/// Throws InputError where the JSON holds lists or objects nested more than 64 times, since reading, copying and
+/// printing it recurse as deep.
 void check_json_nesting(std::string_view text, const std::string& source);
 
 /// Ending of the name of a file that is being written.
@@ -36,8 +36,8 @@ void require_writable(const std::filesystem::path& file);
 /// Throws InputError where the folder could not be written; it and its parents may be missing. Makes no folder.
 void require_writable_folder(const std::filesystem::path& folder);
 
-/// Returns when what was written to the file, or the names in the folder, are on the disk, so that a power cut leaves
-/// them. Throws InputError where the disk fails; a file system that knows no such thing is taken as it is.
+/// Returns when the file's data, or the names in the folder, are on the disk, so that they survive a power cut. Throws
+/// InputError where the disk fails; a file system that cannot synchronise is accepted as it is.
 void sync_to_disk(const std::filesystem::path& path);
 
 /// Treatment of existing files: of FILE, and of the FILE.partial that a killed program left.
@@ -58,8 +58,8 @@ constexpr Existing existing_of_recording(bool replace) {
 /// it is. Not thread-safe.
 class AtomicFile {
  public:
-  /// `ending` of the file that is written, for libraries that go by it. Throws InputError where it cannot be made, or
-  /// another program is writing FILE.
+  /// `ending` is that of the partial file, for libraries that choose the format by it. Throws InputError where the file
+  /// cannot be made, or another program is writing FILE.
   explicit AtomicFile(const std::filesystem::path& file, const std::string& ending = kPartialEnding,
                       Existing existing = Existing::kReplaced);
   AtomicFile(AtomicFile&& other) noexcept;

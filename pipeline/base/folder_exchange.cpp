@@ -59,7 +59,8 @@ void make_same_folder(const Carriage& carriage, const fs::path& relative) {
   chmod((carriage.to / relative).c_str(), is.st_mode & 07777U);
 }
 
-/// Hard links to all foreign files, folders made again. What cannot be linked is moved after the exchange.
+/// Makes hard links to all foreign files, and the folders again. Entries that cannot be linked are moved after the
+/// exchange.
 void link_foreign(const Carriage& carriage, const CarriedEntry& folder) {
   for (const CarriedEntry& entry : list_entries(carriage.from, folder, carriage.is_own)) {
     if (entry.is_folder) {
@@ -72,7 +73,7 @@ void link_foreign(const Carriage& carriage, const CarriedEntry& folder) {
   }
 }
 
-/// Own files and the names of all; what is in a foreign file is its writer's concern.
+/// Synchronises own files and the names of all; the contents of foreign files are their writers' responsibility.
 void sync_entries(const fs::path& root, const CarriedEntry& folder, const IsOwnEntry& is_own) {
   for (const CarriedEntry& entry : list_entries(root, folder, is_own)) {
     std::error_code error;
@@ -91,7 +92,7 @@ bool is_newer(const struct stat& one, const struct stat& other) {
                                                     : one.st_mtim.tv_nsec > other.st_mtim.tv_nsec;
 }
 
-/// True where nothing of that name is left, also because somebody else has taken it away.
+/// Returns whether nothing of that name is left, also because somebody else has removed it.
 bool is_done(int result) {
   return result == 0 || errno == ENOENT;
 }
@@ -145,7 +146,7 @@ fs::path place_of_replaced(const fs::path& place) {
   return place.parent_path() / ("." + place.filename().string() + ".before");
 }
 
-/// Both folders change places at once (Linux 3.15); false where the file system cannot.
+/// Exchanges both folders at once (Linux 3.15); returns false where the file system cannot.
 bool swap_folders(const fs::path& one, const fs::path& other) {
   return renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
 }

@@ -104,7 +104,7 @@ class Helper {
   std::thread thread_;  // last: it uses the others
 };
 
-/// Helpers that nobody needs just now. Calls that overlap take different ones, so none waits for another.
+/// Keeps helpers that are idle. Calls that overlap take different ones, so that none waits for another.
 class IdleHelpers {
  public:
   std::unique_ptr<Helper> take() {

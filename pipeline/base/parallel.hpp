@@ -37,14 +37,14 @@ void parallel_for(int threads, int count, const ItemFunction& work);
 /// workers is not deterministic.
 void parallel_for_workers(int threads, int count, const WorkerItemFunction& work);
 
-/// Work that nobody waits for any more: what SerialScope's calls end with.
+/// Thrown by parallel calls under a SerialScope whose work is cancelled.
 struct WorkCancelled : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// While a SerialScope exists, parallel_for() runs serially on the thread that created it, whatever `threads` says: for
-/// a thread of low priority, whose new threads would be of its priority and be kept for others' calls. Before each item
-/// they ask `is_cancelled`, if there is one, and throw WorkCancelled where it says so.
+/// While a SerialScope exists, parallel_for() runs serially on the thread that created it, whatever `threads` says. A
+/// thread of low priority uses it, since its new threads would have its priority and be kept for the calls of others.
+/// Before each item the calls ask `is_cancelled`, if there is one, and throw WorkCancelled where it returns true.
 class SerialScope {
  public:
   explicit SerialScope(std::function<bool()> is_cancelled = {});

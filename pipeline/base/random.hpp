@@ -32,7 +32,8 @@ class Random {
   int below(int count) { return static_cast<int>(uniform() * count); }
   /// Returns a number in [low, high].
   int between(int low, int high) { return low + below(high - low + 1); }
-  /// Standard normal (sum of twelve uniforms: no library function whose last bit differs between machines).
+  /// Returns a standard normal number (sum of twelve uniforms: no library function whose last bit differs between
+  /// machines).
   double normal() {
     double sum = -6.0;
     for (int i = 0; i < 12; ++i) sum += uniform();

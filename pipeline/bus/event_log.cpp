@@ -121,7 +121,7 @@ void LogWriter::write(std::int64_t timestamp, const std::string& channel, ByteVi
 
 void LogWriter::close() {
   if (!log_) return;
-  // An event whose writing failed has left the buffer: flushing what came after it says nothing of it.
+  // An event whose writing failed has left the buffer, so that a successful flush of later events does not show it.
   const bool torn = std::ferror(log_->f) != 0;
   const bool flushed = std::fflush(log_->f) == 0;
   const int error = errno;

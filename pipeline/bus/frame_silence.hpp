@@ -8,9 +8,9 @@
 
 namespace houghstream {
 
-/// Notices that no frame comes on the channels that somebody listens to, and says on which channels frames come
-/// instead: a wrong channel is otherwise seen by nothing coming. Listening to all channels costs the receiver what all
-/// others send, so it is done for short times only, while nothing comes. Times are handed in. Not thread-safe.
+/// Detects that no frame arrives on the wanted channels, and on which channels frames arrive instead: otherwise the
+/// only symptom of a wrong channel is silence. Listening to all channels costs the receiver all traffic, so it is done
+/// for short times only, while nothing arrives. Times are parameters. Not thread-safe.
 class FrameSilence {
  public:
   using Clock = std::chrono::steady_clock;

@@ -57,9 +57,9 @@ class LcmBus {
   /// event. Returns false at the end of a log. Throws InputError where the log is damaged.
   bool handle(std::chrono::milliseconds timeout);
 
-  /// May be called from any thread. `utime` is the time of the event where the message goes to a log. Returns false
-  /// where the network cannot be reached. Throws InputError where the message cannot be written, or the name of the
-  /// channel is longer than a network allows.
+  /// Publishes a message; may be called from any thread. `utime` is the time of the event where the message goes to a
+  /// log. Returns false where the network cannot be reached. Throws InputError where the message cannot be written, or
+  /// the name of the channel is longer than a network allows.
   bool publish(const std::string& channel, ByteView bytes, std::int64_t utime);
 
   template <typename Message>

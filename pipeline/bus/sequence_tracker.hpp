@@ -42,7 +42,7 @@ class SequenceTracker {
   std::optional<std::int64_t> lost() const;
 
  private:
-  /// Numbers that are remembered behind the newest.
+  /// Number of stored numbers behind the newest.
   static constexpr std::int64_t kWindow = 64;
   struct Seen {
     std::int64_t number = -1;

@@ -99,7 +99,7 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 };
 
-/// Bytes of a number of this type; 0 = there is no such type.
+/// Returns the bytes of a number of this type; 0 for an unknown type.
 std::size_t ply_type_bytes(std::string_view type) {
   if (is_word_of(" char int8 uchar uint8 ", type)) return 1;
   if (is_word_of(" short int16 ushort uint16 ", type)) return 2;
@@ -189,7 +189,8 @@ class PlyCheck {
 
   void check_names(const PlyElement& element) const {
     require(element.name != "tristrips", "{}: holds strips of triangles, expected faces", source_);
-    // A file of a few lines may state thousands of millions of entries of no bytes, for which the library makes room.
+    // A file of a few lines may state thousands of millions of entries of no bytes, for which the library allocates
+    // memory.
     require(element.count == 0 || !element.properties.empty(), "{}: {} entries '{}' without properties", source_,
             element.count, excerpt(element.name));
     std::set<std::string> names;
@@ -384,7 +385,7 @@ void check_mtl_numbers(const Words& words, std::size_t maximum, const std::strin
   }
 }
 
-/// Options with so many words each, then a file's name.
+/// Checks options with a fixed number of words each, then a file's name.
 void check_mtl_texture(const Words& words, const std::string& where) {
   std::size_t at = 1;
   while (at < words.size() && words[at].front() == '-') {
@@ -504,7 +505,7 @@ class GltfCheck {
     return value.get<std::int64_t>();
   }
 
-  /// The entry of a list that an index names.
+  /// Returns the entry of a list that an index names.
   const Json& named(const Json& entry, const char* name, const char* of) const {
     const std::int64_t at = number(entry, name);
     require(at < static_cast<std::int64_t>(list(of).size()), "{}: '{}' names {} of {} {}", source_, name, at,
@@ -580,7 +581,7 @@ class GltfCheck {
     if (primitive.contains("indices")) check_indices(named(primitive, "indices", "accessors"), vertices);
   }
 
-  /// The library leaves out faces with a vertex that is none.
+  /// The library ignores faces with an invalid vertex, so that these are refused here.
   void check_indices(const Json& indices, std::int64_t vertices) const {
     const std::int64_t type = number(indices, "componentType");
     require(components(indices) == 1 && (type == 5121 || type == 5123 || type == 5125),

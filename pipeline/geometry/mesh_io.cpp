@@ -26,7 +26,7 @@ std::uint8_t to_byte(float value) {
   return static_cast<std::uint8_t>(std::lround(fraction * 255.0F));
 }
 
-/// glTF states colours linear in the light, all else as a screen shows them (IEC 61966-2-1).
+/// Converts a colour: glTF states colours in linear light, the other formats as a screen shows them (IEC 61966-2-1).
 std::uint8_t to_byte(float value, bool is_linear) {
   if (!is_linear) return to_byte(value);
   return to_byte(value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F);
@@ -43,7 +43,8 @@ bool is_gltf(const std::filesystem::path& file) {
   return lower_extension(file) == ".glb" || lower_extension(file) == ".gltf";
 }
 
-/// Assimp trusts what a file states: cut or damaged ones make it loop for ever, end the process, or return a part.
+/// Checks that the file is whole: Assimp trusts its contents, and cut or damaged ones make it loop for ever, end the
+/// process, or return a part.
 void require_whole(const std::filesystem::path& file) {
   const std::string bytes = read_file(file, "a PLY, OBJ or glTF mesh");
   if (lower_extension(file) == ".ply") return check_ply(bytes, file.string());

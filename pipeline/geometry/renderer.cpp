@@ -57,7 +57,7 @@ std::array<int, 2> covered_pixels(std::int64_t low, std::int64_t high, int size)
   return {static_cast<int>(first), static_cast<int>(end)};
 }
 
-/// The pixels that triangles of these vertices may cover, which are snapped on the whole image.
+/// Returns the pixels that triangles of these vertices may cover, which are snapped on the whole image.
 cv::Rect covered_part(const std::vector<ClipVertex>& vertices, const Camera& camera) {
   if (vertices.empty()) return {};
   Snapped low = vertices.front().snapped;
@@ -111,7 +111,7 @@ class Rasteriser {
   void fill_rows(const std::array<Edge, 3>& edges, const cv::Rect& box, Triangle& triangle);
   void fill_span(int y, int first, int last, Triangle& triangle);
   bool has_plane(Triangle& triangle) const;
-  /// The ray through a pixel, where it is 1 m deep.
+  /// Returns the ray through a pixel, at 1 m depth.
   Eigen::Vector3d ray(int x, int y) const {
     return {ray_x_[static_cast<std::size_t>(x)], ray_y_[static_cast<std::size_t>(y)], 1.0};
   }

@@ -24,8 +24,8 @@ struct RenderedGeometry {
   cv::Mat bary;      ///< CV_32FC2, perspective-correct weights of the triangle's 2nd and 3rd vertex
 };
 
-/// Z-buffer rasterisation, pixel centres at integer coordinates, near plane at 0.05 m (triangles that
-/// cross it are clipped). Same input, same output, bit for bit.
+/// Renders by a Z-buffer, with pixel centres at integer coordinates and the near plane at 0.05 m (triangles that cross
+/// it are clipped). The same input gives the same output, bit for bit.
 RenderedGeometry render_geometry(const std::vector<RenderItem>& items, const Camera& camera);
 
 /// Renders the part of the image inside `region_px`; the result has the region's size.

@@ -6,7 +6,8 @@
 
 namespace houghstream {
 
-/// Turns by any angle about the line through `offset` along `axis` leave the object as it is.
+/// Describes a continuous symmetry: rotations by any angle about the line through `offset` along `axis` leave the
+/// object as it is.
 struct ContinuousSymmetry {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();   ///< unit length, object frame
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< a point of the line, object frame, metres

@@ -91,7 +91,7 @@ image_t depth_image(const RgbdFrame& frame, const WireFormat& format) {
   return image;
 }
 
-// A raw image as a matrix of its own, without the padding that a row may end with. row_stride 0 means none.
+// Returns a raw image as a matrix of its own, without the padding that a row may end with. row_stride 0 means none.
 cv::Mat unpack_raw(const image_t& image, int type) {
   check_image_size(image.width, image.height);
   const std::int64_t row_bytes = static_cast<std::int64_t>(image.width) * static_cast<std::int64_t>(CV_ELEM_SIZE(type));

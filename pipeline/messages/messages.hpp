@@ -32,7 +32,7 @@ struct WireFormat {
   int zip_level = 1;      ///< zlib 1 to 9
 };
 
-/// `sequence` counts the source's frames from 0, so that receivers can tell lost ones.
+/// Converts a frame; `sequence` counts the source's frames from 0, so that receivers can detect lost ones.
 houghstream::images_t to_message(const RgbdFrame& frame, const WireFormat& format, std::int64_t sequence);
 
 /// Add the camera, and the source's frame counter from 0, to frames that came without them. They throw InputError where
@@ -40,7 +40,7 @@ houghstream::images_t to_message(const RgbdFrame& frame, const WireFormat& forma
 void add_camera(houghstream::images_t& message, const Camera& camera);
 void add_sequence(houghstream::images_t& message, std::int64_t sequence);
 
-/// Says which run of its source a frame is of, so that numbers that begin anew are not taken for old ones.
+/// Adds the run of the frame's source, so that numbers that begin again are not taken for old ones.
 void add_run(houghstream::images_t& message, std::int64_t run);
 
 /// Finds colour (LEFT: RGB, BGR, RGBA, BGRA, GRAY or MJPEG) and depth (DEPTH_MM, DEPTH_MM_ZIPPED) by type, decodes them
@@ -63,14 +63,14 @@ struct FrameImages {
 /// Checks a message as frame_from_message() does; frames without a camera are allowed.
 FrameImages images_from_message(const houghstream::images_t& message);
 
-/// The camera that the message carries, unchecked, if any. Throws InputError where its bytes are none.
+/// Returns the camera that the message carries, unchecked, if any. Throws InputError where its bytes are invalid.
 std::optional<Camera> read_camera_metadata(const houghstream::images_t& message);
 [[deprecated("is read_camera_metadata now")]] inline std::optional<Camera> camera_of(
     const houghstream::images_t& message) {
   return read_camera_metadata(message);
 }
 
-/// The source's frame counter, if the message carries one.
+/// Returns the source's frame counter, if the message carries one.
 std::optional<std::int64_t> read_sequence_number(const houghstream::images_t& message);
 [[deprecated("is read_sequence_number now")]] inline std::optional<std::int64_t> sequence_of(
     const houghstream::images_t& message) {
@@ -104,7 +104,7 @@ Eigen::Isometry3d transform_from_message(const houghstream::rigid_transform_t& m
 houghstream::objects_t to_message(const WorldObjects& objects);
 WorldObjects world_from_message(const houghstream::objects_t& message);
 
-/// The sender fills in its name and the time.
+/// Converts the known objects; the sender fills in its name and the time.
 houghstream::known_objects_t to_message(const KnownObjects& known);
 
 houghstream::teaching_t to_message(const Teaching& teaching);

@@ -12,8 +12,8 @@ namespace houghstream {
 /// Limits the rate at which a detector searches each camera's frames, by the frames' times. Not thread-safe.
 class DetectionThrottle {
  public:
-  /// Cameras whose looks are remembered; every frame of a further one is looked at. A sender of rubbish may make up
-  /// channels without end.
+  /// Maximum number of cameras with a stored time; every frame of a further one is processed. A sender of rubbish may
+  /// make up channels without end.
   static constexpr std::size_t kCameras = 64;
 
   /// With 0 it detects in every frame.

@@ -17,14 +17,14 @@ class DetectorCount {
   /// Cameras whose results are counted; of a further one nothing is known. Results may name any camera.
   static constexpr std::size_t kCameras = 64;
 
-  /// A frame that comes a second time (a log that is replayed, a source that is started again and stamps as before) is
-  /// another frame: results of it are counted anew.
+  /// Notes a frame. One that comes a second time (a log that is replayed, a source that is started again and stamps as
+  /// before) is another frame: its results are counted from 0.
   void note_frame(const FrameId& frame);
 
   /// May come before its frame, which then is its own.
   void note_result(const FrameId& frame);
 
-  /// Results of this frame are counted anew.
+  /// Makes results of this frame count from 0.
   void forget(const FrameId& frame);
 
   /// Returns at least 1.

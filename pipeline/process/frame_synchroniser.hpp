@@ -36,7 +36,7 @@ struct SynchronisedMessages {
 };
 
 /// Decides over each pair before it is handed out; without `ask` every pair goes at once. `ask` is called with the
-/// synchroniser locked, in the thread that pops, for the oldest pairs first and again for those that it told to wait.
+/// synchroniser locked, in the thread that pops, for the oldest pairs first and again for those that must wait.
 struct FrameGate {
   enum class Answer { kGo, kWait, kRefuse };
   struct Decision {
@@ -55,8 +55,8 @@ struct FrameGate {
 class FrameSynchroniser {
  public:
   /// Frames of each camera that are kept for detections still to come: 64, and fewer where those of all cameras have
-  /// more bytes than this. First the camera with the most frames gives up its oldest; where each has one left, the one
-  /// that has come first goes. The last frame that has come stays, however large it is.
+  /// more bytes than this. First the camera with the most frames drops its oldest; where each has one left, the
+  /// earliest goes. The last frame that has come stays, however large it is.
   static constexpr std::size_t kHistory = 64;
   static constexpr std::size_t kHistoryBytes = std::size_t{192} << 20U;
   /// Detections of each camera that wait, for their frame or their turn; the oldest go.
@@ -65,10 +65,11 @@ class FrameSynchroniser {
   static constexpr std::size_t kAllWaitingBytes = std::size_t{128} << 20U;
   /// Frames on more channels are refused: a sender of rubbish may make up channels without end.
   static constexpr std::size_t kCameras = 64;
-  /// Pairs of all cameras that the gate tells to wait, and the bytes of their frames; the oldest are refused.
+  /// Maximum number of pairs of all cameras that wait for the gate, and of the bytes of their frames; the oldest are
+  /// refused.
   static constexpr std::size_t kHeldBack = 1024;
   static constexpr std::size_t kHeldBackBytes = kHistoryBytes;
-  /// Detections whose frame is not here wait for this many further frames of the camera, then are given up.
+  /// Detections without their frame wait for this many further frames of the camera, then are dropped.
   static constexpr std::int64_t kMaxLagFrames = 30;
 
   /// With `newest_first`, pop() serves the cameras in turn, and drops older detections of a camera: one result of each
@@ -79,7 +80,7 @@ class FrameSynchroniser {
 
   /// Throws InputError for one camera too many.
   void add_frame(const FrameId& id, SharedBytes bytes);
-  /// `id` is the frame that they were found in. Throws InputError for one camera too many.
+  /// Adds the detections of frame `id`. Throws InputError for one camera too many.
   void add_detections(const FrameId& id, std::vector<std::uint8_t> bytes);
 
   /// The next pair that the gate lets go, waiting for one up to `timeout`, or, with `newest_first`, until a frame
@@ -89,8 +90,8 @@ class FrameSynchroniser {
   /// Has the gate asked at once: what it waits for may have come.
   void recheck_gate();
 
-  /// The newest frame of a camera, where `newest_first`, and where neither it nor its pair has been taken: there is
-  /// time to decode it while its detections are on the way. It stays here for them.
+  /// Returns the newest frame of a camera, where `newest_first`, and where neither it nor its pair has been popped:
+  /// there is time to decode it while its detections are on the way. It stays here for them.
   std::optional<ArrivedFrame> pop_unmatched_frame();
 
   /// Frames and detections that were dropped since the last call.
@@ -105,7 +106,7 @@ class FrameSynchroniser {
   };
   Dropped pop_dropped();
 
-  /// Gives up all detections that still wait, for their frame or for the gate.
+  /// Drops all detections that still wait, for their frame or for the gate.
   void flush();
 
  private:

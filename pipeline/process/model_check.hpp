@@ -21,8 +21,8 @@ class ModelCheck {
   /// Returns whether it will log nothing more.
   bool settled() const { return settled_; }
 
-  /// A warning that names both sides' classes, once, where the first ten detections_t that hold something hold no class
-  /// with a model.
+  /// Returns a warning that names both sides' classes, once, if the first ten detections_t that are not empty hold no
+  /// class with a model.
   std::optional<std::string> note(const Detections& detections);
 
   /// Checks at the end of the stream, where fewer have arrived and no more will.
@@ -32,7 +32,7 @@ class ModelCheck {
   std::set<std::string> models_;
   std::set<std::string> detected_;
   int checked_ = 0;
-  bool settled_ = false;  // a class with a model has come, or it has been said
+  bool settled_ = false;  // a class with a model has come, or the warning was returned
 };
 
 }  // namespace houghstream

@@ -31,14 +31,14 @@ void require_max_detections(const Detections& detections) {
           to_string(detections.frame), detections.detections.size(), kMax);
 }
 
-/// Publishes the transforms of poses on the channels that pose_process.hpp says. Every function may be called from any
+/// Publishes the transforms of poses on the channels named in pose_process.hpp. Every function may be called from any
 /// thread.
 class TransformPublisher {
  public:
   TransformPublisher(LcmBus& bus, const std::string& frame_channels)
       : bus_(bus), frame_channels_(frame_channels), several_cameras_(!ChannelPattern(frame_channels).is_name()) {}
 
-  /// Detections of a frame on this other channel have come.
+  /// Notes that detections of a frame on this other channel have come.
   void note_other_camera(const std::string& channel) {
     if (several_cameras_.exchange(true)) return;
     log_info("detections of frames on {} are heard too: transforms go to <OBJECT>_TO_{}", channel,
@@ -139,7 +139,7 @@ class PoseProcess {
     bus_.publish(channel::kPoses, to_message(poses));
   }
 
-  /// Once a second of each camera's frames, once something is known.
+  /// Publishes once a second of each camera's frames, as soon as some colours are known.
   void publish_camera_colours(const FrameId& frame) {
     constexpr std::int64_t kPeriodUs = 1'000'000;
     if (!options_.camera_colours) return;
@@ -194,8 +194,7 @@ class PoseProcess {
     return true;
   }
 
-  // A camera's newest frame is decoded while its detections are on the way. What cannot be understood is told when they
-  // come.
+  // Decodes a camera's newest frame while its detections are on the way. An error is reported when they come.
   void decode_ahead() {
     const std::optional<ArrivedFrame> fresh = synchroniser_.pop_unmatched_frame();
     if (!fresh) return;

@@ -34,9 +34,10 @@ struct AffineBrightness {
   bool changes() const { return gain != 1.0F || offset != 0.0F; }
 };
 
-/// Cameras make brightness and contrast as they like, and many too much of both: what is common to all of an image
-/// says nothing about an object in it. The curve moves the mean no farther than into the range, and flattens contrast
-/// that is greater than the range's, to no less than 0.6 of it. From a sixteenth of the pixels. CV_8UC3 BGR, not empty.
+/// Fits the curve to an image. Cameras choose brightness and contrast freely, and many exaggerate both: differences
+/// common to the whole image say nothing about an object in it. The curve moves the mean no farther than into the
+/// range, and reduces contrast that is greater than the range's, to no less than 0.6 of it. It reads a sixteenth of the
+/// pixels. CV_8UC3 BGR, not empty.
 AffineBrightness fit_affine_brightness(const cv::Mat& colour, const BrightnessRange& range);
 
 /// Applies the curve to a CV_8UC3 image; `out` may be `colour`.

@@ -36,10 +36,10 @@ struct Camera {
   /// Returns the length in metres of one pixel at depth z.
   double metres_per_px(double z) const { return z / fx; }
 
-  /// The camera of the image resized to `scale` times its size (pixel areas stay aligned).
+  /// Returns the camera of the image resized to `scale` times its size (pixel areas stay aligned).
   Camera scaled(double scale) const;
 
-  /// The camera of the sub-image whose first pixel is (x_px, y_px) of this one.
+  /// Returns the camera of the sub-image whose first pixel is (x_px, y_px) of this one.
   Camera cropped(int x_px, int y_px, int crop_width, int crop_height) const;
 };
 

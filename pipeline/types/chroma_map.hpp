@@ -16,7 +16,7 @@ struct ChromaPair {
   Eigen::Vector2d model = Eigen::Vector2d::Zero();     ///< a* and b* of the model
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();  ///< a* and b* that the camera measured
   double lightness = 0.0;                              ///< L* that the camera measured, 0 to 100
-  /// Probability that this object stands there, by all that does not depend on the camera's colours, 0 to 1.
+  /// Probability that this object is there, by all evidence that does not depend on the camera's colours, 0 to 1.
   double probability = 0.0;
 };
 
@@ -50,7 +50,8 @@ class ChromaMap {
   double saturation() const;
   /// Returns the colour that white has in the image, a* and b*.
   Eigen::Vector2d white() const;
-  /// Standard deviation of what it says of a colour of medium strength, CIE a*b*: how sure it is, in one number.
+  /// Returns the standard deviation of the map for a colour of medium strength, CIE a*b*: its uncertainty in one
+  /// number.
   double sigma() const;
 
   const Parameters& parameters() const { return parameters_; }

@@ -11,7 +11,7 @@
 
 namespace houghstream {
 
-/// A rotation that a supporting vote remembers from its training view, turned to the ray it was seen along.
+/// Holds the rotation that a supporting vote stores of its training view, rotated to the ray along which it was seen.
 struct RotationVote {
   Eigen::Quaternionf R_camera_object = Eigen::Quaternionf::Identity();
   float weight = 0.0F;

@@ -22,7 +22,7 @@ struct RgbdFrame {
 /// Converts wire millimetres (CV_16UC1, 0 = none) to metres (CV_32FC1, NaN = none).
 cv::Mat depth_from_millimetres(const cv::Mat& depth_mm);
 
-/// Metres (CV_32FC1, NaN = none) to wire millimetres (CV_16UC1, 0 = none); beyond 65.535 m is none.
+/// Converts metres (CV_32FC1, NaN = none) to wire millimetres (CV_16UC1, 0 = none); depth beyond 65.535 m becomes none.
 cv::Mat depth_to_millimetres(const cv::Mat& depth);
 
 /// Throws InputError naming `source` unless types and sizes are as RgbdFrame states and agree with the camera.

@@ -26,7 +26,7 @@ inline bool operator<(const FrameId& a, const FrameId& b) {
   return std::tie(a.utime, a.channel) < std::tie(b.utime, b.channel);
 }
 
-/// "LEFT_CAMERA 1499876543210000", or the time alone where there is no channel.
+/// Returns "LEFT_CAMERA 1499876543210000", or the time alone where there is no channel.
 inline std::string to_string(const FrameId& id) {
   return (id.channel.empty() ? "" : id.channel + " ") + std::to_string(id.utime);
 }

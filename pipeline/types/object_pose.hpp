@@ -23,7 +23,7 @@ enum class PoseStatus : std::int8_t {
   kNotConverged = 5,       ///< no candidate registered
   kRejectedByDepth = 6,    ///< the rendered model contradicts the measured depth
   kLowScore = 7,           ///< hardly an object: its pose was not looked for, or is not believed
-  kRejectedByOutline = 8,  ///< the measured surface goes on where the model ends
+  kRejectedByOutline = 8,  ///< the measured surface continues where the model ends
   kRejectedByColour = 9,   ///< the model's colours do not explain those that are seen
   kOccluded = 10,          ///< followed, and mostly hidden by what was measured in front of it
   kRefuted = 11,           ///< the best pose makes it less probable that the object is there than that it is not

@@ -20,7 +20,7 @@ enum class TeachingState : std::int8_t {
   kFusing = 4,    ///< makes its model
   kTraining = 5,  ///< teaches the model to the store
   kDone = 6,      ///< the store knows it
-  kFailed = 7,    ///< it was not taught; the message says why
+  kFailed = 7,    ///< it was not taught; the message has the reason
 };
 
 /// Returns one word for people.
@@ -34,12 +34,12 @@ struct ViewDirection {
 
 /// Progress of the teaching of an object that is shown to a camera.
 struct Teaching {
-  FrameId frame;  ///< looked at last; box and pose are those in it; its channel is empty where it is not from the bus
+  FrameId frame;  ///< last frame with box and pose; its channel is empty where it is not from the bus
   std::string name;
   TeachingState state = TeachingState::kInvalid;
   std::string message;            ///< event, or the next step of the user, one line
-  std::optional<float> progress;  ///< share of the state's work that is done, 0 to 1; nothing = cannot be told
-  int frames = 0;                 ///< looked at
+  std::optional<float> progress;  ///< fraction of the state's work that is done, 0 to 1; nothing = unknown
+  int frames = 0;                 ///< processed frames
   int keyframes = 0;              ///< keyframes whose views will be taught
   std::optional<cv::Rect2f> box_px;
   std::optional<Eigen::Isometry3d> T_camera_object;

@@ -41,7 +41,8 @@ std::vector<std::vector<int>> find_neighbours(const std::vector<DepthView>& view
       if (j != i && cosine > kMinCosine) by_angle.emplace_back(-cosine, static_cast<int>(j));
     }
     std::sort(by_angle.begin(), by_angle.end());
-    // Next neighbours tell little about the axis, far ones much: spread over all that see the same.
+    // Near neighbours constrain the axis little, far ones much: the neighbours are spread over all that see the same
+    // surface.
     const std::size_t count = std::min(static_cast<std::size_t>(maximum), by_angle.size());
     for (std::size_t k = 0; k < count; ++k) neighbours[i].push_back(by_angle[k * by_angle.size() / count].second);
   }

@@ -27,9 +27,9 @@ AlignmentError measure_alignment_error(const std::vector<DepthView>& views, cons
 
 /// Corrects T_camera_object of the views in place by one motion of the object frame in the camera's, common to all
 /// views: for a turntable in front of a fixed camera, whose steps are exact, this corrects the axis and nothing else.
-/// Gauss-Newton on the distances between the views' points and their neighbours' tangent planes (Chen & Medioni 1992),
-/// pairs found by projection (Blais & Levine 1995). What the distances do not tell (a turn about the axis, a shift
-/// along it) stays.
+/// It runs Gauss-Newton on the distances between the views' points and their neighbours' tangent planes (Chen & Medioni
+/// 1992), with pairs found by projection (Blais & Levine 1995). Motions that the distances do not determine (a rotation
+/// about the axis, a shift along it) stay as they are.
 void align_views(std::vector<DepthView>& views, const AlignmentSettings& settings);
 
 }  // namespace houghstream::fusion

@@ -52,7 +52,7 @@ void set_surface(const cv::Mat& depth, DepthView& out) {
   }
 }
 
-/// The mask without specks, which are not of the object.
+/// Returns the mask without specks, which are not of the object.
 cv::Mat without_specks(const cv::Mat& mask) {
   constexpr double kMinFraction = 0.02;  // fraction of the largest part
   std::vector<std::vector<cv::Point>> outlines;
@@ -76,7 +76,8 @@ cv::Mat widened(const cv::Mat& mask) {
   return wide;
 }
 
-/// A mask made of depth lacks what has none, at its outline too: the object lies within its convex hull.
+/// Returns the outside of the mask's convex hull: a mask made of depth has holes where depth is missing, at its outline
+/// too, but the object lies within its hull.
 cv::Mat outside_hull(const cv::Mat& mask) {
   std::vector<cv::Point> points;
   cv::findNonZero(mask, points);

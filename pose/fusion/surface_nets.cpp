@@ -36,7 +36,7 @@ class SurfaceNet {
     return within ? grid_.distance[grid_.index(c[0], c[1], c[2])] : 1.0F;
   }
 
-  /// The face across the edge from voxel `c` to the next along `axis`, where one is inside and one outside.
+  /// Adds the face across the edge from voxel `c` to the next along `axis`, where one is inside and one outside.
   void add_face(const Cell& c, int axis) {
     Cell next = c;
     ++next[axis];

@@ -13,13 +13,13 @@ namespace houghstream::fusion {
 /// metres.
 Mesh extract_surface(const TsdfVolume& grid);
 
-/// The connected part of a mesh with the most triangles, with the vertices it uses; for meshes with vertices and
-/// triangles only.
+/// Returns the connected part of a mesh with the most triangles, with the vertices it uses; for meshes with vertices
+/// and triangles only.
 Mesh largest_part(const Mesh& mesh);
 
-/// A closed surface without the parts of more than a square centimetre that no view has seen, such as the bottom of a
-/// mug: where they lie is a guess. What is nowhere higher than `foot_z_m` stays: on it the object stands. `seen`: per
-/// vertex.
+/// Returns a closed surface without the parts of more than a square centimetre that no view has observed, such as the
+/// bottom of a mug, since their position is a guess. Parts that are nowhere higher than `foot_z_m` stay: the object
+/// stands on them. `seen` is per vertex.
 Mesh remove_unobserved(const Mesh& mesh, const std::vector<bool>& seen, double foot_z_m);
 
 }  // namespace houghstream::fusion

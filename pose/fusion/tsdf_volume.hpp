@@ -32,12 +32,12 @@ struct TsdfSettings {
   int threads = 1;  ///< any number gives the same result
 };
 
-/// Weighted mean of the views' signed distances (Curless & Levoy 1996): along the surface's normal, weighted by how
-/// frontally the surface is seen, less and less behind it (as Bylow et al. 2013: walls have another side); rays beside
-/// the mask carve free space, beside the view's images too, unless they miss DepthView::image. What no view has seen
-/// lies behind surfaces and counts as inside, so that the solid is closed. Where all views look from one side, it ends
-/// at the lowest that was seen, on which the object stands, and what is unseen at the highest. Throws InputError
-/// without views or points, or where they need more than `max_voxels`.
+/// Returns the weighted mean of the views' signed distances (Curless & Levoy 1996): along the surface's normal,
+/// weighted by how frontally the surface is seen, less and less behind it (as Bylow et al. 2013: walls have another
+/// side); rays beside the mask carve free space, beside the view's images too, unless they miss DepthView::image.
+/// Unobserved voxels lie behind surfaces and count as inside, so that the solid is closed. Where all views look from
+/// one side, unobserved voxels below the lowest observed surface, on which the object stands, and above the highest one
+/// count as outside. Throws InputError without views or points, or where they need more than `max_voxels`.
 TsdfVolume integrate_views(const std::vector<DepthView>& views, const TsdfSettings& settings);
 
 /// Integrates the views in a box of the object frame, metres: voxels that no view has observed are inside, with weight

@@ -38,7 +38,7 @@ class Lighting {
  public:
   Lighting(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh);
 
-  /// Log of how much brighter than its paint a view shows surface of this normal.
+  /// Returns the logarithm of a surface's brightness over its albedo in a view, for this normal.
   double operator()(int view, const Eigen::Vector3d& normal) const {
     const auto at = static_cast<std::size_t>(view);
     return exposures_[at] +
@@ -166,7 +166,7 @@ std::vector<bool> colour_mesh(const std::vector<DepthView>& views, double tolera
     for (std::size_t k = 0; k < views.size(); ++k) {
       const Sight seen = sight(views[k], mesh.vertices[i].cast<double>(), normal, tolerance_m);
       if (seen.facing <= 0.0) continue;
-      // The few most frontal views decide: with all of them, errors of a pixel would blur the print.
+      // The few most frontal views dominate: with all of them, errors of a pixel would blur the texture.
       const double weight = std::pow(seen.facing, 8);
       sums[i].colour += weight * std::exp(-lighting(static_cast<int>(k), normal)) * srgb_to_linear(seen.colour);
       sums[i].weight += weight;

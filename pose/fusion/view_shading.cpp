@@ -32,7 +32,7 @@ constexpr int kChromas = 20;  // steps of blue's and of red's share
 
 std::vector<Point> points_of(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals) {
   constexpr double kDarkest = 0.008;  // below that noise makes the hue
-  constexpr double kGrey = 0.25;      // weight of what may be black, grey or white print
+  constexpr double kGrey = 0.25;      // weight of points whose albedo may be black, grey or white
   std::vector<Point> points;
   points.reserve(colours.size());
   for (std::size_t i = 0; i < colours.size(); ++i) {

@@ -37,9 +37,10 @@ class ShadingModel {
   Eigen::Matrix<double, 8, 1> weights_ = Eigen::Matrix<double, 8, 1>::Zero();
 };
 
-/// Parts light from paint. Neither is seen alone: what has the same hue and saturation on sides that face differently
-/// is taken to be painted alike in most places (absolute deviations are least), and what remains unsure is paint.
-/// `colours`: linear BGR of points of the surface, without exposure; `normals`: unit length. Both of one size.
+/// Separates shading from albedo. Neither is observed alone: surfaces of the same hue and saturation on sides that face
+/// differently are taken to have the same albedo in most places (absolute deviations are minimal), and ambiguous
+/// variation counts as albedo. `colours` are linear BGR of points of the surface, without exposure; `normals` have unit
+/// length. Both have one size.
 ShadingModel fit_shading(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals);
 
 }  // namespace houghstream::fusion

@@ -14,7 +14,7 @@ constexpr std::uint32_t kLeafTriangles = 4;
 
 using Corners = std::array<Eigen::Vector3f, 3>;
 
-/// Weight of `b` for the point of the segment that is nearest to `p`.
+/// Returns the weight of `b` for the point of the segment that is nearest to `p`.
 float along_segment(const Eigen::Vector3f& p, const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   const float length_sq = (b - a).squaredNorm();
   return length_sq > 0.0F ? std::clamp((p - a).dot(b - a) / length_sq, 0.0F, 1.0F) : 0.0F;

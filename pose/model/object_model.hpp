@@ -66,13 +66,13 @@ struct ObjectModel {
   std::vector<ModelView> views;
   SurfacePrint print;  ///< empty where the mesh has no colours
   /// Motions of the object frame, metres, after which the shape is as before and the pose is another one: only the
-  /// print can tell a pose from the poses after these. Turns about a continuous symmetry are a few of each round.
+  /// texture distinguishes a pose from the poses after these. Rotations about a continuous symmetry are sampled.
   std::vector<Eigen::Isometry3d> alternatives;
-  /// Motions after which the shape is nearly as before: registered, the poses after these are for depth and print to
-  /// tell apart.
+  /// Motions after which the shape is nearly as before: depth and texture distinguish the poses after these, once
+  /// registered.
   std::vector<Eigen::Isometry3d> near_alternatives;
-  /// Turns about `nearly_round`: alternatives where what breaks the round is hidden before and after. Points of that,
-  /// object frame, metres.
+  /// Rotations about `nearly_round`, which are alternatives where the part that breaks the round shape is occluded
+  /// before and after; and points of that part, object frame, metres.
   std::vector<Eigen::Isometry3d> partial_alternatives;
   std::vector<Eigen::Vector3f> unround_points;
 };
@@ -81,7 +81,7 @@ struct ObjectModel {
 /// no triangles, is degenerate to a point, or is visible from nowhere.
 ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSettings& settings, int threads = 1);
 
-/// The stored view nearest to how the camera sees the model.
+/// Returns the stored view nearest to the camera's view of the model.
 const ModelView& nearest_view(const ObjectModel& model, const Eigen::Isometry3d& T_camera_object);
 
 /// Corners of the icosahedron whose edges are cut in `parts`, on the unit sphere, in a fixed order.

@@ -30,7 +30,7 @@ AcrossBasis plane_across(const Eigen::Vector3d& direction) {
   return plane;
 }
 
-/// Metres by which the point's surface leaves itself per radian of rotation about the axis.
+/// Returns the distance, metres, by which the point's surface leaves itself per radian of rotation about the axis.
 double rotation_residual(const OrientedPoint& p, const ScoredAxis& axis) {
   return p.normal.dot(axis.direction.cross(p.point - axis.offset));
 }
@@ -42,7 +42,7 @@ class RevolutionFit {
       points_.push_back({surface.points[i].cast<double>() - centre, surface.normals[i].cast<double>()});
   }
 
-  /// Gauss-Newton steps with reweighting; the direction stays as it is where `with_direction` is false.
+  /// Runs Gauss-Newton steps with reweighting; the direction stays as it is where `with_direction` is false.
   void improve(int iterations, bool with_direction, ScoredAxis& axis) const {
     for (int i = 0; i < iterations; ++i) step(with_direction, axis);
     axis.score = score(axis);
@@ -78,7 +78,7 @@ class RevolutionFit {
     axis.offset -= axis.direction.dot(axis.offset) * axis.direction;
   }
 
-  /// A surface across the axis fits every axis of its direction, and is not counted.
+  /// Returns the score of an axis. A surface across the axis fits every axis of its direction, and is not counted.
   double score(const ScoredAxis& axis) const {
     double fitting = 0.0;
     double total = 0.0;

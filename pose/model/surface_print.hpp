@@ -27,7 +27,7 @@ struct SurfacePrint {
   std::optional<Eigen::Vector3f> find(const Eigen::Vector3f& point, const Eigen::Vector3f& towards) const;
 };
 
-/// Makes a print of points of the surface.
+/// Collects points of the surface and makes a SurfacePrint of them.
 class SurfacePrintMaker {
  public:
   explicit SurfacePrintMaker(double detail_m) : detail_m_(static_cast<float>(detail_m)) {}

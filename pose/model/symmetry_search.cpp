@@ -29,7 +29,7 @@ float tolerance_of(double diameter_m, const SymmetrySearch& settings) {
   return static_cast<float>(std::max(settings.tolerance * diameter_m, noise_m));
 }
 
-/// BGR at a point of the surface, from the texture where there is one.
+/// Returns BGR at a point of the surface, from the texture where there is one.
 Eigen::Vector3f colour_at(const Mesh& mesh, const ClosestPoint& hit) {
   const auto& triangle = mesh.triangles[hit.triangle];
   if (mesh.texture.empty() || mesh.uvs.empty()) {

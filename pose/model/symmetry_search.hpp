@@ -45,9 +45,9 @@ struct SymmetrySearch {
 /// one of them, registered where it does not fit as it is. Throws InputError for a mesh without surface.
 Symmetries find_symmetries(const Mesh& mesh, const SymmetrySearch& settings = {});
 
-/// The rotations after which a depth camera measures the same: those of the shape within its noise, print aside. Where
-/// no rotation by any angle fits, `nearly_round` is an axis about which most of the surface maps onto itself at any
-/// angle: a mug's, which its handle breaks. Throws InputError for a mesh without surface.
+/// Finds the rotations after which a depth camera measures the same: those of the shape within its noise, without the
+/// texture. Where no rotation by any angle fits, `nearly_round` is an axis about which most of the surface maps onto
+/// itself at any angle: a mug's, which its handle breaks. Throws InputError for a mesh without surface.
 ShapeSymmetry find_shape_symmetry(const MeasuredMesh& measured);
 ShapeSymmetry find_shape_symmetry(const Mesh& mesh);
 
@@ -58,8 +58,8 @@ bool is_near_any(const Eigen::Isometry3d& T, const std::vector<Eigen::Isometry3d
 /// another.
 std::vector<Eigen::Isometry3d> group_of(const std::vector<Eigen::Isometry3d>& rotations);
 
-/// Says of a motion of the object frame, metres, whether the object looks the same after it. Inspects 1000 evenly
-/// spread points of the surface, and up to 2000 of its vertices: corners deviate most.
+/// Tests whether the object looks the same after a motion of the object frame, metres. It inspects 1000 evenly spread
+/// points of the surface, and up to 2000 of its vertices, since corners deviate most.
 class RotationSymmetryTest {
  public:
   /// Keeps a reference to `measured`. Throws InputError for a mesh without surface.
@@ -67,17 +67,18 @@ class RotationSymmetryTest {
 
   /// Returns the rotation about an axis through the centre.
   Eigen::Isometry3d rotation_about_axis(const Eigen::Vector3d& axis, double angle_rad) const;
-  /// The root mean square of the deviation may be as large as `rms` tolerances.
+  /// Returns whether the deviation is within the tolerance; its root mean square may be as large as `rms` tolerances.
   bool is_symmetric_under(const Eigen::Isometry3d& T, double rms = 1.0) const;
   bool is_symmetric_under(const Eigen::Vector3d& axis, double angle_rad) const {
     return is_symmetric_under(rotation_about_axis(axis, angle_rad));
   }
-  /// Mean distance, metres, of a hundred moved points from the surface.
+  /// Returns the mean distance, metres, of a hundred moved points from the surface.
   double deviation(const Eigen::Isometry3d& T) const;
   /// Returns the motion near `T` that registers the moved surface to the surface (point-to-plane ICP, Chen and Medioni
   /// 1992, with Geman and McClure's kernel).
   Eigen::Isometry3d registered(const Eigen::Isometry3d& T) const;
-  /// Fraction of the surface that maps onto itself at any angle about the axis, what lies across the axis left out.
+  /// Returns the fraction of the surface that maps onto itself at any angle about the axis, without surfaces across the
+  /// axis.
   double round_fraction(const ContinuousSymmetry& axis) const;
   double diameter_m() const { return measured_.diameter_m; }
   const SurfacePoints& surface() const { return surface_; }

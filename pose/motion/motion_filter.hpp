@@ -18,7 +18,7 @@ struct PoseMeasurement {
 struct MotionSettings {
   double drift_m = 0.0002;            ///< random walk of a static object within a second, metres
   double drift_rad = 0.0024;          ///< and of its rotation: together they average over some two seconds
-  double acceleration = 1.0;          ///< spectral density of what moves, m^2/s^3: a hand's
+  double acceleration = 1.0;          ///< spectral density of a moving object, m^2/s^3: a hand's
   double angular_acceleration = 8.0;  ///< rad^2/s^3
   double coast_s = 0.15;              ///< time for which a moving object continues without a measurement
   /// Fraction of a measurement's variance that the frames of a view have in common. Half of the errors of rendered
@@ -52,7 +52,7 @@ class MotionFilter {
  public:
   MotionFilter(const PoseMeasurement& first, const MotionSettings& settings);
 
-  /// Goes on to a time; one before the last does nothing.
+  /// Predicts the state at a time; one before the last does nothing.
   void predict(std::int64_t utime);
 
   /// Takes a measurement of the time that it was predicted to.

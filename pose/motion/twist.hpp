@@ -35,7 +35,7 @@ Eigen::Isometry3d retract_about_world(const Eigen::Isometry3d& T, const Vector6&
 Eigen::Isometry3d interpolate_pose(const Eigen::Isometry3d& T_first, const Eigen::Isometry3d& T_second,
                                    double fraction);
 
-/// The twist whose motion about the body this is: retract_about_body() of the identity gives the motion back.
+/// Returns the twist of a motion about the body: retract_about_body() of the identity returns the motion.
 Vector6 local_coordinates_about_body(const Eigen::Isometry3d& motion);
 
 /// Returns the pose to which a twist about the body leads from T.

@@ -16,7 +16,7 @@ std::vector<ChromaPair> confirmed_pairs(const ObjectPoses& poses) {
   return confirmed;
 }
 
-/// A step of an exponentially forgetting mean.
+/// Updates an exponentially forgetting mean.
 void forget_towards(const ChromaPair& fresh, ChromaPair& mean) {
   constexpr double kStep = 0.2;
   mean.model += kStep * (fresh.model - mean.model);

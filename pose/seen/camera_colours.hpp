@@ -13,8 +13,8 @@ namespace houghstream {
 /// little to its first one, with its colours averaged over the last few frames.
 class CameraColours {
  public:
-  /// Takes up the poses of a frame: those that are valid and sure. Where the light has jumped, all that was remembered
-  /// is forgotten first.
+  /// Updates the colours from the poses of a frame that are valid and sure. Where the lighting has jumped, all stored
+  /// colours are dropped first.
   void update(const ObjectPoses& poses);
 
   /// Returns one pair for each stored class, in their order.
@@ -31,7 +31,7 @@ class CameraColours {
 
   FrameId frame_;
   std::map<std::string, ChromaPair> remembered_;  // by class name
-  int jumps_ = 0;                                 // frames one after the other that contradict what is remembered
+  int jumps_ = 0;                                 // consecutive frames that contradict the stored colours
 };
 
 }  // namespace houghstream

@@ -25,7 +25,7 @@ double variance(const ColourProducts& products, Eigen::Index channel) {
   return products(channel, channel) - products(channel, kOne) * products(channel, kOne);
 }
 
-/// Mean square that is left over of a channel's seen values by least squares on the remembered ones.
+/// Returns the mean square of a channel's observed values that is left by least squares on the model's.
 double chroma_left_over(const ColourProducts& products, Eigen::Index template_value, Eigen::Index seen) {
   const double model_variance = variance(products, template_value);
   const double covariance = products(template_value, seen) - products(template_value, kOne) * products(seen, kOne);
@@ -36,7 +36,7 @@ double chroma_left_over(const ColourProducts& products, Eigen::Index template_va
 /// Returns the residual variance of the lightness after regression on the model's and on the surface's normal.
 double lightness_left_over(const ColourProducts& products) {
   constexpr double kRidge = 1e-4;   // terms that do not vary are left alone
-  constexpr int kTerms = kOne + 1;  // remembered value, normal (3), 1
+  constexpr int kTerms = kOne + 1;  // model value, normal (3), 1
   constexpr int kOthers = kTerms - 1;
   using Terms = Eigen::Matrix<double, kTerms, 1>;
   Eigen::Matrix<double, kTerms, kTerms> curvature = products.topLeftCorner<kTerms, kTerms>();

@@ -27,9 +27,9 @@ struct ChromaMeans {
 /// stated otherwise, the camera was not clipped.
 struct ColourComparison {
   int points = 0;  ///< compared
-  /// 1 less the share of the seen variance that is left over, with each channel's gain (within limits) and offset free,
-  /// as exposure and the light's colour decide them, and lightness also free to follow the surface's normals, as
-  /// shading does. Near 0, or below, for unrelated prints.
+  /// 1 less the fraction of the observed variance that is unexplained, with each channel's gain (within limits) and
+  /// offset free, as exposure and the light's colour decide them, and lightness also free to follow the surface's
+  /// normals, as shading does. It is near 0, or below, for unrelated textures.
   float agreement = 0.0F;
   float residual_stddev = 0.0F;  ///< standard deviation of the seen colours that is left over, 8-bit CIE L*a*b*
   /// Distance of the mean observed a* and b* from the model's, at any strength (within limits) that haze or a camera

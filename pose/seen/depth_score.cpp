@@ -8,7 +8,7 @@
 namespace houghstream {
 namespace {
 
-/// `width` is the tolerance at the object's depth.
+/// Scores a shifted view; `width` is the tolerance at the object's depth.
 DepthScore score_of(const ProjectedView& seen, float shift, float width) {
   DepthScore score;
   for (const ProjectedPoint& look : seen.points) {
@@ -23,7 +23,7 @@ DepthScore score_of(const ProjectedView& seen, float shift, float width) {
   return score;
 }
 
-/// Mean of the fullest window of `width` among the sorted values; 0 without values.
+/// Returns the mean of the fullest window of `width` among the sorted values; 0 without values.
 float densest_mean(const std::vector<float>& sorted, float width) {
   std::size_t best_first = 0;
   std::size_t best_count = 0;

@@ -10,7 +10,7 @@
 
 namespace houghstream {
 
-/// Metres within which measured and model depth agree, where settings say nothing else.
+/// Default tolerance in metres within which measured and model depth agree.
 constexpr double kDepthTolerance_m = 0.008;
 
 /// A model point projected into the frame, with the difference between measured and predicted depth at its pixel.
@@ -46,7 +46,7 @@ DepthScore score_projected_view(const ProjectedView& seen, const DepthTolerance&
 DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                       int points, const DepthTolerance& tolerance);
 
-/// A move of the pose along the line of sight, and how the depth speaks for the pose after it.
+/// Gives a shift of the pose along the line of sight, with the depth score after it.
 struct DepthShift {
   double shift_m = 0.0;
   DepthScore score;  ///< score_pose's result there, but for the small change of scale

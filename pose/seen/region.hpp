@@ -71,10 +71,11 @@ struct LabRegion {
   /// CV_8UC1, not 0 where a channel is at the camera's limit, or a neighbour's is: there is no colour to compare.
   cv::Mat clipped;
 };
-/// `tone` is that of the whole frame. `part_px` must lie inside the image and not be empty.
+/// Returns the colours of a part; `tone` is that of the whole frame. `part_px` must lie inside the image and not be
+/// empty.
 LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const AffineBrightness& tone);
 
-/// A frame in which objects are looked at. The frame must outlive it.
+/// Holds a frame in which objects are observed. The frame must outlive it.
 struct FrameContext {
   const RgbdFrame& frame;
   DepthNoise noise;       ///< noise of its depth

@@ -44,7 +44,7 @@ ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseO
 /// rotation), in which confirmed objects come before candidates.
 std::vector<int> assign_poses(const ClassGroup& group, const AssociationSettings& settings);
 
-/// Returns whether an object stands so near to a measured pose that there is no room for a second one.
+/// Returns whether an object is so near to a measured pose that there is no space for a second one.
 bool is_space_occupied(const PoseMeasurement& measured, const ClassGroup& group, const AssociationSettings& settings);
 
 }  // namespace houghstream::tracks

@@ -23,15 +23,15 @@ struct CameraPose {
 /// (channel::camera_name). Not thread-safe.
 class CameraExtrinsics {
  public:
-  /// Transforms farther apart say nothing of the time between them, unless they are equal.
+  /// Maximum gap between transforms that are interpolated, unless they are equal.
   static constexpr double kMaxGapS = 0.5;
   /// Cameras that move; further ones are refused: a sender of rubbish may make up channels without end.
   static constexpr std::size_t kMaxMoving = 256;
 
   void set_static(const std::string& camera, const Eigen::Isometry3d& T_world_camera);
 
-  /// A transform of a camera that moves. One that is older than the last one by more than a second begins anew. Throws
-  /// InputError for one camera too many.
+  /// Adds a transform of a camera that moves. One that is older than the last one by more than a second starts over.
+  /// Throws InputError for one camera too many.
   void add_transform(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera);
 
   /// Returns whether any camera has extrinsics.
@@ -58,7 +58,7 @@ class CameraExtrinsics {
 /// (parent may be another camera; without it the world), and static transforms of ROS as `ros2 topic echo /tf_static`
 /// prints them: entries of `transforms` with header.frame_id, child_frame_id and transform, chained to the root frame,
 /// which is the world. Metres. Throws InputError naming file and camera for what is missing, not rigid, goes round in
-/// a loop, has a name that is none of these, or stands twice.
+/// a loop, has an unknown name, or is a duplicate.
 std::map<std::string, Eigen::Isometry3d> read_camera_extrinsics(const std::filesystem::path& file);
 
 /// Parses the value of an option --camera-pose: CHANNEL=x,y,z,qw,qx,qy,qz, T_world_camera. Throws InputError.

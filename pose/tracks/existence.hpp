@@ -56,7 +56,7 @@ struct UnobservedContext {
 struct MissedDetection {
   double seconds = 0.0;         ///< since the camera's frame before
   bool by_depth = false;        ///< it is the first one of its frame
-  bool by_recognition = false;  ///< it is the first one of its frame that speaks of the class
+  bool by_recognition = false;  ///< it is the first result of its frame with this class
 };
 
 /// Updates a track that received no measurement in this frame: lowers the log odds of its existence and deletes it

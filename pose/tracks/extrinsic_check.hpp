@@ -23,14 +23,14 @@ struct ExtrinsicInconsistency {
 /// contradict each other. Knows nothing of tracks: one camera's poses are laid beside the other's. Not thread-safe.
 class ExtrinsicCheck {
  public:
-  /// Offsets from here on are told: twice what good poses of a can or a mug from two sides differ by.
+  /// Minimum offset that is reported: twice the difference of good poses of a can or a mug from two sides.
   static constexpr double kReport_m = 0.012;
 
   /// Adds the poses of a frame, in the world. Objects with a model are compared by its centre, the others by their
   /// origin.
   void add(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera, const TrackModels& models);
 
-  /// Pairs of cameras whose median offset over the last samples is too large, by their names.
+  /// Returns pairs of cameras whose median offset over the last samples is too large, by their names.
   std::vector<ExtrinsicInconsistency> inconsistencies() const;
 
   /// All pairs that have enough samples, for a report.

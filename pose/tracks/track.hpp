@@ -43,7 +43,8 @@ double radius_of(const TrackModels& models, const std::string& name);
 /// Returns TrackModel::symmetries of a class; none where it has no model.
 const Symmetries& symmetries_of(const TrackModels& models, const std::string& name);
 
-/// Models by class name; those without known symmetries have none. Throws InputError naming a mesh without triangles.
+/// Makes models by class name; those without known symmetries have none. Throws InputError naming a mesh without
+/// triangles.
 TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map<std::string, Symmetries>& symmetries);
 
 /// A frame of a camera with everything that the tracker gets of it.
@@ -77,7 +78,7 @@ double quality_logit(double quality);
 
 /// Holds the result of check_visibility().
 struct VisibilityCheck {
-  TrackState state = TrackState::kOutOfView;  ///< kUnrecognised: it agrees; kGone: it was seen through
+  TrackState state = TrackState::kOutOfView;  ///< kUnrecognised: depth agrees; kGone: free-space violation
   double free_space_violation = 0.0;          ///< fraction of what is not occluded, 0 to 1
   bool is_boundary_continued = false;         ///< the measured surface continues beyond the object's outline
 };
@@ -124,8 +125,8 @@ class PoseTrack {
   void update(const PoseObservation& pose, const Symmetries& symmetries, bool has_contrary_depth);
 
   const MotionFilter& filter() const { return hypotheses_[best_].filter; }
-  /// Metres from the nearest hypothesis to where the measured pose has the object's `centre` (object frame, metres),
-  /// and radians to the nearest one, of what looks the same.
+  /// Return the distance in metres from the nearest hypothesis to the measured position of the object's `centre`
+  /// (object frame, metres), and the angle in radians to the nearest one up to symmetries.
   double distance(const PoseMeasurement& measured, const Symmetries& symmetries, const Eigen::Vector3d& centre) const;
   double angle(const PoseMeasurement& measured, const Symmetries& symmetries) const;
 
@@ -167,7 +168,7 @@ struct Track {
   std::string reason = {};
   std::int64_t deleted_utime = 0;       ///< 0 while it is present
   bool is_observed = false;             ///< a result of the current frame has a pose of it
-  double free_space_violation_s = 0.0;  ///< time for which it was seen through since its last pose
+  double free_space_violation_s = 0.0;  ///< time of free-space violation since its last pose
 
   bool is_present() const { return deleted_utime == 0; }
 };

@@ -145,7 +145,7 @@ void Tracker::begin_track(const PoseObservation& pose) {
   tracks_.push_back(std::move(track));
 }
 
-/// Makes room for one object more by what has been gone longest; false where nothing is gone.
+/// Frees a place for one more object by removing the one that has been gone longest; returns false where none is gone.
 bool Tracker::make_room() {
   if (tracks_.size() < settings_.max_objects) return true;
   auto oldest = tracks_.end();

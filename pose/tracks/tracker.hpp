@@ -112,11 +112,11 @@ class WorldClock {
   LogThrottle lines_;
 };
 
-/// Finds out which classes were searched for a result, so that a class without a pose in it was missed. A result does
-/// not say so itself. One detector searches all classes. Where several work on a camera's frames (two results of one
-/// frame have had no class in common), a result counts for its own classes, for those that have been reported together
-/// with them, and for a class whose own detector has reported nothing for a second. Poses without a model belong to
-/// another host's stage and count for nothing. Not thread-safe.
+/// Determines which classes were searched for a result, so that a class without a pose in it was missed; the result
+/// does not state that itself. One detector searches all classes. Where several work on a camera's frames (two results
+/// of one frame have had no class in common), a result counts for its own classes, for those that have been reported
+/// together with them, and for a class whose own detector has reported nothing for a second. Poses without a model
+/// belong to another host's stage and are ignored. Not thread-safe.
 class SearchedClasses {
  public:
   /// Notes a result; called for each one before has_searched().
@@ -156,14 +156,14 @@ class Tracker {
   /// Throws InputError for settings out of their range.
   Tracker(TrackModels models, ObjectTrackerSettings settings);
 
-  /// Returns the world after a frame; nothing for a frame that is passed over, because it is older than its camera's
-  /// last one or its stamp is wrong. A camera's clock that is set leaves the objects what they are, and their times
-  /// move with it; where a source, or its log, begins again in the past, a new world begins (WorldClock). A class that
-  /// an earlier result of the frame has had is not used again. Throws InputError for a frame that is more than a second
-  /// older than another camera's, as long as that goes on.
+  /// Returns the world after a frame; nothing for a frame that is ignored, because it is older than its camera's last
+  /// one or its stamp is wrong. When a camera's clock is set, the objects stay, and their times move with it; where a
+  /// source, or its log, begins again in the past, a new world begins (WorldClock). A class that an earlier result of
+  /// the frame has had is not used again. Throws InputError for a frame that is more than a second older than another
+  /// camera's, while that continues.
   std::optional<WorldObjects> update(const FrameObservation& received);
 
-  /// Poses of the last frame of objects for which there was no room (ObjectTrackerSettings::max_objects).
+  /// Returns the number of poses of the last frame that were refused (ObjectTrackerSettings::max_objects).
   std::size_t refused() const { return refused_; }
 
   /// Forgets all objects: they were in another coordinate frame.
@@ -197,7 +197,7 @@ class Tracker {
   std::map<std::string, int> max_instances_;  // maximum number of instances in one frame, by class
   std::int64_t next_id_ = 1;
   int world_number_ = 1;
-  std::size_t refused_ = 0;  // poses of the last frame, for which there was no room
+  std::size_t refused_ = 0;  // poses of the last frame beyond max_objects
 };
 
 }  // namespace houghstream::tracks

@@ -14,7 +14,7 @@ namespace {
 
 // The numbers below are chosen by what they mean, not fitted; what the result is worth is learnt (PrintSettings).
 constexpr int kCells = 48;     // along the longer side of the object in the image
-constexpr int kMinCells = 60;  // compared; fewer tell nothing
+constexpr int kMinCells = 60;  // minimum of compared cells that is informative
 constexpr int kFine = 5;       // sides of the means that part the bands, cells
 constexpr int kCoarse = 13;
 // Number of compared cells that count as one observation, since neighbours are correlated. All cells share one image,
@@ -23,7 +23,7 @@ constexpr double kFineCells = 4.0;
 constexpr double kMiddleCells = 25.0;
 constexpr double kCoarseCells = 85.0;
 constexpr double kTemper = 0.3;
-constexpr double kNoise = 8.0;  // variance of a channel that neither print nor shading makes, 8-bit CIE L*a*b*
+constexpr double kNoise = 8.0;  // variance of a channel without texture and shading, 8-bit CIE L*a*b*
 constexpr double kMinGain = 0.3;
 constexpr double kMaxGain = 2.5;
 
@@ -206,7 +206,7 @@ std::optional<Print> model_print(const ObjectModel& model, const Face& face, con
   return print_of(grid, face);
 }
 
-/// The seen print as read at a few places about where it should be: colours are registered to depth no better.
+/// Returns the observed texture, read at a few offsets, since the registration of colour to depth is no better.
 std::vector<Print> seen_prints(const ObjectObservation& seen, const Face& face) {
   constexpr int kReach_px = 2;
   std::vector<Print> prints;
@@ -264,8 +264,8 @@ bool may_handle_be_hidden(const ObjectObservation& seen, const Eigen::Isometry3d
   return counts.free_space_violations <= kFew * counts.all && counts.depth_inliers <= kFew * counts.all;
 }
 
-/// The poses that only the print tells from this one: those whose depth agrees as well, nearly alike ones
-/// registered.
+/// Returns the poses that only the texture distinguishes from this one: those whose depth agrees as well, nearly
+/// equivalent ones registered.
 std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& seen,
                                                  const Eigen::Isometry3d& T_camera_object,
                                                  const DepthTolerance& tolerance,
@@ -293,7 +293,7 @@ std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& seen,
   return poses;
 }
 
-/// A pose that looks alike by its shape, and what the model shows at it.
+/// Holds a pose that is equivalent by shape, and the model's texture at it.
 struct Alternative {
   Eigen::Isometry3d T_camera_object;
   Print print;
@@ -343,8 +343,8 @@ std::optional<PrintComparison> compare_print(const ObjectObservation& seen, cons
   const double own_likelihood = best_log_likelihood(*own, seen_at);
   const std::vector<Alternative> shown = likely_alternatives(seen, face, T_camera_object, alternatives, seen_at);
   if (shown.empty()) return std::nullopt;
-  // The pose has been found by all else that speaks for it. Another one takes its place on strong evidence only, a
-  // Bayes factor of 20 (Kass and Raftery 1995, "Bayes Factors").
+  // All other evidence supports the present pose. Another one replaces it on strong evidence only, a Bayes factor of 20
+  // (Kass and Raftery 1995, "Bayes Factors").
   constexpr double kClearly = 3.0;  // its logarithm
   PrintComparison comparison;
   double best = own_likelihood + kClearly;

@@ -18,12 +18,12 @@ struct PrintComparison {
   std::optional<Eigen::Isometry3d> better;
 };
 
-/// Compares the print that the model shows at the pose, and at each alternative whose depth agrees as well, with what
-/// is seen over the visible face. Both are parted into bands of detail, and of each band and colour channel the seen
-/// variance that is left over by least squares on the model's, with a gain within limits, gives a likelihood: exposure
-/// drops out with the mean, shading with the coarse lightness, a cast with the mean chroma but for so much of it as no
-/// camera makes. Nothing where the pose has no alternatives. `registration` brings near ones to where depth has them.
-/// After the background-free correlation of Lewis (1995, "Fast Normalized Cross-Correlation") and the Gaussian
+/// Compares the texture of the model at the pose, and at each alternative whose depth agrees as well, with the observed
+/// one over the visible face. Both are divided into bands of detail, and of each band and colour channel the observed
+/// variance that is left by least squares on the model's, with a gain within limits, gives a likelihood: exposure
+/// cancels with the mean, shading with the coarse lightness, a cast with the mean chroma except for the part that no
+/// camera causes. Returns nothing where the pose has no alternatives. `registration` registers near ones to the depth.
+/// It follows the background-free correlation of Lewis (1995, "Fast Normalized Cross-Correlation") and the Gaussian
 /// likelihood whose maximum over gain and offset that is.
 std::optional<PrintComparison> compare_print(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
                                              const DepthTolerance& tolerance, const RegistrationSettings& registration);

@@ -19,7 +19,7 @@ struct QualityExample {
   std::optional<double> print_margin = std::nullopt;  ///< PrintComparison::margin, where the pose has alternatives
   float score = 0.0F;                                 ///< score of the detection
   bool is_present = false;  ///< the object that was detected, whether the pose is right or not
-  int half = 0;             ///< 0 or 1: of which half of all that was practised
+  int half = 0;             ///< 0 or 1: half of the calibration examples
 };
 
 /// Fits the probability of the texture's margins by logistic regression over the examples that are correct up to their

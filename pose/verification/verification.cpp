@@ -28,7 +28,7 @@ struct BoundaryView {
   }
 };
 
-/// 0 where colours are not known; nothing where they are known of other places only.
+/// Returns 0 where colours are not known; nothing where they are known of other positions only.
 std::optional<float> colours_apart_sq(const BoundaryView& view, const cv::Point& inside, const cv::Point& beyond) {
   if (view.colours == nullptr || view.colours->lab.empty()) return 0.0F;
   const cv::Mat& lab = view.colours->lab;

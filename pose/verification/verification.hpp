@@ -28,7 +28,7 @@ struct Verification {
   int rendered = 0;                     ///< pixels of the model inside the image
   int depth_inliers = 0;                ///< measured within the tolerance
   int free_space_violations = 0;        ///< measured behind the model: the camera saw through it
-  int occluded = 0;                     ///< measured in front of the model; says nothing about the pose
+  int occluded = 0;                     ///< measured in front of the model; neutral for the pose
   int boundary_samples = 0;             ///< places where the model's outline was looked across
   float boundary_continuations = 0.0F;  ///< samples where the scene continues across it, see BoundarySample
   float visible_fraction() const;       ///< agreeing of rendered, 0 if nothing is rendered

@@ -87,7 +87,7 @@ class ResidualEvaluator {
     const double behind = p.z() - z;
     if (behind > gate) return;  // hidden
     ++equations.visible;
-    if (behind < -gate) return;  // seen through
+    if (behind < -gate) return;  // a free-space violation
     const Eigen::Vector3f n = R_ * point.normal;
     const float facing = -n.dot(p) / p.norm();
     if (facing < 0.05F) return;
@@ -150,7 +150,7 @@ void add_plane(const PlanePrior& plane, const Eigen::Isometry3d& T, NormalEquati
   equations.add(row, plane.normal.dot(T.translation()) + plane.offset, 1.0 / (plane.sigma_m * plane.sigma_m));
 }
 
-/// bearing_error() of a corner whose point lies at p, which is before the camera.
+/// Computes bearing_error() of a corner whose point lies at p, which is before the camera.
 double bearing_error_at(const Eigen::Vector3d& p, const LandmarkObservation& corner) {
   return (p.head<2>() / p.z() - corner.in_camera.head<2>() / corner.in_camera.z()).norm();
 }

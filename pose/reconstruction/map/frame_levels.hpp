@@ -13,8 +13,8 @@ struct FrameLevel {
   Camera camera;
   cv::Mat intensity;    ///< CV_32FC1, brightness less the mean around, in deviations around: the same at any exposure
   cv::Mat depth;        ///< CV_32FC1, metres, NaN = none
-  cv::Mat static_mask;  ///< CV_8UC1, 255 where the light tells nothing, as it stayed while the object turned; empty =
-                        ///< nowhere
+  cv::Mat static_mask;  ///< CV_8UC1, 255 where the intensity is not informative, as it stayed while the object rotated;
+                        ///< empty = nowhere
 };
 
 /// Quality of an image, by which frames that would blur a model are left out.

@@ -43,7 +43,7 @@ FlowFrame make_flow_frame(const RgbdFrame& frame);
 /// Corners that can be followed from a frame (Shi & Tomasi 1994), pixels. `mask`: as for detect_landmarks.
 std::vector<cv::Point2f> detect_flow_corners(const FlowFrame& frame, const cv::Mat& mask);
 
-/// Corners of one frame followed into the next, in which they are nearly where they were (Lucas & Kanade 1981), there
+/// Tracks corners of one frame into the next, in which they are nearly in the same place (Lucas & Kanade 1981), forth
 /// and back.
 std::optional<LandmarkMatch> track_corners(const FlowFrame& a, const std::vector<cv::Point2f>& corners,
                                            const FlowFrame& b);

@@ -9,7 +9,7 @@
 namespace houghstream::reconstruction {
 namespace {
 
-/// Part of the sphere with a name that a person would use.
+/// Returns the name of a part of the sphere, for a person.
 const char* part_of(const Eigen::Vector3d& direction, const Eigen::Vector3d& front) {
   constexpr double kPi = 3.14159265358979323846;
   if (direction.z() > 0.75) return "above";

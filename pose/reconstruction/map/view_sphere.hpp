@@ -15,8 +15,8 @@ using ViewCoverage = std::array<bool, kSphereDirections>;
 /// 2010).
 const std::array<Eigen::Vector3d, kSphereDirections>& view_directions();
 
-/// Marks those sides of the object that a camera in this direction (object frame, from the object's middle) looks at
-/// within 50 degrees.
+/// Marks the sides of the object that a camera in this direction (object frame, from the object's middle) sees within
+/// 50 degrees.
 void mark_covered(const Eigen::Vector3d& towards_camera, ViewCoverage& seen);
 
 int count_covered(const ViewCoverage& seen);

@@ -13,8 +13,8 @@
 namespace houghstream::reconstruction {
 namespace {
 
-/// Median distance of measured points on the mask from the model along the line of sight, times how steeply it meets
-/// the surface.
+/// Adds the median distance of measured points on the mask from the model along the line of sight, times the cosine to
+/// its normal.
 void add_distances(const Mesh& mesh, const RgbdFrame& frame, const MaskedKeyframe& view,
                    std::vector<float>& distances) {
   const cv::Rect box = cv::boundingRect(view.mask);

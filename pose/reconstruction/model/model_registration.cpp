@@ -110,8 +110,8 @@ Eigen::Isometry3d refine(const Target& a, const Points& b, Eigen::Isometry3d T, 
   return T;
 }
 
-/// Cost of a pose: distance and colour difference where both models were observed, and the lack of overlap. `median_m`
-/// is the median distance.
+/// Returns the cost of a pose: distance and colour difference where both models were observed, and the lack of overlap.
+/// `median_m` is the median distance.
 double cost_of(const Target& a, const Points& b, const Eigen::Isometry3d& T, double& median_m) {
   constexpr double kFar_m = 0.01;
   constexpr double kColour = 60.0;
@@ -120,7 +120,7 @@ double cost_of(const Target& a, const Points& b, const Eigen::Isometry3d& T, dou
   for (std::size_t k = 0; k < b.points.size(); ++k) {
     const Target::Hit hit = a.nearest((T * b.points[k].cast<double>()).cast<float>());
     if (!hit.seen && hit.distance < kFar_m) {
-      sum += 0.5;  // nobody knows: better than a contradiction, worse than agreement
+      sum += 0.5;  // unknown: better than a contradiction, worse than agreement
       continue;
     }
     distances.push_back(hit.distance);

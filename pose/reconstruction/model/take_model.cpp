@@ -32,7 +32,7 @@ cv::Rect region_of(const Eigen::AlignedBox3d& box, const Camera& camera, const E
   return region & image;
 }
 
-/// All surface that the keyframes show about a box; nothing counts as outside but what is seen through.
+/// Returns the views of all surface that the keyframes show about a box; only free space counts as outside.
 std::vector<DepthView> views_about(const Take& take, const Eigen::AlignedBox3d& box, int threads) {
   std::vector<DepthView> views(take.keyframes.size());
   parallel_for(threads, static_cast<int>(views.size()), [&](int i) {
@@ -119,7 +119,7 @@ std::vector<int> label_parts(const TsdfVolume& grid, double lowest, int& parts) 
   return labels;
 }
 
-/// The part on which most of the chosen object's pixels lie; 0 = none.
+/// Returns the part on which most of the selected object's pixels lie; 0 = none.
 int chosen_part(const Take& take, const TsdfVolume& grid, const std::vector<int>& labels, int parts) {
   std::vector<int> votes(static_cast<std::size_t>(parts) + 1, 0);
   const Keyframe& first = take.keyframes.front();
@@ -165,7 +165,7 @@ Filled fill(const Take& take, const Eigen::AlignedBox3d& box, const Reconstructi
   return filled;
 }
 
-/// The object's voxels in a box that holds all of it.
+/// Returns the object's voxels in a box that holds all of it.
 Filled find_object(const Take& take, const ReconstructionSettings& settings) {
   constexpr double kWidest_m = 0.45;
   double half =
@@ -265,7 +265,7 @@ ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSetti
 
 namespace {
 
-/// The part of a view in which the model is, as fusion takes it.
+/// Returns the part of a view in which the model is, in the form for fusion.
 fusion::DepthView depth_view(const TrainingView& view, const Mesh& known, bool whole_image) {
   constexpr int kMargin_px = 14;
   constexpr int kUnsure_px = 2;

@@ -22,7 +22,7 @@ struct PlaneAxes {
   std::optional<cv::Point> cell_of(const Eigen::Vector3d& point) const;
   /// Returns the point of the plane at a position in cells.
   Eigen::Vector3d point_at(double u, double v) const;
-  /// Cells of a side.
+  /// Returns the number of cells of a side.
   static int cells();
 };
 

@@ -10,7 +10,7 @@ namespace {
 /// Minimum fraction of inliers: a plane with texture on it may agree with a wrong pose by half.
 constexpr double kSureInliers = 0.85;
 
-/// Differences from a view, and keyframes, the nearest first.
+/// Returns differences from a view, and keyframes, the nearest first.
 std::vector<std::pair<double, int>> keyframes_by_distance(const KeyframeMap& map,
                                                           const Eigen::Isometry3d& T_camera_world) {
   const std::vector<Keyframe>& keyframes = map.keyframes();
@@ -21,7 +21,7 @@ std::vector<std::pair<double, int>> keyframes_by_distance(const KeyframeMap& map
   return by_distance;
 }
 
-/// The frame on the points of one keyframe, where that is sure.
+/// Registers the frame to the points of one keyframe; returns nothing where that is not reliable.
 std::optional<Alignment> register_to_keyframe(const KeyframeMap& map, int keyframe, const FrameLevels& levels,
                                               const Eigen::Isometry3d& T_start) {
   AlignmentLimits limits;

@@ -9,7 +9,7 @@
 
 namespace houghstream::reconstruction {
 
-/// Corners of a frame that is looked for again and again, and what those of each keyframe say of it: found once.
+/// Caches the corners of a lost frame, and their match with each keyframe, since the frame is searched repeatedly.
 struct LandmarkCache {
   struct Place {
     std::size_t corners = 0;  ///< matching corners; 0 = no information

@@ -26,7 +26,7 @@ struct PlacedFrame {
   Eigen::Isometry3d T_camera_keyframe = Eigen::Isometry3d::Identity();
 };
 
-/// Frames in which nobody knew where the camera was.
+/// Gives a range of frames in which the camera's pose is unknown.
 struct LostSpan {
   int from = 0, to = 0;  ///< numbers of frames, both lost
   std::string why;

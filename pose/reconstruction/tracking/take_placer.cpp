@@ -163,8 +163,8 @@ void TakePlacer::accept(int number, const RgbdFrame& frame, FrameLevels levels, 
   round_[at] = round_[at] || fit;
 }
 
-/// The camera stands still and something happens to the object: from here on its own surface alone is followed, and the
-/// table, which does not move, holds it upright.
+/// Follows the object's own surface alone from here on, since the camera is static and the object moves; the table,
+/// which is static too, keeps it upright.
 void TakePlacer::follow_object_only() {
   constexpr double kAround = 0.6;
   const RgbdFrame& first = motion_classifier_.first().frame;
@@ -194,8 +194,9 @@ void TakePlacer::follow_object_only() {
   add_keyframe(std::move(made), {});
 }
 
-/// The frames of before were tied to keyframes of the surroundings, and the map now holds the first frame alone: all of
-/// them show the object as that one does. In the last of them it moved already, and nobody knows how far.
+/// Ties the frames before to the first keyframe: they were tied to keyframes of the surroundings, and the map now holds
+/// the first frame alone. All of them show the object as that one does. It already moved in the last of them by an
+/// unknown distance.
 void TakePlacer::tie_to_first_keyframe() {
   int moved = motion_classifier_.object_moves() - 1;  // the last is the present frame, which is not placed yet
   for (auto frame = take_.frames.rbegin(); frame != take_.frames.rend(); ++frame) {
@@ -242,7 +243,7 @@ void TakePlacer::note_lost(const FrameLevels& levels) {
 }
 
 void TakePlacer::describe() {
-  constexpr int kTold = 45;  // frames for which the choice is said, so that a person can read it
+  constexpr int kTold = 45;  // frames for which the selection is reported, so that a person can read it
   state_.keyframes = static_cast<int>(map_.keyframes().size());
   state_.T_camera_object.reset();
   state_.box_px = {};

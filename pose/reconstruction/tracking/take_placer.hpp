@@ -38,9 +38,10 @@ struct TakePlacerStatus {
 };
 
 /// Follows an object on a table through the frames of a take, in which the camera is carried about it, or the object
-/// turns before a camera that stands still. Each frame is laid on a map of the nearest keyframes (align_frame); table
-/// points are held to one plane; when the way closes, the gap is spread over it. What is lost is looked for by
-/// neighbouring keyframes and by ORB landmarks. One thread; same frames, same result.
+/// rotates before a static camera. Each frame is registered to a map of the nearest keyframes (align_frame); table
+/// points are constrained to one plane; when the loop closes, its error is distributed over it. Lost frames are
+/// relocalised by neighbouring keyframes and by ORB landmarks. It uses one thread; the same frames give the same
+/// result.
 class TakePlacer {
  public:
   explicit TakePlacer(const TakePlacerSettings& settings) : settings_(settings), map_(settings.map) {}
