@@ -12,10 +12,10 @@ class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  /// The next frame, or nothing at the end. Throws InputError where a frame cannot be read.
+  /// Returns the next frame, or nothing at the end. Throws InputError where a frame cannot be read.
   virtual std::optional<RgbdFrame> next() = 0;
 
-  /// Frames per second at which the source was recorded, or runs.
+  /// Returns the frames per second at which the source was recorded, or runs.
   virtual double rate_hz() const = 0;
 
   /// Returns whether frames arrive in real time, as a camera's do; those of a recording come as soon as they are

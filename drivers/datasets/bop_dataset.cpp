@@ -39,7 +39,7 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& R, const std::string& wh
   return R * stretch_sq.operatorInverseSqrt();
 }
 
-/// Metres from BOP's row-wise rotation and millimetres.
+/// Returns a pose in metres from BOP's row-wise rotation and millimetres.
 Eigen::Isometry3d parse_pose(const json& entry, const std::string& where) {
   const std::vector<double> r = json_numbers(entry, "cam_R_m2c", 9, where);
   const std::vector<double> t_mm = json_numbers(entry, "cam_t_m2c", 3, where);
@@ -113,7 +113,7 @@ const json& frame_list(const json& frames, int image_id, const std::string& wher
   return frames.at(key);
 }
 
-/// The objects of an image that scene_camera.json lacks would be left out without a word.
+/// Throws InputError for images that scene_camera.json lacks, whose objects would be ignored silently.
 void require_known_images(const json& frames, const std::vector<BopImage>& images, const std::string& where) {
   std::set<std::string> known;
   for (const BopImage& image : images) known.insert(std::to_string(image.image_id));

@@ -72,7 +72,7 @@ struct BopModels {
 /// Throws InputError when files are missing or their numbers absurd.
 BopModels read_bop_models(const std::filesystem::path& models_folder);
 
-/// The meshes of a models folder by class name, metres: a BOP one, or, without models_info.json, all NAME.ply and
+/// Loads the meshes of a models folder by class name, metres: a BOP one, or, without models_info.json, all NAME.ply and
 /// NAME.obj in it. `unit_m` is the length of the files' unit in metres (BOP: millimetres). Throws InputError where
 /// there are none or two share a name. They are read on `threads` threads.
 std::map<std::string, Mesh> load_class_models(const std::filesystem::path& models_folder, double unit_m = 1e-3,
@@ -88,7 +88,8 @@ std::map<int, std::string> read_bop_names(const std::filesystem::path& names_fil
 /// Returns the folder models/ in the scene's folder or up to three levels above it.
 std::optional<std::filesystem::path> find_bop_models(const std::filesystem::path& folder);
 
-/// Names of a scene's objects by id: its own names.json, else those of find_bop_models(); empty without either.
+/// Returns the names of a scene's objects by id: its own names.json, else those of find_bop_models(); empty without
+/// either.
 std::map<int, std::string> find_bop_names(const std::filesystem::path& scene_folder);
 
 /// Objects that are less visible (visib_fract) are not taught from: what hides them would be part of their image.

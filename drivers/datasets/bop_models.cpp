@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The diameters of models_info.json are in millimetres, and in metres here.
+/// Returns the diameter in metres; models_info.json has millimetres.
 double parse_diameter(const nlohmann::json& entry, const std::string& where) {
   const double diameter_mm = json_number(entry, "diameter", where);
   constexpr double kMax_mm = 1e5;

@@ -65,7 +65,7 @@ struct ImageViews {
   int empty = 0;   ///< objects without mask or depth
 };
 
-/// An image as one view for each of its objects that shows enough of itself; the image is read once.
+/// Reads an image as one view for each of its objects that is visible enough; the image is read once.
 ImageViews read_views(const BopScene& scene, std::size_t index, const std::map<int, std::string>& names) {
   const std::vector<GroundTruthObject>& objects = scene.images()[index].objects;
   ImageViews out;

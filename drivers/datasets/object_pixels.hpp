@@ -14,7 +14,7 @@ struct ColouredPoint {
   cv::Vec3b colour;                                    ///< BGR
 };
 
-/// Pixels of `mask` (CV_8UC1) that have depth (CV_32FC1, NaN = none).
+/// Counts pixels of `mask` (CV_8UC1) that have depth (CV_32FC1, NaN = none).
 int count_depth_pixels(const cv::Mat& depth, const cv::Mat& mask);
 
 /// Returns the pixels as points, row by row.

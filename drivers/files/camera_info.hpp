@@ -9,7 +9,7 @@ namespace houghstream {
 
 /// Reads the intrinsics of a camera from a file of ROS: a calibration as camera_calibration writes it (image_width,
 /// image_height, camera_matrix with nine numbers, row by row), or a camera_info message as `ros2 topic echo --once`
-/// prints it (width, height, k). Distortion is not corrected: where the file states some, a warning says so. Throws
+/// prints it (width, height, k). Distortion is not corrected: where the file states some, a warning is logged. Throws
 /// InputError.
 Camera read_camera_info(const std::filesystem::path& file);
 

@@ -23,8 +23,8 @@ bool has_frame_pairs(const std::filesystem::path& folder);
 /// image lacks its partner.
 std::vector<FrameFiles> list_frame_pairs(const std::filesystem::path& folder);
 
-/// `folder` itself and those anywhere below it that hold image pairs, in natural order, for instance the background
-/// videos of the UW datasets (background/background_K/). Throws InputError when there is none.
+/// Returns `folder` itself and those anywhere below it that hold image pairs, in natural order, for instance the
+/// background videos of the UW datasets (background/background_K/). Throws InputError when there is none.
 std::vector<std::filesystem::path> list_frame_folders(const std::filesystem::path& folder);
 
 /// Throws InputError when the images are unreadable or their sizes disagree with each other or with the camera.

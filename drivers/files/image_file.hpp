@@ -13,10 +13,10 @@ cv::Mat read_colour_image(const std::filesystem::path& file);
 /// type.
 cv::Mat read_depth_image(const std::filesystem::path& file);
 
-/// Mask, CV_8UC1, 0 or 255 (any stored value above 0 is 255). Throws InputError as above.
+/// Reads a mask, CV_8UC1, 0 or 255 (any stored value above 0 is 255). Throws InputError as above.
 cv::Mat read_mask_image(const std::filesystem::path& file);
 
-/// PNG, compressed for speed. Throws InputError when the file cannot be written.
+/// Writes PNG, compressed for speed. Throws InputError when the file cannot be written.
 void write_png(const cv::Mat& image, const std::filesystem::path& file);
 
 /// Throws InputError unless write_image() knows a format that the file's name ends with.

@@ -12,7 +12,7 @@ struct CameraDescription {
   std::string uri;  ///< OpenNI2's name of it; for USB cameras it holds bus and port
   std::string vendor;
   std::string name;
-  std::string serial;             ///< empty where the driver does not tell
+  std::string serial;             ///< empty where the driver does not state it
   std::vector<CameraMode> modes;  ///< modes of both depth and colour
 };
 

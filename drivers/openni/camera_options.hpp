@@ -37,8 +37,8 @@ struct CameraOptions {
   CameraMode mode;
   bool auto_exposure = true;
   bool auto_white_balance = true;
-  /// Depth is registered to colour by the camera; one that cannot is refused, unless this says that its depth comes
-  /// registered anyhow.
+  /// Depth must be registered to colour by the camera; a camera that cannot is refused, unless this option asserts that
+  /// its depth is registered anyhow.
   bool assume_registered = false;
   std::optional<Camera> camera;  ///< intrinsics; default: from the colour sensor's field of view
   std::string record;            ///< record to this .oni file, or where it is there, to FILE_2.oni and so on

@@ -21,7 +21,8 @@ class DeviceClock {
   /// followed likewise.
   std::int64_t utime(std::uint64_t device_us, std::int64_t host_us);
 
-  /// Forgets the offset: another device, or the same one after a restart. utimes go on from the last one.
+  /// Forgets the offset, since another device, or the same one after a restart, has another. utimes continue from the
+  /// last one.
   void restart();
 
   static constexpr std::int64_t kWindowUs = 2'000'000;  ///< 100 ppm of drift make 0.2 ms in it

@@ -70,7 +70,7 @@ class OniEnding {
     begin_record(OniRecordType::kNodeRemoved, node, 0, stream.added_at);
     const std::uint64_t table = at_;
     begin_record(OniRecordType::kSeekTable, node, kOniSeekEntry * (stream.images.size() + 1), 0);
-    append_entry({});  // stands for no image
+    append_entry({});  // the first entry belongs to no image
     for (const ImagePlace& image : stream.images) append_entry(image);
     oni_.write(stream.fields_end - kOniImages, static_cast<std::uint32_t>(stream.images.size()));
     const std::uint64_t last = stream.images.empty() ? 0 : stream.images.back().time;

@@ -18,7 +18,7 @@ std::vector<std::uint64_t> times_in(const OniRecordHeader& record, std::uint64_t
     case OniRecordType::kSeekTable: break;
     default: return {};
   }
-  std::vector<std::uint64_t> places;  // the first entry stands for no image
+  std::vector<std::uint64_t> places;  // the first entry belongs to no image
   for (std::uint64_t entry = kOniSeekEntry; entry + kOniSeekEntry <= record.payload; entry += kOniSeekEntry) {
     places.push_back(payload + entry);
   }

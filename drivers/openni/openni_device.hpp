@@ -32,8 +32,8 @@ std::shared_ptr<const void> keep_openni_running();
 class OpenniDevice {
  public:
   /// Opens a camera: registered, synchronised where it can, not mirrored. Throws InputError where it lacks the mode
-  /// (listing those it has) or the registration. What it waits for here and in wait() it gives up as soon as
-  /// `stop_requested` says so.
+  /// (listing those it has) or the registration. Waiting here and in wait() ends as soon as `stop_requested` returns
+  /// true.
   static std::unique_ptr<OpenniDevice> open_camera(const std::string& uri, const CameraOptions& options,
                                                    const StopRequested& stop_requested = {});
 
@@ -52,11 +52,11 @@ class OpenniDevice {
 
   const CameraMode& mode() const;
 
-  /// The camera that the options name, else the nominal one. Throws InputError where its size is not the mode's.
+  /// Returns the camera of the options, else the nominal one. Throws InputError where its size is not the mode's.
   Camera camera(const CameraOptions& options) const;
 
-  /// Intrinsics from the colour sensor's field of view: the principal point in the middle. Throws InputError where
-  /// the device does not tell.
+  /// Returns intrinsics from the colour sensor's field of view, with the principal point in the middle. Throws
+  /// InputError where the device does not state it.
   Camera nominal_camera() const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace houghstream::openni {
 
-/// An image of a stream, small enough to be remembered.
+/// Holds an image of a stream in a size small enough to store.
 struct ImageThumbnail {
   std::int64_t time_us = 0;
   cv::Mat some_pixels;  ///< every eighth of each row and column

@@ -47,13 +47,14 @@ class TimestampPairing {
   /// dropped.
   std::optional<ImagePair> put(SensorImage image);
 
-  /// Depth images given up so far because no colour image was taken near them.
+  /// Returns the number of depth images dropped so far because no colour image was taken near them.
   std::int64_t unpaired() const { return unpaired_; }
 
-  /// Gives up all that waits.
+  /// Drops all waiting images.
   void clear();
 
-  /// Images of a sensor that wait for the other; more are given up, the oldest first. Half a second at 30 Hz.
+  /// Maximum number of images of a sensor that wait for the other; more are dropped, the oldest first. It is half a
+  /// second at 30 Hz.
   static constexpr std::size_t kMaxUnpaired = 16;
 
  private:

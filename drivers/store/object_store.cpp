@@ -129,7 +129,7 @@ bool is_list_of_store(const fs::path& file) {
   return read_file(file, "the list of an object store").find(fmt::format("\"{}\"", kVersionKey)) != std::string::npos;
 }
 
-/// The models of the store must be those of its list, and nothing that is known of them a name that nobody reads.
+/// Checks that the models of the store are those of its list, and that no entry has a name that is never read.
 void check_models(const ObjectStore& store, const BopModels& models) {
   const fs::path info_file = store.models_folder() / "models_info.json";
   const std::string info = info_file.string();

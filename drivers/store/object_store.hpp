@@ -22,7 +22,7 @@ constexpr int kStoreVersion = 1;
 /// A vote centre is nearer to the origin than this, metres: farther away coordinates lose what a mesh shows.
 constexpr float kMaxCentre_m = 10.0F;
 
-/// A taught object, as store.json says it.
+/// Describes a taught object, as in store.json.
 struct StoredObject {
   int id = 0;             ///< from 1, the number of its model and of its class in the forest
   std::string name;       ///< no two are the same
@@ -58,11 +58,11 @@ struct ObjectStore {
 /// contradict one another.
 ObjectStore read_store(const std::filesystem::path& folder);
 
-/// The object of this name. Throws InputError that lists the store's where there is none.
+/// Returns the object of this name. Throws InputError that lists the store's where there is none.
 const StoredObject& find_object(const ObjectStore& store, const std::string& name);
 
-/// Meshes by name, metres, read on `threads` threads; without their colours where the store says that these are
-/// unknown. Throws InputError where one cannot be read or has another size than models_info.json says.
+/// Loads the meshes by name, metres, read on `threads` threads; without their colours where the store states that these
+/// are unknown. Throws InputError where one cannot be read or has another size than in models_info.json.
 std::map<std::string, Mesh> load_store_meshes(const ObjectStore& store, int threads = 1);
 
 /// Throws InputError naming the mesh's file where it has other bounds than its models_info.json states, metres, by more
@@ -87,7 +87,7 @@ void require_new_name(const std::string& name, const std::string& where);
 std::vector<std::string> find_stores(const std::filesystem::path& folder);
 
 /// Returns whether a path, relative to a store's folder, is one of a store's own entries, whole or being written. All
-/// else in the folder is foreign and is kept (pipeline/base/folder_exchange.hpp).
+/// other entries of the folder are foreign and are kept (pipeline/base/folder_exchange.hpp).
 bool is_store_entry(const std::filesystem::path& relative);
 
 /// Returns whether the folder may be replaced: it is empty, or holds a store or the remains of one. A foreign

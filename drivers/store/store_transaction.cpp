@@ -56,7 +56,8 @@ class StoreLock {
   int file_;
 };
 
-/// An open folder that nobody else has locked, or -1. The lock ends with its process, however that ends.
+/// Opens a folder that nobody else has locked and locks it; returns -1 where that fails. The lock ends with its
+/// process, however that ends.
 int try_lock(const fs::path& folder) {
   const int file = open_folder(folder);
   if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0) return file;

@@ -10,8 +10,8 @@ namespace houghstream::store {
 /// lies in STORE and is no part of a store (is_store_entry()) is somebody's, and is there afterwards as it was before.
 class StoreTransaction {
  public:
-  /// Throws InputError where STORE is a folder of something else or a link to nothing, another teaching works on it,
-  /// the folder beside it cannot be made, or somebody's folder in it could not be carried over.
+  /// Begins the transaction. Throws InputError where STORE is a folder of other contents or a link to nothing, another
+  /// teaching works on it, the folder beside it cannot be made, or a foreign folder in it could not be carried over.
   explicit StoreTransaction(const std::filesystem::path& store);
   ~StoreTransaction();  ///< removes what was not published
   StoreTransaction(const StoreTransaction&) = delete;
@@ -30,8 +30,8 @@ class StoreTransaction {
   bool is_published_ = false;
 };
 
-/// Throws InputError where no store could be put: a folder of something else, a link to nothing, a place that takes no
-/// files, one with somebody's folder that could not be carried over. Asked before the work whose result is to go there;
+/// Throws InputError where no store could be put: a folder of other contents, a link to nothing, a folder that takes no
+/// files, one with a foreign folder that could not be carried over. Called before the work whose result is to go there;
 /// makes nothing, whoever works on the store.
 void require_place_for_store(const std::filesystem::path& store);
 

@@ -49,7 +49,7 @@ bool holds(const std::vector<KnownObject>& objects, const std::string& name) {
   return std::any_of(objects.begin(), objects.end(), [&](const KnownObject& known) { return known.name == name; });
 }
 
-/// Names of those that `others` lack, with what happened to them.
+/// Returns the names of those that `others` lack, with their change.
 std::string changed(const char* what, const std::vector<KnownObject>& objects, const std::vector<KnownObject>& others) {
   std::vector<std::string> names;
   for (const KnownObject& object : objects) {
@@ -131,7 +131,7 @@ void StoreWatcherBase::run(std::chrono::milliseconds period) {
     try {
       poll();
     } catch (const std::bad_alloc&) {
-      pending_.clear();  // it is looked at again
+      pending_.clear();  // it is polled again
     }
     lock.lock();
   }

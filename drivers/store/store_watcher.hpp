@@ -24,9 +24,9 @@ class StoreWatcherBase {
   using Load = std::function<std::shared_ptr<const void>(const ObjectStore&)>;
 
   /// Loads the store at once. `load` throws where its parts are bad; it may be called again later, from another thread.
-  /// Where there is no folder of this name yet, but one that it could be made in, nothing is known so far, and the log
-  /// says so, and 50 periods later once more, with the stores that lie beside it. Throws InputError as read_store() and
-  /// `load` do.
+  /// Where there is no folder of this name yet, but one that it could be made in, no object is known so far; this is
+  /// logged, and 50 periods later once more, with the stores beside it. Throws InputError as read_store() and `load`
+  /// do.
   StoreWatcherBase(std::filesystem::path folder, Load load);
   ~StoreWatcherBase();  ///< waits for a load that is under way
   StoreWatcherBase(const StoreWatcherBase&) = delete;
@@ -61,7 +61,7 @@ class StoreWatcherBase {
   int polls_until_retry_ = 0;                         // after the refusal
   int polls_without_folder_ = 0;                      // since the start, while nothing is known
   std::string pending_;                               // seen last: one that may not last
-  std::vector<std::shared_ptr<const void>> retired_;  // given up here, where their end keeps no frame waiting
+  std::vector<std::shared_ptr<const void>> retired_;  // released here, where their end keeps no frame waiting
   mutable std::mutex mutex_;
   std::condition_variable ended_;
   bool ending_ = false;

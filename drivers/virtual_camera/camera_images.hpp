@@ -31,7 +31,7 @@ inline const cv::Vec3b kPatternDiscColour{250, 240, 20};  ///< RGB; the wall is 
 
 CameraImages make_test_pattern(const Camera& camera);
 
-/// All images of a BOP scene folder, forwards and then backwards, so that there is no jump. Throws InputError.
+/// Loads all images of a BOP scene folder, forwards and then backwards, so that there is no jump. Throws InputError.
 CameraImages load_scene_images(const std::filesystem::path& folder);
 
 }  // namespace houghstream::virtual_camera

@@ -31,8 +31,8 @@ std::chrono::steady_clock::duration milliseconds_of(double ms) {
   return duration_cast<std::chrono::steady_clock::duration>(duration<double, std::milli>(ms));
 }
 
-/// The shutter's time for whoever measures what comes out at the other end: when it was due, also where a busy machine
-/// lets this thread run later.
+/// Writes the time at which the shutter was due, for measurements of latency, also where a busy machine lets this
+/// thread run later.
 void note_shutter(const CameraScript& script, int number, std::uint64_t device_us, SteadyTime shutter) {
   if (script.shutter_file.empty()) return;
   std::ofstream(script.shutter_file, std::ios::app) << number << ' ' << device_us << ' ' << utime_of(shutter) << '\n';

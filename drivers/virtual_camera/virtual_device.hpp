@@ -35,7 +35,7 @@ class VirtualDevice : public oni::driver::DeviceBase {
   OniStatus setProperty(int property, const void* data, int size) override;
   OniBool isImageRegistrationModeSupported(OniImageRegistrationMode mode) override;
 
-  /// False where the script says that this camera cannot.
+  /// Returns false where the script states that this camera cannot.
   bool synchronise();
   void unsynchronise() { synchronised_ = false; }
 

@@ -76,7 +76,7 @@ class VirtualDriver : public oni::driver::DriverBase {
 
   void shutdown() override { watch_.reset(); }
 
-  /// OpenNI2 asks this for the streams of one device.
+  /// Called by OpenNI2 for the streams of one device.
   void* enableFrameSync(oni::driver::StreamBase** streams, int count) override {
     if (count == 0) return nullptr;
     VirtualDevice& device = static_cast<VirtualStream*>(streams[0])->device();
@@ -86,7 +86,8 @@ class VirtualDriver : public oni::driver::DriverBase {
   void disableFrameSync(void* device) override { static_cast<VirtualDevice*>(device)->unsynchronise(); }
 
  private:
-  /// No exception may leave the driver. OpenNI2 does not say why a driver did not start, so the reason is printed too.
+  /// No exception may leave the driver. OpenNI2 does not report why a driver did not start, so the reason is printed
+  /// too.
   template <typename Work>
   OniStatus guarded(const Work& work) {
     try {

@@ -18,7 +18,7 @@ struct ExaminationSettings {
   std::filesystem::path programs;              ///< folder of our programs
 };
 
-/// Looks at everything the stream needs. Changes nothing.
+/// Examines all parts that the stream needs. Changes nothing.
 Findings examine(const Machine& machine, const ExaminationSettings& settings);
 
 /// Returns a line for each finding, and below it the command that mends it.

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Words of the first line of proc/cpuinfo that begins so.
+/// Returns the words of the first line of proc/cpuinfo that begins with the key.
 std::string cpu_line(const std::string& cpuinfo, const std::string& key) {
   std::istringstream lines(cpuinfo);
   for (std::string line; std::getline(lines, line);) {

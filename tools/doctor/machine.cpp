@@ -44,7 +44,7 @@ std::size_t heard_bytes(const std::string& url, const std::string& channel) {
     bus.subscribe(channel, [&](const ReceivedMessage& arrival) { largest = std::max(largest, arrival.bytes.size); });
     handle_until(bus, milliseconds(1000), [] { return false; });
   } catch (const std::exception&) {
-    return 0;  // the self test says what is wrong with the bus
+    return 0;  // the self test reports a fault of the bus
   }
   return largest;
 }
@@ -59,7 +59,7 @@ std::set<std::string> heard_frame_channels(const std::string& url) {
     });
     handle_until(bus, milliseconds(1500), [] { return false; });
   } catch (const std::exception&) {
-    return {};  // the self test says what is wrong with the bus
+    return {};  // the self test reports a fault of the bus
   }
   return channels;
 }
@@ -76,7 +76,7 @@ std::map<std::string, std::string> heard_errors(const std::string& url) {
     });
     handle_until(bus, milliseconds(1500), [] { return false; });
   } catch (const std::exception&) {
-    return {};  // the self test says what is wrong with the bus
+    return {};  // the self test reports a fault of the bus
   }
   return errors;
 }
@@ -93,7 +93,7 @@ std::vector<CameraChroma> heard_camera_colours(const std::string& url) {
     });
     handle_until(bus, milliseconds(1500), [] { return false; });
   } catch (const std::exception&) {
-    return {};  // the self test says what is wrong with the bus
+    return {};  // the self test reports a fault of the bus
   }
   std::vector<CameraChroma> all;
   for (auto& [name, colours] : cameras) all.push_back(std::move(colours));

@@ -49,7 +49,7 @@ struct Machine {
   /// Returns whether the program runs when started with the argument.
   std::function<bool(const std::filesystem::path& program, const std::string& argument)> runs;
 
-  /// The file's text, "" where it cannot be read. `path` from the root on, without a leading slash.
+  /// Returns the file's text, "" where it cannot be read. `path` is from the root on, without a leading slash.
   std::string read(const std::string& path) const;
   /// Returns the path of a program on $PATH.
   std::optional<std::filesystem::path> find_program(const std::string& name) const;

@@ -27,7 +27,7 @@ constexpr const char* kColours = "colours";
 constexpr const char* kSelfTest = "LCM self test";
 constexpr const char* kBus = "the bus";
 
-/// Text off the wire, which is anybody's.
+/// Returns untrusted text off the wire, shortened and printable.
 std::string off_the_wire(const std::string& text) {
   constexpr std::size_t kMaxLength = 300;
   return printable(text.substr(0, kMaxLength));
@@ -39,7 +39,7 @@ std::string server_remedy(const Endpoint& server) {
                      is_here ? "" : fmt::format("on {}: ", server.address), server.port);
 }
 
-/// The interface through which packets to the address leave, by /proc/net/route: the narrowest route, then the
+/// Returns the interface through which packets to the address leave, by /proc/net/route: the narrowest route, then the
 /// smallest metric. Numbers there are in the order of the network, read as those of this machine, like inet_addr().
 std::optional<std::string> interface_to(const Machine& machine, const std::string& address) {
   const std::uint32_t target = inet_addr(address.c_str());

@@ -22,7 +22,7 @@ struct Drivers {
 };
 Drivers list_drivers(const std::filesystem::path& folder);
 
-/// A path as users know it: without the root that was looked at.
+/// Returns a path as users know it: without the root that was examined.
 std::string shown(const Machine& machine, const std::filesystem::path& path);
 
 }  // namespace houghstream::doctor

@@ -33,12 +33,12 @@ std::int64_t origin_of(const std::filesystem::path& log_file) {
   });
 }
 
-/// Looks at the dates of a log's events, one after another.
+/// Checks the dates of a log's events, one after another.
 class Dates {
  public:
   explicit Dates(std::int64_t origin) : origin_(origin) {}
 
-  /// Seconds since the origin.
+  /// Returns the seconds since the origin.
   double note(std::int64_t time) {
     const std::int64_t since = microseconds_between(origin_, time);
     if (since < 0) {

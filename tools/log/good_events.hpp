@@ -14,7 +14,7 @@ namespace houghstream::log_tools {
 class LossReport {
  public:
   void note_damage(std::uint64_t bytes, const std::string& reason);
-  /// A message or frame that arrived whole and cannot be understood.
+  /// Notes a message or frame that arrived whole and cannot be understood.
   void note_refused(const std::string& reason);
 
   std::int64_t damaged_places() const { return damaged_places_; }
@@ -34,13 +34,13 @@ class LossReport {
   std::string oddities_;
 };
 
-/// Reads the events of a log that are whole, and goes on behind damage. Says on stderr how far it is.
+/// Reads the events of a log that are whole, and continues behind damage. Shows its progress on stderr.
 class IntactEvents {
  public:
   /// `losses` must outlive it. Throws InputError when the file cannot be read or is empty.
   IntactEvents(const std::filesystem::path& file, LossReport& losses);
 
-  /// The next whole event, or nothing at the end. Throws InputError when the file holds none at all.
+  /// Returns the next whole event, or nothing at the end. Throws InputError when the file holds none at all.
   std::optional<LogEvent> next();
 
  private:

@@ -22,7 +22,7 @@ struct ChannelInfo {
   std::string frames;            ///< description of the first frame; "" where the channel holds none
   std::int64_t frames_lost = 0;  ///< lost frames, from gaps in the source's numbering
 
-  /// Messages per second between the first and the latest; 0 for a single one.
+  /// Returns messages per second between the first and the latest; 0 for a single one.
   double rate_hz() const;
 };
 

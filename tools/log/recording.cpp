@@ -38,7 +38,7 @@ std::optional<std::string> file_of(const std::string& source, const std::string&
   return ends_so ? std::optional<std::string>(source) : std::nullopt;
 }
 
-/// KIND:WHERE, as open_frame_source() takes it; the names of files may hold a colon too.
+/// Returns whether the source is KIND:WHERE, as open_frame_source() takes it; the names of files may hold a colon too.
 bool is_frame_source(const std::string& source) {
   return source.find(':') != std::string::npos && !std::filesystem::exists(source);
 }
@@ -119,7 +119,7 @@ class LogRecording {
   }
 
   RecordingSettings settings_;
-  bool is_first_;  // nobody chose the channel
+  bool is_first_;  // the channel was not chosen by the user
   std::set<std::string> others_;
   LossReport& losses_;
   IntactEvents events_;

@@ -122,7 +122,7 @@ std::vector<std::uint8_t> pixels_of(const cv::Mat& continuous) {
 image_t colour_image(const DrakeImage& image) {
   require(image.channel_type == Wire::CHANNEL_TYPE_UINT8, "colour of channel type {}, expected 8 bits (1)",
           image.channel_type);
-  check_image_size(image.width, image.height);  // before rows of so many pixels are spoken of
+  check_image_size(image.width, image.height);  // checked before rows of so many pixels are read
   if (image.compression == Wire::COMPRESSION_METHOD_JPEG) {
     return make_image(image.width, image.height, image_t::PIXEL_FORMAT_MJPEG, 0, bytes_of(image.data));
   }
@@ -142,7 +142,7 @@ image_t colour_image(const DrakeImage& image) {
   }
 }
 
-/// Metres to millimetres; what is infinite or not positive is missing.
+/// Converts metres to millimetres; infinite or non-positive depth is missing.
 std::vector<std::uint8_t> millimetres(const DrakeImage& image) {
   const std::vector<std::uint8_t> bytes = unpacked(image, 4);
   cv::Mat metres(image.height, image.width, CV_32FC1);

@@ -45,8 +45,8 @@ std::map<std::string, Mesh> load_models(const PoseOptions& options, int threads)
   return {};
 }
 
-/// Poses of one detection of each class in a made-up frame: the models are in memory, and threads run, before the first
-/// real one.
+/// Estimates poses of one detection of each class in a synthetic frame, so that the models are in memory, and threads
+/// run, before the first real one.
 std::shared_ptr<const PoseEstimator> warmed_up(PoseEstimator cold, const RgbdFrame& made_up) {
   Detections detections;
   for (const auto& [name, model] : cold.models()) {
@@ -67,7 +67,7 @@ std::shared_ptr<const PoseEstimator> warmed_up(PoseEstimator cold, const RgbdFra
 /// The estimator may be another one for each frame.
 using CurrentEstimator = std::function<std::shared_ptr<const PoseEstimator>()>;
 
-/// Says once for each camera that its images have no colours.
+/// Logs once for each camera that its images have no colours.
 void report_colourless(const RgbdFrame& frame, std::set<std::string>& reported) {
   if (reported.count(frame.id.channel) > 0 || !is_colourless(frame.colour)) return;
   reported.insert(frame.id.channel);

@@ -67,7 +67,7 @@ NoticeSocket::NoticeSocket() : socket_(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC
   if (socket_ < 0) return;
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  // Bound to the family alone, it gets a name of the abstract namespace that nobody has.
+  // The socket is bound to the family alone, so that it gets an unused name of the abstract namespace.
   if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address.sun_family)) != 0) return;
   socklen_t length = sizeof(address);
   if (getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &length) != 0) return;
@@ -98,7 +98,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, bool capture
   const std::vector<std::string> environment = environment_for(notices_.name());
   const std::vector<char*> arguments = pointers_to(command);
   const std::vector<char*> variables = pointers_to(environment);
-  // Neither end waits: where this process stands still, lines are lost and the child goes on.
+  // Neither end waits: where this process is stopped, lines are lost and the child continues.
   std::array<int, 2> pipe = {-1, -1};
   require(!capture_stderr || pipe2(pipe.data(), O_CLOEXEC | O_NONBLOCK) == 0, "{}: cannot be heard: {}", program,
           std::strerror(errno));

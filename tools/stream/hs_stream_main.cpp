@@ -73,7 +73,7 @@ Duration from_seconds(double seconds) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
 }
 
-/// Hears what the processes say of themselves. A bus that goes away does not end the stream.
+/// Receives the statuses of the processes. A bus that goes away does not end the stream.
 class StatusEar {
  public:
   /// Waits for the bus. Throws InputError where it cannot be opened.

@@ -12,7 +12,8 @@
 namespace houghstream::stream {
 namespace {
 
-/// Within '...' a backslash is one; within "..." it is one before all but what it is needed for there.
+/// Returns whether a backslash escapes. Within '...' it never does; within "..." only before the characters that need
+/// it there.
 bool escapes(const std::string& text, std::size_t at, char quote) {
   if (text[at] != '\\' || quote == '\'') return false;
   return quote == '\0' || text.compare(at + 1, 1, "\"") == 0 || text.compare(at + 1, 1, "\\") == 0;
@@ -20,7 +21,7 @@ bool escapes(const std::string& text, std::size_t at, char quote) {
 
 using Words = std::vector<std::string>;
 
-/// hs-NAME with what all of them take, and with the further words.
+/// Returns hs-NAME with the arguments common to all, and with the further words.
 ChildPlan plan(const StreamOptions& options, const std::string& name, const Words& words, const std::string& further) {
   ChildPlan plan;
   plan.name = name;

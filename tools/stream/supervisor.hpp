@@ -27,7 +27,7 @@ struct SupervisorSettings {
   int max_failures = 8;                             ///< consecutive failures after which the stream ends
   std::chrono::milliseconds start_time{3000};       ///< run time after which a process has started
   std::chrono::milliseconds stop_timeout{1500};     ///< time for a process to end by itself when it is asked to
-  std::chrono::milliseconds finishing{600'000};     ///< instead, for one that says that it is still writing
+  std::chrono::milliseconds finishing{600'000};     ///< the same for a process that reports that it is still writing
   std::chrono::milliseconds heartbeat_timeout{
       10'000};  ///< a process without a heartbeat for so long, after its first, counts as hung
   std::chrono::milliseconds startup_timeout{
@@ -48,27 +48,27 @@ class Supervisor {
   using Clock = std::chrono::steady_clock;
   using Say = std::function<void(const std::string&)>;
 
-  /// `say` takes a line for people about each start and end. Throws InputError when a program cannot be started.
+  /// `say` receives a line for people about each start and end. Throws InputError when a program cannot be started.
   Supervisor(std::vector<ChildPlan> plans, const SupervisorSettings& settings, Say say);
   /// Ends them all.
   ~Supervisor();
 
-  /// Looks after the processes. False once the stream is to end. Throws InputError, with its last words, when one has
-  /// failed at its start or is given up.
+  /// Checks the processes. Returns false once the stream is to end. Throws InputError, with its last line of stderr,
+  /// when one has failed at its start or too often.
   bool step();
 
   /// The process has shown that it runs; expected of each one every second. False where it is none of these.
   bool on_heartbeat(pid_t pid);
 
-  /// Once step() has said that the stream is to end because its source has: the processes that the source's last frames
-  /// go through, in their order. None where something else has ended it.
+  /// Returns the processes that the source's last frames go through, in their order, once step() has returned that the
+  /// stream ends because its source has. Returns none where another cause has ended it.
   std::vector<pid_t> downstream_pids() const;
 
   /// Since the last step nothing could have been heard of any.
   void pause_watchdog();
 
-  /// Asks all to end, waits, insists after `stop_timeout`, or, with who says that it needs more time, `finishing`.
-  /// Returns the names of those that had to be killed.
+  /// Asks all to end, waits, and kills after `stop_timeout`, or after `finishing` for a process that reports that it
+  /// needs more time. Returns the names of those that had to be killed.
   std::vector<std::string> stop();
 
   /// Gives the state of a process.

@@ -76,7 +76,7 @@ std::string face_lines(const Patch& patch, bool normals) {
   return text;
 }
 
-/// meldis takes the name of the .mtl up to the first blank.
+/// Returns a file name without blanks, since meldis takes the name of the .mtl up to the first blank.
 std::string file_name(const std::string& name, std::uint64_t number) {
   std::string safe = name.substr(0, 64);
   for (char& c : safe) {

@@ -27,9 +27,9 @@ struct ViewerMesh {
 /// meldis shows OBJ, glTF and DAE only. Throws InputError where it cannot write.
 ViewerMesh write_viewer_mesh(const Mesh& mesh, const std::string& name, const std::filesystem::path& folder);
 
-/// The objects of the world as Drake's viewers (drake_visualizer, meldis) take them: a load message with their shapes,
-/// and a draw message with their poses for each frame. Objects that are gone are in neither. A viewer puts what it has
-/// loaded, but was not told the pose of, at the origin: so both are always of the same objects. Not thread-safe.
+/// Makes the messages of the world's objects for Drake's viewers (drake_visualizer, meldis): a load message with their
+/// shapes, and a draw message with their poses for each frame. Objects that are gone are in neither. A viewer puts a
+/// loaded shape without a pose at the origin, so that both messages always list the same objects. Not thread-safe.
 class DrakeScene {
  public:
   /// Meshes go to files in this folder, for viewers on this machine.

@@ -16,7 +16,7 @@ struct WorldOutputOptions {
   bool pose_channels = false;  ///< a pose_t of each object on a channel of its own
 };
 
-/// bot_core's pose of an object of the world, whose axes are those of its local frame.
+/// Makes bot_core's pose of an object of the world, whose axes are those of its local frame.
 pose_t pose_message(const TrackedObject& object, std::int64_t utime);
 
 /// Publishes the objects_t after each frame and what the options ask for. Not thread-safe.

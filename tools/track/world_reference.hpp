@@ -28,7 +28,7 @@ class WorldReference {
   /// A pose in another world than the last one resets the world.
   tracks::CameraPose camera_pose(const FrameId& frame, bool may_wait);
 
-  /// "WORLD", or the channel of the camera whose frame it is; empty until a place was known.
+  /// Returns "WORLD", or the channel of the camera whose frame it is; empty until a pose of a camera was known.
   const std::string& name() const { return name_; }
 
   /// Returns whether the world was reset since the last call: earlier observations have no pose in it.

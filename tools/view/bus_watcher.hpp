@@ -26,7 +26,7 @@ class BusWatcher {
   BusWatcher(const BusWatcher&) = delete;
   BusWatcher& operator=(const BusWatcher&) = delete;
 
-  /// The next frame to draw, or nothing when none comes within `timeout`.
+  /// Returns the next frame to draw, or nothing when none comes within `timeout`.
   std::optional<MatchedFrame> next(std::chrono::milliseconds timeout) { return queue_.pop(timeout); }
 
   /// Note the outcome of a frame that was popped, for the status that is published once a second.
@@ -39,7 +39,7 @@ class BusWatcher {
   /// Returns the camera whose frames are shown; frames of the others are skipped.
   SelectedCamera& cameras() { return cameras_; }
 
-  /// Rates of the camera that is shown, and what the processes say.
+  /// Returns the rates of the shown camera, and the statuses of the processes.
   StreamState stream_state();
   std::int64_t frames_lost() const { return status_.message().frames_lost; }
 
@@ -49,7 +49,7 @@ class BusWatcher {
   /// Stops listening; frames that wait can still be taken.
   void stop();
 
-  /// Says the last word about what was received, drawn and skipped.
+  /// Logs the account of received, drawn and skipped frames at the end.
   void finish() { end_process(bus_, status_); }
 
  private:

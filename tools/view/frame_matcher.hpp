@@ -94,7 +94,7 @@ class MatchedFrameQueue {
     return dropped;
   }
 
-  /// The oldest frame, or nothing when none comes within `timeout`.
+  /// Returns the oldest frame, or nothing when none comes within `timeout`.
   std::optional<MatchedFrame> pop(std::chrono::milliseconds timeout) {
     std::unique_lock lock(mutex_);
     if (!arrived_.wait_for(lock, timeout, [this] { return !frames_.empty(); })) return std::nullopt;

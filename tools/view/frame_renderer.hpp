@@ -37,13 +37,13 @@ struct FrameRendererSettings {
 /// Draws frames to a window or to files, keeps the one that is shown, and how the stream went until it.
 class FrameRenderer {
  public:
-  /// A key of the window teaches objects of the stream at `lcm_url` ("" = LCM's default) to the store, if there is one.
-  /// Throws InputError where there are no models, a store and a folder of models, no display, no folder to write
-  /// to, or no address to serve at.
+  /// Opens the outputs. A key of the window teaches objects of the stream at `lcm_url` ("" = LCM's default) to the
+  /// store, if there is one. Throws InputError where there are no models, a store and a folder of models, no display,
+  /// no folder to write to, or no address to serve at.
   explicit FrameRenderer(const FrameRendererSettings& settings, const std::string& lcm_url = "");
 
-  /// Shows a frame, unless paused, another camera is shown by now, or there is a page that nobody looks at. One that
-  /// cannot be understood is reported to `watcher` and passed over. Throws InputError where a file cannot be written.
+  /// Shows a frame, unless paused, another camera is shown by now, or there is a page without viewers. A frame that
+  /// cannot be understood is reported to `watcher` and skipped. Throws InputError where a file cannot be written.
   void show(const MatchedFrame& matched, BusWatcher& watcher);
 
   /// Lets window and page act on keys and buttons, one of which shows `watcher`'s next camera. False when it was asked
@@ -67,7 +67,7 @@ class FrameRenderer {
   std::shared_ptr<const ClassModels> models_;
   std::unique_ptr<store::StoreWatcher<ClassModels>> store_;
   std::unique_ptr<LivePage> page_;
-  bool page_alone_;  // nobody but the page wants images
+  bool page_alone_;  // only the page needs images
   ViewOutputs outputs_;
   std::optional<Camera> camera_;
   FrameViewSettings image_settings_;

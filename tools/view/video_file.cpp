@@ -76,7 +76,7 @@ std::int64_t at_rate(double frame, const AVStream& stream, double rate_hz) {
   return std::llround(frame / (rate_hz * av_q2d(stream.time_base)));
 }
 
-// FFmpeg's writer tells nobody that the disk is full.
+// Counts the frames of a finished video, since FFmpeg's writer does not report a full disk.
 std::int64_t frames_in(const std::filesystem::path& video) {
   const cv::VideoCapture written(video.string(), cv::CAP_FFMPEG);
   return written.isOpened() ? std::llround(written.get(cv::CAP_PROP_FRAME_COUNT)) : 0;
@@ -95,14 +95,14 @@ bool needs_end(const std::filesystem::path& file) {
   return ending == ".mp4" || ending == ".m4v" || ending == ".mov";
 }
 
-/// FFmpeg chooses the format by the ending; these formats may hold H.264.
+/// Returns whether the name is that of a video. FFmpeg chooses the format by the ending; these formats may hold H.264.
 bool is_video_name(const std::filesystem::path& file) {
   const std::string ending = lower_extension(file);
   return needs_end(file) || ending == ".mkv" || ending == ".avi";
 }
 
-// H.264 wants even sides, and its encoders refuse very long ones. The first image may be of a single row or column of
-// pixels; those after it must be legible all the same.
+// Returns the size of the video. H.264 needs even sides, and its encoders refuse very long ones. The first image may be
+// of a single row or column of pixels; those after it must be legible all the same.
 cv::Size video_size(const cv::Size& image) {
   constexpr int kMaxSide = 8192;  // pixels
   constexpr int kMaxAspect = 8;

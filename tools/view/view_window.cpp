@@ -130,7 +130,7 @@ void ViewWindow::save() const {
   try {
     save_image(file, shown_);
     log_info("saved {}", file);
-  } catch (const InputError& error) {  // the stream can be looked at all the same
+  } catch (const InputError& error) {  // the stream can be viewed all the same
     log_error("{}", error.what());
   }
 }

@@ -25,12 +25,12 @@ struct ViewedFrame {
 struct FrameViewSettings {
   float min_score = 0.0F;       ///< weaker detections and their poses are not drawn; 0: all that were sent
   bool show_depth = true;       ///< depth, colour-mapped, to the right
-  bool show_world = false;      ///< there the world from above instead, where hs-track tells of it
+  bool show_world = false;      ///< show the world from above there instead, where hs-track publishes it
   bool show_3d = false;         ///< there the measured points, seen from elsewhere, instead (rotated_view.hpp)
   float depth_near = 0.4F;      ///< metres, red end of the colour map
   float depth_far = 3.5F;       ///< metres, blue end; beyond it stays blue
   bool show_keys = false;       ///< a line that names the window's keys
-  bool paused = false;          ///< said in that line
+  bool paused = false;          ///< stated in that line
   bool can_teach = false;       ///< that line names the key for teaching
   cv::Rect box;                 ///< box drawn with the mouse, pixels of the colour image; empty = none
   std::optional<cv::Point> at;  ///< pixel clicked with the mouse
@@ -47,7 +47,8 @@ struct StreamView {
 /// Returns depth (CV_32FC1, metres) as BGR: near is warm, far is cold, no measurement is black.
 cv::Mat colour_depth(const cv::Mat& depth, float near, float far);
 
-/// The frame without detections weaker than `min_score` or not reported, which are counted, and without their poses.
+/// Returns the frame without detections weaker than `min_score` or not reported, which are counted, and without their
+/// poses.
 ViewedFrame without_weak(ViewedFrame viewed, float min_score);
 
 /// The colour image with all that is drawn over it. Throws InputError as draw_overlay does.

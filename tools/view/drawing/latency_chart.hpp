@@ -21,7 +21,7 @@ using LatencyHistory = std::deque<FrameLatency>;
 /// Returns the colour (BGR) of the Nth stage of a frame, from 0.
 cv::Scalar stage_colour(std::size_t index);
 
-/// A row per stage in columns of `rows` rows, or of more and lower ones where `area` is not wide enough for all
+/// Draws a row per stage in columns of `rows` rows, or of more and lower ones where `area` is not wide enough for all
 /// columns: its colour, name and milliseconds.
 void draw_stage_list(cv::Mat& image, const cv::Rect& area, const std::vector<StageTime>& stages, int rows);
 

@@ -29,7 +29,7 @@ void draw_box(cv::Mat& image, const Detection& detection) {
   cv::rectangle(image, box, class_colour(detection.class_id), 2);
 }
 
-// The label sits on the box's upper edge, or just inside where there is no room above.
+// Draws the label on the box's upper edge, or just inside where there is no space above.
 void draw_label(cv::Mat& image, const Detection& detection, const ObjectPose* pose) {
   std::string text = fmt::format("{} {:.2f}", detection.class_name, detection.score);
   if (pose != nullptr && pose->status != PoseStatus::kValid) text += fmt::format(" ({})", to_string(pose->status));
@@ -106,7 +106,7 @@ void draw_axes(cv::Mat& image, const Eigen::Isometry3d& T_camera_object, double 
   }
 }
 
-// The pose of each detection, null where there is none.
+// Returns the pose of each detection, null where there is none.
 std::vector<const ObjectPose*> poses_by_detection(const Detections& detections,
                                                   const std::optional<ObjectPoses>& poses) {
   std::vector<const ObjectPose*> found(detections.detections.size(), nullptr);

@@ -20,10 +20,10 @@ namespace houghstream::view {
 /// Holds the last status of a process.
 struct ProcessState {
   std::string name;           ///< executable
-  std::int64_t pid = 0;       ///< tells several of one name apart
+  std::int64_t pid = 0;       ///< distinguishes several of one name
   float rate_hz = 0.0F;       ///< frames finished per second
   std::int64_t skipped = 0;   ///< frames passed over since its start
-  std::int64_t lost = 0;      ///< frames that never arrived; -1 = cannot be told
+  std::int64_t lost = 0;      ///< frames that never arrived; -1 = unknown
   std::int64_t refused = 0;   ///< frames that could not be understood
   std::int64_t heard_us = 0;  ///< time of its reception, local clock
 };
@@ -67,7 +67,7 @@ class SelectedCamera {
   /// A frame of this camera has come.
   void note(const std::string& channel);
 
-  /// The next camera in the order of their names.
+  /// Selects the next camera in the order of their names.
   void next();
 
   /// While none was heard, each one is.

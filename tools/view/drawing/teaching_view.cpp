@@ -30,7 +30,7 @@ bool is_of(const Teaching& teaching, const FrameId& frame) {
   return same_camera && apart_us <= kNearlyUs && apart_us >= -kNearlyUs;
 }
 
-/// A part of the image, made darker for what is written on it.
+/// Returns a part of the image, made darker for text on it.
 cv::Mat darkened(cv::Mat& image, const cv::Rect& area) {
   cv::Mat part = image(area & cv::Rect({}, image.size()));
   if (part.empty()) return part;  // an image of a single row or column of pixels

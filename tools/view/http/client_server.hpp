@@ -11,13 +11,13 @@
 
 namespace houghstream::view {
 
-/// The connections of a server, and which of them wait for their client: for the bytes of a request, or until it takes
-/// what it is sent. Where others are in want of a thread, those that have waited longest yield theirs. So a client that
-/// says nothing, or reads nothing, costs nobody the server. Any function may be called from any thread.
+/// Tracks the connections of a server, and which of them wait for their client: for the bytes of a request, or until it
+/// accepts a response. Where other connections need a thread, those that have waited longest yield theirs. So a client
+/// that sends nothing, or reads nothing, does not block the server. Any function may be called from any thread.
 class ClientTable {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds kGrace{100};  ///< nobody yields before he has waited for so long
+  static constexpr std::chrono::milliseconds kGrace{100};  ///< minimum wait before a connection yields
 
   /// Opens at most `max_clients` connections.
   explicit ClientTable(std::size_t max_clients) : max_clients_(max_clients) {}

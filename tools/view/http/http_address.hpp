@@ -10,7 +10,7 @@ namespace houghstream::view {
 struct HttpAddress {
   std::string host = "127.0.0.1";  ///< a name or an address, IPv6 without brackets
   int port = 0;                    ///< 0 = any that is free
-  /// Further names that the page answers to, in lower case: of a proxy before it, or of this machine in somebody's DNS.
+  /// Further names that the page answers to, in lower case: of a proxy before it, or of this machine in a DNS.
   std::vector<std::string> names;
 };
 
@@ -33,10 +33,10 @@ std::optional<std::string> parse_host_header(const std::string& header);
 /// and addresses, which nobody resolves. A page for this machine answers to its loopback addresses only.
 bool answers_to(const HttpAddress& address, const std::string& host_header);
 
-/// The name of this machine, as it stands in the address that is printed; "" where it has none.
+/// Returns the name of this machine as in the printed address; "" where it has none.
 std::string machine_name();
 
-/// Why nobody can listen there, in words; "" where it can be done.
+/// Returns the reason why listening there is impossible, in words; "" where it is possible.
 std::string listening_problem(const HttpAddress& address);
 
 }  // namespace houghstream::view

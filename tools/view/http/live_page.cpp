@@ -16,7 +16,8 @@ namespace {
 constexpr int kJpegQuality = 75;
 constexpr std::chrono::seconds kUpdateInterval(1);
 
-// Depth stands small beside the colour image: of a large image every second or third pixel is drawn, and encoded.
+// Returns small depth, which is shown beside the colour image: of a large image every second or third pixel is drawn,
+// and encoded.
 cv::Mat small_depth(const cv::Mat& depth, const FrameViewSettings& settings) {
   constexpr int kWidth = 320;  // pixels, about
   const int step = std::max(depth.cols / kWidth, 1);

@@ -10,7 +10,7 @@
 
 namespace houghstream::view {
 
-/// A frame and what is drawn over and told of it.
+/// Refers to a frame and the contents of its page.
 struct PageContent {
   const ViewedFrame& viewed;
   const ClassModels& models;
@@ -28,12 +28,13 @@ class LivePage {
   bool has_viewers() const { return board_.has_viewers(); }
   PageCommands pop_commands() { return board_.pop_commands(); }
 
-  /// Tells of a frame and draws what is wanted of it. Throws InputError as draw_overlay does.
+  /// Publishes a frame to the page and draws the requested views of it. Throws InputError as draw_overlay does.
   void show(const PageContent& content);
   /// Returns whether a viewer waits for an image of the frame that was shown last, or the stream was not reported for a
   /// second.
   bool is_due() const;
-  /// Draws that image, and tells of the stream. Throws where an image cannot be drawn; nobody waits for it then.
+  /// Draws that image, and publishes the state of the stream. Throws where an image cannot be drawn; its viewers then
+  /// stop waiting.
   void catch_up(const std::optional<ViewedFrame>& viewed, const ClassModels& models, const FrameViewSettings& settings,
                 const StreamView& stream);
 

@@ -36,8 +36,8 @@ struct PageUpdates {
   std::string stream;
 };
 
-/// Stands between the thread that draws and those that serve pages: the newest of everything, what pages look at, and
-/// what their buttons ask for. Any function may be called from any thread.
+/// Connects the thread that draws with those that serve pages: it holds the latest of each view, the views that are
+/// open, and the commands of their buttons. Any function may be called from any thread.
 class PageBoard {
  public:
   using Clock = std::chrono::steady_clock;
@@ -48,7 +48,7 @@ class PageBoard {
   bool has_viewers() const;
   /// Views that were asked for of late.
   std::vector<PageView> wanted() const;
-  /// Views that somebody waits for, and that were not drawn of the frame that is shown.
+  /// Returns views that a viewer waits for, and that were not drawn of the frame that is shown.
   std::vector<PageView> missing() const;
   /// Puts the next frame. Its images follow.
   void put_frame(std::string json);
@@ -65,7 +65,7 @@ class PageBoard {
   Jpeg image(PageView view, std::chrono::milliseconds timeout);
   void push_command(const PageCommands& commands);
 
-  /// Nobody waits any longer.
+  /// Ends all waiting.
   void close();
 
  private:

@@ -119,7 +119,7 @@ struct PageServer::State {
   }
 
   void set_limits();
-  /// Returns the words of the refusal of a Host header that somebody else may have chosen; "" where it is none.
+  /// Returns the text that refuses a Host header which another site may have chosen; "" where it is accepted.
   std::string refusal_of_host(const httplib::Request& request) const;
   void add_pages();
   void serve_image(const httplib::Request& request, httplib::Response& response);
