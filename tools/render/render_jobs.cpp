@@ -33,7 +33,7 @@ std::vector<TaughtObject> taught_objects(const std::vector<int>& ids) {
   return objects;
 }
 
-// The demo's classes, or all twenty where the truth names one of the others.
+// Returns the demo's classes, or all twenty where the scene holds one of the others.
 std::vector<int> classes_of(const Scene& scene) {
   const auto& items = scene.world.items;
   const bool further = std::any_of(items.begin(), items.end(),

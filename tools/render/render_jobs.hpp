@@ -30,7 +30,7 @@ std::filesystem::path fresh_scene(const RenderOptions& options, const std::files
 void render_training(const RenderOptions& options, const std::vector<std::string>& objects,
                      const world::TurntableSettings& turntable);
 
-/// OUT/ becomes one BOP scene of `count` frames of training rooms without the objects.
+/// Renders one BOP scene of `count` frames of training rooms without the objects into OUT/.
 void render_background(const RenderOptions& options, int count);
 
 /// Selects images of a test scene.
@@ -41,7 +41,7 @@ struct SceneJob {
   world::SensorKind sensor = world::SensorKind::kStructuredLight;
 };
 
-/// OUT/ becomes one BOP scene, and OUT/models/ has the demo's four classes or, where the scene holds others, all
+/// Renders one BOP scene into OUT/; OUT/models/ has the demo's four classes or, where the scene holds others, all
 /// twenty.
 void render_scene(const RenderOptions& options, const SceneJob& job);
 

@@ -54,7 +54,7 @@ Camera draw_camera(Random& random) {
   return camera;
 }
 
-/// Looks at one of the objects, from anywhere above the table.
+/// Draws the pose of a camera that looks at one of the objects, from anywhere above the table.
 Eigen::Isometry3d draw_viewpoint(const World& world, Random& random) {
   std::vector<Eigen::Vector3d> places;
   for (const PlacedAsset& item : world.items) {

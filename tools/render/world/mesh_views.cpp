@@ -77,7 +77,7 @@ PlacedAsset table_top(double height, Random& random) {
   return table;
 }
 
-/// The camera, as far as it sees the mesh and a little beside it.
+/// Returns the camera cropped to the mesh and a small margin.
 Camera cropped_around(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object) {
   const Camera whole = synthetic_camera();
   Eigen::AlignedBox2d extent;

@@ -14,7 +14,7 @@ namespace houghstream::world {
 enum class MeshAttitudes : std::uint8_t {
   kResting,  ///< at rest on a table, and leaning from there
   kUpright,  ///< its z axis up
-  kAny       ///< all rotations alike, as if held
+  kAny       ///< all rotations equally often, as if held
 };
 
 /// Parses "resting", "upright" or "any". Throws InputError naming them for another.
@@ -43,7 +43,7 @@ struct MeshViewSettings {
 /// must have.
 AssetPtr make_taught_thing(Mesh mesh, bool has_colour);
 
-/// The thing, whose vertices have colours, in one colour.
+/// Returns the asset, whose vertices have colours, in one colour.
 AssetPtr plainly_painted(const Asset& thing, Random& random);
 
 /// Renders training views of a mesh: each in a light of its own, with the noise of a structured-light camera. Axes and

@@ -31,12 +31,12 @@ SensorKind parse_sensor(const std::string& name);
 RenderedFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed,
                            SensorKind sensor = SensorKind::kStructuredLight);
 
-/// Renders the sensors' images of a view of the world, structured light unless the sensor says otherwise, with the
-/// ground truth.
+/// Renders the sensors' images of a view of the world, structured light unless `sensor` is another one, with the ground
+/// truth.
 RenderedFrame record_view(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, const ShadedView& view,
                           std::uint64_t noise_seed, SensorKind sensor = SensorKind::kStructuredLight);
 
-/// Frame `index` of `count` along the scene's camera path. The utime is left 0: sources stamp their frames.
+/// Renders frame `index` of `count` along the scene's camera path. The utime is left 0: sources stamp their frames.
 RenderedFrame render_scene_frame(const Scene& scene, const LitWorld& lit_world, int index, int count,
                                  SensorKind sensor = SensorKind::kStructuredLight);
 

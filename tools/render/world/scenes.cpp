@@ -19,7 +19,7 @@ constexpr int kMonitor = 13;
 constexpr int kKeyboard = 9;
 constexpr int kBook = 1;
 
-// Bowls, cartons, mugs and cans that were never taught, as a real kitchen has them.
+// Adds bowls, cartons, mugs and cans that were never taught, as a real kitchen has them.
 void add_other_instances(TableSetter& setter, const Clutter& clutter, std::uint64_t seed) {
   const int first = Random(aspect_seed(seed, kFirstInstance - 1)).below(kClassCount);
   const Eigen::AlignedBox2d where = setter.region(-0.95, 0.95, -0.85, 0.95);
@@ -41,14 +41,14 @@ void add_distractors(TableSetter& setter, RoomStyle style, const Clutter& clutte
     if (kind == kMonitor && style != RoomStyle::kDesk) kind = kBook;
     const std::uint64_t derived_seed = aspect_seed(seed, kFirstDistractor + static_cast<std::uint64_t>(i));
     const AssetPtr thing = make_distractor(kind, derived_seed, clutter.taught_colours);
-    // Large things stand at the back, as people put them.
+    // Large assets are at the back, as people put them.
     const bool large = kind == kMonitor || thing->mesh.vertices.empty() || thing->name == "lamp";
     const double front = large ? 0.3 : -0.98;
     setter.stand(thing, setter.region(-1.0, 1.0, front, 0.98), kind == kKeyboard || kind == kMonitor ? 0.4 : M_PI, 0);
   }
 }
 
-// Twelve objects need more room than four.
+// Places more objects in a larger region, since twelve need more space than four.
 void add_many_objects(TableSetter& setter, FurtherClasses further) {
   const Eigen::AlignedBox2d where = setter.region(-0.75, 0.75, -0.65, 0.85);
   for (const int id : twenty_class_ids()) {
@@ -167,7 +167,8 @@ constexpr FurtherClasses kNone = FurtherClasses::kNone;
 constexpr FurtherClasses kOdd = FurtherClasses::kOddIds;
 constexpr FurtherClasses kEven = FurtherClasses::kEvenIds;
 
-// Tables on which most things have the taught objects' colours: only shape tells them apart.
+// Fraction for tables on which most distractors have the taught objects' colours, so that only shape distinguishes
+// them.
 constexpr double kAlike = 0.85;
 
 constexpr std::array<Plan, 25> kPlans = {

@@ -26,7 +26,7 @@ enum class ObjectPlacement : std::uint8_t {
   kStanding,  ///< once each
   kLying,     ///< twice: once lying and once on a wedge; their like lie too
   kTilted,    ///< three times: standing, lying, and leaning on a block at 10 to 60 degrees; their like stand or lie
-  kHeld       ///< twice: in somebody's hand in any attitude, and standing or lying
+  kHeld       ///< twice: in a hand in any attitude, and standing or lying
 };
 
 /// Objects on the table.
@@ -63,19 +63,19 @@ inline constexpr std::array<const char*, 6> kTwentyClassScenes = {"objects_20_a"
 inline constexpr std::array<const char*, 2> kTwentyClassDevelopmentScenes = {"development_objects_20_a",
                                                                              "development_objects_20_b"};
 
-/// Test scenes in which the four classes lie and tilt among things that lie.
+/// Test scenes in which the four classes lie and tilt among lying distractors.
 inline constexpr std::array<const char*, 2> kLyingScenes = {"table_lying", "meeting_lying"};
 
 /// Development scenes of the same kind, to choose settings on.
 inline constexpr std::array<const char*, 2> kLyingDevelopmentScenes = {"development_lying", "development_lying_2"};
 
-/// Test scenes in which the four classes stand, lie and lean on things, and are held in hands.
+/// Test scenes in which the four classes stand, lie, lean on supports, and are held in hands.
 inline constexpr std::array<const char*, 2> kHandledScenes = {"table_tilted", "meeting_held"};
 
 /// Development scenes of the same kind, to choose settings on.
 inline constexpr std::array<const char*, 2> kHandledDevelopmentScenes = {"development_tilted", "development_held"};
 
-/// All of them, for people to read.
+/// Returns all names, for people.
 std::string scene_names();
 
 /// Makes one of the test or development scenes. Throws InputError listing the known names.

@@ -14,7 +14,7 @@ namespace houghstream {
 /// fit almost anything.
 struct LinemodTemplateSettings {
   int features = 63;            ///< per modality, 4 to 63 (the most that cv::linemod can add up in a byte)
-  float weak_gradient = 10.0F;  ///< colour gradients below are not looked at, grey levels (three-pixel Sobel)
+  float weak_gradient = 10.0F;  ///< weaker colour gradients are ignored, grey levels (three-pixel Sobel)
   float min_distance = 0.35F;   ///< nearest distance taught, metres
   float max_distance = 2.6F;    ///< farthest distance taught, metres
   float distance_step = 1.1F;   ///< ratio of one taught distance to the previous one, above 1

@@ -50,7 +50,7 @@ class LinemodTemplates {
   ~LinemodTemplates();
   LinemodTemplates(LinemodTemplates&&) noexcept;
 
-  /// Strongest first, in an order that depends on nothing but views, settings and frame.
+  /// Matches the templates, strongest first, in an order that depends on views, settings and frame alone.
   std::vector<LinemodMatch> match(const RgbdFrame& frame, float threshold) const;
 
   const LinemodTraining& training() const { return training_; }

@@ -19,8 +19,9 @@ struct ComposedExamples {
   std::set<std::string> class_names;
 };
 
-/// `images` of up to four views each at these distances (metres), lit and partly hidden as make_validation_frame()
-/// does; the same for the same views. Throws InputError without background or with less than four views of each class.
+/// Composes `images` of up to four views each at these distances (metres), lit and partly occluded as
+/// make_validation_frame() does; the same for the same views. Throws InputError without background or with less than
+/// four views of each class.
 ComposedExamples compose_examples(const std::vector<TrainingView>& views, float min_distance, float max_distance,
                                   int images);
 

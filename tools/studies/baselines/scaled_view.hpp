@@ -10,7 +10,7 @@
 
 namespace houghstream {
 
-/// Steps in pixels at which cv::linemod looks at an image and at its half: its own defaults.
+/// Steps in pixels of cv::linemod on an image and on its half: its own defaults.
 constexpr std::array<int, 2> kLinemodSteps = {5, 8};
 
 /// Returns the frame in the form that cv::linemod takes: colour (CV_8UC3) and millimetres (CV_16UC1, 0 = none). It is
@@ -32,8 +32,8 @@ struct ScaledView {
   double view_scale = 1.0;  ///< size here over size in the view
 };
 
-/// `focal_px` of the camera that sees it; 0: that of the view. Nothing where nothing is left of the mask or of the
-/// depth on it. The view's object must stand in front of the camera.
+/// `focal_px` is of the scenes' camera; 0: that of the view. Returns nothing where nothing is left of the mask or of
+/// the depth on it. The view's object must be in front of the camera.
 std::optional<ScaledView> scale_view(const TrainingView& view, double distance, double focal_px = 0.0);
 
 }  // namespace houghstream

@@ -31,7 +31,7 @@ struct Found {
   std::vector<EvaluatedFrame> in_stream;
 };
 
-/// A pose with what the truth says of it.
+/// Holds a pose with its outcome in the ground truth.
 struct JudgedColours {
   std::size_t frame = 0;
   const ObjectPose* pose = nullptr;
@@ -174,7 +174,7 @@ class Study {
     return sent;
   }
 
-  /// The result with these poses, which are of its first detections.
+  /// Returns the result with these poses, which are of its first detections.
   static EvaluatedFrame posed(EvaluatedFrame result, ObjectPoses poses) {
     for (std::size_t i = poses.poses.size(); i < result.detections->detections.size(); ++i) {
       ObjectPose& pose = poses.poses.emplace_back();

@@ -16,7 +16,7 @@ struct StudySettings {
   int cameras = 24;
   std::uint64_t seed = 1;
   int threads = 2;
-  std::string pairs;  ///< CSV file with what the poses tell of the cameras' colours; empty: none
+  std::string pairs;  ///< CSV file with the colours observed at the poses; empty: none
 };
 
 /// Holds the figures of one or several cameras.
@@ -28,7 +28,7 @@ struct Figures {
   int right = 0;          ///< correct ones of the published poses
   double ece = 0.0;       ///< calibration error of the qualities
   double off = 0.0;       ///< distance of correct poses' measured chroma from the expected, median, CIE a*b*
-  double conflict = 0.0;  ///< share of pairs of a right and a wrong pose in which chroma tells which is which
+  double conflict = 0.0;  ///< fraction of pairs of a correct and an incorrect pose that chroma distinguishes
 };
 
 /// Holds one row of the table.
@@ -39,7 +39,7 @@ struct Row {
   Figures in_stream;  ///< colours are learnt in each frame and from the earlier frames
 };
 
-/// The plain camera, then each strange one, then the mean over those.
+/// Studies the plain camera, then each strange one, then the mean over those.
 std::vector<Row> study_cameras(const std::filesystem::path& store, const StudySettings& settings);
 
 std::string to_table(const std::vector<Row>& rows);

@@ -17,7 +17,7 @@ namespace {
 using namespace houghstream;
 
 struct FailureOptions {
-  ObjectArguments known;  ///< models are not looked at
+  ObjectArguments known;  ///< its models are unused
   std::vector<std::string> scenes;
   std::string out;
   std::optional<float> operating_score;  ///< default: what hs-detect publishes
@@ -61,7 +61,7 @@ void run(const FailureOptions& options) {
   fmt::print("{} failures in {}\n", tiles.size(), options.out);
 }
 
-/// The store's forest, where one is named, and what hs-detect publishes unless told otherwise.
+/// Returns the options with the store's forest, where one is named, and with hs-detect's defaults.
 FailureOptions with_store(FailureOptions options) {
   require(options.known.store.empty() == !options.known.forest.empty(),
           "expected either --objects STORE or --forest FILE");

@@ -43,7 +43,7 @@ struct RivalRuns {
   std::map<std::string, PoseRun> by_baseline;
 };
 
-/// Frame by frame, all baselines in turn, while there is time.
+/// Runs frame by frame, all baselines in turn, while there is time.
 RivalRuns run_baselines(const DetectedScene& detected, const BenchedMakers& makers, const BenchRules& rules) {
   const auto every = static_cast<std::size_t>(rules.baselines_every);
   const std::size_t count = (detected.frames.size() + every - 1) / every;

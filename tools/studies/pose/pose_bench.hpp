@@ -68,13 +68,13 @@ struct DetectedScene {
 
 /// Settings of a scene's benchmark.
 struct BenchRules {
-  int baselines_every = 10;  ///< the baselines look at frames 0, N, 2N, ... of those that were detected in
+  int baselines_every = 10;  ///< the baselines process frames 0, N, 2N, ... of those with detections
   double baselines_s = 0.0;  ///< time for the baselines, whose frames are spread over the scene; 0: no limit
   int threads = 1;           ///< threads that measure errors; the makers run on one
 };
 
-/// Has every maker give poses to all detections, baselines to those of their frames, and adds what came of it. All
-/// baselines look at the same frames.
+/// Makes every maker estimate poses of all detections, baselines those of their frames, and adds the results. All
+/// baselines process the same frames.
 void bench_scene(const DetectedScene& detected, const SceneModels& models, const BenchedMakers& makers,
                  const BenchRules& rules, PoseBench& bench);
 

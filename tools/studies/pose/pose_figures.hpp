@@ -14,7 +14,7 @@ namespace houghstream {
 struct PoseRecall {
   int detections = 0;
   double correct = 0.0;  ///< PoseTrial::is_correct()
-  double add_s = 0.0;    ///< right up to what the shape cannot tell: ADD-S below 10 % of the diameter
+  double add_s = 0.0;    ///< correct up to the symmetries of the shape: ADD-S below 10 % of the diameter
   double add = 0.0;      ///< ADD below it, ADD-S for objects that are symmetric
 };
 PoseRecall pose_recall(const std::vector<PoseTrial>& trials, float min_score);
@@ -49,7 +49,7 @@ struct WithheldPoses {
 std::map<std::string, WithheldPoses> count_withheld(const std::vector<PoseTrial>& trials,
                                                     const std::vector<PoseTrial>& unchecked);
 
-/// Non-finite numbers become null (finite_or_null).
+/// Converts to JSON; non-finite numbers become null (finite_or_null).
 OrderedJson to_json(const PoseFigures& figures);
 OrderedJson to_json(const std::map<std::string, WithheldPoses>& withheld);
 

@@ -73,8 +73,8 @@ struct PoseRun {
   std::vector<std::vector<double>> ms;  ///< times by frame and detection
 };
 
-/// All detections that count, of the classes with a model, judged; those of objects whose truth has no pose are left
-/// out. By class, then strongest first, so that the order is the same whoever made the poses.
+/// Matches all detections that count, of the classes with a model; those of objects whose ground truth has no pose are
+/// left out. They are ordered by class, then strongest first, so that the order is the same for all estimators.
 std::vector<PoseTrial> match_run(const PoseRun& run, const std::map<std::string, ScoredModel>& models);
 
 }  // namespace houghstream

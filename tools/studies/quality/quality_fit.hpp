@@ -10,22 +10,22 @@
 
 namespace houghstream::quality {
 
-/// Bias, weights and typical values of the examples, the former drawn to the numbers in use as strongly as by ten
-/// poses: where nearly all that is detected is there, what depth says of nothing is hardly seen. `min_quality` is the
-/// default's. Throws InputError unless some are right and some are wrong.
+/// Fits bias, weights and mean terms of the examples, with the numbers in use as a prior of the weight of ten poses:
+/// where nearly all detected objects are present, the examples hardly show the depth of missing ones. `min_quality` is
+/// the default's. Throws InputError unless some are correct and some are incorrect.
 QualitySettings fit_quality(const std::vector<Example>& examples);
 
 /// A pose with the quality that a fit gives it.
 struct CheckedPose {
   float quality = 0.0F;
-  bool is_correct = false;  ///< up to what the shape cannot tell, which is what the fit learns
+  bool is_correct = false;  ///< up to the symmetries of the shape, which is what the fit learns
 };
 
 /// Returns the examples with their qualities by these settings, in their order.
 std::vector<CheckedPose> check_by(const QualitySettings& settings, const std::vector<Example>& examples);
 
-/// Every `parts`-th scene, in the order in which the examples bring them, is judged by a fit of the others, until all
-/// are. Throws InputError where there are fewer scenes than parts, and as fit_quality().
+/// Checks every `parts`-th scene, in the order of the examples, by a fit of the others, until all are checked. Throws
+/// InputError where there are fewer scenes than parts, and as fit_quality().
 std::vector<CheckedPose> check_by_scene(const std::vector<Example>& examples, int parts);
 
 /// Poses that are published from a quality on.

@@ -44,7 +44,7 @@ void register_features(const RgbdFrame& frame, const Forest& forest) {
   });
 }
 
-/// The stages of Detector::detect from the images to the leaves.
+/// Runs the stages of Detector::detect from the images to the leaves.
 void see(const SearchContext& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);

@@ -11,7 +11,7 @@
 
 namespace houghstream::studies {
 
-/// Both takes of one object with their truth.
+/// Holds both takes of one object with their ground truth.
 struct TrueTakes {
   int object_id = 0;
   std::vector<BopScene> scenes;  ///< scenes in the order of their takes
@@ -31,8 +31,8 @@ struct ShownPose {
   Eigen::Isometry3d T_camera_taught = Eigen::Isometry3d::Identity();  ///< metres
 };
 
-/// The rows of KEPT/camera_poses.csv that were tracked: frame, utime, tracked, twelve numbers of the object-to-camera
-/// matrix row by row, metres; of the first take. Throws InputError naming file and line.
+/// Reads the rows of KEPT/camera_poses.csv that were tracked: frame, utime, tracked, twelve numbers of the
+/// object-to-camera matrix row by row, metres; of the first take. Throws InputError naming file and line.
 std::vector<ShownPose> read_camera_poses(const std::filesystem::path& file);
 
 /// A kept view, found again among the takes' frames by its image.

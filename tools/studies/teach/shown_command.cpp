@@ -26,7 +26,8 @@ cv::Vec3b texel(const cv::Mat& texture, const Eigen::Vector2f& uv) {
   return texture.at<cv::Vec3b>(y, x);
 }
 
-/// A mesh with a texture, cut so finely that colours of vertices show it: images of models have no others.
+/// Returns a mesh with a texture, cut so finely that colours of vertices show it, since images of models have only
+/// those.
 Mesh finely_coloured(const Mesh& mesh) {
   constexpr double kSide_m = 0.002;
   if (mesh.texture.empty()) return mesh;

@@ -38,10 +38,11 @@ struct ShownComparison {
   int views = 0;
 };
 
-/// Compares KEPT (of hs-teach show --keep) with the truth. Throws InputError where KEPT holds no poses or no views.
+/// Compares KEPT (of hs-teach show --keep) with the ground truth. Throws InputError where KEPT holds no poses or no
+/// views.
 ShownComparison compare_shown(const TrueTakes& takes, const std::filesystem::path& kept, const Mesh& taught);
 
-/// Figures in millimetres and degrees.
+/// Returns figures in millimetres and degrees.
 OrderedJson to_json(const ShownComparison& comparison);
 
 }  // namespace houghstream::studies

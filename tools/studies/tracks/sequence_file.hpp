@@ -45,8 +45,8 @@ SequenceFile read_sequence(const std::filesystem::path& folder);
 void write_sequence_log(const SequenceFile& sequence, const std::filesystem::path& log,
                         const std::map<std::string, Eigen::Vector3d>& wrong_m);
 
-/// A log of frames with the results of other logs behind each frame (same name): first those of the first log. Throws
-/// InputError where a log cannot be read or written.
+/// Joins a log of frames with the results of other logs behind each frame (same name): first those of the first log.
+/// Throws InputError where a log cannot be read or written.
 void join_logs(const std::filesystem::path& frames, const std::vector<std::filesystem::path>& results,
                const std::filesystem::path& out);
 

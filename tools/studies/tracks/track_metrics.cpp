@@ -16,7 +16,7 @@ namespace houghstream::studies {
 namespace {
 
 constexpr int kThresholds = 19;
-constexpr double kZeroAtM = 0.1;  // two places that far apart are not alike at all
+constexpr double kZeroAtM = 0.1;  // positions that far apart have no similarity
 
 /// A pair is a ground-truth object and a published one.
 using TrackPair = std::pair<int, std::int64_t>;
@@ -224,7 +224,7 @@ std::vector<PublishedFrame> with_silent_frames(const SequenceFile& sequence, std
 /// Tracks the life of one ground-truth object.
 struct Life {
   std::int64_t last_id = 0;          // last published number of it; 0: none yet
-  std::optional<std::size_t> since;  // frame in which it was seen first, or anew, and not yet found
+  std::optional<std::size_t> since;  // frame in which it was observed first, or again, and not yet found
   bool there = false;
   std::optional<std::size_t> taken;  // frame from which on it is away, and its number still published
   std::vector<Vector6> window;       // differences from the true pose while it stands
@@ -314,7 +314,7 @@ class Comparison {
     if (!stands || object == nullptr) life.window.clear();
   }
 
-  /// Rest flag since the frame before: several publications may be of one frame.
+  /// Returns the rest flag since the frame before: several publications may be of one frame.
   bool stood(const TrueInstance& truth, std::size_t index) const {
     if (!truth.T_world_object || index == 0) return false;
     const std::vector<TrueInstance>& before = sequence_.frames[index - 1];

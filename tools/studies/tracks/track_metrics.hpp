@@ -62,12 +62,13 @@ OrderedJson track_metrics(const SequenceFile& sequence, const std::vector<Publis
 /// Symmetries by class name; of others none.
 using ClassSymmetries = std::map<std::string, Symmetries>;
 
-/// The published pose of a true object that is there: of those that look the same, the one nearest to the true one.
+/// Returns the published pose of a ground-truth object that is present: of the poses equivalent by symmetry, the one
+/// nearest to the true one.
 Eigen::Isometry3d as_the_truth(const PublishedObject& object, const TrueInstance& truth,
                                const ClassSymmetries& symmetries);
 
-/// Metres from a true object to a published one of its class, but for symmetry; infinite where the classes differ, or
-/// the true one is not there.
+/// Returns the metres from a ground-truth object to a published one of its class, up to symmetry; infinite where the
+/// classes differ, or the ground-truth one is not present.
 double apart_m(const TrueInstance& truth, const PublishedObject& object, const ClassSymmetries& symmetries);
 
 /// Assigns to each ground-truth object a published one, or -1: of its class, nearer than `reach_m`, and so that the sum
@@ -91,7 +92,7 @@ struct HotaCount {
 std::vector<HotaCount> hota_counts(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
                                    const ClassSymmetries& symmetries, const TrackMetricsSettings& settings);
 
-/// Mean over the thresholds of sqrt(DetA AssA). Counts of several sequences may be added up before.
+/// Returns the mean over the thresholds of sqrt(DetA AssA). Counts of several sequences may be added up before.
 double hota_of(const std::vector<HotaCount>& counts);
 
 }  // namespace houghstream::studies

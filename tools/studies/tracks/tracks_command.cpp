@@ -40,7 +40,7 @@ std::map<std::string, Eigen::Vector3d> wrong_places(const std::vector<std::strin
   return out;
 }
 
-/// The objects that are said to be there: not those that are gone.
+/// Returns the objects that are published as present, without those that are gone.
 std::vector<PublishedObject> objects_of(const LogEvent& event) {
   std::vector<PublishedObject> out;
   const WorldObjects world = world_from_message(decode_message<objects_t>({event.data.data(), event.data.size()}));

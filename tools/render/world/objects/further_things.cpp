@@ -28,7 +28,7 @@ cv::Mat pores(const cv::Size& size, const cv::Scalar& colour, Random& random) {
   return image;
 }
 
-// A turned part with its axis along y (wheels) or x (what lies on its side).
+// Returns a part of revolution with its axis along y (wheels) or x (parts lying on their side).
 Part lying(Mesh mesh, const Eigen::Vector3d& translation, const Eigen::Vector3d& axis) {
   Part part{std::move(mesh), Eigen::Isometry3d::Identity()};
   part.T_object_part.translate(translation);

@@ -10,7 +10,7 @@
 
 namespace houghstream::world {
 
-/// The colours one print uses.
+/// Holds the colours of one texture.
 struct Palette {
   cv::Scalar base;    ///< most of the surface
   cv::Scalar accent;  ///< panels, stripes
@@ -22,10 +22,10 @@ Palette random_palette(Random& random);
 /// Returns BGR of a hue 0-360 degrees, saturation and value 0-1.
 cv::Scalar hsv(double hue_deg, double saturation, double value);
 
-/// Made-up brand word of capital and small letters.
+/// Returns a made-up brand word of capital and small letters.
 std::string brand_word(Random& random);
 
-// Elements, drawn inside a region of an image.
+// These draw elements inside a region of an image.
 void draw_title(cv::Mat& image, const cv::Rect& region, const cv::Scalar& colour, Random& random);
 void draw_text_lines(cv::Mat& image, const cv::Rect& region, const cv::Scalar& colour, Random& random);
 void draw_barcode(cv::Mat& image, const cv::Rect& region, Random& random);
@@ -44,12 +44,12 @@ cv::Mat poster(const cv::Size& size, Random& random);
 
 }  // namespace houghstream::world
 
-// Textures of things that are not printed. All CV_8UC3 BGR, drawn from the given generator only.
+// These are textures without print. All are CV_8UC3 BGR, drawn from the given generator only.
 
 namespace houghstream::world {
 
-/// Smooth noise of several octaves, CV_32FC1, mean about 0, range about -1 to 1. `cells` is the number of
-/// grid cells across the width in the coarsest octave.
+/// Returns smooth noise of several octaves, CV_32FC1, mean about 0, range about -1 to 1. `cells` is the number of grid
+/// cells across the width in the coarsest octave.
 cv::Mat smooth_noise(const cv::Size& size, double cells, int octaves, Random& random);
 
 /// Draws one colour with faint unevenness (`strength` 0-1): paint, plastic, glaze, plaster.

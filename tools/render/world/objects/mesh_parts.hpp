@@ -11,7 +11,7 @@
 
 namespace houghstream::world {
 
-/// A point of the outline that is turned about z. Two equal consecutive points make a sharp edge.
+/// Describes a point of the outline of a surface of revolution about z. Two equal consecutive points make a sharp edge.
 struct ProfilePoint {
   double radius = 0.0;  ///< metres, 0 only at the ends
   double z = 0.0;       ///< metres
@@ -30,11 +30,11 @@ struct BoxFaces {
   cv::Mat front, back, left, right, top, bottom;
 };
 
-/// Axis-aligned box centred on the origin; `size` in metres.
+/// Makes an axis-aligned box centred on the origin; `size` in metres.
 Mesh box(const Eigen::Vector3d& size, const BoxFaces& faces);
 Mesh box(const Eigen::Vector3d& size, const cv::Mat& texture);
 
-/// Round rod along a path with closed ends (handles, legs, spouts).
+/// Makes a round rod along a path with closed ends (handles, legs, spouts).
 Mesh tube(const std::vector<Eigen::Vector3d>& path, double radius, const cv::Mat& texture, int segments = 12);
 
 /// Makes a tube with a radius for each point of the path, metres.

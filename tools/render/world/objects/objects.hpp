@@ -10,10 +10,10 @@
 
 namespace houghstream::world {
 
-/// An object that can be taught. Ids 1-4 (bowl, cereal_box, coffee_mug, soda_can) are the demo's classes; 5-8 are
-/// their second instances (bowl_2 ...), of other proportions and prints; 101-116 are sixteen further classes
+/// Describes an object that can be taught. Ids 1-4 (bowl, cereal_box, coffee_mug, soda_can) are the demo's classes; 5-8
+/// are their second instances (bowl_2 ...), of other proportions and textures; 101-116 are sixteen further classes
 /// (further_objects.hpp), which with the demo's make twenty; 201-220 are instances of the demo's classes that are
-/// taught only to see how time grows (other_bowl_1, other_carton_2 ...).
+/// taught only to measure how time grows (other_bowl_1, other_carton_2 ...).
 struct TaughtObject {
   int id = 0;
   std::string name;
@@ -41,12 +41,12 @@ TaughtObject make_taught_object(int id);
 /// Returns the id of a name: "bowl" -> 1. Throws InputError listing the known names.
 int taught_object_id(const std::string& name);
 
-/// An instance of class 1 to 4 that is never taught: of the taught one's colours in another size, or of its size in
-/// other colours. Shape and print follow the seed. Throws InputError for another class.
+/// Makes an instance of class 1 to 4 that is never taught: of the taught one's colours in another size, or of its size
+/// in other colours. Shape and texture follow the seed. Throws InputError for another class.
 AssetPtr make_other_instance(int class_id, std::uint64_t seed);
 
-/// Household things that are never taught. `kind` 0 to kDistractorKinds-1; shape and print follow the seed.
-/// `taught_colours`: probability that a surface has a colour of the four classes.
+/// Makes household assets that are never taught. `kind` is 0 to kDistractorKinds-1; shape and texture follow the seed.
+/// `taught_colours` is the probability that a surface has a colour of the four classes.
 inline constexpr int kDistractorKinds = 16;
 AssetPtr make_distractor(int kind, std::uint64_t seed, double taught_colours = 0.0);
 

@@ -17,7 +17,7 @@ const auto& pick(Random& random, const Container& choices) {
   return choices[static_cast<std::size_t>(random.below(static_cast<int>(choices.size())))];
 }
 
-/// Nearly normal number (sum of four uniforms, mean 0, deviation 1) for pixel `index` of noise field `seed`:
+/// Returns a nearly normal number (sum of four uniforms, mean 0, deviation 1) for pixel `index` of noise field `seed`:
 /// per-pixel noise that does not depend on the order in which pixels are visited.
 inline float pixel_normal(std::uint64_t seed, std::uint64_t index) {
   const std::uint64_t bits = Random(seed + index * 0xd1342543de82ef95ULL).bits();

@@ -41,7 +41,7 @@ class Bending {
   std::array<Wave, 4> waves_;
 };
 
-/// Turned hues, or next to none where there were some; darker or brighter.
+/// Returns an image with rotated hues, or nearly without saturation; darker or brighter.
 cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
   constexpr double kGreyed = 0.35;
   constexpr double kColourful = 80.0;  // mean saturation, of 255

@@ -4,7 +4,7 @@
 
 #include "pipeline/base/random.hpp"
 
-// The colours by which the four classes are known, so that other things can be given them too.
+// These are the typical colours of the four classes, so that distractors can be given them too.
 
 namespace houghstream::world {
 

@@ -81,7 +81,7 @@ TaughtObject make_further_object(int id) {
   return {id, further.name, further.symmetric_about_z, further.make(random)};
 }
 
-/// Its name says what it is and its number.
+/// Makes an instance, whose name holds its class and number.
 TaughtObject make_instance(int id) {
   const int number = id - kFirstInstanceId;
   const int kind = number % kClassCount;

@@ -33,7 +33,7 @@ Mesh can_mesh(double radius, double height, const Palette& palette, Random& rand
 /// Makes a printed carton.
 Mesh carton_mesh(const Eigen::Vector3d& size, const Palette& palette, Random& random);
 
-/// Solid body of revolution through (radius, z) points from bottom to top, ends closed.
+/// Makes a solid body of revolution through (radius, z) points from bottom to top, with closed ends.
 Mesh rotated_mesh(const std::vector<Eigen::Vector2d>& outline, const cv::Mat& texture);
 
 }  // namespace houghstream::world

@@ -15,7 +15,7 @@ namespace houghstream::world {
 struct PlacedAsset {
   AssetPtr thing;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
-  int object_id = 0;         ///< TaughtObject::id where the truth is to name it, else 0
+  int object_id = 0;         ///< TaughtObject::id of an object in the ground truth, else 0
   bool casts_shadow = true;  ///< false for walls: lamps may stand behind them
 };
 

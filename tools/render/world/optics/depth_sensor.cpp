@@ -25,7 +25,7 @@ cv::Mat window_noise(const cv::Size& size, std::uint64_t seed) {
   return noise * 3.0;  // a mean of nine has a third of the deviation
 }
 
-// 255 where depth changes by more than the settings' step within a pixel's neighbourhood.
+// Returns 255 where depth changes by more than the settings' step within a pixel's neighbourhood.
 cv::Mat depth_edges(const cv::Mat& depth, double relative_step) {
   cv::Mat known = depth.clone();
   cv::patchNaNs(known, 100.0);

@@ -44,7 +44,8 @@ double axial_sigma(double z, double cos_incidence);
 /// Returns the distance between neighbouring measurable depths at depth z, metres (Khoshelham & Elberink 2012).
 double depth_step(double z, const DepthSensorSettings& settings);
 
-/// Pixels that the projector, to the right of the camera, does not reach: CV_8UC1, 255 = in the infrared shadow.
+/// Returns the pixels that the projector, to the right of the camera, does not reach: CV_8UC1, 255 = in the infrared
+/// shadow.
 cv::Mat infrared_shadow(const cv::Mat& depth, const Camera& camera, double baseline_m);
 
 /// Returns the measured depth: CV_32FC1, whole millimetres given in metres, NaN = none. The same seed gives the same

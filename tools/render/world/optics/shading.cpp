@@ -17,7 +17,7 @@ constexpr int kRotations = 64;
 
 using Taps = std::array<std::array<Eigen::Vector2f, kTaps>, kRotations>;
 
-// Vogel's spiral in the unit disc, from the rim inwards, for each turn of the pattern.
+// Returns Vogel's spiral in the unit disc, from the rim inwards, for each rotation of the pattern.
 Taps make_taps() {
   Taps taps;
   for (int angle_rad = 0; angle_rad < kRotations; ++angle_rad) {
@@ -119,7 +119,7 @@ class Shader {
       R_camera_object_.push_back((T_camera_world * placed.T_world_object).linear().cast<float>());
   }
 
-  /// The view's pixel (x, y), which is the image's (x, y) + first_px.
+  /// Shades the view's pixel (x, y), which is the image's (x, y) + first_px.
   void shade_pixel(int x, int y, ShadedView& view) const {
     const std::uint16_t id = view.geometry.id.at<std::uint16_t>(y, x);
     if (id == 0) return;

@@ -46,7 +46,7 @@ struct ShadedView {
   cv::Mat radiance;       ///< CV_32FC3 BGR, linear, 0 = black
   cv::Mat cos_incidence;  ///< CV_32FC1, between surface normal and viewing ray, 0 to 1; 0 where nothing is
   cv::Mat reflectance;    ///< CV_32FC1, of the surface, linear, 0 to 1
-  cv::Mat specular;       ///< CV_32FC1, Thing::gloss
+  cv::Mat specular;       ///< CV_32FC1, Asset::specular
 };
 
 /// Renders geometry, then texture (mip-mapped, bilinear), Lambert and Blinn-Phong light per pixel.

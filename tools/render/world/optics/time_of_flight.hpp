@@ -32,14 +32,15 @@ struct TimeOfFlightSettings {
   double multipath_reach_m = 0.1;    ///< maximum difference in depth: larger ones are edges, not concave places
 };
 
-/// Amplitude of the light that returns, m^-2: reflectance * cosine / z^2. A glossy surface returns less along the ray.
+/// Returns the amplitude of the light that returns, m^-2: reflectance * cosine / z^2. A glossy surface returns less
+/// along the ray.
 double returned_amplitude(const SensorView& view, const cv::Point& pixel);
 
 /// Returns the deviation of measurements at this amplitude, metres.
 double time_of_flight_sigma(double amplitude, const TimeOfFlightSettings& settings);
 
-/// The measured depth as measure_depth() gives it: CV_32FC1, whole millimetres given in metres, NaN = none. Same seed,
-/// same noise. May be called from several threads.
+/// Returns the measured depth in the form of measure_depth(): CV_32FC1, whole millimetres given in metres, NaN = none.
+/// The same seed gives the same noise. May be called from several threads.
 cv::Mat measure_time_of_flight(const SensorView& view, const TimeOfFlightSettings& settings, std::uint64_t seed);
 
 }  // namespace houghstream::world

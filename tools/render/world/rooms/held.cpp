@@ -46,7 +46,7 @@ std::vector<Eigen::Vector3d> surface_points(const Mesh& mesh, const Eigen::Matri
   return points;
 }
 
-/// The farthest that points reach to one side of `close` (sign), between two depths of `back` and about `along`.
+/// Returns the maximum that points reach to one side of `close` (sign), between two depths of `back` and about `along`.
 double side_of(const std::vector<Eigen::Vector3d>& points, double sign, const Eigen::Vector2d& back, double along) {
   double farthest = 0.0;
   for (const Eigen::Vector3d& point : points) {
@@ -110,7 +110,7 @@ AssetPtr make_hand(const std::vector<Eigen::Vector3d>& points, const Grip& grip,
   return make_asset("hand", mesh, 0.08F);
 }
 
-/// The share of the thing's silhouette that the hand hides in a view.
+/// Returns the fraction of the asset's silhouette that the hand occludes in a view.
 double hidden_fraction(const PlacedAsset& hand, const PlacedAsset& thing, const Eigen::Isometry3d& T_camera_world) {
   const Camera camera{320, 240, 262.5, 262.5, 159.5, 119.5};
   const Eigen::Isometry3d T_camera_object = T_camera_world * thing.T_world_object;

@@ -25,7 +25,7 @@ struct Leaning {
   double height_m = 0.0;  ///< height of the block
 };
 
-/// The farthest towards +x that the mesh reaches up to that height.
+/// Returns the maximum towards +x that the mesh reaches up to that height.
 double reach_below(const Mesh& mesh, const std::vector<Eigen::Vector3d>& points, double height_m) {
   double farthest = -std::numeric_limits<double>::infinity();
   for (const auto& triangle : mesh.triangles) {

@@ -5,8 +5,8 @@
 #include "pipeline/base/random.hpp"
 #include "tools/render/world/objects/world.hpp"
 
-// Things put down otherwise than upright, alone or on something: groups that belong together. Group frame: z up, z = 0
-// on the table, origin within the group; `T_world_object` of a group's members maps into it.
+// These put assets down otherwise than upright, alone or on a support: groups that belong together. Group frame: z up,
+// z = 0 on the table, origin within the group; `T_world_object` of a group's members maps into it.
 
 namespace houghstream::world {
 

@@ -15,7 +15,8 @@
 namespace houghstream::world {
 namespace {
 
-// Furniture, as things whose origin is on the floor (or wall) in the middle, front to -y. Lengths in metres.
+// Furniture consists of assets whose origin is on the floor (or wall) in the middle, front to -y. Lengths are in
+// metres.
 
 cv::Scalar paint(Random& random) {
   return hsv(random.uniform(0, 360), random.uniform(0.0, 0.5), random.uniform(0.15, 0.9));

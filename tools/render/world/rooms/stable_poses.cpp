@@ -24,7 +24,7 @@ Eigen::Vector3d spread_direction(int index, int count) {
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
-// The shortest turn that brings `down` to -z; what stands on its head is turned over its x axis first.
+// Returns the shortest rotation that brings `down` to -z; an upside-down object is rotated over its x axis first.
 Eigen::Matrix3d face_down(Eigen::Vector3d down) {
   Eigen::Matrix3d over = Eigen::Matrix3d::Identity();
   if (down.z() > 0.0) over.diagonal() = Eigen::Vector3d(1.0, -1.0, -1.0);
@@ -42,7 +42,7 @@ StablePose attitude_of(const TippingBody& body, const Eigen::Vector3d& down, dou
   return attitude;
 }
 
-/// The object's upward direction at rest, in the object frame.
+/// Returns the object's upward direction at rest, in the object frame.
 Eigen::Vector3d up_of(const StablePose& attitude) {
   return attitude.R_table_object.row(2);
 }

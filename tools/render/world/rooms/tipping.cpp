@@ -39,7 +39,7 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   return hull.empty() ? std::vector<Eigen::Vector2d>{points.front()} : hull;
 }
 
-/// The point between a and b that is nearest to the origin.
+/// Returns the point between a and b that is nearest to the origin.
 Eigen::Vector2d nearest_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Eigen::Vector2d side = b - a;
   const double length_sq = side.squaredNorm();
@@ -107,7 +107,7 @@ Support TippingBody::support(const Eigen::Vector3d& down, double nearly_m) const
   return support;
 }
 
-// Turns about `pivot` until the next point touches the plane.
+// Rotates about `pivot` until the next point touches the plane.
 Eigen::Vector3d TippingBody::tipped(const Eigen::Vector3d& down, const Support& support, const Eigen::Vector2d& pivot,
                                     const Eigen::Vector2d& towards) const {
   const Eigen::Vector3d forward = support.in_object(towards);

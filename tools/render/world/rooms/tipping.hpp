@@ -36,9 +36,9 @@ class TippingBody {
   /// points at it.
   Support support(const Eigen::Vector3d& down, double nearly_m = 0.0) const;
 
-  /// The direction that points down when the body, let go with `down` below, has come to rest. Round things are made of
-  /// flat strips: it rolls on over edges that raise it by less than a fraction of a millimetre, as long as that leads
-  /// down.
+  /// Returns the direction that points down when the body, released with `down` below, has come to rest. Round objects
+  /// are made of flat strips: it rolls on over edges that raise it by less than a fraction of a millimetre, as long as
+  /// that leads down.
   Eigen::Vector3d settled(Eigen::Vector3d down) const;
 
  private:

@@ -58,7 +58,8 @@ Eigen::Isometry3d look_from(double azimuth_rad, double elevation_rad, double dis
   return look_at(target + distance_m * direction, target);
 }
 
-/// Turned and moved by a push that begins at `start_s`, is over after a quarter of a second and leaves some of it.
+/// Returns the pose after a push that begins at `start_s`, is over after a quarter of a second and leaves some of its
+/// motion.
 Eigen::Isometry3d jerked(const Eigen::Isometry3d& T_camera_world, double seconds, double start_s, double sign) {
   const double rise = eased((seconds - start_s) / 0.12);
   const double back = 0.7 * eased((seconds - start_s - 0.12) / 0.25);
@@ -70,7 +71,7 @@ Eigen::Isometry3d jerked(const Eigen::Isometry3d& T_camera_world, double seconds
 }  // namespace
 
 Sequence::Sequence(SequencePlan plan, DatasetSplit use) : plan_(std::move(plan)) {
-  std::uint64_t number = kFirstWorld;  // every sequence has a room of its own
+  std::uint64_t number = kFirstWorld;  // every sequence has its own room
   for (const char letter : plan_.name) number = number * 31 + static_cast<std::uint8_t>(letter);
   seed_ = world_seed(use, number);
   furnish();
@@ -86,7 +87,7 @@ void Sequence::furnish() {
   world.items = std::move(room.items);
   set_lighting(world, TimeOfDay::kDay, aspect_seed(seed_, sequence_aspect::kLight));
   TableSetter setter(world, room.table_half, aspect_seed(seed_, sequence_aspect::kTable));
-  // Things that are not taught, about the objects: to both sides and behind; one is a look-alike.
+  // Distractors surround the objects to both sides and behind; one is a hard negative.
   const int alike = kClassCount + 1 + setter.random().below(kClassCount);
   setter.stand(make_taught_object(alike).thing, setter.region(0.6, 0.95, -0.3, 0.9), M_PI, 0);
   for (int i = 0; i < 9; ++i) {

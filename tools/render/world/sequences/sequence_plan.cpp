@@ -70,7 +70,7 @@ SequencePlan swapped() {
   return plan;
 }
 
-// Two equal ones side by side; one is carried round the other.
+// Plans two equal cans side by side; one is carried round the other.
 SequencePlan cans() {
   SequencePlan plan = still("cans", 11.0);
   plan.actors[3].stops = {{0.0, {-0.10, -0.12, 0.0}, -0.3, 0.0}};

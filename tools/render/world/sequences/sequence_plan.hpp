@@ -26,7 +26,7 @@ enum class CameraWork : std::uint8_t {
   kWalk,       ///< one is carried half round the table
   kStill,      ///< one static camera
   kJerk,       ///< one static camera, which is pushed twice
-  kThreeStill  ///< three stand still, in front and to both sides
+  kThreeStill  ///< three static cameras, in front and to both sides
 };
 
 /// Plans a recording of objects over time.

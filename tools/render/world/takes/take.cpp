@@ -148,7 +148,7 @@ LitWorld RenderedTake::lit_at(double seconds) const {
   return stage_.things_move() ? light_world(std::move(lit_world.world)) : lit_world;
 }
 
-// Automatic exposure sees a small image of the room and follows it with a delay, proportionally.
+// Automatic exposure reads a small image of the room and follows it with a delay, proportionally.
 void RenderedTake::meter_light(int threads) {
   const int count = (frames_ - 1) / kMeterEvery + 2;
   std::vector<double> metered(static_cast<std::size_t>(count));

@@ -52,14 +52,14 @@ class RenderedTake {
 /// A take among those that `hs-render takes` makes.
 struct NumberedTake {
   int scene = 1;  ///< N of test/00000N/; an object's takes keep their numbers, whichever others are rendered
-  int take = 1;   ///< 1: upright, 2: laid on its side or turned over
+  int take = 1;   ///< 1: upright, 2: on its side or upside down
   std::string object;
   TakePlan plan;
 };
 
-/// Both takes of the twelve objects of the scenes objects_20_b, _d and _f, from plain (bowl, tumbler, teapot) to
-/// printed (cartons, cans): eight before a camera that is carried round them, two on a turntable, two turned by hand.
-/// Every object has a room of its own, which both takes share. `world` names a set of rooms and movements.
+/// Returns both takes of the twelve objects of the scenes objects_20_b, _d and _f, from uniform (bowl, tumbler, teapot)
+/// to textured (cartons, cans): eight before a camera that is carried round them, two on a turntable, two rotated by
+/// hand. Every object has a room of its own, which both takes share. `world` names a set of rooms and movements.
 std::vector<NumberedTake> twelve_objects_takes(DatasetSplit use, int world, double seconds);
 
 }  // namespace houghstream::world

@@ -14,7 +14,7 @@
 namespace houghstream::world {
 namespace {
 
-// Aspects of a take's world, each with a seed of its own (aspect_seed). Those of the room are the same in both takes.
+// Aspects of a take's world have seeds of their own (aspect_seed). Those of the room are the same in both takes.
 namespace take_aspect {
 enum : std::uint64_t { kRoom = 1, kLight, kTable, kFirstThing, kTakeAspects = 1000, kPath, kPlace, kTurning };
 }  // namespace take_aspect
@@ -129,7 +129,7 @@ void TakeStage::choose_camera(const TakePlan& plan) {
   if (kind_ == TakeKind::kTurntable) turning_.emplace(plan.seconds, aspect_seed(seed_, take_aspect::kTurning));
 }
 
-// About where it stands; a turntable turns about its own middle.
+// Returns the object's pose, rotated about its own position; a turntable rotates about its own middle.
 Eigen::Isometry3d TakeStage::object_at(double rotated_rad) const {
   const Eigen::Isometry3d& T_world_object = world_.items[object_].T_world_object;
   Eigen::Vector3d axis = T_world_object.translation();

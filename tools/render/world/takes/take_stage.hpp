@@ -15,8 +15,8 @@ namespace houghstream::world {
 /// Kind of a take.
 enum class TakeKind : std::uint8_t {
   kHandHeld,   ///< it stands on a table, the camera is carried round it
-  kTurntable,  ///< it stands on a turntable before a camera that stands still
-  kHandTurns   ///< the camera stands still, and a hand turns the object a part of a turn at a time
+  kTurntable,  ///< it stands on a turntable before a static camera
+  kHandTurns   ///< before a static camera, a hand rotates the object a part of a turn at a time
 };
 
 /// Returns "hand_held", "turntable" or "hand_turns".
@@ -28,11 +28,11 @@ struct TakePlan {
   TakeKind kind = TakeKind::kHandHeld;
   bool laid_down = false;  ///< on its side or upside down; else upright
   DatasetSplit use = DatasetSplit::kTest;
-  std::uint64_t number = 0;  ///< number of the world: takes of one number are of one room, whatever its objects do
+  std::uint64_t number = 0;  ///< number of the world: takes of one number share a room, whatever its objects do
   double seconds = 16.0;
 };
 
-/// The room of a take, with all that moves in it.
+/// Holds the room of a take, with all its moving assets.
 class TakeStage {
  public:
   explicit TakeStage(const TakePlan& plan);
@@ -40,7 +40,7 @@ class TakeStage {
   /// Returns the world at 0 seconds.
   const World& world() const { return world_; }
 
-  /// Puts what moves where it is at a time; `world` is a copy of world(). Returns T_camera_world.
+  /// Moves assets to their poses at a time; `world` is a copy of world(). Returns T_camera_world.
   Eigen::Isometry3d move(World& world, double seconds) const;
 
   /// Returns whether anything but the camera moves, and the shadows with it.
