@@ -12,7 +12,7 @@
 
 namespace houghstream {
 
-/// An empty folder of this test's own, also while other test programs run.
+/// Returns an empty folder of this test's own, also while other test programs run.
 inline std::filesystem::path fresh_folder(const std::string& name) {
   std::filesystem::path folder =
       std::filesystem::temp_directory_path() / (std::string(program_invocation_short_name) + "_" + name);

@@ -38,7 +38,7 @@ using ExamplesByName = std::map<std::string, std::vector<QualityExample>>;
 
 // Precision of the prior of the objects' common weights, since few poses of one object do not determine its weights.
 constexpr double kPriorPrecision = 10.0;
-// Of the default numbers, since a store's few objects do not determine them either.
+// Precision of the prior by the default numbers, since a store's few objects do not determine them either.
 constexpr double kCommonStiffness = 5.0;
 
 std::map<std::string, QualitySettings> fit_each(const ExamplesByName& examples) {

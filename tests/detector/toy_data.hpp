@@ -28,7 +28,7 @@ const Forest& forest();
 /// Returns its index for searches.
 const ForestIndex& forest_index();
 
-/// The default profile with training settings that take a second.
+/// Returns the default profile with training settings that take a second.
 Profile quick_profile();
 
 }  // namespace houghstream::toy

@@ -18,8 +18,8 @@ RgbdFrame tile_on_a_background() {
   return frame;
 }
 
-/// A frame that differs from it everywhere and has patches everywhere at both levels: what it leaves in memory that is
-/// kept from frame to frame is wrong for any other.
+/// Returns a frame that differs from it everywhere and has patches everywhere at both levels: what it leaves in memory
+/// that is kept from frame to frame is wrong for any other.
 RgbdFrame other_frame() {
   RgbdFrame frame = toy::background(91);
   cv::Mat(frame.depth.rowRange(0, 120)).setTo(0.8F);
@@ -42,7 +42,7 @@ void see(const RgbdFrame& frame, const DetectionSettings& settings, DetectorWork
   find_posteriors(search, workspace);
 }
 
-/// The patches' levels, with features of whole images, whoever looks at them.
+/// Returns the patches' levels, with features of whole images, whoever looks at them.
 std::vector<FeatureImage> whole_images(const RgbdFrame& frame) {
   std::vector<FeatureImage> images;
   for (const FeatureLevel& level : feature_levels(toy::forest().features, frame.camera)) {

@@ -84,7 +84,7 @@ void write_parts(ByteView input, const fs::path& folder, const std::vector<std::
 
 const std::vector<std::string> kScene = {"scene_camera.json", "scene_gt.json", "scene_gt_info.json"};
 
-/// Images and what is in them.
+/// Reads images and their objects.
 Taken read_scene(ByteView input) {
   const fs::path folder = scratch("scene");
   fs::create_directories(folder);
@@ -117,7 +117,7 @@ fs::path store_folder() {
   return folder;
 }
 
-/// Objects, what is known of them, and their triangles.
+/// Reads objects, their data and triangles.
 Taken read_stored(ByteView input) {
   const fs::path folder = store_folder();
   write_parts(input, folder, kStore);

@@ -20,7 +20,7 @@ using Bytes = std::vector<std::uint8_t>;
 /// Items that a reader took from an input.
 struct Taken {
   std::size_t items = 0;    ///< events, frames, nodes, pixels, triangles: of what the format holds many
-  bool tells_loss = false;  ///< it went on behind damage, and says so
+  bool tells_loss = false;  ///< it continued behind damage, and reports so
 };
 
 /// Names the damage of a whole input that a reader detects at any position: it then refuses the input, reports a loss,
@@ -56,7 +56,8 @@ std::vector<FuzzTarget> text_targets();
 /// Returns all targets.
 std::vector<FuzzTarget> fuzz_targets();
 
-/// The input as a file with this ending, in memory where the machine has such a folder; the same file each time.
+/// Returns the input as a file with this ending, in memory where the machine has such a folder; the same file each
+/// time.
 std::string as_file(ByteView input, const std::string& ending);
 
 Bytes content_of(const std::filesystem::path& file);

@@ -59,7 +59,7 @@ Taken read_oni(ByteView input) {
   return {openni::check_oni(as_file(input, "oni"))};
 }
 
-/// A file's head, a stream that states two images, those, the times of its seek table, its end.
+/// Returns a file's head, a stream that states two images, those, the times of its seek table, its end.
 std::vector<Bytes> onis() {
   Bytes bytes = {'N', 'I', '1', '0', 1, 0, 1, 0, 0, 0, 0, 0};
   bytes.resize(24);

@@ -172,7 +172,7 @@ class RunningProcess {
     EXPECT_TRUE(test_.wait_for(process_.output, expected_));
   }
 
-  /// A frame, and what was found in it, which come through.
+  /// Sends a frame with detections, which come through.
   void send(int frame, const std::string& camera = channel::kFrame) {
     send_frame(frame, camera);
     test_.wait_for(process_.output, expected_ + process_.per_frame);
@@ -348,7 +348,7 @@ class LogFiles {
       std::filesystem::temp_directory_path() / ("process_contract_test." + std::to_string(getpid()));
 };
 
-/// `count` frames, each with what was found in it.
+/// Returns `count` frames, each with detections.
 std::vector<LogEvent> recorded(const Process& process, int count) {
   std::vector<LogEvent> events;
   for (int i = 0; i < count; ++i) {
@@ -366,7 +366,7 @@ std::vector<LogEvent> on_channel(const std::vector<LogEvent>& events, const std:
   return found;
 }
 
-/// The bytes but for how long stages took.
+/// Returns the bytes but for how long stages took.
 Bytes without_times(const LogEvent& event) {
   if (event.channel != channel::kObjects) return event.data;
   auto message = decode_message<objects_t>({event.data.data(), event.data.size()});

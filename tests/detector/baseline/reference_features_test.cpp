@@ -35,7 +35,7 @@ WorkingFrame rough_frame(int width, int height, Random& random) {
   return frame;
 }
 
-/// Values that differ in a part, with the border where `pad` is kPad.
+/// Returns values that differ in a part, with the border where `pad` is kPad.
 int differences(const FeatureImage& a, const FeatureImage& b, cv::Rect part, int pad, int planes) {
   int count = 0;
   for (int y = part.y - pad; y < part.y + part.height + pad; ++y) {
@@ -48,7 +48,7 @@ int differences(const FeatureImage& a, const FeatureImage& b, cv::Rect part, int
 
 void use(std::int64_t target) {
   hwy::SetSupportedTargetsForTest(target);
-  hwy::GetChosenTarget().DeInit();  // the next call chooses anew
+  hwy::GetChosenTarget().DeInit();  // the next call selects the target again
 }
 
 /// Compares with every instruction set of the processor.

@@ -122,8 +122,8 @@ TEST(SurfacePcl, CurvaturesAgree) {
   EXPECT_GT(on_can.direction_cosine, 0.999F);
 }
 
-/// Median over the ball's pixels of the sum of the differences, as a share of the histograms: 2 where they have nothing
-/// in common.
+/// Returns the median over the ball's pixels of the sum of the differences, as a fraction of the histograms: 2 where
+/// they have nothing in common.
 template <typename Cloud>
 float difference(const std::vector<cv::Mat>& planes, const Cloud& expected, const Points& cloud) {
   std::vector<float> differences;

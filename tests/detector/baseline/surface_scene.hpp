@@ -11,7 +11,8 @@ namespace houghstream::scene {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// A frame of surfaces that are known exactly: depth_at(ray) is the depth at which the ray (x, y, 1) meets them.
+/// Returns a frame of surfaces that are known exactly: depth_at(ray) is the depth at which the ray (x, y, 1) meets
+/// them.
 template <typename Surface>
 WorkingFrame see(int width, int height, const Surface& depth_at) {
   WorkingFrame frame;

@@ -10,7 +10,7 @@
 namespace houghstream {
 namespace {
 
-/// The image through a camera that adds so much to a* and b*, 8 bits each.
+/// Returns the image through a camera that adds so much to a* and b*, 8 bits each.
 RgbdFrame with_cast(RgbdFrame frame, int a, int b) {
   cv::Mat lab;
   cv::cvtColor(frame.colour, lab, cv::COLOR_BGR2Lab);

@@ -157,7 +157,7 @@ TEST(Score, WhatIsSeenThroughWeighsByTheCertaintyAndHuesByTheForeignColour) {
   EXPECT_LT(score(model, evidence), score(of_few_terms(), evidence));
 }
 
-/// Examples whose truth is drawn from a model.
+/// Returns examples whose outcome is drawn from a model.
 std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
   Random random(4);
   std::vector<ScoreExample> examples;

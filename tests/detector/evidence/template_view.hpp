@@ -23,7 +23,7 @@ inline ViewTemplate template_view() {
   return out;
 }
 
-/// The frame with another image's colours, `scale` times its size, as views are compared with it.
+/// Returns the frame with another image's colours, `scale` times its size, as views are compared with it.
 inline LabFrame lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float scale) {
   cv::Mat blurred;
   LabLevels lab;

@@ -12,14 +12,14 @@
 namespace houghstream {
 namespace {
 
-/// Every pixel another depth, so that it shows who has borrowed from whom.
+/// Returns depth that differs in every pixel, so that borrowed values show their origin.
 cv::Mat numbered_depth(cv::Size size) {
   cv::Mat depth(size, CV_32FC1);
   for (int i = 0; i < size.area(); ++i) depth.at<float>(i / size.width, i % size.width) = static_cast<float>(i + 1);
   return depth;
 }
 
-/// Distance from each pixel to the one it has borrowed from; -1 where it is still a hole.
+/// Returns the distance from each pixel to the one it has borrowed from; -1 where it is still a hole.
 cv::Mat borrowed_from(const cv::Mat& depth) {
   cv::Mat distances(depth.size(), CV_32FC1);
   for (int y = 0; y < depth.rows; ++y) {

@@ -28,7 +28,7 @@ std::set<std::pair<int, int>> places(const PatchGrid& grid) {
   return out;
 }
 
-/// Two metres away, wherever the camera looks.
+/// Returns a wall two metres away, in any view of the camera.
 WorkingFrame wall(const Camera& camera) {
   WorkingFrame frame;
   frame.camera = camera;

@@ -24,7 +24,7 @@ TilePlane<T> plane_of(cv::Size part, int margin, const Value& value) {
   return plane;
 }
 
-/// Pixels, margin included, that are not as expected(x, y) says; two NaNs differ.
+/// Returns pixels, margin included, that are not as expected(x, y) says; two NaNs differ.
 template <typename T, typename Expected>
 int wrong_pixels(const TilePlane<T>& plane, const Expected& expected) {
   int wrong = 0;
@@ -46,7 +46,7 @@ LightnessDerivatives lightness_derivatives(const TilePlane<std::uint8_t>& lightn
   return out;
 }
 
-/// Sum over the 3x3 pixels around one, times the weights down and across.
+/// Returns the sum over the 3x3 pixels around one, times the weights down and across.
 int weighed(const TilePlane<std::uint8_t>& plane, int x, int y, const cv::Vec3i& down, const cv::Vec3i& across) {
   int sum = 0;
   for (int j = 0; j < 3; ++j) {
@@ -176,7 +176,7 @@ TEST(TileDerivatives, CliffsAreLimitedAndUnknownDepthIsLevel) {
   });
 }
 
-/// Sums down, then across, from the first product to the last.
+/// Returns the value filtered down, then across, from the first product to the last.
 float filtered_at(const TilePlane<float>& depth, int x, int y, const std::vector<float>& across,
                   const std::vector<float>& down) {
   const auto size = static_cast<int>(down.size());

@@ -68,7 +68,7 @@ class WideWalk : public ::testing::Test {
 
   static void use(std::int64_t target) {
     hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();  // the next call chooses anew
+    hwy::GetChosenTarget().DeInit();  // the next call selects the target again
   }
 };
 

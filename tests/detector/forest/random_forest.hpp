@@ -36,7 +36,7 @@ inline PixelTest random_test(int planes, Random& random) {
   return test;
 }
 
-/// Two grown trees, the second one behind the first, and between them one that is a leaf.
+/// Returns two grown trees, the second one behind the first, and between them one that is a leaf.
 inline Forest random_forest(int planes, Random& random) {
   Forest forest;
   std::int32_t leaves = 0;

@@ -97,7 +97,7 @@ TEST(AddLeaf, TheSecondLeafFollowsTheFirst) {
   EXPECT_EQ(forest.leaf_views[second.first_view].view, 5U);
 }
 
-/// A leaf that holds a fifth of its tree: 0.3 class 0, 0.1 class 1, else background.
+/// Returns a leaf that holds a fifth of its tree: 0.3 class 0, 0.1 class 1, else background.
 Forest old_forest() {
   Forest forest;
   forest.leaves = {0, 2};
@@ -115,7 +115,7 @@ Forest old_forest() {
   return forest;
 }
 
-/// The last leaf made of new samples alone: 0.8 class 2, a tenth of all new samples.
+/// Returns the last leaf made of new samples alone: 0.8 class 2, a tenth of all new samples.
 Forest new_forest() {
   Forest forest;
   forest.leaves = {0, 1};

@@ -92,8 +92,8 @@ TEST(ScoreTraining, AnyNumberOfThreadsGivesTheSameModel) {
   }
 }
 
-/// An image that is not composed of views: a tile of each kind in a room; `is_there` says whether the truth names
-/// them.
+/// Returns an image that is not composed of views: a tile of each kind in a room; `is_there` says whether the ground
+/// truth names them.
 ValidationFrame tiles_on_a_background(int index, bool is_there) {
   ValidationFrame frame;
   frame.frame = toy::background(50 + static_cast<std::uint64_t>(index));

@@ -58,7 +58,7 @@ TEST(MeanShift, ManyAtOnceAreAsOneByOneOnEveryMachine) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     SCOPED_TRACE(hwy::TargetName(target));
     hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();  // the next call chooses anew
+    hwy::GetChosenTarget().DeInit();  // the next call selects the target again
     const VoteSupport fast = sum_support(space, ranges, centre, kSigma);
     EXPECT_EQ(fast.total, reference.total);
     EXPECT_EQ(fast.moment, reference.moment);

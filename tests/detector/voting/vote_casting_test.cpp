@@ -82,7 +82,7 @@ TEST(VoteCasting, ManyAtOnceAreAsOneByOneOnEveryMachine) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     SCOPED_TRACE(hwy::TargetName(target));
     hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();  // the next call chooses anew
+    hwy::GetChosenTarget().DeInit();  // the next call selects the target again
     expect_as_one_by_one(forest, patches, voters);
   }
   hwy::SetSupportedTargetsForTest(0);

@@ -8,7 +8,7 @@
 namespace houghstream::openni {
 namespace {
 
-/// A recording of the virtual camera's, without the room that OpenNI2's recorder leaves behind its end.
+/// Returns a recording of the virtual camera's, without the room that OpenNI2's recorder leaves behind its end.
 std::string recorded_bytes(const VirtualCamera& camera) {
   CameraOptions options;
   options.mode = {320, 240, 30};

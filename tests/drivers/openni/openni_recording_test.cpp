@@ -33,7 +33,7 @@ std::map<Sensor, std::map<std::int64_t, cv::Mat>> images_of(const std::filesyste
   return images;
 }
 
-/// The step of the pattern that an image shows; JPEG leaves the disc's colour where it was, roughly.
+/// Returns the step of the pattern that an image shows; JPEG leaves the disc's colour where it was, roughly.
 int image_of(const cv::Mat& image, const virtual_camera::CameraImages& pattern) {
   double minimum = 1e9;
   int found = -1;

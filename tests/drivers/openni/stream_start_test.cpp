@@ -8,7 +8,7 @@ namespace {
 constexpr std::int64_t kOpened = 5'000'000;
 constexpr std::int64_t kPeriod = 33'333;
 
-/// Images of a sensor, each with independent noise.
+/// Returns images of a sensor, each with independent noise.
 std::vector<ImageThumbnail> seen(int count) {
   cv::RNG random(7);
   std::vector<ImageThumbnail> images;
@@ -24,7 +24,7 @@ std::vector<ImageThumbnail> seen(int count) {
   return images;
 }
 
-/// The images from `first` on as a recorder gives them: times from zero.
+/// Returns the images from `first` on as a recorder gives them: times from zero.
 std::vector<ImageThumbnail> recorded_from(const std::vector<ImageThumbnail>& live, int first, int count) {
   std::vector<ImageThumbnail> recorded(live.begin() + first, live.begin() + first + count);
   for (ImageThumbnail& image : recorded) image.time_us -= live[first].time_us;

@@ -40,7 +40,7 @@ class VirtualCamera {
   std::filesystem::path folder_;
 };
 
-/// Centre of the test pattern's disc as a mask shows it, pixels.
+/// Returns the centre of the test pattern's disc as a mask shows it, pixels.
 inline cv::Point2d centre_of(const cv::Mat& mask) {
   const cv::Moments moments = cv::moments(mask, true);
   return {moments.m10 / moments.m00, moments.m01 / moments.m00};

@@ -297,7 +297,7 @@ TEST(StoreTransaction, WhoeverIsKilledAtAnyMomentLeavesSomebodysFiles) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
 }
 
-/// The name of the second object; throws where any part of the store is missing or of another one.
+/// Returns the name of the second object; throws where any part of the store is missing or of another one.
 std::string second_of(const fs::path& folder) {
   const ObjectStore store = read_store(folder);
   load_store_meshes(store);

@@ -52,7 +52,7 @@ int in_own_network(const std::function<int()>& body) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// A socket that receives what is sent to the group once it has joined it.
+/// Returns a socket that receives what is sent to the group once it has joined it.
 int receiving_socket() {
   const int socket_fd = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
   sockaddr_in address{};

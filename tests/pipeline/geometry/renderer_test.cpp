@@ -87,7 +87,7 @@ TEST(Renderer, BarycentricsInterpolateTextureInPerspective) {
 }
 
 TEST(Renderer, NeighbouringTrianglesLeaveNoGapAndShareNoPixel) {
-  // A jittered grid whose vertices partly lie exactly on pixel centres, each triangle drawn on its own.
+  // Returns a jittered grid whose vertices partly lie exactly on pixel centres, each triangle drawn on its own.
   std::mt19937_64 generator(5);
   constexpr int kCells = 12;
   Mesh grid;

@@ -79,7 +79,7 @@ TEST(Codecs, SettingsOutOfRangeAreRefused) {
   EXPECT_THROW(zip_depth(frame.depth, 1), InputError);
 }
 
-/// A baseline JPEG with so many empty scans before its end.
+/// Returns a baseline JPEG with so many empty scans before its end.
 std::vector<std::uint8_t> with_scans(int scans) {
   std::vector<std::uint8_t> jpeg = encode_jpeg(cv::Mat(16, 16, CV_8UC3, cv::Scalar::all(90)), 90);
   const std::vector<std::uint8_t> scan = {0xFF, 0xDA, 0, 8, 1, 1, 0, 1, 63, 0, 0x2B};

@@ -56,7 +56,7 @@ inline Mesh table_with(const ShownScene& scene) {
   return mesh;
 }
 
-/// The scene's box by itself, where it stands.
+/// Returns the scene's box by itself, where it stands.
 inline Mesh box_of(const ShownScene& scene) {
   Mesh mesh;
   add_box(scene.box, scene.disc.z(), mesh);

@@ -17,7 +17,7 @@ using test::TrackedScene;
 
 using Names = std::map<std::string, std::string>;
 
-/// Models of a store, by their numbers there.
+/// Returns models of a store by their numbers there.
 TrackModels stored(const std::map<int, std::string>& names) {
   std::map<std::string, Mesh> meshes;
   for (const auto& [id, name] : names) meshes[name] = id == 1 ? block() : block_on_foot();

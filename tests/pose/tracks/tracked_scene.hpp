@@ -41,7 +41,7 @@ inline Eigen::Isometry3d half_turn() {
   return foot().inverse() * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()) * foot();
 }
 
-/// The block that has its origin at its foot as a can, which looks the same on its head.
+/// Returns the block that has its origin at its foot as a can, which looks the same on its head.
 inline TrackModels models_on_foot() {
   return make_track_models({{"can", block_on_foot()}}, {{"can", {{half_turn()}, {}}}});
 }
@@ -67,7 +67,7 @@ inline double distance(const TrackedObject& object, const Eigen::Isometry3d& T) 
   return (object.T_world_object.translation() - T.translation()).norm();
 }
 
-/// A world that is told to a tracker frame by frame.
+/// Shows a world to a tracker frame by frame.
 class TrackedScene {
  public:
   explicit TrackedScene(ObjectTrackerSettings settings = {})

@@ -5,7 +5,7 @@
 namespace houghstream {
 namespace {
 
-/// A pose about which nothing is wrong.
+/// Returns a pose without any fault.
 PoseEvidence good() {
   PoseEvidence evidence;
   evidence.detection_score = 0.9F;
@@ -57,7 +57,7 @@ TEST(PoseQuality, ASurfaceThatGoesOnSpeaksAgainstAPose) {
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByOutline);
 }
 
-/// A right pose as most are.
+/// Returns a typical correct pose.
 QualityTerms mean_of_correct() {
   return QualitySettings{}.mean_of_correct;
 }

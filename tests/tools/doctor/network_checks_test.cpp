@@ -115,7 +115,7 @@ TEST(NetworkChecks, WhatProcessesComplainOfIsToldCamerasThatContradictAreWrong) 
   EXPECT_NE(track.remedy.find("hs-track --check"), std::string::npos);
 }
 
-/// A camera that adds so much to b* of three objects.
+/// Returns a camera that adds so much to b* of three objects.
 CameraChroma camera_with_cast(double b) {
   CameraChroma camera;
   camera.frame = {"LEFT", 1};

@@ -233,7 +233,7 @@ TEST(Resurfaced, OnlyTheObjectsColoursChange) {
   EXPECT_EQ(cv::norm(view.frame.colour, untouched.frame.colour, cv::NORM_INF), 0.0) << "the view's own stay";
 }
 
-/// Mean change of the object's colours over some seeds, 8-bit steps.
+/// Returns the mean change of the object's colours over some seeds, 8-bit steps.
 double change_by(double strength) {
   const TrainingView view = toy::training_views().front();
   double sum = 0.0;

@@ -76,7 +76,7 @@ TEST(ValidationFrames, AsManyLookAlikesAndStrangersOfEachSortAsAskedForStandTher
   EXPECT_TRUE(hard_negatives.objects.empty());
 }
 
-/// Width over height of what stands before the room, which is flat.
+/// Returns the width over height of what stands before the room, which is flat.
 std::vector<double> widths_of_things(const cv::Mat& depth, const cv::Mat& room) {
   constexpr float kBefore_m = 0.1F;
   constexpr int kMinPixels = 100;

@@ -21,7 +21,7 @@ struct MatField {
 };
 using MatBox = std::vector<MatField>;
 
-/// An annotation as the UW scenes have it.
+/// Returns an annotation as the UW scenes have it.
 inline MatBox uw_box(const std::string& category, double instance, const std::array<double, 4>& top_bottom_left_right) {
   const auto& [top, bottom, left, right] = top_bottom_left_right;
   return {{"category", category, 0.0}, {"instance", "", instance}, {"top", "", top},

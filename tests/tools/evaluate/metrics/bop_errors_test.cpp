@@ -11,7 +11,7 @@ namespace {
 const std::vector<Eigen::Isometry3d> kNoSymmetry = {Eigen::Isometry3d::Identity()};
 const Camera kHundredWide = {100, 80, 100.0, 100.0, 49.5, 39.5};
 
-/// A square of 0.2 m, facing a camera that looks along z.
+/// Returns a square of 0.2 m, facing a camera that looks along z.
 Mesh square() {
   Mesh mesh;
   mesh.vertices = {{-0.1F, -0.1F, 0}, {0.1F, -0.1F, 0}, {0.1F, 0.1F, 0}, {-0.1F, 0.1F, 0}};

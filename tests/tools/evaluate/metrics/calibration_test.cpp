@@ -38,7 +38,7 @@ TEST(Calibration, NothingWasStated) {
 }
 
 TEST(Calibration, AThresholdIsTheSmallestScoreFromWhichThePrecisionHolds) {
-  // Of the predictions 1 of 2 at the top is true, and from 0.3 on 18 of 20.
+  // At the top 1 of 2 predictions is true, and from 0.3 on 18 of 20.
   std::vector<Prediction> statements = {{0.99, true}, {0.98, false}};
   for (int i = 0; i < 17; ++i) statements.push_back({0.5 + 0.01 * i, true});
   statements.push_back({0.3, false});

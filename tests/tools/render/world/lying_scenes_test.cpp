@@ -60,7 +60,7 @@ std::vector<const PlacedAsset*> on_table(const World& world) {
   return things;
 }
 
-// Rectangle along the thing's own turn about the vertical round all of it.
+// Returns the rectangle round the whole asset, along its own rotation about the vertical.
 Footprint footprint_of(const PlacedAsset& placed) {
   const Eigen::Matrix3d R = placed.T_world_object.rotation();
   const int column = R.col(0).head<2>().norm() > 0.5 ? 0 : 1;

@@ -19,7 +19,7 @@ const Camera kCamera{160, 120, 140.0, 140.0, 79.5, 59.5};
 constexpr int kFrames = 6;
 constexpr int kId = 3;
 
-/// A block of 60 x 80 x 100 mm with a step in it, so that it has no symmetry.
+/// Returns a block of 60 x 80 x 100 mm with a step in it, so that it has no symmetry.
 Mesh block() {
   Mesh mesh;
   for (const float x : {-0.03F, 0.03F}) {

@@ -70,7 +70,8 @@ TEST(TimeOfFlight, PixelsFlyBetweenTheTwoDepthsOfAnEdge) {
   EXPECT_LT(sum / count, 1.23);
 }
 
-/// Two planes that meet in the middle column, `slope` metres a pixel away from the camera (a corner) or towards it.
+/// Returns two planes that meet in the middle column, `slope` metres a pixel away from the camera (a corner) or towards
+/// it.
 double bias_in_the_middle(double slope) {
   SensorView view = plane_wall(1.0);
   for (int x = 0; x < kTofSize.width; ++x) view.depth.col(x).setTo(1.0 - slope * std::abs(x - 80));
