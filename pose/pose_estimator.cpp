@@ -16,18 +16,18 @@
 namespace houghstream {
 namespace {
 
-/// A detection on its way to a pose: what the stages have found.
+/// Holds what the stages have found for one detection.
 struct Estimation {
   const Detection& detection;
   const ObjectModel& model;
-  ObjectPose& pose;  ///< what is published; its status is kInvalid until it is decided
+  ObjectPose& pose;  ///< published result; its status is kInvalid until it is decided
   std::optional<ObjectObservation> seen = std::nullopt;
   std::vector<RotationCandidate> rotations = {};
   std::vector<PoseCandidate> candidates = {};
   std::vector<RegistrationResult> registered = {};  ///< the candidates
   std::vector<RegistrationResult> chosen = {};      ///< the best first
-  std::vector<PoseEvidence> evidence = {};          ///< of the chosen
-  std::size_t published = 0;                        ///< of the chosen the one that is published, or that would be
+  std::vector<PoseEvidence> evidence = {};          ///< evidence of the selected poses
+  std::size_t published = 0;                        ///< index of the selected pose that is published, or would be
 };
 
 ObjectPoses undecided_poses(const Detections& detections) {
@@ -55,7 +55,7 @@ PoseStatus reason_to_pass_over(const Detection& detection, bool has_model, const
   return PoseStatus::kInvalid;
 }
 
-/// The detections whose pose is looked for; `poses` of the others say why not.
+/// Returns the detections whose pose is estimated; `poses` of the others get the reason why not.
 std::vector<Estimation> begin_estimations(const Detections& detections,
                                           const std::map<std::string, ObjectModel>& models,
                                           const PoseSettings& settings, std::vector<ObjectPose>& poses) {
@@ -122,7 +122,7 @@ void learn_camera_colours(const RgbdFrame& frame, const std::vector<ChromaPair>&
   }
 }
 
-/// The pose of a result, judged by its evidence.
+/// Returns the pose of a result with the status that its evidence decides.
 ObjectPose judged_pose(const Estimation& it, const RegistrationResult& result, const PoseEvidence& evidence,
                        const PoseSettings& settings) {
   ObjectPose judged = it.pose;
@@ -133,7 +133,7 @@ ObjectPose judged_pose(const Estimation& it, const RegistrationResult& result, c
   return judged;
 }
 
-/// Publishes the pose for which the evidence speaks most, or says why not.
+/// Publishes the pose with the strongest evidence, or the status that names the reason against it.
 void decide_one(const PoseSettings& settings, Estimation& it) {
   std::optional<ObjectPose> best;
   for (std::size_t i = 0; i < it.chosen.size(); ++i) {
@@ -146,10 +146,10 @@ void decide_one(const PoseSettings& settings, Estimation& it) {
   it.pose = *std::move(best);
 }
 
-/// Of the poses that look alike by their shape takes the one for which the print speaks, and says how surely; also
-/// where it is withheld, since its quality is told too.
+/// Selects the pose that the texture supports among those that are equivalent by shape, with its probability; also for
+/// rejected poses, whose quality is reported too.
 void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
-  constexpr float kWorthTelling = 0.1F;  // what is wrong already by its shape stays wrong
+  constexpr float kWorthTelling = 0.1F;  // a pose that is wrong by its shape stays wrong
   if (it.pose.shape_quality < kWorthTelling) return;
   const DepthTolerance tolerance{settings.verification.tolerance_m, it.seen->noise};
   const PrintSettings& learnt = class_quality_of(settings, it.pose.class_name).print;
@@ -192,7 +192,7 @@ PoseEstimator::PoseEstimator(std::map<std::string, Mesh> models, PoseSettings se
   std::vector<Making> makings;
   makings.reserve(models.size());
   for (auto& named : models) makings.push_back({named.first, &named.second, state_->models[named.first]});
-  // One model after another would leave threads idle at each one's end; a single one is made by all of them.
+  // Models made one after another would leave threads idle at the end of each; a single one is made by all of them.
   const int threads_of_each = std::max(1, threads / std::max(1, static_cast<int>(makings.size())));
   parallel_for(threads, static_cast<int>(makings.size()), [&](int i) {
     Making& it = makings[static_cast<std::size_t>(i)];

@@ -14,7 +14,7 @@
 
 namespace houghstream {
 
-/// An object of a class at a place.
+/// Gives the class and pose of an object.
 struct PlacedObject {
   const std::string& class_name;
   const Eigen::Isometry3d& T_camera_object;
@@ -32,33 +32,32 @@ class PoseEstimator {
   /// made on `threads` threads, the same for any number. Throws InputError as make_object_model() does, and for
   /// settings out of their range.
   PoseEstimator(std::map<std::string, Mesh> models, PoseSettings settings, int threads = 1);
-  /// Of models that were made before, with settings.model.
+  /// Makes an estimator of models that were made before with settings.model.
   static PoseEstimator from_models(std::map<std::string, ObjectModel> models, PoseSettings settings);
   ~PoseEstimator();
   PoseEstimator(PoseEstimator&&) noexcept;
 
-  /// By class name.
+  /// Returns the models by class name.
   const std::map<std::string, ObjectModel>& models() const;
   const PoseSettings& settings() const;
 
-  /// One ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
-  /// pose.registration, pose.choice and pose.verification are appended to those of the detections.
-  /// The detections must be of this frame (same name); throws std::logic_error otherwise, and InputError for a frame
-  /// that is none.
+  /// Returns one ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
+  /// pose.registration, pose.choice and pose.verification are appended to those of the detections. The detections must
+  /// be of this frame (same name); throws std::logic_error otherwise, and InputError for an invalid frame.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 
-  /// The same with the poses of an earlier frame (warm start): they are candidates beside those of the votes, never the
-  /// only ones, so that a wrong pose does not stick and what was lost comes back by itself.
-  /// `remembered`: what earlier frames of the camera told of its colours (CameraColours::pairs).
+  /// Estimates with the poses of an earlier frame as a warm start: they are candidates beside those of the votes, never
+  /// the only ones, so that a wrong pose does not persist and a lost object is found again. `remembered` holds the
+  /// camera's colours learnt from earlier frames (CameraColours::pairs).
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier,
                        const std::vector<ChromaPair>& remembered = {}) const;
 
-  /// Where a detection of the object would have its centre, camera frame, metres; its origin where the class has no
-  /// model.
+  /// Returns where a detection of the object would have its centre, camera frame, metres; its origin where the class
+  /// has no model.
   Eigen::Vector3d vote_centre(const PlacedObject& object) const;
 
-  /// Whether the middles of two objects are closer together than `max_distance_ratio` of the smaller one's radius: both
-  /// cannot be there. False where a class has no model.
+  /// Returns whether the centres of two objects are closer than `max_distance_ratio` times the smaller radius, so that
+  /// one is a duplicate. False where a class has no model.
   bool is_duplicate(const PlacedObject& a, const PlacedObject& b, double max_distance_ratio) const;
 
  private:

@@ -15,7 +15,7 @@
 
 namespace houghstream {
 
-/// The settings of all stages, in their order; each struct stands beside its stage.
+/// Holds the settings of all stages, in their order; each struct is declared beside its stage.
 struct PoseSettings {
   ModelSettings model;
   DepthNoise noise;
@@ -29,7 +29,7 @@ struct PoseSettings {
   bool learn_camera_colours = true;  ///< models are brought to the camera's colours before their chroma is compared
   QualitySettings quality;
   std::map<std::string, QualitySettings> class_quality;  ///< learnt for one class, by name; of the others: `quality`
-  float min_score = 0.1F;                                ///< of a detection whose pose is looked for
+  float min_score = 0.1F;                                ///< minimum score of a detection whose pose is estimated
   int threads = 1;                                       ///< any number gives the same poses
 };
 
@@ -50,7 +50,7 @@ void fields(const PoseSettings& /*settings*/, const Visit& visit) {
   visit(number("threads", &S::threads, 1, 256));
 }
 
-/// As pipeline/base/check_settings.hpp says, the qualities of single classes too.
+/// Checks the settings as described in pipeline/base/check_settings.hpp, and the qualities of single classes too.
 inline void check_settings(const PoseSettings& settings, const std::string& source) {
   check_fields(settings, source);
   for (const auto& [name, quality] : settings.class_quality)

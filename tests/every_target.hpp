@@ -7,7 +7,7 @@ namespace houghstream::simd {
 
 inline void use(std::int64_t target) {
   hwy::SetSupportedTargetsForTest(target);
-  hwy::GetChosenTarget().DeInit();  // the next call chooses anew
+  hwy::GetChosenTarget().DeInit();  // the next call selects the target again
 }
 
 /// Runs a check with every instruction set that the processor has.

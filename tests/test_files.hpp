@@ -12,7 +12,7 @@
 
 namespace houghstream {
 
-/// An empty folder of this test's own, also while other test programs run.
+/// Returns an empty folder of this test's own, also while other test programs run.
 inline std::filesystem::path fresh_folder(const std::string& name) {
   std::filesystem::path folder =
       std::filesystem::temp_directory_path() / (std::string(program_invocation_short_name) + "_" + name);
@@ -47,7 +47,7 @@ inline void replace_in_file(const std::filesystem::path& file, const std::string
   write_text(file, text);
 }
 
-/// A small frame without structure: colour (10,20,30), depth 1 m, with a hole at the first pixel.
+/// Returns a small frame without structure: colour (10,20,30), depth 1 m, with a hole at the first pixel.
 inline RgbdFrame plain_frame(int width = 64, int height = 48) {
   RgbdFrame frame;
   frame.camera = {width, height, 60.0, 61.0, 31.5, 23.5};
@@ -57,7 +57,7 @@ inline RgbdFrame plain_frame(int width = 64, int height = 48) {
   return frame;
 }
 
-/// 255 in `box_px`, else 0.
+/// Returns 255 in `box_px`, else 0.
 inline cv::Mat box_mask(const cv::Rect& box_px, int width = 64, int height = 48) {
   cv::Mat mask(height, width, CV_8UC1, cv::Scalar(0));
   mask(box_px).setTo(255);

@@ -39,7 +39,7 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& R, const std::string& wh
   return R * stretch_sq.operatorInverseSqrt();
 }
 
-/// Metres from BOP's row-wise rotation and millimetres.
+/// Returns a pose in metres from BOP's row-wise rotation and millimetres.
 Eigen::Isometry3d parse_pose(const json& entry, const std::string& where) {
   const std::vector<double> r = json_numbers(entry, "cam_R_m2c", 9, where);
   const std::vector<double> t_mm = json_numbers(entry, "cam_t_m2c", 3, where);
@@ -65,7 +65,7 @@ cv::Rect parse_box(const json& info, const Camera& camera, const std::string& wh
           static_cast<int>(std::lround(b[3]))};
 }
 
-/// Entry of scene_gt.json for an object.
+/// Reads an object's entry of scene_gt.json.
 GroundTruthObject parse_ground_truth(const json& entry, const std::string& where) {
   GroundTruthObject object;
   object.object_id = json_integer(entry, "obj_id", where);
@@ -75,7 +75,7 @@ GroundTruthObject parse_ground_truth(const json& entry, const std::string& where
   return object;
 }
 
-/// Entry of scene_gt_info.json for it.
+/// Adds the object's entry of scene_gt_info.json.
 void add_info(const json& info, const Camera& camera, const std::string& where, GroundTruthObject& object) {
   object.box_visible_px = parse_box(info, camera, where);
   object.visible_fraction = json_number(info, "visib_fract", where);
@@ -97,7 +97,7 @@ BopImage parse_image(const json& entry, int image_id, const cv::Size& size_px, c
   return image;
 }
 
-/// Image size: our own keys where they are, else that of the image itself (BOP keeps none per image).
+/// Returns the image size: from our own keys where they exist, else from the image itself (BOP stores none per image).
 cv::Size image_size(const json& entry, const fs::path& folder, int image_id, const std::string& where) {
   if (entry.contains("width") && entry.contains("height")) {
     return {json_integer(entry, "width", where), json_integer(entry, "height", where)};
@@ -113,7 +113,7 @@ const json& frame_list(const json& frames, int image_id, const std::string& wher
   return frames.at(key);
 }
 
-/// The objects of an image that scene_camera.json lacks would be left out without a word.
+/// Throws InputError for images that scene_camera.json lacks, whose objects would be ignored silently.
 void require_known_images(const json& frames, const std::vector<BopImage>& images, const std::string& where) {
   std::set<std::string> known;
   for (const BopImage& image : images) known.insert(std::to_string(image.image_id));

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// models_info.json in BOP's format: millimetres, but metres here.
+/// Returns the diameter in metres; models_info.json has millimetres.
 double parse_diameter(const nlohmann::json& entry, const std::string& where) {
   const double diameter_mm = json_number(entry, "diameter", where);
   constexpr double kMax_mm = 1e5;
@@ -78,7 +78,7 @@ BopModels read_bop_models(const fs::path& models_folder) {
 }
 
 std::map<std::string, Mesh> load_class_models(const fs::path& models_folder, double unit_m, int threads) {
-  std::vector<std::pair<std::string, fs::path>> files;  // by class name
+  std::vector<std::pair<std::string, fs::path>> files;  // files by class name
   if (fs::exists(models_folder / "models_info.json")) {
     const BopModels models = read_bop_models(models_folder);
     for (const auto& [object_id, diameter] : models.diameters) {

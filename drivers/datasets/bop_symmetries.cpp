@@ -21,7 +21,7 @@ const nlohmann::json& listed(const nlohmann::json& entry, const char* key, const
   return list;
 }
 
-/// `holder` is an object of one key: json_numbers() names the key in its messages.
+/// Reads a rigid motion; `holder` is an object of one key: json_numbers() names the key in its messages.
 Eigen::Isometry3d parse_motion(const nlohmann::json& holder, const std::string& where) {
   const Matrix4 m = Eigen::Map<const Matrix4>(json_numbers(holder, kDiscrete, 16, where).data());
   const Eigen::Matrix3d R = m.topLeftCorner<3, 3>();

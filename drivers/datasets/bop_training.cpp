@@ -26,7 +26,7 @@ std::vector<fs::path> scene_folders(const fs::path& folder) {
   return scenes;
 }
 
-/// The object with some room around it: whole images of every view would fill the memory for nothing.
+/// Crops the view to the object with some margin: whole images of every view would fill the memory for nothing.
 void crop_around_mask(TrainingView& view) {
   constexpr int kMargin_px = 40;
   const cv::Rect box = cv::boundingRect(view.mask);
@@ -42,7 +42,7 @@ std::string image_name(const BopScene& scene, std::size_t index) {
   return fmt::format("{} image {}", scene.folder().string(), scene.images()[index].image_id);
 }
 
-/// One object of an image as a view; `frame` is the whole image.
+/// Returns one object of an image as a view; `frame` is the whole image.
 TrainingView object_view(const BopScene& scene, std::size_t index, std::size_t object_index, const RgbdFrame& frame,
                          const std::map<int, std::string>& names) {
   const GroundTruthObject& object = scene.images()[index].objects[object_index];
@@ -58,14 +58,14 @@ TrainingView object_view(const BopScene& scene, std::size_t index, std::size_t o
   return view;
 }
 
-/// Outcome of an image.
+/// Holds the outcome of an image.
 struct ImageViews {
   std::vector<TrainingView> views;
   int hidden = 0;  ///< objects that are less visible than kMinTrainingVisibility
   int empty = 0;   ///< objects without mask or depth
 };
 
-/// An image as one view for each of its objects that shows enough of itself; the image is read once.
+/// Reads an image as one view for each of its objects that is visible enough; the image is read once.
 ImageViews read_views(const BopScene& scene, std::size_t index, const std::map<int, std::string>& names) {
   const std::vector<GroundTruthObject>& objects = scene.images()[index].objects;
   ImageViews out;

@@ -20,7 +20,7 @@ namespace houghstream {
 class BopWriter {
  public:
   explicit BopWriter(std::filesystem::path folder);
-  /// `visible_masks` (CV_8UC1 0/255, one per object) may be empty: then no masks are written.
+  /// Adds a frame; `visible_masks` (CV_8UC1 0/255, one per object) may be empty: then no masks are written.
   void add(const RgbdFrame& frame, const std::vector<GroundTruthObject>& objects,
            const std::vector<cv::Mat>& visible_masks);
   void finish();

@@ -85,7 +85,7 @@ std::vector<TimedImage> read_list(const fs::path& folder, const char* name) {
 std::vector<TumPair> pair_images(const fs::path& folder, const std::vector<TimedImage>& colours,
                                  const std::vector<TimedImage>& depths) {
   constexpr std::int64_t kMaxDistance_us = 20000;
-  constexpr std::size_t kMaxNear = 64;  // of one depth image: all of them are compared
+  constexpr std::size_t kMaxNear = 64;  // colour images near one depth image: all of them are compared
   std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;  // distance, depth, colour
   std::size_t first = 0;
   for (std::size_t d = 0; d < depths.size(); ++d) {

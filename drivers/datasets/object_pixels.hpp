@@ -8,13 +8,13 @@
 
 namespace houghstream {
 
-/// A coloured point of an object's visible surface.
+/// Holds a coloured point of an object's visible surface.
 struct ColouredPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< camera frame, metres
   cv::Vec3b colour;                                    ///< BGR
 };
 
-/// Pixels of `mask` (CV_8UC1) that have depth (CV_32FC1, NaN = none).
+/// Counts pixels of `mask` (CV_8UC1) that have depth (CV_32FC1, NaN = none).
 int count_depth_pixels(const cv::Mat& depth, const cv::Mat& mask);
 
 /// Returns the pixels as points, row by row.

@@ -18,7 +18,8 @@ bool is_folder(const std::string& name) {
 /// counts.
 template <typename Open>
 std::unique_ptr<FrameSource> open_with_camera(const std::string& value, const Open& open) {
-  // The depth sensor's nominal camera, which readers of these datasets assume; the datasets themselves state none.
+  // The depth sensor's nominal camera is the one that readers of these datasets assume; the datasets themselves state
+  // none.
   const Camera nominal{640, 480, 525.0, 525.0, 319.5, 239.5};
   std::string folder = value;
   while (!is_folder(folder) && folder.find(',') != std::string::npos) folder.resize(folder.rfind(','));

@@ -14,7 +14,7 @@ namespace houghstream {
 /// or its own). Throws InputError naming what is known; `others` are those that the caller opens itself, "oni:FILE, ".
 std::unique_ptr<FrameSource> open_frame_source(const std::string& specification, const std::string& others = "");
 
-/// Throws InputError where an output is what "KIND:WHERE", or a plain name, stands for, or lies in it
+/// Throws InputError where an output is the file or folder of "KIND:WHERE", or of a plain name, or lies in it
 /// (require_other_file()).
 void require_outside_source(const std::filesystem::path& output, const std::string& specification);
 

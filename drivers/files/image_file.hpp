@@ -6,16 +6,17 @@
 
 namespace houghstream {
 
-/// Colour image, CV_8UC3 BGR. Throws InputError when it is missing or cannot be decoded.
+/// Reads a colour image, CV_8UC3 BGR. Throws InputError when it is missing or cannot be decoded.
 cv::Mat read_colour_image(const std::filesystem::path& file);
 
-/// Depth image as stored, CV_16UC1. Throws InputError when it is missing, cannot be decoded or has another type.
+/// Reads a depth image as stored, CV_16UC1. Throws InputError when it is missing, cannot be decoded or has another
+/// type.
 cv::Mat read_depth_image(const std::filesystem::path& file);
 
-/// Mask, CV_8UC1, 0 or 255 (any stored value above 0 is 255). Throws InputError as above.
+/// Reads a mask, CV_8UC1, 0 or 255 (any stored value above 0 is 255). Throws InputError as above.
 cv::Mat read_mask_image(const std::filesystem::path& file);
 
-/// PNG, compressed for speed. Throws InputError when the file cannot be written.
+/// Writes PNG, compressed for speed. Throws InputError when the file cannot be written.
 void write_png(const cv::Mat& image, const std::filesystem::path& file);
 
 /// Throws InputError unless write_image() knows a format that the file's name ends with.

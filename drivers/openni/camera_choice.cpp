@@ -8,7 +8,7 @@
 namespace houghstream::openni {
 namespace {
 
-/// The number in "#2".
+/// Returns the number in "#2".
 std::size_t index_of(const std::string& selector) {
   std::size_t index = 0;
   const char* end = selector.data() + selector.size();

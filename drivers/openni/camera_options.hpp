@@ -12,7 +12,7 @@
 
 namespace houghstream::openni {
 
-/// Size and rate of a camera's images, the same for depth and colour.
+/// Gives the size and rate of a camera's images, the same for depth and colour.
 struct CameraMode {
   int width = 640;
   int height = 480;
@@ -23,10 +23,10 @@ inline bool operator==(const CameraMode& a, const CameraMode& b) {
   return a.width == b.width && a.height == b.height && a.rate_hz == b.rate_hz;
 }
 
-/// "640x480@30".
+/// Returns a text such as "640x480@30".
 std::string mode_text(const CameraMode& mode);
 
-/// "640x480@30, 320x240@30"; "none" for no mode.
+/// Returns a text such as "640x480@30, 320x240@30"; "none" for no mode.
 std::string modes_text(const std::vector<CameraMode>& modes);
 
 /// Parses WIDTHxHEIGHT or WIDTHxHEIGHT@RATE, the form of the option --mode; 30 Hz without a rate. Throws InputError.
@@ -37,8 +37,8 @@ struct CameraOptions {
   CameraMode mode;
   bool auto_exposure = true;
   bool auto_white_balance = true;
-  /// Depth is registered to colour by the camera; one that cannot is refused, unless this says that its depth comes
-  /// registered anyhow.
+  /// Depth must be registered to colour by the camera; a camera that cannot is refused, unless this option asserts that
+  /// its depth is registered anyhow.
   bool assume_registered = false;
   std::optional<Camera> camera;  ///< intrinsics; default: from the colour sensor's field of view
   std::string record;            ///< record to this .oni file, or where it is there, to FILE_2.oni and so on

@@ -7,7 +7,8 @@ namespace houghstream::openni {
 namespace {
 
 constexpr std::int64_t kWrapUs = std::int64_t{1} << 32;
-constexpr std::int64_t kWrapToleranceUs = 1'000'000;  // between the device's interval over a wrap and the host's
+// Difference between the device's interval over a wrap and the host's.
+constexpr std::int64_t kWrapToleranceUs = 1'000'000;
 
 }  // namespace
 

@@ -49,7 +49,7 @@ struct Idle {
   std::vector<std::unique_ptr<PersistentThread::Worker>> workers;
 };
 
-/// Never destroyed, as the threads use it as long as the process lives.
+/// Returns an object that is never destroyed, as the threads use it as long as the process lives.
 Idle& idle() {
   static auto* const all = new Idle;
   return *all;

@@ -19,8 +19,8 @@ inline constexpr std::uint64_t kOniFileHeader = 24;    // start, latest time, la
 inline constexpr std::uint64_t kOniRecordHeader = 28;  // counted among a record's fields
 inline constexpr std::uint32_t kOniMagic = 0x0052494E;
 inline constexpr std::uint64_t kOniSeekEntry = 20;  // time, configuration, position
-inline constexpr std::uint64_t kOniRangeEnd =
-    24;  // before the end of a node's fields: first time, last time, seek table
+// Before the end of a node's fields: first time, last time, seek table.
+inline constexpr std::uint64_t kOniRangeEnd = 24;
 inline constexpr std::uint64_t kOniImages = kOniRangeEnd + 4;  // likewise: their number, before the first time
 
 enum class OniRecordType : std::uint32_t {
@@ -40,7 +40,7 @@ struct OniRecordHeader {
   bool is(OniRecordType other) const { return type == static_cast<std::uint32_t>(other); }
 };
 
-/// A file of such records. Throws InputError where it holds something else.
+/// Reads a file of such records. Throws InputError where it holds anything else.
 class OniFile {
  public:
   explicit OniFile(const std::filesystem::path& file, std::ios::openmode mode = std::ios::in) : name_(file.string()) {

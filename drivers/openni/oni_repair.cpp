@@ -11,24 +11,24 @@
 namespace houghstream::openni {
 namespace {
 
-/// An image in the file.
+/// Locates an image in the file.
 struct ImagePlace {
   std::uint64_t time = 0;
-  std::uint64_t at = 0;  // of its record
+  std::uint64_t at = 0;  // position of its record
 };
 
 struct CutStream {
   std::uint64_t added_at = 0;    // record that adds it
-  std::uint64_t fields_end = 0;  // of that record
+  std::uint64_t fields_end = 0;  // end of that record's fields
   std::vector<ImagePlace> images;
 };
 
 struct CutRecording {
-  std::map<std::uint32_t, CutStream> streams;  // by number
+  std::map<std::uint32_t, CutStream> streams;  // streams by number
   std::uint64_t end = kOniFileHeader;          // behind the last whole record that precedes the recorder's own ending
 };
 
-/// Nothing where no whole record of the recording follows.
+/// Returns nothing where no whole record of the recording follows.
 std::optional<OniRecordHeader> next_record(OniFile& oni, std::uint64_t at) {
   if (at >= oni.size()) return std::nullopt;
   try {
@@ -70,7 +70,7 @@ class OniEnding {
     begin_record(OniRecordType::kNodeRemoved, node, 0, stream.added_at);
     const std::uint64_t table = at_;
     begin_record(OniRecordType::kSeekTable, node, kOniSeekEntry * (stream.images.size() + 1), 0);
-    append_entry({});  // stands for no image
+    append_entry({});  // the first entry belongs to no image
     for (const ImagePlace& image : stream.images) append_entry(image);
     oni_.write(stream.fields_end - kOniImages, static_cast<std::uint32_t>(stream.images.size()));
     const std::uint64_t last = stream.images.empty() ? 0 : stream.images.back().time;

@@ -9,7 +9,7 @@
 namespace houghstream::openni {
 namespace {
 
-/// Where a record at `at` holds times.
+/// Returns the positions of the times in a record at `at`.
 std::vector<std::uint64_t> times_in(const OniRecordHeader& record, std::uint64_t at) {
   const std::uint64_t payload = at + record.fields;
   switch (static_cast<OniRecordType>(record.type)) {
@@ -18,7 +18,7 @@ std::vector<std::uint64_t> times_in(const OniRecordHeader& record, std::uint64_t
     case OniRecordType::kSeekTable: break;
     default: return {};
   }
-  std::vector<std::uint64_t> places;  // the first entry stands for no image
+  std::vector<std::uint64_t> places;  // the first entry belongs to no image
   for (std::uint64_t entry = kOniSeekEntry; entry + kOniSeekEntry <= record.payload; entry += kOniSeekEntry) {
     places.push_back(payload + entry);
   }
@@ -28,7 +28,7 @@ std::vector<std::uint64_t> times_in(const OniRecordHeader& record, std::uint64_t
 /// Frames that a stream's header states, and those that are there.
 struct StreamContent {
   std::uint32_t stated = 0;             // images
-  std::vector<std::uint64_t> times;     // of its images
+  std::vector<std::uint64_t> times;     // times of its images
   std::vector<std::uint64_t> in_table;  // likewise, of its seek table
 };
 

@@ -33,10 +33,11 @@ auto wait_in_parts(milliseconds timeout, const StopRequested& stop_requested, co
   return result;
 }
 
-/// The first images of a recorded file, as its times are compared with what was seen live; fewer where it is shorter.
+/// Reads the first images of a recorded file, whose times are compared with those of the live images; fewer where it is
+/// shorter.
 FirstImages read_first_images(const std::string& file) {
   const auto device = OpenniDevice::open_file(file);
-  constexpr std::size_t kCompared = 24;  // of a stream: enough where only some were seen live
+  constexpr std::size_t kCompared = 24;  // images of a stream: enough where only some were seen live
   FirstImages first;
   while (std::min(first.depth.size(), first.colour.size()) < kCompared && !device->ended()) {
     const std::optional<SensorImage> image = device->wait(kFileTimeout);
@@ -83,10 +84,10 @@ struct OpenniDevice::State {
   ::openni::VideoStream colour;
   CameraMode mode;
   bool is_file = false;
-  int images_left = 0;    // of a file
+  int images_left = 0;    // images of a file still to come
   int depth_to_skip = 0;  // before a camera's images are as its modes say
   ImageQueue inbox;
-  std::optional<StreamReader> reader;  // of a camera
+  std::optional<StreamReader> reader;  // reads a camera's images
   std::optional<OpenniRecording> recording;
 
   ~State() {
@@ -151,9 +152,9 @@ struct OpenniDevice::State {
     check_openni(colour.start(), uri + ": colour does not start");
   }
 
-  /// Its status is ok whether the driver can or not: the images' times will tell. OpenNI2 deletes what the driver's
-  /// thread hands images to, and makes it anew, so this is done just behind a colour image, when no other is on its
-  /// way.
+  /// Synchronises the sensors. The status is ok whether the driver can or not; the images' times show it. OpenNI2
+  /// deletes the objects to which the driver's thread hands images, and makes new ones, so this is done just behind a
+  /// colour image, when no other is on its way.
   void synchronise() {
     wait_in_parts(kFirstImage, stop_requested, [&](milliseconds part) {
       ::openni::VideoStream* streams[] = {&colour};
@@ -164,8 +165,8 @@ struct OpenniDevice::State {
     device.setDepthColorSyncEnabled(true);
   }
 
-  /// Depth from before registration is of the same size and looks like any other, so it is told by its turn. A
-  /// recording starts behind it.
+  /// Waits until images have the requested modes. Depth from before registration has the same size and looks like any
+  /// other, so it is recognised by its order. A recording starts behind it.
   void await_modes() {
     inbox.clear();
     depth_to_skip = kDepthBeforeModes;

@@ -27,13 +27,13 @@ std::vector<CameraDescription> list_cameras(bool closely);
 /// InputError where it finds no driver.
 std::shared_ptr<const void> keep_openni_running();
 
-/// A camera or a .oni file through OpenNI2, running from construction to destruction. Everything that knows OpenNI2
-/// is behind it. To be used from a thread that lasts as long as the process, see PersistentThread.
+/// Runs a camera or a .oni file through OpenNI2, from construction to destruction. All code that knows OpenNI2 is
+/// behind it. It must be used from a thread that lasts as long as the process, see PersistentThread.
 class OpenniDevice {
  public:
   /// Opens a camera: registered, synchronised where it can, not mirrored. Throws InputError where it lacks the mode
-  /// (listing those it has) or the registration. What it waits for here and in wait() it gives up as soon as
-  /// `stop_requested` says so.
+  /// (listing those it has) or the registration. Waiting here and in wait() ends as soon as `stop_requested` returns
+  /// true.
   static std::unique_ptr<OpenniDevice> open_camera(const std::string& uri, const CameraOptions& options,
                                                    const StopRequested& stop_requested = {});
 
@@ -42,9 +42,9 @@ class OpenniDevice {
 
   ~OpenniDevice();
 
-  /// The next image in the order of arrival; nothing after `timeout`. A camera's first images, which may be from
-  /// before its depth was registered, are left out, and so is one that is not as the mode says, for instance cut short
-  /// on the way; in a file it makes this throw InputError, as does a file's end before all its images have come.
+  /// Returns the next image in the order of arrival; nothing after `timeout`. A camera's first images, which may be
+  /// from before its depth was registered, are left out, and so is one that does not match the mode, for instance cut
+  /// short on the way; in a file it makes this throw InputError, as does a file's end before all its images have come.
   std::optional<SensorImage> wait(std::chrono::milliseconds timeout);
 
   /// The camera has been unplugged, or all images of the file have been given.
@@ -52,11 +52,11 @@ class OpenniDevice {
 
   const CameraMode& mode() const;
 
-  /// The camera that the options name, else the nominal one. Throws InputError where its size is not the mode's.
+  /// Returns the camera of the options, else the nominal one. Throws InputError where its size is not the mode's.
   Camera camera(const CameraOptions& options) const;
 
-  /// Intrinsics from the colour sensor's field of view: the principal point in the middle. Throws InputError where
-  /// the device does not tell.
+  /// Returns intrinsics from the colour sensor's field of view, with the principal point in the middle. Throws
+  /// InputError where the device does not state it.
   Camera nominal_camera() const;
 
  private:

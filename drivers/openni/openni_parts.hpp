@@ -12,12 +12,12 @@
 #include "drivers/openni/camera_choice.hpp"
 #include "drivers/openni/timestamp_pairing.hpp"
 
-// OpenNI2 in this project's words. Included by the .cpp files of this folder only.
+// These functions convert OpenNI2's types to this project's. Only the .cpp files of this folder include them.
 
 namespace houghstream::openni {
 
-/// OpenNI2 runs while somebody holds one: it watches for cameras that come and go. Throws InputError where it finds no
-/// driver.
+/// Keeps OpenNI2 running while an instance exists: it watches for cameras that come and go. Throws InputError where it
+/// finds no driver.
 class OpenniLibrary {
  public:
   OpenniLibrary();
@@ -26,7 +26,7 @@ class OpenniLibrary {
   OpenniLibrary& operator=(const OpenniLibrary&) = delete;
 };
 
-/// Hears that a camera was unplugged or has failed.
+/// Notes that a camera was unplugged or has failed.
 class DisconnectListener : public ::openni::OpenNI::DeviceDisconnectedListener,
                            public ::openni::OpenNI::DeviceStateChangedListener {
  public:
@@ -56,14 +56,14 @@ void check_openni(::openni::Status status, const std::string& what);
 ::openni::SensorType openni_type(SensorImage::Sensor sensor);
 CameraMode camera_mode_of(const ::openni::VideoMode& mode);
 
-/// A sensor's mode with a pixel format that is understood here: RGB, or depth in millimetres or their tenths.
+/// Returns a sensor's mode with a supported pixel format: RGB, or depth in millimetres or their tenths.
 std::optional<::openni::VideoMode> find_mode(::openni::Device& device, SensorImage::Sensor sensor,
                                              const CameraMode& wanted);
 
 /// The modes that depth and colour have in common.
 std::vector<CameraMode> common_modes(::openni::Device& device);
 
-/// The serial number, or nothing where the driver does not tell.
+/// Returns the serial number, or nothing where the driver does not state it.
 std::string serial_of(const ::openni::Device& device);
 
 /// The sensor of the image that is there first; nothing where none comes in time.

@@ -69,7 +69,7 @@ void OpenniRecording::finish(FirstImages (*first_recorded)(const std::string& fi
     check_oni(file_);
     recorded = first_recorded(file_);
   } catch (const std::exception& error) {
-    whole_.keep_partial();  // what a camera has seen cannot be had again
+    whole_.keep_partial();  // a camera's recording cannot be repeated
     log_error("{}; the recording is not whole and stays there, {} is what it was", error.what(),
               whole_.file().string());
     return;

@@ -10,13 +10,13 @@
 #include "drivers/openni/timestamp_pairing.hpp"
 #include "pipeline/base/files.hpp"
 
-// Recording of a camera to a .oni file. Included by the .cpp files of this folder only.
+// The recording of a camera goes to a .oni file. Only the .cpp files of this folder include this header.
 
 namespace houghstream::openni {
 
-/// OpenNI2's recorder lets each stream begin at zero, so that colour and depth that were taken together lie apart in
-/// the file wherever their first images were not. What was seen live tells when those were taken, and with it the times
-/// in the file are mended once it is finished.
+/// Records to a .oni file. OpenNI2's recorder lets each stream begin at zero, so that colour and depth that were taken
+/// together lie apart in the file wherever their first images were not. The live images show when those were taken,
+/// which corrects the times in the file once it is finished.
 class OpenniRecording {
  public:
   /// Records to the file that the options name, or to its next number. What a killed program has recorded under that
@@ -32,10 +32,10 @@ class OpenniRecording {
   /// Ends the recording; the streams must still exist, and have been stopped.
   void stop() { recorder_.destroy(); }
 
-  /// After stop(): makes times in the file those of one clock, the earlier stream's first image at zero, and puts it
-  /// into its place. Warns where the times cannot be mended; they are then as OpenNI2 has left them. A recording that
-  /// is not whole (a full disk) is told, and stays as FILE.partial.oni; an earlier FILE is left alone.
-  /// `first_recorded` reads the first images of a recorded file.
+  /// Corrects the file after stop(): its times become those of one clock, the earlier stream's first image at zero, and
+  /// the file is moved to its final name. Warns where the times cannot be corrected; they are then as OpenNI2 has left
+  /// them. An incomplete recording (a full disk) is reported, and stays as FILE.partial.oni; an earlier FILE is left
+  /// alone. `first_recorded` reads the first images of a recorded file.
   void finish(FirstImages (*first_recorded)(const std::string& file)) noexcept;
 
  private:

@@ -14,7 +14,7 @@
 #include "drivers/openni/lasting_thread.hpp"
 #include "drivers/openni/openni_parts.hpp"
 
-// Included by the .cpp files of this folder only.
+// Only the .cpp files of this folder include this header.
 
 namespace houghstream::openni {
 
@@ -67,7 +67,7 @@ class StreamReader {
   static constexpr std::chrono::milliseconds kTimeout{100};
 
   void run() {
-    setpriority(PRIO_PROCESS, 0, kNiceLevel);  // on Linux: of the calling thread
+    setpriority(PRIO_PROCESS, 0, kNiceLevel);  // on Linux this sets the calling thread
     while (running_) {
       const std::optional<SensorImage::Sensor> sensor = wait_for_image(depth_, colour_, kTimeout);
       if (!sensor) continue;

@@ -9,7 +9,7 @@ namespace houghstream::openni {
 namespace {
 
 constexpr int kStep = 8;
-constexpr std::size_t kMin = 4;                // images that tell a place from others
+constexpr std::size_t kMin = 4;                // minimum number of images that identify a position
 constexpr std::int64_t kMaxApartUs = 500'000;  // one recorder starts both streams
 
 /// Returns how well the recorded images match the observed thumbnails of the same times, if the recording begins at

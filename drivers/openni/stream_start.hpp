@@ -8,7 +8,7 @@
 
 namespace houghstream::openni {
 
-/// An image of a stream, small enough to be remembered.
+/// Holds an image of a stream in a size small enough to store.
 struct ImageThumbnail {
   std::int64_t time_us = 0;
   cv::Mat some_pixels;  ///< every eighth of each row and column
@@ -16,7 +16,7 @@ struct ImageThumbnail {
 
 ImageThumbnail make_thumbnail(const SensorImage& image);
 
-/// The first images of a camera's two streams.
+/// Holds the first images of a camera's two streams.
 struct FirstImages {
   std::vector<ImageThumbnail> depth;
   std::vector<ImageThumbnail> colour;
@@ -25,7 +25,7 @@ struct FirstImages {
   }
 };
 
-/// Where a recorded stream begins on the device's clock.
+/// Gives the start of a recorded stream on the device's clock.
 struct StreamStart {
   std::int64_t device_us = 0;
   double difference = 0.0;  ///< mean over images and values: 0 where the recording is without loss

@@ -10,7 +10,7 @@
 
 namespace houghstream::openni {
 
-/// One image of one of a camera's two sensors, as it arrived.
+/// Holds one image of one of a camera's two sensors, as it arrived.
 struct SensorImage {
   enum class Sensor { kDepth, kColour };
 
@@ -27,10 +27,11 @@ struct ImagePair {
   SensorImage colour;
 };
 
-/// The pair as a frame; its utime is the caller's.
+/// Returns the pair as a frame with the caller's utime.
 RgbdFrame frame_of_pair(const ImagePair& pair, const Camera& camera, std::int64_t utime);
 
-/// Maximum time between depth and colour of a pair: half the time between two images, and some reserve for jitter.
+/// Returns the maximum time between depth and colour of a pair: half the time between two images, and some reserve for
+/// jitter.
 std::int64_t pairing_tolerance_us(const CameraMode& mode);
 
 /// Brings depth and colour together by their capture times, whichever arrives first and however late. The last colour
@@ -41,17 +42,19 @@ class TimestampPairing {
   /// between the sensors is; a little more allows for jitter.
   explicit TimestampPairing(std::int64_t tolerance_us) : tolerance_us_(tolerance_us) {}
 
-  /// The pair that this image completes. Each image is used once; those older than a pair's are given up. A sensor's
-  /// time that falls is a clock that has jumped: what waits of that sensor is given up.
+  /// Adds an image and returns the pair that it completes. Each image is used once; those older than a pair's are
+  /// dropped. A sensor's time that falls shows that its clock has jumped: the waiting images of that sensor are
+  /// dropped.
   std::optional<ImagePair> put(SensorImage image);
 
-  /// Depth images given up so far because no colour image was taken near them.
+  /// Returns the number of depth images dropped so far because no colour image was taken near them.
   std::int64_t unpaired() const { return unpaired_; }
 
-  /// Gives up all that waits.
+  /// Drops all waiting images.
   void clear();
 
-  /// Images of a sensor that wait for the other; more are given up, the oldest first. Half a second at 30 Hz.
+  /// Maximum number of images of a sensor that wait for the other; more are dropped, the oldest first. It is half a
+  /// second at 30 Hz.
   static constexpr std::size_t kMaxUnpaired = 16;
 
  private:

@@ -33,7 +33,7 @@ bool truth(const nlohmann::json& entry, const char* key, const std::string& wher
   return found->get<bool>();
 }
 
-/// That of a store that does not say it is the origin.
+/// Returns the vote centre of an entry; the origin for a store that states none.
 Eigen::Vector3f vote_centre(const nlohmann::json& entry, const std::string& where) {
   if (!entry.contains("vote_centre_m")) return Eigen::Vector3f::Zero();
   const std::vector<double> xyz = json_numbers(entry, "vote_centre_m", 3, where);
@@ -65,7 +65,7 @@ OrderedJson to_json(const ShapeSymmetry& shape) {
   return json;
 }
 
-/// That of a store that does not say it holds every image.
+/// Returns the range of brightness; for a store that states none it holds every image.
 BrightnessRange parse_tone(const nlohmann::json& json, const std::string& file) {
   BrightnessRange tone;
   const auto found = json.find("tone");
@@ -129,7 +129,7 @@ bool is_list_of_store(const fs::path& file) {
   return read_file(file, "the list of an object store").find(fmt::format("\"{}\"", kVersionKey)) != std::string::npos;
 }
 
-/// The models of the store must be those of its list, and nothing that is known of them a name that nobody reads.
+/// Checks that the models of the store are those of its list, and that no entry has a name that is never read.
 void check_models(const ObjectStore& store, const BopModels& models) {
   const fs::path info_file = store.models_folder() / "models_info.json";
   const std::string info = info_file.string();
@@ -237,7 +237,7 @@ const StoredObject& find_object(const ObjectStore& store, const std::string& nam
 }
 
 void check_bounds(const Mesh& mesh, const Eigen::AlignedBox3d& stated, const std::string& file) {
-  constexpr double kTolerance = 0.02;  // of the largest side
+  constexpr double kTolerance = 0.02;  // fraction of the largest side
   const Eigen::AlignedBox3d box = mesh_bounds(mesh).cast<double>();
   const double off =
       std::max((box.min() - stated.min()).cwiseAbs().maxCoeff(), (box.max() - stated.max()).cwiseAbs().maxCoeff());
@@ -326,7 +326,7 @@ bool is_store_entry(const fs::path& relative) {
   fs::path entry = relative;
   if (entry.extension() == kPartialEnding) entry.replace_extension();
   if (entry == "models" || entry == "views" || files.count(entry.string()) > 0) return true;
-  // A mesh, its texture or an image of its views: obj_000001.ply.
+  // A mesh, its texture or an image of its views has a name such as obj_000001.ply.
   const std::string name = entry.stem().string();
   const bool is_of_object = name.size() > 4 && name.rfind("obj_", 0) == 0 &&
                             name.find_first_not_of("0123456789", 4) == std::string::npos && entry.has_extension();

@@ -11,45 +11,45 @@
 #include "pipeline/geometry/symmetry.hpp"
 #include "pipeline/types/brightness.hpp"
 
-// The object store: a folder with all that is known of the taught objects, which hs-teach writes and hs-detect and
-// hs-pose take as one argument.
+// The object store is a folder with all data of the taught objects, which hs-teach writes and hs-detect and hs-pose
+// take as one argument.
 
 namespace houghstream::store {
 
-/// Version of store.json; another one is refused.
+/// Version of store.json; other versions are refused.
 constexpr int kStoreVersion = 1;
 
 /// A vote centre is nearer to the origin than this, metres: farther away coordinates lose what a mesh shows.
 constexpr float kMaxCentre_m = 10.0F;
 
-/// A taught object, as store.json says it.
+/// Describes a taught object, as in store.json.
 struct StoredObject {
-  int id = 0;             ///< from 1, that of its model and of its class in the forest
+  int id = 0;             ///< from 1, the number of its model and of its class in the forest
   std::string name;       ///< no two are the same
   std::string mesh;       ///< file that it was taught from, for people
   bool coloured = true;   ///< false: only its shape is known
-  int views = 0;          ///< that it was taught by
-  std::string attitudes;  ///< in which it was shown: "resting", "upright" or "any"
+  int views = 0;          ///< views from which it was taught
+  std::string attitudes;  ///< attitudes in which it was shown: "resting", "upright" or "any"
   /// The point of its own frame for which it was taught to vote, metres: where detections' centres are.
   Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();
-  nlohmann::json quality{};  ///< what was learnt of its poses' quality, an object; null where nothing was
+  nlohmann::json quality{};  ///< learnt settings of its poses' quality, an object; null where none were learnt
   std::optional<ShapeSymmetry> shape_symmetry{};  ///< unknown in a store that was taught before it was looked for
 };
 
 struct ObjectStore {
   std::filesystem::path folder;
-  std::vector<StoredObject> objects;               ///< by id
-  BrightnessRange tone;                            ///< of the images in which they were practised
-  OrderedJson settings;                            ///< of the last teaching, for people
-  std::map<int, Symmetries> symmetries;            ///< by id, of models_info.json; empty for an object without any
-  std::filesystem::path json_file() const;         ///< the list
-  std::filesystem::path forest_file() const;       ///< of the detector
-  std::filesystem::path models_folder() const;     ///< a BOP models folder
-  std::filesystem::path view_image(int id) const;  ///< some of its views, side by side
-  std::filesystem::path contact_sheet() const;     ///< the images of all objects
-  std::map<std::string, nlohmann::json> quality() const;          ///< by name, of those that have any
-  std::map<std::string, Eigen::Vector3f> vote_centres() const;    ///< by name
-  std::map<std::string, ShapeSymmetry> shape_symmetries() const;  ///< by name, of those whose are known
+  std::vector<StoredObject> objects;          ///< in the order of their ids
+  BrightnessRange tone;                       ///< brightness of the images of their calibration
+  OrderedJson settings;                       ///< settings of the last teaching, for people
+  std::map<int, Symmetries> symmetries;       ///< symmetries of models_info.json by id; empty for an object without any
+  std::filesystem::path json_file() const;    ///< the list
+  std::filesystem::path forest_file() const;  ///< file of the detector
+  std::filesystem::path models_folder() const;                  ///< a BOP models folder
+  std::filesystem::path view_image(int id) const;               ///< some of its views, side by side
+  std::filesystem::path contact_sheet() const;                  ///< the images of all objects
+  std::map<std::string, nlohmann::json> quality() const;        ///< quality settings by name, of objects that have any
+  std::map<std::string, Eigen::Vector3f> vote_centres() const;  ///< vote centres by name
+  std::map<std::string, ShapeSymmetry> shape_symmetries() const;  ///< shape symmetries by name, where they are known
   std::map<std::string, Symmetries> symmetries_by_name() const;
 };
 
@@ -58,11 +58,11 @@ struct ObjectStore {
 /// contradict one another.
 ObjectStore read_store(const std::filesystem::path& folder);
 
-/// The object of this name. Throws InputError that lists the store's where there is none.
+/// Returns the object of this name. Throws InputError that lists the store's where there is none.
 const StoredObject& find_object(const ObjectStore& store, const std::string& name);
 
-/// Meshes by name, metres, read on `threads` threads; without their colours where the store says that these are
-/// unknown. Throws InputError where one cannot be read or has another size than models_info.json says.
+/// Loads the meshes by name, metres, read on `threads` threads; without their colours where the store states that these
+/// are unknown. Throws InputError where one cannot be read or has another size than in models_info.json.
 std::map<std::string, Mesh> load_store_meshes(const ObjectStore& store, int threads = 1);
 
 /// Throws InputError naming the mesh's file where it has other bounds than its models_info.json states, metres, by more
@@ -87,7 +87,7 @@ void require_new_name(const std::string& name, const std::string& where);
 std::vector<std::string> find_stores(const std::filesystem::path& folder);
 
 /// Returns whether a path, relative to a store's folder, is one of a store's own entries, whole or being written. All
-/// else in the folder is foreign and is kept (pipeline/base/folder_exchange.hpp).
+/// other entries of the folder are foreign and are kept (pipeline/base/folder_exchange.hpp).
 bool is_store_entry(const std::filesystem::path& relative);
 
 /// Returns whether the folder may be replaced: it is empty, or holds a store or the remains of one. A foreign

@@ -10,7 +10,7 @@ namespace houghstream::store {
 /// Differs whenever the file has been written or exchanged, without reading it.
 std::string file_stamp(const std::filesystem::path& file);
 
-/// The same of all that lies in a folder, a line each.
+/// Returns the stamps of all files in a folder, a line each.
 std::string folder_stamp(const std::filesystem::path& folder);
 
 /// Returns the stamp of a store's list and of all files beside its meshes, a line each.

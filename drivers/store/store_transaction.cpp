@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a store lies, symbolic links followed: the store is exchanged, not the link to it.
+/// Returns where a store lies, with symbolic links followed: the store is exchanged, not the link to it.
 fs::path place_of_store(const fs::path& store) {
   std::error_code error;
   fs::path whole = fs::absolute(store, error);
@@ -35,9 +35,8 @@ int open_folder(const fs::path& folder) {
   return open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 }
 
-/// Lock under which a process checks for another writer of the store and registers as one: two processes that begin
-/// together would otherwise both find none. It waits for earlier holders, who hold it briefly, and leaves no file
-/// beside the store.
+/// Locks the check for another writer of the store and the registration as one: two processes that begin together would
+/// otherwise both find none. It waits for earlier holders, who hold it briefly, and leaves no file beside the store.
 class StoreLock {
  public:
   explicit StoreLock(const fs::path& folder) : file_(open_folder(folder)) {
@@ -57,7 +56,8 @@ class StoreLock {
   int file_;
 };
 
-/// An open folder that nobody else has locked, or -1. The lock ends with its process, however that ends.
+/// Opens a folder that nobody else has locked and locks it; returns -1 where that fails. The lock ends with its
+/// process, however that ends.
 int try_lock(const fs::path& folder) {
   const int file = open_folder(folder);
   if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0) return file;

@@ -10,14 +10,14 @@ namespace houghstream::store {
 /// lies in STORE and is no part of a store (is_store_entry()) is somebody's, and is there afterwards as it was before.
 class StoreTransaction {
  public:
-  /// Throws InputError where STORE is a folder of something else or a link to nothing, another teaching works on it,
-  /// the folder beside it cannot be made, or somebody's folder in it could not be carried over.
+  /// Begins the transaction. Throws InputError where STORE is a folder of other contents or a link to nothing, another
+  /// teaching works on it, the folder beside it cannot be made, or a foreign folder in it could not be carried over.
   explicit StoreTransaction(const std::filesystem::path& store);
   ~StoreTransaction();  ///< removes what was not published
   StoreTransaction(const StoreTransaction&) = delete;
   StoreTransaction& operator=(const StoreTransaction&) = delete;
 
-  /// Where to write.
+  /// Returns the folder to write to.
   const std::filesystem::path& folder() const { return partial_; }
 
   /// The folder becomes STORE, and what STORE was is removed. Throws InputError where it cannot.
@@ -30,14 +30,15 @@ class StoreTransaction {
   bool is_published_ = false;
 };
 
-/// Throws InputError where no store could be put: a folder of something else, a link to nothing, a place that takes no
-/// files, one with somebody's folder that could not be carried over. Asked before the work whose result is to go there;
+/// Throws InputError where no store could be put: a folder of other contents, a link to nothing, a folder that takes no
+/// files, one with a foreign folder that could not be carried over. Called before the work whose result is to go there;
 /// makes nothing, whoever works on the store.
 void require_place_for_store(const std::filesystem::path& store);
 
-/// On a file system that cannot exchange folders, a teaching that is interrupted in the wrong moment leaves no STORE,
-/// but the old one beside it: this one is put back into its place. Else nothing is done. For those who read a store
-/// before they change it. Throws InputError where another teaching works on it, or it cannot be moved.
+/// Moves an old store back into its place. On a file system that cannot exchange folders, a teaching that is
+/// interrupted at the wrong moment leaves no STORE, but the old one beside it; otherwise this does nothing. It is
+/// called before a store is read to be changed. Throws InputError where another teaching works on it, or it cannot be
+/// moved.
 void recover_store(const std::filesystem::path& store);
 
 }  // namespace houghstream::store

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// In periods of looking.
+// Times in polling periods.
 constexpr int kFirstRetry = 5;
 constexpr int kLastRetry = 300;
 constexpr int kReportMissing = 50;
@@ -49,7 +49,7 @@ bool holds(const std::vector<KnownObject>& objects, const std::string& name) {
   return std::any_of(objects.begin(), objects.end(), [&](const KnownObject& known) { return known.name == name; });
 }
 
-/// Names of those that `others` lack, with what happened to them.
+/// Returns the names of those that `others` lack, with their change.
 std::string changed(const char* what, const std::vector<KnownObject>& objects, const std::vector<KnownObject>& others) {
   std::vector<std::string> names;
   for (const KnownObject& object : objects) {
@@ -79,7 +79,7 @@ std::string describe_neighbours(const fs::path& folder) {
 
 StoreWatcherBase::StoreWatcherBase(fs::path folder, Load load) : folder_(std::move(folder)), load_(std::move(load)) {
   known_.store = folder_.string();
-  taken_ = state_of_store(folder_);  // what changes while it is read is noticed when it is followed
+  taken_ = state_of_store(folder_);  // changes during the reading are noticed by follow()
   if (!fs::exists(folder_)) {
     require(fs::is_directory(folder_above(folder_)),
             "{}: no such folder, expected an object store of hs-teach, or where it can make one", folder_.string());
@@ -131,7 +131,7 @@ void StoreWatcherBase::run(std::chrono::milliseconds period) {
     try {
       poll();
     } catch (const std::bad_alloc&) {
-      pending_.clear();  // it is looked at again
+      pending_.clear();  // it is polled again
     }
     lock.lock();
   }
@@ -163,7 +163,7 @@ void StoreWatcherBase::load(const std::string& state) {
   try {
     const ObjectStore store = read_store(folder_);
     std::shared_ptr<const void> loaded = load_(store);
-    if (state_of_store(folder_) != state) return;  // of two stores
+    if (state_of_store(folder_) != state) return;  // parts of two stores were read
     adopt(store, std::move(loaded));
     taken_ = state;
   } catch (const WorkCancelled&) {

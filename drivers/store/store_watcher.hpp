@@ -24,16 +24,16 @@ class StoreWatcherBase {
   using Load = std::function<std::shared_ptr<const void>(const ObjectStore&)>;
 
   /// Loads the store at once. `load` throws where its parts are bad; it may be called again later, from another thread.
-  /// Where there is no folder of this name yet, but one that it could be made in, nothing is known so far, and the log
-  /// says so, and 50 periods later once more, with the stores that lie beside it. Throws InputError as read_store() and
-  /// `load` do.
+  /// Where there is no folder of this name yet, but one that it could be made in, no object is known so far; this is
+  /// logged, and 50 periods later once more, with the stores beside it. Throws InputError as read_store() and `load`
+  /// do.
   StoreWatcherBase(std::filesystem::path folder, Load load);
   ~StoreWatcherBase();  ///< waits for a load that is under way
   StoreWatcherBase(const StoreWatcherBase&) = delete;
   StoreWatcherBase& operator=(const StoreWatcherBase&) = delete;
 
-  /// From here on looks at it every `period`, and loads it when it has changed and stayed the same for a period: who
-  /// copies into it is at work for a while.
+  /// Starts polling every `period`, and loads the store when it has changed and then stayed the same for a period,
+  /// since copying into it takes a while.
   void follow(std::chrono::milliseconds period);
 
   /// Instead of follow(), where all is to go by the same: throws InputError if there is no store yet.
@@ -56,12 +56,12 @@ class StoreWatcherBase {
   std::filesystem::path folder_;
   Load load_;
   std::string taken_;                                 // the files' state when they were loaded
-  std::string refused_;                               // or when they could not be
-  int polls_since_refusal_ = 0;                       // of the same state
+  std::string refused_;                               // the files' state when they were refused
+  int polls_since_refusal_ = 0;                       // polls of the same state
   int polls_until_retry_ = 0;                         // after the refusal
   int polls_without_folder_ = 0;                      // since the start, while nothing is known
   std::string pending_;                               // seen last: one that may not last
-  std::vector<std::shared_ptr<const void>> retired_;  // given up here, where their end keeps no frame waiting
+  std::vector<std::shared_ptr<const void>> retired_;  // released here, where their end keeps no frame waiting
   mutable std::mutex mutex_;
   std::condition_variable ended_;
   bool ending_ = false;
@@ -70,7 +70,7 @@ class StoreWatcherBase {
   std::thread thread_;
 };
 
-/// A StoreWatcherBase with the type of the loaded object.
+/// Watches a store with the type of the loaded object.
 template <typename T>
 class StoreWatcher {
  public:

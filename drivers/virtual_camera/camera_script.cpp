@@ -31,7 +31,7 @@ bool flag_of(const std::string& value) {
   return value == "yes";
 }
 
-/// The test pattern's camera: as wide an angle as a PrimeSense's at every size.
+/// Returns the test pattern's camera, whose angle is as wide as a PrimeSense's at every size.
 Camera pattern_camera(const std::string& value) {
   Camera camera;
   const int fields = std::sscanf(value.c_str(), "%5dx%5d", &camera.width, &camera.height);

@@ -50,7 +50,8 @@ void ScriptWatch::watch() {
   }
 }
 
-/// A script that cannot be read leaves the camera as it is: a driver has nobody to throw to.
+/// Reads the script again. One that cannot be read leaves the camera as it is, since a driver has no caller that
+/// handles errors.
 void ScriptWatch::look() {
   try {
     const Script after = std::make_shared<CameraScript>(read_camera_script(file_));

@@ -17,7 +17,8 @@ class ScriptWatch {
  public:
   using Script = std::shared_ptr<const CameraScript>;
 
-  /// Without a file (an empty path) there is nothing to watch. Throws InputError where it cannot be read.
+  /// Reads the script. Without a file (an empty path) there is nothing to watch. Throws InputError where it cannot be
+  /// read.
   explicit ScriptWatch(std::filesystem::path file);
   ~ScriptWatch();
   ScriptWatch(const ScriptWatch&) = delete;
@@ -25,7 +26,7 @@ class ScriptWatch {
 
   Script current() const;
 
-  /// From now on `changed` is called from the watching thread with the script before and after each change.
+  /// Makes the watching thread call `changed` with the script before and after each change from now on.
   void start(std::function<void(const CameraScript& before, const CameraScript& after)> changed);
 
  private:
@@ -33,7 +34,7 @@ class ScriptWatch {
   void look();
 
   std::filesystem::path file_;
-  std::string text_;  // as it was looked at last
+  std::string text_;  // text of the last poll
   mutable std::mutex mutex_;
   Script script_;
   std::function<void(const CameraScript&, const CameraScript&)> changed_;

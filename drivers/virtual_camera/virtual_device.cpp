@@ -17,7 +17,8 @@ using std::chrono::duration_cast;
 
 using SteadyTime = std::chrono::steady_clock::time_point;
 
-constexpr double kTransfer = 0.75;  // of a period: VGA depth and colour fill a USB 2 cable; late ones come no closer
+// Fraction of a period: VGA depth and colour fill a USB 2 cable; late ones come no closer.
+constexpr double kTransfer = 0.75;
 constexpr double kClockAtOpeningUs = 5e6;  // a device's clock does not start when it is opened
 constexpr int kNiceLevel = -10;
 constexpr int kColourAhead = 7;  // unsynchronised, a sensor counts its own images
@@ -30,8 +31,8 @@ std::chrono::steady_clock::duration milliseconds_of(double ms) {
   return duration_cast<std::chrono::steady_clock::duration>(duration<double, std::milli>(ms));
 }
 
-/// The shutter's time for whoever measures what comes out at the other end: when it was due, also where a busy machine
-/// lets this thread run later.
+/// Writes the time at which the shutter was due, for measurements of latency, also where a busy machine lets this
+/// thread run later.
 void note_shutter(const CameraScript& script, int number, std::uint64_t device_us, SteadyTime shutter) {
   if (script.shutter_file.empty()) return;
   std::ofstream(script.shutter_file, std::ios::app) << number << ' ' << device_us << ' ' << utime_of(shutter) << '\n';
@@ -189,7 +190,7 @@ void VirtualDevice::open_shutters(int number, Clock::time_point now) {
   note_shutter(*script, number, device_us, now);  // last: the disk may keep it waiting
 }
 
-/// A copy: OpenNI2 may destroy a stream while another thread of it waits for an image to be taken in.
+/// Returns a copy, since OpenNI2 may destroy a stream while another thread of it waits for an image to be accepted.
 std::vector<std::shared_ptr<VirtualStream>> VirtualDevice::streams() {
   const std::lock_guard<std::mutex> lock(streams_mutex_);
   return streams_;

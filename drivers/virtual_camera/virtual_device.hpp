@@ -19,7 +19,7 @@ namespace houghstream::virtual_camera {
 /// Images by {width, height}: one test pattern for each mode, or a scene.
 using ImagesBySize = std::map<std::pair<int, int>, CameraImages>;
 
-/// One virtual camera: a thread that opens both shutters at the script's rate, and its streams.
+/// Simulates one camera: a thread that opens both shutters at the script's rate, and its streams.
 class VirtualDevice : public oni::driver::DeviceBase {
  public:
   VirtualDevice(const ScriptWatch& script, const ImagesBySize& images, std::string serial);
@@ -35,7 +35,7 @@ class VirtualDevice : public oni::driver::DeviceBase {
   OniStatus setProperty(int property, const void* data, int size) override;
   OniBool isImageRegistrationModeSupported(OniImageRegistrationMode mode) override;
 
-  /// False where the script says that this camera cannot.
+  /// Returns false where the script states that this camera cannot.
   bool synchronise();
   void unsynchronise() { synchronised_ = false; }
 

@@ -48,7 +48,7 @@ class VirtualDriver : public oni::driver::DriverBase {
     const char* value = std::getenv("HOUGHSTREAM_VIRTUAL_CAMERA");
     const std::filesystem::path file = value != nullptr ? value : "";
     return guarded([&] {
-      // OpenNI2 loads drivers in their own folder.
+      // OpenNI2 changes to the drivers' folder when it loads them, so that a relative path would lead elsewhere.
       require(file.empty() || file.is_absolute(), "{}: HOUGHSTREAM_VIRTUAL_CAMERA, expected an absolute path",
               file.string());
       watch_ = std::make_unique<ScriptWatch>(file);
@@ -76,7 +76,7 @@ class VirtualDriver : public oni::driver::DriverBase {
 
   void shutdown() override { watch_.reset(); }
 
-  /// OpenNI2 asks this for the streams of one device.
+  /// Called by OpenNI2 for the streams of one device.
   void* enableFrameSync(oni::driver::StreamBase** streams, int count) override {
     if (count == 0) return nullptr;
     VirtualDevice& device = static_cast<VirtualStream*>(streams[0])->device();
@@ -86,7 +86,8 @@ class VirtualDriver : public oni::driver::DriverBase {
   void disableFrameSync(void* device) override { static_cast<VirtualDevice*>(device)->unsynchronise(); }
 
  private:
-  /// Nothing thrown may leave the driver. OpenNI2 keeps to itself why a driver did not start, so it is printed too.
+  /// No exception may leave the driver. OpenNI2 does not report why a driver did not start, so the reason is printed
+  /// too.
   template <typename Work>
   OniStatus guarded(const Work& work) {
     try {

@@ -16,7 +16,7 @@ struct VirtualSensor {
 
 class VirtualDevice;
 
-/// One sensor's stream: answers OpenNI2's questions, and sends the images that the device hands it.
+/// Provides one sensor's stream: answers OpenNI2's questions, and sends the images that the device hands it.
 class VirtualStream : public oni::driver::StreamBase {
  public:
   VirtualStream(VirtualDevice& device, const VirtualSensor& sensor);
@@ -42,8 +42,8 @@ class VirtualStream : public oni::driver::StreamBase {
   VirtualSensor sensor_;
   mutable std::mutex mutex_;
   OniVideoMode mode_;
-  Camera camera_;            // of the mode
-  OniBool mirrored_ = TRUE;  // as cameras come: whoever wants it otherwise has to say so
+  Camera camera_;            // camera of the mode
+  OniBool mirrored_ = TRUE;  // default of real cameras, unless switched off
   OniBool auto_exposure_ = TRUE;
   OniBool auto_white_balance_ = TRUE;
   int exposure_ = 10;

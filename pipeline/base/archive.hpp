@@ -10,12 +10,12 @@
 
 #include "pipeline/base/checks.hpp"
 
-// Values as they lie in memory, one after another, for files that the machine that wrote them reads again. Who keeps a
-// struct lists its members once, in a template that a writer and a reader are given alike.
+// Archives hold values in their memory layout, one after another, for files that are read again by the machine that
+// wrote them. The owner of a struct lists its members once, in a template that serves writer and reader alike.
 
 namespace houghstream {
 
-/// Values must have no gaps, whose bytes nobody has set.
+/// Writes values, which must have no gaps, since nobody has set the bytes of these.
 struct ArchiveWriter {
   std::string bytes;
 
@@ -36,9 +36,10 @@ struct ArchiveWriter {
   }
 };
 
-/// Throws InputError, naming `source`, where the bytes end early, before it makes room for what they cannot hold.
+/// Reads values. Throws InputError, naming `source`, where the bytes end early, before it allocates memory for more
+/// than they can hold.
 struct ArchiveReader {
-  std::string_view bytes;  ///< what is left
+  std::string_view bytes;  ///< bytes still to read
   std::string source;
 
   void take(void* to, std::size_t size) {

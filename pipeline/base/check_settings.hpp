@@ -32,7 +32,7 @@ NumberRange range_of(Value Settings::*member) {
 template <typename Settings, typename Value>
 void check_number(const NumberField<Settings, Value>& field, Value value, const std::string& source) {
   const bool has_max = std::isfinite(field.max);
-  const bool fits =  // which no comparison with NaN does
+  const bool fits =  // a comparison with NaN is never true
       value >= static_cast<Value>(field.min) && (!has_max || value <= static_cast<Value>(field.max));
   if (fits) return;
   const std::string max = has_max ? fmt::format("to {}", field.max) : "or more";

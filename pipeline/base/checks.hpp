@@ -8,8 +8,8 @@
 
 namespace houghstream {
 
-/// Bad input from outside: a file, a message, an argument. `what()` is one line that names the source,
-/// the value found and what was expected. Mains print it and return 1; stream processes count it and go on.
+/// Reports bad input from outside: a file, a message, an argument. `what()` is one line that names the source, the
+/// value found and what was expected. Mains print it and return 1; stream processes count it and continue.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

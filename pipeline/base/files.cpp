@@ -51,10 +51,10 @@ bool lies_in(const fs::path& place, const fs::path& folder) {
   return true;
 }
 
-/// The file, open, empty and locked.
+/// Opens the file and returns it empty and locked.
 int open_locked(const fs::path& partial, const fs::path& file) {
   for (;;) {
-    // A link of that name is somebody's: what it names must not be emptied.
+    // A link of that name belongs to somebody else: its target must not be emptied.
     const int opened = open(partial.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     require(opened >= 0 || errno != ELOOP, "{}: cannot be written: {} is a symbolic link", file.string(),
             partial.string());
@@ -66,12 +66,13 @@ int open_locked(const fs::path& partial, const fs::path& file) {
       close(opened);
       fail("{}: cannot be written: {}", file.string(), std::strerror(error));
     }
-    close(opened);  // who held it may have put it into its place meanwhile
+    close(opened);  // its previous holder may have renamed it to its final name meanwhile
     require(locked, "{}: another program is writing it ({})", file.string(), partial.string());
   }
 }
 
-/// Some network and FUSE file systems, and some special files, return this error.
+/// Returns whether the error is that of some network and FUSE file systems, and of some special files, which cannot
+/// synchronise.
 bool knows_no_sync(int error) {
   return error == EINVAL || error == ENOSYS || error == ENOTSUP || error == EROFS;
 }

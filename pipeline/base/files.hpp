@@ -9,17 +9,17 @@
 
 namespace houghstream {
 
-/// Throws InputError unless `file` is an ordinary file that exists; `expected` says what was wanted ("an LCM log").
-/// Asked before it is opened: the opening of a named pipe would wait for somebody to write.
+/// Throws InputError unless `file` is an ordinary file that exists; `expected` names what was wanted ("an LCM log").
+/// Called before the file is opened, since opening a named pipe would wait for a writer.
 void require_regular_file(const std::filesystem::path& file, const char* expected);
 
-/// All bytes of an ordinary file. Throws InputError where it is none, or cannot be read to its end.
+/// Returns all bytes of an ordinary file. Throws InputError where it is not one, or cannot be read to its end.
 std::string read_file(const std::filesystem::path& file, const char* expected);
 
 // Checks the nesting depth of a text before it is parsed; the text may be JSON or YAML.
 
-/// Throws InputError where the JSON holds lists or objects within one another more than 64 times: who reads, copies or
-/// prints it goes down as deep as it goes.
+/// Throws InputError where the JSON holds lists or objects nested more than 64 times, since reading, copying and
+/// printing it recurse as deep.
 void check_json_nesting(std::string_view text, const std::string& source);
 
 /// Ending of the name of a file that is being written.
@@ -36,8 +36,8 @@ void require_writable(const std::filesystem::path& file);
 /// Throws InputError where the folder could not be written; it and its parents may be missing. Makes no folder.
 void require_writable_folder(const std::filesystem::path& folder);
 
-/// Returns when what was written to the file, or the names in the folder, are on the disk, so that a power cut leaves
-/// them. Throws InputError where the disk fails; a file system that knows no such thing is taken as it is.
+/// Returns when the file's data, or the names in the folder, are on the disk, so that they survive a power cut. Throws
+/// InputError where the disk fails; a file system that cannot synchronise is accepted as it is.
 void sync_to_disk(const std::filesystem::path& path);
 
 /// Treatment of existing files: of FILE, and of the FILE.partial that a killed program left.
@@ -58,8 +58,8 @@ constexpr Existing existing_of_recording(bool replace) {
 /// it is. Not thread-safe.
 class AtomicFile {
  public:
-  /// `ending` of the file that is written, for libraries that go by it. Throws InputError where it cannot be made, or
-  /// another program is writing FILE.
+  /// `ending` is that of the partial file, for libraries that choose the format by it. Throws InputError where the file
+  /// cannot be made, or another program is writing FILE.
   explicit AtomicFile(const std::filesystem::path& file, const std::string& ending = kPartialEnding,
                       Existing existing = Existing::kReplaced);
   AtomicFile(AtomicFile&& other) noexcept;
@@ -68,13 +68,13 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&&) = delete;
   ~AtomicFile();  ///< removes what was neither published nor kept
 
-  /// FILE, with symbolic links followed.
+  /// Returns FILE, with symbolic links followed.
   const std::filesystem::path& wanted() const { return wanted_; }
-  /// Where it will be: FILE, or the next number of a recording.
+  /// Returns the final name: FILE, or the next number of a recording.
   const std::filesystem::path& file() const { return file_; }
   /// The name that was given to what a killed program had recorded.
   const std::optional<std::filesystem::path>& interrupted() const { return interrupted_; }
-  /// Where to write: an empty file.
+  /// Returns the name of the file to write, which is empty at first.
   const std::filesystem::path& partial() const { return partial_; }
 
   /// Renames the partial file, which its writer has closed, to FILE, and returns once it is on the disk. An older FILE
@@ -94,7 +94,7 @@ class AtomicFile {
   void release();
   bool rename_into_place();
 
-  std::filesystem::path wanted_;   // with symbolic links followed
+  std::filesystem::path wanted_;   // FILE with symbolic links followed
   std::filesystem::path file_;     // = wanted_, or its next number
   std::filesystem::path partial_;  // = file_ for a device
   Existing existing_ = Existing::kReplaced;

@@ -21,18 +21,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Foreign entries on their way from one folder to another.
+/// Holds the state of a move of foreign entries from one folder to another.
 struct Carriage {
   const fs::path& from;
   const fs::path& to;
   const IsOwnEntry& is_own;
 };
 
-/// An entry of `Carriage::from`.
+/// Describes an entry of `Carriage::from`.
 struct CarriedEntry {
   fs::path relative;
   bool is_foreign = false;
-  bool is_folder = false;  ///< not by a symbolic link, which is carried as a link
+  bool is_folder = false;  ///< false for a symbolic link to one, which is carried as a link
 };
 
 /// Returns the entries of a folder, sorted by name. In a foreign folder all of them are foreign.
@@ -59,7 +59,8 @@ void make_same_folder(const Carriage& carriage, const fs::path& relative) {
   chmod((carriage.to / relative).c_str(), is.st_mode & 07777U);
 }
 
-/// Hard links to all foreign files, folders made again. What cannot be linked is moved after the exchange.
+/// Makes hard links to all foreign files, and the folders again. Entries that cannot be linked are moved after the
+/// exchange.
 void link_foreign(const Carriage& carriage, const CarriedEntry& folder) {
   for (const CarriedEntry& entry : list_entries(carriage.from, folder, carriage.is_own)) {
     if (entry.is_folder) {
@@ -72,7 +73,7 @@ void link_foreign(const Carriage& carriage, const CarriedEntry& folder) {
   }
 }
 
-/// Own files and the names of all; what is in a foreign file is its writer's concern.
+/// Synchronises own files and the names of all; the contents of foreign files are their writers' responsibility.
 void sync_entries(const fs::path& root, const CarriedEntry& folder, const IsOwnEntry& is_own) {
   for (const CarriedEntry& entry : list_entries(root, folder, is_own)) {
     std::error_code error;
@@ -91,7 +92,7 @@ bool is_newer(const struct stat& one, const struct stat& other) {
                                                     : one.st_mtim.tv_nsec > other.st_mtim.tv_nsec;
 }
 
-/// True where nothing of that name is left, also because somebody else has taken it away.
+/// Returns whether nothing of that name is left, also because somebody else has removed it.
 bool is_done(int result) {
   return result == 0 || errno == ENOENT;
 }
@@ -140,12 +141,12 @@ std::string describe_left(const std::vector<fs::path>& left, const fs::path& pla
                      left.front().string(), place.string());
 }
 
-/// Where the old folder waits for a moment on a file system that cannot exchange folders.
+/// Returns where the old folder stays for a moment on a file system that cannot exchange folders.
 fs::path place_of_replaced(const fs::path& place) {
   return place.parent_path() / ("." + place.filename().string() + ".before");
 }
 
-/// Both folders change places at once (Linux 3.15); false where the file system cannot.
+/// Exchanges both folders at once (Linux 3.15); returns false where the file system cannot.
 bool swap_folders(const fs::path& one, const fs::path& other) {
   return renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
 }

@@ -5,7 +5,7 @@
 
 namespace houghstream {
 
-/// Now, in microseconds since the epoch on this machine's clock.
+/// Returns the present time, in microseconds since the epoch on this machine's clock.
 inline std::int64_t utime_now() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::microseconds>(now).count();

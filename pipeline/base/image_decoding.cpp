@@ -39,14 +39,14 @@ void walk_jpeg(const std::uint8_t* jpeg, std::size_t size, const Visit& visit) {
     at = static_cast<std::size_t>(static_cast<const std::uint8_t*>(next) - jpeg);
     if (at + 4 > size) return;
     const std::uint8_t marker = jpeg[at + 1];
-    if (marker == 0 || marker == 0xFF) {  // of a scan, or bytes that fill up
+    if (marker == 0 || marker == 0xFF) {  // a byte of a scan, or a fill byte
       ++at;
       continue;
     }
     constexpr std::uint8_t kEnd = 0xD9;
     if (marker == kEnd) return;
     constexpr std::uint8_t kTemporary = 0x01;
-    const bool is_alone = marker == kTemporary || (marker >= 0xD0 && marker <= 0xD7);  // without a length
+    const bool is_alone = marker == kTemporary || (marker >= 0xD0 && marker <= 0xD7);  // has no length field
     visit(marker, at + 2);
     at += is_alone ? 2 : 2 + static_cast<std::size_t>(big_endian(jpeg + at + 2, 2));
   }

@@ -9,15 +9,15 @@ namespace houghstream {
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
-/// From here on the log goes to stderr, each line with the time and `name`; what is below `minimum` is left out.
+/// Starts logging to stderr, each line with the time and `name`; lines below `minimum` are left out.
 void start_log(const std::string& name, LogLevel minimum);
 
 /// Leaves out all but errors from here on, unless debug lines were asked for.
 void hush_log();
 
-/// A line of the log. spdlog writes it, but lines are composed here: where spdlog is handed values, each source that
-/// logs holds the whole of fmt's formatting again, and takes two seconds longer to compile. What would steer a terminal
-/// is shown as \xNN: names and errors come off the wire.
+/// Logs one line. spdlog writes it, but lines are composed here: with values handed to spdlog, each source that logs
+/// instantiates fmt's formatting again, and takes two seconds longer to compile. Control characters of a terminal are
+/// shown as \xNN, since names and errors come off the wire.
 void log_line(LogLevel level, const std::string& line);
 
 template <typename... Args>

@@ -9,8 +9,8 @@
 
 namespace houghstream {
 
-/// Keeps a flood out of the log: of each kind of line one a second is admitted, and says how many were held back since
-/// the one before. May be used from any thread.
+/// Throttles the log: of each kind of line one a second is admitted, with the number of lines suppressed since the
+/// previous one. May be used from any thread.
 class LogThrottle {
  public:
   using Clock = std::chrono::steady_clock;
@@ -19,7 +19,7 @@ class LogThrottle {
   /// all further ones are one.
   std::optional<std::string> admit(const std::string& kind, const std::string& line, Clock::time_point now);
 
-  /// Lines that no later one has told of yet.
+  /// Returns the number of suppressed lines that no later one has reported yet.
   std::int64_t suppressed() const;
 
  private:

@@ -9,15 +9,15 @@
 
 namespace houghstream {
 
-/// A judged example: the values that the weights multiply, and what came of it.
+/// Holds a labelled example: the values that the weights multiply, and the outcome.
 template <int N>
 struct LogisticExample {
   Eigen::Matrix<double, N, 1> terms = Eigen::Matrix<double, N, 1>::Zero();
   bool is_true = false;
 };
 
-/// Gaussian prior of a logistic regression's weights. `precision` is the inverse variance about the prior's weights; a
-/// weight that is `fixed` keeps the prior's value.
+/// Gives the Gaussian prior of a logistic regression's weights. `precision` is the inverse variance about the prior's
+/// weights; a weight that is `fixed` keeps the prior's value.
 template <int N>
 struct LogisticPrior {
   Eigen::Matrix<double, N, 1> weights = Eigen::Matrix<double, N, 1>::Zero();

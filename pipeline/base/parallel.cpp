@@ -13,7 +13,7 @@
 namespace houghstream {
 namespace {
 
-/// The items of one call of parallel_for_workers.
+/// Distributes the items of one call of parallel_for_workers.
 class Items {
  public:
   Items(const WorkerItemFunction& work, int count) : work_(work), count_(count), error_index_(count) {}
@@ -104,7 +104,7 @@ class Helper {
   std::thread thread_;  // last: it uses the others
 };
 
-/// Helpers that nobody needs just now. Calls that overlap take different ones, so none waits for another.
+/// Keeps helpers that are idle. Calls that overlap take different ones, so that none waits for another.
 class IdleHelpers {
  public:
   std::unique_ptr<Helper> take() {
@@ -125,7 +125,7 @@ class IdleHelpers {
   std::vector<std::unique_ptr<Helper>> helpers_;
 };
 
-/// Scope of the calling thread; null where it may use helper threads.
+/// Returns the scope of the calling thread; null where it may use helper threads.
 const SerialScope*& working_alone() {
   thread_local const SerialScope* alone = nullptr;
   return alone;

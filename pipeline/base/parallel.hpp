@@ -23,8 +23,8 @@ class FunctionRef {
   void (*call_)(const void*, Arguments...);
 };
 
-using ItemFunction = FunctionRef<int>;             ///< of an item
-using WorkerItemFunction = FunctionRef<int, int>;  ///< of a worker and an item
+using ItemFunction = FunctionRef<int>;             ///< function of an item
+using WorkerItemFunction = FunctionRef<int, int>;  ///< function of a worker and an item
 
 /// Calls work(i) for every i in [0, count), on `threads` threads, the caller's among them; one thread means no others.
 /// Items are handed out in order, so work must write only to item i's own place: then the result does not depend on
@@ -37,14 +37,14 @@ void parallel_for(int threads, int count, const ItemFunction& work);
 /// workers is not deterministic.
 void parallel_for_workers(int threads, int count, const WorkerItemFunction& work);
 
-/// Work that nobody waits for any more: what SerialScope's calls end with.
+/// Thrown by parallel calls under a SerialScope whose work is cancelled.
 struct WorkCancelled : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// While a SerialScope exists, parallel_for() runs serially on the thread that created it, whatever `threads` says: for
-/// a thread of low priority, whose new threads would be of its priority and be kept for others' calls. Before each item
-/// they ask `is_cancelled`, if there is one, and throw WorkCancelled where it says so.
+/// While a SerialScope exists, parallel_for() runs serially on the thread that created it, whatever `threads` says. A
+/// thread of low priority uses it, since its new threads would have its priority and be kept for the calls of others.
+/// Before each item the calls ask `is_cancelled`, if there is one, and throw WorkCancelled where it returns true.
 class SerialScope {
  public:
   explicit SerialScope(std::function<bool()> is_cancelled = {});
@@ -64,7 +64,7 @@ class SerialScope {
 template <typename T>
 class PerWorker {
  public:
-  /// To be called before the workers start.
+  /// Resizes the parts; called before the workers start.
   void resize(int threads) {
     while (parts_.empty() || parts_.size() < static_cast<std::size_t>(threads < 0 ? 0 : threads)) {
       parts_.push_back(std::make_unique<T>());

@@ -5,9 +5,9 @@
 
 namespace houghstream {
 
-/// Text of somebody else's making (a channel, a class, an error off the wire, a file's name) as it may go to a
-/// terminal: control characters (C0, DEL and, of UTF-8, C1), those that turn the direction of text, and bytes that are
-/// not UTF-8 become \xNN, a line's end too. What may be shown stays as it is.
+/// Returns untrusted text (a channel, a class, an error off the wire, a file's name) for a terminal: control characters
+/// (C0, DEL and, of UTF-8, C1), those that reverse the direction of text, and bytes that are not UTF-8 become \xNN,
+/// line ends too. All other characters stay.
 std::string printable(std::string_view text);
 
 /// Makes a text of several lines printable.

@@ -18,7 +18,7 @@ void notify_service(const std::string& words) {
   address.sun_family = AF_UNIX;
   if (name == nullptr || (name[0] != '/' && name[0] != '@') || std::strlen(name) >= sizeof(address.sun_path)) return;
   std::memcpy(address.sun_path, name, std::strlen(name));
-  if (name[0] == '@') address.sun_path[0] = '\0';  // of the abstract namespace
+  if (name[0] == '@') address.sun_path[0] = '\0';  // a name of the abstract namespace
   const int to = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (to < 0) return;
   const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + std::strlen(name));

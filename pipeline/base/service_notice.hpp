@@ -14,17 +14,17 @@ namespace houghstream {
 /// has started, "WATCHDOG=1" while it works. Without a manager nothing happens. May be called from any thread.
 void notify_service(const std::string& words);
 
-/// While it lives, the service manager (systemd, hs-stream) is told once a second that this program is ending and needs
-/// more time: a video or a recording is still being written. After ten minutes it is not told any more.
+/// While it exists, the service manager (systemd, hs-stream) is notified once a second that this program is ending and
+/// needs more time, since a video or a recording is still being written. The notices end after ten minutes.
 class StillFinishing {
  public:
-  /// So much more time is asked for each time.
+  /// Each request asks for this much more time.
   static constexpr std::chrono::seconds kExtension{5};
   static constexpr std::chrono::minutes kMaxLength{10};
 
   enum class From {
     kNow,
-    kStopSignal  ///< as soon as one has come: who works at a low priority notices it itself much later
+    kStopSignal  ///< once one has arrived; a low-priority program notices it itself much later
   };
 
   explicit StillFinishing(From from = From::kNow);

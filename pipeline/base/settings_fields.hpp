@@ -2,11 +2,9 @@
 
 namespace houghstream {
 
-// Beside each settings struct stands one list of its fields, a template
-//   fields(settings, visit)
-// that hands each of them to `visit`: a number with its range, or settings within settings. A number's name, range and
-// unit stand nowhere else: what refuses settings (check_settings.hpp), what stores them and what offers them on a
-// command line read this list.
+// Each settings struct has one list of its fields, a template fields(settings, visit) that hands each of them to
+// `visit`: a number with its range, or settings within settings. A number's name, range and unit are stated nowhere
+// else: the check (check_settings.hpp), the files and the command line read this list.
 
 /// Range of a number, with both ends.
 struct NumberRange {
@@ -14,8 +12,8 @@ struct NumberRange {
   double max = 0.0;
 };
 
-/// A number of a settings struct. Messages and files call it by its name; both ends of its range are allowed, and an
-/// infinite maximum is none.
+/// Describes a number of a settings struct. Messages and files call it by its name; both ends of its range are allowed,
+/// and an infinite maximum means no limit.
 template <typename Settings, typename Value>
 struct NumberField {
   const char* name = "";

@@ -10,7 +10,7 @@ namespace {
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
 
-std::atomic<std::int64_t> stopped_ms{0};  // when it was set
+std::atomic<std::int64_t> stopped_ms{0};  // time at which it was set
 static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a signal handler may set it");
 
 std::int64_t now_ms() {

@@ -6,8 +6,9 @@
 
 namespace houghstream {
 
-/// The value with half the weight below it; 0 where there are no values. `values` are pairs of value and weight, and
-/// are reordered: only the part in which the median lies is looked at again, which is faster than to sort all.
+/// Returns the value with half the weight below it; 0 where there are no values. `values` are pairs of value and
+/// weight, and are reordered: only the part in which the median lies is visited again, which is faster than to sort
+/// all.
 template <typename Real>
 Real weighted_median(std::vector<std::pair<Real, Real>>& values) {
   Real total = 0;

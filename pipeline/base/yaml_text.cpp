@@ -9,7 +9,7 @@
 namespace houghstream {
 namespace {
 
-/// Without the lines that would be other documents, or a directive that nobody knows.
+/// Returns the text without lines that would begin other documents, or unknown directives.
 std::string one_document(const std::string& text) {
   std::string out;
   std::istringstream lines(text);

@@ -9,8 +9,8 @@
 
 namespace houghstream {
 
-/// State of the link to a bus: whether it can be reached, since when it cannot, and how many messages could not be
-/// sent. Logs one line when an outage begins and one when it ends. May be used from any thread.
+/// Tracks the state of the link to a bus: whether it can be reached, since when it cannot, and how many messages could
+/// not be sent. Logs one line when an outage begins and one when it ends. May be used from any thread.
 class BusLink {
  public:
   using Clock = std::chrono::steady_clock;
@@ -35,8 +35,8 @@ class BusLink {
   mutable std::mutex mutex_;
   std::atomic<bool> is_up_{true};
   std::atomic<std::int64_t> unsent_{0};
-  std::int64_t unsent_before_ = 0;  // when the outage began
-  Clock::time_point since_;         // of the outage
+  std::int64_t unsent_before_ = 0;  // count when the outage began
+  Clock::time_point since_;         // beginning of the outage
   std::string last_outage_;
 };
 

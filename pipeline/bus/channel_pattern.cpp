@@ -12,7 +12,7 @@ namespace houghstream {
 namespace {
 
 re2::RE2::Options expression_options() {
-  constexpr std::int64_t kMaxMemory = std::int64_t{1} << 20;  // of an expression and of what it keeps to match faster
+  constexpr std::int64_t kMaxMemory = std::int64_t{1} << 20;  // bytes of an expression and of its cache for matching
   re2::RE2::Options options;
   options.set_encoding(re2::RE2::Options::EncodingLatin1);  // a name is bytes, which need not be UTF-8
   options.set_never_capture(true);
@@ -23,7 +23,8 @@ re2::RE2::Options expression_options() {
 
 std::function<bool(const std::string&)> matcher_of(const std::string& text, bool is_name) {
   if (is_name) return [text](const std::string& channel) { return channel == text; };
-  // Not std::regex, nor any other that tries one way after another: few bytes of an expression would keep it for ever.
+  // The expression is not matched by std::regex, nor by any other backtracking engine, which few bytes of an expression
+  // could keep busy for ever.
   const auto expression = std::make_shared<const re2::RE2>(text, expression_options());
   require(expression->ok(), "channels '{}': {}, expected a regular expression", printable(text),
           printable(expression->error()));

@@ -121,7 +121,7 @@ void LogWriter::write(std::int64_t timestamp, const std::string& channel, ByteVi
 
 void LogWriter::close() {
   if (!log_) return;
-  // An event whose writing failed has left the buffer: flushing what came after it says nothing of it.
+  // An event whose writing failed has left the buffer, so that a successful flush of later events does not show it.
   const bool torn = std::ferror(log_->f) != 0;
   const bool flushed = std::fflush(log_->f) == 0;
   const int error = errno;
@@ -258,7 +258,7 @@ std::optional<std::uint64_t> LogReader::find_event(std::uint64_t from) {
 
 LogReader::Damage LogReader::skip_damage() {
   if (std::exchange(is_unlike_seal_, false)) return {position_ - last_position_, false};
-  seals_.clear();  // which of them are of what follows is not known
+  seals_.clear();  // the part of the log that they belong to is unknown
   const std::uint64_t damaged = position_;
   // A wrong length in a header reaches into later events: those are looked for too. A forged log may hold nothing but
   // such headers, each of which would have the rest read once more.

@@ -20,16 +20,15 @@ namespace houghstream {
 struct LogEvent;
 
 /// A sealed log holds, before every block of events, one more on this channel: eight bytes "HSSEAL1\0", u32 number of
-/// events, and for each of them the CRC-32 of its timestamp (i64), channel and data; numbers big-endian. It tells of
-/// flipped bits, and of events that are missing; it is no signature, anybody can make one. Stock players play it as a
-/// message that nobody listens to.
+/// events, and for each of them the CRC-32 of its timestamp (i64), channel and data; numbers big-endian. It reveals
+/// flipped bits and missing events; it is no signature, since anybody can make one. Stock players play it as a message
+/// that nobody receives.
 inline const std::string kSealChannel = "HOUGHSTREAM_SEAL";
 constexpr std::size_t kSealedBlock = 256;  ///< events, at most
 
 /// Copies a whole log and seals it: from then on every reader of ours refuses an event of which a bit has changed, and
-/// a log of which events are missing. Returns the number of events. Throws InputError where the log is damaged: what
-/// cannot be trusted is not sealed.
-/// `tell`, if any, hears after each event which share of the log is sealed.
+/// a log of which events are missing. Returns the number of events. Throws InputError where the log is damaged, since
+/// damaged data are not sealed. `tell`, if any, is called after each event with the sealed fraction of the log.
 std::int64_t seal_log(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
                       const std::function<void(double fraction)>& tell = {});
 
@@ -40,9 +39,9 @@ std::vector<std::uint8_t> encode_seal(const std::vector<std::uint32_t>& checksum
 /// Checksums of the events that follow, in their order. Throws InputError, naming `source`, where it is no whole seal.
 std::vector<std::uint32_t> decode_seal(ByteView bytes, const std::string& source);
 
-/// One message of a log.
+/// Holds one message of a log.
 struct LogEvent {
-  std::int64_t timestamp = 0;  ///< when it was received, microseconds since the epoch
+  std::int64_t timestamp = 0;  ///< reception time, microseconds since the epoch
   std::string channel;
   std::vector<std::uint8_t> data;
 };
@@ -54,14 +53,14 @@ class LogWriter {
  public:
   /// Throws InputError when the file cannot be made.
   explicit LogWriter(const std::filesystem::path& file, Existing existing = Existing::kReplaced);
-  /// Where the log will be, and where it is written until then.
+  /// Return the final name of the log, and the one that is written until then.
   const std::filesystem::path& file() const { return whole_.file(); }
   const std::filesystem::path& partial() const { return whole_.partial(); }
   /// Throws InputError when the disk refuses, or no reader would take a channel of this name.
   void write(std::int64_t timestamp, const std::string& channel, ByteView data);
   /// Pushes everything to the file, checks that it arrived there, and ends the log. Throws InputError.
   void close();
-  /// Instead of close(): what was written stays as FILE.partial, for what cannot be had again.
+  /// Ends the writing instead of close() and keeps the data as FILE.partial, since a recording cannot be repeated.
   void keep_partial();
   [[deprecated("is keep_partial() now")]] void keep() { keep_partial(); }
 
@@ -74,15 +73,15 @@ class LogWriter {
   std::unique_ptr<lcm_eventlog_t, Closer> log_;
 };
 
-/// Reads an LCM event log event by event. LCM's own reader cannot tell the end of a log from damage; this one can, and
-/// of a sealed log (seal_log) it tells damage within its events too. The seals themselves are not given.
+/// Reads an LCM event log event by event. LCM's own reader cannot distinguish the end of a log from damage; this one
+/// can, and in a sealed log (seal_log) it detects damage within events too. The seals themselves are not returned.
 class LogReader {
  public:
   /// Throws InputError when the file cannot be read or is empty.
   explicit LogReader(const std::filesystem::path& file);
-  /// The next event, or nothing at the end. Throws InputError where the log is cut or damaged.
+  /// Returns the next event, or nothing at the end. Throws InputError where the log is cut or damaged.
   std::optional<LogEvent> next();
-  /// Bytes before the next event, and of the whole file.
+  /// Returns the bytes before the next event, and those of the whole file.
   std::uint64_t position() const { return position_; }
   std::uint64_t size() const { return size_; }
   /// Returns whether a seal has been read so far.
@@ -94,8 +93,8 @@ class LogReader {
     bool last_event_too = false;  ///< the event that next() returned last was damaged itself: it held later ones
   };
 
-  /// After next() has thrown: goes to the next place that is an event, or to the end. Throws InputError where the file
-  /// cannot be read.
+  /// Skips to the next position that is an event, or to the end, after next() has thrown. Throws InputError where the
+  /// file cannot be read.
   Damage skip_damage();
 
  private:
@@ -118,8 +117,8 @@ class LogReader {
   std::string file_;
   std::unique_ptr<std::FILE, Closer> in_;
   std::uint64_t size_ = 0;
-  std::uint64_t position_ = 0;       // of the next event
-  std::uint64_t last_position_ = 0;  // of the event returned last
+  std::uint64_t position_ = 0;       // position of the next event
+  std::uint64_t last_position_ = 0;  // position of the event returned last
   std::uint64_t looked_again_ = 0;   // bytes that were searched once more for events
   std::int64_t events_ = 0;
   bool is_sealed_ = false;

@@ -8,17 +8,17 @@
 
 namespace houghstream {
 
-/// Notices that no frame comes on the channels that somebody listens to, and says on which channels frames come
-/// instead: a wrong channel is otherwise seen by nothing coming. Listening to all channels costs the receiver what all
-/// others send, so it is done for short times only, while nothing comes. Times are handed in. Not thread-safe.
+/// Detects that no frame arrives on the wanted channels, and on which channels frames arrive instead: otherwise the
+/// only symptom of a wrong channel is silence. Listening to all channels costs the receiver all traffic, so it is done
+/// for short times only, while nothing arrives. Times are parameters. Not thread-safe.
 class FrameSilence {
  public:
   using Clock = std::chrono::steady_clock;
 
-  static constexpr std::chrono::milliseconds kListenAfter{2000};  ///< of silence
-  static constexpr std::chrono::milliseconds kListen{1500};       ///< to all channels
-  static constexpr std::chrono::milliseconds kPause{8000};        ///< before it is listened again
-  static constexpr std::chrono::milliseconds kNowhere{10'000};    ///< of silence on all channels before that is said
+  static constexpr std::chrono::milliseconds kListenAfter{2000};  ///< of silence before it listens to all channels
+  static constexpr std::chrono::milliseconds kListen{1500};       ///< for which it listens to all channels
+  static constexpr std::chrono::milliseconds kPause{8000};        ///< before it listens to all channels again
+  static constexpr std::chrono::milliseconds kNowhere{10'000};    ///< of silence on all channels before that is logged
 
   FrameSilence(std::string wanted, Clock::time_point now) : wanted_(std::move(wanted)), last_(now), next_(now) {}
 
@@ -36,15 +36,15 @@ class FrameSilence {
 
  private:
   std::string wanted_;
-  Clock::time_point last_;                  // when a wanted frame came, or the beginning
-  Clock::time_point next_;                  // before which it is not listened
-  std::optional<Clock::time_point> since_;  // it is listened
+  Clock::time_point last_;                  // time of the last wanted frame, or the beginning
+  Clock::time_point next_;                  // time before which it does not listen
+  std::optional<Clock::time_point> since_;  // time since which it listens
   std::set<std::string> elsewhere_;
-  bool has_listened_ = false;  // to the end, since words() was asked last
+  bool has_listened_ = false;  // a listening period has ended since words() was called last
   std::string told_;
 };
 
-/// "no frame on WANTED; frames come on A, B": for people. `elsewhere` are names off the wire.
+/// Returns "no frame on WANTED; frames come on A, B" for people. `elsewhere` are names off the wire.
 std::string frames_elsewhere(const std::string& wanted, const std::set<std::string>& elsewhere);
 
 }  // namespace houghstream

@@ -34,13 +34,13 @@ namespace {
 const std::string kFileScheme = "file://";
 const std::string kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
 
-// The receiving thread hands messages on at once; this many may wait while it is kept from the processor. LCM's
-// own queue keeps the oldest when it is full.
+// The receiving thread hands messages on at once; this many may wait while it has no processor time. LCM's own queue
+// keeps the oldest when it is full.
 constexpr int kQueueCapacity = 100;
-// Where messages are so large that these would have more bytes, fewer wait. LCM lets one more wait than it is told.
+// Fewer messages may wait where these would have more bytes than this. LCM lets one more wait than its limit.
 constexpr std::size_t kQueueBytes = std::size_t{128} << 20U;
 
-// For a service manager, which otherwise gives a start some time and no more.
+// A service manager otherwise limits the time of a start.
 const std::string kStartTakesTime = "EXTEND_TIMEOUT_USEC=60000000";
 
 // Interval at which an outage, or its end, is detected.
@@ -55,7 +55,7 @@ std::string complete_url(const std::string& url) {
   const bool has_one = environment != nullptr && *environment != '\0';
   const std::string chosen = !url.empty() ? url : has_one ? environment : kDefaultUrl;
   check_lcm_url(chosen);
-  // Asked for more than is granted, LCM would print a warning of its own that tells nothing.
+  // If more is requested than is granted, LCM prints a warning of its own without the reason.
   return with_receive_buffer(chosen, std::max(granted_receive_buffer(kAskedReceiveBuffer), std::int64_t{1}));
 }
 
@@ -63,11 +63,11 @@ bool is_log_url(const std::string& url) {
   return url.rfind(kFileScheme, 0) == 0;
 }
 
-/// LCM's queue of a subscription.
+/// Manages LCM's queue of a subscription.
 struct MessageQueue {
   lcm_subscription_t* made = nullptr;  // LCM's, while there is one
   int capacity = 0;
-  std::size_t message_bytes = 1;  // of the largest message lately
+  std::size_t message_bytes = 1;  // size of the largest recent message
 
   void set_capacity(int messages) {
     if (messages == capacity) return;
@@ -90,7 +90,7 @@ struct Subscription {
   MessageQueue queue = {};
 };
 
-// Nothing thrown may cross LCM's callback, which is C.
+// No exception may cross LCM's callback, which is C.
 void call_handler(const Subscription& subscription, const ReceivedMessage& arrival) noexcept {
   try {
     if (subscription.channels.matches(arrival.channel)) subscription.handler(arrival);
@@ -108,7 +108,7 @@ void on_message(const lcm_recv_buf_t* buffer, const char* channel, void* context
   call_handler(subscription, {channel, bytes, std::chrono::steady_clock::now(), buffer->recv_utime});
 }
 
-/// False where LCM refuses.
+/// Returns false where LCM refuses.
 bool subscribe_at(lcm_t* lcm, Subscription& subscription) {
   // LCM puts ^ and $ around it, which would belong to the first and the last alternative only.
   const ChannelPattern& channels = subscription.channels;
@@ -156,16 +156,16 @@ struct LcmBus::State {
   std::string url;
   AtStart at_start;
   BusLink link;
-  std::atomic<bool> has_way{true};  // a route or a connection, when last looked at
-  std::mutex look_mutex;            // of the next two, and of `lcm` where it is exchanged
+  std::atomic<bool> has_way{true};  // a route or a connection existed at the last check
+  std::mutex look_mutex;            // guards the next two, and `lcm` where it is exchanged
   std::chrono::steady_clock::time_point next_look;
   std::string send_fault;                 // why the last short message could not be sent
-  LogThrottle complaints;                 // of handlers
+  LogThrottle complaints;                 // errors of handlers
   std::list<Subscription> subscriptions;  // LCM keeps pointers to them
   std::optional<FrameSilence> frame_silence;
-  std::optional<Subscription> everything;  // of who looks for frames
+  std::optional<Subscription> everything;  // all channels, while it looks for frames
   std::optional<LogReader> input_log;
-  ChannelCounts heard;  // of it
+  ChannelCounts heard;  // channels of the log
   std::mutex output_mutex;
   std::mutex publish_mutex;  // over tcpq LCM sends a message in several parts
   std::optional<LogWriter> output_log;
@@ -250,7 +250,7 @@ void LcmBus::look_for_frames() {
   if (!state_->frame_silence) return;
   FrameSilence& silence = *state_->frame_silence;
   const auto now = std::chrono::steady_clock::now();
-  if (!is_reachable()) silence.note_wanted(now);  // nobody is silent who cannot be heard
+  if (!is_reachable()) silence.note_wanted(now);  // without a connection, silence means nothing
   const bool looks = silence.wants_to_listen(now);
   Subscription& everything = *state_->everything;
   if (looks && everything.queue.made == nullptr) {

@@ -12,19 +12,19 @@
 
 namespace houghstream {
 
-/// A message as it arrived; valid during the handler's call only.
+/// Holds a message as it arrived; it is valid during the handler's call only.
 struct ReceivedMessage {
   const std::string& channel;
   ByteView bytes;
   std::chrono::steady_clock::time_point time;
-  std::int64_t event_us = 0;  ///< when it was received, microseconds since the epoch; of a log, the event's time
+  std::int64_t event_us = 0;  ///< reception time, microseconds since the epoch; of a log, the event's time
 };
 
 /// Behaviour of LcmBus where its network cannot be reached at its start.
 enum class AtStart { kWait, kFail };
 
-/// Where messages come from and go to: an LCM network, or, for a file:// URL, a log that is read event by event and
-/// never skipped, with results going to another log.
+/// Connects to the source and destination of messages: an LCM network, or, for a file:// URL, a log that is read event
+/// by event and never skipped, with results going to another log.
 ///
 /// A network that cannot be reached (a link that is down, no route, a server that is gone) is waited for. Each outage
 /// is logged once when it begins and once when it ends; meanwhile nothing is received, and what is published is counted
@@ -33,13 +33,13 @@ class LcmBus {
  public:
   using Handler = std::function<void(const ReceivedMessage&)>;
 
-  /// With ttl=0, messages that other hosts send are dropped by the kernel; with a ttl of 1 or more anybody on the
-  /// network may send, and nobody is asked who he is. `url` as LCM takes it; "" is $LCM_DEFAULT_URL, else udpm with
-  /// ttl=0. A udpm URL that does not state it gets a recv_buf_size. Logs what is missing where the kernel grants less
-  /// than needed, and options that LCM does not know. `output_log` is for file:// only, and may be empty: then nothing
-  /// can be published; `existing` says what becomes of one that is there. Waits for a route to the group of a udpm URL,
-  /// and tells a service manager that this takes time. Throws InputError, also where a stop signal ends the waiting, or
-  /// `at_start` is kFail and there is no route.
+  /// Opens the bus. With ttl=0, messages that other hosts send are dropped by the kernel; with a ttl of 1 or more
+  /// anybody on the network may send, without authentication. `url` is an LCM URL; "" is $LCM_DEFAULT_URL, else udpm
+  /// with ttl=0. A udpm URL that does not state it gets a recv_buf_size. Logs what is missing where the kernel grants
+  /// less than needed, and options that LCM does not know. `output_log` is for file:// only, and may be empty: then
+  /// nothing can be published; `existing` is the treatment of one that exists. Waits for a route to the group of a udpm
+  /// URL, and tells a service manager that this takes time. Throws InputError, also where a stop signal ends the
+  /// waiting, or `at_start` is kFail and there is no route.
   explicit LcmBus(const std::string& url, const std::string& output_log = "", Existing existing = Existing::kReplaced,
                   AtStart at_start = AtStart::kWait);
   ~LcmBus();
@@ -53,13 +53,13 @@ class LcmBus {
   /// channels on which frames arrive are logged.
   void subscribe_to_frames(const std::string& channels, Handler handler);
 
-  /// Network: waits for one message and handles it, or for `timeout`. Log: handles the next event. False at the end
-  /// of a log. Throws InputError where the log is damaged.
+  /// Handles one message. On a network it waits for the message for up to `timeout`; of a log it handles the next
+  /// event. Returns false at the end of a log. Throws InputError where the log is damaged.
   bool handle(std::chrono::milliseconds timeout);
 
-  /// May be called from any thread. `utime` is the time of the event where the message goes to a log. Returns false
-  /// where the network cannot be reached. Throws InputError where the message cannot be written, or the name of the
-  /// channel is longer than a network allows.
+  /// Publishes a message; may be called from any thread. `utime` is the time of the event where the message goes to a
+  /// log. Returns false where the network cannot be reached. Throws InputError where the message cannot be written, or
+  /// the name of the channel is longer than a network allows.
   bool publish(const std::string& channel, ByteView bytes, std::int64_t utime);
 
   template <typename Message>

@@ -41,7 +41,7 @@ std::optional<Endpoint> place_of(const std::string& url, const std::string& sche
   return Endpoint{address.empty() ? usual.address : address, port.empty() ? usual.port : port};
 }
 
-/// 0 to `maximum`, as people write it: LCM takes 010 for 8 and 0x10 for 16.
+/// Returns whether the text is 0 to `maximum` in the form that people write: LCM takes 010 for 8 and 0x10 for 16.
 bool is_number(const std::string& text, int maximum) {
   constexpr std::size_t kMaxDigits = 10;
   const bool digits = std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
@@ -73,7 +73,8 @@ struct Probe {
   int number;
 };
 
-/// With ttl=0 a route through lo is as good as any; with more the messages are meant for other hosts.
+/// Returns the remedy for a missing route: with ttl=0 a route through lo suffices; with more the messages are meant for
+/// other hosts.
 std::string route_remedy(const std::string& url) {
   for (const auto& [name, value] : url_options(url)) {
     if (name == "ttl" && value != "0") return "connect the network, or: sudo ip route add 224.0.0.0/4 dev INTERFACE";
@@ -110,7 +111,7 @@ std::string connection_fault(const addrinfo& address) {
 
 std::string no_server_reason(const Endpoint& server) {
   addrinfo wanted{};
-  wanted.ai_family = AF_INET;  // as LCM connects
+  wanted.ai_family = AF_INET;  // the family with which LCM connects
   wanted.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
   const int unknown = getaddrinfo(server.address.c_str(), server.port.c_str(), &wanted, &found);

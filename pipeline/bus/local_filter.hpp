@@ -15,7 +15,7 @@ bool is_host_local(const std::string& url);
 /// Sockets of this process that receive UDP at the port of a udpm URL; none for other URLs.
 std::vector<int> find_receive_sockets(const std::string& url);
 
-/// From here on the socket takes datagrams of this machine only. False where the kernel refuses.
+/// Makes the socket accept only datagrams of this machine from now on. Returns false where the kernel refuses.
 bool attach_local_filter(int socket);
 
 }  // namespace houghstream

@@ -10,8 +10,8 @@ struct Percentiles {
   double p99 = 0.0;
 };
 
-/// Nearest-rank percentile: the smallest value that at least `percent` per cent of the values do not exceed; NaN where
-/// there are no values.
+/// Returns the nearest-rank percentile: the smallest value that at least `percent` per cent of the values do not
+/// exceed; NaN where there are no values.
 double percentile(std::vector<double> values, double percent);
 
 Percentiles percentiles(std::vector<double> values);

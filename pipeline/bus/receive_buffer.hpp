@@ -25,7 +25,7 @@ std::int64_t needed_receive_buffer(std::int64_t frame_bytes);
 /// The command that makes the kernel grant what is asked for, until the next start of the machine.
 std::string receive_buffer_remedy();
 
-/// One line that says what is missing and mends it, or "" where `granted` is enough.
+/// Returns one line that names the shortage and its remedy, or "" where `granted` is enough.
 std::string receive_buffer_advice(std::int64_t granted);
 
 }  // namespace houghstream

@@ -8,11 +8,11 @@
 namespace houghstream {
 namespace {
 
-constexpr std::int64_t kProbation = 16;        // frames that a single number may tell to be lost
-constexpr std::int64_t kMaxLost = 100'000;     // and two beside each other: an hour
+constexpr std::int64_t kProbation = 16;        // maximum of lost frames that a single number may show
+constexpr std::int64_t kMaxLost = 100'000;     // maximum that two neighbouring numbers may show: an hour
 constexpr std::int64_t kRepeatUs = 1'000'000;  // a duplicate comes within this time
 constexpr std::size_t kRuns = 4;               // senders on one channel whose numbers are kept apart
-constexpr std::int64_t kBeside = 8;            // so close are the first numbers after a jump
+constexpr std::int64_t kBeside = 8;            // maximum distance of the first numbers after a jump
 constexpr std::size_t kFar = 8;
 constexpr std::size_t kJumps = 3;
 constexpr std::size_t kHeard = 256;

@@ -17,14 +17,14 @@ namespace houghstream {
 /// Number and time that its source gives a frame.
 struct FrameNumber {
   std::optional<std::int64_t> sequence;  ///< the source's frame counter, if it has one
-  std::int64_t utime = 0;                ///< of the frame, microseconds
-  std::int64_t run = 0;                  ///< of the source: another one begins counting anew; 0 = it does not say
+  std::int64_t utime = 0;                ///< time of the frame, microseconds
+  std::int64_t run = 0;                  ///< run of the source: each counts anew; 0 = not stated
 };
 
 /// Order of a frame relative to those before it.
 enum class FrameOrder {
   kNext,       ///< newer than all before
-  kLate,       ///< of those that were overtaken on the way
+  kLate,       ///< older than a frame that has arrived before it
   kDuplicate,  ///< has come before: to be dropped, and counted as none
 };
 
@@ -35,14 +35,14 @@ enum class FrameOrder {
 /// run have arrived within the last second is a duplicate. Not thread-safe.
 class SequenceTracker {
  public:
-  /// `now_us`: when it arrived, on a clock that does not jump, microseconds.
+  /// Notes a frame and returns its order. `now_us` is its arrival time on a clock that does not jump, microseconds.
   FrameOrder note(const FrameNumber& frame, std::int64_t now_us);
 
   /// Frames that have not come; nothing where no frame has had a number.
   std::optional<std::int64_t> lost() const;
 
  private:
-  /// Numbers that are remembered behind the newest.
+  /// Number of stored numbers behind the newest.
   static constexpr std::int64_t kWindow = 64;
   struct Seen {
     std::int64_t number = -1;
@@ -53,13 +53,13 @@ class SequenceTracker {
   struct SequenceRange {
     std::int64_t first = 0;
     std::int64_t newest = 0;
-    std::int64_t lost = 0;           // with what was lost before it
-    std::array<Seen, kWindow> seen;  // by number modulo the window
+    std::int64_t lost = 0;           // including those lost before it
+    std::array<Seen, kWindow> seen;  // frames by number modulo the window
   };
   struct Run {
     std::int64_t id = 0;
     SequenceRange range;
-    std::list<SequenceRange> before;  // what it was before the last jumps that were believed
+    std::list<SequenceRange> before;  // ranges before the last accepted jumps
     std::deque<Seen> probation;       // the last frames that lie far from it
   };
 
@@ -72,7 +72,7 @@ class SequenceTracker {
   static void resync(Run& run, std::int64_t low, std::int64_t high);
 
   std::list<Run> runs_;    // the one heard last first
-  std::int64_t lost_ = 0;  // of runs that are not kept any more
+  std::int64_t lost_ = 0;  // lost frames of runs that are no longer stored
   bool has_number_ = false;
 };
 

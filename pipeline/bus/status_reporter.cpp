@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::chrono::seconds kPeriod(1);
 constexpr std::size_t kMaxSources = 256;           // a sender of rubbish may make up channels without end
-constexpr std::size_t kMaxReasonLength = 1000;     // bytes: it may quote what somebody else has sent
-constexpr std::chrono::seconds kLatencyWindow(5);  // at 30 Hz enough frames for a 99th percentile
+constexpr std::size_t kMaxReasonLength = 1000;     // bytes, since it may quote a received message
+constexpr std::chrono::seconds kLatencyWindow(5);  // enough frames at 30 Hz for a 99th percentile
 
 std::string shortened(const std::string& reason) {
   return reason.size() <= kMaxReasonLength ? reason : reason.substr(0, kMaxReasonLength) + "...";

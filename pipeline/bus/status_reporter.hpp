@@ -35,28 +35,29 @@ class StatusReporter {
   /// Another message than a frame that has come before.
   void note_duplicate();
   void count_skipped(std::int64_t frames);
-  /// `latency` is from the frame's arrival in this process until its result was published.
+  /// Counts a processed frame; `latency` is from its arrival in this process until its result was published.
   void count_processed(Clock::duration latency);
-  /// A frame that could not be worked on. The error is remembered, and logged: one line a second of each `kind`.
+  /// Counts a frame that could not be processed. The error is stored, and logged: one line a second of each `kind`.
   void count_refused(const std::string& reason, const std::string& kind = "");
-  /// Another message than a frame that could not be understood: it is counted apart.
+  /// Counts another message than a frame that could not be understood, separately from frames.
   void note_bad_message(const std::string& reason);
-  /// Remembers the last error, which somebody else has logged.
+  /// Stores the last error, which the caller has logged.
   void set_last_error(const std::string& reason);
-  /// Asked for each status from here on: it goes out beside it, and what is wrong with the store is the last error.
+  /// Sets a function that is called for each status from now on: its result is published beside the status, and a fault
+  /// of the store becomes the last error.
   void set_known_objects(std::function<KnownObjects()> objects) { objects_ = std::move(objects); }
 
   status_t message() const;
 
-  /// Publishes the status, and the objects that are known where it was told of any. An outage of the bus that has ended
-  /// is remembered as the last error. Throws InputError where the bus does not take it.
+  /// Publishes the status, and the known objects where set_known_objects() was called. An outage of the bus that has
+  /// ended is stored as the last error. Throws InputError where the bus does not accept it.
   void publish(LcmBus& bus);
   /// Publishes the status if a second has passed since the last time, and returns whether it has.
   bool publish_if_due(LcmBus& bus);
   /// Publishes the status from a thread that must not end on a bus error: logs the error and returns false.
   bool try_publish_if_due(LcmBus& bus);
 
-  /// The account in one line.
+  /// Returns the account in one line.
   std::string summary() const;
 
  private:
@@ -76,11 +77,11 @@ class StatusReporter {
   std::int64_t refused_ = 0;
   std::int64_t bad_messages_ = 0;
   std::int64_t duplicates_ = 0;
-  std::map<std::string, SequenceTracker> sequences_;  // by source
+  std::map<std::string, SequenceTracker> sequences_;  // by source name
   std::string last_error_;
-  std::string outage_;  // the last one of the bus that was remembered as an error
+  std::string outage_;  // last outage of the bus that was stored as an error
   std::function<KnownObjects()> objects_;
-  std::deque<Finished> recent_;  // of the last few seconds
+  std::deque<Finished> recent_;  // frames finished within the last few seconds
   Clock::time_point last_published_ = Clock::now();
   LogThrottle complaints_;
 };

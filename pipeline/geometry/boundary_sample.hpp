@@ -6,16 +6,17 @@
 
 namespace houghstream {
 
-/// A pair of pixels across an object's predicted boundary: the change of depth and colour from inside to outside.
+/// Holds a pair of pixels across an object's predicted boundary: the change of depth and colour from inside to outside.
 struct BoundarySample {
   float lateral_distance = 0.0F;  ///< metres from one to the other, across the ray
   float depth_change = 0.0F;      ///< depth, metres; NaN where it is not measured
-  /// The same if the thing's surface goes on straight, metres; NaN where that is not known.
+  /// Expected change of depth if the object's surface continues straight, metres; NaN where that is not known.
   float expected_depth_change = 0.0F;
   float colour_sq = 0.0F;  ///< see colour_distance_sq
 };
 
-/// Squared distance of two 8-bit CIE L*a*b* colours, lightness at half its weight: shading changes it along a surface.
+/// Returns the squared distance of two 8-bit CIE L*a*b* colours, with lightness at half its weight, since shading
+/// changes it along a surface.
 inline float colour_distance_sq(const cv::Vec3b& a, const cv::Vec3b& b) {
   const auto difference = [&](int channel) { return static_cast<float>(a[channel]) - static_cast<float>(b[channel]); };
   return 0.25F * difference(0) * difference(0) + difference(1) * difference(1) + difference(2) * difference(2);
@@ -30,7 +31,7 @@ inline float approximate_gaussian(float square) {
 /// Returns whether a nearer surface begins at the boundary, which then is an occluder's. `tolerance`: of depth, metres,
 /// here and below.
 inline bool is_foreground_step(const BoundarySample& seen, float tolerance) {
-  constexpr float kSteepest = 2.5F;  // what a table gains towards the camera, over the distance across the ray
+  constexpr float kSteepest = 2.5F;  // maximum slope of a table towards the camera: depth over lateral distance
   return seen.depth_change < -kSteepest * seen.lateral_distance - 2.0F * tolerance;
 }
 

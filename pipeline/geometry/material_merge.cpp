@@ -24,7 +24,7 @@ cv::Mat read_texture(const MeshPart& part, const fs::path& file) {
   return texture;
 }
 
-/// One tile for each part: its texture, or its colour.
+/// Returns one tile for each part: its texture, or its colour.
 std::vector<cv::Mat> read_tiles(const std::vector<MeshPart>& parts, const fs::path& file) {
   constexpr int kColourTile_px = 64;  // wide enough for its middle to stay clean when textures are blurred
   const cv::Vec3b kGrey(128, 128, 128);

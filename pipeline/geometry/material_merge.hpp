@@ -9,13 +9,13 @@
 
 namespace houghstream {
 
-/// The vertices of one material.
+/// Holds the vertices of one material.
 struct MeshPart {
   std::size_t first_vertex = 0;
   std::size_t vertices = 0;
   bool has_uvs = false;
   std::filesystem::path texture;  ///< empty = none; parts of one texture have the same path
-  cv::Mat image;                  ///< of a texture that the mesh's file itself holds, CV_8UC3 BGR; else empty
+  cv::Mat image;                  ///< texture embedded in the mesh's file, CV_8UC3 BGR; else empty
   bool has_colour = false;        ///< the material states one
   cv::Vec3b colour;               ///< BGR
 };

@@ -25,7 +25,7 @@ std::vector<double> cumulative_areas(const Mesh& mesh) {
   return sums;
 }
 
-/// Independent points, uniform over the area.
+/// Returns independent points, uniform over the area.
 SurfacePoints random_points(const Mesh& mesh, std::size_t count, std::uint64_t seed) {
   const std::vector<double> sums = cumulative_areas(mesh);
   require(!sums.empty() && sums.back() > 0.0, "mesh of {} triangles with surface area 0, expected a surface",
@@ -36,7 +36,7 @@ SurfacePoints random_points(const Mesh& mesh, std::size_t count, std::uint64_t s
     const double target = random.uniform() * sums.back();
     const auto found = std::upper_bound(sums.begin(), sums.end(), target);
     const auto& t = mesh.triangles[std::min<std::size_t>(found - sums.begin(), sums.size() - 1)];
-    // Square root for uniform density over a triangle: Turk 1990, "Generating random points in triangles".
+    // The square root gives uniform density over a triangle (Turk 1990, "Generating random points in triangles").
     const auto root = static_cast<float>(std::sqrt(random.uniform()));
     const auto along = static_cast<float>(random.uniform());
     out.points.emplace_back((1.0F - root) * mesh.vertices[t[0]] + root * (1.0F - along) * mesh.vertices[t[1]] +
@@ -99,7 +99,8 @@ Eigen::AlignedBox3f mesh_bounds(const Mesh& mesh) {
 
 double mesh_diameter(const Mesh& mesh) {
   if (mesh.vertices.empty()) return 0.0;
-  // Farthest from the centre first: a pair can only beat the best one while its two radii add up to more.
+  // The vertices farthest from the centre come first: a pair can only beat the best one while its two radii add up to
+  // more.
   const Eigen::Vector3f centre = mesh_bounds(mesh).center();
   std::vector<std::pair<float, std::size_t>> by_radius;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) by_radius.emplace_back((mesh.vertices[i] - centre).norm(), i);
@@ -121,7 +122,7 @@ void remove_colour(Mesh& mesh) {
 
 SurfacePoints sample_surface(const Mesh& mesh, int count, std::uint64_t seed) {
   require(count >= 1, "{} surface points asked for, expected at least 1", count);
-  // Farthest-point choice (Eldar et al. 1997) among five times as many random points spreads them evenly.
+  // Farthest-point selection (Eldar et al. 1997) among five times as many random points spreads them evenly.
   constexpr std::size_t kCandidatesPerPoint = 5;
   const SurfacePoints candidates = random_points(mesh, kCandidatesPerPoint * static_cast<std::size_t>(count), seed);
   FarthestPoints distances(candidates.points);

@@ -9,7 +9,7 @@
 
 namespace houghstream {
 
-/// A triangle mesh in its object frame, metres. `normals`, `colours` and `uvs` are empty or per vertex.
+/// Stores a triangle mesh in its object frame, metres. `normals`, `colours` and `uvs` are empty or per vertex.
 struct Mesh {
   std::vector<Eigen::Vector3f> vertices;                ///< metres
   std::vector<Eigen::Vector3f> normals;                 ///< unit length, outwards
@@ -19,19 +19,19 @@ struct Mesh {
   cv::Mat texture;                                      ///< CV_8UC3 BGR, or empty
 };
 
-/// Extent of the vertices along each axis, metres.
+/// Returns the extent of the vertices along each axis, metres.
 Eigen::AlignedBox3f mesh_bounds(const Mesh& mesh);
 
-/// Largest distance between two vertices, metres (BOP's diameter); exact on the convex extremes.
+/// Returns the largest distance between two vertices, metres (BOP's diameter); it is exact on the convex extremes.
 double mesh_diameter(const Mesh& mesh);
 
-/// Area-weighted vertex normals from the triangles.
+/// Computes area-weighted vertex normals from the triangles.
 void compute_normals(Mesh& mesh);
 
 /// Takes texture and colours from it.
 void remove_colour(Mesh& mesh);
 
-/// Evenly spread points on the surface with normals, deterministic for a seed.
+/// Holds evenly spread points on the surface with normals, deterministic for a seed.
 struct SurfacePoints {
   std::vector<Eigen::Vector3f> points;   ///< object frame, metres
   std::vector<Eigen::Vector3f> normals;  ///< unit length

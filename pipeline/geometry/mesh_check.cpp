@@ -44,7 +44,7 @@ class TextLines {
     return line;
   }
 
-  std::int64_t number() const { return number_; }  ///< of the last line, from 1
+  std::int64_t number() const { return number_; }  ///< number of the last line, from 1
   bool is_ended() const { return is_ended_; }      ///< the last line had an end
   std::string_view rest() const { return text_; }
 
@@ -88,9 +88,9 @@ struct PlyProperty {
   std::string name;
   std::size_t bytes = 0;
   bool is_whole = false;        // an integer
-  std::size_t count_bytes = 0;  // of a list's count; 0 = no list
+  std::size_t count_bytes = 0;  // bytes of a list's count; 0 = no list
   bool has_signed_count = false;
-  std::int64_t min_entries = 0;  // of a list; 3 for the corners of faces
+  std::int64_t min_entries = 0;  // minimum length of a list; 3 for the corners of faces
 };
 
 struct PlyElement {
@@ -99,7 +99,7 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 };
 
-/// Bytes of a number of this type; 0 = there is no such type.
+/// Returns the bytes of a number of this type; 0 for an unknown type.
 std::size_t ply_type_bytes(std::string_view type) {
   if (is_word_of(" char int8 uchar uint8 ", type)) return 1;
   if (is_word_of(" short int16 ushort uint16 ", type)) return 2;
@@ -189,7 +189,8 @@ class PlyCheck {
 
   void check_names(const PlyElement& element) const {
     require(element.name != "tristrips", "{}: holds strips of triangles, expected faces", source_);
-    // A file of a few lines may state thousands of millions of entries of no bytes, for which the library makes room.
+    // A file of a few lines may state thousands of millions of entries of no bytes, for which the library allocates
+    // memory.
     require(element.count == 0 || !element.properties.empty(), "{}: {} entries '{}' without properties", source_,
             element.count, excerpt(element.name));
     std::set<std::string> names;
@@ -277,7 +278,7 @@ class ObjCheck {
   ObjCheck(std::string_view bytes, const std::string& source) : lines_(bytes), source_(source) {}
 
   void check() {
-    std::string joined;  // of lines that end with a backslash
+    std::string joined;  // joined lines that end with a backslash
     while (const std::optional<std::string_view> line = lines_.next()) {
       joined += *line;
       if (!joined.empty() && joined.back() == '\\') {
@@ -298,7 +299,7 @@ class ObjCheck {
 
  private:
   void check_line(const Words& words, const std::string& where) {
-    if (words[0] == "v") return check_numbers(words, {3, 8}, 0, where);  // with a weight or a colour
+    if (words[0] == "v") return check_numbers(words, {3, 8}, 0, where);  // a weight or a colour may follow
     if (words[0] == "vt") return check_numbers(words, {1, 3}, 1, where);
     if (words[0] == "vn") return check_numbers(words, {3, 3}, 2, where);
     if (words[0] == "f") return check_corners(words, 3, where);
@@ -332,7 +333,7 @@ class ObjCheck {
     }
   }
 
-  /// Which of the three numbers of a corner are there: 1 vertex, 2 texture coordinates, 4 normal.
+  /// Returns which of the three numbers of a corner exist: 1 vertex, 2 texture coordinates, 4 normal.
   int check_corner(std::string_view word, std::int64_t& vertex, const std::string& where) const {
     int parts = 0;
     std::size_t part = 0;
@@ -368,7 +369,7 @@ class ObjCheck {
   const std::string& source_;
   std::array<std::int64_t, 3> given_ = {};                    // vertices, texture coordinates, normals
   std::int64_t last_used_ = 0;                                // the highest vertex that belongs to a face
-  std::vector<std::pair<std::int64_t, std::int64_t>> edges_;  // of faces, the smaller vertex first
+  std::vector<std::pair<std::int64_t, std::int64_t>> edges_;  // edges of faces, the smaller vertex first
 };
 
 // ---------------------------------------------------------------- MTL
@@ -384,7 +385,7 @@ void check_mtl_numbers(const Words& words, std::size_t maximum, const std::strin
   }
 }
 
-/// Options with so many words each, then a file's name.
+/// Checks options with a fixed number of words each, then a file's name.
 void check_mtl_texture(const Words& words, const std::string& where) {
   std::size_t at = 1;
   while (at < words.size() && words[at].front() == '-') {
@@ -429,7 +430,7 @@ std::vector<std::filesystem::path> material_files(std::string_view obj, const st
     if (words.size() < 2) continue;
     std::string name(words[1].data(), line->data() + line->size());
     name = name.substr(0, name.find('\f'));
-    found.emplace_back(folder + name);  // also of a name that begins with /
+    found.emplace_back(folder + name);  // the name may begin with /
   }
   return found;
 }
@@ -444,7 +445,7 @@ std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-/// One asset whose parts are looked at. The library refuses an index of nothing itself, and buffers that are not there.
+/// Checks one asset and its parts. The library itself refuses an index without a target, and missing buffers.
 class GltfCheck {
  public:
   GltfCheck(std::string_view bytes, const std::string& source) : source_(source), text_(bytes) {
@@ -504,7 +505,7 @@ class GltfCheck {
     return value.get<std::int64_t>();
   }
 
-  /// The entry of a list that an index names.
+  /// Returns the entry of a list that an index names.
   const Json& named(const Json& entry, const char* name, const char* of) const {
     const std::int64_t at = number(entry, name);
     require(at < static_cast<std::int64_t>(list(of).size()), "{}: '{}' names {} of {} {}", source_, name, at,
@@ -512,7 +513,8 @@ class GltfCheck {
     return list(of)[static_cast<std::size_t>(at)];
   }
 
-  /// The bytes of a buffer: those of a GLB's first one are here, others lie where the library looks for them.
+  /// Returns the number of bytes of a buffer: the first one of a GLB is in the file, others lie where the library looks
+  /// for them.
   std::int64_t buffer_bytes(const Json& buffer) const {
     const std::int64_t bytes = number(buffer, "byteLength");
     const auto there = static_cast<std::int64_t>(binary_.size());
@@ -579,7 +581,7 @@ class GltfCheck {
     if (primitive.contains("indices")) check_indices(named(primitive, "indices", "accessors"), vertices);
   }
 
-  /// The library leaves out faces with a vertex that is none.
+  /// The library ignores faces with an invalid vertex, so that these are refused here.
   void check_indices(const Json& indices, std::int64_t vertices) const {
     const std::int64_t type = number(indices, "componentType");
     require(components(indices) == 1 && (type == 5121 || type == 5123 || type == 5125),

@@ -11,21 +11,21 @@
 
 namespace houghstream {
 
-/// PLY 1.0 (Turk 1994), text or binary: a whole header, as many entries of each element as it states, nothing behind
-/// them, faces of three corners or more.
+/// Checks PLY 1.0 (Turk 1994), text or binary: a whole header, as many entries of each element as it states, nothing
+/// behind them, faces of three corners or more.
 void check_ply(std::string_view bytes, const std::string& source);
 
-/// Wavefront OBJ with polygons: known words, numbers that are numbers, faces whose corners exist, no face cut short;
-/// and the files of materials that it names, where they exist. The format states no counts; a file that was cut shows
-/// in its last line, and in vertices at its end that belong to no face.
+/// Checks Wavefront OBJ with polygons: known words, valid numbers, faces whose corners exist, no face cut short; and
+/// the files of materials that it names, where they exist. The format states no counts; a file that was cut shows in
+/// its last line, and in vertices at its end that belong to no face.
 void check_obj(std::string_view bytes, const std::filesystem::path& file);
 
-/// The materials of an OBJ: known words with as many numbers as they take, textures with a file, all of a material that
-/// has a name.
+/// Checks the materials of an OBJ: known words with as many numbers as they take, textures with a file, all within a
+/// material that has a name.
 void check_mtl(std::string_view bytes, const std::string& source);
 
-/// glTF 2.0 as text or GLB (ISO/IEC 12113): lengths that add up, views and accessors within their buffers, indices that
-/// exist, nodes that are a tree.
+/// Checks glTF 2.0 as text or GLB (ISO/IEC 12113): lengths that add up, views and accessors within their buffers,
+/// indices that exist, nodes that are a tree.
 void check_gltf(std::string_view bytes, const std::string& source);
 
 }  // namespace houghstream

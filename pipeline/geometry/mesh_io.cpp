@@ -26,7 +26,7 @@ std::uint8_t to_byte(float value) {
   return static_cast<std::uint8_t>(std::lround(fraction * 255.0F));
 }
 
-/// glTF states colours linear in the light, all else as a screen shows them (IEC 61966-2-1).
+/// Converts a colour: glTF states colours in linear light, the other formats as a screen shows them (IEC 61966-2-1).
 std::uint8_t to_byte(float value, bool is_linear) {
   if (!is_linear) return to_byte(value);
   return to_byte(value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F);
@@ -43,7 +43,8 @@ bool is_gltf(const std::filesystem::path& file) {
   return lower_extension(file) == ".glb" || lower_extension(file) == ".gltf";
 }
 
-/// Assimp believes what a file states: cut or damaged ones make it loop for ever, end the process, or give a part.
+/// Checks that the file is whole: Assimp trusts its contents, and cut or damaged ones make it loop for ever, end the
+/// process, or return a part.
 void require_whole(const std::filesystem::path& file) {
   const std::string bytes = read_file(file, "a PLY, OBJ or glTF mesh");
   if (lower_extension(file) == ".ply") return check_ply(bytes, file.string());
@@ -137,7 +138,7 @@ std::string texture_name(const aiMaterial& material) {
   return "";
 }
 
-/// Appearance of a part, from its material.
+/// Returns the appearance of a part, from its material.
 MeshPart describe_part(const aiScene& scene, const aiMesh& part, std::size_t first_vertex,
                        const std::filesystem::path& file) {
   const aiMaterial& material = *scene.mMaterials[part.mMaterialIndex];
@@ -150,12 +151,12 @@ MeshPart describe_part(const aiScene& scene, const aiMesh& part, std::size_t fir
     out.texture = file / texture;  // a name for it: "FILE.glb/*0"
     out.image = decode_texture(*embedded, out.texture.string());
   } else if (!texture.empty()) {
-    std::replace(texture.begin(), texture.end(), '\\', '/');  // of files that were made on Windows
+    std::replace(texture.begin(), texture.end(), '\\', '/');  // separators of files made on Windows
     out.texture = file.parent_path() / texture;
   }
   aiColor3D c;
-  // Where the file names no material, the library makes up a grey one of this name, of a PLY one without a name, and
-  // of glTF one that has no colour either.
+  // Where the file names no material, the library makes up a grey one: with this name, for a PLY without a name, and
+  // for glTF with no colour either.
   const std::string name = material.GetName().C_Str();
   const bool is_linear = is_gltf(file);
   const bool is_made_up = name == AI_DEFAULT_MATERIAL_NAME || (name.empty() && !is_linear);
@@ -164,7 +165,7 @@ MeshPart describe_part(const aiScene& scene, const aiMesh& part, std::size_t fir
   return out;
 }
 
-/// Which optional columns a PLY gets.
+/// Selects the optional columns of a PLY.
 struct PlyParts {
   bool normals, colours, texture;
 };

@@ -8,7 +8,7 @@ void compute_normals(Mesh& mesh) {
   mesh.normals.assign(mesh.vertices.size(), Eigen::Vector3f::Zero());
   for (const auto& triangle : mesh.triangles) {
     const Eigen::Vector3f& a = mesh.vertices[triangle[0]];
-    // Twice the area long: adding them up weights by area.
+    // The normal has twice the triangle's area as its length, so that the sum weights by area.
     const Eigen::Vector3f normal = (mesh.vertices[triangle[1]] - a).cross(mesh.vertices[triangle[2]] - a);
     for (const std::uint32_t index : triangle) mesh.normals[index] += normal;
   }

@@ -3,22 +3,22 @@
 #include <algorithm>
 #include <cstdint>
 
-// Integer edge functions for the rasteriser, after Pineda, "A Parallel Algorithm for Polygon Rasterization" (1988):
-// vertices are snapped to 1/256 pixel, so that a pixel centre on the edge between two triangles belongs to exactly
-// one of them.
+// Integer edge functions for the rasteriser follow Pineda, "A Parallel Algorithm for Polygon Rasterization" (1988):
+// vertices are snapped to 1/256 pixel, so that a pixel centre on the edge between two triangles belongs to exactly one
+// of them.
 
 namespace houghstream {
 
 constexpr int kSubpixelBits = 8;
 constexpr int kSubpixels = 1 << kSubpixelBits;
 
-/// A point of the image on the snapping grid.
+/// Holds a point of the image on the snapping grid.
 struct Snapped {
   std::int64_t x = 0;  // 1/256 pixel
   std::int64_t y = 0;
 };
 
-/// E(x, y) >= 0 for the pixels inside; the bias leaves out pixel centres on edges that the neighbour owns.
+/// E(x, y) >= 0 holds for the pixels inside; the bias excludes pixel centres on edges that the neighbour owns.
 struct Edge {
   Edge(const Snapped& a, const Snapped& b)
       : x_step(-(b.y - a.y) * kSubpixels),

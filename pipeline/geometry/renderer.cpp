@@ -11,7 +11,7 @@
 #include "pipeline/base/no_value.hpp"
 #include "pipeline/geometry/raster_edge.hpp"
 
-// Scan conversion with exact edges (raster_edge.hpp), one span per row. Depth comes from the plane of the unsnapped
+// Scan conversion uses exact edges (raster_edge.hpp), one span per row. Depth comes from the plane of the unsnapped
 // triangle: with n = (V1 - V0) x (V2 - V0), 1/z = n.r / n.V0 along the ray r.
 
 namespace houghstream {
@@ -27,7 +27,7 @@ struct ClipVertex {
   bool in_front() const { return position.z() >= kNear; }
 };
 
-/// Relative to the first pixel of a part of the image.
+/// Returns the point relative to the first pixel of a part of the image.
 Snapped snap(const Camera& camera, const cv::Point& first_px, const Eigen::Vector3d& point) {
   constexpr double kRounding = kSnapLimit + 0.5;
   const auto fixed = [](double px) {
@@ -57,7 +57,7 @@ std::array<int, 2> covered_pixels(std::int64_t low, std::int64_t high, int size)
   return {static_cast<int>(first), static_cast<int>(end)};
 }
 
-/// The pixels that triangles of these vertices may cover, which are snapped on the whole image.
+/// Returns the pixels that triangles of these vertices may cover, which are snapped on the whole image.
 cv::Rect covered_part(const std::vector<ClipVertex>& vertices, const Camera& camera) {
   if (vertices.empty()) return {};
   Snapped low = vertices.front().snapped;
@@ -85,15 +85,15 @@ struct Surface {
 struct Triangle {
   std::array<const ClipVertex*, 3> corners{};
   bool has_plane = false;
-  bool is_seen = false;           // nearest somewhere, so far
-  double distance = 0.0;          // of its plane, times its normal's length; 0 = seen exactly edge-on, or not finite
+  bool is_seen = false;   // nearest somewhere, so far
+  double distance = 0.0;  // distance of its plane, times its normal's length; 0 = exactly edge-on, or not finite
   Eigen::Vector3d inverse_depth;  // 1/z: dot product with a pixel's ray
-  float step = 0.0F;              // of 1/z from a pixel to the next
+  float step = 0.0F;              // change of 1/z per pixel
   float lowest = 0.0F;            // bounds of 1/z
   float highest = 0.0F;
 };
 
-/// Nearest surfaces in one region of the image. Without owners only depth is kept.
+/// Stores the nearest surfaces in one region of the image. Without owners only depth is kept.
 class Rasteriser {
  public:
   Rasteriser(const Camera& camera, const cv::Rect& region, bool with_owners);
@@ -111,14 +111,14 @@ class Rasteriser {
   void fill_rows(const std::array<Edge, 3>& edges, const cv::Rect& box, Triangle& triangle);
   void fill_span(int y, int first, int last, Triangle& triangle);
   bool has_plane(Triangle& triangle) const;
-  /// The ray through a pixel, where it is 1 m deep.
+  /// Returns the ray through a pixel, at 1 m depth.
   Eigen::Vector3d ray(int x, int y) const {
     return {ray_x_[static_cast<std::size_t>(x)], ray_y_[static_cast<std::size_t>(y)], 1.0};
   }
 
   Camera camera_;
   cv::Rect region_;
-  std::vector<double> ray_x_, ray_y_;  // by column, by row of the region
+  std::vector<double> ray_x_, ray_y_;  // rays by column and by row of the region
   cv::Mat inverse_depth_;              // CV_32FC1, 0 = nothing
   cv::Mat owner_;                      // CV_32SC1, index into surfaces_, -1 = nothing
   std::vector<Surface> surfaces_;      // only with owners
@@ -274,7 +274,7 @@ void Rasteriser::fill_span(int y, int first, int last, Triangle& triangle) {
     return;
   }
   std::int32_t* owner = owner_.ptr<std::int32_t>(y) + first;
-  const auto index = static_cast<std::int32_t>(surfaces_.size());  // which it becomes where it is seen
+  const auto index = static_cast<std::int32_t>(surfaces_.size());  // its index there if it is visible
   bool is_seen = false;
   for (int i = 0; i < count; ++i) {
     const float here = std::min(std::max(start + step * static_cast<float>(i), lowest), highest);

@@ -6,7 +6,8 @@
 
 namespace houghstream {
 
-/// Turns by any angle about the line through `offset` along `axis` leave the object as it is.
+/// Describes a continuous symmetry: rotations by any angle about the line through `offset` along `axis` leave the
+/// object as it is.
 struct ContinuousSymmetry {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();   ///< unit length, object frame
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< a point of the line, object frame, metres
@@ -22,7 +23,7 @@ struct Symmetries {
   bool empty() const { return discrete.empty() && continuous.empty(); }
 };
 
-/// Symmetry of a shape within a depth camera's noise, whatever its texture.
+/// Holds the symmetry of a shape within a depth camera's noise, whatever its texture.
 struct ShapeSymmetry {
   Symmetries symmetries;
   std::optional<ContinuousSymmetry> nearly_round;  ///< an axis about which all but a handle or the like looks the same

@@ -20,7 +20,7 @@ std::string upper_case(std::string name) {
   return name;
 }
 
-/// FNV-1a (Fowler, Noll and Vo), folded to 16 bits.
+/// Returns FNV-1a (Fowler, Noll and Vo), folded to 16 bits.
 unsigned int short_number(const std::string& text) {
   std::uint32_t hash = 2166136261U;
   for (const char c : text) hash = (hash ^ static_cast<std::uint8_t>(c)) * 16777619U;

@@ -27,7 +27,7 @@ constexpr std::size_t kMaxDeflateRatio = 1032;
 void unzip_into(ByteView zipped, std::uint8_t* raw, std::size_t raw_size) {
   static thread_local const std::unique_ptr<libdeflate_decompressor, ZipDeleter> handle(
       libdeflate_alloc_decompressor());  // kept from frame to frame
-  // With no place for the unpacked size, anything but exactly raw_size bytes is an error.
+  // Without a place for the unpacked size, libdeflate treats any size but raw_size as an error.
   const libdeflate_result result =
       libdeflate_zlib_decompress(handle.get(), zipped.data, zipped.size, raw, raw_size, nullptr);
   require(result != LIBDEFLATE_BAD_DATA, "zlib data of {} bytes is damaged or cut", zipped.size);

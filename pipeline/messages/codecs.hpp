@@ -8,28 +8,28 @@
 
 namespace houghstream {
 
-/// More pixels than this (4K) are refused before memory is asked for.
+/// Images with more pixels than this (4K) are refused before memory is allocated.
 constexpr std::int64_t kMaxPixels = 3840LL * 2160LL;
 
 /// Throws InputError unless both sizes are positive and their product is at most kMaxPixels.
 void check_image_size(std::int64_t width, std::int64_t height);
 
-/// CV_8UC3 BGR to JPEG (4:2:0), `quality` 1 to 100.
+/// Encodes CV_8UC3 BGR as JPEG (4:2:0), `quality` 1 to 100.
 std::vector<std::uint8_t> encode_jpeg(const cv::Mat& bgr, int quality);
 
-/// JPEG to CV_8UC3 BGR of exactly this size. Throws InputError when it is damaged, cut or of another size, or when it
-/// has more than kMaxScans scans: each one goes over the whole image, and may take a few bytes only.
+/// Decodes JPEG to CV_8UC3 BGR of exactly this size. Throws InputError when it is damaged, cut or of another size, or
+/// when it has more than kMaxScans scans: each one passes over the whole image, and may take a few bytes only.
 constexpr int kMaxScans = 16;
 cv::Mat decode_jpeg(ByteView jpeg, int width, int height);
 
-/// CV_16UC1 to a zlib stream, `level` 1 to 9.
+/// Packs CV_16UC1 into a zlib stream, `level` 1 to 9.
 std::vector<std::uint8_t> zip_depth(const cv::Mat& depth_mm, int level);
 
-/// A zlib stream to exactly `raw_size` bytes. Throws InputError when it is damaged, cut or of another size; never
-/// unpacks more than that.
+/// Unpacks a zlib stream to exactly `raw_size` bytes. Throws InputError when it is damaged, cut or of another size;
+/// never unpacks more than that.
 std::vector<std::uint8_t> unzip(ByteView zipped, std::size_t raw_size);
 
-/// A zlib stream to CV_16UC1 of exactly this size. Throws InputError as unzip() does.
+/// Unpacks a zlib stream to CV_16UC1 of exactly this size. Throws InputError as unzip() does.
 cv::Mat unzip_depth(ByteView zipped, int width, int height);
 
 }  // namespace houghstream

@@ -91,7 +91,7 @@ image_t depth_image(const RgbdFrame& frame, const WireFormat& format) {
   return image;
 }
 
-// A raw image as a matrix of its own, without the padding that a row may end with. row_stride 0 means none.
+// Returns a raw image as a matrix of its own, without the padding that a row may end with. row_stride 0 means none.
 cv::Mat unpack_raw(const image_t& image, int type) {
   check_image_size(image.width, image.height);
   const std::int64_t row_bytes = static_cast<std::int64_t>(image.width) * static_cast<std::int64_t>(CV_ELEM_SIZE(type));
@@ -171,7 +171,7 @@ std::vector<StageTime> stages_of(const images_t& message) {
   return stages;
 }
 
-/// The colour and the depth image of a message.
+/// Refers to the colour and the depth image of a message.
 struct FoundImages {
   const image_t& colour;
   const image_t& depth;
@@ -194,7 +194,7 @@ FrameImages decode_images(const images_t& message) {
   return {decode_colour(found.colour), decode_depth(found.depth, found.zipped_depth)};
 }
 
-/// All of it but its images.
+/// Returns the frame without its images.
 RgbdFrame undecoded_frame(const images_t& message, const std::string& channel,
                           const std::optional<Camera>& fallback_camera) {
   RgbdFrame frame;

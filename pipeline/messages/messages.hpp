@@ -19,7 +19,7 @@
 #include "pipeline/types/teaching.hpp"
 #include "pipeline/types/tracked_object.hpp"
 
-// Plain structs to LCM messages and back. Everything that comes off the wire is checked here, once:
+// These functions convert plain structs to LCM messages and back. All data off the wire are checked here, once:
 // functions that read throw InputError and never return a made-up value.
 
 namespace houghstream {
@@ -32,15 +32,15 @@ struct WireFormat {
   int zip_level = 1;      ///< zlib 1 to 9
 };
 
-/// `sequence` counts the source's frames from 0, so that receivers can tell lost ones.
+/// Converts a frame; `sequence` counts the source's frames from 0, so that receivers can detect lost ones.
 houghstream::images_t to_message(const RgbdFrame& frame, const WireFormat& format, std::int64_t sequence);
 
-/// For frames that came without: the camera, and the source's frame counter from 0. Throws InputError where the message
-/// has no image to carry them or the camera is absurd.
+/// Add the camera, and the source's frame counter from 0, to frames that came without them. They throw InputError where
+/// the message has no image to carry them or the camera is absurd.
 void add_camera(houghstream::images_t& message, const Camera& camera);
 void add_sequence(houghstream::images_t& message, std::int64_t sequence);
 
-/// Says which run of its source a frame is of, so that numbers that begin anew are not taken for old ones.
+/// Adds the run of the frame's source, so that numbers that begin again are not taken for old ones.
 void add_run(houghstream::images_t& message, std::int64_t run);
 
 /// Finds colour (LEFT: RGB, BGR, RGBA, BGRA, GRAY or MJPEG) and depth (DEPTH_MM, DEPTH_MM_ZIPPED) by type, decodes them
@@ -54,7 +54,7 @@ RgbdFrame frame_from_message(const houghstream::images_t& message, const std::st
 RgbdFrame depth_frame_from_message(const houghstream::images_t& message, const std::string& channel,
                                    const std::optional<Camera>& fallback_camera);
 
-/// Colour and depth of a frame as they travel; equal sizes.
+/// Holds colour and depth of a frame in the format of the wire; both have the same size.
 struct FrameImages {
   cv::Mat colour;    ///< CV_8UC3, BGR
   cv::Mat depth_mm;  ///< CV_16UC1, 0 = none
@@ -63,14 +63,14 @@ struct FrameImages {
 /// Checks a message as frame_from_message() does; frames without a camera are allowed.
 FrameImages images_from_message(const houghstream::images_t& message);
 
-/// The camera that the message carries, unchecked, if any. Throws InputError where its bytes are none.
+/// Returns the camera that the message carries, unchecked, if any. Throws InputError where its bytes are invalid.
 std::optional<Camera> read_camera_metadata(const houghstream::images_t& message);
 [[deprecated("is read_camera_metadata now")]] inline std::optional<Camera> camera_of(
     const houghstream::images_t& message) {
   return read_camera_metadata(message);
 }
 
-/// The source's frame counter, if the message carries one.
+/// Returns the source's frame counter, if the message carries one.
 std::optional<std::int64_t> read_sequence_number(const houghstream::images_t& message);
 [[deprecated("is read_sequence_number now")]] inline std::optional<std::int64_t> sequence_of(
     const houghstream::images_t& message) {
@@ -84,8 +84,8 @@ Detections detections_from_message(const houghstream::detections_t& message);
 houghstream::object_poses_t to_message(const ObjectPoses& poses);
 ObjectPoses poses_from_message(const houghstream::object_poses_t& message);
 
-/// The probabilities of the poses, which travel beside them. A pose that is read without them has `quality` as its
-/// `shape_quality`.
+/// Returns the probabilities of the poses, which travel beside them. A pose that is read without them has `quality` as
+/// its `shape_quality`.
 houghstream::pose_probabilities_t probabilities_to_message(const ObjectPoses& poses);
 /// Sets ObjectPose::shape_quality where the message is about these poses: of their frame, with their qualities. Returns
 /// whether it is. Throws InputError where a probability is none.
@@ -104,7 +104,7 @@ Eigen::Isometry3d transform_from_message(const houghstream::rigid_transform_t& m
 houghstream::objects_t to_message(const WorldObjects& objects);
 WorldObjects world_from_message(const houghstream::objects_t& message);
 
-/// The sender fills in its name and the time.
+/// Converts the known objects; the sender fills in its name and the time.
 houghstream::known_objects_t to_message(const KnownObjects& known);
 
 houghstream::teaching_t to_message(const Teaching& teaching);

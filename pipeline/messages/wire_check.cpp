@@ -17,8 +17,8 @@
 namespace houghstream {
 namespace {
 
-/// The longest message of a type. A frame of kMaxPixels has less, uncompressed and with rows filled up; LCM itself
-/// refuses what has more than 1 << 28.
+/// Returns the maximum length of a message type. A frame of kMaxPixels has less, uncompressed and with rows filled up;
+/// LCM itself refuses messages of more than 1 << 28 bytes.
 std::size_t max_bytes(std::int64_t fingerprint) {
   if (fingerprint == images_t::getHash()) return kMaxFrameBytes;
   if (fingerprint == status_t::getHash()) return std::size_t{1} << 16U;

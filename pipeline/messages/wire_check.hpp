@@ -25,16 +25,16 @@ inline constexpr std::size_t kMaxNameLength = 255;
 struct FrameHeader {
   std::int64_t utime = 0;
   std::optional<std::int64_t> sequence;  ///< the source's frame counter, if the message carries one
-  std::int64_t run = 0;                  ///< of the source, 0 where the message does not say
+  std::int64_t run = 0;                  ///< run of the source, 0 where the message does not say
 };
 
 /// Walks through a whole encoded images_t. Throws InputError where its counts and sizes do not add up.
 FrameHeader read_frame_header(ByteView bytes);
 
-/// utime of any encoded message of this project that names a frame by it: it stands right after the fingerprint.
+/// Returns the utime of any encoded message of this project that names a frame by it: it follows the fingerprint.
 std::int64_t read_utime(ByteView bytes, const std::string& source);
 
-/// The frame that an encoded detections_t, object_poses_t or objects_t is about, without decoding or checking the rest.
+/// Returns the frame of an encoded detections_t, object_poses_t or objects_t, without decoding or checking the rest.
 /// Throws InputError, naming `source`, where the message is of another type or cut.
 FrameId read_result_frame(ByteView bytes, const std::string& source);
 
@@ -42,7 +42,7 @@ FrameId read_result_frame(ByteView bytes, const std::string& source);
 /// for nothing else.
 bool is_frame_message(ByteView bytes);
 
-/// A frame counter, or a run, as it stands in the metadata, decimal text. Throws InputError.
+/// Parses a frame counter, or a run, as decimal text in the metadata. Throws InputError.
 std::int64_t parse_sequence(ByteView text);
 
 /// Throws InputError for the time of a stage that is absurd.

@@ -6,7 +6,7 @@
 
 namespace houghstream {
 
-/// An encoded message; the bytes belong to somebody else.
+/// Refers to an encoded message, whose bytes belong to somebody else.
 struct ByteView {
   const std::uint8_t* data = nullptr;
   std::size_t size = 0;

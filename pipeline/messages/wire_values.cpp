@@ -19,7 +19,7 @@ Eigen::Isometry3d pose_from_wire(const double* trans, const double* quat, const 
 void check_wire_box(const cv::Rect2f& box, const std::string& of, const char* or_else) {
   const bool is_box = std::abs(box.x) <= kMaxDistancePx && std::abs(box.y) <= kMaxDistancePx && box.width > 0.0F &&
                       box.width <= kMaxDistancePx && box.height > 0.0F &&
-                      box.height <= kMaxDistancePx;  // not NaN either
+                      box.height <= kMaxDistancePx;  // false for NaN too
   require(is_box, "{} at ({}, {}) of {}x{} pixels, expected positive sizes, all within {}{}", of, box.x, box.y,
           box.width, box.height, kMaxDistancePx, or_else);
 }

@@ -11,13 +11,13 @@ namespace houghstream {
 /// A unit vector or quaternion in single precision, rounded by another sender, is this close to length 1.
 inline constexpr double kUnitTolerance = 1e-3;
 
-/// Beyond the Moon: no camera's world is larger, and no box reaches so many pixels. Who draws or adds up places need
-/// not mind overflows.
+/// The limits lie beyond the Moon: no camera's world is larger, and no box reaches so many pixels. Code that draws or
+/// adds positions need not check for overflows.
 inline constexpr double kMaxDistanceM = 1e9;
 inline constexpr float kMaxDistancePx = 1e6F;
 
-/// The rigid motion of a translation, metres, and a quaternion, w first. Throws InputError that begins with `of` where
-/// it is none or lies beyond kMaxDistanceM; `or_else` says what else would have done.
+/// Returns the rigid motion of a translation, metres, and a quaternion, w first. Throws InputError that begins with
+/// `of` where it is invalid or lies beyond kMaxDistanceM; `or_else` names what would have been accepted too.
 Eigen::Isometry3d pose_from_wire(const double* trans, const double* quat, const std::string& of,
                                  const char* or_else = "");
 

@@ -5,10 +5,11 @@
 
 namespace houghstream {
 
-/// Bytes that the items of one queue, or of several, hold in all. Each item keeps the Held that hold() has given for
-/// it: however an item goes, taken, dropped or replaced, its bytes are given back with that. It only counts; which item
-/// goes where they are too many is for the queue to say. Not thread-safe: what is held is moved and destroyed under the
-/// queue's lock as well. Must outlive what is held of it, and so is declared before the items.
+/// Counts the bytes that the items of one queue, or of several, hold in total. Each item keeps the Reservation that
+/// reserve() returned for it: however an item leaves, popped, dropped or replaced, its bytes are released with that. It
+/// only counts; the queue decides which item is dropped where there are too many. Not thread-safe: reservations are
+/// moved and destroyed under the queue's lock as well. It must outlive its reservations, and so is declared before the
+/// items.
 class ByteBudget {
  public:
   /// The bytes of one item, which count for as long as this lives.

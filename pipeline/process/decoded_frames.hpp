@@ -32,12 +32,13 @@ class DecodedFrames {
   DecodedFrames(std::optional<Camera> camera, std::string stage)
       : camera_(std::move(camera)), stage_(std::move(stage)) {}
 
-  /// The frame of these bytes, and not another one of the same name. Throws InputError where they are no images_t.
+  /// Returns the frame of these bytes, and not another one of the same name. Throws InputError where they are no
+  /// images_t.
   Decoded decode(const SharedBytes& bytes, const std::string& channel);
 
  private:
   struct Kept {
-    std::weak_ptr<const std::vector<std::uint8_t>> bytes;  // that it was decoded from
+    std::weak_ptr<const std::vector<std::uint8_t>> bytes;  // message from which it was decoded
     Decoded frame;
   };
 

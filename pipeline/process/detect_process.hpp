@@ -16,22 +16,24 @@ namespace houghstream {
 struct DetectProcessOptions {
   std::string process = "hs-detect";             ///< its name in status_t
   std::string frame_channels = channel::kFrame;  ///< a ChannelPattern: one camera's channel, or several cameras'
-  std::optional<Camera> camera;                  ///< for frames that do not bring their own
-  double max_rate_hz = 0.0;                      ///< at each camera's frames; 0 = at each one, as far as there is time
-  bool keep_frames = false;                      ///< of a log: copies the frames' events to the output log too
-  std::function<KnownObjects()> objects;         ///< what its store holds, for the status; empty = no store
-  /// Told on a network what hs-pose has learnt of a camera's colours, by the thread that receives; empty = nobody is.
+  std::optional<Camera> camera;                  ///< camera of frames that do not bring their own
+  double max_rate_hz = 0.0;                      ///< detections per second of each camera; 0 = as many as possible
+  bool keep_frames = false;                      ///< for a log: copies the frames' events to the output log too
+  std::function<KnownObjects()> objects;         ///< objects of its store, for the status; empty = no store
+  /// Called on a network, in the receiving thread, with the colours that hs-pose has learnt of a camera; empty = not
+  /// called.
   std::function<void(const CameraChroma&)> on_camera_colours;
 };
 
 using DetectObjects = std::function<Detections(const RgbdFrame&)>;
 
-/// Receives frames and publishes `detect`'s result for each one that is worked on: on a network always the newest of
-/// each camera, the cameras in turn; from a log every one. Results bear the frame's name, whatever `detect` calls them.
-/// With `max_rate_hz` the frames between two looks are skipped, by their own times, so that a log gives the same
-/// looks; where hs-pose tells that it has lost what it followed, the next look at that camera comes sooner.
-/// A frame that cannot be understood is counted, reported and dropped; where the channels are a pattern, what is no
-/// images_t is none. Throws InputError where frames are to be kept without a log; returns as run_process_loop does.
+/// Receives frames and publishes `detect`'s result for each one that is processed: on a network always the newest of
+/// each camera, the cameras in turn; from a log every one. Results have the frame's name, whatever `detect` calls them.
+/// With `max_rate_hz` the frames between two detections are skipped, by their own times, so that a log is processed
+/// alike each time; when hs-pose reports that it has lost an object that it followed, the next detection for that
+/// camera comes sooner. A frame that cannot be understood is counted, reported and dropped; where the channels are a
+/// pattern, messages that are no images_t are ignored. Throws InputError where frames are to be kept without a log;
+/// returns as run_process_loop does.
 void run_detect_process(LcmBus& bus, const DetectProcessOptions& options, const DetectObjects& detect);
 
 }  // namespace houghstream

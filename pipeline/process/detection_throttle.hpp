@@ -12,12 +12,12 @@ namespace houghstream {
 /// Limits the rate at which a detector searches each camera's frames, by the frames' times. Not thread-safe.
 class DetectionThrottle {
  public:
-  /// Cameras whose looks are remembered; every frame of a further one is looked at. A sender of rubbish may make up
-  /// channels without end.
+  /// Maximum number of cameras with a stored time; every frame of a further one is processed. A sender of rubbish may
+  /// make up channels without end.
   static constexpr std::size_t kCameras = 64;
 
-  /// 0: at every frame. Of a camera's first `start_s` seconds every frame is looked at: nothing is followed yet, and
-  /// what is not found in one frame may be found in the next.
+  /// With 0 it detects in every frame. Every frame of a camera's first `start_s` seconds is searched: nothing is
+  /// followed yet, and what is not found in one frame may be found in the next.
   explicit DetectionThrottle(double max_rate_hz, double start_s = 0.5) : max_rate_hz_(max_rate_hz), start_s_(start_s) {}
 
   /// Returns whether this frame is searched: enough time has passed since the camera's last detection. Times that go
@@ -37,13 +37,13 @@ class DetectionThrottle {
     bool was_due = false;
     bool is_expedited = false;
     int doubtful = 0;
-    std::int64_t last_utime = 0;   // of a look
-    std::int64_t first_utime = 0;  // of the first one
+    std::int64_t last_utime = 0;   // time of the last detection
+    std::int64_t first_utime = 0;  // time of the first detection
   };
 
   double max_rate_hz_;
   double start_s_;
-  std::map<std::string, Camera> cameras_;  // by channel
+  std::map<std::string, Camera> cameras_;  // by channel name
 };
 
 }  // namespace houghstream

@@ -5,7 +5,7 @@
 namespace houghstream {
 namespace {
 
-constexpr std::size_t kFrames = 16;  // with results
+constexpr std::size_t kFrames = 16;  // frames with results
 constexpr std::size_t kUtimes = 64;  // a result comes within so many frames
 
 template <typename T>

@@ -17,17 +17,17 @@ class DetectorCount {
   /// Cameras whose results are counted; of a further one nothing is known. Results may name any camera.
   static constexpr std::size_t kCameras = 64;
 
-  /// A frame that comes a second time (a log that is replayed, a source that is started again and stamps as before) is
-  /// another frame: results of it are counted anew.
+  /// Notes a frame. One that comes a second time (a log that is replayed, a source that is started again and stamps as
+  /// before) is another frame: its results are counted from 0.
   void note_frame(const FrameId& frame);
 
   /// May come before its frame, which then is its own.
   void note_result(const FrameId& frame);
 
-  /// Results of this frame are counted anew.
+  /// Makes results of this frame count from 0.
   void forget(const FrameId& frame);
 
-  /// At least 1.
+  /// Returns at least 1.
   int of(const std::string& channel) const;
 
  private:
@@ -38,14 +38,14 @@ class DetectorCount {
   };
   struct Camera {
     std::deque<Frame> frames;         // the last ones with results
-    std::deque<std::int64_t> utimes;  // of the last frames that have come
+    std::deque<std::int64_t> utimes;  // times of the last frames
 
     Frame* find(std::int64_t utime);
   };
 
   Camera* camera_of(const std::string& channel);
 
-  std::map<std::string, Camera> cameras_;  // by channel
+  std::map<std::string, Camera> cameras_;  // by channel name
 };
 
 }  // namespace houghstream

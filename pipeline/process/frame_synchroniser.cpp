@@ -82,7 +82,7 @@ void FrameSynchroniser::limit_waiting_bytes() {
 }
 
 std::optional<SynchronisedMessages> FrameSynchroniser::pop(std::chrono::milliseconds timeout) {
-  constexpr std::chrono::milliseconds kRecheck(3);  // how long it may go unnoticed that the gate waits no longer
+  constexpr std::chrono::milliseconds kRecheck(3);  // maximum delay until a changed answer of the gate is noticed
   std::unique_lock<std::mutex> lock(mutex_);
   const bool none_waits = held_back_.empty();
   std::optional<SynchronisedMessages> pair;
@@ -132,7 +132,7 @@ void FrameSynchroniser::hold_back(SynchronisedMessages pair, std::int64_t since_
 }
 
 void FrameSynchroniser::recheck_gate() {
-  { const std::lock_guard<std::mutex> lock(mutex_); }  // who pops has asked before this, or waits
+  { const std::lock_guard<std::mutex> lock(mutex_); }  // a thread in pop() has asked before this, or waits
   changed_.notify_one();
 }
 

@@ -20,7 +20,7 @@
 
 namespace houghstream {
 
-/// An encoded frame.
+/// Holds an encoded frame.
 struct ArrivedFrame {
   FrameId id;
   SharedBytes bytes;
@@ -30,18 +30,18 @@ struct ArrivedFrame {
 struct SynchronisedMessages {
   FrameId id;
   SharedBytes frame;
-  std::int64_t frame_number = 0;  ///< of all frames in their order of arrival: a name may come again
+  std::int64_t frame_number = 0;  ///< number of the frame in order of arrival, since a name may come again
   std::vector<std::uint8_t> detections;
-  std::chrono::steady_clock::time_point arrival;  ///< of the detections
+  std::chrono::steady_clock::time_point arrival;  ///< arrival of the detections
 };
 
 /// Decides over each pair before it is handed out; without `ask` every pair goes at once. `ask` is called with the
-/// synchroniser locked, in the thread that pops, for the oldest pairs first and again for those that it told to wait.
+/// synchroniser locked, in the thread that pops, for the oldest pairs first and again for those that must wait.
 struct FrameGate {
   enum class Answer { kGo, kWait, kRefuse };
   struct Decision {
     Answer answer = Answer::kGo;
-    std::string reason;  ///< of a refusal
+    std::string reason;  ///< reason of a refusal
   };
   /// The age, in seconds, is that of the pair since it was asked for first.
   std::function<Decision(const FrameId&, double age_s)> ask;
@@ -55,8 +55,8 @@ struct FrameGate {
 class FrameSynchroniser {
  public:
   /// Frames of each camera that are kept for detections still to come: 64, and fewer where those of all cameras have
-  /// more bytes than this. First the camera with the most frames gives up its oldest; where each has one left, the one
-  /// that has come first goes. The last frame that has come stays, however large it is.
+  /// more bytes than this. First the camera with the most frames drops its oldest; where each has one left, the
+  /// earliest goes. The last frame that has come stays, however large it is.
   static constexpr std::size_t kHistory = 64;
   static constexpr std::size_t kHistoryBytes = std::size_t{192} << 20U;
   /// Detections of each camera that wait, for their frame or their turn; the oldest go.
@@ -65,21 +65,22 @@ class FrameSynchroniser {
   static constexpr std::size_t kAllWaitingBytes = std::size_t{128} << 20U;
   /// Frames on more channels are refused: a sender of rubbish may make up channels without end.
   static constexpr std::size_t kCameras = 64;
-  /// Pairs of all cameras that the gate tells to wait, and the bytes of their frames; the oldest are refused.
+  /// Maximum number of pairs of all cameras that wait for the gate, and of the bytes of their frames; the oldest are
+  /// refused.
   static constexpr std::size_t kHeldBack = 1024;
   static constexpr std::size_t kHeldBackBytes = kHistoryBytes;
-  /// Detections whose frame is not here wait for this many further frames of the camera, then are given up.
+  /// Detections without their frame wait for this many further frames of the camera, then are dropped.
   static constexpr std::int64_t kMaxLagFrames = 30;
 
-  /// `newest_first`: pop() serves the cameras in turn, and passes over older detections of a camera: of each of its
-  /// detectors one result stays. Otherwise everything is worked on in the order of arrival. `ahead`:
-  /// pop_unmatched_frame() is used.
+  /// With `newest_first`, pop() serves the cameras in turn, and drops older detections of a camera: one result of each
+  /// of its detectors stays. Otherwise everything is processed in the order of arrival. `ahead` enables
+  /// pop_unmatched_frame().
   explicit FrameSynchroniser(bool newest_first, bool ahead = true, FrameGate gate = {})
       : newest_first_(newest_first), ahead_(ahead), gate_(std::move(gate)) {}
 
   /// Throws InputError for one camera too many.
   void add_frame(const FrameId& id, SharedBytes bytes);
-  /// `id` is the frame that they were found in. Throws InputError for one camera too many.
+  /// Adds the detections of frame `id`. Throws InputError for one camera too many.
   void add_detections(const FrameId& id, std::vector<std::uint8_t> bytes);
 
   /// The next pair that the gate lets go, waiting for one up to `timeout`, or, with `newest_first`, until a frame
@@ -89,8 +90,8 @@ class FrameSynchroniser {
   /// Has the gate asked at once: what it waits for may have come.
   void recheck_gate();
 
-  /// The newest frame of a camera, where `newest_first`, and where neither it nor its pair has been taken: there is
-  /// time to decode it while its detections are on the way. It stays here for them.
+  /// Returns the newest frame of a camera, where `newest_first`, and where neither it nor its pair has been popped:
+  /// there is time to decode it while its detections are on the way. It stays here for them.
   std::optional<ArrivedFrame> pop_unmatched_frame();
 
   /// Frames and detections that were dropped since the last call.
@@ -100,12 +101,12 @@ class FrameSynchroniser {
   };
   struct Dropped {
     std::int64_t skipped = 0;            ///< passed over for newer ones, or for too many
-    std::vector<FrameId> without_frame;  ///< of detections whose frame never came
-    std::vector<Refused> refused;        ///< by the gate, or while they waited for it
+    std::vector<FrameId> without_frame;  ///< detections whose frame never came
+    std::vector<Refused> refused;        ///< refused by the gate, or while they waited for it
   };
   Dropped pop_dropped();
 
-  /// Gives up all detections that still wait, for their frame or for the gate.
+  /// Drops all detections that still wait, for their frame or for the gate.
   void flush();
 
  private:
@@ -118,14 +119,14 @@ class FrameSynchroniser {
     FrameId id;
     std::vector<std::uint8_t> bytes;
     std::chrono::steady_clock::time_point arrival;
-    std::int64_t number = 0;         // in the order of arrival, of all cameras
+    std::int64_t number = 0;         // order of arrival, over all cameras
     std::int64_t frames_before = 0;  // frames of the camera that had arrived when it did
     ByteBudget::Reservation reservation;
   };
   struct HeldBack {
     SynchronisedMessages pair;
-    std::int64_t since_us = 0;            // on the gate's clock
-    ByteBudget::Reservation reservation;  // of the frame, which may have gone from those that are kept
+    std::int64_t since_us = 0;            // time on the gate's clock
+    ByteBudget::Reservation reservation;  // bytes of the frame, which may have left the history
   };
   struct Camera {
     std::deque<Kept> frames;      // the last ones
@@ -157,14 +158,14 @@ class FrameSynchroniser {
   FrameGate gate_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  ByteBudget frame_bytes_;                 // of all cameras
-  ByteBudget waiting_bytes_;               // of their detections
-  ByteBudget held_back_bytes_;             // of the frames of those that the gate tells to wait
-  std::map<std::string, Camera> cameras_;  // by channel
+  ByteBudget frame_bytes_;                 // frames of all cameras
+  ByteBudget waiting_bytes_;               // detections of all cameras
+  ByteBudget held_back_bytes_;             // frames of pairs that wait for the gate
+  std::map<std::string, Camera> cameras_;  // by channel name
   std::deque<HeldBack> held_back_;         // oldest first
   DetectorCount detectors_;
-  std::int64_t arrivals_ = 0;  // of detections
-  std::int64_t frames_ = 0;    // that have arrived
+  std::int64_t arrivals_ = 0;  // detections that have arrived
+  std::int64_t frames_ = 0;    // frames that have arrived
   std::int64_t turns_ = 0;
   Dropped dropped_;
 };

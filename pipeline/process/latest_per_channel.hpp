@@ -25,7 +25,8 @@ class LatestPerChannel {
   /// Bytes of those that wait at once, as they are stated; one alone may have more.
   static constexpr std::size_t kBytes = std::size_t{192} << 20U;
 
-  /// Returns whether an item that nobody has taken was passed over. The newer one of a channel takes its turn.
+  /// Pushes an item. Returns whether an item, this or an older one, was dropped without being popped. The newer one of
+  /// a channel keeps its turn.
   bool push(const std::string& channel, T item, std::size_t bytes = 0) {
     bool is_first = false;
     {
@@ -59,7 +60,7 @@ class LatestPerChannel {
     return std::move(taken.item);
   }
 
-  /// Items that nobody has taken.
+  /// Returns the number of items that have not been popped.
   std::size_t waiting() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return turns_.size();

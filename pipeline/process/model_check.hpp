@@ -12,17 +12,17 @@ namespace houghstream {
 /// stands in every single pose only. Not thread-safe.
 class ModelCheck {
  public:
-  /// `models`: classes that have one. Without any nothing is noticed; there is nothing to compare with.
+  /// `models` are the classes that have one. Without any it notices nothing, since there is nothing to compare with.
   explicit ModelCheck(std::set<std::string> models) : models_(std::move(models)) {}
 
   /// A class that has one from here on.
   void add_model(const std::string& name) { models_.insert(name); }
 
-  /// Nothing more will be said.
+  /// Returns whether it will log nothing more.
   bool settled() const { return settled_; }
 
-  /// A warning that names both sides' classes, once, where the first ten detections_t that hold something hold no class
-  /// with a model.
+  /// Returns a warning that names both sides' classes, once, if the first ten detections_t that are not empty hold no
+  /// class with a model.
   std::optional<std::string> note(const Detections& detections);
 
   /// Checks at the end of the stream, where fewer have arrived and no more will.
@@ -32,7 +32,7 @@ class ModelCheck {
   std::set<std::string> models_;
   std::set<std::string> detected_;
   int checked_ = 0;
-  bool settled_ = false;  // a class with a model has come, or it has been said
+  bool settled_ = false;  // a class with a model has come, or the warning was returned
 };
 
 }  // namespace houghstream

@@ -19,7 +19,7 @@ namespace houghstream {
 class PoseHistory {
  public:
   /// Notes the classes of a result, before its poses are estimated. Returns those that another detector has found in
-  /// this frame before, which get two poses. `frame_number` tells frames of one name apart (a log that is played
+  /// this frame before, which get two poses. `frame_number` distinguishes frames of one name (a log that is played
   /// again): results of another number are of another frame.
   std::vector<std::string> note_classes(const Detections& detections, std::int64_t frame_number);
 
@@ -38,8 +38,8 @@ class PoseHistory {
     std::set<std::string> names;
   };
 
-  std::map<std::string, std::deque<ObjectPoses>> cameras_;  // by channel, oldest first
-  std::deque<FrameClasses> classes_;                        // of the last frames, oldest first
+  std::map<std::string, std::deque<ObjectPoses>> cameras_;  // by channel name, oldest first
+  std::deque<FrameClasses> classes_;                        // classes of the last frames, oldest first
   DetectorCount detectors_;
 };
 

@@ -24,28 +24,28 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// More detections at once could not be worked on within Heartbeat::kHeartbeatTimeout.
+// More detections at once could not be processed within Heartbeat::kHeartbeatTimeout.
 void require_max_detections(const Detections& detections) {
   constexpr std::size_t kMax = 512;
   require(detections.detections.size() <= kMax, "frame {}: {} detections, expected at most {}",
           to_string(detections.frame), detections.detections.size(), kMax);
 }
 
-/// Publishes the transforms of poses on the channels that pose_process.hpp says. Every function may be called from any
+/// Publishes the transforms of poses on the channels named in pose_process.hpp. Every function may be called from any
 /// thread.
 class TransformPublisher {
  public:
   TransformPublisher(LcmBus& bus, const std::string& frame_channels)
       : bus_(bus), frame_channels_(frame_channels), several_cameras_(!ChannelPattern(frame_channels).is_name()) {}
 
-  /// Detections of a frame on this other channel have come.
+  /// Notes that detections of a frame on this other channel have come.
   void note_other_camera(const std::string& channel) {
     if (several_cameras_.exchange(true)) return;
     log_info("detections of frames on {} are heard too: transforms go to <OBJECT>_TO_{}", channel,
              channel::camera_name(frame_channels_));
   }
 
-  /// A rigid_transform_t for each valid pose.
+  /// Publishes a rigid_transform_t for each valid pose.
   void publish(const ObjectPoses& poses) {
     const std::string camera = several_cameras_ ? poses.frame.channel : "";
     for (const ObjectPose& pose : poses.poses) {
@@ -133,13 +133,13 @@ class PoseProcess {
     if (cameras_.size() < FrameSynchroniser::kCameras) cameras_.insert(frame.channel);
   }
 
-  /// The probabilities first: who has the poses has these too.
+  /// The probabilities are published first: a receiver of the poses then has them too.
   void publish(const ObjectPoses& poses) {
     bus_.publish(channel::kPoseProbabilities, probabilities_to_message(poses));
     bus_.publish(channel::kPoses, to_message(poses));
   }
 
-  /// Once a second of each camera's frames, once something is known.
+  /// Publishes once a second of each camera's frames, as soon as some colours are known.
   void publish_camera_colours(const FrameId& frame) {
     constexpr std::int64_t kPeriodUs = 1'000'000;
     if (!options_.camera_colours) return;
@@ -194,8 +194,7 @@ class PoseProcess {
     return true;
   }
 
-  // A camera's newest frame is decoded while its detections are on the way. What cannot be understood is told when they
-  // come.
+  // Decodes a camera's newest frame while its detections are on the way. An error is reported when they come.
   void decode_ahead() {
     const std::optional<ArrivedFrame> fresh = synchroniser_.pop_unmatched_frame();
     if (!fresh) return;
@@ -260,7 +259,7 @@ class PoseProcess {
   }
 
   void tell_missing_frames() const {
-    // On a network another process may work on other cameras' detections; of a log it is said.
+    // On a network another process may handle other cameras' detections; of a log it is reported.
     const std::int64_t others = bus_.is_log() ? others_.load() : 0;
     const std::int64_t all = detections_ + others;
     const std::int64_t missing = without_frame_ + others;
@@ -277,20 +276,20 @@ class PoseProcess {
   const FollowFrame& follow_;
   StatusReporter status_;
   Reception reception_;
-  LatestPerChannel<EncodedFrame> newest_;  // of who follows
+  LatestPerChannel<EncodedFrame> newest_;  // frames for the thread that follows
   FrameSynchroniser synchroniser_;
   DecodedFrames decoded_;
   PoseHistory history_;
   ModelCheck models_;
   TransformPublisher transforms_;
-  std::map<std::string, std::int64_t> colours_sent_us_;  // by camera, frame time
+  std::map<std::string, std::int64_t> colours_sent_us_;  // frame time by camera
   std::int64_t without_frame_ = 0;                       // detections
   std::int64_t answered_ = 0;                            // detections, by who follows
   std::int64_t overtaken_ = 0;                           // passed over for newer ones, before they were answered
-  // What the receiving thread has seen.
-  std::set<std::string> cameras_;            // that detections name
-  std::atomic<std::int64_t> detections_{0};  // of frames on these channels
-  std::atomic<std::int64_t> others_{0};      // of other cameras' frames
+  // These are set by the receiving thread.
+  std::set<std::string> cameras_;            // cameras that detections name
+  std::atomic<std::int64_t> detections_{0};  // detections of frames on these channels
+  std::atomic<std::int64_t> others_{0};      // detections of other cameras' frames
 };
 
 }  // namespace

@@ -18,16 +18,16 @@ namespace houghstream {
 struct PoseProcessOptions {
   std::string process = "hs-pose";               ///< its name in status_t
   std::string frame_channels = channel::kFrame;  ///< a ChannelPattern: one camera's channel, or several cameras'
-  std::optional<Camera> camera;                  ///< for frames that do not bring their own
-  bool keep_frames = false;                      ///< of a log: frames and their detections go to the output log too
+  std::optional<Camera> camera;                  ///< camera of frames that do not bring their own
+  bool keep_frames = false;                      ///< for a log: frames and their detections go to the output log too
   std::set<std::string> models;                  ///< classes that have one; where none is detected, it warns
-  std::function<KnownObjects()> objects;         ///< what its store holds, for the status; they have models too
-  /// What has been learnt of the colours of the camera with this channel; empty = nothing is.
+  std::function<KnownObjects()> objects;         ///< objects of its store, for the status; they have models too
+  /// Returns the colours learnt of the camera with this channel; empty = none are.
   std::function<CameraChroma(const std::string&)> camera_colours;
 };
 
-/// The poses of a frame's detections; the third argument is what was given for this camera's frame before, to start
-/// from.
+/// Estimates the poses of a frame's detections; the third argument holds the poses of this camera's previous frame, as
+/// a start.
 using EstimatePoses = std::function<ObjectPoses(const RgbdFrame&, const Detections&, const ObjectPoses&)>;
 
 /// Receives frames and detections, brings each detections_t together with its own frame (same channel, same time),
@@ -56,11 +56,11 @@ struct FollowPoses {
   std::function<ObjectPoses(const RgbdFrame&, const Detections&)> process_detections;
 };
 
-/// As run_pose_process, but each frame is worked on as soon as it comes, always the newest of each camera: the poses of
-/// the followed objects are published, and a rigid_transform_t for each valid one. Detections, of as many frames as a
-/// detector looks at, are answered beside that, by a thread of its own; transforms come from the followed poses only.
-/// In its status a frame counts as received when it has come, as skipped when a newer one was there first or was worked
-/// on before it. Of a log every event is worked on in its order; it need not hold detections.
+/// Works as run_pose_process, but each frame is processed as soon as it comes, always the newest of each camera: the
+/// poses of the followed objects are published, and a rigid_transform_t for each valid one. Detections, which may be of
+/// a part of the frames, are processed by another thread meanwhile; transforms come from the followed poses only. In
+/// its status a frame counts as received when it has come, as skipped when a newer one was there first or was processed
+/// before it. Every event of a log is processed in order; the log need not hold detections.
 void run_follow_process(LcmBus& bus, const PoseProcessOptions& options, const FollowPoses& poses);
 
 }  // namespace houghstream

@@ -21,8 +21,8 @@ using WorkStep = std::function<bool(std::chrono::milliseconds)>;
 /// helpers, does it; of a log it has its turn where `work` has nothing left.
 void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work, const WorkStep& background = {});
 
-/// Says the last word: publishes the final status for whoever adds up, logs the account, and ends the output log.
-/// Throws InputError where that cannot be ended, or has nothing in it (LcmBus::close()).
+/// Publishes the final status for receivers that add up, logs the account, and ends the output log. Throws InputError
+/// where that cannot be ended, or has nothing in it (LcmBus::close()).
 void end_process(LcmBus& bus, StatusReporter& status);
 
 }  // namespace houghstream

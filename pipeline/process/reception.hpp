@@ -66,7 +66,8 @@ class Reception {
 
   void subscribe_to_frames(Account account, FrameHandler handler);
 
-  /// Results of frames on other channels than `frame_channels` are not counted, and only `other_camera` is told.
+  /// Receives results; those of frames on other channels than `frame_channels` are not counted, and only `other_camera`
+  /// is called.
   template <typename Message>
   void subscribe_to_results(const std::string& channel, Account account, ResultHandler handler,
                             OtherCameraHandler other_camera = {}) {
@@ -86,8 +87,8 @@ class Reception {
     });
   }
 
-  /// A clock that nobody sets, microseconds: of a log, the sum of the steps from event to event that lead forward. Of a
-  /// log it is for the thread that handles the bus.
+  /// Returns the time of a clock that nobody sets, microseconds: of a log, the sum of the steps from event to event
+  /// that lead forward. For a log only the thread that handles the bus may call it.
   std::int64_t now_us() const;
 
  private:
@@ -101,7 +102,7 @@ class Reception {
   };
 
   void subscribe_to_results(MessageType type, const std::string& channel, Account account, ResultHandlers handlers);
-  /// `take` says whether the message counts.
+  /// `take` returns whether the message counts.
   void receive(const ReceivedMessage& message, Account account, const std::function<bool()>& take);
   bool take_frame(const ReceivedMessage& message, const FrameHandler& handler);
   bool take_result(const ReceivedMessage& message, const ResultHandlers& handlers, DuplicateFilter& duplicates);
@@ -111,7 +112,7 @@ class Reception {
   StatusReporter& status_;
   ChannelPattern pattern_;
   bool keep_;
-  std::optional<std::int64_t> event_us_;  // of a log's last event
+  std::optional<std::int64_t> event_us_;  // time of a log's last event
   std::int64_t log_us_ = 0;
 };
 

@@ -6,9 +6,9 @@
 
 namespace houghstream {
 
-/// A made-up frame of VGA size, a wavy, patterned surface about a metre away, that has been encoded and decoded as
-/// frames are that come off the bus. What a process works on before it subscribes, so that its memory, its threads and
-/// the codecs' are there when the first real frame comes.
+/// Makes a synthetic frame of VGA size, a wavy, textured surface about a metre away, that has been encoded and decoded
+/// as frames off the bus are. A process works on it before it subscribes, so that its memory, its threads and the
+/// codecs' are ready when the first real frame comes.
 RgbdFrame make_warm_up_frame();
 
 /// Makes it in a thread of its own while the caller reads forest or models, and has OpenCV's tables for L*a*b*, which

@@ -23,7 +23,7 @@ void fields(const BrightnessRange& /*settings*/, const Visit& visit) {
   visit(number("most_deviation", &S::max_deviation, 1, 255, "grey values"));
 }
 
-/// As pipeline/base/check_settings.hpp says; the means are in order too.
+/// Checks the range as described in pipeline/base/check_settings.hpp; the means must be in order too.
 void check_settings(const BrightnessRange& range, const std::string& source);
 
 /// Affine brightness transfer, value * gain + offset, equal for all coded values of all channels (DSO, Engel et al.
@@ -34,12 +34,13 @@ struct AffineBrightness {
   bool changes() const { return gain != 1.0F || offset != 0.0F; }
 };
 
-/// Cameras make brightness and contrast as they like, and many too much of both: what is common to all of an image
-/// says nothing about an object in it. The curve moves the mean no farther than into the range, and flattens contrast
-/// that is greater than the range's, to no less than 0.6 of it. From a sixteenth of the pixels. CV_8UC3 BGR, not empty.
+/// Fits the curve to an image. Cameras choose brightness and contrast freely, and many exaggerate both: differences
+/// common to the whole image say nothing about an object in it. The curve moves the mean no farther than into the
+/// range, and reduces contrast that is greater than the range's, to no less than 0.6 of it. It reads a sixteenth of the
+/// pixels. CV_8UC3 BGR, not empty.
 AffineBrightness fit_affine_brightness(const cv::Mat& colour, const BrightnessRange& range);
 
-/// CV_8UC3; `out` may be `colour`.
+/// Applies the curve to a CV_8UC3 image; `out` may be `colour`.
 void apply_affine_brightness(const AffineBrightness& curve, const cv::Mat& colour, cv::Mat& out);
 
 // The names of before, for one release.

@@ -33,7 +33,7 @@ void check_camera(const Camera& camera, const std::string& source) {
   constexpr int kMaxSize = 16384;
   require(camera.width >= 1 && camera.width <= kMaxSize && camera.height >= 1 && camera.height <= kMaxSize,
           "{}: camera size {}x{}, expected 1 to {} pixels each", source, camera.width, camera.height, kMaxSize);
-  constexpr double kMinFocal = 0.1;  // of any lens, at any size: what lies at a pixel has numbers that can be counted
+  constexpr double kMinFocal = 0.1;  // wider than any lens at any size, so that pixel positions stay finite
   constexpr double kMaxFocal = 1e7;
   const auto is_focal = [](double f) { return f >= kMinFocal && f <= kMaxFocal; };
   require(is_focal(camera.fx) && is_focal(camera.fy), "{}: focal lengths {} and {}, expected {} to {} pixels", source,

@@ -16,11 +16,11 @@ using Parameters = ChromaMap::Parameters;
 using Covariance = ChromaMap::Covariance;
 using Regressors = Eigen::Matrix<double, 2, ChromaMap::kParameters>;
 
-// Of an object's mean chroma about its model's, per channel: print, wear, coloured light nearby, a view that is not
-// quite the one seen. Right poses of YCB-V's scenes 0, 1 and 50 lie 9 to 12 from the best map of their scene, both
-// together.
+// Variance of an object's mean chroma about its model's, per channel: texture, wear, coloured light nearby, and a view
+// that differs slightly from the observed one. Correct poses of YCB-V's scenes 0, 1 and 50 lie 9 to 12 from the best
+// map of their scene, both channels together.
 constexpr double kObjectVariance = 80.0;
-constexpr double kOutlierVariance = 600.0;  // of the chroma of something else, about grey
+constexpr double kOutlierVariance = 600.0;  // variance of the chroma of anything else, about grey
 constexpr double kMargin = 0.02;            // no evidence is certain
 
 Regressors regressors(const Eigen::Vector2d& model, double lightness) {
@@ -37,9 +37,9 @@ Parameters identity() {
   return out;
 }
 
-/// How far cameras depart from the one that taught: second moments about the identity over simulated cameras, whose
-/// light has a mean of 5500 K and a standard deviation of 45 mired, with saturation and gamma off by a fifth.
-/// Saturation changes both gains alike, and a warm light turns red towards yellow where it makes white yellow.
+/// Returns the covariance of cameras about the one used for teaching: second moments about the identity over simulated
+/// cameras, whose light has a mean of 5500 K and a standard deviation of 45 mired, with saturation and gamma off by a
+/// fifth. Saturation changes both gains alike, and a warm light turns red towards yellow where it makes white yellow.
 const Covariance& prior_covariance() {
   static const Covariance kPrior = [] {
     Parameters sigma;
@@ -56,13 +56,13 @@ const Covariance& prior_covariance() {
   return kPrior;
 }
 
-/// False for NaN.
+/// Returns false for NaN.
 bool is_chroma(const Eigen::Vector2d& ab) {
-  constexpr double kMax = 130.0;  // of sRGB's colours
+  constexpr double kMax = 130.0;  // range of sRGB's colours
   return std::abs(ab.x()) <= kMax && std::abs(ab.y()) <= kMax;
 }
 
-/// Logarithm of the density of a normal distribution about zero, times 2 pi.
+/// Returns the logarithm of the density of a normal distribution about zero, times 2 pi.
 double log_density(const Eigen::Vector2d& off, const Eigen::Matrix2d& covariance) {
   const Eigen::LLT<Eigen::Matrix2d> factor(covariance);
   const double root = factor.matrixLLT()(0, 0) * factor.matrixLLT()(1, 1);
@@ -182,8 +182,8 @@ std::vector<ChromaMap> fit_chroma_maps_without_each(const std::vector<ChromaPair
 
 bool is_colourless(const cv::Mat& image) {
   constexpr int kStep = 8;
-  constexpr int kMaxDifference = 6;           // between channels of a pixel: JPEG leaves some
-  constexpr double kMaxFraction = 0.002;      // of pixels that differ by more
+  constexpr int kMaxDifference = 6;           // between channels of a grey pixel, left by JPEG
+  constexpr double kMaxFraction = 0.002;      // fraction of pixels that differ by more
   if (image.type() != CV_8UC3) return false;  // is refused by whoever needs the frame
   int pixels = 0;
   int coloured = 0;

@@ -16,20 +16,21 @@ struct ChromaPair {
   Eigen::Vector2d model = Eigen::Vector2d::Zero();     ///< a* and b* of the model
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();  ///< a* and b* that the camera measured
   double lightness = 0.0;                              ///< L* that the camera measured, 0 to 100
-  /// Probability that this object stands there, by all that does not depend on the camera's colours, 0 to 1.
+  /// Probability that this object is there, by all evidence that does not depend on the camera's colours, 0 to 1.
   double probability = 0.0;
 };
 
-/// What is remembered of a camera's colours: objects that were seen by it, each class once.
+/// Holds the chroma observed by a camera: of each class once.
 struct CameraChroma {
   FrameId frame;  ///< the newest that was learnt from
   std::vector<ChromaPair> objects;
 };
 
-/// How a camera renders known colours under the present light: measured = gain * model + (L* + 16) / 116 * cast, in the
-/// a*b* plane of CIE L*a*b*. Where a light scales X, Y and Z, as von Kries has it, the cast of a colour goes with the
-/// cube root of its luminance, which is (L* + 16) / 116. Lightness itself is not mapped: exposure and shading decide
-/// it. As it stands, it is the identity, and as uncertain as the cameras in which calibration looks for objects differ.
+/// Maps known colours to those that a camera measures under the present light: measured = gain * model + (L* + 16) /
+/// 116 * cast, in the a*b* plane of CIE L*a*b*. Where a light scales X, Y and Z, as in von Kries's model, the cast of a
+/// colour is proportional to the cube root of its luminance, which is (L* + 16) / 116. Lightness itself is not mapped,
+/// since exposure and shading decide it. By default it is the identity, with the uncertainty of the cameras that
+/// calibration simulates.
 class ChromaMap {
  public:
   static constexpr int kParameters = 6;
@@ -37,24 +38,27 @@ class ChromaMap {
   using Covariance = Eigen::Matrix<double, kParameters, kParameters>;
 
   ChromaMap();
-  /// The gain row by row, then the cast of white.
+  /// `parameters` are the gain row by row, then the cast of white.
   ChromaMap(const Parameters& parameters, const Covariance& covariance, double objects);
 
   /// The colour that the camera is expected to measure.
   Eigen::Vector2d apply(const Eigen::Vector2d& model, double lightness) const;
-  /// How uncertain that is.
+  /// Returns the covariance of that colour.
   Eigen::Matrix2d uncertainty(const Eigen::Vector2d& model, double lightness) const;
 
-  /// How much stronger than taught colours look, in the mean of all hues: 1 of the identity.
+  /// Returns the gain of chroma over the taught colours, in the mean of all hues: 1 for the identity.
   double saturation() const;
-  /// What white looks like, a* and b*.
+  /// Returns the colour that white has in the image, a* and b*.
   Eigen::Vector2d white() const;
-  /// Standard deviation of what it says of a colour of medium strength, CIE a*b*: how sure it is, in one number.
+  /// Returns the standard deviation of the map for a colour of medium strength, CIE a*b*: its uncertainty in one
+  /// number.
   double sigma() const;
 
   const Parameters& parameters() const { return parameters_; }
   const Covariance& covariance() const { return covariance_; }
-  double objects() const { return objects_; }  ///< from how many it was learnt, each counted by its probability
+  double objects() const {
+    return objects_;
+  }  ///< number of objects it was learnt from, each weighted by its probability
   bool is_learnt() const { return objects_ > 0.0; }
 
  private:
@@ -63,30 +67,31 @@ class ChromaMap {
   double objects_ = 0.0;
 };
 
-/// The map in words: "saturation 0.78, white looks like a* +2 b* +14, from 5 objects, to within 4".
+/// Returns the map in words: "saturation 0.78, white looks like a* +2 b* +14, from 5 objects, to within 4".
 std::string describe(const ChromaMap& map);
 
-/// The map that explains the pairs best (maximum a posteriori). Each pair is either of the object that it names or of
-/// something else, whose colour may be any; which of them it is, is estimated with the map (expectation maximisation),
-/// so that a wrong object does not drag it. Pairs that are no colours (NaN, for one) have no say. Without any pair that
-/// has one it is the identity.
+/// Fits the map that explains the pairs best (maximum a posteriori). Each pair belongs either to the object that it
+/// names or to something else, whose colour may be any; which of them it is, is estimated with the map (expectation
+/// maximisation), so that a wrong object does not bias it. Pairs that are no colours (NaN, for one) are ignored.
+/// Without any valid pair it is the identity.
 ChromaMap fit_chroma_map(const std::vector<ChromaPair>& pairs);
 
-/// The map of the pairs of other classes: what an object is judged by may not be learnt of itself, or a wrong one would
-/// explain itself away.
+/// Fits the map to the pairs of other classes: the map by which an object is judged may not be learnt from itself, or a
+/// wrong one would explain itself away.
 ChromaMap fit_chroma_map_without(const std::string& class_name, const std::vector<ChromaPair>& pairs);
 
-/// Whether its colours, lightness and probability are numbers that such things can be.
+/// Returns whether its colours, lightness and probability are valid numbers in their ranges.
 bool is_chroma_pair(const ChromaPair& pair);
 
-/// For each pair the map without its class.
+/// Returns for each pair the map without its class.
 std::vector<ChromaMap> fit_chroma_maps_without_each(const std::vector<ChromaPair>& pairs);
 
-/// Whether the image is of a camera in black and white or of infrared light: there is no chroma to learn from. From
-/// one of 64 pixels. False for what is no CV_8UC3.
+/// Returns whether the image is from a black-and-white camera or of infrared light, so that there is no chroma to learn
+/// from. It reads one of 64 pixels. Returns false for images that are not CV_8UC3.
 bool is_colourless(const cv::Mat& image);
 
-/// The map of such a camera: every colour becomes grey, so that chroma speaks neither for an object nor against it.
+/// Returns the map of such a camera: every colour becomes grey, so that chroma speaks neither for an object nor against
+/// it.
 ChromaMap colourless_camera();
 
 }  // namespace houghstream

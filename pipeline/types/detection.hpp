@@ -11,15 +11,15 @@
 
 namespace houghstream {
 
-/// A rotation that a supporting vote remembers from its training view, turned to the ray it was seen along.
+/// Holds the rotation that a supporting vote stores of its training view, rotated to the ray along which it was seen.
 struct RotationVote {
   Eigen::Quaternionf R_camera_object = Eigen::Quaternionf::Identity();
   float weight = 0.0F;
 };
 
-/// One object found in a frame.
+/// Describes one object found in a frame.
 struct Detection {
-  int class_id = 0;  ///< from 1; 0 is no class
+  int class_id = 0;  ///< 1 or more; 0 is no class
   std::string class_name;
   float score = 0.0F;                                       ///< probability that the object is there, 0 to 1
   bool reported = true;                                     ///< false: a candidate, see object_pose.hpp is_reported()
@@ -32,12 +32,12 @@ struct Detection {
 
 /// Detections of one detector in one frame, strongest first.
 struct Detections {
-  FrameId frame;  ///< that they were found in
+  FrameId frame;  ///< frame in which they were found
   std::vector<Detection> detections;
   std::vector<StageTime> stages;
 };
 
-/// Intersection over union of two boxes; 0 where either is empty.
+/// Returns the intersection over union of two boxes; 0 where either is empty.
 float box_iou(const cv::Rect2f& a, const cv::Rect2f& b);
 
 }  // namespace houghstream

@@ -10,19 +10,19 @@
 
 namespace houghstream {
 
-/// An RGB-D image pair, depth registered to colour.
+/// Holds an RGB-D image pair, with depth registered to colour.
 struct RgbdFrame {
   FrameId id;                     ///< its name in every result
   cv::Mat colour;                 ///< CV_8UC3, BGR; empty where depth alone was asked for
   cv::Mat depth;                  ///< CV_32FC1, metres along the optical axis, NaN = none; same size as colour
-  Camera camera;                  ///< of both images
-  std::vector<StageTime> stages;  ///< what was done to it so far
+  Camera camera;                  ///< camera of both images
+  std::vector<StageTime> stages;  ///< processing so far
 };
 
-/// Wire millimetres (CV_16UC1, 0 = none) to metres (CV_32FC1, NaN = none).
+/// Converts wire millimetres (CV_16UC1, 0 = none) to metres (CV_32FC1, NaN = none).
 cv::Mat depth_from_millimetres(const cv::Mat& depth_mm);
 
-/// Metres (CV_32FC1, NaN = none) to wire millimetres (CV_16UC1, 0 = none); beyond 65.535 m is none.
+/// Converts metres (CV_32FC1, NaN = none) to wire millimetres (CV_16UC1, 0 = none); depth beyond 65.535 m becomes none.
 cv::Mat depth_to_millimetres(const cv::Mat& depth);
 
 /// Throws InputError naming `source` unless types and sizes are as RgbdFrame states and agree with the camera.

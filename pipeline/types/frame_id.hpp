@@ -21,24 +21,25 @@ inline bool operator==(const FrameId& a, const FrameId& b) {
 inline bool operator!=(const FrameId& a, const FrameId& b) {
   return !(a == b);
 }
-/// Earlier frames first; frames of one time by their channels.
+/// Orders earlier frames first, and frames of one time by their channels.
 inline bool operator<(const FrameId& a, const FrameId& b) {
   return std::tie(a.utime, a.channel) < std::tie(b.utime, b.channel);
 }
 
-/// "LEFT_CAMERA 1499876543210000", or the time alone where there is no channel.
+/// Returns "LEFT_CAMERA 1499876543210000", or the time alone where there is no channel.
 inline std::string to_string(const FrameId& id) {
   return (id.channel.empty() ? "" : id.channel + " ") + std::to_string(id.utime);
 }
 
-/// `to` - `from`, microseconds; at most what the type holds, as the times of a message or a damaged log may be any.
+/// Returns `to` - `from`, microseconds, clamped to the range of the type, since the times of a message or a damaged log
+/// may be any.
 inline std::int64_t microseconds_between(std::int64_t from, std::int64_t to) {
   std::int64_t between = 0;
   if (!__builtin_sub_overflow(to, from, &between)) return between;
   return to > from ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
 }
 
-/// From one time in microseconds to another.
+/// Returns the seconds from one time in microseconds to another.
 inline double seconds_between(std::int64_t from, std::int64_t to) {
   return static_cast<double>(microseconds_between(from, to)) * 1e-6;
 }

@@ -26,7 +26,7 @@ bool same_scores(const ObjectPoses& poses, const Detections& detections) {
          });
 }
 
-/// Answered by an hs-pose without models of these objects: on another host one may have them.
+/// Returns whether the result is of an hs-pose without models of these objects: on another host one may have them.
 bool without_models(const ObjectPoses& poses) {
   return std::all_of(poses.poses.begin(), poses.poses.end(),
                      [](const ObjectPose& pose) { return pose.status == PoseStatus::kNoModel; });
@@ -110,7 +110,8 @@ void FrameResults::add(ObjectPoses poses) {
   unmatched_.push_back(std::move(poses));
 }
 
-// Where several results may be meant: one without poses before one that has some, one of equal scores before others.
+// Where several results match, one without poses takes precedence over one with poses, and one of equal scores over
+// others.
 bool FrameResults::place(ObjectPoses& poses) {
   FrameResult* best = nullptr;
   int best_rank = -1;

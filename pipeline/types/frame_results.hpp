@@ -9,7 +9,7 @@
 
 namespace houghstream {
 
-/// The stage of following objects from frame to frame: poses with its time answer no detections.
+/// Name of the stage that follows objects from frame to frame: poses with its time belong to no detections.
 inline constexpr const char* kFollowingStage = "pose.following";
 
 /// Detections of one detector in a frame, and the poses that were computed from them.
@@ -29,12 +29,12 @@ bool has_followed_poses(const ObjectPoses& poses);
 /// different objects: each result is kept separately, with its poses. Results and poses may arrive in any order.
 class FrameResults {
  public:
-  /// Results of one frame, and poses of none of them, that are kept: nobody has so many detectors, and each new one is
-  /// compared with all.
+  /// Maximum number of results of one frame, and of unmatched poses, that are kept: there are never so many detectors,
+  /// and each new one is compared with all.
   static constexpr std::size_t kMax = 64;
 
-  /// One that finds the very same objects as an earlier one takes its place: it is a log that is played again. Throws
-  /// InputError for one too many.
+  /// Adds a result. One that finds exactly the same objects as an earlier one replaces it, since it comes from a log
+  /// that is played again. Throws InputError for one too many.
   void add(Detections detections);
   void add(ObjectPoses poses);
 
@@ -43,12 +43,12 @@ class FrameResults {
   bool has_all_poses() const;
   /// The poses of the objects that are followed, where hs-pose follows any.
   const std::optional<ObjectPoses>& followed() const { return followed_; }
-  /// Other poses, of no result that has come so far.
+  /// Returns other poses, which belong to no result that has come so far.
   const std::vector<ObjectPoses>& unmatched() const { return unmatched_; }
 
-  /// All results as one, strongest detections first, and the poses that have come with indices to match. What several
-  /// results say of a stage stands several times, but the stages that they begin with alike, which are the frame's
-  /// own, once. Nothing where there are no detections; no poses where none of the results has any.
+  /// Returns all results as one, strongest detections first, and the poses that have come with indices to match. A
+  /// stage of several results is listed for each of them, but the common first stages, which are the frame's own, once.
+  /// Returns nothing where there are no detections, and no poses where none of the results has any.
   std::optional<FrameResult> merge() const;
 
  private:

@@ -9,7 +9,8 @@ namespace houghstream {
 /// set back, or of a source that begins again.
 constexpr double kMaxOvertakenS = 1.0;
 
-/// `utime` + `by_us`, microseconds; at most what the type holds, as the times of a message or a damaged log may be any.
+/// Returns `utime` + `by_us`, microseconds, clamped to the range of the type, since the times of a message or a damaged
+/// log may be any.
 inline std::int64_t shifted(std::int64_t utime, std::int64_t by_us) {
   std::int64_t sum = 0;
   if (!__builtin_add_overflow(utime, by_us, &sum)) return sum;

@@ -23,7 +23,7 @@ enum class PoseStatus : std::int8_t {
   kNotConverged = 5,       ///< no candidate registered
   kRejectedByDepth = 6,    ///< the rendered model contradicts the measured depth
   kLowScore = 7,           ///< hardly an object: its pose was not looked for, or is not believed
-  kRejectedByOutline = 8,  ///< the measured surface goes on where the model ends
+  kRejectedByOutline = 8,  ///< the measured surface continues where the model ends
   kRejectedByColour = 9,   ///< the model's colours do not explain those that are seen
   kOccluded = 10,          ///< followed, and mostly hidden by what was measured in front of it
   kRefuted = 11,           ///< the best pose makes it less probable that the object is there than that it is not
@@ -36,7 +36,7 @@ constexpr bool has_pose(PoseStatus status) {
   return status == PoseStatus::kValid || status == PoseStatus::kValidUpToSymmetry;
 }
 
-/// One line per status for logs and reports.
+/// Returns one line per status for logs and reports.
 const char* to_string(PoseStatus status);
 
 /// The pose of one detection with its evidence, or the reason why there is none.
@@ -44,7 +44,7 @@ struct ObjectPose {
   int class_id = 0;
   std::string class_name;
   float detection_score = 0.0F;
-  int detection_index = -1;  ///< in the Detections that the poses answer; -1: followed without one
+  int detection_index = -1;  ///< index in the Detections of the result; -1: followed without one
   PoseStatus status = PoseStatus::kInvalid;
   std::optional<Eigen::Isometry3d> T_camera_object;  ///< present exactly when has_pose(status)
   bool converged = false;
@@ -56,22 +56,22 @@ struct ObjectPose {
   float quality = 0.0F;               ///< probability that the pose is right, 0 to 1; 0 where none was found
   float shape_quality = 0.0F;         ///< the same up to the symmetries of the shape: never below `quality`
   float free_space_violation = 0.0F;  ///< rendered pixels in front of what was measured, 0 to 1
-  std::optional<ChromaPair> chroma;   ///< what its colours tell of the camera's; not published
-  ChromaMap camera_colours;           ///< that its colours were judged by, learnt without it; not published
+  std::optional<ChromaPair> chroma;   ///< chroma of the model and as measured; not published
+  ChromaMap camera_colours;           ///< map applied to the model's colours, learnt without it; not published
 };
 
 /// Returns whether the object counts as found: its detection is above the threshold and not refuted by its pose, or it
 /// is a candidate whose pose is valid. `pose` is that of the detection; null where there is none.
 bool is_reported(const Detection& detection, const ObjectPose* pose);
 
-/// The poses of one detector's detections in one frame, in their order.
+/// Holds the poses of one detector's detections in one frame, in their order.
 struct ObjectPoses {
-  FrameId frame;  ///< that of the detections
+  FrameId frame;  ///< frame of the detections
   std::vector<ObjectPose> poses;
   std::vector<StageTime> stages;
 };
 
-/// The pose of a detection; null where there is none.
+/// Returns the pose of a detection; null where there is none.
 const ObjectPose* find_pose(const ObjectPoses& poses, std::size_t detection_index);
 
 }  // namespace houghstream

@@ -8,7 +8,7 @@
 
 namespace houghstream {
 
-/// Wall time that one stage spent on a frame. Names are "process.stage", for instance "detect.leaves".
+/// Holds the wall time that one stage spent on a frame. Names are "process.stage", for instance "detect.leaves".
 struct StageTime {
   std::string stage;
   std::int64_t duration_us = 0;

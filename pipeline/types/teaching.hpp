@@ -11,7 +11,7 @@
 
 namespace houghstream {
 
-/// Where the showing of an object stands. Values are those of teaching_t.
+/// State of the teaching of an object from a camera. Values are those of teaching_t.
 enum class TeachingState : std::int8_t {
   kInvalid = 0,
   kChoosing = 1,  ///< looks for the object that is meant
@@ -20,10 +20,10 @@ enum class TeachingState : std::int8_t {
   kFusing = 4,    ///< makes its model
   kTraining = 5,  ///< teaches the model to the store
   kDone = 6,      ///< the store knows it
-  kFailed = 7,    ///< it was not taught; the message says why
+  kFailed = 7,    ///< it was not taught; the message has the reason
 };
 
-/// One word for people.
+/// Returns one word for people.
 const char* to_string(TeachingState state);
 
 /// A direction from which an object can be seen.
@@ -34,13 +34,13 @@ struct ViewDirection {
 
 /// Progress of the teaching of an object that is shown to a camera.
 struct Teaching {
-  FrameId frame;  ///< looked at last; box and pose are those in it; its channel is empty where it is not from the bus
+  FrameId frame;  ///< last frame with box and pose; its channel is empty where it is not from the bus
   std::string name;
   TeachingState state = TeachingState::kInvalid;
-  std::string message;            ///< what happens, or what to do next, one line
-  std::optional<float> progress;  ///< share of the state's work that is done, 0 to 1; nothing = cannot be told
-  int frames = 0;                 ///< looked at
-  int keyframes = 0;              ///< whose views will be taught
+  std::string message;            ///< event, or the next step of the user, one line
+  std::optional<float> progress;  ///< fraction of the state's work that is done, 0 to 1; nothing = unknown
+  int frames = 0;                 ///< processed frames
+  int keyframes = 0;              ///< keyframes whose views will be taught
   std::optional<cv::Rect2f> box_px;
   std::optional<Eigen::Isometry3d> T_camera_object;
   std::vector<ViewDirection> directions;  ///< evenly over the sphere

@@ -41,7 +41,8 @@ std::vector<std::vector<int>> find_neighbours(const std::vector<DepthView>& view
       if (j != i && cosine > kMinCosine) by_angle.emplace_back(-cosine, static_cast<int>(j));
     }
     std::sort(by_angle.begin(), by_angle.end());
-    // Next neighbours tell little about the axis, far ones much: spread over all that see the same.
+    // Near neighbours constrain the axis little, far ones much: the neighbours are spread over all that see the same
+    // surface.
     const std::size_t count = std::min(static_cast<std::size_t>(maximum), by_angle.size());
     for (std::size_t k = 0; k < count; ++k) neighbours[i].push_back(by_angle[k * by_angle.size() / count].second);
   }
@@ -56,7 +57,7 @@ double tukey_weight(double distance, double limit) {
 /// Compares points of one view with the surface of another.
 Equations compare(const std::vector<SurfaceSample>& samples, const DepthView& from, const DepthView& to,
                   double limit_m) {
-  constexpr double kMinCosine = 0.7;  // of two normals of one surface
+  constexpr double kMinCosine = 0.7;  // minimum cosine between two normals of one surface
   const Eigen::Isometry3d T_to_from = to.T_camera_object * from.T_camera_object.inverse();
   const Eigen::Matrix3d R = T_to_from.linear();
   Equations out;
@@ -68,7 +69,7 @@ Equations compare(const std::vector<SurfaceSample>& samples, const DepthView& fr
     const double distance = n.dot(p - to.camera.backproject(px->x, px->y, to.depth.at<float>(*px)));
     if (n.dot(R * sample.normal) < kMinCosine || std::abs(distance) >= limit_m) continue;
     const Eigen::Vector3d n_from = R.transpose() * n;
-    Vector6d slope;  // of the distance, by the motion
+    Vector6d slope;  // derivative of the distance by the motion
     slope << p.cross(n) - sample.point.cross(n_from), n - n_from;
     const double weight = tukey_weight(distance, limit_m);
     out.squares += weight * slope * slope.transpose();
@@ -79,7 +80,7 @@ Equations compare(const std::vector<SurfaceSample>& samples, const DepthView& fr
   return out;
 }
 
-/// The views' points, drawn once: they stay where they are in their cameras.
+/// Holds the views' points, which are drawn once: they stay where they are in their cameras.
 struct Comparison {
   std::vector<std::vector<SurfaceSample>> samples;
   std::vector<std::vector<int>> neighbours;
@@ -102,7 +103,7 @@ Comparison make_comparison(const std::vector<DepthView>& views, const AlignmentS
   return out;
 }
 
-/// One set of equations per view, from its points and its neighbours.
+/// Returns one set of equations per view, from its points and its neighbours.
 std::vector<Equations> compare_all(const std::vector<DepthView>& views, const Comparison& comparison,
                                    const AlignmentSettings& settings) {
   std::vector<Equations> equations(views.size());
@@ -114,10 +115,11 @@ std::vector<Equations> compare_all(const std::vector<DepthView>& views, const Co
   return equations;
 }
 
-/// The step that lowers the distances; a turn counts by what it moves at the object's radius, about its middle.
+/// Returns the step that lowers the distances. A rotation counts by the distance that it moves a point at the object's
+/// radius, about its middle.
 Eigen::Isometry3d solve(const Equations& equations, const Eigen::Vector3d& middle, double radius, double damping) {
   if (equations.weight <= 0.0) return Eigen::Isometry3d::Identity();
-  // In coordinates about the object's middle, turns and shifts have little to do with each other.
+  // In coordinates about the object's middle, rotations and shifts are nearly independent.
   Matrix6d about_middle = Matrix6d::Identity();
   for (int k = 0; k < 3; ++k) {
     about_middle.block<3, 1>(3, k) = -Eigen::Vector3d::Unit(k).cross(middle);

@@ -8,18 +8,18 @@ namespace houghstream::fusion {
 
 /// Settings of the registration of a model's views to each other.
 struct AlignmentSettings {
-  int iterations = 15;         ///< of Gauss-Newton; 0 = none
+  int iterations = 15;         ///< Gauss-Newton iterations; 0 = none
   int neighbours = 8;          ///< views that each one is compared with, the nearest in direction
   int points_per_view = 1200;  ///< compared points
   double max_pair_m = 0.01;    ///< Tukey's limit: what is farther apart is not the same surface
-  double damping = 2e-4;       ///< of a motion of the object's size, against the measured distances
+  double damping = 2e-4;       ///< weight of a motion by the object's size, against the measured distances
   int threads = 1;             ///< any number gives the same result
 };
 
-/// Point-to-plane error of views, over all compared points.
+/// Measures the point-to-plane error of views, over all compared points.
 struct AlignmentError {
   int pairs = 0;
-  double median_m = 0.0;  ///< of the absolute distances; 0 without pairs
+  double median_m = 0.0;  ///< median of the absolute distances; 0 without pairs
 };
 
 /// Distances between each view's points and its neighbours' surfaces.
@@ -27,9 +27,9 @@ AlignmentError measure_alignment_error(const std::vector<DepthView>& views, cons
 
 /// Corrects T_camera_object of the views in place by one motion of the object frame in the camera's, common to all
 /// views: for a turntable in front of a fixed camera, whose steps are exact, this corrects the axis and nothing else.
-/// Gauss-Newton on the distances between the views' points and their neighbours' tangent planes (Chen & Medioni 1992),
-/// pairs found by projection (Blais & Levine 1995). What the distances do not tell (a turn about the axis, a shift
-/// along it) stays.
+/// It runs Gauss-Newton on the distances between the views' points and their neighbours' tangent planes (Chen & Medioni
+/// 1992), with pairs found by projection (Blais & Levine 1995). Motions that the distances do not determine (a rotation
+/// about the axis, a shift along it) stay as they are.
 void align_views(std::vector<DepthView>& views, const AlignmentSettings& settings);
 
 }  // namespace houghstream::fusion

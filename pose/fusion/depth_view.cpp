@@ -10,10 +10,10 @@
 namespace houghstream::fusion {
 namespace {
 
-constexpr int kRadius_px = 3;  // of the planes that give normals
+constexpr int kRadius_px = 3;  // radius of the neighbourhood whose plane gives the normal
 
-/// The plane's normal n with n.X = 1 for its points X: 1/z is linear in the pixel, so this is a linear fit. False where
-/// too few pixels around belong to the same surface.
+/// Computes the plane's normal n with n.X = 1 for its points X: 1/z is linear in the pixel, so that the fit is linear.
+/// Returns false where too few pixels around belong to the same surface.
 bool fit_plane(const cv::Mat& depth, const Camera& camera, int x, int y, Eigen::Vector3d& n) {
   constexpr float kSameSurface_m = 0.01F;
   constexpr int kMin = (2 * kRadius_px + 1) * (2 * kRadius_px + 1) * 2 / 5;
@@ -52,9 +52,9 @@ void set_surface(const cv::Mat& depth, DepthView& out) {
   }
 }
 
-/// The mask without specks, which are not of the object.
+/// Returns the mask without specks, which are not of the object.
 cv::Mat without_specks(const cv::Mat& mask) {
-  constexpr double kMinFraction = 0.02;  // of the largest part
+  constexpr double kMinFraction = 0.02;  // fraction of the largest part
   std::vector<std::vector<cv::Point>> outlines;
   cv::findContours(mask, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
   double largest = 0.0;
@@ -76,7 +76,8 @@ cv::Mat widened(const cv::Mat& mask) {
   return wide;
 }
 
-/// A mask made of depth lacks what has none, at its outline too: the object lies within its convex hull.
+/// Returns the outside of the mask's convex hull: a mask made of depth has holes where depth is missing, at its outline
+/// too, but the object lies within its hull.
 cv::Mat outside_hull(const cv::Mat& mask) {
   std::vector<cv::Point> points;
   cv::findNonZero(mask, points);
@@ -89,7 +90,7 @@ cv::Mat outside_hull(const cv::Mat& mask) {
 }
 
 cv::Mat outside_of(const cv::Mat& mask, const cv::Mat& depth) {
-  constexpr double kMinFraction = 0.02;  // of the pixels beside the mask
+  constexpr double kMinFraction = 0.02;  // fraction of the pixels beside the mask
   const cv::Mat wide = widened(mask);
   const cv::Mat beside = wide == 0;
   const int with_depth = cv::countNonZero(beside & (depth == depth));

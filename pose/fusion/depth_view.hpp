@@ -21,7 +21,8 @@ struct DepthView {
   /// The whole image that the images are cut out of, in their pixels: beside it nothing is known. None: the cut keeps
   /// away from its edges, and all around it is within.
   std::optional<cv::Rect> image;
-  /// Views of one number, from 0 on, have a light that stands still about the object; -1: who knows.
+  /// Number of the lighting, from 0 on: views of one number have lighting that is static relative to the object; -1:
+  /// unknown.
   int lighting_id = -1;
 
   Eigen::Vector3d normal(const cv::Point& px) const {
@@ -41,13 +42,13 @@ struct DepthView {
 /// the object: only what is beside its convex hull is outside then.
 DepthView make_depth_view(const TrainingView& view);
 
-/// One point of the object's surface.
+/// Holds one point of the object's surface.
 struct SurfaceSample {
   Eigen::Vector3d point;   ///< camera frame, metres
   Eigen::Vector3d normal;  ///< camera frame, unit length, towards the camera
 };
 
-/// At most about `maximum` points of the view, evenly over its pixels.
+/// Returns at most about `maximum` points of the view, evenly over its pixels.
 std::vector<SurfaceSample> sample_view(const DepthView& view, int maximum);
 
 }  // namespace houghstream::fusion

@@ -22,7 +22,7 @@ struct FusionSettings {
 struct FusedModel {
   Mesh mesh;                     ///< object frame of the views, metres; closed, with normals and colours
   std::vector<bool> seen;        ///< per vertex: some view shows it; the others close the surface
-  AlignmentError before, after;  ///< of the views, before and after their alignment
+  AlignmentError before, after;  ///< errors of the views, before and after their alignment
 };
 
 /// Makes a model of one object of which there is no CAD model, from views with depth, mask and pose: the views are

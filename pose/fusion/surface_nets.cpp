@@ -36,7 +36,7 @@ class SurfaceNet {
     return within ? grid_.distance[grid_.index(c[0], c[1], c[2])] : 1.0F;
   }
 
-  /// The face across the edge from voxel `c` to the next along `axis`, where one is inside and one outside.
+  /// Adds the face across the edge from voxel `c` to the next along `axis`, where one is inside and one outside.
   void add_face(const Cell& c, int axis) {
     Cell next = c;
     ++next[axis];
@@ -88,7 +88,7 @@ class SurfaceNet {
 
   const TsdfVolume& grid_;
   Mesh mesh_;
-  std::unordered_map<std::size_t, std::uint32_t> vertices_;  // by cell
+  std::unordered_map<std::size_t, std::uint32_t> vertices_;  // index of the vertex, by cell
 };
 
 /// The part that each vertex belongs to, named by one of its vertices.

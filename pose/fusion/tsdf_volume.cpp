@@ -81,7 +81,7 @@ TsdfVolume make_grid(const Extent& extent, const TsdfSettings& settings) {
   return grid;
 }
 
-/// Signed distance of one point in one view, in truncation distances, and its weight (0: unobserved).
+/// Gives the signed distance of one point in one view, in truncation distances, and its weight (0: unobserved).
 struct Observation {
   float distance = 0.0F;
   float weight = 0.0F;
@@ -95,7 +95,8 @@ Observation observe(const DepthView& view, const Eigen::Vector3d& p_camera, doub
     return {1.0F, static_cast<float>(settings.outline_weight)};
   const double depth = view.depth.at<float>(*px);
   if (!std::isfinite(depth)) return {};
-  // From where the voxel's own ray meets the pixel's tangent plane: distances of flatly seen surface are not too long.
+  // The distance is measured from where the voxel's own ray meets the pixel's tangent plane, so that distances at
+  // grazing angles are not too long.
   const double facing_times_range = -view.normal(*px).dot(p_camera);
   const double distance = (depth / p_camera.z() - 1.0) * facing_times_range / truncation;
   if (distance < -1.0) return {};

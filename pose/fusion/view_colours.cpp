@@ -15,7 +15,7 @@ struct Sum {
   double weight = 0.0;
 };
 
-/// Observation of a vertex in a view.
+/// Holds the observation of a vertex in a view.
 struct Sight {
   cv::Vec3b colour;
   double facing = 0.0;  ///< cosine between surface and line of sight; 0: it does not see it
@@ -33,12 +33,12 @@ bool is_clipped(const cv::Vec3b& colour) {
   return std::max({colour[0], colour[1], colour[2]}) > 250 || std::max({colour[0], colour[1], colour[2]}) < 8;
 }
 
-/// Effect of exposure and lighting on the colours of a mesh's vertices.
+/// Models the effect of exposure and lighting on the colours of a mesh's vertices.
 class Lighting {
  public:
   Lighting(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh);
 
-  /// Log of how much brighter than its paint a view shows surface of this normal.
+  /// Returns the logarithm of a surface's brightness over its albedo in a view, for this normal.
   double operator()(int view, const Eigen::Vector3d& normal) const {
     const auto at = static_cast<std::size_t>(view);
     return exposures_[at] +
@@ -49,10 +49,10 @@ class Lighting {
   void add_samples(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh);
   void remove_shading(const Mesh& mesh, int lighting_id);
 
-  std::vector<int> lighting_ids_;  ///< of each view
-  std::vector<int> vertices_;      ///< those that are looked at
+  std::vector<int> lighting_ids_;  ///< lighting of each view
+  std::vector<int> vertices_;      ///< sampled vertices
   std::vector<ColourSample> samples_;
-  std::vector<Eigen::Vector3d> colours_;  ///< of the samples
+  std::vector<Eigen::Vector3d> colours_;  ///< colours of the samples
   std::vector<double> exposures_;
   std::vector<ShadingModel> shadings_;
 };
@@ -132,7 +132,7 @@ double bright_level(const std::vector<Sum>& sums) {
   return *bright;
 }
 
-/// From the seen to the unseen, ring by ring.
+/// Spreads colours from observed vertices to unobserved ones, ring by ring.
 void spread(const Mesh& mesh, std::vector<Sum>& sums) {
   for (bool grew = true; grew;) {
     grew = false;
@@ -166,7 +166,7 @@ std::vector<bool> colour_mesh(const std::vector<DepthView>& views, double tolera
     for (std::size_t k = 0; k < views.size(); ++k) {
       const Sight seen = sight(views[k], mesh.vertices[i].cast<double>(), normal, tolerance_m);
       if (seen.facing <= 0.0) continue;
-      // The few most frontal views decide: with all of them, errors of a pixel would blur the print.
+      // The few most frontal views dominate: with all of them, errors of a pixel would blur the texture.
       const double weight = std::pow(seen.facing, 8);
       sums[i].colour += weight * std::exp(-lighting(static_cast<int>(k), normal)) * srgb_to_linear(seen.colour);
       sums[i].weight += weight;

@@ -12,7 +12,7 @@ namespace {
 
 using Harmonics = Eigen::Matrix<double, 8, 1>;
 
-/// Without the constant one, which is the paint's.
+/// Returns the harmonics without the constant one, which belongs to the albedo.
 Harmonics harmonics(const Eigen::Vector3d& n) {
   Harmonics y;
   y << n.x(), n.y(), n.z(), n.x() * n.y(), n.y() * n.z(), n.x() * n.z(), n.x() * n.x() - n.y() * n.y(),
@@ -32,7 +32,7 @@ constexpr int kChromas = 20;  // steps of blue's and of red's share
 
 std::vector<Point> points_of(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals) {
   constexpr double kDarkest = 0.008;  // below that noise makes the hue
-  constexpr double kGrey = 0.25;      // weight of what may be black, grey or white print
+  constexpr double kGrey = 0.25;      // weight of points whose albedo may be black, grey or white
   std::vector<Point> points;
   points.reserve(colours.size());
   for (std::size_t i = 0; i < colours.size(); ++i) {
@@ -58,8 +58,8 @@ struct Albedo {
   Harmonics y = Harmonics::Zero();
 };
 
-/// One step of iteratively reweighted least squares: the paints' means are eliminated, a ridge holds what is unsure at
-/// 0.
+/// Solves one step of iteratively reweighted least squares. The means of the albedos are eliminated, and a ridge keeps
+/// undetermined weights at 0.
 Harmonics solve(const std::vector<Point>& points, const std::vector<double>& weights) {
   constexpr double kRidge = 0.003;
   std::vector<Albedo> paints(static_cast<std::size_t>(kChromas) * kChromas);
@@ -82,7 +82,7 @@ Harmonics solve(const std::vector<Point>& points, const std::vector<double>& wei
   return normal.ldlt().solve(right);
 }
 
-/// Each point's departure from the median of its paint, light taken out.
+/// Returns each point's difference from the median of its albedo, after removal of the shading.
 std::vector<double> departures(const std::vector<Point>& points, const Harmonics& light) {
   std::vector<double> rest(points.size());
   std::vector<std::vector<std::pair<double, double>>> of_paint(static_cast<std::size_t>(kChromas) * kChromas);

@@ -6,9 +6,9 @@
 
 namespace houghstream::fusion {
 
-/// A pixel's colour in linear light: what its bytes mean as sRGB (IEC 61966-2-1), BGR in [0,1].
+/// Returns a pixel's colour in linear light, from its bytes as sRGB (IEC 61966-2-1), BGR in [0,1].
 Eigen::Vector3d srgb_to_linear(const cv::Vec3b& colour);
-/// The inverse, clipped.
+/// Returns the inverse of srgb_to_linear(), clipped.
 cv::Vec3b linear_to_srgb(const Eigen::Vector3d& linear);
 
 /// A vertex as a view shows it.
@@ -16,7 +16,7 @@ struct ColourSample {
   int vertex = 0;
   int view = 0;
   double level = 0.0;   ///< log of the linear brightness
-  double weight = 0.0;  ///< more for a frontal view
+  double weight = 0.0;  ///< larger for a frontal view
 };
 
 /// Estimates the log exposure of each view relative to the others, with median 0. Brightness is modelled as exposure
@@ -28,7 +28,7 @@ std::vector<double> estimate_exposures(const std::vector<ColourSample>& samples,
 /// of second order (which represent diffuse lighting, Ramamoorthi and Hanrahan 2001).
 class ShadingModel {
  public:
-  /// Log of the light on a surface of this normal, but for a constant.
+  /// Returns the logarithm of the shading on a surface of this normal, up to a constant.
   double operator()(const Eigen::Vector3d& normal) const;
 
  private:
@@ -37,9 +37,10 @@ class ShadingModel {
   Eigen::Matrix<double, 8, 1> weights_ = Eigen::Matrix<double, 8, 1>::Zero();
 };
 
-/// Parts light from paint. Neither is seen alone: what has the same hue and saturation on sides that face differently
-/// is taken to be painted alike in most places (absolute deviations are least), and what remains unsure is paint.
-/// `colours`: linear BGR of points of the surface, without exposure; `normals`: unit length. Both of one size.
+/// Separates shading from albedo. Neither is observed alone: surfaces of the same hue and saturation on sides that face
+/// differently are taken to have the same albedo in most places (absolute deviations are minimal), and ambiguous
+/// variation counts as albedo. `colours` are linear BGR of points of the surface, without exposure; `normals` have unit
+/// length. Both have one size.
 ShadingModel fit_shading(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals);
 
 }  // namespace houghstream::fusion

@@ -14,7 +14,7 @@ constexpr std::uint32_t kLeafTriangles = 4;
 
 using Corners = std::array<Eigen::Vector3f, 3>;
 
-/// Weight of `b` for the point of the segment that is nearest to `p`.
+/// Returns the weight of `b` for the point of the segment that is nearest to `p`.
 float along_segment(const Eigen::Vector3f& p, const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   const float length_sq = (b - a).squaredNorm();
   return length_sq > 0.0F ? std::clamp((p - a).dot(b - a) / length_sq, 0.0F, 1.0F) : 0.0F;
@@ -99,7 +99,7 @@ std::uint32_t MeshBvh::build(std::uint32_t first, std::uint32_t count) {
   return index;
 }
 
-/// `node_distance`: from the point to the node's box, metres.
+/// `node_distance` is the distance from the point to the node's box, metres.
 void MeshBvh::search(std::uint32_t index, float node_distance, const Eigen::Vector3f& point, ClosestPoint& best) const {
   if (node_distance >= best.distance) return;
   const Node& node = nodes_[index];
@@ -124,7 +124,7 @@ ClosestPoint MeshBvh::nearest(const Eigen::Vector3f& point, float max_distance) 
 }
 
 ClosestPoint MeshBvh::nearest_with_guess(const Eigen::Vector3f& point, std::uint32_t guess) const {
-  constexpr float kRounding = 1.0001F;  // so that of triangles that are equally near the same one is found
+  constexpr float kRounding = 1.0001F;  // margin, so that among equally near triangles always the same one is found
   ClosestPoint on_guess;
   on_guess.distance = std::numeric_limits<float>::infinity();
   improve(point, corners_of(guess), guess, on_guess);

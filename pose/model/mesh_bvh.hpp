@@ -17,7 +17,8 @@ struct ClosestPoint {
   std::array<float, 3> weights = {1.0F, 0.0F, 0.0F};  ///< barycentric, of the triangle's vertices
 };
 
-/// Exact distances to a mesh: its triangles in a tree of boxes, each halved at the median of its longest side.
+/// Computes exact distances to a mesh. Its triangles lie in a tree of boxes, each halved at the median of its longest
+/// side.
 class MeshBvh {
  public:
   /// Keeps a reference to `mesh`. Throws InputError for a mesh without triangles.
@@ -34,7 +35,7 @@ class MeshBvh {
  private:
   struct Node {
     Eigen::AlignedBox3f box;
-    std::uint32_t first = 0;  ///< in order_
+    std::uint32_t first = 0;  ///< index into order_
     std::uint32_t count = 0;  ///< triangles of a leaf; 0 for an inner node, whose children are below and `right`
     std::uint32_t right = 0;
   };
@@ -46,7 +47,7 @@ class MeshBvh {
 
   const Mesh& mesh_;
   std::vector<std::uint32_t> order_;
-  std::vector<Corners> corners_;  ///< of the triangles, in the order of `order_`
+  std::vector<Corners> corners_;  ///< corners of the triangles, in the order of `order_`
   std::vector<Node> nodes_;
 };
 

@@ -63,7 +63,8 @@ Eigen::Vector3f surface_median(const Mesh& mesh) {
   return median;
 }
 
-/// Camera at `distance` from the model's centre, looking at it; the turn about the optical axis does not matter.
+/// Returns the pose of a camera at `distance` from the model's centre that looks at it. The rotation about the optical
+/// axis does not matter.
 Eigen::Isometry3d looking_from(const Eigen::Vector3f& direction, const Eigen::Vector3f& centre, double distance) {
   const Eigen::Quaterniond R_camera_object =
       Eigen::Quaterniond::FromTwoVectors(direction.cast<double>(), -Eigen::Vector3d::UnitZ());
@@ -73,7 +74,7 @@ Eigen::Isometry3d looking_from(const Eigen::Vector3f& direction, const Eigen::Ve
   return T_camera_object;
 }
 
-/// A point of a view on its way to a place in it.
+/// Holds a visible surface point of a view, with where it lies in its triangle.
 struct SeenPoint {
   Eigen::Vector3f point;
   Eigen::Vector3f normal;
@@ -100,7 +101,8 @@ class ViewMaker {
         colour_(model.mesh, 2.0 * model.radius / settings.pixels_per_diameter),
         face_normals_(face_normals(model.mesh)) {}
 
-  /// At most ModelSettings::points_per_view of the points that are seen, in random order.
+  /// Makes the view from a direction, with at most ModelSettings::points_per_view of the visible points, in random
+  /// order.
   ModelView make(const Eigen::Vector3f& direction, std::uint64_t seed) const;
 
   /// The colours of all that is seen from one direction.
@@ -138,7 +140,7 @@ std::vector<SeenPoint> ViewMaker::seen_from(const Eigen::Vector3f& direction, fl
       const Eigen::Vector3f point = (T_object_camera * camera.backproject(x, y, z)).cast<float>();
       Eigen::Vector3f normal = face_normals_[static_cast<std::size_t>(triangle)];
       const float facing = normal.dot((eye - point).normalized());
-      if (facing < 0.0F) normal = -normal;  // the mesh may be open, or its triangles turned
+      if (facing < 0.0F) normal = -normal;  // the mesh may be open, or its triangles reversed
       if (!(std::abs(facing) >= settings_.min_facing)) continue;
       seen.push_back({point, normal, static_cast<std::size_t>(triangle), rendered.bary.at<cv::Vec2f>(y, x)});
     }
@@ -167,8 +169,8 @@ void ViewMaker::add_print(const Eigen::Vector3f& direction, SurfacePrintMaker& p
     print.add(seen.point, seen.normal, colour_.at(seen.triangle, seen.bary));
 }
 
-/// Views from fewer directions than the model has suffice here: they see the whole surface, and all visible points are
-/// kept.
+/// Makes the colours by position. Views from fewer directions than the model has suffice here: they see the whole
+/// surface, and all visible points are kept.
 SurfacePrint make_print(const ViewMaker& maker, double detail_m) {
   constexpr int kParts = 2;
   if (!maker.has_colours()) return {};
@@ -177,7 +179,7 @@ SurfacePrint make_print(const ViewMaker& maker, double detail_m) {
   return print.make();
 }
 
-/// Views from the directions in which some of the surface is visible.
+/// Makes views from the directions in which some of the surface is visible.
 std::vector<ModelView> make_views(const ViewMaker& maker, const ModelSettings& settings, int threads) {
   const std::vector<Eigen::Vector3f> directions = sphere_directions(settings.views_per_edge);
   std::vector<ModelView> made(directions.size());
@@ -193,7 +195,7 @@ std::vector<ModelView> make_views(const ViewMaker& maker, const ModelSettings& s
   return views;
 }
 
-/// The farthest that a point of the surface is moved by a motion, over the motions that look the same.
+/// Returns the maximum displacement of a point of the surface by a motion, over the motions that look the same.
 double moved_by(const Eigen::Isometry3d& motion, const std::vector<Eigen::Vector3f>& points,
                 const std::vector<Eigen::Isometry3d>& same) {
   double minimum = std::numeric_limits<double>::infinity();
@@ -208,11 +210,11 @@ double moved_by(const Eigen::Isometry3d& motion, const std::vector<Eigen::Vector
   return minimum;
 }
 
-/// Quarter and half turns about the principal axes after which the shape is nearly as before, and all that they combine
-/// to: a pose of a nearly square box that is a quarter turn wrong settles where depth speaks for it.
+/// Returns quarter and half turns about the principal axes after which the shape is nearly as before, and all their
+/// products: a pose of a nearly square box that is wrong by a quarter turn converges to where depth supports it.
 std::vector<Eigen::Isometry3d> near_symmetries(const MeasuredMesh& measured, const ObjectModel& model) {
   SymmetrySearch search;
-  search.tolerance = 0.1;  // with which BOP finds candidates (Hodan et al. 2020)
+  search.tolerance = 0.1;  // diameters, with which BOP finds candidates (Hodan et al. 2020)
   const RotationSymmetryTest check(measured, model.surface_median.cast<double>(), search);
   std::vector<Eigen::Isometry3d> rotations;
   for (int i = 0; i < 3; ++i) {
@@ -226,7 +228,7 @@ std::vector<Eigen::Isometry3d> near_symmetries(const MeasuredMesh& measured, con
   return group_of(rotations);
 }
 
-/// Points of the surface that most turns about the axis take off it: a mug's handle.
+/// Returns points of the surface that most rotations about the axis take off it: a mug's handle.
 std::vector<Eigen::Vector3f> unround_points(const MeasuredMesh& measured, const ContinuousSymmetry& axis) {
   constexpr int kPoints = 1500;
   constexpr int kRotations = 7;

@@ -17,16 +17,16 @@ namespace houghstream {
 /// Settings of an object model: the view directions spread over the sphere, and the visible points of each.
 struct ModelSettings {
   int views_per_edge = 4;        ///< each edge of an icosahedron in so many parts: 10 n^2 + 2 directions
-  int points_per_view = 600;     ///< at most
-  double view_distance_m = 1.2;  ///< from the model's centre
-  int pixels_per_diameter = 72;  ///< of the images from which visible points are drawn
+  int points_per_view = 600;     ///< maximum number of points
+  double view_distance_m = 1.2;  ///< camera's distance from the model's centre
+  int pixels_per_diameter = 72;  ///< resolution of the images from which visible points are drawn
   double min_facing = 0.15;      ///< cosine between normal and line of sight below which a point is too grazing
   std::map<std::string, Eigen::Vector3f> vote_centres;  ///< ObjectModel::vote_centre by name; of others the origin
-  /// By name, motions after which the object looks as before, its print too (models_info.json); of others none. A
-  /// symmetry that the print contradicts is taken as said.
+  /// Motions by class name after which the object looks as before, its texture too (models_info.json); classes without
+  /// an entry have none. A symmetry that the texture contradicts is accepted as stated.
   std::map<std::string, Symmetries> symmetries;
   double right_within = 0.1;  ///< ObjectModel::alternatives are farther from the pose than this, diameters (MSSD)
-  std::map<std::string, ShapeSymmetry> shape_symmetries;  ///< by name; those of others are found in the mesh
+  std::map<std::string, ShapeSymmetry> shape_symmetries;  ///< by class name; for other classes the mesh is searched
 };
 
 template <typename Visit>
@@ -46,33 +46,33 @@ struct ModelView {
   Eigen::Vector3f direction = Eigen::Vector3f::Zero();  ///< unit, from the model's centre to the camera
   std::vector<Eigen::Vector3f> points;                  ///< object frame, metres
   std::vector<Eigen::Vector3f> normals;                 ///< unit length, towards the camera
-  std::vector<LabColour> colours;                       ///< of the points; empty where the mesh has none
-  float area = 0.0F;                                    ///< of the silhouette, relative to the largest view's
+  std::vector<LabColour> colours;                       ///< colours of the points; empty where the mesh has none
+  float area = 0.0F;                                    ///< area of the silhouette, relative to the largest view's
 };
 
 /// A mesh with what registration needs of it.
 struct ObjectModel {
   Mesh mesh;
-  Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< of the bounding box, object frame
-  /// The point for which its detections' votes are, and where their centre is: object frame, metres.
+  Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< centre of the bounding box, object frame
+  /// Point for which the detections' votes are cast, and where their centre lies: object frame, metres.
   Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();
-  /// Median of the surface along each axis, object frame: a handle does not move it.
+  /// Median of the surface along each axis, object frame; a handle hardly changes it.
   Eigen::Vector3f surface_median = Eigen::Vector3f::Zero();
   Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();  ///< columns: principal axes of the surface, object frame
-  float radius = 0.0F;                                 ///< of the sphere about the centre that holds the mesh, metres
+  float radius = 0.0F;          ///< radius of the sphere about the centre that holds the mesh, metres
   Symmetries shape_symmetries;  ///< rotations after which a depth camera measures the same, object frame
-  /// Where none of these is continuous: an axis about which all but a handle or the like measures the same.
+  /// Axis about which all but a part such as a handle measures the same, where no symmetry is continuous.
   std::optional<ContinuousSymmetry> nearly_round;
   std::vector<ModelView> views;
   SurfacePrint print;  ///< empty where the mesh has no colours
   /// Motions of the object frame, metres, after which the shape is as before and the pose is another one: only the
-  /// print can tell a pose from the poses after these. Turns about a continuous symmetry are a few of each round.
+  /// texture distinguishes a pose from the poses after these. Rotations about a continuous symmetry are sampled.
   std::vector<Eigen::Isometry3d> alternatives;
-  /// Motions after which the shape is nearly as before: registered, the poses after these are for depth and print to
-  /// tell apart.
+  /// Motions after which the shape is nearly as before: depth and texture distinguish the poses after these, once
+  /// registered.
   std::vector<Eigen::Isometry3d> near_alternatives;
-  /// Turns about `nearly_round`: alternatives where what breaks the round is hidden before and after. Points of that,
-  /// object frame, metres.
+  /// Rotations about `nearly_round`, which are alternatives where the part that breaks the round shape is occluded
+  /// before and after; and points of that part, object frame, metres.
   std::vector<Eigen::Isometry3d> partial_alternatives;
   std::vector<Eigen::Vector3f> unround_points;
 };
@@ -81,7 +81,7 @@ struct ObjectModel {
 /// no triangles, is degenerate to a point, or is visible from nowhere.
 ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSettings& settings, int threads = 1);
 
-/// The stored view nearest to how the camera sees the model.
+/// Returns the stored view nearest to the camera's view of the model.
 const ModelView& nearest_view(const ObjectModel& model, const Eigen::Isometry3d& T_camera_object);
 
 /// Corners of the icosahedron whose edges are cut in `parts`, on the unit sphere, in a fixed order.

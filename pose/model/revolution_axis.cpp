@@ -10,7 +10,7 @@ using Vector4 = Eigen::Matrix<double, 4, 1>;
 using Matrix4 = Eigen::Matrix<double, 4, 4>;
 using AcrossBasis = Eigen::Matrix<double, 3, 2>;  // two unit vectors across an axis, as columns
 
-/// A surface point relative to the centre, with its normal.
+/// Holds a surface point relative to the centre, with its normal.
 struct OrientedPoint {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;
@@ -30,7 +30,7 @@ AcrossBasis plane_across(const Eigen::Vector3d& direction) {
   return plane;
 }
 
-/// Metres by which the point's surface leaves itself per radian of rotation about the axis.
+/// Returns the distance, metres, by which the point's surface leaves itself per radian of rotation about the axis.
 double rotation_residual(const OrientedPoint& p, const ScoredAxis& axis) {
   return p.normal.dot(axis.direction.cross(p.point - axis.offset));
 }
@@ -42,7 +42,7 @@ class RevolutionFit {
       points_.push_back({surface.points[i].cast<double>() - centre, surface.normals[i].cast<double>()});
   }
 
-  /// Gauss-Newton steps with reweighting; the direction stays as it is where `with_direction` is false.
+  /// Runs Gauss-Newton steps with reweighting; the direction stays as it is where `with_direction` is false.
   void improve(int iterations, bool with_direction, ScoredAxis& axis) const {
     for (int i = 0; i < iterations; ++i) step(with_direction, axis);
     axis.score = score(axis);
@@ -68,7 +68,7 @@ class RevolutionFit {
       normal_matrix += weight * jacobian * jacobian.transpose();
       right_side -= weight * r * jacobian;
     }
-    // Damped: what no normal determines, as the place of an axis across a plane, stays.
+    // The system is damped, so that what no normal determines, such as the position of an axis across a plane, stays.
     constexpr double kDamping = 1e-6;
     normal_matrix.diagonal().head<2>().array() += kDamping * static_cast<double>(points_.size());
     normal_matrix.diagonal().tail<2>().array() += kDamping * static_cast<double>(points_.size()) * sigma_m_ * sigma_m_;
@@ -78,7 +78,7 @@ class RevolutionFit {
     axis.offset -= axis.direction.dot(axis.offset) * axis.direction;
   }
 
-  /// A surface across the axis fits every axis of its direction, and is not counted.
+  /// Returns the score of an axis. A surface across the axis fits every axis of its direction, and is not counted.
   double score(const ScoredAxis& axis) const {
     double fitting = 0.0;
     double total = 0.0;
@@ -94,7 +94,7 @@ class RevolutionFit {
   double sigma_m_;
 };
 
-/// The best of them, no two within 20 degrees of one another.
+/// Returns the best axes, no two of them within 20 degrees of one another.
 std::vector<ScoredAxis> best_apart(std::vector<ScoredAxis> axes, std::size_t count) {
   constexpr double kSameDirection = 0.94;  // cosine of 20 degrees
   std::stable_sort(axes.begin(), axes.end(),

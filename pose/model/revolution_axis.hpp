@@ -15,7 +15,7 @@ namespace houghstream {
 std::vector<ContinuousSymmetry> find_revolution_axes(const SurfacePoints& surface, const Eigen::Vector3d& centre,
                                                      double sigma_m);
 
-/// Directions spread evenly over the half of the unit sphere with z >= 0 (a Fibonacci lattice).
+/// Returns directions spread evenly over the half of the unit sphere with z >= 0 (a Fibonacci lattice).
 std::vector<Eigen::Vector3d> hemisphere_directions(int count);
 
 }  // namespace houghstream

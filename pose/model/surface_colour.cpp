@@ -8,7 +8,7 @@
 namespace houghstream {
 namespace {
 
-/// Texture pixels per metre of surface, mean over the mesh.
+/// Returns the texture's pixels per metre of surface, mean over the mesh.
 double texel_density(const Mesh& mesh) {
   double on_texture = 0.0;
   double on_surface = 0.0;

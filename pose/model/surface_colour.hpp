@@ -7,22 +7,22 @@
 
 namespace houghstream {
 
-/// 8-bit CIE L*a*b*.
+/// LabColour is a colour in 8-bit CIE L*a*b*.
 using LabColour = std::array<std::uint8_t, 3>;
 
-/// The texture's pixel at texture coordinates in [0,1], v down.
+/// Returns the texture's pixel at texture coordinates in [0,1], v down.
 const cv::Vec3b& texel_at(const cv::Mat& texture, const Eigen::Vector2f& uv);
 
-/// A mesh's colours at the resolution of a camera: finer print is averaged, as a camera does.
+/// Reads a mesh's colours at the resolution of a camera: finer texture is averaged, as a camera does.
 class SurfaceColour {
  public:
-  /// `detail_m`: what is smaller than this is averaged. The mesh must outlive this.
+  /// Detail smaller than `detail_m` is averaged. The mesh must outlive this object.
   SurfaceColour(const Mesh& mesh, double detail_m);
 
   /// Returns whether the mesh has a texture or vertex colours.
   bool has_colour() const;
 
-  /// Colour at a point of a triangle: `bary` holds the weights of its second and third vertex.
+  /// Returns the colour at a point of a triangle; `bary` holds the weights of its second and third vertex.
   LabColour at(std::size_t triangle, const cv::Vec2f& bary) const;
 
  private:

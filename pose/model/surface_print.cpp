@@ -17,7 +17,7 @@ std::int64_t number_of(const Eigen::Vector3i& cube) {
   return (part(cube.x()) * 2 * kHalf + part(cube.y())) * 2 * kHalf + part(cube.z());
 }
 
-/// The cube itself first, then those that share a face with it.
+/// Returns the offsets of the cube itself, which is first, and of those that share a face with it.
 const std::array<Eigen::Vector3i, 7>& neighbours() {
   static const std::array<Eigen::Vector3i, 7> offsets = {
       Eigen::Vector3i(0, 0, 0),  Eigen::Vector3i(1, 0, 0), Eigen::Vector3i(-1, 0, 0), Eigen::Vector3i(0, 1, 0),

@@ -11,9 +11,9 @@
 
 namespace houghstream {
 
-/// The colours of a surface by place: small cubes, and in each of them the sides that the surface shows. It tells the
-/// colour at any point of the surface without rendering it. An empty one knows no colour. The lists are as long as each
-/// other and sorted by cube.
+/// Stores the colours of a surface by position: small cubes, and in each of them the sides that the surface shows. It
+/// yields the colour at any point of the surface without rendering. An empty one has no colours. The lists have equal
+/// lengths and are sorted by cube.
 struct SurfacePrint {
   float detail_m = 1.0F;                 ///< edge of a cube: what is smaller is averaged
   std::vector<std::int64_t> cubes;       ///< once for each of its sides
@@ -27,12 +27,12 @@ struct SurfacePrint {
   std::optional<Eigen::Vector3f> find(const Eigen::Vector3f& point, const Eigen::Vector3f& towards) const;
 };
 
-/// Makes a print of points of the surface.
+/// Collects points of the surface and makes a SurfacePrint of them.
 class SurfacePrintMaker {
  public:
   explicit SurfacePrintMaker(double detail_m) : detail_m_(static_cast<float>(detail_m)) {}
 
-  /// A point of the surface, object frame, metres; `normal` has unit length and points outwards.
+  /// Adds a point of the surface, object frame, metres; `normal` has unit length and points outwards.
   void add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, const LabColour& colour);
 
   SurfacePrint make() const;
@@ -45,7 +45,7 @@ class SurfacePrintMaker {
   };
 
   float detail_m_;
-  /// By cube, and by the axis to which the normal is nearest, with its sign.
+  /// Sums by cube, and by the axis to which the normal is nearest, with its sign.
   std::map<std::pair<std::int64_t, int>, Sum> sums_;
 };
 

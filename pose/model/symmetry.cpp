@@ -12,16 +12,17 @@ Eigen::Isometry3d rotate_about(const Eigen::Quaterniond& rotation_step, const Ei
   return Eigen::Translation3d(offset) * rotation_step * Eigen::Translation3d(-offset);
 }
 
-/// Cosine of half the angle of a rotation.
+/// Returns the cosine of half the angle of a rotation.
 double nearness(const Eigen::Quaterniond& rotation) {
   return std::abs(rotation.w());
 }
 
-/// The turn about `axis` after which least is left of `rotation`: its twist (swing-twist decomposition), backwards.
+/// Returns the rotation about `axis` after which the remaining angle of `rotation` is minimal: its twist (swing-twist
+/// decomposition), backwards.
 Eigen::Quaterniond untwist(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& axis) {
   const double along = rotation.vec().dot(axis);
   const double norm = std::hypot(rotation.w(), along);
-  constexpr double kNoTwist = 1e-9;  // half a turn about a perpendicular axis: every turn leaves as much
+  constexpr double kNoTwist = 1e-9;  // half a turn about a perpendicular axis: every rotation leaves as much
   if (norm < kNoTwist) return Eigen::Quaterniond::Identity();
   const Eigen::Vector3d back = -along / norm * axis;
   return {rotation.w() / norm, back.x(), back.y(), back.z()};
@@ -35,7 +36,7 @@ bool is_ball(const Symmetries& symmetries) {
   });
 }
 
-/// The best symmetry among the turns about the axis, if there is one, each after `discrete`.
+/// Returns the best symmetry among the rotations about the axis, if there is one, each after `discrete`.
 Eigen::Isometry3d best_after(const Eigen::Isometry3d& discrete, const Eigen::Quaterniond& R_reference_object,
                              const Symmetries& symmetries) {
   if (symmetries.continuous.empty()) return discrete;

@@ -7,16 +7,16 @@
 
 namespace houghstream {
 
-/// All symmetries as single motions of the object frame (metres), the identity first. A continuous one becomes turns by
-/// equal steps, so many that no point of the object moves by more than about `max_step` diameters from one to the
-/// next; each is combined with each discrete one. Follows get_symmetry_transformations() of bop_toolkit (Hodan et al.
-/// 2020): 315 turns for its 0.01; of several axes each is turned about by itself, which for a ball is less than the
-/// whole group. Throws InputError unless `max_step` is above 0.
+/// Returns all symmetries as single motions of the object frame (metres), the identity first. A continuous symmetry
+/// becomes rotations by equal steps, so many that no point of the object moves by more than about `max_step` diameters
+/// from one to the next; each is combined with each discrete one. This follows get_symmetry_transformations() of
+/// bop_toolkit (Hodan et al. 2020): 315 rotations for its 0.01. With several axes each is rotated about by itself,
+/// which for a ball is less than the whole group. Throws InputError unless `max_step` is above 0.
 std::vector<Eigen::Isometry3d> expand_symmetries(const Symmetries& symmetries, double max_step = 0.01);
 
-/// The symmetry S for which R_camera_object * S is nearest to the reference, by the angle between them. Exact: nothing
-/// is discretised, and two or more continuous axes mean a ball, which can be turned to any reference. Ties go to the
-/// identity, then to the first listed.
+/// Returns the symmetry S for which R_camera_object * S is nearest to the reference, by the angle between them. It is
+/// exact: nothing is discretised, and two or more continuous axes mean a ball, which can be rotated to any reference.
+/// Ties go to the identity, then to the first listed.
 Eigen::Isometry3d symmetry_towards(const Eigen::Quaterniond& R_camera_object, const Eigen::Quaterniond& R_reference,
                                    const Symmetries& symmetries);
 

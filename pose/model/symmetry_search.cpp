@@ -15,7 +15,7 @@ namespace houghstream {
 namespace {
 
 constexpr double kSameDirection = 0.985;                 // cosine of 10 degrees
-constexpr double kSameRotation_rad = 25.0 * kRadPerDeg;  // those of a group differ by 60 degrees and more
+constexpr double kSameRotation_rad = 25.0 * kRadPerDeg;  // rotations of a group differ by 60 degrees and more
 constexpr int kMaxFold = 6;
 constexpr std::size_t kMaxGroup = 60;  // the icosahedron's
 
@@ -29,7 +29,7 @@ float tolerance_of(double diameter_m, const SymmetrySearch& settings) {
   return static_cast<float>(std::max(settings.tolerance * diameter_m, noise_m));
 }
 
-/// BGR at a point of the surface, from the texture where there is one.
+/// Returns BGR at a point of the surface, from the texture where there is one.
 Eigen::Vector3f colour_at(const Mesh& mesh, const ClosestPoint& hit) {
   const auto& triangle = mesh.triangles[hit.triangle];
   if (mesh.texture.empty() || mesh.uvs.empty()) {
@@ -46,7 +46,7 @@ Eigen::Vector3f colour_at(const Mesh& mesh, const ClosestPoint& hit) {
   return {static_cast<float>(colour[0]), static_cast<float>(colour[1]), static_cast<float>(colour[2])};
 }
 
-/// Second moments of the surface, exact for triangles of even thickness.
+/// Holds the second moments of the surface, which are exact for triangles of even thickness.
 struct Moments {
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns, in the order of `spread`
@@ -86,7 +86,7 @@ double angle_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
 }
 
-/// Box axes first: where a principal axis is nearly one of them, the mesh was drawn along it.
+/// Returns the box axes first: where a principal axis is nearly one of them, the mesh was drawn along it.
 std::vector<Eigen::Vector3d> candidate_axes(const Moments& moments) {
   std::vector<Eigen::Vector3d> axes = {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX()};
   for (int i = 0; i < 3; ++i) axes.emplace_back(moments.axes.col(i));
@@ -119,8 +119,8 @@ std::vector<ContinuousSymmetry> continuous_axes(const RotationSymmetryTest& chec
   return found;
 }
 
-/// One turn per axis: the smallest that fits as it is, of which the others are multiples. What fits less well is
-/// registered first: of rotations a few degrees off the products do not fit.
+/// Returns one rotation per axis: the smallest that fits as it is, of which the others are multiples. Rotations that
+/// fit less well are registered first, since products of rotations that are a few degrees off do not fit.
 std::vector<Eigen::Isometry3d> min_rotations(const RotationSymmetryTest& check, const Moments& moments) {
   constexpr double kExactRms = 0.2;  // tolerances
   std::vector<Eigen::Isometry3d> turns;
@@ -144,8 +144,9 @@ struct FoldedRotation {
   double deviation_m = 0.0;
 };
 
-/// Where the moments leave the axis open: the principal axes where no two spread alike, half a turn about any axis
-/// between two that do and any turn about the third, or any turn at all where all three do.
+/// Returns the rotations to try where the moments leave the axis open: about the principal axes where no two spreads
+/// are alike, by half a turn about any axis between two that are alike and by any fold about the third, or about any
+/// axis where all three are alike.
 std::vector<FoldedRotation> possible_rotations(const RotationSymmetryTest& check, const Moments& moments) {
   std::vector<FoldedRotation> turns;
   const auto add = [&](const Eigen::Vector3d& axis, int max_fold) {
@@ -197,7 +198,7 @@ Eigen::Isometry3d folded(const Eigen::Isometry3d& T, const Eigen::Vector3d& cent
 bool close_under_composition(const RotationSymmetryTest& check, const std::vector<Eigen::Isometry3d>& generators,
                              std::vector<Eigen::Isometry3d>& group) {
   constexpr double kRmsOfProduct = 1.5;
-  constexpr double kMaxError_rad = 12.0 * kRadPerDeg;  // of products of rotations that are a few degrees off
+  constexpr double kMaxError_rad = 12.0 * kRadPerDeg;  // limit for products of rotations that are a few degrees off
   constexpr double kMaxCorrection_rad = 5.0 * kRadPerDeg;
   for (std::size_t i = 0; i < group.size(); ++i) {
     for (const Eigen::Isometry3d& generator : generators) {
@@ -279,7 +280,7 @@ std::vector<ContinuousSymmetry> revolution_axes(const RotationSymmetryTest& chec
 /// Returns whether a registration comes no nearer any more: most of them lead nowhere, slowly.
 bool has_stalled(const std::vector<double>& means_m) {
   constexpr std::size_t kSteps = 8;
-  constexpr double kMinGain = 0.05;  // of the distance, over these steps
+  constexpr double kMinGain = 0.05;  // fraction of the distance, over these steps
   return means_m.size() > kSteps && means_m.back() > (1.0 - kMinGain) * means_m[means_m.size() - 1 - kSteps];
 }
 
@@ -362,7 +363,7 @@ Eigen::Isometry3d RotationSymmetryTest::registered(const Eigen::Isometry3d& star
   const std::size_t count = std::min(kPoints, surface_.points.size());
   const double radius_m = std::max(1e-3, (surface_.points.front().cast<double>() - centre_).norm());
   std::vector<ClosestPoint> hits(count);
-  std::vector<double> means_m;  // of the distances, by step
+  std::vector<double> means_m;  // means of the distances, by step
   Eigen::Isometry3d T = start;
   for (int step = 0; step < kSteps; ++step) {
     double sum_m = 0.0;
@@ -442,7 +443,7 @@ ShapeSymmetry find_shape_symmetry(const Mesh& mesh) {
 }
 
 ShapeSymmetry find_shape_symmetry(const MeasuredMesh& measured) {
-  // Structured light errs by this at 1.2 m (Nguyen et al. 2012: 0.0012 + 0.0019 (z - 0.4)^2 m).
+  // Structured light errs by this much at 1.2 m (Nguyen et al. 2012: 0.0012 + 0.0019 (z - 0.4)^2 m).
   constexpr double kDepthNoise_m = 0.0025;
   constexpr double kMinRoundFraction = 0.7;
   SymmetrySearch settings;

@@ -5,9 +5,9 @@
 
 namespace houghstream {
 
-/// Which column each row is given, so that the sum of costs is least; -1 for a row without one. Costs from `limit` on
-/// are not given at all, rather both stay without. By shortest augmenting paths (Jonker and Volgenant 1987); of equal
-/// sums, always the same one.
+/// Returns the column assigned to each row, so that the sum of costs is minimal; -1 for a row without one. Pairs with
+/// costs from `limit` on are not assigned; both stay without a partner. It uses shortest augmenting paths (Jonker and
+/// Volgenant 1987), and returns always the same one of equal sums.
 std::vector<int> solve_assignment(const Eigen::MatrixXd& costs, double limit);
 
 }  // namespace houghstream

@@ -4,8 +4,8 @@
 
 namespace houghstream {
 
-/// The last step of a camera about an object, or of an object before a camera: two poses T_camera_object, one frame
-/// apart. The next frame is looked for where the same step once more leads.
+/// Holds the last step of a camera about an object, or of an object before a camera: two poses T_camera_object, one
+/// frame apart. The next frame is searched where the same step leads again.
 struct LastStep {
   Eigen::Isometry3d T_last = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_before = Eigen::Isometry3d::Identity();
@@ -25,10 +25,10 @@ struct LastStep {
     T_last = T;
   }
 
-  /// The pose after the camera's step once more.
+  /// Returns the pose after a repetition of the camera's step.
   Eigen::Isometry3d repeat_of_camera() const { return T_last * T_before.inverse() * T_last; }
 
-  /// The pose after the object's step once more. But for rounding it is the camera's.
+  /// Returns the pose after a repetition of the object's step. Up to rounding it equals the camera's.
   Eigen::Isometry3d repeat_of_object() const { return T_last * (T_before.inverse() * T_last); }
 };
 

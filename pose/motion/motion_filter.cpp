@@ -24,7 +24,8 @@ MotionFilter::MotionFilter(const PoseMeasurement& first, const MotionSettings& s
   consider_.topRows<6>() = consider_covariance(first);
 }
 
-/// A root of the common part of its covariance: the symmetric one, so that it turns with the line of sight.
+/// Returns a square root of the common part of its covariance. It is the symmetric one, so that it rotates with the
+/// line of sight.
 Covariance6 MotionFilter::consider_covariance(const PoseMeasurement& measured) const {
   const Eigen::SelfAdjointEigenSolver<Covariance6> solver(settings_.common_variance_fraction * measured.covariance);
   const Vector6 deviations = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();

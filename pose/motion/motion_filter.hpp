@@ -8,7 +8,7 @@
 
 namespace houghstream {
 
-/// A measured pose of an object in the world.
+/// Holds a measured pose of an object in the world.
 struct PoseMeasurement {
   std::int64_t utime = 0;  ///< microseconds
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
@@ -16,14 +16,14 @@ struct PoseMeasurement {
 };
 
 struct MotionSettings {
-  double drift_m = 0.0002;            ///< what stands may wander by within a second, metres
-  double drift_rad = 0.0024;          ///< and turn by: together some two seconds are averaged
-  double acceleration = 1.0;          ///< spectral density of what moves, m^2/s^3: a hand's
+  double drift_m = 0.0002;            ///< random walk of a static object within a second, metres
+  double drift_rad = 0.0024;          ///< and of its rotation: together they average over some two seconds
+  double acceleration = 1.0;          ///< spectral density of a moving object, m^2/s^3: a hand's
   double angular_acceleration = 8.0;  ///< rad^2/s^3
-  double coast_s = 0.15;              ///< what moves goes on for so long without a measurement
-  /// Of a measurement's variance: the error that the frames of a view have in common. Half of the errors of rendered
-  /// frames are within 0.5 mm at 1 m; were these Gaussian, and all in common, it would be 0.03. It is three times that,
-  /// since objects differ; chosen so, not learnt.
+  double coast_s = 0.15;              ///< time for which a moving object continues without a measurement
+  /// Fraction of a measurement's variance that the frames of a view have in common. Half of the errors of rendered
+  /// frames are within 0.5 mm at 1 m; if these were Gaussian, and all in common, it would be 0.03. The default is three
+  /// times that, since objects differ; it is chosen, not learnt.
   double common_variance_fraction = 0.1;
 };
 
@@ -38,31 +38,30 @@ void fields(const MotionSettings& /*settings*/, const Visit& visit) {
   visit(number("common_variance_fraction", &S::common_variance_fraction, 0, 1));
 }
 
-/// The pose of one object over time: a Kalman filter on the group of motions (error state: twists
-/// about the world's axes, twist.hpp). What stands is
-/// averaged: its pose wanders hardly at all, and it has no velocity. What moves goes on with constant velocity, under
-/// white acceleration (Bar-Shalom, Li and Kirubarajan 2001, section 6.2). Who holds it decides which.
+/// Estimates the pose of one object over time by a Kalman filter on the group of motions (error state: twists about the
+/// world's axes, twist.hpp). The pose of a static object is averaged: it hardly wanders, and it has no velocity. A
+/// moving object has constant velocity under white acceleration (Bar-Shalom, Li and Kirubarajan 2001, section 6.2). The
+/// owner of the filter decides which of the two applies.
 ///
-/// Frames that look at an object from the same side err alike (model, mesh and depth are the same), and no average of
-/// them takes that away: of n measurements with the variance R, of which c R in common, the mean has
-/// c R + (1 - c) R / n, not R / n. So the filter averages as if all of R were white, and follows besides what becomes
-/// of the common error in its state, as Schmidt's filter does for what is considered and not estimated (Schmidt 1966):
-/// it is part of the covariance. Errors of several cameras are taken for one, which says rather too much than too
-/// little.
+/// Frames that show an object from the same side have the same errors (model, mesh and depth are the same), which no
+/// average of them removes: of n measurements with the variance R, of which c R in common, the mean has c R + (1 - c) R
+/// / n, not R / n. So the filter averages as if all of R were white, and also propagates the common error in its state,
+/// as Schmidt's filter does for states that are considered and not estimated (Schmidt 1966): it is part of the
+/// covariance. Errors of several cameras count as one, which overestimates rather than underestimates them.
 class MotionFilter {
  public:
   MotionFilter(const PoseMeasurement& first, const MotionSettings& settings);
 
-  /// Goes on to a time; one before the last does nothing.
+  /// Predicts the state at a time; one before the last does nothing.
   void predict(std::int64_t utime);
 
   /// Takes a measurement of the time that it was predicted to.
   void update(const PoseMeasurement& measured);
 
-  /// From here on it moves, at the measured place and with this velocity, m/s and rad/s.
+  /// Makes the object move from now on, at the measured pose and with this velocity, m/s and rad/s.
   void start_moving(const PoseMeasurement& measured, const Vector6& velocity);
 
-  /// From here on it stands, where it is.
+  /// Makes the object static from now on, at its present pose.
   void stop();
 
   bool moving() const { return moving_; }
@@ -86,8 +85,8 @@ class MotionFilter {
   std::int64_t measured_utime_ = 0;
   Eigen::Isometry3d T_;
   Vector6 velocity_ = Vector6::Zero();
-  Matrix12 P_ = Matrix12::Zero();             // of pose, then velocity
-  Matrix12x6 consider_ = Matrix12x6::Zero();  // what the common error is in the state, for one with unit covariance
+  Matrix12 P_ = Matrix12::Zero();             // covariance of pose, then velocity
+  Matrix12x6 consider_ = Matrix12x6::Zero();  // effect of a common error of unit covariance on the state
 };
 
 }  // namespace houghstream

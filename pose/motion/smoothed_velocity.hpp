@@ -6,11 +6,12 @@
 
 namespace houghstream {
 
-/// Velocity of an object in its camera's frame, about a point (twist.hpp): each measured step moves it by a fraction of
-/// the difference. It has no uncertainty, since each pose is measured anew; one that is estimated has a MotionFilter.
+/// Estimates the velocity of an object in its camera's frame, about a point (twist.hpp): each measured step moves it by
+/// a fraction of the difference. It has no uncertainty, since each pose is measured again; an estimated pose has a
+/// MotionFilter.
 class SmoothedVelocity {
  public:
-  /// The pose after `seconds` at this velocity.
+  /// Returns the pose after `seconds` at this velocity.
   Eigen::Isometry3d predict(const Eigen::Isometry3d& T_camera_object, double seconds) const;
 
   /// Takes a step of `seconds`, more than 0. At gain 1 its velocity takes the place of the one before.
@@ -20,7 +21,7 @@ class SmoothedVelocity {
   /// each pose begins where the one before predicts it.
   void limit_rotation(const Eigen::Matrix3d& observed) { angular_velocity_ = observed * angular_velocity_; }
 
-  /// From here on it stands.
+  /// Sets the velocity to zero.
   void reset();
 
   bool is_zero() const;
@@ -33,9 +34,9 @@ class SmoothedVelocity {
   Eigen::Vector3d angular_velocity_ = Eigen::Vector3d::Zero();  // rad/s
 };
 
-/// Where the motion that two of these agree on (8 mm, 0.04 radians, at this pose) would bring it: the camera's own, as
-/// far as it can be told. Motions are of the camera's frame: T_after * T_before^-1 of other objects. Nothing where no
-/// two agree.
+/// Returns the pose after the motion on which two of `motions` agree (8 mm, 0.04 radians, at this pose), which is the
+/// camera's own as far as it can be determined. Motions are in the camera's frame: T_after * T_before^-1 of other
+/// objects. Returns nothing where no two agree.
 std::optional<Eigen::Isometry3d> predict_by_camera_motion(const Eigen::Isometry3d& T_camera_object,
                                                           const std::vector<Eigen::Isometry3d>& motions);
 

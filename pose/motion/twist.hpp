@@ -22,26 +22,26 @@ namespace houghstream {
 //
 // The inner loops of registration and fusion have steps of their own, which stand there.
 
-/// The rotation vector of a rotation, radians.
+/// Returns the rotation vector of a rotation, radians.
 Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation);
 
-/// The twist about the world's axes that leads from one pose to another.
+/// Returns the twist about the world's axes that leads from one pose to another.
 Vector6 local_coordinates_about_world(const Eigen::Isometry3d& T_to, const Eigen::Isometry3d& T_from);
 
-/// The pose to which a twist about the world's axes leads from T.
+/// Returns the pose to which a twist about the world's axes leads from T.
 Eigen::Isometry3d retract_about_world(const Eigen::Isometry3d& T, const Vector6& twist);
 
-/// A pose between two, at constant velocity about the world's axes: the first at fraction 0, the second at 1.
+/// Returns a pose between two, at constant velocity about the world's axes: the first at fraction 0, the second at 1.
 Eigen::Isometry3d interpolate_pose(const Eigen::Isometry3d& T_first, const Eigen::Isometry3d& T_second,
                                    double fraction);
 
-/// The twist whose motion about the body this is: retract_about_body() of the identity gives the motion back.
+/// Returns the twist of a motion about the body: retract_about_body() of the identity returns the motion.
 Vector6 local_coordinates_about_body(const Eigen::Isometry3d& motion);
 
-/// The pose to which a twist about the body leads from T.
+/// Returns the pose to which a twist about the body leads from T.
 Eigen::Isometry3d retract_about_body(const Eigen::Isometry3d& T, const Vector6& twist);
 
-/// The pose T with its origin shifted (metres), rotated about it by a rotation vector (radians).
+/// Returns the pose T with its origin shifted (metres) and rotated about it by a rotation vector (radians).
 Eigen::Isometry3d retract_about_point(const Eigen::Isometry3d& T, const Eigen::Vector3d& shift,
                                       const Eigen::Vector3d& rotation);
 

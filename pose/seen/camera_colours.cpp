@@ -16,7 +16,7 @@ std::vector<ChromaPair> confirmed_pairs(const ObjectPoses& poses) {
   return confirmed;
 }
 
-/// A step of an exponentially forgetting mean.
+/// Updates an exponentially forgetting mean.
 void forget_towards(const ChromaPair& fresh, ChromaPair& mean) {
   constexpr double kStep = 0.2;
   mean.model += kStep * (fresh.model - mean.model);
@@ -57,7 +57,8 @@ ChromaMap CameraColours::map() const {
   return fit_chroma_map(pairs());
 }
 
-/// Whether objects have other colours than before. Another side of an object has other colours too, as its model says.
+/// Returns whether objects have other colours than before. Another side of an object has other colours too, as its
+/// model shows.
 bool CameraColours::has_jumped(const std::vector<ChromaPair>& confirmed) const {
   constexpr double kJump = 10.0;  // CIE a*b*
   const ChromaMap camera = map();

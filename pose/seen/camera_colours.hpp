@@ -9,29 +9,29 @@
 
 namespace houghstream {
 
-/// What confirmed poses have told of how one camera renders colours. Each class is remembered once, as its later frames
-/// tell hardly more of the camera than its first one, with its colours averaged over the last few frames.
+/// Collects from confirmed poses how one camera renders colours. Each class is stored once, since its later frames add
+/// little to its first one, with its colours averaged over the last few frames.
 class CameraColours {
  public:
-  /// Takes up the poses of a frame: those that are valid and sure. Where the light has jumped, all that was remembered
-  /// is forgotten first.
+  /// Updates the colours from the poses of a frame that are valid and sure. Where the lighting has jumped, all stored
+  /// colours are dropped first.
   void update(const ObjectPoses& poses);
 
-  /// One for each remembered class, in their order.
+  /// Returns one pair for each stored class, in their order.
   std::vector<ChromaPair> pairs() const;
-  /// The same with the newest frame that was learnt from.
+  /// Returns the same pairs with the newest frame that contributed.
   CameraChroma chroma() const { return {frame_, pairs()}; }
-  /// Learnt of all remembered classes but this one.
+  /// Returns the map learnt from all stored classes but this one.
   ChromaMap map_without(const std::string& class_name) const;
-  /// Learnt of all remembered classes.
+  /// Returns the map learnt from all stored classes.
   ChromaMap map() const;
 
  private:
   bool has_jumped(const std::vector<ChromaPair>& confirmed) const;
 
   FrameId frame_;
-  std::map<std::string, ChromaPair> remembered_;  // by class
-  int jumps_ = 0;                                 // frames one after the other that contradict what is remembered
+  std::map<std::string, ChromaPair> remembered_;  // by class name
+  int jumps_ = 0;                                 // consecutive frames that contradict the stored colours
 };
 
 }  // namespace houghstream

@@ -9,11 +9,11 @@
 namespace houghstream {
 namespace {
 
-// What exposure and haze make of a remembered contrast.
+// Range of the gain by which exposure and haze change the model's contrast.
 constexpr double kMinGain = 0.4;
 constexpr double kMaxGain = 2.5;
 
-/// About grey.
+/// Returns the colour about grey.
 template <typename Lab>
 Eigen::Array4f about_grey(const Lab& lab) {
   constexpr float kGrey = 128.0F;
@@ -25,7 +25,7 @@ double variance(const ColourProducts& products, Eigen::Index channel) {
   return products(channel, channel) - products(channel, kOne) * products(channel, kOne);
 }
 
-/// Mean square that is left over of a channel's seen values by least squares on the remembered ones.
+/// Returns the mean square of a channel's observed values that is left by least squares on the model's.
 double chroma_left_over(const ColourProducts& products, Eigen::Index template_value, Eigen::Index seen) {
   const double model_variance = variance(products, template_value);
   const double covariance = products(template_value, seen) - products(template_value, kOne) * products(seen, kOne);
@@ -33,10 +33,10 @@ double chroma_left_over(const ColourProducts& products, Eigen::Index template_va
   return std::max(0.0, variance(products, seen) - gain * (2.0 * covariance - gain * model_variance));
 }
 
-/// The same for lightness on the remembered one and the surface's normal.
+/// Returns the residual variance of the lightness after regression on the model's and on the surface's normal.
 double lightness_left_over(const ColourProducts& products) {
   constexpr double kRidge = 1e-4;   // terms that do not vary are left alone
-  constexpr int kTerms = kOne + 1;  // remembered value, normal (3), 1
+  constexpr int kTerms = kOne + 1;  // model value, normal (3), 1
   constexpr int kOthers = kTerms - 1;
   using Terms = Eigen::Matrix<double, kTerms, 1>;
   Eigen::Matrix<double, kTerms, kTerms> curvature = products.topLeftCorner<kTerms, kTerms>();
@@ -53,8 +53,8 @@ double lightness_left_over(const ColourProducts& products) {
 }
 
 ChromaMeans chroma_means(const ColourProducts& products) {
-  constexpr double kOffset = 128.0;        // of 8-bit values about grey
-  constexpr double kUnit = 100.0 / 255.0;  // of 8-bit lightness
+  constexpr double kOffset = 128.0;        // grey of 8-bit a* and b*
+  constexpr double kUnit = 100.0 / 255.0;  // step of 8-bit lightness
   ChromaMeans means;
   means.model = {products(kA, kOne), products(kB, kOne)};
   means.measured = {products(kObservedA, kOne), products(kObservedB, kOne)};
@@ -68,7 +68,7 @@ struct SummedColours {
   ColourSums compared;
   ColourSums clipped;
 
-  /// Of both. `compared_means` is that of the former, and mostly all there is.
+  /// Returns the means of both sums. `compared_means` are those of the former, which mostly are all.
   ColourProducts all_means(const ColourProducts& compared_means) const {
     if (clipped.count() == 0) return compared_means;
     ColourSums all = compared;
@@ -150,8 +150,8 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
 std::optional<ColourComparison> compare_texture(const ObjectObservation& seen, const ProjectedView& look,
                                                 const DepthTolerance& tolerance) {
   constexpr double kDetails = 2.5;  // averaged over so many of the model's details, so that a little beside is near,
-  constexpr double kMax = 5.0;      // or so many pixels,
-  constexpr int kAlready = 3;       // which LabRegion's are averaged over
+  constexpr double kMax = 5.0;      // or at most over so many pixels
+  constexpr int kAlready = 3;       // pixels over which LabRegion's colours are averaged already
   const LabRegion& colours = seen.colours;
   if (colours.lab.empty() || !(look.depth > 0.0)) return std::nullopt;
   const double detail_m = 2.0 * static_cast<double>(seen.model.radius) / ModelSettings{}.pixels_per_diameter;

@@ -11,7 +11,8 @@
 
 namespace houghstream {
 
-/// Variance of the seen 8-bit CIE L*a*b* colours, all channels, on a plain surface in even light: it tells of no print.
+/// Variance of the observed 8-bit CIE L*a*b* colours, all channels, on a uniform surface in even light, which shows no
+/// texture.
 constexpr double kUntexturedVariance = 15.0;
 
 /// The mean chroma of points, and how much the measured one varies about it.
@@ -19,51 +20,52 @@ struct ChromaMeans {
   Eigen::Vector2d model = Eigen::Vector2d::Zero();     ///< a* and b*
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();  ///< a* and b*
   double lightness = 0.0;                              ///< measured, L*, 0 to 100
-  Eigen::Vector2d variance = Eigen::Vector2d::Zero();  ///< of the measured a* and b*
+  Eigen::Vector2d variance = Eigen::Vector2d::Zero();  ///< variance of the measured a* and b*
 };
 
-/// How the colours that the model has at a pose and those that are seen compare, where measured and model depth agree
-/// and, unless said otherwise, the camera was not at its limit.
+/// Comparison of the model's colours at a pose with the observed ones, where measured and model depth agree and, unless
+/// stated otherwise, the camera was not clipped.
 struct ColourComparison {
   int points = 0;  ///< compared
-  /// 1 less the share of the seen variance that is left over, with each channel's gain (within limits) and offset free,
-  /// as exposure and the light's colour decide them, and lightness also free to follow the surface's normals, as
-  /// shading does. Near 0, or below, for unrelated prints.
+  /// 1 less the fraction of the observed variance that is unexplained, with each channel's gain (within limits) and
+  /// offset free, as exposure and the light's colour decide them, and lightness also free to follow the surface's
+  /// normals, as shading does. It is near 0, or below, for unrelated textures.
   float agreement = 0.0F;
   float residual_stddev = 0.0F;  ///< standard deviation of the seen colours that is left over, 8-bit CIE L*a*b*
-  /// How far the mean a* and b* that are seen are from the remembered ones, at any strength (within limits) that haze
-  /// or a camera gives these: over the spread of those seen, at most 4. Where the camera was at its limit too: what is
-  /// left without is edges and shade, of another hue.
+  /// Distance of the mean observed a* and b* from the model's, at any strength (within limits) that haze or a camera
+  /// gives these, divided by the spread of the observed ones, at most 4. Clipped points count too: without them only
+  /// edges and shaded parts would remain, which have another hue.
   float chroma_difference = 0.0F;
-  int clipped = 0;  ///< not compared: the camera was at its limit
-  /// Standard deviation of the seen colours, the channels weighted as in `residual_stddev`.
+  int clipped = 0;  ///< number of points that are not compared, since the camera was clipped there
+  /// Standard deviation of the observed colours, with the channels weighted as in `residual_stddev`.
   float observed_contrast = 0.0F;
-  float model_contrast = 0.0F;   ///< the same of the model's
-  ChromaMeans chroma;            ///< of all points: what chroma_conflict compares
-  ChromaMeans unclipped_chroma;  ///< of those where the camera was not at its limit
+  float model_contrast = 0.0F;   ///< the model's, measured likewise
+  ChromaMeans chroma;            ///< means over all points, which `chroma_difference` compares
+  ChromaMeans unclipped_chroma;  ///< means over the points where the camera was not clipped
 };
 
-/// ColourComparison::chroma_conflict with the model's colours brought to the camera's.
+/// Returns ColourComparison::chroma_difference after mapping the model's colours to the camera's.
 float chroma_difference(const ChromaMeans& means, const ChromaMap& camera);
 
-/// Compares the points that were looked at. Nothing where the model has no colours or too few points agree.
+/// Compares the colours of the projected points. Returns nothing where the model has no colours or too few points
+/// agree.
 std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ProjectedView& seen,
                                                 const DepthTolerance& tolerance);
 
-/// The same with the seen colours averaged over little more than the model's are, and moved by up to two pixels to
-/// where they agree best (less where the object is small): cameras' colours are registered to their depth, and poses
-/// found, no better than that. For judging a pose, not for choosing between poses, which differ by less.
+/// Compares the colours after averaging the observed ones over slightly more than the model's, and shifting them by up
+/// to two pixels to the best agreement (less for small objects): the registration of colour to depth, and poses, are no
+/// more accurate. It is meant for the decision about a pose, not for the selection between poses, which differ by less.
 std::optional<ColourComparison> compare_texture(const ObjectObservation& seen, const ProjectedView& look,
                                                 const DepthTolerance& tolerance);
 
-/// Depth and colour together: the square root of `depth_value` (DepthScore::value), whose noise would else drown what
-/// little the turns of a round thing differ in colour, less a part where the colours do not explain what is seen.
-/// `depth_value` itself where that is not above 0.
+/// Combines depth and colour: returns the square root of `depth_value` (DepthScore::value), whose noise would otherwise
+/// drown the small colour differences between rotations of a round object, less a part where the colours do not explain
+/// the observed ones. Returns `depth_value` itself where that is not above 0.
 float joint_score(float depth_value, const std::optional<ColourComparison>& colour);
 
-// What compare_colours() sums, to be tested by itself.
+// Sums of compare_colours(), declared here for tests.
 
-/// What is noted of a compared point; values about 0, so that single precision is enough.
+/// Columns of a compared point; values are centred, so that single precision suffices.
 enum ColourColumn : Eigen::Index {
   kLightness,
   kNormal,
@@ -75,9 +77,9 @@ enum ColourColumn : Eigen::Index {
   kObservedB,
   kColourColumns
 };
-using ColourProducts = Eigen::Matrix<double, kColourColumns, kColourColumns>;  ///< of the columns' mean values
+using ColourProducts = Eigen::Matrix<double, kColourColumns, kColourColumns>;  ///< mean products of the columns
 
-/// A compared point, in vectors of four.
+/// Holds a compared point in vectors of four.
 struct ComparedPoint {
   Eigen::Array4f model, observed;  ///< L*, a*, b* and 1
   Eigen::Array4f normal;           ///< its coordinates and 1
@@ -86,7 +88,7 @@ struct ComparedPoint {
 /// Sums of those products that are asked for. Only sums of normals are ever rounded: colours are whole numbers.
 class ColourSums {
  public:
-  /// By blocks, so that the sums stay in registers.
+  /// Adds points in blocks, so that the sums stay in registers.
   template <typename Points>
   void add(const Points& points, std::size_t count) {
     ColourSums sums = *this;
@@ -111,7 +113,7 @@ class ColourSums {
     return *this;
   }
 
-  /// Of at least one point. Entries that were not summed are 0.
+  /// Returns the mean products of at least one point. Entries that were not summed are 0.
   ColourProducts means() const {
     ColourProducts products = ColourProducts::Zero();
     const auto set = [&](Eigen::Index a, Eigen::Index b, float sum) {

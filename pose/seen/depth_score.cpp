@@ -8,12 +8,12 @@
 namespace houghstream {
 namespace {
 
-/// `width` is the tolerance at the object's depth.
+/// Scores a shifted view; `width` is the tolerance at the object's depth.
 DepthScore score_of(const ProjectedView& seen, float shift, float width) {
   DepthScore score;
   for (const ProjectedPoint& look : seen.points) {
     const float ratio = (look.depth_difference - shift) / width;
-    // Without branches, as the case changes from point to point: NaN is not above 0 and adds nothing.
+    // The sum has no branches, since the case changes from point to point: NaN is not above 0 and adds nothing.
     score.inlier_fraction += std::max(0.0F, 1.0F - ratio * ratio);
     score.free_space_violation += std::min(1.0F, std::max(0.0F, ratio - 1.0F));
   }
@@ -23,7 +23,7 @@ DepthScore score_of(const ProjectedView& seen, float shift, float width) {
   return score;
 }
 
-/// Mean of the fullest window of `width` among the sorted values; 0 without values.
+/// Returns the mean of the fullest window of `width` among the sorted values; 0 without values.
 float densest_mean(const std::vector<float>& sorted, float width) {
   std::size_t best_first = 0;
   std::size_t best_count = 0;

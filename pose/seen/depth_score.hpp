@@ -10,10 +10,10 @@
 
 namespace houghstream {
 
-/// Metres within which measured and model depth agree, where settings say nothing else.
+/// Default tolerance in metres within which measured and model depth agree.
 constexpr double kDepthTolerance_m = 0.008;
 
-/// Where a model's point falls in a frame, and what was measured there.
+/// A model point projected into the frame, with the difference between measured and predicted depth at its pixel.
 struct ProjectedPoint {
   /// Measured minus model depth along the ray, metres; NaN where nothing was measured or the image ends.
   float depth_difference = std::numeric_limits<float>::quiet_NaN();
@@ -21,41 +21,41 @@ struct ProjectedPoint {
   int y = 0;
 };
 
-/// A model's view at a pose, against a frame.
+/// Holds the projected points of a model's view at a pose.
 struct ProjectedView {
   const ModelView& view;               ///< nearest to the pose
   Eigen::Isometry3f T;                 ///< camera from object
-  double depth = 0.0;                  ///< of the model's middle, metres: tolerances are those of there
-  std::vector<ProjectedPoint> points;  ///< of the first points of the view
+  double depth = 0.0;                  ///< depth of the model's middle, metres, at which tolerances are taken
+  std::vector<ProjectedPoint> points;  ///< first points of the view, projected
 };
 ProjectedView project_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                            int points);
 
-/// How the measured depth speaks for a pose, judged at the visible points of the model.
+/// Scores a pose by the measured depth at the visible points of the model.
 struct DepthScore {
   float inlier_fraction = 0.0F;       ///< fraction of the points where measured and model depth agree
   float free_space_violation = 0.0F;  ///< fraction in front of what was measured: the camera saw through them
   float value = 0.0F;  ///< (agreeing - violating) times the view's silhouette: explained minus contradicted area
 };
 
-/// Judges the points that were looked at. Points behind what was measured (occluded),
-/// without depth, or outside the image speak neither way.
+/// Scores the projected points. Points behind the measured surface (occluded), without depth, or outside the image
+/// count neither way.
 DepthScore score_projected_view(const ProjectedView& seen, const DepthTolerance& tolerance);
 
-/// The same for the first `points` points of the view nearest to the pose.
+/// Scores the first `points` points of the view nearest to the pose.
 DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                       int points, const DepthTolerance& tolerance);
 
-/// A move of the pose along the line of sight, and how the depth speaks for the pose after it.
+/// Gives a shift of the pose along the line of sight, with the depth score after it.
 struct DepthShift {
   double shift_m = 0.0;
-  DepthScore score;  ///< as score_pose would give it, but for the small change of scale
+  DepthScore score;  ///< score_pose's result there, but for the small change of scale
 };
 
-/// Where such a move is looked for.
+/// Limits the search for such a move.
 struct ShiftSearch {
-  int points = 0;        ///< of the view nearest to the pose, the first
-  double reach_m = 0.0;  ///< to each side
+  int points = 0;        ///< number of first points of the nearest view
+  double reach_m = 0.0;  ///< distance to each side
   DepthTolerance tolerance;
 };
 

@@ -8,7 +8,7 @@
 namespace houghstream {
 namespace {
 
-/// Whole pixels of the box, enlarged and cut to the image. A box with absurd numbers gives an empty one.
+/// Returns whole pixels of the box, enlarged and cut to the image. A box with absurd numbers gives an empty one.
 cv::Rect enlarged(const cv::Rect2f& box, double by, const cv::Size& image) {
   const auto clip = [](double v, int limit) { return v > 0.0 ? static_cast<int>(std::min<double>(v, limit)) : 0; };
   const int left = clip(std::floor(box.x - by * box.width), image.width);

@@ -12,8 +12,8 @@
 
 namespace houghstream {
 
-/// Standard deviation of measured depth, base + per_m * z^2: a structured-light camera's disparity error
-/// (Khoshelham & Elberink 2012, 1.4 mm at 1 m) over what registration of depth to colour adds.
+/// Standard deviation of measured depth is base + per_m * z^2: the disparity error of a structured-light camera
+/// (Khoshelham & Elberink 2012, 1.4 mm at 1 m) plus the error of registering depth to colour.
 struct DepthNoise {
   double base_m = 0.001;
   double per_m = 0.00143;  ///< 1/m
@@ -34,9 +34,9 @@ struct DepthTolerance {
   double at(double z) const { return base_m + 3.0 * noise.sigma(z); }
 };
 
-/// The detection's part of the depth image.
+/// Settings of the part of the depth image that belongs to a detection.
 struct RegionSettings {
-  double enlarge = 0.15;        ///< of the box's size, on each side
+  double enlarge = 0.15;        ///< fraction of the box's size, on each side
   double gate_margin_m = 0.06;  ///< depth farther from the centre than the model's radius plus this is not the object
   int min_points = 60;          ///< pixels with depth inside the gate; with fewer there is no pose
   BrightnessRange tone;         ///< the frame's colours are brought into it
@@ -51,7 +51,7 @@ void fields(const RegionSettings& /*settings*/, const Visit& visit) {
   visit(group("tone", &S::tone));
 }
 
-/// Where in the depth image a detected object can be: its box, a little enlarged, and a range of depth.
+/// Bounds where in the depth image a detected object can be: its box, slightly enlarged, and a range of depth.
 struct DepthRegion {
   cv::Rect box_px;        ///< inside the image, may be empty
   float nearest = 0.0F;   ///< metres
@@ -61,37 +61,37 @@ struct DepthRegion {
 DepthRegion find_region(const RgbdFrame& frame, const Detection& detection, const ObjectModel& model,
                         const RegionSettings& settings);
 
-/// At most about `maximum` points of the region, camera frame, metres, evenly over the image.
+/// Returns at most about `maximum` points of the region, camera frame, metres, evenly over the image.
 std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRegion& region, int maximum);
 
-/// The colours of a part of a frame.
+/// Holds the colours of a part of a frame.
 struct LabRegion {
   cv::Mat lab;          ///< CV_8UC3, 8-bit CIE L*a*b*, of the part; neighbouring pixels averaged against noise
   cv::Point origin_px;  ///< its first pixel in the frame
   /// CV_8UC1, not 0 where a channel is at the camera's limit, or a neighbour's is: there is no colour to compare.
   cv::Mat clipped;
 };
-/// `tone` is that of the whole frame. `part_px` must lie inside the image and not be empty.
+/// Returns the colours of a part; `tone` is that of the whole frame. `part_px` must lie inside the image and not be
+/// empty.
 LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const AffineBrightness& tone);
 
-/// A frame in which objects are looked at. The frame must outlive it.
+/// Holds a frame in which objects are observed. The frame must outlive it.
 struct FrameContext {
   const RgbdFrame& frame;
-  DepthNoise noise;       ///< of its depth
+  DepthNoise noise;       ///< noise of its depth
   AffineBrightness tone;  ///< brings its colours into RegionSettings::tone
 };
 FrameContext make_frame_context(const RgbdFrame& frame, const RegionSettings& settings, const DepthNoise& noise);
 
-/// What is seen of a detected object, and the model that it is compared with: what every later stage looks at. Frame
-/// and model must outlive it.
+/// Observes a detected object, together with its model; all later stages read it. Frame and model must outlive it.
 struct ObjectObservation {
   const RgbdFrame& frame;
   const ObjectModel& model;
-  /// Where ObjectModel::vote_centre was detected, metres, z > 0.
+  /// Position at which ObjectModel::vote_centre was detected, metres, z > 0.
   Eigen::Vector3f centre_camera = Eigen::Vector3f::Zero();
-  DepthNoise noise = {};  ///< of the frame's depth
+  DepthNoise noise = {};  ///< noise of the frame's depth
   DepthRegion region = {};
-  LabRegion colours = {};  ///< of the region's box; empty where the region has too few points
+  LabRegion colours = {};  ///< colours of the region's box; empty where the region has too few points
 };
 ObjectObservation observe_object(const FrameContext& seen, const Detection& detection, const ObjectModel& model,
                                  const RegionSettings& settings);

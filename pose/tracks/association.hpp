@@ -9,10 +9,10 @@
 
 namespace houghstream::tracks {
 
-/// Assignment of measured poses to objects.
+/// Settings of the assignment of measured poses to objects.
 struct AssociationSettings {
   double reach_m = 0.06;         ///< distance up to which a pose is of an object that stands, metres
-  double moving_reach_m = 0.12;  ///< the same of one that moves
+  double moving_reach_m = 0.12;  ///< the same distance for a moving object
   double rotation_cost = 0.5;    ///< cost of a rotation by half a turn; that of the whole reach is 1
   double exclusion_ratio = 0.6;  ///< radii within which there is no second object of a class
 };
@@ -44,7 +44,7 @@ ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseO
 /// rotation), in which confirmed objects come before candidates.
 std::vector<int> assign_poses(const ClassGroup& group, const AssociationSettings& settings);
 
-/// Returns whether an object stands so near to a measured pose that there is no room for a second one.
+/// Returns whether an object is so near to a measured pose that there is no space for a second one.
 bool is_space_occupied(const PoseMeasurement& measured, const ClassGroup& group, const AssociationSettings& settings);
 
 }  // namespace houghstream::tracks

@@ -35,7 +35,7 @@ Eigen::Isometry3d rigid(const Eigen::Vector3d& translation, const Eigen::Vector4
   return Eigen::Translation3d(translation) * Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
 }
 
-/// A camera, or another frame, in its parent.
+/// Gives the pose of a camera, or of another frame, in its parent.
 struct Link {
   std::string parent;
   Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();
@@ -60,7 +60,7 @@ double number_of(const YAML::Node& node, const char* key, const std::string& of)
   return *number;
 }
 
-/// What has a damaged name, or one that another has too, would be left out without a word.
+/// Entries with a damaged or duplicate name would be ignored silently.
 void require_names(const YAML::Node& map, const std::set<std::string>& known, const std::string& of) {
   for (const std::string& name : yaml_names(map, of))
     require(known.count(name) > 0, "{}: '{}', expected one of {}", of, printable(name), fmt::join(known, ", "));
@@ -102,7 +102,7 @@ Links links_of(const YAML::Node& yaml, const std::string& file) {
   Links links;
   const YAML::Node cameras = yaml_member(yaml, "cameras");
   const YAML::Node transforms = yaml_member(yaml, "transforms");
-  // What is in a list has no name that could be asked for.
+  // Entries of a list have no name.
   require((!cameras.IsDefined() || cameras.IsMap()) && (!transforms.IsDefined() || transforms.IsSequence()),
           "{}: expected 'cameras:' with names, or a list of 'transforms:'", file);
   if (cameras.IsDefined()) add_cameras(cameras, file, links);

@@ -11,33 +11,34 @@
 
 namespace houghstream::tracks {
 
-/// Where a camera was at a time, or why that is not known.
+/// Gives the pose of a camera at a time, or the reason why it is not known.
 struct CameraPose {
   std::optional<Eigen::Isometry3d> T_world_camera;
-  bool may_come = false;  ///< not known yet: a later transform may tell
-  std::string reason;     ///< one line, where it is not known
+  bool may_come = false;  ///< true if a later transform may determine it
+  std::string reason;     ///< reason why it is unknown, one line
 };
 
-/// Where the cameras are: fixed ones as they were set, moving ones between the transforms before and after a time.
-/// Names of cameras are the channels of their frames, or what stands before _TO_WORLD (channel::camera_name). Not
-/// thread-safe.
+/// Stores the poses of cameras: fixed ones as they were set, moving ones interpolated between the transforms before and
+/// after a time. Names of cameras are the channels of their frames, or the part before _TO_WORLD
+/// (channel::camera_name). Not thread-safe.
 class CameraExtrinsics {
  public:
-  /// Transforms farther apart say nothing of the time between them, unless they are equal.
+  /// Maximum gap between transforms that are interpolated, unless they are equal.
   static constexpr double kMaxGapS = 0.5;
   /// Cameras that move; further ones are refused: a sender of rubbish may make up channels without end.
   static constexpr std::size_t kMaxMoving = 256;
 
   void set_static(const std::string& camera, const Eigen::Isometry3d& T_world_camera);
 
-  /// A transform of a camera that moves. One that is older than the last one by more than a second begins anew. Throws
-  /// InputError for one camera too many.
+  /// Adds a transform of a camera that moves. One that is older than the last one by more than a second starts over.
+  /// Throws InputError for one camera too many.
   void add_transform(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera);
 
-  /// Whether anything is known of any camera.
+  /// Returns whether any camera has extrinsics.
   bool any() const { return !static_.empty() || !moving_.empty(); }
 
-  /// Interpolated at the very time; a camera that stood still for its last two transforms still stands there.
+  /// Interpolates the pose at exactly that time; a camera that was at rest in its last two transforms is taken to be at
+  /// rest still.
   CameraPose interpolate(const std::string& camera, std::int64_t utime) const;
 
  private:
@@ -46,7 +47,7 @@ class CameraExtrinsics {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   };
   std::map<std::string, Eigen::Isometry3d> static_;
-  std::map<std::string, std::deque<Sample>> moving_;  // by time
+  std::map<std::string, std::deque<Sample>> moving_;  // samples by camera, in the order of time
 };
 
 /// Places of fixed cameras, T_world_camera by name, from a YAML file. Read are our own,
@@ -57,10 +58,10 @@ class CameraExtrinsics {
 /// (parent may be another camera; without it the world), and static transforms of ROS as `ros2 topic echo /tf_static`
 /// prints them: entries of `transforms` with header.frame_id, child_frame_id and transform, chained to the root frame,
 /// which is the world. Metres. Throws InputError naming file and camera for what is missing, not rigid, goes round in
-/// a loop, has a name that is none of these, or stands twice.
+/// a loop, has an unknown name, or is a duplicate.
 std::map<std::string, Eigen::Isometry3d> read_camera_extrinsics(const std::filesystem::path& file);
 
-/// The value of an option --camera-pose: CHANNEL=x,y,z,qw,qx,qy,qz, T_world_camera. Throws InputError.
+/// Parses the value of an option --camera-pose: CHANNEL=x,y,z,qw,qx,qy,qz, T_world_camera. Throws InputError.
 std::pair<std::string, Eigen::Isometry3d> parse_camera_pose(const std::string& text);
 
 /// Adds such a value to the places that are given. Throws InputError also where its camera has one.

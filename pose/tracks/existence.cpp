@@ -10,7 +10,7 @@
 namespace houghstream::tracks {
 namespace {
 
-/// Whether an object of another class is recognised in its place.
+/// Returns whether an object of another class is recognised in its place.
 bool is_displaced(const UnobservedContext& frame, const Track& track) {
   const Eigen::Vector3d place = track.pose.filter().T_world_object() * centre_of(frame.models, track.class_name);
   return std::any_of(frame.poses.begin(), frame.poses.end(), [&](const PoseObservation& pose) {
@@ -20,7 +20,7 @@ bool is_displaced(const UnobservedContext& frame, const Track& track) {
   });
 }
 
-/// Whether the class is detected at a place, which is where such a detection has its centre; camera frame, metres.
+/// Returns whether the class is detected at a position, camera frame, metres.
 bool is_detected(const UnobservedContext& frame, const std::string& class_name,
                  const Eigen::Vector3d& expected_centre) {
   const Detections* detections = frame.observation.detections;
@@ -81,7 +81,7 @@ void update_unobserved(const UnobservedContext& frame, const MissedDetection& mi
   }
   if (track.id == 0 && missed.by_recognition) rate += settings.tentative_rate;
   track.log_odds -= missed.seconds * rate;
-  // Of several cameras the one that observed it last decides, as long as that is not long ago.
+  // Where several cameras see the place, the last observer sets the state for a short time after its observation.
   constexpr double kLastObserverHold_s = 0.1;
   const bool says_anything = missed.by_recognition || visibility.state != TrackState::kUnrecognised;
   if (says_anything && (track.last_seen.channel == observation.poses.frame.channel || unseen_s > kLastObserverHold_s)) {

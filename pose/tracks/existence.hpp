@@ -46,7 +46,7 @@ void fields(const ExistenceSettings& /*settings*/, const Visit& visit) {
 /// A result of a frame, as the tracks see it that it has no pose of.
 struct UnobservedContext {
   const FrameObservation& observation;
-  const std::vector<PoseObservation>& poses;  ///< those that are new in this result
+  const std::vector<PoseObservation>& poses;  ///< poses that are new in this result
   const TrackModels& models;
   double reach_m = 0.0;  ///< distance below which a detection of the class is one of the object, metres
   double coast_s = 0.0;  ///< MotionSettings::coast_s
@@ -56,7 +56,7 @@ struct UnobservedContext {
 struct MissedDetection {
   double seconds = 0.0;         ///< since the camera's frame before
   bool by_depth = false;        ///< it is the first one of its frame
-  bool by_recognition = false;  ///< it is the first one of its frame that speaks of the class
+  bool by_recognition = false;  ///< it is the first result of its frame with this class
 };
 
 /// Updates a track that received no measurement in this frame: lowers the log odds of its existence and deletes it

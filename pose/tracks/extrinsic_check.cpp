@@ -7,7 +7,7 @@
 namespace houghstream::tracks {
 namespace {
 
-constexpr std::int64_t kTogetherUs = 40000;  // of frames that are compared
+constexpr std::int64_t kTogetherUs = 40000;  // time between compared frames, at most
 constexpr double kReachM = 0.3;              // an object that is seen farther away is another one
 constexpr std::size_t kOffsets = 300;
 constexpr std::size_t kMinSamples = 20;

@@ -11,11 +11,11 @@
 
 namespace houghstream::tracks {
 
-/// Two cameras that see the same objects in different places.
+/// Reports two cameras that see the same objects at different positions.
 struct ExtrinsicInconsistency {
   std::string first;                                   ///< channel of a camera
-  std::string second;                                  ///< of another one
-  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  ///< from where the first sees objects to where the second does
+  std::string second;                                  ///< channel of another camera
+  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  ///< vector from the first camera's positions to the second's
   int samples = 0;
 };
 
@@ -23,13 +23,14 @@ struct ExtrinsicInconsistency {
 /// contradict each other. Knows nothing of tracks: one camera's poses are laid beside the other's. Not thread-safe.
 class ExtrinsicCheck {
  public:
-  /// Offsets from here on are told: twice what good poses of a can or a mug from two sides differ by.
+  /// Minimum offset that is reported: twice the difference of good poses of a can or a mug from two sides.
   static constexpr double kReport_m = 0.012;
 
-  /// The poses of a frame, in the world. Objects with a model are compared by its centre, the others by their origin.
+  /// Adds the poses of a frame, in the world. Objects with a model are compared by its centre, the others by their
+  /// origin.
   void add(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera, const TrackModels& models);
 
-  /// Pairs of cameras whose median offset over the last samples is too large, by their names.
+  /// Returns pairs of cameras whose median offset over the last samples is too large, by their names.
   std::vector<ExtrinsicInconsistency> inconsistencies() const;
 
   /// All pairs that have enough samples, for a report.
@@ -44,7 +45,7 @@ class ExtrinsicCheck {
     std::int64_t utime = 0;
     std::vector<Seen> objects;
   };
-  std::map<std::string, View> last_;  // by channel
+  std::map<std::string, View> last_;  // last view by channel
   std::map<std::pair<std::string, std::string>, std::deque<Eigen::Vector3d>> offsets_;
 };
 

@@ -100,7 +100,7 @@ VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model
   constexpr double kToleranceM = 0.012;
   constexpr double kNearestM = 0.05;
   constexpr int kMinPx = 30;
-  constexpr double kMeasured = 0.2;  // of the pixels, with depth
+  constexpr double kMeasured = 0.2;  // minimum fraction of the pixels with depth
   constexpr double kHidden = 0.6;
   constexpr double kThrough = 0.35;
   const Eigen::Vector3d centre = T_camera_object * model.centre;
@@ -133,7 +133,7 @@ void PoseTrack::predict(std::int64_t utime) {
 }
 
 void PoseTrack::update(const PoseObservation& pose, const Symmetries& symmetries, bool has_contrary_depth) {
-  constexpr double kLead = 1.0;  // by which another hypothesis has to be ahead
+  constexpr double kLead = 1.0;  // margin of log odds by which another hypothesis must lead
   const double passed = std::max(0.0, seconds_between(weighed_utime_, pose.frame.utime));
   weighed_utime_ = std::max(weighed_utime_, pose.frame.utime);
   for (Hypothesis& hypothesis : hypotheses_) hypothesis.weight *= std::exp(-passed / kForget_s);
@@ -151,7 +151,7 @@ void PoseTrack::update(const PoseObservation& pose, const Symmetries& symmetries
   }
   if (hypothesis.weight > hypotheses_[best_].weight + kLead) best_ = index;
   if (hypothesis.filter.moving() && index == best_ && hypotheses_.size() > 1) {
-    hypotheses_ = {hypothesis};  // what was thought of where it stood is over
+    hypotheses_ = {hypothesis};  // hypotheses from before the motion are obsolete
     best_ = 0;
   }
 }
@@ -186,7 +186,7 @@ std::size_t PoseTrack::hypothesis_for(const PoseMeasurement& measured, const Sym
 void PoseTrack::update_standing(const PoseObservation& pose, bool has_contrary_depth, Hypothesis& hypothesis) {
   constexpr double kWithinS = 0.4;
   constexpr std::size_t kPlaces = 3;     // measured apart from where it stands
-  constexpr std::size_t kRotations = 8;  // measured turned only
+  constexpr std::size_t kRotations = 8;  // measurements whose rotation alone changed
   const Vector6 apart = local_coordinates_about_world(pose.measured.T_world_object, hypothesis.filter.T_world_object());
   const Covariance6& noise = pose.measured.covariance;
   const double place_gate =
@@ -207,7 +207,7 @@ void PoseTrack::update_standing(const PoseObservation& pose, bool has_contrary_d
   const PoseMeasurement& first = observer.apart.front();
   const double seconds = std::max(0.02, seconds_between(first.utime, pose.frame.utime));
   Vector6 way = local_coordinates_about_world(pose.measured.T_world_object, first.T_world_object);
-  // The first may have been measured in the turn of another hypothesis: from one to the other nothing has turned.
+  // The first may have been measured in the rotation of another hypothesis: between the two nothing has rotated.
   if (way.tail<3>().norm() > settings_.same_rotation_rad) way.tail<3>().setZero();
   hypothesis.filter.start_moving(pose.measured, way / seconds);
   recent_ = {pose.measured};
@@ -229,7 +229,7 @@ void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypot
   constexpr double kWithinS = 0.4;
   constexpr double kMinS = 0.28;
   constexpr std::size_t kMin = 6;
-  // Another camera's frame may be a little older: from where it was then it has gone on.
+  // Another camera's frame may be a little older, so that its pose is predicted to the filter's time.
   const double late_s = std::min(settings_.motion.coast_s, seconds_between(measured.utime, hypothesis.filter.utime()));
   PoseMeasurement now = measured;
   if (late_s > 0.0)

@@ -22,40 +22,41 @@
 
 namespace houghstream::tracks {
 
-/// Model of a class of objects.
+/// Describes a class of objects.
 struct TrackModel {
   Mesh mesh;
   Symmetries symmetries;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of the bounding box, object frame, metres
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centre of the bounding box, object frame, metres
   double box_radius_m = 0.0;  ///< half the bounding box' diagonal; ObjectModel::radius is that of the farthest vertex
-  Eigen::Vector3d vote_centre = Eigen::Vector3d::Zero();  ///< where its detections' centres are, object frame, metres
-  int object_id = 0;                                      ///< of the object in its store, from 1; 0: it has no store
+  Eigen::Vector3d vote_centre = Eigen::Vector3d::Zero();  ///< centre of its detections, object frame, metres
+  int object_id = 0;  ///< number of the object in its store, from 1; 0 without a store
 };
 using TrackModels = std::map<std::string, TrackModel>;
 
-/// TrackModel::centre of a class; the origin where it has no model. Objects are compared by where this point is: their
-/// origins may be at their feet, which half a turn takes to the top.
+/// Returns TrackModel::centre of a class; the origin where it has no model. Objects are compared by the position of
+/// this point: their origins may be at their feet, which half a turn takes to the top.
 Eigen::Vector3d centre_of(const TrackModels& models, const std::string& name);
 
-/// TrackModel::box_radius_m of a class; that of a usual object where it has no model.
+/// Returns TrackModel::box_radius_m of a class; that of a usual object where it has no model.
 double radius_of(const TrackModels& models, const std::string& name);
 
-/// TrackModel::symmetries of a class; none where it has no model.
+/// Returns TrackModel::symmetries of a class; none where it has no model.
 const Symmetries& symmetries_of(const TrackModels& models, const std::string& name);
 
-/// Models by class name; those without known symmetries have none. Throws InputError naming a mesh without triangles.
+/// Makes models by class name; those without known symmetries have none. Throws InputError naming a mesh without
+/// triangles.
 TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map<std::string, Symmetries>& symmetries);
 
 /// A frame of a camera with everything that the tracker gets of it.
 struct FrameObservation {
   const ObjectPoses& poses;                ///< names the frame
-  const Detections* detections = nullptr;  ///< of the frame, where they are known
+  const Detections* detections = nullptr;  ///< detections of the frame, where they are known
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   /// Decodes the frame's depth, only where it is needed; returns null, or is empty, where there is none.
   std::function<const RgbdFrame*()> image = nullptr;
   /// Time of the frame of this camera that has arrived last; without it, that of the frame of the poses.
   std::optional<std::int64_t> newest_utime = std::nullopt;
-  FrameNumber number = {};  ///< of its source, as far as that says one
+  FrameNumber number = {};  ///< number of the frame from its source, where there is one
 };
 
 /// A pose that was measured in a frame, in the world.
@@ -72,14 +73,14 @@ struct PoseObservation {
 std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
                                            const TrackModels& models);
 
-/// Log odds of a pose's quality, which is cut to 0.02 and 0.98.
+/// Returns the logit of a pose's quality, which is clamped to 0.02 and 0.98.
 double quality_logit(double quality);
 
-/// Result of check_visibility().
+/// Holds the result of check_visibility().
 struct VisibilityCheck {
-  TrackState state = TrackState::kOutOfView;  ///< kUnrecognised: it agrees; kGone: it was seen through
+  TrackState state = TrackState::kOutOfView;  ///< kUnrecognised: depth agrees; kGone: free-space violation
   double free_space_violation = 0.0;          ///< fraction of what is not occluded, 0 to 1
-  bool is_boundary_continued = false;         ///< the measured surface goes on where the object's outline is
+  bool is_boundary_continued = false;         ///< the measured surface continues beyond the object's outline
 };
 
 /// Renders the model at a pose and compares it with the depth of a frame.
@@ -90,11 +91,12 @@ VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model
 /// rest.
 struct PoseTrackSettings {
   MotionSettings motion;
-  double same_rotation_rad = 0.44;   ///< poses rotated farther apart are two hypotheses
-  double static_gate_m = 0.008;      ///< what stands is not measured farther away than this, nor than 4 sigma
-  double static_gate_rad = 0.21;     ///< the same of its rotation
-  double rest_threshold_m = 0.004;   ///< what moved stands when two fifths of a second differ by less
-  double rest_threshold_rad = 0.09;  ///< and by less than this
+  double same_rotation_rad = 0.44;  ///< poses rotated farther apart are two hypotheses
+  /// Minimum gate for the distance of a measurement of a static object; 4 sigma if larger.
+  double static_gate_m = 0.008;
+  double static_gate_rad = 0.21;     ///< the same gate for its rotation
+  double rest_threshold_m = 0.004;   ///< an object rests when the halves of 0.4 s differ by less
+  double rest_threshold_rad = 0.09;  ///< the same threshold for its rotation
 };
 
 template <typename Visit>
@@ -108,8 +110,9 @@ void fields(const PoseTrackSettings& /*settings*/, const Visit& visit) {
   visit(number("rest_threshold_rad", &S::rest_threshold_rad, 0, 3.2, "rad"));
 }
 
-/// The pose of one object over time: one or a few hypotheses of it, each with a filter of its own, so that no average
-/// of two is ever published (a can's two turns), and what is needed to tell moving from standing.
+/// Estimates the pose of one object over time. It has one or a few hypotheses, each with its own filter, so that no
+/// average of two is ever published (such as a can's two rotations), and decides whether the object moves or is at
+/// rest.
 class PoseTrack {
  public:
   PoseTrack(const PoseObservation& first, const PoseTrackSettings& settings);
@@ -122,8 +125,8 @@ class PoseTrack {
   void update(const PoseObservation& pose, const Symmetries& symmetries, bool has_contrary_depth);
 
   const MotionFilter& filter() const { return hypotheses_[best_].filter; }
-  /// Metres from the nearest hypothesis to where the measured pose has the object's `centre` (object frame, metres),
-  /// and radians to the nearest one, of what looks the same.
+  /// Return the distance in metres from the nearest hypothesis to the measured position of the object's `centre`
+  /// (object frame, metres), and the angle in radians to the nearest one up to symmetries.
   double distance(const PoseMeasurement& measured, const Symmetries& symmetries, const Eigen::Vector3d& centre) const;
   double angle(const PoseMeasurement& measured, const Symmetries& symmetries) const;
 
@@ -137,7 +140,7 @@ class PoseTrack {
     std::int64_t agreed_utime = 0;      ///< time of its last measurement within the gates; 0 for none
   };
 
-  // The steps of update() in the order of their calls.
+  // These are the steps of update() in the order of their calls.
   std::size_t hypothesis_for(const PoseMeasurement& measured, const Symmetries& symmetries);
   void update_standing(const PoseObservation& pose, bool has_contrary_depth, Hypothesis& hypothesis);
   bool can_trigger_motion(const std::string& channel, std::int64_t utime) const;
@@ -147,17 +150,17 @@ class PoseTrack {
   std::vector<Hypothesis> hypotheses_;
   std::size_t best_ = 0;
   std::int64_t weighed_utime_ = 0;
-  std::map<std::string, ObserverHistory> observers_;  // by camera
+  std::map<std::string, ObserverHistory> observers_;  // by camera channel
   std::deque<PoseMeasurement> recent_;                // while it moves
 };
 
-/// An object, or a candidate for one.
+/// Holds an object, or a candidate for one.
 struct Track {
   PoseTrack pose;
   std::int64_t id = 0;  ///< 0: not confirmed
   int class_id = 0;
   std::string class_name = {};
-  double log_odds = 0.0;  ///< of its existence
+  double log_odds = 0.0;  ///< log odds of its existence
   int seen = 0;           ///< frames with a pose of it
   std::int64_t first_utime = 0;
   FrameId last_seen = {};
@@ -165,7 +168,7 @@ struct Track {
   std::string reason = {};
   std::int64_t deleted_utime = 0;       ///< 0 while it is present
   bool is_observed = false;             ///< a result of the current frame has a pose of it
-  double free_space_violation_s = 0.0;  ///< time for which it was seen through since its last pose
+  double free_space_violation_s = 0.0;  ///< time of free-space violation since its last pose
 
   bool is_present() const { return deleted_utime == 0; }
 };

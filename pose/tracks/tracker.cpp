@@ -18,15 +18,15 @@ Tracker::Tracker(TrackModels models, ObjectTrackerSettings settings) : models_(s
   check_settings(settings, "settings of a tracker");
 }
 
-// The method on one page; its steps stand below in the order of their calls.
+// The method is on one page; its steps follow below in the order of their calls.
 std::optional<WorldObjects> Tracker::update(const FrameObservation& received) {
   refused_ = 0;
   CameraClock* camera = begin_frame(received);
   if (camera == nullptr) return std::nullopt;
-  const FrameId frame{received.poses.frame.channel, camera->utime};  // on the world's clock
+  const FrameId frame{received.poses.frame.channel, camera->utime};  // time on the world's clock
   for (Track& track : tracks_) {
     track.pose.predict(frame.utime);
-    track.is_observed = track.last_seen == frame;  // by another result of the same frame
+    track.is_observed = track.last_seen == frame;  // observed by another result of the same frame
   }
   ObjectPoses poses = names_.resolve(received, models_, tracks_, settings_.pose.same_rotation_rad);
   poses.frame = frame;
@@ -145,7 +145,7 @@ void Tracker::begin_track(const PoseObservation& pose) {
   tracks_.push_back(std::move(track));
 }
 
-/// Makes room for one object more by what has been gone longest; false where nothing is gone.
+/// Frees a place for one more object by removing the one that has been gone longest; returns false where none is gone.
 bool Tracker::make_room() {
   if (tracks_.size() < settings_.max_objects) return true;
   auto oldest = tracks_.end();
@@ -170,7 +170,7 @@ void Tracker::confirm_tracks(std::int64_t utime) {
       candidate.id = id;
       candidate.first_utime = earlier->first_utime;
       candidate.seen += earlier->seen;
-      earlier->id = -1;  // for forget_tracks()
+      earlier->id = -1;  // marks it for forget_tracks()
       log_info("{} #{} re-identified at a new pose", candidate.class_name, id);
     } else {
       candidate.id = next_id_++;

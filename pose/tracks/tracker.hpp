@@ -42,7 +42,7 @@ void fields(const ObjectTrackerSettings& /*settings*/, const Visit& visit) {
   visit(number("max_objects", &S::max_objects, 0, 1000000));
 }
 
-/// State of a camera at its last frame.
+/// Holds the state of a camera at its last frame.
 struct CameraClock {
   std::int64_t utime = 0;         ///< time of the frame on the world's clock
   std::int64_t results = 0;       ///< number of results of this frame; 0 before the first frame
@@ -86,14 +86,14 @@ class WorldClock {
   /// Forgets all cameras and times.
   void reset();
 
-  /// The world's clock minus the frames' utimes: 0 as long as no clock was set.
+  /// Returns the world's clock minus the frames' utimes: 0 as long as no clock was set.
   std::int64_t ahead_us() const { return ahead_us_; }
 
  private:
   struct Camera {
     CameraClock clock;
-    FrameNumber number;       // of the last frame
-    double interval_s = 0.0;  // from the frame before to the last one; 0 before the second
+    FrameNumber number;       // number of the last frame
+    double interval_s = 0.0;  // interval between the last two frames; 0 before the second
   };
 
   TimeOrder order_after(const Camera& camera, const StampedFrame& frame, std::int64_t utime);
@@ -104,19 +104,19 @@ class WorldClock {
   void tell_new_world(const FrameId& frame, std::int64_t last_utime);
   void warn(const std::string& line);
 
-  std::map<std::string, Camera> cameras_;        // by channel
-  std::map<std::string, std::int64_t> doubted_;  // by channel, the time that lies far from the camera's last one
-  std::optional<FrameId> newest_;                // of all cameras, on the world's clock
+  std::map<std::string, Camera> cameras_;        // by channel name
+  std::map<std::string, std::int64_t> doubted_;  // time far from the camera's last one, by channel
+  std::optional<FrameId> newest_;                // newest frame of all cameras, on the world's clock
   std::int64_t ahead_us_ = 0;
   int behind_ = 0;  // frames one after the other that were refused as too old
   LogThrottle lines_;
 };
 
-/// Finds out which classes were searched for a result, so that a class without a pose in it was missed. A result does
-/// not say so itself. One detector searches all classes. Where several work on a camera's frames (two results of one
-/// frame have had no class in common), a result counts for its own classes, for those that have been reported together
-/// with them, and for a class whose own detector has reported nothing for a second. Poses without a model belong to
-/// another host's stage and count for nothing. Not thread-safe.
+/// Determines which classes were searched for a result, so that a class without a pose in it was missed; the result
+/// does not state that itself. One detector searches all classes. Where several work on a camera's frames (two results
+/// of one frame have had no class in common), a result counts for its own classes, for those that have been reported
+/// together with them, and for a class whose own detector has reported nothing for a second. Poses without a model
+/// belong to another host's stage and are ignored. Not thread-safe.
 class SearchedClasses {
  public:
   /// Notes a result; called for each one before has_searched().
@@ -131,18 +131,18 @@ class SearchedClasses {
  private:
   struct Coverage {
     std::set<std::string> classes;  // reported in one result with it
-    std::int64_t utime = 0;         // of the last result that reports it
+    std::int64_t utime = 0;         // time of the last result that reports it
   };
   struct Camera {
-    std::int64_t utime = 0;         // of the last frame
-    std::set<std::string> classes;  // of its results
+    std::int64_t utime = 0;         // time of the last frame
+    std::set<std::string> classes;  // classes of its results
     bool has_several = false;       // detectors work on its frames
   };
 
   bool is_reporting(const std::string& class_name, std::int64_t utime) const;
 
-  std::map<std::string, Coverage> coverage_;  // by class
-  std::map<std::string, Camera> cameras_;     // by channel
+  std::map<std::string, Coverage> coverage_;  // by class name
+  std::map<std::string, Camera> cameras_;     // by channel name
 };
 
 /// Tracks the objects of a world over time and over all cameras. It assigns measured poses to objects (by class, place
@@ -156,25 +156,25 @@ class Tracker {
   /// Throws InputError for settings out of their range.
   Tracker(TrackModels models, ObjectTrackerSettings settings);
 
-  /// Returns the world after a frame; nothing for a frame that is passed over, because it is older than its camera's
-  /// last one or its stamp is wrong. A camera's clock that is set leaves the objects what they are, and their times
-  /// move with it; where a source, or its log, begins again in the past, a new world begins (WorldClock). A class that
-  /// an earlier result of the frame has had is not used again. Throws InputError for a frame that is more than a second
-  /// older than another camera's, as long as that goes on.
+  /// Returns the world after a frame; nothing for a frame that is ignored, because it is older than its camera's last
+  /// one or its stamp is wrong. When a camera's clock is set, the objects stay, and their times move with it; where a
+  /// source, or its log, begins again in the past, a new world begins (WorldClock). A class that an earlier result of
+  /// the frame has had is not used again. Throws InputError for a frame that is more than a second older than another
+  /// camera's, while that continues.
   std::optional<WorldObjects> update(const FrameObservation& received);
 
-  /// Poses of the last frame of objects for which there was no room (ObjectTrackerSettings::max_objects).
+  /// Returns the number of poses of the last frame that were refused (ObjectTrackerSettings::max_objects).
   std::size_t refused() const { return refused_; }
 
   /// Forgets all objects: they were in another coordinate frame.
   void reset();
 
-  /// Other models from here on. Objects of a class that is renamed (find_model_change()) keep their number and pose
-  /// under the new name, objects of a class that is removed are gone, all others stay.
+  /// Replaces the models. Objects of a renamed class (find_model_change()) keep their number and pose under the new
+  /// name, objects of a removed class are gone, all others stay.
   void set_models(TrackModels models);
 
  private:
-  // The steps of update() in the order of their calls.
+  // These are the steps of update() in the order of their calls.
   CameraClock* begin_frame(const FrameObservation& received);
   std::vector<PoseObservation> observe_new_poses(const FrameObservation& seen, CameraClock& camera) const;
   std::vector<PoseObservation> associate(const std::vector<PoseObservation>& poses, double seconds);
@@ -190,14 +190,14 @@ class Tracker {
 
   TrackModels models_;
   ObjectTrackerSettings settings_;
-  std::vector<Track> tracks_;  // by when they were begun; numbers follow in the order of confirmation
+  std::vector<Track> tracks_;  // in the order of their creation; numbers follow in the order of confirmation
   WorldClock clock_;
   SearchedClasses searched_classes_;
   ClassNames names_;
-  std::map<std::string, int> max_instances_;  // by class: instances that were seen in one frame
+  std::map<std::string, int> max_instances_;  // maximum number of instances in one frame, by class
   std::int64_t next_id_ = 1;
   int world_number_ = 1;
-  std::size_t refused_ = 0;  // poses of the last frame, for which there was no room
+  std::size_t refused_ = 0;  // poses of the last frame beyond max_objects
 };
 
 }  // namespace houghstream::tracks

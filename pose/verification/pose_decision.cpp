@@ -3,7 +3,7 @@
 namespace houghstream {
 namespace {
 
-constexpr float kRefutedBelow = 0.5F;  // less probably there than not
+constexpr float kRefutedBelow = 0.5F;  // presence probability below which a detection is taken back
 
 }  // namespace
 

@@ -7,8 +7,8 @@
 namespace houghstream {
 
 /// Sets the qualities of `pose` from the evidence for `T_camera_object`, and then either the pose itself or the status
-/// that says why it is rejected. Only of what is `reported` (see Detection) may that be that the object is refuted.
-/// `quality` is that of the object's class.
+/// with the reason for its rejection. The object can only be refuted where it was `reported` (see Detection). `quality`
+/// is that of the object's class.
 void decide_status(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_object, bool reported,
                    const QualitySettings& quality, ObjectPose& pose);
 

@@ -6,10 +6,10 @@
 
 namespace houghstream {
 
-/// The probability that an object is there, whether its pose is right or not, by logistic regression on the log odds of
-/// the detection's score and of the pose's quality. These numbers are of 3108 detections in hs-teach's synthetic scenes
-/// (seven objects of YCB-V, three stores). What hs-teach learns of an object takes their place: how much a bad pose
-/// says differs most between what is easily posed and what is not.
+/// The probability that an object is present, whether its pose is correct or not, is a logistic regression on the log
+/// odds of the detection's score and of the pose's quality. These numbers are of 3108 detections in hs-teach's
+/// synthetic scenes (seven objects of YCB-V, three stores). Settings that hs-teach learns of an object replace them:
+/// the weight of a bad pose differs most between objects whose poses are easy and hard to estimate.
 struct PresenceSettings {
   double bias = 0.27;
   double score_weight = 0.26;
@@ -24,17 +24,17 @@ void fields(const PresenceSettings& /*settings*/, const Visit& visit) {
   visit(number("of_quality", &S::quality_weight, -1e6, 1e6));
 }
 
-/// In (0, 1); `score` and `quality` are in [0, 1], and the ends of it are no certainty.
+/// Returns a probability in (0, 1); `score` and `quality` are in [0, 1], whose ends are not taken as certain.
 float presence_probability(float score, float quality, const PresenceSettings& settings);
 
-/// A judged detection whose pose was judged too.
+/// Holds a labelled detection whose pose was labelled too.
 struct PresenceExample {
   float score = 0.0F;
   float quality = 0.0F;
   bool is_present = false;
 };
 
-/// The settings that explain the examples best; `prior` and `precision` as for fit_quality_settings().
+/// Returns the settings that explain the examples best; `prior` and `precision` are as for fit_quality_settings().
 PresenceSettings fit_presence(const std::vector<PresenceExample>& examples, const PresenceSettings& prior,
                               double precision);
 

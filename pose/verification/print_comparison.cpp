@@ -14,20 +14,20 @@ namespace {
 
 // The numbers below are chosen by what they mean, not fitted; what the result is worth is learnt (PrintSettings).
 constexpr int kCells = 48;     // along the longer side of the object in the image
-constexpr int kMinCells = 60;  // compared; fewer tell nothing
+constexpr int kMinCells = 60;  // minimum of compared cells that is informative
 constexpr int kFine = 5;       // sides of the means that part the bands, cells
 constexpr int kCoarse = 13;
-// Of what is compared, so many cells count as one observation: neighbours are alike. All of them are measured with one
-// image, one mesh and one pose, so that even so they are no independent witnesses: kTemper is what is left of it.
+// Number of compared cells that count as one observation, since neighbours are correlated. All cells share one image,
+// one mesh and one pose, so that even these observations are dependent: kTemper reduces their weight for that.
 constexpr double kFineCells = 4.0;
 constexpr double kMiddleCells = 25.0;
 constexpr double kCoarseCells = 85.0;
 constexpr double kTemper = 0.3;
-constexpr double kNoise = 8.0;  // variance of a channel that neither print nor shading makes, 8-bit CIE L*a*b*
+constexpr double kNoise = 8.0;  // variance of a channel without texture and shading, 8-bit CIE L*a*b*
 constexpr double kMinGain = 0.3;
 constexpr double kMaxGain = 2.5;
 
-/// A band of one colour channel: one number for each compared cell, and how many cells count as one observation.
+/// Holds a band of one colour channel: one number for each compared cell, and the sum of their squares.
 struct Band {
   Eigen::VectorXf values;
   double sum_sq = 0.0;
@@ -46,12 +46,12 @@ struct Print {
 /// Cells of the object's part of the image where its surface is seen.
 struct Face {
   int cell_px = 1;
-  cv::Rect part_px;      ///< of the frame, a whole number of cells
+  cv::Rect part_px;      ///< part of the frame, a whole number of cells
   cv::Mat mask;          ///< CV_32FC1, 1 for the compared cells
   cv::Mat fine_weights;  ///< CV_32FC3, in each channel the compared cells about each cell
   cv::Mat coarse_weights;
-  std::vector<cv::Point> cells;                   ///< those, row by row
-  std::vector<Eigen::Vector3f> points;            ///< of the surface there, object frame, metres
+  std::vector<cv::Point> cells;                   ///< compared cells, row by row
+  std::vector<Eigen::Vector3f> points;            ///< surface points of the cells, object frame, metres
   Eigen::Vector3f eye = Eigen::Vector3f::Zero();  ///< the camera, object frame
 };
 
@@ -70,7 +70,7 @@ cv::Mat cells_about(const cv::Mat& mask, int side) {
   return weights;
 }
 
-/// Of a grid of CIE L*a*b* colours, CV_32FC3, 0 where nothing is compared.
+/// Makes the bands of a grid of CIE L*a*b* colours, CV_32FC3, 0 where nothing is compared.
 Print print_of(const cv::Mat& lab, const Face& face) {
   const cv::Mat fine = box_sum(lab, kFine) / face.fine_weights;
   const cv::Mat coarse = box_sum(lab, kCoarse) / face.coarse_weights;
@@ -97,7 +97,7 @@ Print print_of(const cv::Mat& lab, const Face& face) {
   return print;
 }
 
-/// How much likelier a camera makes what is seen of the model's print than of a plain surface, log of the ratio.
+/// Returns the log likelihood ratio of the observation under the model's texture and under a uniform surface.
 double log_likelihood(const Print& model, const Print& seen) {
   double sum = 0.0;
   for (std::size_t i = 0; i < kBands; ++i) {
@@ -122,14 +122,14 @@ cv::Rect whole_cells(const cv::Rect& part, int cell_px) {
   return {part.x, part.y, part.width / cell_px * cell_px, part.height / cell_px * cell_px};
 }
 
-/// Whether a pixel has lost its colour. One that is at the camera's limit in a channel or two has not: it is as red as
-/// the camera shows things.
+/// Returns whether a pixel is clipped in all channels. A pixel that is clipped in one or two channels keeps its colour,
+/// as far as the camera can show it.
 bool is_overexposed(const cv::Vec3b& bgr) {
   constexpr std::uint8_t kLimit = 245;
   return std::min({bgr[0], bgr[1], bgr[2]}) >= kLimit;
 }
 
-/// Where in the frame a cell's middle is.
+/// Returns the pixel in the frame at a cell's middle.
 cv::Point middle_px(const cv::Point& cell, const Face& face) {
   return face.part_px.tl() + face.cell_px * cell + cv::Point(face.cell_px / 2, face.cell_px / 2);
 }
@@ -169,7 +169,7 @@ Face visible_face(const ObjectObservation& seen, const Eigen::Isometry3d& T_came
   return face;
 }
 
-/// What the camera shows of the face, read `shift_px` beside it.
+/// Returns the observed texture of the face, read at an offset of `shift_px`.
 Print seen_print(const ObjectObservation& seen, const Face& face, const cv::Point& shift_px) {
   const cv::Mat& lab = seen.colours.lab;
   const cv::Point last(lab.cols - face.part_px.width, lab.rows - face.part_px.height);
@@ -182,7 +182,7 @@ Print seen_print(const ObjectObservation& seen, const Face& face, const cv::Poin
   return print_of(grid, face);
 }
 
-/// What the model would show there if it were moved by `motion` first; nothing where much of it would not be there.
+/// Returns the model's texture there after `motion`; nothing where much of the surface would be missing.
 std::optional<Print> model_print(const ObjectModel& model, const Face& face, const Eigen::Isometry3d& motion) {
   constexpr double kMaxMissing = 0.2;
   const Eigen::Isometry3f back = motion.inverse().cast<float>();
@@ -206,7 +206,7 @@ std::optional<Print> model_print(const ObjectModel& model, const Face& face, con
   return print_of(grid, face);
 }
 
-/// The seen print as read at a few places about where it should be: colours are registered to depth no better.
+/// Returns the observed texture, read at a few offsets, since the registration of colour to depth is no better.
 std::vector<Print> seen_prints(const ObjectObservation& seen, const Face& face) {
   constexpr int kReach_px = 2;
   std::vector<Print> prints;
@@ -222,7 +222,7 @@ double best_log_likelihood(const Print& model, const std::vector<Print>& seen) {
   return best;
 }
 
-/// How what breaks a nearly round shape, a handle, is seen at a pose.
+/// Counts how the part that breaks a nearly round shape, such as a handle, is seen at a pose.
 struct HandleCounts {
   int depth_inliers = 0;
   int free_space_violations = 0;
@@ -264,8 +264,8 @@ bool may_handle_be_hidden(const ObjectObservation& seen, const Eigen::Isometry3d
   return counts.free_space_violations <= kFew * counts.all && counts.depth_inliers <= kFew * counts.all;
 }
 
-/// The poses that only the print tells from this one: those whose depth agrees as well, nearly alike ones
-/// registered.
+/// Returns the poses that only the texture distinguishes from this one: those whose depth agrees as well, nearly
+/// equivalent ones registered.
 std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& seen,
                                                  const Eigen::Isometry3d& T_camera_object,
                                                  const DepthTolerance& tolerance,
@@ -293,15 +293,15 @@ std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& seen,
   return poses;
 }
 
-/// A pose that looks alike by its shape, and what the model shows at it.
+/// Holds a pose that is equivalent by shape, and the model's texture at it.
 struct Alternative {
   Eigen::Isometry3d T_camera_object;
   Print print;
   double likelihood = 0.0;  ///< log
 };
 
-/// Those at which the model's surface is where it is seen. Of many turns only the likeliest are compared a little
-/// beside.
+/// Returns the alternatives at which the model's surface agrees with the depth. Of many rotations only the likeliest
+/// are compared with small offsets.
 std::vector<Alternative> likely_alternatives(const ObjectObservation& seen, const Face& face,
                                              const Eigen::Isometry3d& T_camera_object,
                                              const std::vector<Eigen::Isometry3d>& poses,
@@ -322,7 +322,7 @@ std::vector<Alternative> likely_alternatives(const ObjectObservation& seen, cons
   return shown;
 }
 
-/// Where the print cannot tell, the pose is one of as many.
+/// Returns the margin without information from the texture: all alternatives are equally probable.
 PrintComparison undecided(std::size_t alternatives) {
   return {-std::log(static_cast<double>(alternatives)), std::nullopt};
 }
@@ -343,8 +343,8 @@ std::optional<PrintComparison> compare_print(const ObjectObservation& seen, cons
   const double own_likelihood = best_log_likelihood(*own, seen_at);
   const std::vector<Alternative> shown = likely_alternatives(seen, face, T_camera_object, alternatives, seen_at);
   if (shown.empty()) return std::nullopt;
-  // The pose has been found by all else that speaks for it. Another one takes its place on strong evidence only, a
-  // Bayes factor of 20 (Kass and Raftery 1995, "Bayes Factors").
+  // All other evidence supports the present pose. Another one replaces it on strong evidence only, a Bayes factor of 20
+  // (Kass and Raftery 1995, "Bayes Factors").
   constexpr double kClearly = 3.0;  // its logarithm
   PrintComparison comparison;
   double best = own_likelihood + kClearly;

@@ -38,8 +38,8 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   // Added to shares, so that none weighs too much where there is little of it.
   constexpr double kShare = 0.01;
   constexpr double kFraction = 0.05;
-  constexpr double kEven = 0.5;           // an outline that is not seen speaks neither for a pose nor against it
-  constexpr double kUnknownColour = 0.8;  // of the usual agreement: no colours are no proof
+  constexpr double kEven = 0.5;           // an unobserved boundary is neutral
+  constexpr double kUnknownColour = 0.8;  // factor of the usual agreement: missing colours prove nothing
   const Verification& depth = evidence.depth;
   const double judged = std::max(1, depth.depth_inliers + depth.free_space_violations);
   QualityTerms terms = settings.mean_of_correct;

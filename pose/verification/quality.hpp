@@ -13,12 +13,12 @@
 
 namespace houghstream {
 
-/// What speaks for a pose and against it.
+/// Holds the evidence for and against a pose.
 struct PoseEvidence {
   float detection_score = 0.0F;
   Verification depth;
-  std::optional<ColourComparison> colour;  ///< nothing where the model has no colours
-  /// That the pose is the right one of those that its shape cannot tell apart; 1 where there are no others.
+  std::optional<ColourComparison> colour;  ///< empty where the model has no colours
+  /// Probability that the pose is the correct one of those that are equivalent by shape; 1 where there are no others.
   float print_probability = 1.0F;
 };
 
@@ -29,19 +29,19 @@ PoseEvidence gather_evidence(const ObjectObservation& seen, const Eigen::Isometr
 /// Brings the model's colours to the camera's before they are compared.
 void bring_to_camera(const ChromaMap& camera, PoseEvidence& evidence);
 
-/// A number for each term of the regression: a pose's evidence, the larger the better, or a weight of it.
+/// Holds a number for each term of the regression: a pose's evidence, the larger the better, or a weight of it.
 struct QualityTerms {
   double detection_logit = 0.0;  ///< log odds of the detection's score
-  /// Log of the share that was seen through, of what agrees or was seen through (negated).
+  /// Logarithm of the fraction of free-space violations among these and the depth inliers (negated).
   double free_space_violation = 0.0;
   double visible = 0.0;            ///< log of the visible fraction
   double outline = 0.0;            ///< log of how much of the outline ends what is seen over how much does not
   double chroma_difference = 0.0;  ///< see ColourComparison (negated)
-  /// Share of the seen colours' variance that is not left over, of as much as shading alone can make of it and more:
-  /// plain things agree with little. What the camera was at its limit for counts as plain. At least -0.5.
+  /// Fraction of the observed colours' variance that is explained, of as much as shading alone can cause and more:
+  /// uniform objects agree with little. Clipped points count as uniform. At least -0.5.
   double texture = 0.0;
   double unexplained_variance = 0.0;  ///< log of the variance of the seen colours that is left over (negated)
-  /// Log of the variance of the model's colours there (negated): what there was to agree with.
+  /// Logarithm of the variance of the model's colours there (negated): the contrast with which to agree.
   double model_contrast = 0.0;
 };
 
@@ -57,7 +57,7 @@ inline constexpr std::array<double QualityTerms::*, 8> kQualityTerms = {&Quality
 inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames = {
     "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "print", "left_over", "contrast"};
 
-/// Of a value for each term, in their order.
+/// Returns the terms of a list of values, in the order of kQualityTerms.
 inline QualityTerms terms_of(const std::array<double, kQualityTerms.size()>& values) {
   QualityTerms terms;
   for (std::size_t i = 0; i < values.size(); ++i) terms.*kQualityTerms[i] = values[i];
@@ -70,9 +70,9 @@ void fields(const QualityTerms& /*settings*/, const Visit& visit) {
     visit(number(kQualityTermNames[i], kQualityTerms[i], -1e6, 1e6));
 }
 
-/// The probability that of the poses that look alike by their shape one is right, by logistic regression on what its
-/// print says (PrintComparison::margin). The default takes that at its word. What hs-teach learns of an object takes
-/// its place.
+/// The probability that one of the poses that are equivalent by shape is correct is a logistic regression on its
+/// texture's margin (PrintComparison::margin). The default takes the margin as it is. Settings that hs-teach learns of
+/// an object replace it.
 struct PrintSettings {
   double bias = 0.0;
   double margin_weight = 1.0;
@@ -85,25 +85,25 @@ void fields(const PrintSettings& /*settings*/, const Visit& visit) {
   visit(number("of_margin", &S::margin_weight, -1e6, 1e6));
 }
 
-/// In (0, 1).
+/// Returns a probability in (0, 1).
 float print_probability(double margin, const PrintSettings& settings);
 
-/// The probability that a pose is right up to its shape's symmetries, by logistic regression on the evidence.
-/// hs-study quality (tools/studies/quality) learns these numbers, and tells how many poses are right from which
+/// The probability that a pose is correct up to its shape's symmetries is a logistic regression on the evidence.
+/// hs-study quality (tools/studies/quality) learns these numbers, and reports how many poses are correct from which
 /// `min_quality` on in scenes that the fit has not seen (a quarter in turn). They are of 1279 poses of detections from
 /// score 0.1 on in 14 frames each of development_world_0 to 13, every other world seen by the time-of-flight camera;
-/// 678 were right. In scenes that the fit has not seen 642 of 653 are right from `min_quality` on. That of
-/// `free_space_violation` is older: it is not learnt. What hs-teach learns of an object takes their place.
+/// 678 were correct. In scenes that the fit has not seen 642 of 653 are correct from `min_quality` on. The weight of
+/// `free_space_violation` is older: it is not learnt. Settings that hs-teach learns of an object replace them.
 struct QualitySettings {
   double bias = -5.54;
   QualityTerms weights = terms_of({1.56, 0.45, 1.18, 2.87, 2.79, 7.25, 1.42, -0.27});
-  /// Means of right poses: what is farthest below them is the reason for "no pose". Those of colour stand for a model
-  /// without colours.
+  /// Means of correct poses: the term farthest below its mean is the reason for "no pose". Those of colour are also
+  /// used for a model without colours.
   QualityTerms mean_of_correct = terms_of({1.95, 3.06, -0.17, 2.89, -0.23, 0.80, -5.29, -5.29});
   float min_quality = 0.75F;            ///< poses of lower quality are not published...
   float min_candidate_quality = 0.75F;  ///< ...nor are these of candidates (Detection::reported): most are false
-  PresenceSettings presence;            ///< what this says of whether the object is there at all
-  PrintSettings print;                  ///< which of the poses that look alike by their shape is right
+  PresenceSettings presence;            ///< presence of the object as a function of score and quality
+  PrintSettings print;                  ///< choice between poses that are equivalent by shape
 };
 
 template <typename Visit>
@@ -120,16 +120,16 @@ void fields(const QualitySettings& /*settings*/, const Visit& visit) {
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings);
 
-/// Probability in [0, 1] that the pose is right up to what its shape cannot tell: the object is the one that was
-/// detected, and its ADD-S error is below a tenth of the diameter.
+/// Returns the probability in [0, 1] that the pose is correct up to the symmetries of its shape: the object is the one
+/// that was detected, and its ADD-S error is below a tenth of the diameter.
 float shape_quality(const QualityTerms& terms, const QualitySettings& settings);
 
-/// What the evidence tells of the camera's colours, where the camera was not at its limit: nothing where the model has
-/// none. Its probability is the quality that the pose would have if its chroma were as it usually is.
+/// Returns the chroma that the evidence shows of the camera where it was not clipped; nothing where the model has no
+/// colours. Its probability is the quality that the pose would have with the usual chroma.
 std::optional<ChromaPair> chroma_pair(const std::string& class_name, const PoseEvidence& evidence,
                                       const QualitySettings& settings);
 
-/// The status that names the term which speaks most against the pose.
+/// Returns the status that names the term with the strongest evidence against the pose.
 PoseStatus find_rejection_reason(const QualityTerms& terms, const QualitySettings& settings, bool colours_known = true);
 
 }  // namespace houghstream

@@ -20,7 +20,7 @@ Weights to_vector(double bias, const QualityTerms& terms) {
   return out;
 }
 
-/// Those of `otherwise` where no pose is right.
+/// Returns the mean terms of correct poses; those of `otherwise` where there are none.
 QualityTerms average_correct(const std::vector<QualityExample>& examples, const QualityTerms& otherwise) {
   QualityTerms sum;
   int count = 0;
@@ -36,9 +36,10 @@ QualityTerms average_correct(const std::vector<QualityExample>& examples, const 
 
 using ExamplesByName = std::map<std::string, std::vector<QualityExample>>;
 
-// Of what objects have in common: few poses of one object do not tell its weights.
+// Precision of the prior of the objects' common weights, since few poses of one object do not determine its weights.
 constexpr double kPriorPrecision = 10.0;
-constexpr double kCommonStiffness = 5.0;  // of the numbers in use: nor do those of the few objects of a store
+// Precision of the prior by the default numbers, since a store's few objects do not determine them either.
+constexpr double kCommonStiffness = 5.0;
 
 std::map<std::string, QualitySettings> fit_each(const ExamplesByName& examples) {
   std::vector<QualityExample> all;
@@ -61,7 +62,7 @@ ExamplesByName of_half(int half, const ExamplesByName& examples) {
   return out;
 }
 
-/// Each with the quality that the other half of all teaches.
+/// Returns the examples, each with the quality that is learnt from the other half of all.
 std::map<std::string, std::vector<PresenceExample>> presence_examples(const ExamplesByName& examples) {
   std::map<std::string, std::vector<PresenceExample>> out;
   for (const int half : {0, 1}) {
@@ -78,7 +79,7 @@ std::map<std::string, std::vector<PresenceExample>> presence_examples(const Exam
 
 PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, const PrintSettings& prior,
                                  double precision) {
-  // What is sure beyond this is sure: a few examples far out must not decide about those near to the border.
+  // Margins are clamped here, so that a few extreme examples do not dominate those near the decision boundary.
   constexpr double kMax = 8.0;
   std::vector<LogisticExample<2>> judged;
   for (const QualityExample& example : examples) {
@@ -95,11 +96,12 @@ QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples
   judged.reserve(examples.size());
   for (const QualityExample& example : examples) {
     judged.push_back({to_vector(1.0, example.terms), example.is_correct_up_to_shape});
-    // Which of the two is right, not how likely that is: all else is the same, and drops out.
+    // The pair only shows which texture is correct, not how probable that is: all other terms are equal and cancel.
     if (example.with_swapped_texture)
       judged.push_back({to_vector(1.0, example.terms) - to_vector(1.0, *example.with_swapped_texture), true});
   }
-  // In scenes where nothing is taken away hardly a pose that was found is seen through: what they say of it is chance.
+  // Scenes from which nothing is taken away show hardly any free-space violation at poses that were found, so that
+  // their examples say nothing about this weight.
   constexpr int kFreeSpaceViolation = 2;
   static_assert(kQualityTerms[kFreeSpaceViolation - 1] == &QualityTerms::free_space_violation);
   const LogisticPrior<kWeights> pull{to_vector(prior.bias, prior.weights), precision, kFreeSpaceViolation};

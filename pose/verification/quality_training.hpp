@@ -9,34 +9,33 @@
 
 namespace houghstream {
 
-/// A judged pose.
+/// Holds a pose whose correctness is known.
 struct QualityExample {
   QualityTerms terms;
   bool is_correct = false;              ///< the object that was detected, MSSD (or ADD) below a tenth of the diameter
-  bool is_correct_up_to_shape = false;  ///< the same by ADD-S: right but for what the shape cannot tell
-  /// Of a pose that is right up to its shape, what speaks for it if the object had another print: the fit tells the two
-  /// apart.
+  bool is_correct_up_to_shape = false;  ///< the same by ADD-S: correct up to the symmetries of the shape
+  /// Evidence of a pose that is correct up to its shape if the object had another texture: the fit separates the two.
   std::optional<QualityTerms> with_swapped_texture = std::nullopt;
   std::optional<double> print_margin = std::nullopt;  ///< PrintComparison::margin, where the pose has alternatives
-  float score = 0.0F;                                 ///< of the detection
+  float score = 0.0F;                                 ///< score of the detection
   bool is_present = false;  ///< the object that was detected, whether the pose is right or not
-  int half = 0;             ///< 0 or 1: of which half of all that was practised
+  int half = 0;             ///< 0 or 1: half of the calibration examples
 };
 
-/// What the print's margins say of which of the poses that look alike by their shape is right: of the examples that are
-/// right up to the shape and have alternatives, by logistic regression with a prior as for fit_quality_settings().
+/// Fits the probability of the texture's margins by logistic regression over the examples that are correct up to their
+/// shape and have alternatives, with a prior as for fit_quality_settings().
 PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, const PrintSettings& prior,
                                  double precision);
 
-/// Bias, weights and typical values that explain the examples best (maximum a posteriori, a Gaussian about each weight
-/// of `prior`, as strong as `precision` examples): few examples move them little from there. `least` is the prior's,
-/// and so is the weight of seen_through.
+/// Fits the bias, weights and mean terms that explain the examples best (maximum a posteriori, with a Gaussian about
+/// each weight of `prior`, as strong as `precision` examples): few examples move them little from there. `min_quality`
+/// is the prior's, and so is the weight of `free_space_violation`.
 QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples, const QualitySettings& prior,
                                      double precision);
 
-/// What the poses of several objects, by name, teach of each: its quality, which is drawn to what they have in common,
-/// and what that says of its presence. The latter is learnt from qualities that did not know the examples (those of one
-/// half from the other half), as later ones will not.
+/// Learns the quality settings of several objects from their poses, by name, with the objects' common weights as a
+/// prior, and the presence settings from these qualities. The latter use cross-fitted qualities (those of one half from
+/// the other half), since later ones will not have been trained on their examples either.
 std::map<std::string, QualitySettings> learn_qualities(
     const std::map<std::string, std::vector<QualityExample>>& examples);
 

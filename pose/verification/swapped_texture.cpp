@@ -12,7 +12,7 @@ ModelView with_opposite_colours(const ModelView& view) {
   ModelView other = view;
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
   for (const Eigen::Vector3f& point : view.points) middle += point / static_cast<float>(view.points.size());
-  std::vector<Eigen::Vector3f> across;  // from the middle, across the line of sight
+  std::vector<Eigen::Vector3f> across;  // offsets from the middle, across the line of sight
   across.reserve(view.points.size());
   for (const Eigen::Vector3f& point : view.points) {
     const Eigen::Vector3f from_middle = point - middle;

@@ -11,7 +11,7 @@
 namespace houghstream {
 namespace {
 
-/// What is looked at across the outline of a rendered model.
+/// View of a rendered model, across whose boundary samples are taken.
 struct BoundaryView {
   const RgbdFrame& frame;
   const cv::Mat& rendered;  ///< depth, metres; NaN beside the model
@@ -28,7 +28,7 @@ struct BoundaryView {
   }
 };
 
-/// 0 where colours are not known; nothing where they are known of other places only.
+/// Returns 0 where colours are not known; nothing where they are known of other positions only.
 std::optional<float> colours_apart_sq(const BoundaryView& view, const cv::Point& inside, const cv::Point& beyond) {
   if (view.colours == nullptr || view.colours->lab.empty()) return 0.0F;
   const cv::Mat& lab = view.colours->lab;
@@ -38,8 +38,8 @@ std::optional<float> colours_apart_sq(const BoundaryView& view, const cv::Point&
   return colour_distance_sq(lab.at<cv::Vec3b>(inside - origin), lab.at<cv::Vec3b>(beyond - origin));
 }
 
-/// From the outline's pixel `at` towards `side`. Nothing where that says nothing: across a notch, beside the frame,
-/// or behind another thing.
+/// Samples the scene from the boundary pixel `at` towards `side`. Returns nothing where the sample is not informative:
+/// across a notch, beside the frame, or behind another object.
 std::optional<BoundarySample> sample_boundary(const BoundaryView& view, const cv::Point& at, const cv::Point& side,
                                               const DepthTolerance& tolerance) {
   constexpr double kInside = 0.004;  // metres: not on the edge, whose depth and colour are mixed
@@ -65,7 +65,7 @@ std::optional<BoundarySample> sample_boundary(const BoundaryView& view, const cv
   return seen;
 }
 
-/// To the left and right of each row's outline, and above and below each column's.
+/// Takes samples to the left and right of each row's boundary, and above and below each column's.
 void compare_boundary(const BoundaryView& view, const DepthTolerance& tolerance, Verification& result) {
   const std::array<cv::Point, 4> sides{cv::Point(1, 0), {-1, 0}, {0, 1}, {0, -1}};
   for (int y = 0; y < view.rendered.rows; ++y) {

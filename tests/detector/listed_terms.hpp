@@ -4,7 +4,7 @@
 
 namespace houghstream {
 
-/// In the order of kScoreTermList.
+/// Returns the terms in the order of kScoreTermList.
 inline std::array<float, kScoreTerms> listed(const ScoreTerms& terms) {
   std::array<float, kScoreTerms> values{};
   for (std::size_t i = 0; i < kScoreTerms; ++i) values[i] = terms.*kScoreTermList[i];

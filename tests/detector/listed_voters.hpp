@@ -7,10 +7,10 @@
 
 namespace houghstream {
 
-/// A patch that votes for a class.
+/// Describes a patch that votes for a class.
 struct ListedVoter {
   std::uint32_t patch;
-  std::vector<std::uint32_t> entries;  ///< what the leaves know that its trees lead to
+  std::vector<std::uint32_t> entries;  ///< class entries of the leaves in its trees
   bool operator==(const ListedVoter& other) const { return patch == other.patch && entries == other.entries; }
 };
 

@@ -9,9 +9,9 @@ namespace houghstream::toy {
 
 constexpr int kClassPlane = 7;   ///< rises across every image of the object and is flat elsewhere
 constexpr int kOffsetPlane = 8;  ///< rises where the offset is +0.05 m and is flat where it is -0.05 m
-constexpr int kNoisePlane = 20;  ///< tells nothing
+constexpr int kNoisePlane = 20;  ///< not informative
 
-/// A set whose answer is known: 16 images, every other one background, and 50 samples of each.
+/// Returns a set whose answer is known: 16 images, every other one background, and 50 samples of each.
 inline training::TrainingSet planted_set() {
   training::TrainingSet set;
   set.classes.resize(1);

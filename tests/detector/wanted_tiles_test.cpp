@@ -10,15 +10,16 @@
 namespace houghstream {
 namespace {
 
-/// One tile in a room that is too far away for the near level: most of that one's image is looked at by nobody.
+/// Returns one tile before a background that is too far away for the near level, so that most of that level's image is
+/// unused.
 RgbdFrame tile_on_a_background() {
   RgbdFrame frame = toy::background(90);
   toy::put_tile(0, 100.0, 90.0, 0.7, frame);
   return frame;
 }
 
-/// A frame that differs from it everywhere and has patches everywhere at both levels: what it leaves in memory that is
-/// kept from frame to frame is wrong for any other.
+/// Returns a frame that differs from it everywhere and has patches everywhere at both levels: what it leaves in memory
+/// that is kept from frame to frame is wrong for any other.
 RgbdFrame other_frame() {
   RgbdFrame frame = toy::background(91);
   cv::Mat(frame.depth.rowRange(0, 120)).setTo(0.8F);
@@ -41,7 +42,7 @@ void see(const RgbdFrame& frame, const DetectionSettings& settings, DetectorWork
   find_posteriors(search, workspace);
 }
 
-/// The patches' levels, with features of whole images, whoever looks at them.
+/// Returns the patches' levels, with features of whole images, whoever looks at them.
 std::vector<FeatureImage> whole_images(const RgbdFrame& frame) {
   std::vector<FeatureImage> images;
   for (const FeatureLevel& level : feature_levels(toy::forest().features, frame.camera)) {

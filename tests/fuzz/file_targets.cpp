@@ -31,7 +31,7 @@ fs::path scratch(const std::string& name) {
   return memory / fmt::format("houghstream_fuzz_{}_{}", getpid(), name);
 }
 
-/// Behind the line with the version: u64 length, u32 CRC-32, payload.
+/// The line with the version is followed by u64 length, u32 CRC-32 and payload.
 void repair_forest(Bytes& input) {
   const std::string line = std::string("HOUGHSTREAM FOREST ") + std::to_string(kForestFileVersion) + '\n';
   const std::size_t payload = line.size() + 12;
@@ -72,7 +72,7 @@ std::vector<Bytes> forests() {
   return {content_of(file)};
 }
 
-/// Text files of a folder, divided by bytes 0.
+/// Writes text files of a folder, which bytes 0 divide.
 void write_parts(ByteView input, const fs::path& folder, const std::vector<std::string>& names) {
   std::string text(reinterpret_cast<const char*>(input.data), input.size);
   for (const std::string& name : names) {
@@ -84,7 +84,7 @@ void write_parts(ByteView input, const fs::path& folder, const std::vector<std::
 
 const std::vector<std::string> kScene = {"scene_camera.json", "scene_gt.json", "scene_gt_info.json"};
 
-/// Images and what is in them.
+/// Reads images and their objects.
 Taken read_scene(ByteView input) {
   const fs::path folder = scratch("scene");
   fs::create_directories(folder);
@@ -117,7 +117,7 @@ fs::path store_folder() {
   return folder;
 }
 
-/// Objects, what is known of them, and their triangles.
+/// Reads objects, their data and triangles.
 Taken read_stored(ByteView input) {
   const fs::path folder = store_folder();
   write_parts(input, folder, kStore);
@@ -144,7 +144,7 @@ std::vector<Bytes> stores() {
   return {parts};
 }
 
-/// All of a camera's six numbers or nothing.
+/// Reads all of a camera's six numbers or none.
 Taken read_calibration(ByteView input) {
   read_camera_info(as_file(input, "yaml"));
   return {6};
@@ -226,7 +226,7 @@ std::vector<FuzzTarget> file_targets() {
            kAnyDamage},
           {"png", read_png, pngs, nullptr, png_words, 4096, kAnyDamage},
           {"depth", read_depth, depth_pngs, nullptr, png_words, 4096, kAnyDamage},
-          // It states its size once, without a checksum: who knows the camera sees that it is another one.
+          // A file states its size once, without a checksum: a reader who knows the camera detects a changed size.
           {"jpeg", read_jpeg, jpegs, nullptr, {"\xFF\xDA", "\xFF\xC2", "\xFF\x01"}, 4096, {true, {}}}};
 }
 

@@ -8,9 +8,9 @@
 #include "pipeline/base/log_line.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
 
-// One program for all targets under libFuzzer: HOUGHSTREAM_FUZZ_TARGET names the one that it tries. With
-// HOUGHSTREAM_FUZZ_SEEDS=FOLDER it writes FOLDER/TARGET/* and FOLDER/TARGET.dict for all of them, a line for each with
-// its name and the longest input, and ends. tools/test --fuzz starts it.
+// This is one program for all targets under libFuzzer: HOUGHSTREAM_FUZZ_TARGET names the target to run. With
+// HOUGHSTREAM_FUZZ_SEEDS=FOLDER it writes FOLDER/TARGET/* and FOLDER/TARGET.dict for all of them, prints a line for
+// each with its name and the longest input, and ends. tools/test --fuzz starts it.
 
 namespace {
 

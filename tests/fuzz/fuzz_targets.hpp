@@ -20,11 +20,11 @@ using Bytes = std::vector<std::uint8_t>;
 /// Items that a reader took from an input.
 struct Taken {
   std::size_t items = 0;    ///< events, frames, nodes, pixels, triangles: of what the format holds many
-  bool tells_loss = false;  ///< it went on behind damage, and says so
+  bool tells_loss = false;  ///< it continued behind damage, and reports so
 };
 
-/// Which damage of a whole input a reader knows, wherever it is: it then refuses it, tells of a loss, or takes as many
-/// items as of the whole one. Never are they fewer without a word.
+/// Names the damage of a whole input that a reader detects at any position: it then refuses the input, reports a loss,
+/// or takes as many items as of the whole one. It never takes fewer silently.
 struct KnownDamage {
   bool cuts = false;
   /// Flipped bits, but for those that take so many items at most; nothing = there are some that may take any number.
@@ -53,10 +53,11 @@ std::vector<FuzzTarget> recording_targets();
 std::vector<FuzzTarget> mesh_targets();
 std::vector<FuzzTarget> text_targets();
 
-/// All of them.
+/// Returns all targets.
 std::vector<FuzzTarget> fuzz_targets();
 
-/// The input as a file with this ending, in memory where the machine has such a folder; the same file each time.
+/// Returns the input as a file with this ending, in memory where the machine has such a folder; the same file each
+/// time.
 std::string as_file(ByteView input, const std::string& ending);
 
 Bytes content_of(const std::filesystem::path& file);

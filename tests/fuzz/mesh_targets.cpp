@@ -17,7 +17,7 @@ Taken read_obj(ByteView input) {
   return {load_mesh(as_file(input, "mesh.obj")).triangles.size()};
 }
 
-/// The materials of a mesh that is whole.
+/// Returns the materials of a mesh that is whole.
 Taken read_mtl(ByteView input) {
   const std::string materials = std::filesystem::path(as_file(input, "paint.mtl")).filename().string();
   const Bytes mesh =

@@ -37,7 +37,7 @@ ObjectPoses posed() {
   return poses;
 }
 
-/// Every other message of ours, by its fingerprint.
+/// Reads all other messages of this project, by their fingerprint.
 Taken read_result(ByteView input) {
   const std::int64_t fingerprint = log_tools::fingerprint_of(input);
   if (fingerprint == detections_t::getHash()) detections_from_message(decode_message<detections_t>(input));

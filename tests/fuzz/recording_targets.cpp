@@ -59,7 +59,7 @@ Taken read_oni(ByteView input) {
   return {openni::check_oni(as_file(input, "oni"))};
 }
 
-/// A file's head, a stream that states two images, those, the times of its seek table, its end.
+/// Returns a file's head, a stream that states two images, those, the times of its seek table, its end.
 std::vector<Bytes> onis() {
   Bytes bytes = {'N', 'I', '1', '0', 1, 0, 1, 0, 0, 0, 0, 0};
   bytes.resize(24);
@@ -90,7 +90,7 @@ std::vector<Bytes> onis() {
 
 std::vector<FuzzTarget> recording_targets() {
   const std::string sync = "\xED\xA1\xDA\x01";
-  return {// Between two events a cut cannot be told; a seal is for that.
+  return {// a cut between two events is only detected by a seal
           {"log", read_log, logs, nullptr, {sync}, 4096, {false, 0}},
           {"sealed_log", read_log, sealed_logs, nullptr, {sync, "HSSEAL1"}, 4096, kAnyDamage},
           {"klg", read_klg, klgs, nullptr, {}, 4096, kAnyDamage},

@@ -31,14 +31,14 @@ std::optional<Taken> taken_of(const FuzzTarget& target, const Bytes& input, cons
   return std::nullopt;
 }
 
-/// At least these items are taken from a damaged input, with a warning.
+/// Expects that at least these items are taken from a damaged input, or a warning.
 void expect_no_less(const std::optional<Taken>& taken, std::size_t items, const std::string& what) {
   if (taken && !taken->tells_loss) {
     EXPECT_GE(taken->items, items) << what << ": taken without a word";
   }
 }
 
-/// Even ones, and those behind a line: a text that ends there may look whole.
+/// Returns even cuts, and those behind a line: a text that ends there may look whole.
 std::vector<std::size_t> cuts_of(const Bytes& seed) {
   std::vector<std::size_t> cuts;
   for (std::size_t i = 0; i < 30; ++i) cuts.push_back(seed.size() * i / 30);
@@ -100,7 +100,7 @@ std::string repeated(const std::string& text) {
   return out;
 }
 
-// Long ones of one word, by target.
+// The texts are long repetitions of one word, by target.
 TEST(FuzzReplay, NestingWithoutEndThatOnceFailedDoesNotFailAgain) {
   const std::vector<std::pair<std::string, std::string>> inputs = {
       {"places", "cameras:\n  A:" + repeated(" [\n") + " "},

@@ -57,7 +57,7 @@ std::vector<Bytes> places() {
                     "---\n")};
 }
 
-/// The two lists of a TUM sequence, divided by a byte 0.
+/// Reads the two lists of a TUM sequence, which a byte 0 divides.
 Taken read_sequence(ByteView input) {
   const std::string text = text_of(input);
   const std::size_t end = std::min(text.find('\0'), text.size());
@@ -80,7 +80,7 @@ std::vector<Bytes> sequences() {
 std::vector<FuzzTarget> text_targets() {
   return {
       {"words", read_words, words, nullptr, {"[a-z]", "(a|b)*", "{2,3}", "\\d", "640x480,", "1e308", "\"", "'"}, 128},
-      // Between two cameras a cut cannot be told.
+      // A cut between two cameras cannot be detected.
       {"places",
        read_places,
        places,

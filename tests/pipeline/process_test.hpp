@@ -57,7 +57,7 @@ class ProcessOnMemq {
     return at<Message>(name, count(name) - 1);
   }
 
-  /// A message of a type that this project sends and never reads.
+  /// Returns a message of a type that this project sends and never reads.
   template <typename Message>
   Message only_sent(const std::string& name, std::size_t index) {
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -7,7 +7,7 @@
 
 namespace houghstream {
 
-/// A small frame with a smooth image, a slope of depth in whole millimetres, and holes.
+/// Returns a small frame with a smooth image, a slope of depth in whole millimetres, and holes.
 inline RgbdFrame make_test_frame(std::int64_t utime, int width = 64, int height = 48) {
   RgbdFrame frame;
   frame.id.utime = utime;

@@ -15,7 +15,7 @@ namespace {
 
 using namespace test_scene;
 
-/// The object standing on a table at z = `foot` of its own frame.
+/// Renders the object standing on a table at z = `foot` of its own frame.
 struct StandingScene {
   Mesh object;
   Mesh ground = table();

@@ -6,7 +6,8 @@
 
 namespace houghstream::test_scene {
 
-/// The cereal box with a colour of its own on each side; of the two large ones (+-y) one has a red and one a blue half.
+/// Returns the cereal box with a colour of its own on each side; of the two large ones (+-y) one has a red and one a
+/// blue half.
 inline Mesh printed_box() {
   Mesh mesh = cereal_box();
   const std::array<cv::Vec3b, 6> sides = {cv::Vec3b(90, 90, 90),  cv::Vec3b(200, 200, 200), cv::Vec3b(40, 40, 220),
@@ -41,7 +42,7 @@ inline RgbdFrame coloured_frame(const Mesh& mesh, const Eigen::Isometry3d& T_cam
   return frame;
 }
 
-/// Turned about the object's z axis.
+/// Returns the pose rotated about the object's z axis.
 inline Eigen::Isometry3d rotated(const Eigen::Isometry3d& T_camera_object, double degrees) {
   Eigen::Isometry3d out = T_camera_object;
   out.rotate(Eigen::AngleAxisd(degrees * 0.017453292519943295, Eigen::Vector3d::UnitZ()));

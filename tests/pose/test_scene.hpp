@@ -43,7 +43,7 @@ inline Mesh cereal_box() {
   return mesh;
 }
 
-/// A thin-walled cup, open at the top (+z), with a square handle towards +x.
+/// Returns a thin-walled cup, open at the top (+z), with a square handle towards +x.
 inline Mesh mug() {
   Mesh mesh;
   constexpr int kSides = 48;
@@ -70,7 +70,7 @@ inline Mesh mug() {
   return mesh;
 }
 
-/// Horizontal table, 4 m wide, its top at z = 0 of its own frame.
+/// Returns a horizontal table, 4 m wide, its top at z = 0 of its own frame.
 inline Mesh table() {
   Mesh mesh;
   add_quad(mesh, {Eigen::Vector3f(-2, -2, 0), Eigen::Vector3f(2, -2, 0), Eigen::Vector3f(2, 2, 0),
@@ -78,7 +78,8 @@ inline Mesh table() {
   return mesh;
 }
 
-/// Camera looking down at `pitch_deg` on an object that stands `distance_m` away, turned by `azimuth_deg` about its z.
+/// Returns the camera looking down at `pitch_deg` on an object that stands `distance_m` away, turned by `azimuth_deg`
+/// about its z.
 inline Eigen::Isometry3d standing(double azimuth_deg, double pitch_deg, double distance_m) {
   constexpr double kRad = 0.017453292519943295;
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
@@ -88,7 +89,7 @@ inline Eigen::Isometry3d standing(double azimuth_deg, double pitch_deg, double d
   return T_camera_object;
 }
 
-/// The depth of the items with noise growing as z^2 (1.4 mm at 1 m) and 2 % of the pixels lost.
+/// Returns the depth of the items with noise growing as z^2 (1.4 mm at 1 m) and 2 % of the pixels lost.
 inline RgbdFrame noisy_frame(const std::vector<RenderItem>& items, std::uint64_t seed) {
   RgbdFrame frame;
   frame.id.utime = 1000;
@@ -108,7 +109,7 @@ inline RgbdFrame noisy_frame(const std::vector<RenderItem>& items, std::uint64_t
   return frame;
 }
 
-/// Truth turned by `degrees` about a random axis and moved by `metres` in a random direction.
+/// Returns the true pose rotated by `degrees` about a random axis and moved by `metres` in a random direction.
 inline Eigen::Isometry3d perturbed(const Eigen::Isometry3d& T_camera_object, double degrees, double metres,
                                    Random& random) {
   const auto direction = [&random] {

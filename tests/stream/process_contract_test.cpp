@@ -34,8 +34,8 @@ struct Process {
   std::string output;             ///< channel of what it publishes
   std::string input;              ///< channel of the results that it brings together with their frames; empty = of none
   std::size_t per_frame = 0;      ///< messages that it publishes for each frame
-  std::size_t per_result = 0;     ///< and for each result that has its frame
-  bool passes_over_late = false;  ///< what newer frames have overtaken
+  std::size_t per_result = 0;     ///< and one for each result that has its frame
+  bool passes_over_late = false;  ///< true if it drops frames overtaken by newer ones
   std::function<void(LcmBus&, const RunOptions&)> run;
 };
 
@@ -161,7 +161,7 @@ class RunningProcess {
 
   void send_frame(int frame, const std::string& camera = channel::kFrame) { publish(camera, frame_bytes(frame)); }
 
-  /// Nothing where the process takes no results.
+  /// Does nothing where the process receives no results.
   void send_result(int frame, const std::string& camera = channel::kFrame) {
     if (joins()) publish(process_.input, result_bytes(process_, {camera, utime_of(frame)}));
   }
@@ -172,7 +172,7 @@ class RunningProcess {
     EXPECT_TRUE(test_.wait_for(process_.output, expected_));
   }
 
-  /// A frame, and what was found in it, which come through.
+  /// Sends a frame with detections, which come through.
   void send(int frame, const std::string& camera = channel::kFrame) {
     send_frame(frame, camera);
     test_.wait_for(process_.output, expected_ + process_.per_frame);
@@ -348,7 +348,7 @@ class LogFiles {
       std::filesystem::temp_directory_path() / ("process_contract_test." + std::to_string(getpid()));
 };
 
-/// `count` frames, each with what was found in it.
+/// Returns `count` frames, each with detections.
 std::vector<LogEvent> recorded(const Process& process, int count) {
   std::vector<LogEvent> events;
   for (int i = 0; i < count; ++i) {
@@ -366,7 +366,7 @@ std::vector<LogEvent> on_channel(const std::vector<LogEvent>& events, const std:
   return found;
 }
 
-/// The bytes but for how long stages took.
+/// Returns the bytes but for how long stages took.
 Bytes without_times(const LogEvent& event) {
   if (event.channel != channel::kObjects) return event.data;
   auto message = decode_message<objects_t>({event.data.data(), event.data.size()});

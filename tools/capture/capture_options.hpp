@@ -10,7 +10,7 @@
 
 namespace houghstream::capture {
 
-/// What the command line says of the source and of a camera.
+/// Options of the source and of a camera.
 struct SourceOptions {
   std::string source;
   openni::CameraOptions live;
@@ -26,7 +26,7 @@ void add_source_options(CommandLine& app, SourceOptions& options);
 /// source cannot heed.
 std::unique_ptr<FrameSource> open_source(const SourceOptions& options, const openni::CameraListener& listener);
 
-/// What --list-devices prints: the cameras that are there. Throws InputError where OpenNI2 finds no driver.
+/// Returns the text of --list-devices: the connected cameras. Throws InputError where OpenNI2 finds no driver.
 std::string devices_text();
 
 }  // namespace houghstream::capture

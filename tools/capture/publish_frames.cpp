@@ -97,7 +97,7 @@ class Pace {
   }
 
  private:
-  static constexpr std::chrono::milliseconds kPollInterval{50};  // how long a stop signal may go unnoticed
+  static constexpr std::chrono::milliseconds kPollInterval{50};  // maximum delay until a stop signal is noticed
 
   Clock::duration period_;
   Heartbeat& heart_;
@@ -111,7 +111,7 @@ class StatusTicker {
     const BlockStopSignals block;
     thread_ = std::thread([this, &status, &bus, &work] {
       while (running_) {
-        // Who hangs says nothing more.
+        // A hung process publishes no status.
         if (work.is_beating() && status.try_publish_if_due(bus)) notify_service("WATCHDOG=1");
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
       }
@@ -145,7 +145,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// All frames of a source, each with the time of its capture, or for recordings at the wanted rate.
+/// Writes all frames of a source, each with the time of its capture, or for recordings at the wanted rate.
 CaptureResult write_frames(FrameFeed& feed, const CaptureSettings& settings, LogWriter& log) {
   CaptureResult result;
   const Clock::time_point start = Clock::now();
@@ -210,7 +210,7 @@ CaptureResult capture_to_log(const OpenSource& open, const CaptureSettings& sett
     return result;
   } catch (const std::exception& error) {
     if (!feed.is_live()) throw;
-    log.keep_partial();  // what a camera has seen cannot be had again
+    log.keep_partial();  // a camera's recording cannot be repeated
     fail("{}; what was recorded until then is in {} (hs-log filter makes a log of it)", error.what(),
          log.partial().string());
   }

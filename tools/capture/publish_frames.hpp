@@ -17,11 +17,11 @@ struct CaptureSettings {
   std::string channel = "OPENNI_FRAME";
   std::optional<double> rate_hz;       ///< default: the source's own rate
   std::optional<std::int64_t> frames;  ///< end after this many
-  bool loop = false;                   ///< start again at the source's end; utimes go on rising
+  bool loop = false;                   ///< start again at the source's end; utimes continue to rise
   bool replace = false;                ///< a log that is there, instead of taking the next number
 };
 
-/// What became of the frames.
+/// Counts of the frames.
 struct CaptureResult {
   std::int64_t frames = 0;
   std::int64_t bytes = 0;
@@ -29,7 +29,7 @@ struct CaptureResult {
   std::string written;  ///< the log's name, which may have got a number
 };
 
-/// Opens the source; called again at its end where the settings say so. A camera tells the listener how it is.
+/// Opens the source; called again at its end where the settings require it. A camera reports its state to the listener.
 using OpenSource = std::function<std::unique_ptr<FrameSource>(const openni::CameraListener&)>;
 
 /// Publishes the source's frames on the network at their rate, those of a camera as they come, until its end or a stop

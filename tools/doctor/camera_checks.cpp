@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 struct CameraKind {
   const char* vendor;        ///< USB id
   const char* product;       ///< USB id; "" = all of the vendor's
-  const char* name;          ///< for people
+  const char* name;          ///< name for people
   const char* driver;        ///< its OpenNI2 driver's file begins with this
   const char* installation;  ///< command; {} is the folder of drivers
 };

@@ -5,9 +5,9 @@
 
 namespace houghstream::doctor {
 
-/// RGB-D cameras on USB and the right to use them; OpenNI2's library, its folder of drivers, their names, whether they
-/// can be loaded, and whether there is one for each camera. Where no camera is plugged in and none is `needed`, what is
-/// missing is a note: recordings can be replayed without.
+/// Checks RGB-D cameras on USB and the right to use them; OpenNI2's library, its folder of drivers, their names,
+/// whether they can be loaded, and whether there is one for each camera. Where no camera is plugged in and none is
+/// `needed`, missing parts are notes: recordings can be replayed without.
 Findings check_camera(const Machine& machine, bool needed);
 
 }  // namespace houghstream::doctor

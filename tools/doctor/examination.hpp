@@ -18,10 +18,10 @@ struct ExaminationSettings {
   std::filesystem::path programs;              ///< folder of our programs
 };
 
-/// Looks at everything the stream needs. Changes nothing.
+/// Examines all parts that the stream needs. Changes nothing.
 Findings examine(const Machine& machine, const ExaminationSettings& settings);
 
-/// A line for each finding, and below it the command that mends it.
+/// Returns a line for each finding, and below it the command that mends it.
 std::string to_text(const Findings& findings);
 
 /// Returns the number of findings that keep the stream from working.

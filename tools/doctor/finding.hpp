@@ -5,7 +5,7 @@
 
 namespace houghstream::doctor {
 
-/// Result of one check.
+/// Holds the result of one check.
 struct Finding {
   enum class Level {
     kOk,
@@ -13,8 +13,8 @@ struct Finding {
     kWrong,  ///< the stream would not work
   };
   Level level = Level::kOk;
-  std::string name;    ///< what was looked at, for instance "multicast route"
-  std::string what;    ///< what was found, one line
+  std::string name;    ///< subject of the check, for instance "multicast route"
+  std::string what;    ///< result of the check, one line
   std::string remedy;  ///< the command that mends it; "" where there is nothing to mend or no command can
 };
 

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Words of the first line of proc/cpuinfo that begins so.
+/// Returns the words of the first line of proc/cpuinfo that begins with the key.
 std::string cpu_line(const std::string& cpuinfo, const std::string& key) {
   std::istringstream lines(cpuinfo);
   for (std::string line; std::getline(lines, line);) {
@@ -93,7 +93,7 @@ Finding check_display(const Machine& machine) {
 
 namespace fs = std::filesystem;
 
-/// Without symbolic links: /bin is /usr/bin.
+/// Returns the path without symbolic links, since /bin is /usr/bin.
 fs::path resolved(const fs::path& path) {
   std::error_code unknown;
   const fs::path whole = fs::weakly_canonical(path, unknown);
@@ -128,7 +128,7 @@ Finding check_programs(const Machine& machine, const fs::path& programs) {
               place == "/usr/bin" ? "sudo apt-get remove houghstream" : fmt::format("sudo rm '{}'/hs-*", place));
 }
 
-/// Where Debian's Python looks for packages, in its order.
+/// Returns the folders in which Debian's Python looks for packages, in its order.
 std::vector<fs::path> python_folders(const Machine& machine) {
   std::vector<fs::path> folders;
   std::error_code unknown;

@@ -7,8 +7,8 @@
 
 namespace houghstream::doctor {
 
-/// Processor, LCM's tools, Java and what lcm-spy needs of it, display. All of it is convenience: notes, never wrong.
-/// `types_jar`: our message types for Java.
+/// Checks processor, LCM's tools, Java and lcm-spy's needs of it, display. All of it is optional: notes, never wrong.
+/// `types_jar` holds our message types for Java.
 Findings check_tools(const Machine& machine, const std::filesystem::path& types_jar);
 
 /// Checks for another installation, perhaps an old one, beside this one, whose programs are in the folder `programs`:

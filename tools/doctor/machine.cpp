@@ -44,7 +44,7 @@ std::size_t heard_bytes(const std::string& url, const std::string& channel) {
     bus.subscribe(channel, [&](const ReceivedMessage& arrival) { largest = std::max(largest, arrival.bytes.size); });
     handle_until(bus, milliseconds(1000), [] { return false; });
   } catch (const std::exception&) {
-    return 0;  // the self test says what is wrong with the bus
+    return 0;  // the self test reports a fault of the bus
   }
   return largest;
 }
@@ -59,7 +59,7 @@ std::set<std::string> heard_frame_channels(const std::string& url) {
     });
     handle_until(bus, milliseconds(1500), [] { return false; });
   } catch (const std::exception&) {
-    return {};  // the self test says what is wrong with the bus
+    return {};  // the self test reports a fault of the bus
   }
   return channels;
 }
@@ -76,7 +76,7 @@ std::map<std::string, std::string> heard_errors(const std::string& url) {
     });
     handle_until(bus, milliseconds(1500), [] { return false; });
   } catch (const std::exception&) {
-    return {};  // the self test says what is wrong with the bus
+    return {};  // the self test reports a fault of the bus
   }
   return errors;
 }
@@ -93,7 +93,7 @@ std::vector<CameraChroma> heard_camera_colours(const std::string& url) {
     });
     handle_until(bus, milliseconds(1500), [] { return false; });
   } catch (const std::exception&) {
-    return {};  // the self test says what is wrong with the bus
+    return {};  // the self test reports a fault of the bus
   }
   std::vector<CameraChroma> all;
   for (auto& [name, colours] : cameras) all.push_back(std::move(colours));
@@ -152,7 +152,7 @@ bool runs(const fs::path& program, const std::string& argument) {
   return failed == 0 && waitpid(pid, &status, 0) == pid && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/// As far as this user may ask: nftables answers root only.
+/// Returns whether a firewall rule refuses other hosts, as far as this user may ask: nftables answers only root.
 bool refuses_others(const std::string& port) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> answer(
       popen("nft list table inet houghstream 2>/dev/null", "r"), pclose);
@@ -166,7 +166,7 @@ bool refuses_others(const std::string& port) {
 
 std::string Machine::read(const std::string& path) const {
   std::ostringstream text;
-  text << std::ifstream(root / path).rdbuf();  // what fails while it is read, as files of /sys may, does not throw
+  text << std::ifstream(root / path).rdbuf();  // a read error, as for files of /sys, does not throw
   return text.str();
 }
 

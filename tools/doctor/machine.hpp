@@ -14,28 +14,28 @@
 
 namespace houghstream::doctor {
 
-/// Result of a loopback test: messages sent on the bus and received by the sender.
+/// Holds the result of a loopback test: messages sent on the bus and received by the sender.
 struct SelfTest {
   int sent = 0;
   int received = 0;   ///< whole and unchanged
   std::string error;  ///< why the bus could not be used at all, else ""
 };
 
-/// The doctor's view of a machine: files below `root`, and probes for the rest. Tests substitute others.
+/// Gives the doctor's view of a machine: files below `root`, and probes for the rest. Tests substitute others.
 struct Machine {
   std::filesystem::path root = "/";
   /// Value of an environment variable, "" where it is not set.
   std::function<std::string(const std::string& name)> environment;
   /// Bytes of receive buffer that the kernel grants of those asked for.
   std::function<std::int64_t(std::int64_t asked)> granted_receive_buffer;
-  /// Size of the largest message heard on the channel within a second; 0 = none.
+  /// Returns the size of the largest message received on the channel within a second; 0 = none.
   std::function<std::size_t(const std::string& url, const std::string& channel)> heard_bytes;
   /// Channels on which frames are heard within a second and a half.
   std::function<std::set<std::string>(const std::string& url)> heard_frame_channels;
   /// Returns the last errors of processes on the bus, by name, within a second and a half; those without one are left
   /// out.
   std::function<std::map<std::string, std::string>(const std::string& url)> heard_errors;
-  /// What is heard of cameras' colours within a second and a half, the last of each camera.
+  /// Receives cameras' colours for a second and a half, and returns the last of each camera.
   std::function<std::vector<CameraChroma>(const std::string& url)> heard_camera_colours;
   /// Sends messages of so many bytes and waits for them.
   std::function<SelfTest(const std::string& url, std::size_t bytes)> self_test;
@@ -49,9 +49,9 @@ struct Machine {
   /// Returns whether the program runs when started with the argument.
   std::function<bool(const std::filesystem::path& program, const std::string& argument)> runs;
 
-  /// The file's text, "" where it cannot be read. `path` from the root on, without a leading slash.
+  /// Returns the file's text, "" where it cannot be read. `path` is from the root on, without a leading slash.
   std::string read(const std::string& path) const;
-  /// Where a program lies on $PATH.
+  /// Returns the path of a program on $PATH.
   std::optional<std::filesystem::path> find_program(const std::string& name) const;
 };
 
@@ -64,19 +64,19 @@ Machine this_machine();
 
 namespace houghstream::doctor {
 
-/// Machine::heard_bytes of this machine.
+/// Implements Machine::heard_bytes for this machine.
 std::size_t heard_bytes(const std::string& url, const std::string& channel);
 
-/// Machine::heard_frame_channels of this machine.
+/// Implements Machine::heard_frame_channels for this machine.
 std::set<std::string> heard_frame_channels(const std::string& url);
 
-/// Machine::heard_errors of this machine.
+/// Implements Machine::heard_errors for this machine.
 std::map<std::string, std::string> heard_errors(const std::string& url);
 
-/// Machine::heard_camera_colours of this machine.
+/// Implements Machine::heard_camera_colours for this machine.
 std::vector<CameraChroma> heard_camera_colours(const std::string& url);
 
-/// Machine::self_test of this machine: some messages one after another on a channel of their own.
+/// Implements Machine::self_test for this machine: it sends some messages one after another on a channel of their own.
 SelfTest self_test(const std::string& url, std::size_t bytes);
 
 }  // namespace houghstream::doctor

@@ -27,7 +27,7 @@ constexpr const char* kColours = "colours";
 constexpr const char* kSelfTest = "LCM self test";
 constexpr const char* kBus = "the bus";
 
-/// Text off the wire, which is anybody's.
+/// Returns untrusted text off the wire, shortened and printable.
 std::string off_the_wire(const std::string& text) {
   constexpr std::size_t kMaxLength = 300;
   return printable(text.substr(0, kMaxLength));
@@ -39,7 +39,7 @@ std::string server_remedy(const Endpoint& server) {
                      is_here ? "" : fmt::format("on {}: ", server.address), server.port);
 }
 
-/// The interface through which packets to the address leave, by /proc/net/route: the narrowest route, then the
+/// Returns the interface through which packets to the address leave, by /proc/net/route: the narrowest route, then the
 /// smallest metric. Numbers there are in the order of the network, read as those of this machine, like inet_addr().
 std::optional<std::string> interface_to(const Machine& machine, const std::string& address) {
   const std::uint32_t target = inet_addr(address.c_str());
@@ -141,8 +141,8 @@ Findings check_processes(const Machine& machine, const std::string& url) {
   return findings;
 }
 
-/// How cameras render known colours, where hs-pose has learnt it. Detection allows for it, but what a camera cannot
-/// tell apart nobody can.
+/// Reports how cameras render known colours, where hs-pose has learnt it. Detection corrects for it, but colours that a
+/// camera cannot separate remain indistinguishable.
 Findings check_camera_colours(const Machine& machine, const std::string& url) {
   constexpr double kMinObjects = 2.5;  // chosen: one or two may be wrong
   constexpr double kMaxCast = 15.0;    // chosen: half of the chroma of household objects in the mean
@@ -220,7 +220,7 @@ Findings check_network(const Machine& machine, const BusSettings& settings) {
     findings.push_back(check_java_buffer(machine, frame_bytes));
   }
   findings.push_back(check_senders(machine, settings.url));
-  // Without a route LCM would wait for its own test for ten seconds, to say the same.
+  // Without a route LCM would wait ten seconds for its own test, which fails for the same reason.
   findings.push_back(route ? check_self_test(machine, settings.url, frame_bytes)
                            : note(kSelfTest, "not tried: there is no route"));
   if (!route) return findings;

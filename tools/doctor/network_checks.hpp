@@ -9,7 +9,7 @@
 namespace houghstream::doctor {
 
 struct BusSettings {
-  std::string url;            ///< as LCM takes it, complete
+  std::string url;            ///< complete LCM URL
   std::string frame_channel;  ///< listened to for the size of the frames in use
   std::size_t frame_bytes;    ///< taken where no frame is heard
 };

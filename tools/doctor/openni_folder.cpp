@@ -16,7 +16,7 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// "libPS1080" of libPS1080.so.0.
+/// Returns "libPS1080" for libPS1080.so.0.
 std::string stem_of(const fs::path& file) {
   const std::string name = file.filename().string();
   return name.substr(0, name.find(".so"));

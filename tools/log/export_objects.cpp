@@ -79,7 +79,7 @@ OrderedJson world_json(const WorldObjects& world) {
   return json;
 }
 
-/// Each object with the changes of its state, in the order of worlds and numbers.
+/// Returns each object with the changes of its state, in the order of worlds and numbers.
 OrderedJson stories_of(const std::vector<WorldObjects>& worlds) {
   std::map<std::pair<int, std::int64_t>, OrderedJson> stories;
   for (const WorldObjects& world : worlds) {

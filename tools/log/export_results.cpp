@@ -20,16 +20,16 @@ namespace {
 
 /// Returns the rows of a frame, each object once.
 struct ExportedFrame {
-  FrameResult look;                  ///< what its detectors found, joined; where none looked, nothing
-  std::vector<ObjectPose> followed;  ///< from frame to frame, those that no detection of the look stands for
+  FrameResult look;                  ///< joined results of its detectors; empty where none processed it
+  std::vector<ObjectPose> followed;  ///< poses followed from frame to frame for which there is no detection
 };
 
 const ObjectPose* pose_of(const FrameResult& look, std::size_t detection) {
   return look.poses ? find_pose(*look.poses, detection) : nullptr;
 }
 
-/// Candidates that no pose has confirmed are none of the frame's objects. Of a look that hs-pose has not answered, what
-/// is followed says more than the detections of the same class.
+/// Returns whether a detection is written. Candidates that no pose has confirmed are not objects of the frame. If
+/// hs-pose has not answered a detection result, the followed poses are more reliable than detections of the same class.
 bool is_written(const ExportedFrame& frame, std::size_t index) {
   const Detection& detection = frame.look.detections.detections[index];
   const auto is_same_class = [&](const ObjectPose& pose) { return pose.class_name == detection.class_name; };
@@ -63,7 +63,7 @@ std::vector<ObjectPose> followed_beside(const FrameResult& look, const ObjectPos
   return others;
 }
 
-/// Nothing where the frame has neither detections nor what is followed.
+/// Returns nothing where the frame has neither detections nor followed poses.
 std::optional<ExportedFrame> exported(const FrameResults& all) {
   std::optional<FrameResult> look = all.merge();
   if (!look && !all.followed()) return std::nullopt;
@@ -74,7 +74,7 @@ std::optional<ExportedFrame> exported(const FrameResults& all) {
   return ExportedFrame{std::move(*look), std::move(others)};
 }
 
-/// All frames of the log, of all cameras, in the order of time.
+/// Reads all frames of the log, of all cameras, in the order of time.
 std::vector<ExportedFrame> read_results(const std::filesystem::path& log_file, LossReport& losses) {
   std::map<FrameId, FrameResults> found;
   IntactEvents events(log_file, losses);
@@ -189,7 +189,7 @@ OrderedJson frame_json(const ExportedFrame& frame) {
   const bool posed = look.poses && !look.poses->stages.empty();
   json["stages_us"] = OrderedJson::object();
   for (const StageTime& stage : posed ? look.poses->stages : look.detections.stages) {
-    OrderedJson& sum = json["stages_us"][stage.stage];  // several detectors say of the same stage what each one took
+    OrderedJson& sum = json["stages_us"][stage.stage];  // several detectors list the same stage, each with its time
     sum = (sum.is_null() ? 0 : sum.get<std::int64_t>()) + stage.duration_us;
   }
   return json;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kHourUs = 3'600'000'000;
 
-/// Where a log's seconds are counted from: its first event that is dated as most of its first ones are.
+/// Returns the origin of a log's seconds: its first event whose date is close to that of most of its first ones.
 std::int64_t origin_of(const std::filesystem::path& log_file) {
   constexpr std::size_t kAsked = 9;
   LossReport unheard;
@@ -33,12 +33,12 @@ std::int64_t origin_of(const std::filesystem::path& log_file) {
   });
 }
 
-/// Looks at the dates of a log's events, one after another.
+/// Checks the dates of a log's events, one after another.
 class Dates {
  public:
   explicit Dates(std::int64_t origin) : origin_(origin) {}
 
-  /// Seconds since the origin.
+  /// Returns the seconds since the origin.
   double note(std::int64_t time) {
     const std::int64_t since = microseconds_between(origin_, time);
     if (since < 0) {
@@ -76,7 +76,7 @@ std::int64_t filter_log(const std::filesystem::path& log_file, const LogFilter& 
   require_other_file(out_file, log_file);
   Dates dates(origin_of(log_file));
   IntactEvents events(log_file, losses);
-  std::optional<LogWriter> out;  // not before there is something to write
+  std::optional<LogWriter> out;  // made when there is something to write
   std::int64_t kept = 0;
   while (const std::optional<LogEvent> event = events.next()) {
     const double time_s = dates.note(event->timestamp);

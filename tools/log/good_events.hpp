@@ -14,7 +14,7 @@ namespace houghstream::log_tools {
 class LossReport {
  public:
   void note_damage(std::uint64_t bytes, const std::string& reason);
-  /// A message or frame that arrived whole and cannot be understood.
+  /// Notes a message or frame that arrived whole and cannot be understood.
   void note_refused(const std::string& reason);
 
   std::int64_t damaged_places() const { return damaged_places_; }
@@ -22,7 +22,7 @@ class LossReport {
   /// Something that looks wrong, though nothing is lost by it.
   void add_warning(const std::string& words) { oddities_ += (oddities_.empty() ? "" : "; ") + words; }
 
-  /// One line that says what was lost and why, and what looks wrong, or "" where nothing was and does.
+  /// Returns one line about losses, their reasons and warnings, or "" where there are none.
   std::string line() const;
 
  private:
@@ -34,13 +34,13 @@ class LossReport {
   std::string oddities_;
 };
 
-/// Reads the events of a log that are whole, and goes on behind damage. Says on stderr how far it is.
+/// Reads the events of a log that are whole, and continues behind damage. Shows its progress on stderr.
 class IntactEvents {
  public:
   /// `losses` must outlive it. Throws InputError when the file cannot be read or is empty.
   IntactEvents(const std::filesystem::path& file, LossReport& losses);
 
-  /// The next whole event, or nothing at the end. Throws InputError when the file holds none at all.
+  /// Returns the next whole event, or nothing at the end. Throws InputError when the file holds none at all.
   std::optional<LogEvent> next();
 
  private:

@@ -18,11 +18,11 @@ class KlgFile {
   /// Throws InputError when the file cannot be read or its count is absurd.
   KlgFile(const std::filesystem::path& file, int width, int height);
 
-  /// The next frame as it was recorded, or nothing at the end. Throws InputError where the file is cut or damaged; what
-  /// follows cannot be found then. So it does behind the last frame, where the file goes on.
+  /// Returns the next frame as it was recorded, or nothing at the end. Throws InputError where the file is cut or
+  /// damaged, since the next frame cannot be found then, and where the file continues behind the last frame.
   std::optional<images_t> next();
 
-  /// Bytes from the next frame to the end.
+  /// Returns the bytes from the next frame to the end.
   std::uint64_t bytes_left() const { return size_ - position_; }
 
  private:
@@ -33,7 +33,7 @@ class KlgFile {
   int width_;
   int height_;
   std::uint64_t size_ = 0;
-  std::uint64_t position_ = 0;  // of the next frame
+  std::uint64_t position_ = 0;  // position of the next frame
   std::int32_t frames_ = 0;
   std::int32_t index_ = 0;
 };

@@ -78,7 +78,7 @@ class Counter {
 
   LogInfo& info_;
   LossReport& losses_;
-  std::map<std::string, SequenceTracker> numbers_;  // by channel
+  std::map<std::string, SequenceTracker> numbers_;  // by channel name
 };
 
 double seconds(std::int64_t microseconds) {

@@ -10,19 +10,19 @@
 
 namespace houghstream::log_tools {
 
-/// The messages of one channel.
+/// Summarises the messages of one channel.
 struct ChannelInfo {
   std::set<std::string> types;  ///< names of type_name()
   std::int64_t messages = 0;
   std::uint64_t bytes = 0;
   std::int64_t first = 0;        ///< timestamp, microseconds since the epoch
   std::int64_t last = 0;         ///< timestamp of the latest
-  std::int64_t max_gap = 0;      ///< between two messages, microseconds
+  std::int64_t max_gap = 0;      ///< longest interval between two messages, microseconds
   std::int64_t gap_at = 0;       ///< timestamp of the message after that gap
-  std::string frames;            ///< what the first frame looks like; "" where the channel holds none
-  std::int64_t frames_lost = 0;  ///< as gaps in the source's numbering tell
+  std::string frames;            ///< description of the first frame; "" where the channel holds none
+  std::int64_t frames_lost = 0;  ///< lost frames, from gaps in the source's numbering
 
-  /// Messages per second between the first and the latest; 0 for a single one.
+  /// Returns messages per second between the first and the latest; 0 for a single one.
   double rate_hz() const;
 };
 
@@ -38,7 +38,7 @@ struct LogInfo {
 /// Reads a log through; damage goes to `losses`. Throws InputError when the file cannot be read or holds no event.
 LogInfo read_log_info(const std::filesystem::path& log_file, LossReport& losses);
 
-/// A table for people, its times counted from the log's first event.
+/// Returns a table for people, with times from the log's first event.
 std::string to_text(const LogInfo& info);
 
 }  // namespace houghstream::log_tools

@@ -10,8 +10,8 @@ namespace houghstream::log_tools {
 /// The fingerprint that an encoded message begins with; 0 where it is too short to have one.
 std::int64_t fingerprint_of(ByteView message);
 
-/// The type that a fingerprint stands for, "images_t (bot_core)" for one that others use under the same fingerprint,
-/// "?? 20ba4f05e8f5e33a" where it is not known, "no message" for 0.
+/// Returns the type of a fingerprint, "images_t (bot_core)" for one that others use under the same fingerprint, "??
+/// 20ba4f05e8f5e33a" where it is not known, "no message" for 0.
 std::string type_name(std::int64_t fingerprint);
 
 /// Returns whether it is a type of RGB-D frames: images_t, or one that to_images() converts to it.

@@ -30,7 +30,7 @@ bool starts_with(const std::string& text, const std::string& start) {
   return text.rfind(start, 0) == 0;
 }
 
-/// The file of FILE.KIND or KIND:FILE.
+/// Returns the file of FILE.KIND or KIND:FILE.
 std::optional<std::string> file_of(const std::string& source, const std::string& kind) {
   if (starts_with(source, kind + ":")) return source.substr(kind.size() + 1);
   const std::string end = "." + kind;
@@ -38,7 +38,7 @@ std::optional<std::string> file_of(const std::string& source, const std::string&
   return ends_so ? std::optional<std::string>(source) : std::nullopt;
 }
 
-/// KIND:WHERE, as open_frame_source() takes it; the names of files may hold a colon too.
+/// Returns whether the source is KIND:WHERE, as open_frame_source() takes it; the names of files may hold a colon too.
 bool is_frame_source(const std::string& source) {
   return source.find(':') != std::string::npos && !std::filesystem::exists(source);
 }
@@ -119,7 +119,7 @@ class LogRecording {
   }
 
   RecordingSettings settings_;
-  bool is_first_;  // nobody chose the channel
+  bool is_first_;  // the channel was not chosen by the user
   std::set<std::string> others_;
   LossReport& losses_;
   IntactEvents events_;
@@ -217,7 +217,7 @@ std::int64_t import_log(const RecordingSettings& settings, const std::string& ch
   channel::require_name(channel);
   require_outside_source(log_file, settings.source);
   const NextFrame next = open_recording(settings, losses);
-  std::optional<LogWriter> log;  // not before there is something to write
+  std::optional<LogWriter> log;  // made when there is something to write
   std::int64_t frames = 0;
   while (const std::optional<RecordedFrame> frame = next()) {
     const std::vector<std::uint8_t> bytes = encode_message(frame->message);

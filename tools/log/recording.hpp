@@ -13,9 +13,9 @@
 namespace houghstream::log_tools {
 
 struct RecordedFrame {
-  std::int64_t timestamp = 0;  ///< when it was received or taken, microseconds since the epoch
+  std::int64_t timestamp = 0;  ///< time of reception or capture, microseconds since the epoch
   images_t message;
-  std::string channel;  ///< that it came on; empty unless it is of a log
+  std::string channel;  ///< channel of a log's frame; else empty
 };
 
 /// The next frame of a recording, or nothing at its end.
@@ -24,7 +24,7 @@ using NextFrame = std::function<std::optional<RecordedFrame>()>;
 struct RecordingSettings {
   /// An LCM log, FILE.klg (or klg:FILE), FILE.oni (or oni:FILE), or what open_frame_source() knows.
   std::string source;
-  std::string channel;           ///< of the frames in a log; "" = the first channel that holds frames
+  std::string channel;           ///< channel of the frames in a log; "" = the first channel that holds frames
   std::optional<Camera> camera;  ///< given to frames that come without
 };
 

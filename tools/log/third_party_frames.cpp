@@ -46,7 +46,7 @@ image_t read_kinect_depth(WireReader& reader, bool& zipped) {
 
 using Wire = drake_image_t;
 
-/// A drake.lcmt_image; the data belong to the message.
+/// Refers to a drake.lcmt_image, whose data belong to the message.
 struct DrakeImage {
   std::int32_t width = 0;
   std::int32_t height = 0;
@@ -79,7 +79,7 @@ DrakeImage read_image(WireReader& reader) {
   return image;
 }
 
-/// The image's rows, unpacked.
+/// Returns the image's rows, unpacked.
 std::vector<std::uint8_t> unpacked(const DrakeImage& image, std::int64_t pixel_bytes) {
   check_image_size(image.width, image.height);
   require(image.row_stride == image.width * pixel_bytes, "rows of {} bytes, expected {} for {} pixels",
@@ -92,7 +92,7 @@ std::vector<std::uint8_t> unpacked(const DrakeImage& image, std::int64_t pixel_b
   return bytes_of(image.data);
 }
 
-/// Width and height as a PNG's first chunk states them.
+/// Returns width and height as a PNG's first chunk states them.
 cv::Size png_size(ByteView png) {
   constexpr std::size_t kBefore = 16;  // signature, the chunk's length and name
   require(png.size >= kBefore + 8, "PNG of {} bytes, expected a header", png.size);
@@ -122,7 +122,7 @@ std::vector<std::uint8_t> pixels_of(const cv::Mat& continuous) {
 image_t colour_image(const DrakeImage& image) {
   require(image.channel_type == Wire::CHANNEL_TYPE_UINT8, "colour of channel type {}, expected 8 bits (1)",
           image.channel_type);
-  check_image_size(image.width, image.height);  // before rows of so many pixels are spoken of
+  check_image_size(image.width, image.height);  // checked before rows of so many pixels are read
   if (image.compression == Wire::COMPRESSION_METHOD_JPEG) {
     return make_image(image.width, image.height, image_t::PIXEL_FORMAT_MJPEG, 0, bytes_of(image.data));
   }
@@ -142,7 +142,7 @@ image_t colour_image(const DrakeImage& image) {
   }
 }
 
-/// Metres to millimetres; what is infinite or not positive is missing.
+/// Converts metres to millimetres; infinite or non-positive depth is missing.
 std::vector<std::uint8_t> millimetres(const DrakeImage& image) {
   const std::vector<std::uint8_t> bytes = unpacked(image, 4);
   cv::Mat metres(image.height, image.width, CV_32FC1);

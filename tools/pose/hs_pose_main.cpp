@@ -23,7 +23,7 @@ namespace {
 
 using namespace houghstream;
 
-/// What a command line asks for.
+/// Options of the command line.
 struct PoseOptions {
   std::string objects;
   std::string cache;
@@ -38,15 +38,15 @@ struct PoseOptions {
   PoseProcessOptions process;
 };
 
-/// Without a folder every detection is answered with "no model".
+/// Without a folder every detection has the status "no model".
 std::map<std::string, Mesh> load_models(const PoseOptions& options, int threads) {
   if (!options.models.empty()) return load_class_models(options.models, options.model_unit_m, threads);
   log_warning("neither --objects nor --models: detections are answered without a pose");
   return {};
 }
 
-/// Poses of one detection of each class in a made-up frame: the models are in memory, and threads run, before the first
-/// real one.
+/// Estimates poses of one detection of each class in a synthetic frame, so that the models are in memory, and threads
+/// run, before the first real one.
 std::shared_ptr<const PoseEstimator> warmed_up(PoseEstimator cold, const RgbdFrame& made_up) {
   Detections detections;
   for (const auto& [name, model] : cold.models()) {
@@ -67,7 +67,7 @@ std::shared_ptr<const PoseEstimator> warmed_up(PoseEstimator cold, const RgbdFra
 /// The estimator may be another one for each frame.
 using CurrentEstimator = std::function<std::shared_ptr<const PoseEstimator>()>;
 
-/// Says once for each camera that its images have no colours.
+/// Logs once for each camera that its images have no colours.
 void report_colourless(const RgbdFrame& frame, std::set<std::string>& reported) {
   if (reported.count(frame.id.channel) > 0 || !is_colourless(frame.colour)) return;
   reported.insert(frame.id.channel);
@@ -77,7 +77,7 @@ void report_colourless(const RgbdFrame& frame, std::set<std::string>& reported) 
 void run(LcmBus& bus, PoseOptions options, const CurrentEstimator& current) {
   std::set<std::string> colourless;  // channels
   if (!options.follow) {
-    std::map<std::string, CameraColours> cameras;  // by channel
+    std::map<std::string, CameraColours> cameras;  // colours by channel
     options.process.camera_colours = [&](const std::string& channel) { return cameras[channel].chroma(); };
     run_pose_process(bus, options.process,
                      [&](const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) {
@@ -112,14 +112,14 @@ std::filesystem::path folder_to_keep_in(const PoseOptions& options) {
   }
 }
 
-/// What models are made of: a folder, and what tells whether its files have changed.
+/// Names the files that models are made of: a folder, and a stamp that changes with its files.
 struct ModelFiles {
   std::filesystem::path folder;
   std::function<std::string()> stamp;
   std::function<std::map<std::string, Mesh>()> load;
 };
 
-/// Of models that were kept at an earlier start, else of the meshes.
+/// Makes the estimator from the models cached at an earlier start, else from the meshes.
 PoseEstimator estimator_of(const ModelFiles& files, const PoseSettings& settings, const ModelCache& kept, int threads) {
   const std::string state = kept.state_of(files.stamp(), settings.model);
   if (auto models = kept.find(files.folder, state)) return PoseEstimator::from_models(std::move(*models), settings);
@@ -150,7 +150,7 @@ void run_with_models(PoseOptions options) {
 void run_with_store(PoseOptions options) {
   const ModelCache kept(folder_to_keep_in(options));
   const std::shared_future<RgbdFrame> made_up = start_warm_up();
-  const int threads = warm_up_threads(options.settings.threads);  // of the first store: later ones are loaded alone
+  const int threads = warm_up_threads(options.settings.threads);  // for the first store; later ones are loaded serially
   const auto load = [&](const store::ObjectStore& store) {
     const PoseSettings settings = pose_settings_of(options.settings, store, options.min_quality);
     const ModelFiles files{store.folder, [&] { return store::mesh_stamp(store); },

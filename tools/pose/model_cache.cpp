@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kStart = "HOUGHSTREAM MODELS\n";
 constexpr const char* kEnding = ".models";
 
-/// One list of members for writing and reading, so that the two cannot drift apart.
+/// A single list of members serves writing and reading, so that the two cannot drift apart.
 template <typename Archive, typename ModelType>
 void archive_model(Archive& archive, ModelType& model) {
   archive(model.mesh.vertices);
@@ -148,7 +148,7 @@ std::string state_of_program() {
   return state;
 }
 
-/// Whether nobody else can have written it.
+/// Returns whether nobody else can have written it.
 bool is_own(const fs::path& file) {
   struct stat is {};
   constexpr mode_t kOthersWrite = S_IWGRP | S_IWOTH;
@@ -160,7 +160,7 @@ std::uint32_t checksum(std::string_view bytes) {
   return libdeflate_crc32(0, bytes.data(), bytes.size());
 }
 
-/// The least recently written ones of more than a few.
+/// Removes the least recently written ones of more than a few.
 void forget_oldest(const fs::path& folder) {
   constexpr std::size_t kKept = 8;
   std::vector<std::pair<fs::file_time_type, fs::path>> kept;

@@ -9,25 +9,25 @@
 
 namespace houghstream {
 
-/// What has been made of the meshes of a store, or of a folder of models, kept as it lies in memory for the next start:
-/// who was killed is back in a third of the time. It is used by the very program that made it only, of the very files:
-/// whatever has been written, exchanged or installed since is another state, and the models are made anew.
+/// Caches the models made of the meshes of a store, or of a folder of models, in their memory layout for the next
+/// start: a restart then takes a third of the time. Only the program that made the cache reads it, and only for the
+/// same files: with any file that has been written, exchanged or installed since, the models are made again.
 class ModelCache {
  public:
-  /// `folder`: where they are kept, a file for each of a few folders. Empty = nowhere. To be made before anything else:
-  /// the libraries that the program was linked with count as its own, not those that they load as they go.
+  /// `folder` holds one file for each of a few model folders; empty = no cache. It must be made first in the program:
+  /// the libraries linked with it count as part of it, but not those that they load later.
   explicit ModelCache(std::filesystem::path folder);
 
-  /// All that models are made of: `stamp`, which tells whether the files have changed (store_stamp.hpp), the state of
-  /// this program and its libraries, and the settings. Nothing is read.
+  /// Returns the cache key: `stamp`, which changes with the files (store_stamp.hpp), the state of this program and its
+  /// libraries, and the settings. No file is read.
   std::string state_of(const std::string& stamp, const ModelSettings& settings) const;
 
-  /// Those that were kept of the folder in this state. Nothing where there are none, somebody else could have written
-  /// them, or they are damaged.
+  /// Loads the models cached of the folder under this key. Returns nothing where there are none, somebody else could
+  /// have written them, or they are damaged.
   std::optional<std::map<std::string, ObjectModel>> find(const std::filesystem::path& folder,
                                                          const std::string& state) const;
 
-  /// Where they cannot be kept, as in a folder that is read only, nothing is.
+  /// Saves the models. Where they cannot be stored, as in a read-only folder, it does nothing.
   void keep(const std::filesystem::path& folder, const std::string& state,
             const std::map<std::string, ObjectModel>& models) const;
 

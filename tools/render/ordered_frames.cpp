@@ -23,7 +23,7 @@ class Gate {
     return true;
   }
 
-  /// Whoever waits gives up.
+  /// Ends all waiting after a failure.
   void fail_all() {
     const std::lock_guard<std::mutex> lock(mutex_);
     failed_ = true;

@@ -33,7 +33,7 @@ std::vector<TaughtObject> taught_objects(const std::vector<int>& ids) {
   return objects;
 }
 
-// The demo's classes, or all twenty where the truth names one of the others.
+// Returns the demo's classes, or all twenty where the scene holds one of the others.
 std::vector<int> classes_of(const Scene& scene) {
   const auto& items = scene.world.items;
   const bool further = std::any_of(items.begin(), items.end(),
@@ -41,7 +41,7 @@ std::vector<int> classes_of(const Scene& scene) {
   return object_ids({further ? "all_20" : "all"});
 }
 
-/// Known symmetries of its shape; the finished mesh has its origin on the axis.
+/// Returns the known symmetries of its shape; the finished mesh has its origin on the axis.
 Symmetries symmetries_of(const TaughtObject& object) {
   Symmetries symmetries;
   if (object.symmetric_about_z) symmetries.continuous = {{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()}};

@@ -7,9 +7,9 @@
 
 namespace houghstream::render {
 
-/// Which sequences are rendered, and how densely.
+/// Selects the sequences to render, and their frame rate.
 struct SequencesJob {
-  std::vector<std::string> names = {"all"};  ///< of world/sequences/sequence_plan.hpp, or only "all"
+  std::vector<std::string> names = {"all"};  ///< names of world/sequences/sequence_plan.hpp, or only "all"
   double fps = 30.0;                         ///< 1 to 120
   bool development = false;                  ///< rooms of training seeds, to choose settings on
 };

@@ -28,7 +28,7 @@ std::optional<std::chrono::microseconds> extension_in(std::string_view words) {
   if (at == std::string_view::npos || (at > 0 && words[at - 1] != '\n')) return std::nullopt;
   std::int64_t value = 0;
   const auto [end, fault] = std::from_chars(words.data() + at + kKey.size(), words.data() + words.size(), value);
-  constexpr std::int64_t kMaxUs = 60'000'000;  // of one notice
+  constexpr std::int64_t kMaxUs = 60'000'000;  // maximum of one notice
   if (fault != std::errc() || value < 0 || value > kMaxUs) return std::nullopt;
   return std::chrono::microseconds(value);
 }
@@ -52,7 +52,7 @@ std::vector<std::string> environment_for(const std::string& notify_socket) {
   return words;
 }
 
-/// As exec takes them; they are those of `words`.
+/// Returns the pointers that exec takes; they point into `words`.
 std::vector<char*> pointers_to(const std::vector<std::string>& words) {
   std::vector<char*> pointers;
   pointers.reserve(words.size() + 1);
@@ -67,7 +67,7 @@ NoticeSocket::NoticeSocket() : socket_(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC
   if (socket_ < 0) return;
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  // Bound to the family alone, it gets a name of the abstract namespace that nobody has.
+  // The socket is bound to the family alone, so that it gets an unused name of the abstract namespace.
   if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address.sun_family)) != 0) return;
   socklen_t length = sizeof(address);
   if (getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &length) != 0) return;
@@ -82,7 +82,7 @@ NoticeSocket::~NoticeSocket() {
 std::optional<std::chrono::microseconds> NoticeSocket::extension() {
   std::array<char, 4096> words{};
   std::optional<std::chrono::microseconds> extension;
-  constexpr int kMaxNotices = 64;  // who sends without end does not keep us
+  constexpr int kMaxNotices = 64;  // a limit, as a process may send without end
   ssize_t size = 0;
   for (int i = 0; i < kMaxNotices && socket_ >= 0 && (size = recv(socket_, words.data(), words.size(), 0)) >= 0; ++i) {
     if (const auto asked = extension_in({words.data(), static_cast<std::size_t>(size)})) extension = asked;
@@ -93,11 +93,12 @@ std::optional<std::chrono::microseconds> NoticeSocket::extension() {
 ChildProcess::ChildProcess(const std::vector<std::string>& command, bool capture_stderr) {
   const std::string& program = command.at(0);
   require(access(program.c_str(), X_OK) == 0, "{}: cannot be started: {}", program, std::strerror(errno));
-  // Between fork and exec only what is safe in a process with threads: memory is asked for before.
+  // Between fork and exec only functions that are safe in a process with threads may be called, so all memory is
+  // allocated before.
   const std::vector<std::string> environment = environment_for(notices_.name());
   const std::vector<char*> arguments = pointers_to(command);
   const std::vector<char*> variables = pointers_to(environment);
-  // Neither end waits: where this process stands still, lines are lost and the child goes on.
+  // Neither end waits: where this process is stopped, lines are lost and the child continues.
   std::array<int, 2> pipe = {-1, -1};
   require(!capture_stderr || pipe2(pipe.data(), O_CLOEXEC | O_NONBLOCK) == 0, "{}: cannot be heard: {}", program,
           std::strerror(errno));
@@ -130,7 +131,7 @@ ChildProcess::~ChildProcess() {
 void ChildProcess::pass_on_words() {
   constexpr std::size_t kMaxLineLength = 1000;
   std::array<char, 4096> piece{};
-  constexpr int kMaxPieces = 32;  // more than a pipe holds: who writes without end does not keep us
+  constexpr int kMaxPieces = 32;  // more than a pipe holds; a limit, as a process may write without end
   ssize_t size = 0;
   for (int i = 0; i < kMaxPieces && words_ >= 0 && (size = read(words_, piece.data(), piece.size())) > 0; ++i) {
     std::fwrite(piece.data(), 1, static_cast<std::size_t>(size), stderr);
@@ -150,7 +151,7 @@ std::optional<ExitStatus> ChildProcess::poll_exit() {
   if (!exit_ && waitpid(pid_, &status, WNOHANG) == pid_) {
     pass_on_words();
     exit_ = describe(status);
-    signal(SIGKILL);  // what it has started and left behind
+    signal(SIGKILL);  // ends the processes that it left behind
   }
   return exit_;
 }

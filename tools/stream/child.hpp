@@ -9,16 +9,16 @@
 
 namespace houghstream::stream {
 
-/// Where a process that was started from here says how it is, in the words of the sd_notify(3) protocol.
+/// Receives the notices of a process started from here, in the sd_notify(3) protocol.
 class NoticeSocket {
  public:
-  /// Without a socket, where the system gives none, name() is empty and nothing is ever heard.
+  /// Opens the socket. Where the system gives none, name() is empty and no notice is ever received.
   NoticeSocket();
   ~NoticeSocket();
   NoticeSocket(const NoticeSocket&) = delete;
   NoticeSocket& operator=(const NoticeSocket&) = delete;
 
-  /// For $NOTIFY_SOCKET of the process.
+  /// Returns the value of $NOTIFY_SOCKET for the process.
   const std::string& name() const { return name_; }
 
   /// The time that the process has asked for since the last call (EXTEND_TIMEOUT_USEC), from now on.
@@ -29,7 +29,7 @@ class NoticeSocket {
   std::string name_;
 };
 
-/// Exit status of a process, as text, and whether it succeeded.
+/// Gives the exit status of a process, as text, and whether it succeeded.
 struct ExitStatus {
   bool success = false;    ///< exit status 0
   bool by_signal = false;  ///< killed, or crashed
@@ -41,8 +41,8 @@ struct ExitStatus {
 /// that lives as long as the process does.
 class ChildProcess {
  public:
-  /// `command`: program with its path, arguments. With `capture_stderr` what it writes to stderr goes through this
-  /// process, which remembers its last line. Throws InputError when it cannot be started.
+  /// Starts `command`: program with its path, arguments. With `capture_stderr` its stderr goes through this process,
+  /// which stores its last line. Throws InputError when it cannot be started.
   explicit ChildProcess(const std::vector<std::string>& command, bool capture_stderr = false);
   /// Kills it if it still runs.
   ~ChildProcess();
@@ -51,7 +51,7 @@ class ChildProcess {
 
   /// Returns the exit status, nothing while it runs. Forwards its stderr; call it often.
   std::optional<ExitStatus> poll_exit();
-  /// The last line of its stderr, for people; "" where it has written none, or is not heard.
+  /// Returns the last line of its stderr, for people; "" where it has written none, or stderr is not captured.
   const std::string& last_stderr_line() const { return last_stderr_line_; }
   /// Returns whether it has recently announced that it is ending and needs more time ($NOTIFY_SOCKET,
   /// EXTEND_TIMEOUT_USEC).
@@ -66,7 +66,7 @@ class ChildProcess {
   NoticeSocket notices_;
   std::chrono::steady_clock::time_point needs_time_until_;
   pid_t pid_ = 0;
-  int words_ = -1;  // where its stderr is read
+  int words_ = -1;  // descriptor from which its stderr is read
   std::string line_;
   std::string last_stderr_line_;
   std::optional<ExitStatus> exit_;

@@ -19,10 +19,10 @@ namespace {
 
 /// Seconds.
 struct Pace {
-  double every = 5.0;            ///< between two lines of state
-  double stop_timeout = 1.5;     ///< for the processes to end by themselves
-  double hang_timeout = 10.0;    ///< with a process that was heard and is silent
-  double start_patience = 60.0;  ///< with one that was never heard
+  double every = 5.0;            ///< seconds between two lines of state
+  double stop_timeout = 1.5;     ///< seconds for the processes to end by themselves
+  double hang_timeout = 10.0;    ///< seconds without a heartbeat after which a process hangs
+  double start_patience = 60.0;  ///< seconds until the first heartbeat
 };
 
 void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
@@ -73,7 +73,7 @@ Duration from_seconds(double seconds) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
 }
 
-/// Hears what the processes say of themselves. A bus that goes away does not end the stream.
+/// Receives the statuses of the processes. A bus that goes away does not end the stream.
 class StatusEar {
  public:
   /// Waits for the bus. Throws InputError where it cannot be opened.

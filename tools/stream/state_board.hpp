@@ -18,13 +18,14 @@ class StatusBoard {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Only of the stream's own processes: anybody on the network may send a status of any other.
+  /// Notes a status of one of the stream's own processes only, since anybody on the network may send a status of any
+  /// other.
   void note(const status_t& status, Clock::time_point time);
   /// Forgets all processes but these.
   void keep(const std::vector<Supervisor::State>& states);
 
-  /// The stream in one line: rate, latency and losses of each process, or that it waits for the others or for its
-  /// restart, or has not been heard of for three seconds.
+  /// Returns the stream in one line: rate, latency and losses of each process, or that it waits for the others or for
+  /// its restart, or has sent no status for three seconds.
   std::string line(const std::vector<Supervisor::State>& states, Clock::time_point now) const;
 
  private:
@@ -42,10 +43,10 @@ class DrainMonitor {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// For which the others are waited for: one second for each of four, and as much as hs-view lets a frame wait.
+  /// Time to wait for the others: one second for each of four, and as much as hs-view lets a frame wait.
   static constexpr std::chrono::seconds kTimeout{7};
 
-  /// `pids`: of the others, in that order.
+  /// `pids` are those of the others, in that order.
   DrainMonitor(std::vector<pid_t> pids, Clock::time_point ended);
 
   void note(const status_t& status, Clock::time_point heard);
@@ -54,8 +55,8 @@ class DrainMonitor {
 
  private:
   std::vector<pid_t> pids_;
-  std::size_t through_ = 0;  // so many of them have nothing left to do
-  Clock::time_point since_;  // when the last of these has said so, or the source has ended
+  std::size_t through_ = 0;  // number of processes that are drained
+  Clock::time_point since_;  // time at which the last of these was drained, or the source ended
 };
 
 }  // namespace houghstream::stream

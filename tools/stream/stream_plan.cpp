@@ -12,7 +12,8 @@
 namespace houghstream::stream {
 namespace {
 
-/// Within '...' a backslash is one; within "..." it is one before all but what it is needed for there.
+/// Returns whether a backslash escapes. Within '...' it never does; within "..." only before the characters that need
+/// it there.
 bool escapes(const std::string& text, std::size_t at, char quote) {
   if (text[at] != '\\' || quote == '\'') return false;
   return quote == '\0' || text.compare(at + 1, 1, "\"") == 0 || text.compare(at + 1, 1, "\\") == 0;
@@ -20,7 +21,7 @@ bool escapes(const std::string& text, std::size_t at, char quote) {
 
 using Words = std::vector<std::string>;
 
-/// hs-NAME with what all of them take, and with the further words.
+/// Returns hs-NAME with the arguments common to all, and with the further words.
 ChildPlan plan(const StreamOptions& options, const std::string& name, const Words& words, const std::string& further) {
   ChildPlan plan;
   plan.name = name;
@@ -38,7 +39,7 @@ struct NamedSource {
   std::string source;
 };
 
-/// CHANNEL of CHANNEL=SOURCE. "" where there is none: the name of a file may hold a '=' too.
+/// Returns CHANNEL of CHANNEL=SOURCE; "" where there is none, since the name of a file may hold a '=' too.
 std::string channel_of(const std::string& words) {
   const std::string name = words.substr(0, words.find('='));
   const auto is_of_name = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
@@ -60,7 +61,7 @@ std::vector<NamedSource> sources_of(const StreamOptions& options) {
   return sources;
 }
 
-/// All of its channels, as a regular expression.
+/// Returns all of its channels as a regular expression.
 std::string pattern_of(const std::vector<NamedSource>& sources) {
   std::string pattern;
   for (const NamedSource& each : sources) pattern += (pattern.empty() ? "" : "|") + each.channel;
@@ -90,7 +91,7 @@ std::vector<std::string> shell_words(const std::string& text, const std::string&
   std::vector<std::string> words;
   std::string word;
   bool has_begun = false;  // the word, which may be ""
-  char quote = '\0';       // that has begun
+  char quote = '\0';       // open quotation mark
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     const bool is_blank = c == ' ' || c == '\t' || c == '\n';

@@ -9,23 +9,23 @@
 
 namespace houghstream::stream {
 
-/// The words of a text as a shell tells them apart: by blanks, except for those within '...', within "..." and behind a
+/// Splits a text into words as a shell does: by blanks, except for those within '...', within "..." and behind a
 /// backslash. Throws InputError that names `source` where a quote has no end or nothing follows a backslash.
 std::vector<std::string> shell_words(const std::string& text, const std::string& source);
 
 /// Processes that hs-stream starts.
 struct StreamOptions {
   std::filesystem::path executables;  ///< folder of hs-capture, hs-detect, hs-pose, hs-track, hs-view
-  /// Of hs-capture; "" = the frames come from somebody else's driver. Of several cameras CHANNEL=SOURCE for each, with
-  /// quotes as in a shell.
+  /// Source of hs-capture; "" = the frames come from another driver. For several cameras it is CHANNEL=SOURCE for each,
+  /// with quotes as in a shell.
   std::string source;
   std::string objects;                ///< object store for all of them; "" = forest and models
-  std::string forest;                 ///< of hs-detect
+  std::string forest;                 ///< forest of hs-detect
   std::string models;                 ///< folder for hs-pose and hs-view; "" = no poses
-  std::string camera;                 ///< for frames without a camera of their own
-  std::string cameras;                ///< of hs-track: file of where they stand
-  std::optional<double> threshold;    ///< of hs-detect: smallest score reported
-  std::optional<double> min_quality;  ///< of hs-pose: poses of a lower one are withheld
+  std::string camera;                 ///< camera of frames without one of their own
+  std::string cameras;                ///< camera poses of hs-track, a file
+  std::optional<double> threshold;    ///< minimum score that hs-detect reports
+  std::optional<double> min_quality;  ///< minimum quality of poses that hs-pose publishes
   std::string channel = "OPENNI_FRAME";
   std::string lcm_url;  ///< "" = LCM's default
   bool view = true;
@@ -38,9 +38,9 @@ struct StreamOptions {
   std::string view_options;
 };
 
-/// The processes with their command lines, in the order of the stream. Without models or store there is no hs-pose.
-/// Throws InputError where further options have a quote without an end, or the sources of several cameras lack a
-/// channel of their own.
+/// Returns the processes with their command lines, in the order of the stream. Without models or store there is no
+/// hs-pose. Throws InputError where further options have a quote without an end, or the sources of several cameras lack
+/// a channel of their own.
 std::vector<ChildPlan> plan_stream(const StreamOptions& options);
 
 }  // namespace houghstream::stream

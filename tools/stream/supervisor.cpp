@@ -125,7 +125,7 @@ bool Supervisor::look_after(Member& member, Clock::duration listened) {
     source_has_ended_ = member.plan.is_started_last;
     return false;
   }
-  // A signal is somebody's doing; a status says that the process itself sees no way.
+  // A signal has an external cause; an exit status shows that the process itself cannot continue.
   const bool gave_up = !exit->success && !exit->by_signal;
   require(member.has_run || !gave_up, "{} {} at its start; {}", member.plan.name, exit->words,
           last_line_of(*member.child));

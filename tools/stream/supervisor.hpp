@@ -11,11 +11,11 @@
 
 namespace houghstream::stream {
 
-/// A process of the stream.
+/// Describes a process of the stream.
 struct ChildPlan {
-  std::string name;                  ///< for people, for instance "detect"
+  std::string name;                  ///< name for people, for instance "detect"
   std::vector<std::string> command;  ///< program with its path, arguments
-  bool ends_stream = false;          ///< when it ends with status 0, all do: the source's end, the closed window
+  bool ends_stream = false;          ///< its end with status 0 ends all: the source's end, the closed window
   /// Started when all others have sent a heartbeat: the source, whose frames they receive.
   bool is_started_last = false;
 };
@@ -24,10 +24,10 @@ struct SupervisorSettings {
   std::chrono::milliseconds initial_backoff{250};  ///< before a second restart; doubled by each failure that follows
   std::chrono::milliseconds max_backoff{10'000};
   std::chrono::milliseconds backoff_reset{10'000};  ///< after so long a run the next failure counts as the first
-  int max_failures = 8;                             ///< in a row: then it is given up, and the stream ends
-  std::chrono::milliseconds start_time{3000};       ///< who runs that long has started
-  std::chrono::milliseconds stop_timeout{1500};     ///< for a process to end by itself when it is asked to
-  std::chrono::milliseconds finishing{600'000};     ///< instead, for one that says that it is still writing
+  int max_failures = 8;                             ///< consecutive failures after which the stream ends
+  std::chrono::milliseconds start_time{3000};       ///< run time after which a process has started
+  std::chrono::milliseconds stop_timeout{1500};     ///< time for a process to end by itself when it is asked to
+  std::chrono::milliseconds finishing{600'000};     ///< the same for a process that reports that it is still writing
   std::chrono::milliseconds heartbeat_timeout{
       10'000};  ///< a process without a heartbeat for so long, after its first, counts as hung
   std::chrono::milliseconds startup_timeout{
@@ -48,35 +48,35 @@ class Supervisor {
   using Clock = std::chrono::steady_clock;
   using Say = std::function<void(const std::string&)>;
 
-  /// `say` takes a line for people about each start and end. Throws InputError when a program cannot be started.
+  /// `say` receives a line for people about each start and end. Throws InputError when a program cannot be started.
   Supervisor(std::vector<ChildPlan> plans, const SupervisorSettings& settings, Say say);
   /// Ends them all.
   ~Supervisor();
 
-  /// Looks after the processes. False once the stream is to end. Throws InputError, with its last words, when one has
-  /// failed at its start or is given up.
+  /// Checks the processes. Returns false once the stream is to end. Throws InputError, with its last line of stderr,
+  /// when one has failed at its start or too often.
   bool step();
 
   /// The process has shown that it runs; expected of each one every second. False where it is none of these.
   bool on_heartbeat(pid_t pid);
 
-  /// Once step() has said that the stream is to end because its source has: the processes that the source's last frames
-  /// go through, in their order. None where something else has ended it.
+  /// Returns the processes that the source's last frames go through, in their order, once step() has returned that the
+  /// stream ends because its source has. Returns none where another cause has ended it.
   std::vector<pid_t> downstream_pids() const;
 
   /// Since the last step nothing could have been heard of any.
   void pause_watchdog();
 
-  /// Asks all to end, waits, insists after `stop_timeout`, or, with who says that it needs more time, `finishing`.
-  /// Returns the names of those that had to be killed.
+  /// Asks all to end, waits, and kills after `stop_timeout`, or after `finishing` for a process that reports that it
+  /// needs more time. Returns the names of those that had to be killed.
   std::vector<std::string> stop();
 
-  /// State of a process.
+  /// Gives the state of a process.
   struct State {
     std::string name;
     pid_t pid = 0;  ///< 0 while it waits for its restart
     int restarts = 0;
-    bool waits = false;  ///< for the others, before its first start
+    bool waits = false;  ///< it waits for the others before its first start
   };
   std::vector<State> states() const;
 
@@ -84,15 +84,15 @@ class Supervisor {
   struct Member {
     ChildPlan plan;
     std::unique_ptr<ChildProcess> child;
-    bool waits = false;    // for the others, before its first start
+    bool waits = false;    // it waits for the others before its first start
     bool has_run = false;  // once, since the stream began
     bool has_heartbeat = false;
-    Clock::duration silent{0};                   // so long, as far as was listened
-    std::optional<Clock::time_point> asked_end;  // when it was asked to end because it hangs
+    Clock::duration silent{0};                   // time without a heartbeat while the watchdog was active
+    std::optional<Clock::time_point> asked_end;  // time at which it was asked to end because it hangs
     int restarts = 0;
-    int failures = 0;  // in a row
+    int failures = 0;  // consecutive failures
     std::chrono::milliseconds wait{0};
-    Clock::time_point since;  // of the start, or when the restart is due
+    Clock::time_point since;  // time of the start, or of the next restart
   };
   void start(Member& member);
   void start_waiting();
@@ -103,7 +103,7 @@ class Supervisor {
   std::string names_of_writing();
 
   std::vector<Member> members_;
-  bool source_has_ended_ = false;  // by itself
+  bool source_has_ended_ = false;  // the source ended by itself
   SupervisorSettings settings_;
   Say say_;
   Clock::time_point begun_ = Clock::now();

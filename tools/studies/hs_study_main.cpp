@@ -10,7 +10,7 @@ using namespace houghstream;
 
 struct Study {
   const char* name;
-  const char* words;  ///< what it does, for --help
+  const char* words;  ///< description for --help
   int (*command)(CommandLine&, int, char**);
 };
 
@@ -44,7 +44,7 @@ constexpr Study kStudies[] = {
     {"tracks", "Logs of rendered sequences, and objects over time beside their truth", studies::tracks_command},
 };
 
-/// What is said where the first word names no study: help, the version, or what is wrong with the words.
+/// Handles a first word that names no study: prints help, the version, or the error.
 int no_study(int argc, char** argv) {
   CommandLine app("Runs one of the studies: what exists for comparisons only", "hs-study");
   for (const Study& study : kStudies) app.add_subcommand(study.name, study.words);

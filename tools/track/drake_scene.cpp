@@ -24,12 +24,12 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// Triangles of nearly one colour.
 struct Patch {
   std::vector<Triangle> triangles;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< of their colours: red, green, blue, 0 to 1
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< sum of their colours: red, green, blue, 0 to 1
 
   Eigen::Vector3d colour() const { return sum / static_cast<double>(triangles.size()); }
 };
 
-/// Red, green, blue, 0 to 1; grey where the mesh has no colours.
+/// Returns red, green, blue, 0 to 1; grey where the mesh has no colours.
 Eigen::Vector3d colour_of(const Mesh& mesh, const Triangle& triangle) {
   const auto rgb = [](const cv::Vec3b& bgr) -> Eigen::Vector3d {
     return Eigen::Vector3d(bgr[2], bgr[1], bgr[0]) / 255.0;
@@ -42,7 +42,8 @@ Eigen::Vector3d colour_of(const Mesh& mesh, const Triangle& triangle) {
   return (rgb(mesh.colours[triangle[0]]) + rgb(mesh.colours[triangle[1]]) + rgb(mesh.colours[triangle[2]])) / 3.0;
 }
 
-/// By colour in steps of an eighth: few materials, which viewers draw one after another.
+/// Groups triangles by colour in steps of an eighth, which gives few materials, since viewers draw these one after
+/// another.
 std::map<int, Patch> patches_of(const Mesh& mesh) {
   constexpr double kSteps = 8.0;
   const auto step = [](double value) {
@@ -75,7 +76,7 @@ std::string face_lines(const Patch& patch, bool normals) {
   return text;
 }
 
-/// meldis takes the name of the .mtl up to the first blank.
+/// Returns a file name without blanks, since meldis takes the name of the .mtl up to the first blank.
 std::string file_name(const std::string& name, std::uint64_t number) {
   std::string safe = name.substr(0, 64);
   for (char& c : safe) {

@@ -27,20 +27,20 @@ struct ViewerMesh {
 /// meldis shows OBJ, glTF and DAE only. Throws InputError where it cannot write.
 ViewerMesh write_viewer_mesh(const Mesh& mesh, const std::string& name, const std::filesystem::path& folder);
 
-/// The objects of the world as Drake's viewers (drake_visualizer, meldis) take them: a load message with their shapes,
-/// and a draw message with their poses for each frame. Objects that are gone are in neither. A viewer puts what it has
-/// loaded, but was not told the pose of, at the origin: so both are always of the same objects. Not thread-safe.
+/// Makes the messages of the world's objects for Drake's viewers (drake_visualizer, meldis): a load message with their
+/// shapes, and a draw message with their poses for each frame. Objects that are gone are in neither. A viewer puts a
+/// loaded shape without a pose at the origin, so that both messages always list the same objects. Not thread-safe.
 class DrakeScene {
  public:
   /// Meshes go to files in this folder, for viewers on this machine.
   explicit DrakeScene(std::filesystem::path mesh_folder);
 
-  /// The classes' meshes from here on. Of one that cannot be written the reason is said, and a box takes its place.
+  /// Replaces the classes' meshes. For a mesh that cannot be written the reason is logged, and a box takes its place.
   void set_models(const tracks::TrackModels& models);
 
   struct Messages {
-    /// To be sent first: at the beginning, when the set of objects changes, and every ten seconds for viewers that
-    /// began later. meldis passes over one that is like its last; drake_visualizer loads its files again.
+    /// Message to send first: at the beginning, when the set of objects changes, and every ten seconds for viewers that
+    /// started later. meldis ignores one that is equal to its last; drake_visualizer loads its files again.
     std::optional<drake_viewer_load_robot_t> load;
     drake_viewer_draw_t draw;
   };
@@ -51,7 +51,7 @@ class DrakeScene {
   drake_viewer_load_robot_t load_message(const WorldObjects& world);
 
   std::filesystem::path folder_;
-  std::map<std::string, ViewerMesh> meshes_;  // by class
+  std::map<std::string, ViewerMesh> meshes_;  // meshes by class
   std::set<std::string> told_;                // classes without a mesh
   std::optional<std::vector<std::string>> loaded_;
   bool changed_ = false;

@@ -28,7 +28,7 @@ struct TrackOptions {
   track::TrackProcessOptions process;
 };
 
-/// Says what the cameras say of one another. Throws InputError where they contradict each other.
+/// Logs the comparison of the cameras. Throws InputError where they contradict each other.
 void report(const tracks::ExtrinsicCheck& check) {
   const std::vector<tracks::ExtrinsicInconsistency> pairs = check.pairs();
   require(!pairs.empty(), "no two cameras have seen the same objects at the same time often enough to compare them");

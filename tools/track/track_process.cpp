@@ -73,7 +73,7 @@ class TrackProcess {
     detections_.forget(frame.id);
     synchroniser_.add_frame(frame.id, shared_copy(frame.bytes));
     const std::lock_guard<std::mutex> lock(mutex_);
-    newest_[frame.id.channel] = frame.id.utime;  // of as many cameras as the synchroniser takes
+    newest_[frame.id.channel] = frame.id.utime;  // has as many cameras as the synchroniser accepts
   }
 
   void add_detections(const ReceivedResult& result) {
@@ -86,7 +86,7 @@ class TrackProcess {
   }
 
   void add_transform(const rigid_transform_t& message, const std::string& channel) {
-    constexpr std::size_t kSuffix = 9;  // of "_TO_WORLD"
+    constexpr std::size_t kSuffix = 9;  // length of "_TO_WORLD"
     world_.add(channel.substr(0, channel.size() - kSuffix), message.utime, transform_from_message(message));
     synchroniser_.recheck_gate();
   }
@@ -151,7 +151,7 @@ class TrackProcess {
         tracker_.update({poses, &detections, T_world_camera_, decode, newest_of(poses.frame.channel),
                          FrameNumber{header.sequence, header.utime, header.run}});
     if (!objects) {
-      status_.count_skipped(1);  // what a detector said late of a frame whose successors are known
+      status_.count_skipped(1);  // a late result of a frame whose successors have been processed
       return false;
     }
     clock.mark("track.update");
@@ -200,14 +200,15 @@ class TrackProcess {
   const CurrentModels& models_;
   StatusReporter status_;
   Reception reception_;
-  FrameSynchroniser synchroniser_;  // of poses and their frames
+  FrameSynchroniser synchroniser_;  // synchronises poses and their frames
   std::shared_ptr<const tracks::TrackModels> used_models_;
   tracks::Tracker tracker_;
   WorldOutput output_;
   WorldReference world_;
-  Eigen::Isometry3d T_world_camera_ = Eigen::Isometry3d::Identity();  // of the pair that the gate let go last
+  // Camera pose of the last pair that passed the gate.
+  Eigen::Isometry3d T_world_camera_ = Eigen::Isometry3d::Identity();
   tracks::ExtrinsicCheck check_;
-  LogThrottle lines_;  // of contradictions
+  LogThrottle lines_;  // logs inconsistencies
   std::shared_ptr<HeartbeatMonitor> heartbeats_ = std::make_shared<HeartbeatMonitor>();
   std::int64_t without_frame_ = 0;  // poses
   RecentDetections detections_;

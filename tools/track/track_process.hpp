@@ -20,12 +20,12 @@ namespace houghstream::track {
 struct TrackProcessOptions {
   std::string process = "hs-track";
   std::string frame_channels = channel::kFrame;     ///< a ChannelPattern: one camera's channel, or several cameras'
-  std::optional<Camera> camera;                     ///< for frames that do not bring their own
-  std::map<std::string, Eigen::Isometry3d> places;  ///< of cameras that stand still, T_world_camera
+  std::optional<Camera> camera;                     ///< camera of frames that do not bring their own
+  std::map<std::string, Eigen::Isometry3d> places;  ///< poses of static cameras, T_world_camera
   double wait_s = 0.1;                              ///< a frame waits so long for the transforms about its time
   bool check = false;                               ///< compares the cameras only; nothing is published
-  WorldOutputOptions output;                        ///< what is published besides
-  std::function<KnownObjects()> objects;            ///< what its store holds, for the status
+  WorldOutputOptions output;                        ///< additional outputs
+  std::function<KnownObjects()> objects;            ///< objects of its store, for the status
 };
 
 /// The models as they are when a frame's turn comes.

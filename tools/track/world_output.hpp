@@ -11,11 +11,12 @@ namespace houghstream::track {
 
 /// Messages for third-party tools, published beside the objects_t.
 struct WorldOutputOptions {
-  std::optional<std::filesystem::path> drake_meshes;  ///< for Drake's viewers, whose mesh files go there
-  bool pose_channels = false;                         ///< a pose_t of each object on a channel of its own
+  std::optional<std::filesystem::path>
+      drake_meshes;            ///< folder of the mesh files for Drake's viewers; none = no messages for them
+  bool pose_channels = false;  ///< a pose_t of each object on a channel of its own
 };
 
-/// bot_core's pose of an object of the world, whose axes are those of its local frame.
+/// Makes bot_core's pose of an object of the world, whose axes are those of its local frame.
 pose_t pose_message(const TrackedObject& object, std::int64_t utime);
 
 /// Publishes the objects_t after each frame and what the options ask for. Not thread-safe.
@@ -24,7 +25,7 @@ class WorldOutput {
   /// The bus must outlive this.
   WorldOutput(LcmBus& bus, const WorldOutputOptions& options);
 
-  /// The classes' models from here on.
+  /// Replaces the classes' models.
   void set_models(const tracks::TrackModels& models);
 
   void publish(const WorldObjects& world);

@@ -12,12 +12,12 @@
 
 namespace houghstream::track {
 
-/// Reference frame of the objects, and the cameras' poses in it: the world, or, as long as no camera's pose is known,
-/// the frame of the single camera. Transforms may be added from any thread; all else is for the thread that processes
-/// the frames.
+/// Determines the reference frame of the objects, and the cameras' poses in it: the world, or, as long as no camera's
+/// pose is known, the frame of the single camera. Transforms may be added from any thread; all else is for the thread
+/// that processes the frames.
 class WorldReference {
  public:
-  /// `fixed`: cameras that stand still, T_world_camera by the channels of their frames.
+  /// `fixed` holds the poses of static cameras, T_world_camera by the channels of their frames.
   explicit WorldReference(const std::map<std::string, Eigen::Isometry3d>& fixed);
 
   /// A transform of a camera that moves, as CameraExtrinsics::add() takes it. Throws InputError for one camera too
@@ -28,7 +28,7 @@ class WorldReference {
   /// A pose in another world than the last one resets the world.
   tracks::CameraPose camera_pose(const FrameId& frame, bool may_wait);
 
-  /// "WORLD", or the channel of the camera whose frame it is; empty until a place was known.
+  /// Returns "WORLD", or the channel of the camera whose frame it is; empty until a pose of a camera was known.
   const std::string& name() const { return name_; }
 
   /// Returns whether the world was reset since the last call: earlier observations have no pose in it.
@@ -40,7 +40,7 @@ class WorldReference {
   std::string name_;
   std::string reference_camera_;  // the camera whose frame is the world, where no place is known
   bool begun_ = false;
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards the following members
   tracks::CameraExtrinsics extrinsics_;
 };
 

@@ -26,20 +26,20 @@ class BusWatcher {
   BusWatcher(const BusWatcher&) = delete;
   BusWatcher& operator=(const BusWatcher&) = delete;
 
-  /// The next frame to draw, or nothing when none comes within `timeout`.
+  /// Returns the next frame to draw, or nothing when none comes within `timeout`.
   std::optional<MatchedFrame> next(std::chrono::milliseconds timeout) { return queue_.pop(timeout); }
 
-  /// What became of a frame that was taken, for the status that goes out once a second.
+  /// Note the outcome of a frame that was popped, for the status that is published once a second.
   void note_drawn(const MatchedFrame& frame);
   void note_refused(const std::string& reason) { status_.count_refused(reason); }
   void note_skipped() { status_.count_skipped(1); }
   /// Something about a frame that was drawn all the same.
   void note_trouble(const std::string& reason) { status_.note_bad_message(reason); }
 
-  /// Which camera is shown; frames of the others are skipped.
+  /// Returns the camera whose frames are shown; frames of the others are skipped.
   SelectedCamera& cameras() { return cameras_; }
 
-  /// Rates of the camera that is shown, and what the processes say.
+  /// Returns the rates of the shown camera, and the statuses of the processes.
   StreamState stream_state();
   std::int64_t frames_lost() const { return status_.message().frames_lost; }
 
@@ -49,7 +49,7 @@ class BusWatcher {
   /// Stops listening; frames that wait can still be taken.
   void stop();
 
-  /// Says the last word about what was received, drawn and skipped.
+  /// Logs the account of received, drawn and skipped frames at the end.
   void finish() { end_process(bus_, status_); }
 
  private:
@@ -67,7 +67,7 @@ class BusWatcher {
   Reception reception_;
   SelectedCamera cameras_;
   FrameMatcher matcher_;
-  std::int64_t passed_over_told_ = 0;  // of the matcher's frames, in the status
+  std::int64_t passed_over_told_ = 0;  // skipped frames of the matcher that the status has counted
   StreamWatch stream_;
   MatchedFrameQueue queue_;
   std::atomic<bool> stopping_{false};

@@ -124,7 +124,7 @@ void FrameRenderer::teach() {
   std::vector<std::string> known;
   for (const KnownObject& object : store_->known().objects) known.push_back(object.name);
   order_.name = free_name(known);
-  // One that was made a moment ago may not be loaded yet.
+  // A store that was made a moment ago may not be loaded yet.
   order_.joins_others = !known.empty() || std::filesystem::exists(std::filesystem::path(order_.store) / "store.json");
   order_.channel = viewed_->frame.id.channel;
   const cv::Rect image({}, viewed_->frame.colour.size());

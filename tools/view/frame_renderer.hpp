@@ -14,15 +14,15 @@
 
 namespace houghstream::view {
 
-/// What is drawn of each frame, and where to.
+/// Settings of the drawing of each frame, and of its outputs.
 struct FrameRendererSettings {
-  std::optional<Camera> camera;  ///< of frames that carry none of their own
+  std::optional<Camera> camera;  ///< camera of frames that carry none of their own
   std::string models;            ///< folder of models for outlines; "" = none
   double model_unit_m = 1e-3;    ///< unit of the models' coordinates
   std::string objects;           ///< object store with the models, instead; followed while it changes; "" = none
   FrameViewSettings image;
   bool preview = false;                 ///< send each image on the preview channel
-  std::string http;                     ///< where to serve a page for browsers, [ADDRESS:]PORT; "" = nowhere
+  std::string http;                     ///< address of a page for browsers, [ADDRESS:]PORT; "" = no page
   std::vector<std::string> http_hosts;  ///< names, beside its own, that the page answers to
   OutputSettings outputs;
 
@@ -37,20 +37,20 @@ struct FrameRendererSettings {
 /// Draws frames to a window or to files, keeps the one that is shown, and how the stream went until it.
 class FrameRenderer {
  public:
-  /// A key of the window teaches objects of the stream at `lcm_url` ("" = LCM's default) to the store, if there is one.
-  /// Throws InputError where there are no models, a store and a folder of models, no display, no folder to write
-  /// to, or no address to serve at.
+  /// Opens the outputs. A key of the window teaches objects of the stream at `lcm_url` ("" = LCM's default) to the
+  /// store, if there is one. Throws InputError where there are no models, a store and a folder of models, no display,
+  /// no folder to write to, or no address to serve at.
   explicit FrameRenderer(const FrameRendererSettings& settings, const std::string& lcm_url = "");
 
-  /// Shows a frame, unless paused, another camera is shown by now, or there is a page that nobody looks at. One that
-  /// cannot be understood is reported to `watcher` and passed over. Throws InputError where a file cannot be written.
+  /// Shows a frame, unless paused, another camera is shown by now, or there is a page without viewers. A frame that
+  /// cannot be understood is reported to `watcher` and skipped. Throws InputError where a file cannot be written.
   void show(const MatchedFrame& matched, BusWatcher& watcher);
 
   /// Lets window and page act on keys and buttons, one of which shows `watcher`'s next camera. False when it was asked
   /// to end.
   bool handle_keys(BusWatcher& watcher);
 
-  /// As ViewOutputs.
+  /// These work as in ViewOutputs.
   bool complete() const { return outputs_.complete(); }
   void finish() { outputs_.finish(); }
 
@@ -67,7 +67,7 @@ class FrameRenderer {
   std::shared_ptr<const ClassModels> models_;
   std::unique_ptr<store::StoreWatcher<ClassModels>> store_;
   std::unique_ptr<LivePage> page_;
-  bool page_alone_;  // nobody but the page wants images
+  bool page_alone_;  // only the page needs images
   ViewOutputs outputs_;
   std::optional<Camera> camera_;
   FrameViewSettings image_settings_;

@@ -6,18 +6,18 @@
 
 namespace houghstream::view {
 
-/// A message of this size passes through the receive buffer that an untuned Linux gives to programs that ask for none,
-/// Java's among them, with room for what else is on the bus.
+/// A message of this size passes through the receive buffer that an untuned Linux gives to programs that request none,
+/// Java's among them, with space for other messages on the bus.
 constexpr std::size_t kMaxPreviewBytes = 90'000;
 
-/// An image as JPEG of at most so many bytes.
+/// Holds an image as JPEG of at most so many bytes.
 struct PreviewImage {
   int width = 0;   ///< pixels
   int height = 0;  ///< pixels
   std::vector<std::uint8_t> jpeg;
 };
 
-/// The image (CV_8UC3, BGR) at the best quality, and if need be at a smaller size, that fits `max_bytes`.
+/// Encodes the image (CV_8UC3, BGR) at the best quality, and if need be at a smaller size, that fits `max_bytes`.
 /// Throws InputError where even a few pixels do not fit.
 PreviewImage encode_preview(const cv::Mat& image, std::size_t max_bytes = kMaxPreviewBytes);
 

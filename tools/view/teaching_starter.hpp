@@ -11,31 +11,31 @@
 
 namespace houghstream::view {
 
-/// What is to be taught of the stream that is shown.
+/// Describes a teaching from the stream that is shown.
 struct TeachingOrder {
   std::filesystem::path executables;  ///< folder of hs-teach
-  std::string store;                  ///< that the object joins,
-  bool joins_others = true;           ///< or that is made for it
-  std::string name;                   ///< that it gets
-  std::string channel;                ///< of the frames
+  std::string store;                  ///< store to which the object is added
+  bool joins_others = true;           ///< false: the store is made for it
+  std::string name;                   ///< name of the object
+  std::string channel;                ///< channel of the frames
   std::string lcm_url;                ///< "" = LCM's default
-  std::optional<cv::Rect> box;        ///< about the object, pixels; none = what stands nearest
-  std::optional<cv::Point> at;        ///< to this pixel, or to the middle
+  std::optional<cv::Rect> box;        ///< box of the object, pixels; none = the nearest object
+  std::optional<cv::Point> at;        ///< pixel to which it is nearest; none = the middle
 };
 
-/// hs-teach with its words.
+/// Returns hs-teach with its arguments.
 std::vector<std::string> teaching_command(const TeachingOrder& order);
 
-/// "object_1", or the first such name that is not known.
+/// Returns "object_1", or the first such name that is unused.
 std::string free_name(const std::vector<std::string>& known);
 
-/// Starts hs-teach show for the stream that goes on, one at a time, and ends its take. The program ends with this.
+/// Starts hs-teach show for the running stream, one at a time, and ends its take. The program ends with this.
 class TeachingStarter {
  public:
   /// Starts it; while it runs its take ends instead. What cannot be started is logged.
   void press(const TeachingOrder& order);
 
-  /// Whether it runs. Logs how it ended.
+  /// Returns whether it runs. Logs its exit status when it has ended.
   bool runs();
 
  private:

@@ -23,7 +23,7 @@ extern "C" {
 namespace houghstream::view {
 namespace {
 
-constexpr int kTicksPerFrame = 1000;  // what a rate of 0.1 Hz and more is counted in
+constexpr int kTicksPerFrame = 1000;  // ticks, which resolve rates of 0.1 Hz and more
 
 struct InputCloser {
   void operator()(AVFormatContext* context) const { avformat_close_input(&context); }
@@ -71,12 +71,12 @@ Output open_output(const std::filesystem::path& file, const AVCodecParameters& v
   return output;
 }
 
-/// The time of a frame in the output's units.
+/// Returns the time of a frame in the output's units.
 std::int64_t at_rate(double frame, const AVStream& stream, double rate_hz) {
   return std::llround(frame / (rate_hz * av_q2d(stream.time_base)));
 }
 
-// FFmpeg's writer tells nobody that the disk is full.
+// Counts the frames of a finished video, since FFmpeg's writer does not report a full disk.
 std::int64_t frames_in(const std::filesystem::path& video) {
   const cv::VideoCapture written(video.string(), cv::CAP_FFMPEG);
   return written.isOpened() ? std::llround(written.get(cv::CAP_PROP_FRAME_COUNT)) : 0;
@@ -95,14 +95,14 @@ bool needs_end(const std::filesystem::path& file) {
   return ending == ".mp4" || ending == ".m4v" || ending == ".mov";
 }
 
-/// FFmpeg chooses the format by it; these may hold H.264.
+/// Returns whether the name is that of a video. FFmpeg chooses the format by the ending; these formats may hold H.264.
 bool is_video_name(const std::filesystem::path& file) {
   const std::string ending = lower_extension(file);
   return needs_end(file) || ending == ".mkv" || ending == ".avi";
 }
 
-// H.264 wants even sides, and its encoders refuse very long ones. The first image may be of a single row or column of
-// pixels; those after it must be legible all the same.
+// Returns the size of the video. H.264 needs even sides, and its encoders refuse very long ones. The first image may be
+// of a single row or column of pixels; those after it must be legible all the same.
 cv::Size video_size(const cv::Size& image) {
   constexpr int kMaxSide = 8192;  // pixels
   constexpr int kMaxAspect = 8;
@@ -174,7 +174,7 @@ void VideoFile::add(const cv::Mat& image, std::int64_t slot) {
     first_slot_ = slot;
   }
   const cv::Mat fitting = fitted(image);
-  // Who is asked to end does not fill a gap of hours first.
+  // A gap of hours is not filled after a request to end.
   constexpr double kLongGapS = 10.0;
   const auto is_given_up = [&] {
     return stop_requested() && static_cast<double>(slot - first_slot_ - frames_written_) > kLongGapS * rate_hz_;
@@ -211,7 +211,7 @@ void VideoFile::finish() {
   try {
     complete();
   } catch (const InputError& error) {
-    whole_->keep_partial();  // what was seen cannot be had again
+    whole_->keep_partial();  // the recording cannot be repeated
     fail("{}; what could be written stays in {}", error.what(), whole_->partial().string());
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;

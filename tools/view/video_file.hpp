@@ -10,9 +10,9 @@
 
 namespace houghstream::view {
 
-/// Writes the video of one file into another, whose format its name tells, without encoding it again. Its frames get
-/// the times of a constant rate, which a format that counts milliseconds has rounded. Throws InputError where one of
-/// the two cannot be read or written.
+/// Writes the video of one file into another, whose name determines the format, without encoding it again. Its frames
+/// get the times of a constant rate, which a format that counts milliseconds has rounded. Throws InputError where one
+/// of the two cannot be read or written.
 void remux_video(const std::filesystem::path& from, const std::filesystem::path& to, double rate_hz);
 
 /// Writes an MP4 with H.264, which every browser plays, at a constant rate. Until it is finished the frames are in a
@@ -22,16 +22,16 @@ void remux_video(const std::filesystem::path& from, const std::filesystem::path&
 /// ten seconds is left out.
 class VideoFile {
  public:
-  /// Throws InputError where the file's name does not say that it is a video, or it cannot be written.
+  /// Throws InputError where the file's name is not that of a video, or it cannot be written.
   VideoFile(std::filesystem::path file, double rate_hz, Existing existing = Existing::kReplaced);
 
   /// Slots must grow. The video has the size of the first image, made even in both directions; one of another size
   /// (the camera's mode has changed) is fitted into it. Throws InputError when the file cannot be written.
   void add(const cv::Mat& image, std::int64_t slot);
 
-  /// Ends the video, which is in its place from here on, and not before (AtomicFile), and logs how long that took.
-  /// Throws InputError where it does not hold all that was added, as on a full disk; what was in its place stays, and
-  /// so does what could be written of it, under the name that the error says.
+  /// Ends the video, commits it (AtomicFile), and logs how long that took. Throws InputError where it does not hold all
+  /// frames, as on a full disk; an earlier file stays, and so does the part that could be written, under the name in
+  /// the error.
   void finish();
 
   std::int64_t frames_written() const { return frames_written_; }

@@ -9,13 +9,13 @@
 
 namespace houghstream::view {
 
-/// Where images go without a display; an empty path is not written.
+/// Outputs of images without a display; a file with an empty path is not written.
 struct OutputSettings {
-  std::filesystem::path snapshot;   ///< one image, PNG or JPEG by its ending
+  std::filesystem::path snapshot;   ///< file for one image, PNG or JPEG by its ending
   std::int64_t snapshot_after = 1;  ///< the Nth image drawn; the last one where the stream ends before
   std::filesystem::path video;      ///< MP4
   std::filesystem::path images;     ///< folder for every image drawn, UTIME.jpg
-  double rate_hz = 10.0;            ///< of the video
+  double rate_hz = 10.0;            ///< rate of the video
   bool replace = false;             ///< a video and images that are there, instead of taking the next number
 };
 
@@ -30,7 +30,7 @@ class ViewOutputs {
   /// Writes a snapshot that did not come to its turn. Throws InputError when there was no image at all.
   void finish();
 
-  /// Whether everything asked for is there: a snapshot alone needs no more images.
+  /// Returns whether everything requested has been written: a snapshot alone needs no more images.
   bool complete() const;
 
  private:

@@ -30,8 +30,8 @@ bool is_set(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
-// Whether a window opens. Tried in a process of its own: where a display is named but does not answer, the window
-// library aborts the process instead of saying so.
+// Returns whether a window opens. It is tried in a process of its own: where a display is named but does not answer,
+// the window library aborts the process instead of returning an error.
 bool window_opens() {
   const pid_t child = fork();
   if (child == 0) {
@@ -66,7 +66,7 @@ KeyAction apply_key(int key, FrameViewSettings& settings) {
     case 'w': settings.show_world = !settings.show_world; break;
     case '3': settings.show_3d = !settings.show_3d; break;
     case '+':
-    case '=':  // the same key without shift
+    case '=':  // the plus key without shift
       settings.min_score = std::min(settings.min_score + kStep, 1.0F);
       break;
     case '-': settings.min_score = std::max(settings.min_score - kStep, 0.0F); break;
@@ -130,7 +130,7 @@ void ViewWindow::save() const {
   try {
     save_image(file, shown_);
     log_info("saved {}", file);
-  } catch (const InputError& error) {  // the stream can be looked at all the same
+  } catch (const InputError& error) {  // the stream can be viewed all the same
     log_error("{}", error.what());
   }
 }

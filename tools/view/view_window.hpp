@@ -8,25 +8,25 @@
 
 namespace houghstream::view {
 
-/// What a key asks for.
+/// Actions of a key.
 enum class KeyAction {
   kNone,
   kRedraw,      ///< the settings have changed
   kNextCamera,  ///< the next camera's frames are to be shown
-  kTeach,       ///< what is seen is to be taught, or enough of it was shown
+  kTeach,       ///< teach the object that is shown, or end the showing
   kEnd,
 };
 
-/// What a key, as cv::waitKey gives it, does to the settings: q or Esc ends, space pauses, d shows or hides depth, 3
-/// shows 3-D in its place, w the world from above, + and - move the smallest score that is drawn, c goes on to the next
-/// camera, t teaches.
+/// Applies a key of cv::waitKey to the settings: q or Esc ends, space pauses, d shows or hides depth, 3 shows 3-D in
+/// its place, w the world from above, + and - change the minimum score that is drawn, c selects the next camera, t
+/// teaches.
 KeyAction apply_key(int key, FrameViewSettings& settings);
 
-/// What the mouse marks, pressed at one corner of `dragged` and by now at another: a box, or a place, where it hardly
-/// moved.
+/// Applies a mark of the mouse, pressed at one corner of `dragged` and now at another: a box, or a pixel where it
+/// hardly moved.
 void apply_mark(const cv::Rect& dragged, FrameViewSettings& settings);
 
-/// The window; its keys are those of apply_key, and s, which saves the image; where that fails it is logged.
+/// Shows the window; its keys are those of apply_key, and s, which saves the image; a failure of that is logged.
 class ViewWindow {
  public:
   /// Throws InputError, naming the headless options, where there is no display.
@@ -43,9 +43,9 @@ class ViewWindow {
 
   cv::Mat shown_;
   FrameId id_;
-  double scale_ = 1.0;                // of what the window shows; below 1 for an image that no window holds
-  std::optional<cv::Point> pressed_;  // where the mouse's button went down
-  std::optional<cv::Rect> dragged_;   // from there to where it is or went up; not yet handed on
+  double scale_ = 1.0;                // scale of the shown image; below 1 where the image exceeds the window
+  std::optional<cv::Point> pressed_;  // pixel where the mouse's button was pressed
+  std::optional<cv::Rect> dragged_;   // from there to its present or last pixel; not yet handed on
 };
 
 }  // namespace houghstream::view

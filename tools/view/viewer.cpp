@@ -16,16 +16,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Drawing yields to the stream: on a busy machine images are late, results are not. On Linux this holds for the
-// calling thread and those that it starts later (the video encoder's), not for the one that receives. One thread draws:
-// several that share so little work spend more time on waking than they save.
+// Lowers the priority of drawing below the stream's: on a busy machine images are late, results are not. On Linux this
+// holds for the calling thread and those that it starts later (the video encoder's), not for the one that receives. One
+// thread draws: several that share so little work spend more time on waking than they save.
 void step_back() {
   cv::setNumThreads(1);
   constexpr int kPolite = 15;
   if (nice(kPolite) == -1) log_warning("the priority of drawing cannot be lowered");
 }
 
-// For files there is time after the stream: frames may wait. In a window and on a page only the newest matters.
+// Returns how many frames may wait: files leave time after the stream, while in a window and on a page only the newest
+// matters.
 std::size_t waiting_frames(const FrameRendererSettings& settings) {
   constexpr std::size_t kForFiles = 50;
   return settings.writes() ? kForFiles : 1;
@@ -40,7 +41,7 @@ void run_viewer(const ViewerSettings& settings) {
   match.rate_hz = settings.show.outputs.rate_hz;
   LcmBus bus(settings.lcm_url);
   BusWatcher watcher(bus, settings.frame_channels, match, waiting_frames(settings.show));
-  // On a busy machine, and with a long video, the end takes longer than who started this program would wait.
+  // On a busy machine, and with a long video, the end takes longer than the caller of this program would wait.
   std::optional<StillFinishing> finishing;
   if (settings.show.writes()) finishing.emplace(StillFinishing::From::kStopSignal);
   step_back();

@@ -7,7 +7,7 @@
 
 namespace houghstream::view {
 
-/// What hs-view does.
+/// Settings of hs-view.
 struct ViewerSettings {
   std::string lcm_url;                           ///< "" = LCM's default
   std::string frame_channels = channel::kFrame;  ///< a ChannelPattern; of several cameras one is shown at a time

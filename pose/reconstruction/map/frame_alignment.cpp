@@ -38,7 +38,7 @@ float depth_between(const cv::Mat& depth, float u, float v) {
   return (1 - dv) * ((1 - du) * above[0] + du * above[1]) + dv * ((1 - du) * below[0] + du * below[1]);
 }
 
-/// Intensity between pixels and its gradient there.
+/// Holds the intensity between pixels and its gradient.
 struct IntensitySample {
   float value, slope_u, slope_v;
 };
@@ -62,8 +62,8 @@ double tukey(double r) {
 }
 
 class ResidualEvaluator {
-  static constexpr double kMinSlope = 0.15;  // of light a pixel
-  static constexpr double kNear_m = 0.6;     // of the world's origin, at which the object stands
+  static constexpr double kMinSlope = 0.15;  // intensity per pixel
+  static constexpr double kNear_m = 0.6;     // distance from the world's origin, at which the object is
 
  public:
   ResidualEvaluator(const FrameLevel& frame, const Eigen::Isometry3d& T, int level, const AlignmentLimits& limits)
@@ -87,7 +87,7 @@ class ResidualEvaluator {
     const double behind = p.z() - z;
     if (behind > gate) return;  // hidden
     ++equations.visible;
-    if (behind < -gate) return;  // seen through
+    if (behind < -gate) return;  // a free-space violation
     const Eigen::Vector3f n = R_ * point.normal;
     const float facing = -n.dot(p) / p.norm();
     if (facing < 0.05F) return;
@@ -150,14 +150,14 @@ void add_plane(const PlanePrior& plane, const Eigen::Isometry3d& T, NormalEquati
   equations.add(row, plane.normal.dot(T.translation()) + plane.offset, 1.0 / (plane.sigma_m * plane.sigma_m));
 }
 
-/// bearing_error() of a corner whose point lies at p, which is before the camera.
+/// Computes bearing_error() of a corner whose point lies at p, which is before the camera.
 double bearing_error_at(const Eigen::Vector3d& p, const LandmarkObservation& corner) {
   return (p.head<2>() / p.z() - corner.in_camera.head<2>() / corner.in_camera.z()).norm();
 }
 
 /// A landmark's bearing hardly depends on its depth, so far landmarks constrain the camera's rotation.
 void add_corner(const LandmarkObservation& corner, const Eigen::Isometry3d& T, NormalEquations& equations) {
-  constexpr double kSigma = 0.003;  // of a bearing: one to two pixels
+  constexpr double kSigma = 0.003;  // error of a bearing: one to two pixels
   const Eigen::Vector3d p = T * corner.in_world;
   if (!(p.z() > 0.1)) return;
   const double weight = tukey(bearing_error_at(p, corner) / (2.0 * kSigma)) / (kSigma * kSigma);

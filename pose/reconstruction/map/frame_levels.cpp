@@ -11,7 +11,7 @@
 namespace houghstream::reconstruction {
 namespace {
 
-/// Half the size; a pixel's depth is the mean of those of its four that lie on the nearest surface.
+/// Halves the size. A pixel's depth is the mean of those of its four that lie on the nearest surface.
 cv::Mat half_depth(const cv::Mat& depth) {
   constexpr float kSameSurface = 1.02F;
   cv::Mat half(depth.rows / 2, depth.cols / 2, CV_32FC1);
@@ -47,7 +47,7 @@ Camera half_camera(const Camera& camera) {
           camera.fy / 2,    (camera.cx - 0.5) / 2, (camera.cy - 0.5) / 2};
 }
 
-/// Less the mean, over the deviation around; noise on plain surfaces is not blown up.
+/// Subtracts the local mean and divides by the local deviation. Noise on uniform surfaces is not amplified.
 cv::Mat normalise_intensity(const cv::Mat& grey) {
   constexpr int kAround_px = 21;
   constexpr double kNoise = 6.0;  // grey levels
@@ -85,10 +85,11 @@ ImageQuality measure_quality(const cv::Mat& grey) {
   return quality;
 }
 
-/// The normal of the plane through the depth around a pixel, towards the camera; 1/z is linear in the pixel there.
+/// Computes the normal of the plane through the depth around a pixel, towards the camera; 1/z is linear in the pixel
+/// there.
 bool fit_normal(const FrameLevel& level, int x, int y, Eigen::Vector3f& normal) {
   constexpr int kRadius_px = 3;
-  constexpr int kMin = 30;  // of 49
+  constexpr int kMin = 30;  // of 49 pixels
   const float z = level.depth.at<float>(y, x);
   const float same = 0.008F + 0.012F * z;
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
@@ -106,7 +107,8 @@ bool fit_normal(const FrameLevel& level, int x, int y, Eigen::Vector3f& normal) 
     }
   }
   if (count < kMin) return false;
-  // 1/z = a u + b v + c about the pixel; the plane n.X = 1 has n = (a fx, b fy, c - a (x - cx) - b (y - cy)).
+  // The plane is 1/z = a u + b v + c about the pixel; the plane n.X = 1 has n = (a fx, b fy, c - a (x - cx) - b (y -
+  // cy)).
   const Eigen::Vector3f f = squares.ldlt().solve(sums);
   const auto fx = static_cast<float>(level.camera.fx);
   const auto fy = static_cast<float>(level.camera.fy);
@@ -119,7 +121,7 @@ bool fit_normal(const FrameLevel& level, int x, int y, Eigen::Vector3f& normal) 
   return true;
 }
 
-/// The pixel of a square with depth and the strongest edge of light.
+/// Finds the pixel of a square with depth and the strongest intensity gradient.
 bool strongest_pixel(const FrameLevel& level, const cv::Rect& square, const cv::Mat& mask, cv::Point& best) {
   float strongest = -1.0F;
   for (int y = square.y; y < square.br().y; ++y) {

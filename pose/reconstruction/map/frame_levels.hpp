@@ -8,13 +8,13 @@
 
 namespace houghstream::reconstruction {
 
-/// A frame at one resolution.
+/// Holds a frame at one resolution.
 struct FrameLevel {
   Camera camera;
   cv::Mat intensity;    ///< CV_32FC1, brightness less the mean around, in deviations around: the same at any exposure
   cv::Mat depth;        ///< CV_32FC1, metres, NaN = none
-  cv::Mat static_mask;  ///< CV_8UC1, 255 where the light tells nothing, as it stayed while the object turned; empty =
-                        ///< nowhere
+  cv::Mat static_mask;  ///< CV_8UC1, 255 where the intensity is not informative, as it stayed while the object rotated;
+                        ///< empty = nowhere
 };
 
 /// Quality of an image, by which frames that would blur a model are left out.
@@ -32,7 +32,7 @@ struct FrameLevels {
 
 /// Region and resolution of a frame that registration uses.
 struct LevelSettings {
-  cv::Rect region_px;   ///< of the frame; empty = all
+  cv::Rect region_px;   ///< part of the frame; empty = all
   int min_width = 400;  ///< pixels: what is wider is halved before
   int levels = 3;
 };
@@ -43,25 +43,25 @@ FrameLevels make_levels(const RgbdFrame& frame, const LevelSettings& settings);
 struct SurfacePoint {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< metres
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit length, towards the camera
-  float intensity = 0.0F;                            ///< of FrameLevel::intensity there; NaN where it tells nothing
-  bool on_table = false;                             ///< of the plane z = 0 of the world, as far as is known
+  float intensity = 0.0F;  ///< value of FrameLevel::intensity there; NaN where it is not informative
+  bool on_table = false;   ///< true on the plane z = 0 of the world, as far as is known
 };
 
 /// Points of each level, finest first.
 using LevelPoints = std::vector<std::vector<SurfacePoint>>;
 
-/// Which points of a frame are kept: in each square of pixels the one with the strongest edge of light, of those with
-/// depth and a normal.
+/// Settings of the selection of points: in each square of pixels the one with the strongest intensity gradient, of
+/// those with depth and a normal.
 struct PointSettings {
-  int square_px = 6;        ///< of the finest level; 3/4 of it on the next, and so on
+  int square_px = 6;        ///< side on the finest level; 3/4 of it on the next, and so on
   double min_facing = 0.2;  ///< cosine between normal and line of sight
 };
 
-/// Camera frame. `mask` (CV_8UC1 of the first level's size, or empty) chooses pixels.
+/// Selects points, in the camera frame. `mask` (CV_8UC1 of the first level's size, or empty) limits the pixels.
 LevelPoints choose_points(const FrameLevels& frame, const cv::Mat& mask, const PointSettings& settings);
 
-/// Standard deviation of a structured-light camera's depth at a distance, metres (Nguyen, Izadi, Lovell, "Modeling
-/// Kinect sensor noise", 3DIMPVT 2012, equation 6).
+/// Returns the standard deviation of a structured-light camera's depth at a distance, metres (Nguyen, Izadi, Lovell,
+/// "Modeling Kinect sensor noise", 3DIMPVT 2012, equation 6).
 inline double depth_sigma(double z) {
   return 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
 }

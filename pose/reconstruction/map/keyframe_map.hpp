@@ -8,10 +8,10 @@
 
 namespace houghstream::reconstruction {
 
-/// A frame of the map.
+/// Holds a frame of the map.
 struct Keyframe {
   RgbdFrame frame;
-  int number = 0;  ///< of the frame in its take, from 0
+  int number = 0;  ///< number of the frame in its take, from 0
   FrameLevels levels;
   LevelPoints points;  ///< camera frame
   Landmarks landmarks;
@@ -20,7 +20,7 @@ struct Keyframe {
 
 /// Error of a loop before it was closed.
 struct LoopClosureError {
-  double shift_m = 0.0;    ///< of the world's origin
+  double shift_m = 0.0;    ///< shift of the world's origin, metres
   double angle_rad = 0.0;  ///< radians
 };
 
@@ -34,15 +34,15 @@ struct MapSettings {
   double min_visible_fraction = 0.25;
   double max_photometric_rms = 0.62;
   int coarsest = 2;               ///< level on which registration begins
-  bool use_landmarks = true;      ///< those of surroundings; of a thing that turns, shine has some too
-  std::size_t min_corners = 12;   ///< in common with another frame, to hold a pose
-  std::size_t sure_corners = 30;  ///< in common with a keyframe, to say a pose of their own
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the object, world frame
-  std::optional<PlanePrior> plane;                   ///< where the camera stands still
+  bool use_landmarks = true;      ///< landmarks of the surroundings; highlights of a rotating object yield false ones
+  std::size_t min_corners = 12;   ///< minimum in common with another frame to constrain a pose
+  std::size_t sure_corners = 30;  ///< minimum in common with a keyframe to determine a pose alone
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< middle of the object, world frame
+  std::optional<PlanePrior> plane;                   ///< prior of a static camera
   int threads = 1;
 };
 
-/// A subset of the keyframes, and their points in the world frame.
+/// Holds a subset of the keyframes, and their points in the world frame.
 struct MapPart {
   std::vector<int> keyframes;
   LevelPoints points;
@@ -51,7 +51,7 @@ struct MapPart {
 /// A keyframe whose landmarks were matched with a frame.
 struct LandmarkReobservation {
   int keyframe = 0;
-  LandmarkMatch match;  ///< from the keyframe's camera to the frame's
+  LandmarkMatch match;  ///< match from the keyframe's camera to the frame's
 };
 
 /// Limits of a frame's registration to keyframes without an edge to it.
@@ -63,7 +63,7 @@ struct RegistrationLimits {
 /// Keyframes of a take, the pose graph between them, and the local map to which the next frame is registered.
 class KeyframeMap {
  public:
-  /// `keyframes`: such as are there already, with poses that are nearly right.
+  /// Begins with existing `keyframes`, whose poses are nearly correct.
   explicit KeyframeMap(const MapSettings& settings, std::vector<Keyframe> keyframes = {})
       : settings_(settings), keyframes_(std::move(keyframes)) {}
   MapSettings& settings() { return settings_; }
@@ -114,7 +114,7 @@ class KeyframeMap {
   MapSettings settings_;
   std::vector<Keyframe> keyframes_;
   std::vector<PoseEdge> edges_;
-  std::vector<int> steps_;  ///< from the last keyframe
+  std::vector<int> steps_;  ///< number of edges from each keyframe to the last one
   MapPart local_;
 };
 

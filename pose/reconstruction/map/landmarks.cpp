@@ -105,7 +105,7 @@ cv::Mat grey_of(const RgbdFrame& frame) {
   return grey;
 }
 
-/// Where an image has depth within reach, camera frame.
+/// Returns the surface point of a pixel with depth within reach, camera frame.
 std::optional<Eigen::Vector3d> surface_at(const RgbdFrame& frame, const cv::Point2f& at) {
   const cv::Point px(cvRound(at.x), cvRound(at.y));
   if (!cv::Rect({0, 0}, frame.depth.size()).contains(px)) return std::nullopt;
@@ -145,7 +145,7 @@ FlowFrame make_flow_frame(const RgbdFrame& frame) {
 
 std::vector<cv::Point2f> detect_flow_corners(const FlowFrame& frame, const cv::Mat& mask) {
   constexpr int kMax = 300;
-  constexpr double kMinQuality = 0.01;  // of the best corner's
+  constexpr double kMinQuality = 0.01;  // fraction of the best corner's quality
   constexpr double kApart_px = 9.0;
   std::vector<cv::Point2f> corners;
   cv::goodFeaturesToTrack(frame.grey, corners, kMax, kMinQuality, kApart_px, mask);

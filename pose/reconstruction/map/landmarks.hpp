@@ -16,24 +16,26 @@ struct Landmarks {
   cv::Mat descriptors;                  ///< a row each
 };
 
-/// ORB (Rublee, Rabaud, Konolige, Bradski 2011). `mask` (CV_8UC1 of the frame's size, or empty) says where.
+/// Detects ORB landmarks (Rublee, Rabaud, Konolige, Bradski 2011). `mask` (CV_8UC1 of the frame's size, or empty)
+/// limits the pixels.
 Landmarks detect_landmarks(const RgbdFrame& frame, const cv::Mat& mask);
 
-/// Match of the landmarks of two images.
+/// Holds the match of the landmarks of two images.
 struct LandmarkMatch {
-  Eigen::Isometry3d T_b_a = Eigen::Isometry3d::Identity();           ///< from camera a to camera b
-  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> inliers;  ///< in a and in b, within a few millimetres of it
+  Eigen::Isometry3d T_b_a = Eigen::Isometry3d::Identity();  ///< motion from camera a to camera b
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>
+      inliers;  ///< points in a and in b, within a few millimetres of the motion
 };
 
-/// From pairs of like corners by RANSAC (Fischler & Bolles 1981); none where fewer than eight pairs agree. Same input,
-/// same result.
+/// Matches similar corners by RANSAC (Fischler & Bolles 1981); returns nothing where fewer than eight pairs agree. The
+/// same input gives the same result.
 std::optional<LandmarkMatch> match_landmarks(const Landmarks& a, const Landmarks& b);
 
 /// A frame from which corners are followed, or into which: its brightness, which is made once for both.
 struct FlowFrame {
   RgbdFrame frame;
   cv::Mat grey;                  ///< CV_8UC1
-  std::vector<cv::Mat> pyramid;  ///< of it, with slopes, as OpenCV's optical flow takes it
+  std::vector<cv::Mat> pyramid;  ///< pyramid of `grey`, with gradients, for OpenCV's optical flow
 };
 
 FlowFrame make_flow_frame(const RgbdFrame& frame);
@@ -41,7 +43,7 @@ FlowFrame make_flow_frame(const RgbdFrame& frame);
 /// Corners that can be followed from a frame (Shi & Tomasi 1994), pixels. `mask`: as for detect_landmarks.
 std::vector<cv::Point2f> detect_flow_corners(const FlowFrame& frame, const cv::Mat& mask);
 
-/// Corners of one frame followed into the next, in which they are nearly where they were (Lucas & Kanade 1981), there
+/// Tracks corners of one frame into the next, in which they are nearly in the same place (Lucas & Kanade 1981), forth
 /// and back.
 std::optional<LandmarkMatch> track_corners(const FlowFrame& a, const std::vector<cv::Point2f>& corners,
                                            const FlowFrame& b);

@@ -7,12 +7,12 @@
 
 namespace houghstream::reconstruction {
 
-/// Relative pose of two keyframes from their registration.
+/// Gives the relative pose of two keyframes from their registration.
 struct PoseEdge {
   int from = 0;                                                 ///< its points were laid on ...
   int to = 0;                                                   ///< ... this one's image
   Eigen::Isometry3d T_to_from = Eigen::Isometry3d::Identity();  ///< camera to camera
-  Matrix6 information = Matrix6::Identity();                    ///< of a motion of the world, see Alignment
+  Matrix6 information = Matrix6::Identity();                    ///< information of a motion of the world, see Alignment
 };
 
 /// Corrects poses in place until the edges agree as well as they can: Gauss-Newton on a pose graph (Grisetti et al., "A
@@ -20,7 +20,7 @@ struct PoseEdge {
 /// stays. Poses that no edge ties to pose 0 stay as well.
 void optimise_pose_graph(const std::vector<PoseEdge>& edges, std::vector<Eigen::Isometry3d>& T_camera_world);
 
-/// For each pose the fewest edges that lead to it from `start`; -1 where none do.
+/// Returns for each pose the minimum number of edges that lead to it from `start`; -1 where none do.
 std::vector<int> graph_distances(int start, int poses, const std::vector<PoseEdge>& edges);
 
 }  // namespace houghstream::reconstruction

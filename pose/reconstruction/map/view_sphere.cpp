@@ -9,7 +9,7 @@
 namespace houghstream::reconstruction {
 namespace {
 
-/// Part of the sphere with a name that a person would use.
+/// Returns the name of a part of the sphere, for a person.
 const char* part_of(const Eigen::Vector3d& direction, const Eigen::Vector3d& front) {
   constexpr double kPi = 3.14159265358979323846;
   if (direction.z() > 0.75) return "above";
@@ -39,7 +39,7 @@ const std::array<Eigen::Vector3d, kSphereDirections>& view_directions() {
 }
 
 void mark_covered(const Eigen::Vector3d& towards_camera, ViewCoverage& seen) {
-  constexpr double kCosine = 0.6428;  // of 50 degrees
+  constexpr double kCosine = 0.6428;  // cosine of 50 degrees
   const Eigen::Vector3d unit = towards_camera.normalized();
   const auto& directions = view_directions();
   for (std::size_t i = 0; i < directions.size(); ++i) seen[i] = seen[i] || directions[i].dot(unit) > kCosine;

@@ -15,14 +15,14 @@ using ViewCoverage = std::array<bool, kSphereDirections>;
 /// 2010).
 const std::array<Eigen::Vector3d, kSphereDirections>& view_directions();
 
-/// Marks those sides of the object that a camera in this direction (object frame, from the object's middle) looks at
-/// within 50 degrees.
+/// Marks the sides of the object that a camera in this direction (object frame, from the object's middle) sees within
+/// 50 degrees.
 void mark_covered(const Eigen::Vector3d& towards_camera, ViewCoverage& seen);
 
 int count_covered(const ViewCoverage& seen);
 
-/// "seen from 40 of 60 directions; from behind and from low nothing yet". In front is where the camera began, `front`
-/// in the object frame.
+/// Returns a text such as "seen from 40 of 60 directions; from behind and from low nothing yet". The front is where the
+/// camera began, `front` in the object frame.
 std::string describe_coverage(const ViewCoverage& seen, const Eigen::Vector3d& front);
 
 }  // namespace houghstream::reconstruction

@@ -13,8 +13,8 @@
 namespace houghstream::reconstruction {
 namespace {
 
-/// Median distance of measured points on the mask from the model along the line of sight, times how steeply it meets
-/// the surface.
+/// Adds the median distance of measured points on the mask from the model along the line of sight, times the cosine to
+/// its normal.
 void add_distances(const Mesh& mesh, const RgbdFrame& frame, const MaskedKeyframe& view,
                    std::vector<float>& distances) {
   const cv::Rect box = cv::boundingRect(view.mask);
@@ -70,7 +70,7 @@ double free_space_violation(const Mesh& mesh, const Take& take, const std::vecto
     const RgbdFrame& frame = take.keyframes[static_cast<std::size_t>(view.keyframe)].frame;
     const cv::Rect whole(0, 0, frame.camera.width, frame.camera.height);
     const cv::Mat model = render_depth(mesh, view.T_camera_object, frame.camera, whole);
-    // About a pixel: the outline may be one off.
+    // The nearest depth about a pixel is compared, since the outline may be one pixel off.
     cv::Mat nearest = frame.depth.clone();
     nearest.setTo(0.0F, ~(nearest == nearest));  // vectorised, != may call two NaN equal
     cv::erode(nearest, nearest, cv::Mat());

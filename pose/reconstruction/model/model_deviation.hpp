@@ -9,9 +9,9 @@
 
 namespace houghstream::reconstruction {
 
-/// The object in a keyframe.
+/// Holds the mask and pose of the object in a keyframe.
 struct MaskedKeyframe {
-  int keyframe = 0;  ///< of the take
+  int keyframe = 0;  ///< index in the take
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
   cv::Mat mask;  ///< CV_8UC1, 255 where the object is seen: nothing hides it there. Size of the frame
 };
@@ -34,7 +34,7 @@ cv::Mat render_visible_mask(const Mesh& mesh, const RgbdFrame& frame, const Eige
 /// fused into the model violates it in all views in which it has gone.
 double free_space_violation(const Mesh& mesh, const Take& take, const std::vector<MaskedKeyframe>& views, int threads);
 
-/// Maximum for a model without such parts: of the development takes those without had up to 0.004, those with at least
+/// Maximum for a model without such parts: in the development takes models without had up to 0.004, those with at least
 /// 0.06.
 constexpr double kMaxFreeSpaceViolation = 0.02;
 

@@ -15,7 +15,7 @@
 namespace houghstream::reconstruction {
 namespace {
 
-/// Some of a model's seen vertices, with colours as CIE L*a*b*.
+/// Holds some of a model's observed vertices, with colours as CIE L*a*b*.
 struct Points {
   std::vector<Eigen::Vector3f> points, normals, colours;
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
@@ -53,7 +53,7 @@ Points sample(const PartlySeen& model, const std::vector<Eigen::Vector3f>& lab, 
   return out;
 }
 
-/// Model a, asked for its surface.
+/// Searches the surface of model a.
 class Target {
  public:
   explicit Target(const PartlySeen& model) : model_(model), lab_(lab_of(*model.mesh)), tree_(*model.mesh) {}
@@ -110,8 +110,8 @@ Eigen::Isometry3d refine(const Target& a, const Points& b, Eigen::Isometry3d T, 
   return T;
 }
 
-/// Cost of a pose: distance and colour difference where both models were observed, and the lack of overlap. `median_m`
-/// is the median distance.
+/// Returns the cost of a pose: distance and colour difference where both models were observed, and the lack of overlap.
+/// `median_m` is the median distance.
 double cost_of(const Target& a, const Points& b, const Eigen::Isometry3d& T, double& median_m) {
   constexpr double kFar_m = 0.01;
   constexpr double kColour = 60.0;
@@ -120,7 +120,7 @@ double cost_of(const Target& a, const Points& b, const Eigen::Isometry3d& T, dou
   for (std::size_t k = 0; k < b.points.size(); ++k) {
     const Target::Hit hit = a.nearest((T * b.points[k].cast<double>()).cast<float>());
     if (!hit.seen && hit.distance < kFar_m) {
-      sum += 0.5;  // nobody knows: better than a contradiction, worse than agreement
+      sum += 0.5;  // unknown: better than a contradiction, worse than agreement
       continue;
     }
     distances.push_back(hit.distance);

@@ -15,7 +15,7 @@ struct PartlySeen {
 };
 
 struct ModelRegistration {
-  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< from model b's frame to model a's
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< motion from model b's frame to model a's
   double median_m = 0.0;  ///< distance of b's seen surface from a's, where both were seen
 };
 

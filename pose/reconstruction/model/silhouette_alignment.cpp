@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kReach_px = 12;
 
-/// The model's depth in the view, with a margin so that it may be shifted.
+/// Returns the model's depth in the view, with a margin so that it may be shifted.
 cv::Mat rendered(const Mesh& mesh, const TrainingView& view) {
   const Camera& camera = view.frame.camera;
   const cv::Size size(camera.width + 2 * kReach_px, camera.height + 2 * kReach_px);
@@ -27,7 +27,7 @@ double overlap_at(const cv::Mat& outline, const cv::Mat& mask, const cv::Point& 
   return either > 0 ? static_cast<double>(both) / either : 0.0;
 }
 
-/// The shift of the model's outline that fits best, nearest to none among equals.
+/// Returns the shift of the model's outline that fits best, nearest to none among equals.
 cv::Point best_shift(const cv::Mat& outline, const cv::Mat& mask) {
   cv::Point best;
   double maximum = overlap_at(outline, mask, best);
@@ -46,7 +46,7 @@ cv::Point best_shift(const cv::Mat& outline, const cv::Mat& mask) {
   return best;
 }
 
-/// Median of measured less rendered depth; 0 where there is none.
+/// Returns the median of measured minus rendered depth; 0 where there is none.
 double depth_offset(const cv::Mat& model, const cv::Point& shift, const TrainingView& view) {
   std::vector<float> offsets;
   for (int y = 0; y < view.mask.rows; ++y) {

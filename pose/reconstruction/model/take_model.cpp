@@ -21,7 +21,7 @@ namespace {
 using fusion::DepthView;
 using fusion::TsdfVolume;
 
-/// Where a box is seen, a few pixels wider; the whole image where the camera is too near.
+/// Returns the region in which a box is visible, a few pixels wider; the whole image where the camera is too near.
 cv::Rect region_of(const Eigen::AlignedBox3d& box, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
   constexpr int kMargin_px = 8;
   const cv::Rect image(0, 0, camera.width, camera.height);
@@ -32,7 +32,7 @@ cv::Rect region_of(const Eigen::AlignedBox3d& box, const Camera& camera, const E
   return region & image;
 }
 
-/// All surface that the keyframes show about a box; nothing counts as outside but what is seen through.
+/// Returns the views of all surface that the keyframes show about a box; only free space counts as outside.
 std::vector<DepthView> views_about(const Take& take, const Eigen::AlignedBox3d& box, int threads) {
   std::vector<DepthView> views(take.keyframes.size());
   parallel_for(threads, static_cast<int>(views.size()), [&](int i) {
@@ -64,17 +64,17 @@ fusion::TsdfSettings grid_settings(double voxel, int threads) {
   fusion::TsdfSettings settings;
   settings.voxel = voxel;
   settings.min_fraction = 0.02;
-  settings.outline_weight = 0.0;  // beside a crop nothing is known
+  settings.outline_weight = 0.0;  // beside a crop nothing is known about the object
   settings.threads = threads;
   return settings;
 }
 
-/// The voxels of the coarse grid that the object fills, CV_8UC1 slices.
+/// Holds the voxels of the coarse grid that the object fills, CV_8UC1 slices.
 struct Filled {
   TsdfVolume grid;  ///< its layout
   std::vector<cv::Mat> slices;
   Eigen::AlignedBox3d box;
-  bool touches_side = false;  ///< of the grid
+  bool touches_side = false;  ///< reaches a side of the grid
 
   bool holds(const Eigen::Vector3d& point) const {
     const Eigen::Vector3d cell = (point - grid.origin) / grid.voxel;
@@ -119,7 +119,7 @@ std::vector<int> label_parts(const TsdfVolume& grid, double lowest, int& parts) 
   return labels;
 }
 
-/// The part on which most of the chosen object's pixels lie; 0 = none.
+/// Returns the part on which most of the selected object's pixels lie; 0 = none.
 int chosen_part(const Take& take, const TsdfVolume& grid, const std::vector<int>& labels, int parts) {
   std::vector<int> votes(static_cast<std::size_t>(parts) + 1, 0);
   const Keyframe& first = take.keyframes.front();
@@ -129,7 +129,7 @@ int chosen_part(const Take& take, const TsdfVolume& grid, const std::vector<int>
       const float z = first.frame.depth.at<float>(y, x);
       if (take.chosen.mask.at<std::uint8_t>(y, x) == 0 || !(z > 0.0F)) continue;
       const Eigen::Vector3d ray = first.frame.camera.backproject(x, y, 1.0);
-      // A little below the surface.
+      // The point lies a little below the surface, so that it falls into a filled voxel.
       const Eigen::Vector3d cell = (T_world_camera * (ray * (z + 0.5 * grid.voxel)) - grid.origin) / grid.voxel;
       const Eigen::Vector3i at = cell.array().round().cast<int>();
       if ((at.array() < 0).any() || at.x() >= grid.nx || at.y() >= grid.ny || at.z() >= grid.nz) continue;
@@ -165,7 +165,7 @@ Filled fill(const Take& take, const Eigen::AlignedBox3d& box, const Reconstructi
   return filled;
 }
 
-/// The object's voxels in a box that holds all of it.
+/// Returns the object's voxels in a box that holds all of it.
 Filled find_object(const Take& take, const ReconstructionSettings& settings) {
   constexpr double kWidest_m = 0.45;
   double half =
@@ -245,7 +245,7 @@ ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSetti
   fusion::smooth_surface(settings.threads, model.mesh);
   model.seen = fusion::colour_mesh(views, 4.0 * voxel, settings.threads, model.mesh);
   model.T_world_object.translation() = foot_of(model.mesh);
-  model.T_world_object.translation().z() = 0.0;  // of the table
+  model.T_world_object.translation().z() = 0.0;  // height of the table
   for (Eigen::Vector3f& vertex : model.mesh.vertices) vertex -= model.T_world_object.translation().cast<float>();
   const int n = static_cast<int>(take.keyframes.size());
   std::vector<MaskedKeyframe> shown(static_cast<std::size_t>(n));
@@ -265,7 +265,7 @@ ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSetti
 
 namespace {
 
-/// The part of a view in which the model is, as fusion takes it.
+/// Returns the part of a view in which the model is, in the form for fusion.
 fusion::DepthView depth_view(const TrainingView& view, const Mesh& known, bool whole_image) {
   constexpr int kMargin_px = 14;
   constexpr int kUnsure_px = 2;

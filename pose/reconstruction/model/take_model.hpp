@@ -15,16 +15,17 @@ struct ReconstructedModel {
   Mesh mesh;               ///< metres; origin at the middle of its foot, z up as it stood; closed, normals, colours
   std::vector<bool> seen;  ///< per vertex: some view shows it; the others close the surface
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();  ///< world: of the take
-  std::vector<MaskedKeyframe> views;                                 ///< those that show it, in the keyframes' order
+  std::vector<MaskedKeyframe> views;                                 ///< keyframes that show it, in their order
   double agreement_m = 0.0;           ///< see disagreement(), of all views that the model is made of
   double free_space_violation = 0.0;  ///< see free_space_violation()
 };
 
 struct ReconstructionSettings {
-  double voxel_m = 0.0015;  ///< of the model; twice that for what is larger than 0.3 m
+  double voxel_m = 0.0015;  ///< voxels of the model; twice that for an object larger than 0.3 m
   double coarse_voxel_m = 0.004;
-  double foot_m = 0.005;   ///< below that table and object are not told apart: the object is continued downwards
-  double beside_m = 0.01;  ///< of the object that may belong to it
+  /// Height below which table and object cannot be separated: the object is continued downwards.
+  double foot_m = 0.005;
+  double beside_m = 0.01;  ///< margin about the object whose surface may belong to it
   int threads = 1;         ///< any number gives the same result
 };
 
@@ -33,8 +34,8 @@ struct ReconstructionSettings {
 /// of the depth, so that they hold neither table nor hand. Throws InputError where there is no such part.
 ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSettings& settings);
 
-/// DepthView::lighting_id of the take's keyframes: `number` where the camera moved and the light stood still about the
-/// object.
+/// Returns DepthView::lighting_id of the take's keyframes: `number` where the camera moved and the lighting was static
+/// relative to the object.
 int lighting_of(const Take& take, int number);
 
 /// Views of one object, whose poses mean one frame.
@@ -46,13 +47,12 @@ struct ModelOfViews {
 struct MaskedViews {
   std::vector<TrainingView> views;
   std::vector<int> lighting_ids;  ///< DepthView::lighting_id of each view; empty: all -1
-  bool whole_images = false;      ///< false: cut out of larger ones, which go on around them
+  bool whole_images = false;      ///< false: crops of larger images, which continue around them
 };
 
-/// Fuses masked views from all sides (Curless & Levoy 1996). What hides the object in a view, within the outline of
-/// `known`, says nothing; what is beside that outline is free, but beside whole images nothing is known. Where
-/// `foot_m` is set, the object ends there: nobody has seen it from below. Throws InputError naming `name` where nothing
-/// is left.
+/// Fuses masked views from all sides (Curless & Levoy 1996). Occluders in a view, within the outline of `known`, are
+/// ignored; space beside that outline is free, but beside whole images nothing is known. Where `foot_m` is set, the
+/// object ends there, since no view shows it from below. Throws InputError naming `name` where nothing is left.
 ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views, const Mesh& known,
                                std::optional<double> foot_m, const ReconstructionSettings& settings);
 
@@ -70,9 +70,9 @@ Eigen::Vector3d foot_of(const Mesh& mesh);
 std::vector<TrainingView> training_views(const Take& take, const std::vector<MaskedKeyframe>& views,
                                          const std::string& name);
 
-/// Lays the second take's model on the first and makes one of both, in the first one's frame; the views of both get
-/// poses and masks of it, and agreement_m is that of all of them. False where the second does not fit, or what comes of
-/// both is seen through (kMaxFreeSpaceViolation): then nothing is changed.
+/// Registers the second take's model to the first and fuses both into one, in the first one's frame; the views of both
+/// get poses and masks of it, and agreement_m is that of all of them. Returns false where the second does not fit, or
+/// the fused model violates free space (kMaxFreeSpaceViolation): then nothing is changed.
 bool merge_takes(const Take& first, ReconstructedModel& model, const Take& second, ReconstructedModel& other,
                  const ReconstructionSettings& settings);
 

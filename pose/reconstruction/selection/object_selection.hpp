@@ -11,16 +11,16 @@
 
 namespace houghstream::reconstruction {
 
-/// The selected object.
+/// Describes the selected object.
 struct ChosenObject {
-  Plane plane;                                                       ///< on which it stands
+  Plane plane;                                                       ///< plane on which it stands
   Eigen::Isometry3d T_camera_stand = Eigen::Isometry3d::Identity();  ///< origin on the plane below its middle, z up
-  double radius_m = 0.0;                                             ///< of what is seen of it about that axis
+  double radius_m = 0.0;                                             ///< radius of its visible part about that axis
   double height_m = 0.0;                                             ///< above the plane
   cv::Mat mask;                                                      ///< CV_8UC1, 255 on it, size of the frame
-  cv::Rect box_px;                                                   ///< of the mask
-  bool like_skin = false;  ///< so that a hand cannot be told from it by its colour
-  bool boxed = false;      ///< by a person: what touches it there is not of it
+  cv::Rect box_px;                                                   ///< bounding box of the mask
+  bool like_skin = false;  ///< true if its colour does not distinguish it from a hand
+  bool boxed = false;      ///< given by a person: parts that touch it there do not belong to it
 };
 
 /// The selected object, or the reason why there is none.
@@ -31,11 +31,12 @@ struct ObjectSelection {
 
 struct SelectionSettings {
   std::optional<cv::Rect> box_px;  ///< about the object; none: what is nearest to at_px
-  std::optional<cv::Point> at_px;  ///< on the object or nearly so; none: the image's middle
+  std::optional<cv::Point> at_px;  ///< pixel on the object or near it; none: the image's middle
   double min_m = 0.012;            ///< sides of an object
   double max_m = 0.6;
-  double max_distance_m = 2.0;  ///< from the camera
-  double max_fraction = 0.25;   ///< of the image's width: how far from its middle or from at_px, without a box
+  double max_distance_m = 2.0;  ///< maximum distance from the camera
+  /// Fraction of the image's width: maximum distance from its middle or from at_px, without a box.
+  double max_fraction = 0.25;
   std::uint64_t seed = 1;
 };
 

@@ -11,12 +11,12 @@
 namespace houghstream::reconstruction {
 namespace {
 
-constexpr double kHalfExtent_m = 0.8;  // of the plane that is looked at
+constexpr double kHalfExtent_m = 0.8;  // half the side of the searched part of the plane
 
-/// Where each pixel above the plane falls on it; (-1,-1) for the others.
+/// Returns the cell of the plane below each pixel above it; (-1,-1) for the others.
 cv::Mat cells_of_pixels(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes, const SearchedPart& searched,
                         cv::Mat& grid) {
-  constexpr double kMin_m = 0.006;  // what is lower is taken for the plane
+  constexpr double kMin_m = 0.006;  // lower points are taken for the plane
   constexpr double kMax_m = 0.75;
   const cv::Rect& where = searched.region_px;
   cv::Mat cells(frame.depth.size(), CV_32SC2, cv::Scalar(-1, -1));

@@ -20,17 +20,17 @@ struct PlaneAxes {
 
   /// The cell that a point is above; none where that is too far from the origin.
   std::optional<cv::Point> cell_of(const Eigen::Vector3d& point) const;
-  /// The point of the plane at a place in cells.
+  /// Returns the point of the plane at a position in cells.
   Eigen::Vector3d point_at(double u, double v) const;
-  /// Cells of a side.
+  /// Returns the number of cells of a side.
   static int cells();
 };
 
-/// Something above the plane that hangs together.
+/// Holds a connected component above the plane.
 struct Cluster {
   int pixels = 0;
   double lowest = 1e9, highest = 0.0;  ///< above the plane, metres
-  double to_middle_px = 1e9;           ///< of its nearest pixel, from the place that is meant
+  double to_middle_px = 1e9;           ///< distance of its nearest pixel from the target
   cv::Rect cells;
 };
 
@@ -43,7 +43,7 @@ struct Clusters {
 struct SearchedPart {
   cv::Rect region_px;           ///< within the image
   cv::Point2d target_px;        ///< the place that is meant
-  double max_distance_m = 0.0;  ///< from the camera
+  double max_distance_m = 0.0;  ///< maximum distance from the camera
 };
 
 /// Clusters of points above a plane.

@@ -33,7 +33,7 @@ Plane towards_camera(const Eigen::Vector3d& normal, double offset) {
   return {normal, offset};
 }
 
-/// Least squares through points, weighted as exactly as they are measured.
+/// Fits by least squares through points, weighted by the precision of their measurement.
 Plane fit_plane(const std::vector<Eigen::Vector3d>& points) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   double weights = 0.0;

@@ -14,12 +14,12 @@ namespace houghstream::reconstruction {
 /// Lays each frame on a map of keyframes, from where the frame before was.
 class FrameFollower {
  public:
-  /// The frame of LastStep::T_last, from which corners are followed; not asked for once the object turns.
+  /// Sets the frame of LastStep::T_last, from which corners are tracked; it is unused once the object rotates.
   void set_last(FlowFrame frame) { last_flow_ = std::move(frame); }
 
-  /// The next frame's pose T_camera_world, from that of the frame before, whose corners say how the camera moved, or as
-  /// it went on until then; none where it does not fit or would have jumped. While the object turns (`motion`), `now`
-  /// is empty.
+  /// Returns the next frame's pose T_camera_world, predicted from that of the frame before by the camera's motion of
+  /// the tracked corners, or by repetition of its last motion; none where it does not fit or would have jumped. While
+  /// the object rotates (`motion`), `now` is empty.
   std::optional<Alignment> follow(const FlowFrame& now, const FrameLevels& levels, const LastStep& step, Motion motion,
                                   KeyframeMap& map);
 
@@ -28,7 +28,8 @@ class FrameFollower {
                             KeyframeMap& map) const;
 
   FlowFrame last_flow_;
-  std::vector<LandmarkObservation> corners_;  ///< of it, as the present frame shows them
+  std::vector<LandmarkObservation>
+      corners_;  ///< corners of `last_flow_` in the world frame, as the present frame shows them
   double usual_light_rms_ = 0.3;
 };
 

@@ -8,10 +8,10 @@
 namespace houghstream::reconstruction {
 namespace {
 
-/// Takes out of a keyframe's mask what those of the map have seen through: a hand.
+/// Removes from a keyframe's mask the points that violate the free space of the map's keyframes: a hand.
 void remove_seen_through(const Keyframe& seen, const KeyframeMap& map, cv::Mat& mask) {
   constexpr double kBehind_m = 0.015;
-  constexpr double kAlike = 1.2;  // radians: what keyframes from farther round see says nothing of this side
+  constexpr double kAlike = 1.2;  // radians: keyframes from farther round do not see this side
   const FrameLevel& level = seen.levels.levels[0];
   const Eigen::Isometry3d T_world_camera = seen.T_camera_world.inverse();
   for (const Keyframe& keyframe : map.keyframes()) {

@@ -15,9 +15,9 @@ cv::Mat object_pixels(const FrameLevel& level, const ChosenObject& object, const
 /// Points of all that a keyframe shows, while the camera is carried about; those of the table are marked. Camera frame.
 LevelPoints points_of_scene(const Keyframe& keyframe);
 
-/// Points of the object alone, while it turns before the camera: without a hand, which keyframes of `map` have seen
-/// through, or which has the colour of skin where the object has not. `region_px`: what of the keyframe's frame its
-/// levels show. Camera frame.
+/// Returns points of the object alone, while it rotates before the camera: without a hand, which violates free space of
+/// keyframes of `map`, or has the colour of skin where the object has not. `region_px` is the part of the keyframe's
+/// frame in its levels. Camera frame.
 LevelPoints points_of_object(const Keyframe& keyframe, const KeyframeMap& map, const ChosenObject& object,
                              const cv::Rect& region_px);
 

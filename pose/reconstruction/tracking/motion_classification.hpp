@@ -13,34 +13,34 @@
 namespace houghstream::reconstruction {
 
 /// Classifies the motion in a take by comparing each frame with the first one: either the camera moves, or the object
-/// moves before a static camera. The camera stands still as long as the corners of the surroundings are where they were
-/// at first; where there are few, as long as the surroundings look as they did then rather than as a moved camera would
+/// moves before a static camera. The camera is static as long as the corners of the surroundings are where they were at
+/// first; where there are few, as long as the surroundings look as they did then rather than as a moved camera would
 /// see them. The object moves where it alone looks different.
 class MotionClassifier {
  public:
   MotionClassifier() = default;
   /// `levels` are of the first frame; `on_object` is CV_8UC1, as large as the finest, and not 0 where the object is.
-  /// `min_corners`: in common with the first frame, to say whether the camera stands still.
+  /// `min_corners` is the minimum in common with the first frame that decides whether the camera is static.
   MotionClassifier(FlowFrame first, const FrameLevels& levels, const cv::Mat& on_object,
                    const Eigen::Isometry3d& T_camera_world, std::size_t min_corners);
 
   const FlowFrame& first() const { return first_; }
 
-  /// The next frame, with the pose that a moved camera would have. Where the camera stands still, the pose becomes the
-  /// first frame's. kUnknown until three frames one after the other say the same.
+  /// Classifies the next frame, given the pose that a moved camera would have. Where the camera is static, the pose
+  /// becomes the first frame's. Returns kUnknown until three consecutive frames agree.
   Motion classify(const FlowFrame& now, const FrameLevels& levels, Eigen::Isometry3d& T_camera_world);
 
-  /// Frames in which the object moved, one after the other, the last one judged included.
+  /// Returns the number of consecutive frames in which the object moved, the last one included.
   int object_moves() const { return object_moves_; }
 
  private:
   bool camera_is_still(const FlowFrame& now, const FrameLevels& levels, const Eigen::Isometry3d& T_moved) const;
 
   FlowFrame first_;
-  cv::Mat first_intensity_, about_object_, away_from_object_;  ///< of its finest level
+  cv::Mat first_intensity_, about_object_, away_from_object_;  ///< masks and intensity of its finest level
   Eigen::Isometry3d T_first_ = Eigen::Isometry3d::Identity();
   std::size_t min_corners_ = 0;
-  std::vector<cv::Point2f> corners_;  ///< of it, away from the object
+  std::vector<cv::Point2f> corners_;  ///< corners of the first frame, away from the object
   LevelPoints rest_;                  ///< points away from the object, world frame
   int object_moves_ = 0;
   int camera_moves_ = 0;
@@ -55,7 +55,7 @@ class StaticShadingDetector {
   void mark_static_intensity(const cv::Mat& on_object, FrameLevels& levels);
 
  private:
-  std::deque<std::vector<cv::Mat>> intensities_;  ///< by level, the oldest frame first
+  std::deque<std::vector<cv::Mat>> intensities_;  ///< intensities by level, the oldest frame first
 };
 
 }  // namespace houghstream::reconstruction

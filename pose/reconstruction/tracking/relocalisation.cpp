@@ -7,10 +7,10 @@
 namespace houghstream::reconstruction {
 namespace {
 
-/// Share of inliers: a plane and a pattern on it may agree with a wrong pose by half.
+/// Minimum fraction of inliers: a plane with texture on it may agree with a wrong pose by half.
 constexpr double kSureInliers = 0.85;
 
-/// Differences from a view, and keyframes, the nearest first.
+/// Returns differences from a view, and keyframes, the nearest first.
 std::vector<std::pair<double, int>> keyframes_by_distance(const KeyframeMap& map,
                                                           const Eigen::Isometry3d& T_camera_world) {
   const std::vector<Keyframe>& keyframes = map.keyframes();
@@ -21,7 +21,7 @@ std::vector<std::pair<double, int>> keyframes_by_distance(const KeyframeMap& map
   return by_distance;
 }
 
-/// The frame on the points of one keyframe, where that is sure.
+/// Registers the frame to the points of one keyframe; returns nothing where that is not reliable.
 std::optional<Alignment> register_to_keyframe(const KeyframeMap& map, int keyframe, const FrameLevels& levels,
                                               const Eigen::Isometry3d& T_start) {
   AlignmentLimits limits;
@@ -31,7 +31,7 @@ std::optional<Alignment> register_to_keyframe(const KeyframeMap& map, int keyfra
   return found;
 }
 
-/// Match of a keyframe's landmarks with those of the frame.
+/// Matches a keyframe's landmarks with those of the frame.
 const LandmarkCache::Place& place_by_corners(const KeyframeMap& map, int keyframe, LandmarkCache& corners) {
   const auto [known, is_new] = corners.by_keyframe.try_emplace(keyframe);
   LandmarkCache::Place& place = known->second;

@@ -9,10 +9,10 @@
 
 namespace houghstream::reconstruction {
 
-/// Corners of a frame that is looked for again and again, and what those of each keyframe say of it: found once.
+/// Caches the corners of a lost frame, and their match with each keyframe, since the frame is searched repeatedly.
 struct LandmarkCache {
   struct Place {
-    std::size_t corners = 0;  ///< that agree; 0 = it says nothing
+    std::size_t corners = 0;  ///< matching corners; 0 = no information
     Eigen::Isometry3d T_frame_keyframe = Eigen::Isometry3d::Identity();
   };
   std::optional<Landmarks> seen;
@@ -21,12 +21,12 @@ struct LandmarkCache {
 
 /// A frame that could not be placed when it came.
 struct LostFrame {
-  int number = 0;  ///< in its take
+  int number = 0;  ///< number in its take
   RgbdFrame frame;
   LandmarkCache corners;
 };
 
-/// From where a lost frame is looked for.
+/// Gives the last known pose, from which a lost frame is searched.
 struct LastPlace {
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< the last that is known, metres
   double farthest = 1e9;                                             ///< radians, as KeyframeMap::difference has it

@@ -17,16 +17,16 @@ namespace houghstream::reconstruction {
 /// (not by the placer).
 enum class Motion : std::uint8_t { kUnknown, kCamera, kObject, kTurntable };
 
-/// Result of placing a frame.
+/// Holds the result of placing a frame.
 struct PlacedFrame {
   FrameId id;
   bool tracked = false;
   bool left_out = false;  ///< blurred or badly exposed: it is not used for the model
-  int keyframe = -1;      ///< that its pose is kept by
+  int keyframe = -1;      ///< keyframe relative to which its pose is stored
   Eigen::Isometry3d T_camera_keyframe = Eigen::Isometry3d::Identity();
 };
 
-/// Frames in which nobody knew where the camera was.
+/// Gives a range of frames in which the camera's pose is unknown.
 struct LostSpan {
   int from = 0, to = 0;  ///< numbers of frames, both lost
   std::string why;
@@ -34,18 +34,18 @@ struct LostSpan {
 
 /// A take that is over.
 struct Take {
-  ChosenObject chosen;  ///< in the first frame
+  ChosenObject chosen;  ///< object in the first frame
   Motion motion = Motion::kUnknown;
   std::vector<Keyframe> keyframes;
   std::vector<PlacedFrame> frames;
   std::vector<LostSpan> lost;
-  std::optional<LoopClosureError> gap;  ///< of the loop that goes round, before it was closed
+  std::optional<LoopClosureError> gap;  ///< error of the loop around the object, before it was closed
   ViewCoverage seen{};
-  int degrees_round = 0;               ///< of the turn from which it was seen, 0 to 360
+  int degrees_round = 0;               ///< part of a full turn from which it was seen, 0 to 360
   int blurred = 0, badly_exposed = 0;  ///< frames
   double tracking_hz = 0.0;            ///< frames a second that tracking alone takes
 
-  /// T_camera_world of a tracked frame.
+  /// Returns T_camera_world of a tracked frame.
   Eigen::Isometry3d pose_of(const PlacedFrame& frame) const;
 };
 

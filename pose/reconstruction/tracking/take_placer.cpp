@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kDegrees = 57.29577951308232;
 
-/// Where the object is seen; empty where the camera is too near for that.
+/// Returns the region in which the object is visible; empty where the camera is too near for that.
 cv::Rect box_of(const ChosenObject& object, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
   const double half = object.radius_m * 0.8;
   const Eigen::AlignedBox3d box(Eigen::Vector3d(-half, -half, 0.0), Eigen::Vector3d(half, half, object.height_m));
@@ -163,8 +163,8 @@ void TakePlacer::accept(int number, const RgbdFrame& frame, FrameLevels levels, 
   round_[at] = round_[at] || fit;
 }
 
-/// The camera stands still and something happens to the object: from here on its own surface alone is followed, and the
-/// table, which does not move, holds it upright.
+/// Follows the object's own surface alone from here on, since the camera is static and the object moves; the table,
+/// which is static too, keeps it upright.
 void TakePlacer::follow_object_only() {
   constexpr double kAround = 0.6;
   const RgbdFrame& first = motion_classifier_.first().frame;
@@ -194,8 +194,9 @@ void TakePlacer::follow_object_only() {
   add_keyframe(std::move(made), {});
 }
 
-/// The frames of before were tied to keyframes of the surroundings, and the map now holds the first frame alone: all of
-/// them show the object as that one does. In the last of them it moved already, and nobody knows how far.
+/// Ties the frames before to the first keyframe: they were tied to keyframes of the surroundings, and the map now holds
+/// the first frame alone. All of them show the object as that one does. It already moved in the last of them by an
+/// unknown distance.
 void TakePlacer::tie_to_first_keyframe() {
   int moved = motion_classifier_.object_moves() - 1;  // the last is the present frame, which is not placed yet
   for (auto frame = take_.frames.rbegin(); frame != take_.frames.rend(); ++frame) {
@@ -206,8 +207,8 @@ void TakePlacer::tie_to_first_keyframe() {
   }
 }
 
-/// Where corners are looked for: everywhere while the camera moves, else on the object, which may have turned but
-/// stays.
+/// Returns the mask in which corners are detected: everywhere while the camera moves, else on the object, which may
+/// have rotated but stays in place.
 cv::Mat TakePlacer::landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const {
   if (motion_ != Motion::kObject) return {};
   return object_pixels({frame.camera, {}, frame.depth, {}}, chosen_, T_camera_world);
@@ -221,7 +222,7 @@ void TakePlacer::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
   if (!gap) return;
   step_.restart(map_.keyframes().back().T_camera_world);
   const auto seen_round = std::count(round_.begin(), round_.end(), true);
-  constexpr int kNearlyRound = 30;  // of 36
+  constexpr int kNearlyRound = 30;  // of 36 sectors
   if (seen_round >= kNearlyRound && !take_.gap) take_.gap = gap;
 }
 
@@ -242,7 +243,7 @@ void TakePlacer::note_lost(const FrameLevels& levels) {
 }
 
 void TakePlacer::describe() {
-  constexpr int kTold = 45;  // frames for which the choice is said, so that a person can read it
+  constexpr int kTold = 45;  // frames for which the selection is reported, so that a person can read it
   state_.keyframes = static_cast<int>(map_.keyframes().size());
   state_.T_camera_object.reset();
   state_.box_px = {};

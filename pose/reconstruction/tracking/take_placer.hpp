@@ -19,34 +19,35 @@ enum class TakePlacerState : std::uint8_t { kChoosing, kTracking, kLost };
 struct TakePlacerSettings {
   SelectionSettings selection;
   MapSettings map;                 ///< middle and plane are those of the object
-  int max_frames_to_choose = 45;   ///< without an object in so many frames, there is none
+  int max_frames_to_choose = 45;   ///< frames without an object after which the take fails
   double keyframe_angle = 0.12;    ///< radians between the views of keyframes
-  double min_sharpness = 0.5;      ///< of the median of the frames around; what is less is blurred
-  double max_dark_fraction = 0.7;  ///< of an image; what is more is badly exposed
+  double min_sharpness = 0.5;      ///< fraction of the median of the frames around; a frame below it is blurred
+  double max_dark_fraction = 0.7;  ///< fraction of an image; a frame above it is badly exposed
   double max_bright_fraction = 0.4;
 };
 
 /// Status of the placer, which is valid at any time.
 struct TakePlacerStatus {
   TakePlacerState state = TakePlacerState::kChoosing;
-  std::string message;  ///< for a person, one line
+  std::string message;  ///< message for a person, one line
   ViewCoverage seen{};
   int frames = 0;
   int keyframes = 0;
-  cv::Rect box_px;                                   ///< of the object in the last frame; empty where it is not known
+  cv::Rect box_px;  ///< box of the object in the last frame; empty where it is not known
   std::optional<Eigen::Isometry3d> T_camera_object;  ///< metres; z up, origin at its foot
 };
 
 /// Follows an object on a table through the frames of a take, in which the camera is carried about it, or the object
-/// turns before a camera that stands still. Each frame is laid on a map of the nearest keyframes (align_frame); table
-/// points are held to one plane; when the way closes, the gap is spread over it. What is lost is looked for by
-/// neighbouring keyframes and by ORB landmarks. One thread; same frames, same result.
+/// rotates before a static camera. Each frame is registered to a map of the nearest keyframes (align_frame); table
+/// points are constrained to one plane; when the loop closes, its error is distributed over it. Lost frames are
+/// relocalised by neighbouring keyframes and by ORB landmarks. It uses one thread; the same frames give the same
+/// result.
 class TakePlacer {
  public:
   explicit TakePlacer(const TakePlacerSettings& settings) : settings_(settings), map_(settings.map) {}
 
-  /// The next frame. Throws InputError with the reason where no object was found in the first frames, and for a frame
-  /// of another size than the first.
+  /// Processes the next frame. Throws InputError with the reason where no object was found in the first frames, and for
+  /// a frame of another size than the first.
   const TakePlacerStatus& process(const RgbdFrame& frame);
   const TakePlacerStatus& state() const { return state_; }
 
@@ -74,10 +75,10 @@ class TakePlacer {
   KeyframeMap map_;
   LevelSettings levels_;
   Motion motion_ = Motion::kUnknown;
-  MotionClassifier motion_classifier_;    ///< from the frame on in which the object was chosen
+  MotionClassifier motion_classifier_;    ///< since the frame in which the object was selected
   StaticShadingDetector static_shading_;  ///< while the object turns
   FrameFollower follower_;
-  cv::Size size_;  ///< of all frames, pixels
+  cv::Size size_;  ///< size of all frames, pixels
   int first_number_ = 0;
   LastStep step_;  ///< T_camera_world of the last frame that was placed, and of the one before it
   std::vector<LostFrame> unplaced_;

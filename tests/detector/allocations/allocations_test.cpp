@@ -93,7 +93,7 @@ TEST(Allocations, FramesTakeTheMemoryOfThoseBefore) {
   RgbdFrame frame = toy::background(5);
   toy::put_tile(0, 90, 120, 0.8, frame);
   toy::put_tile(1, 230, 120, 0.9, frame);
-  // As a camera of the usual focal length sees it: where a coarse one's frames are enlarged, OpenCV takes memory.
+  // The frame has the usual focal length: frames of a coarser camera are enlarged, for which OpenCV allocates memory.
   frame.camera = frame.camera.scaled(2.0);
   cv::resize(frame.colour, frame.colour, cv::Size(), 2.0, 2.0, cv::INTER_NEAREST);
   cv::resize(frame.depth, frame.depth, cv::Size(), 2.0, 2.0, cv::INTER_NEAREST);
@@ -102,7 +102,7 @@ TEST(Allocations, FramesTakeTheMemoryOfThoseBefore) {
     settings.threads = threads;
     const Detector detector(forest, settings);
     DetectorWorkspace workspace;
-    // Which worker gets which items is chance, so that one may meet something for the first time after many frames.
+    // The items of each worker are random, so that one may meet something for the first time after many frames.
     int in_a_row = 0;
     Allocations last;
     for (int number = 0; number < 200 && in_a_row < kInARow; ++number) {

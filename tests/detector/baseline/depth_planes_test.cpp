@@ -12,7 +12,7 @@ enum Plane : std::size_t { kDx, kDy, kDxx, kDyy, kHog };
 constexpr int kNeutral = 128;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// The surface z = distance + f(x, y), x and y in metres beside the middle pixel at that distance.
+/// Returns the surface z = distance + f(x, y), x and y in metres beside the middle pixel at that distance.
 template <typename Surface>
 WorkingFrame see(double distance, const Surface& surface) {
   WorkingFrame frame;

@@ -11,7 +11,7 @@
 namespace houghstream::baseline {
 namespace {
 
-constexpr double kFocal = 525.0;  // of the cameras that the profiles have in mind
+constexpr double kFocal = 525.0;  // focal length of the cameras that the profiles assume
 
 Forest forest_of(const Profile& profile) {
   Forest forest;

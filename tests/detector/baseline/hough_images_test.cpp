@@ -49,7 +49,7 @@ cv::Point strongest(const cv::Mat& image) {
   return at;
 }
 
-/// Where the strongest votes for a tile lie that was put at (u, v), relative to its centre.
+/// Returns the position of the strongest votes for a tile that was put at (u, v), relative to its centre.
 cv::Point error_of(const Forest& forest, double u_px, double v_px, double distance) {
   RgbdFrame frame = toy::background(77);
   toy::put_tile(kRings, u_px, v_px, distance, frame);

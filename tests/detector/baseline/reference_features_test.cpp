@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kPad = FeatureImage::kPad;
 
-/// Noise of every contrast, with edges and holes in the depth.
+/// Returns noise of every contrast, with edges and holes in the depth.
 WorkingFrame rough_frame(int width, int height, Random& random) {
   WorkingFrame frame;
   frame.camera = {width, height, 260.0, 260.0, (width - 1) / 2.0, (height - 1) / 2.0};
@@ -35,7 +35,7 @@ WorkingFrame rough_frame(int width, int height, Random& random) {
   return frame;
 }
 
-/// Values that differ in a part, with the border where `pad` is kPad.
+/// Returns values that differ in a part, with the border where `pad` is kPad.
 int differences(const FeatureImage& a, const FeatureImage& b, cv::Rect part, int pad, int planes) {
   int count = 0;
   for (int y = part.y - pad; y < part.y + part.height + pad; ++y) {
@@ -48,10 +48,10 @@ int differences(const FeatureImage& a, const FeatureImage& b, cv::Rect part, int
 
 void use(std::int64_t target) {
   hwy::SetSupportedTargetsForTest(target);
-  hwy::GetChosenTarget().DeInit();  // the next call chooses anew
+  hwy::GetChosenTarget().DeInit();  // the next call selects the target again
 }
 
-/// With every instruction set that the processor has.
+/// Compares with every instruction set of the processor.
 void expect_the_same(const WorkingFrame& frame, const FeatureSettings& settings) {
   const FeatureImage expected = reference_features(frame, settings);
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {

@@ -25,7 +25,7 @@ int sum(const Values& values, std::size_t first, std::size_t last) {
   return total;
 }
 
-/// Few neighbours, and as far apart as at 1 m the pixels of these frames.
+/// Returns settings with few neighbours, as far apart as the pixels of these frames at 1 m.
 PointHistogramSettings coarse() {
   PointHistogramSettings settings;
   settings.given = 16;
@@ -91,7 +91,7 @@ TEST(SurfaceHistograms, AThinnerCloudKeepsItsSupport) {
   for (std::size_t i = 0; i < dense.size(); ++i) EXPECT_NEAR(thin[i], dense[i], 40) << i;
 }
 
-/// A ball before nothing, in the middle of an image.
+/// Returns a ball before nothing, in the middle of an image.
 WorkingFrame ball_at(double distance, double radius, double enlarged) {
   const scene::Round ball{Eigen::Vector3d(0.0, 0.0, distance), radius};
   WorkingFrame frame = scene::see(80, 60, [&](const Eigen::Vector3d& ray) {

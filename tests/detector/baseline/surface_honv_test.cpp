@@ -17,7 +17,7 @@ Values values_at(const std::vector<cv::Mat>& planes, int x, int y) {
   return values;
 }
 
-/// A plane whose normal leaves the optical axis by `zenith`, towards `azimuth` (0: right, 90: down).
+/// Returns a plane whose normal leaves the optical axis by `zenith`, towards `azimuth` (0: right, 90: down).
 WorkingFrame tilted(double azimuth_deg, double zenith_deg) {
   const double across = std::sin(zenith_deg * kDegree);
   const Eigen::Vector3d normal(across * std::cos(azimuth_deg * kDegree), across * std::sin(azimuth_deg * kDegree),

@@ -24,7 +24,7 @@ WorkingFrame wall_at(double distance, double enlarged = 1.0) {
   return frame;
 }
 
-/// Metres from the middle of the cloud to its farthest neighbour.
+/// Returns the distance, metres, from the middle of the cloud to its farthest neighbour.
 double support_of(const WorkingFrame& frame) {
   const HistogramCloud cloud = make_histogram_cloud(frame, settings(), 1);
   const CloudNeighbours near = neighbours_of(cloud, cloud.size.width / 2, cloud.size.height / 2);

@@ -1,4 +1,4 @@
-// The organised image against PCL's search for the k nearest points, on the same cloud.
+// These tests compare the organised image with PCL's search for the k nearest points, on the same cloud.
 #include <gtest/gtest.h>
 #include <pcl/features/fpfh.h>
 #include <pcl/features/normal_3d.h>
@@ -50,7 +50,7 @@ Normals::Ptr searched_normals(const Points::Ptr& cloud, int neighbours) {
   return normals;
 }
 
-/// The features of PCL's estimation of this type, at every point.
+/// Returns the features of PCL's estimation of this type, at every point.
 template <typename Estimation, typename Out>
 pcl::PointCloud<Out> search_features(const Points::Ptr& cloud, const Normals::Ptr& normals, int neighbours) {
   Estimation estimation;
@@ -122,8 +122,8 @@ TEST(SurfacePcl, CurvaturesAgree) {
   EXPECT_GT(on_can.direction_cosine, 0.999F);
 }
 
-/// Median over the ball's pixels of the sum of the differences, as a share of the histograms: 2 where they have nothing
-/// in common.
+/// Returns the median over the ball's pixels of the sum of the differences, as a fraction of the histograms: 2 where
+/// they have nothing in common.
 template <typename Cloud>
 float difference(const std::vector<cv::Mat>& planes, const Cloud& expected, const Points& cloud) {
   std::vector<float> differences;

@@ -11,7 +11,8 @@ namespace houghstream::scene {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// A frame of surfaces that are known exactly: depth_at(ray) is the depth at which the ray (x, y, 1) meets them.
+/// Returns a frame of surfaces that are known exactly: depth_at(ray) is the depth at which the ray (x, y, 1) meets
+/// them.
 template <typename Surface>
 WorkingFrame see(int width, int height, const Surface& depth_at) {
   WorkingFrame frame;
@@ -26,14 +27,14 @@ WorkingFrame see(int width, int height, const Surface& depth_at) {
   return frame;
 }
 
-/// The plane normal . point = offset.
+/// Gives the plane normal . point = offset.
 struct Plane {
   Eigen::Vector3d normal;
   double offset;  ///< metres
   double operator()(const Eigen::Vector3d& ray) const { return offset / normal.dot(ray); }
 };
 
-/// The cylinder around the line through `centre` along `axis`; NaN beside it. A null axis makes it a sphere.
+/// Gives the cylinder around the line through `centre` along `axis`; NaN beside it. A null axis makes it a sphere.
 struct Round {
   Eigen::Vector3d centre;
   double radius;  ///< metres
@@ -47,7 +48,7 @@ struct Round {
   }
 };
 
-/// A ball of 10 cm radius on a table, before a wall.
+/// Returns a ball of 10 cm radius on a table, before a wall.
 inline WorkingFrame ball_on_table(int width = 160, int height = 120) {
   const Plane table{Eigen::Vector3d(0.0, -0.8, -0.6), -0.6};
   const Plane wall{Eigen::Vector3d(0.3, 0.0, -0.954), -1.5};

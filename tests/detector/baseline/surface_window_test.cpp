@@ -41,7 +41,7 @@ TEST(SurfaceWindow, EveryNeighbourIsVisitedOnce) {
   }
 }
 
-/// Random vectors on two surfaces 10 cm apart, some missing.
+/// Returns random vectors on two surfaces 10 cm apart, some missing.
 SurfaceVectors random_vectors() {
   SurfaceVectors vectors;
   vectors.camera = {24, 10, 260.0, 260.0, 11.5, 4.5};

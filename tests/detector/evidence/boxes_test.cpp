@@ -7,7 +7,7 @@
 namespace houghstream {
 namespace {
 
-/// A supporter per 2-pixel cell of a rectangle of the frame.
+/// Returns the box of one supporter per 2-pixel cell of a rectangle of the frame.
 cv::Rect2f box_of(const cv::Rect& supported) {
   Forest forest;
   forest.views.resize(1);

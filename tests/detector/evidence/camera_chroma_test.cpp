@@ -10,7 +10,7 @@
 namespace houghstream {
 namespace {
 
-/// The image through a camera that adds so much to a* and b*, 8 bits each.
+/// Returns the image through a camera that adds so much to a* and b*, 8 bits each.
 RgbdFrame with_cast(RgbdFrame frame, int a, int b) {
   cv::Mat lab;
   cv::cvtColor(frame.colour, lab, cv::COLOR_BGR2Lab);
@@ -35,7 +35,7 @@ Forest alike(std::size_t classes) {
   return forest;
 }
 
-/// What is found where the toy's view stands, by a hypothesis of each class.
+/// Returns the results at the position of the toy's view, for a hypothesis of each class.
 std::vector<ScoredHypothesis> weighed(const Forest& forest, const RgbdFrame& frame,
                                       const std::vector<ChromaPair>& reference = {}) {
   const ForestIndex index(forest);

@@ -9,7 +9,7 @@
 namespace houghstream {
 namespace {
 
-/// Correlation of 100 random colours with gain * colour + offset.
+/// Returns the correlation of 100 random colours with gain * colour + offset.
 float after_light(double gain, double offset) {
   Random random(5);
   ColourSimilarity similarity;
@@ -50,7 +50,7 @@ TEST(ColourSimilarity, PlainSurfacesAndFewPairsSayNothing) {
   EXPECT_EQ(few.correlation(), 0.0F);
 }
 
-/// Two plain surfaces, as a* and b* about neutral.
+/// Returns two plain surfaces, as a* and b* about neutral.
 ColourSimilarity of_plain(cv::Point expected, cv::Point observed) {
   ColourSimilarity similarity;
   for (int i = 0; i < 100; ++i) {

@@ -65,7 +65,7 @@ TEST(Candidates, NoClassOffersMoreThanItMay) {
   EXPECT_EQ(stripes(1), 1);
 }
 
-/// The middle of the toy view alone, as if another side of the object looked like it.
+/// Returns the middle of the toy view alone, as if another side of the object looked like it.
 ViewTemplate middle_part() {
   const TrainingView whole = toy::training_views().front();
   const cv::Rect box = cv::boundingRect(whole.mask);

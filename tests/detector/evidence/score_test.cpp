@@ -16,7 +16,7 @@ Evidence with_mass(float fraction) {
   return evidence;
 }
 
-/// Other terms weigh nothing.
+/// Returns a model in which other terms have no weight.
 ScoreModel of_few_terms() {
   ScoreModel model;
   model.weights = {};
@@ -73,7 +73,7 @@ TEST(Score, MassAndLikenessWeighOtherwiseWhereDepthIsUnknown) {
   evidence.fit.colour_correlation = 0.7F;
   const float known = score(model, evidence);
   EXPECT_EQ(known, score(of_few_terms(), evidence));
-  evidence.fit.no_depth_fraction = 0.8F;  // of which the model without these terms makes nothing
+  evidence.fit.no_depth_fraction = 0.8F;  // the model without these terms ignores it
   EXPECT_GT(score(model, evidence), known);
   EXPECT_EQ(score(of_few_terms(), evidence), known);
 }
@@ -126,7 +126,7 @@ TEST(Score, ManyUncertainPatchesAreLessThanFewCertainOnes) {
 
 TEST(Score, WhatIsMuchHiddenOrAgreesMuchBetterInAnotherSizeWeighsMoreThanItsShare) {
   const auto change = [](float ScoreTerms::*term,
-                         const auto& set) {  // of the score's log-odds per unit of the term's weight
+                         const auto& set) {  // log odds of the score per unit of the term's weight
     ScoreModel model = of_few_terms();
     model.weights.*term = 1.0F;
     Evidence evidence = with_mass(0.3F);
@@ -157,7 +157,7 @@ TEST(Score, WhatIsSeenThroughWeighsByTheCertaintyAndHuesByTheForeignColour) {
   EXPECT_LT(score(model, evidence), score(of_few_terms(), evidence));
 }
 
-/// Examples whose truth is drawn from a model.
+/// Returns examples whose outcome is drawn from a model.
 std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
   Random random(4);
   std::vector<ScoreExample> examples;

@@ -13,7 +13,7 @@ Detection boxed(float score, float x) {
 }
 
 TEST(Suppression, OfOverlappingBoxesTheStrongerStays) {
-  // 0 and 20 overlap by IoU 0.67, 20 and 40 too, 0 and 40 by 0.43.
+  // The boxes at 0 and 20 overlap by IoU 0.67, those at 20 and 40 too, those at 0 and 40 by 0.43.
   const std::vector<Detection> kept =
       suppress_overlaps({boxed(0.5F, 20), boxed(0.4F, 40), boxed(0.9F, 0)}, SuppressionSettings{});
   ASSERT_EQ(kept.size(), 2U);

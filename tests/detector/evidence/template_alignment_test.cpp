@@ -68,7 +68,7 @@ TEST(ViewAlignment, AnObjectOfAnotherSizeAgreesBetterInThatSize) {
     return alternative_scale_gain(view, {0, centre, match_template(view, centre, frame)}, frame);
   };
   EXPECT_LT(gain(right), -0.05F);
-  for (const float seen_size : {0.7F, 1.4F}) {  // of the frame's object over the remembered one
+  for (const float seen_size : {0.7F, 1.4F}) {  // ratio of the frame's object to the template's
     EXPECT_GT(gain(toy::resized(right, 1.0F / seen_size)), 0.05F) << seen_size;
   }
 }

@@ -257,7 +257,7 @@ TEST(TemplateMatch, OutsideTheFrameNothingIsCompared) {
 TEST(TemplateMatch, WhatLiesOutsideTheFrameHasNoSayInTheDepth) {
   const TrainingView view = toy::training_views().front();
   const cv::Rect box = cv::boundingRect(view.mask);
-  RgbdFrame frame = view.frame;  // of which a third of the object is left
+  RgbdFrame frame = view.frame;  // shows only a third of the object
   const int columns = box.x + box.width / 3;
   frame.colour = frame.colour.colRange(0, columns).clone();
   frame.depth = frame.depth.colRange(0, columns).clone();

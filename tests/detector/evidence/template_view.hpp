@@ -11,7 +11,7 @@ namespace houghstream::toy {
 
 inline constexpr float kDistance = 0.7F;
 
-/// The first toy view (stripes on a relief) as a forest remembers it.
+/// Returns the first toy view (stripes on a relief) as a forest remembers it.
 inline ViewTemplate template_view() {
   const TrainingView view = training_views().front();
   const cv::Rect box = cv::boundingRect(view.mask);
@@ -23,7 +23,7 @@ inline ViewTemplate template_view() {
   return out;
 }
 
-/// The frame with another image's colours, `scale` times its size, as views are compared with it.
+/// Returns the frame with another image's colours, `scale` times its size, as views are compared with it.
 inline LabFrame lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float scale) {
   cv::Mat blurred;
   LabLevels lab;
@@ -31,7 +31,7 @@ inline LabFrame lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float s
   return {frame, lab, scale};
 }
 
-/// The view of an object so many times as large, seen from as far.
+/// Returns the view of an object so many times as large, seen from as far.
 inline ViewTemplate resized(ViewTemplate view, float size) {
   for (float& side : view.box) side *= size;
   for (auto* cells : {&view.appearance.mm, &view.appearance.beside}) {

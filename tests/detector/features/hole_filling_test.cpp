@@ -12,14 +12,14 @@
 namespace houghstream {
 namespace {
 
-/// Every pixel another depth, so that it shows who has borrowed from whom.
+/// Returns depth that differs in every pixel, so that borrowed values show their origin.
 cv::Mat numbered_depth(cv::Size size) {
   cv::Mat depth(size, CV_32FC1);
   for (int i = 0; i < size.area(); ++i) depth.at<float>(i / size.width, i % size.width) = static_cast<float>(i + 1);
   return depth;
 }
 
-/// Distance from each pixel to the one it has borrowed from; -1 where it is still a hole.
+/// Returns the distance from each pixel to the one it has borrowed from; -1 where it is still a hole.
 cv::Mat borrowed_from(const cv::Mat& depth) {
   cv::Mat distances(depth.size(), CV_32FC1);
   for (int y = 0; y < depth.rows; ++y) {
@@ -62,7 +62,7 @@ TEST(HoleFilling, WhatIsFartherAwayThanTheLimitStaysAHole) {
   EXPECT_TRUE(std::isnan(depth.at<float>(0, 15)));
 }
 
-/// A near surface on the left, a far one on the right, between them columns 10 to 89 without depth.
+/// Returns a near surface on the left, a far one on the right, between them columns 10 to 89 without depth.
 cv::Mat gap(float near, float far) {
   cv::Mat depth(3, 100, CV_32FC1, cv::Scalar(kNoValue));
   depth.colRange(0, 10).setTo(near);
@@ -73,7 +73,7 @@ cv::Mat gap(float near, float far) {
 TEST(HoleFilling, NearSurfacesLendFarther) {
   cv::Mat depth = gap(0.5F, 2.0F);
   fill_holes(depth, {1000.0F, 1.0F});
-  // 81 pixels in all, divided as 2 m to 0.5 m
+  // There are 81 pixels in all, divided as 2 m to 0.5 m.
   EXPECT_EQ(depth.at<float>(1, 9 + 64), 0.5F);
   EXPECT_EQ(depth.at<float>(1, 9 + 66), 2.0F);
   cv::Mat in_pixels = gap(0.5F, 2.0F);

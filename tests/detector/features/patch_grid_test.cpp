@@ -12,7 +12,7 @@ namespace {
 
 const FeatureLevel kEverything{1.0F, 1.0F, 0.0F, 10.0F};
 
-/// A wall at one distance, seen by a camera of 100 pixels focal length.
+/// Returns a wall at one distance, seen by a camera of 100 pixels focal length.
 PatchGrid wall(float distance, const PatchSpacing& spacing) {
   WorkingFrame frame;
   frame.camera = {128, 96, 100, 100, 63.5, 47.5};
@@ -28,7 +28,7 @@ std::set<std::pair<int, int>> places(const PatchGrid& grid) {
   return out;
 }
 
-/// Two metres away, wherever the camera looks.
+/// Returns a wall two metres away, in any view of the camera.
 WorkingFrame wall(const Camera& camera) {
   WorkingFrame frame;
   frame.camera = camera;

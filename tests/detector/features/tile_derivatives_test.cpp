@@ -24,7 +24,7 @@ TilePlane<T> plane_of(cv::Size part, int margin, const Value& value) {
   return plane;
 }
 
-/// Pixels, margin included, that are not as expected(x, y) says; two NaNs differ.
+/// Returns pixels, margin included, that are not as expected(x, y) says; two NaNs differ.
 template <typename T, typename Expected>
 int wrong_pixels(const TilePlane<T>& plane, const Expected& expected) {
   int wrong = 0;
@@ -46,7 +46,7 @@ LightnessDerivatives lightness_derivatives(const TilePlane<std::uint8_t>& lightn
   return out;
 }
 
-/// Sum over the 3x3 pixels around one, times the weights down and across.
+/// Returns the sum over the 3x3 pixels around one, times the weights down and across.
 int weighed(const TilePlane<std::uint8_t>& plane, int x, int y, const cv::Vec3i& down, const cv::Vec3i& across) {
   int sum = 0;
   for (int j = 0; j < 3; ++j) {
@@ -59,7 +59,7 @@ const cv::Vec3i kSmooth(1, 2, 1);
 const cv::Vec3i kSlope(-1, 0, 1);
 const cv::Vec3i kBend(1, -2, 1);
 
-/// Half of its size, rounded to even.
+/// Returns half of its size, rounded to even.
 int half_of(int derivative) {
   const int size = std::abs(derivative);
   return std::min(255, size / 2 + (size % 4 == 3 ? 1 : 0));
@@ -116,7 +116,7 @@ TEST(TileDerivatives, KernelsHaveUnitGainAtEverySize) {
     for (std::size_t order = 0; order < 3; ++order) {
       ASSERT_EQ(static_cast<int>(kernels[order].size()), size);
       const double faculty[] = {1.0, 1.0, 2.0};
-      for (std::size_t power = 0; power <= order; ++power) {  // of 1, x and x^2
+      for (std::size_t power = 0; power <= order; ++power) {  // weighted by 1, x and x^2
         double sum = 0.0;
         for (int i = 0; i < size; ++i) {
           sum += kernels[order][static_cast<std::size_t>(i)] * std::pow(i - size / 2, static_cast<double>(power));
@@ -176,7 +176,7 @@ TEST(TileDerivatives, CliffsAreLimitedAndUnknownDepthIsLevel) {
   });
 }
 
-/// Sums down, then across, from the first product to the last.
+/// Returns the value filtered down, then across, from the first product to the last.
 float filtered_at(const TilePlane<float>& depth, int x, int y, const std::vector<float>& across,
                   const std::vector<float>& down) {
   const auto size = static_cast<int>(down.size());

@@ -56,7 +56,7 @@ Image noise(cv::Size size, std::uint32_t families, Random& random) {
   return image;
 }
 
-/// Values in the first planes of a part that are not as expected(x, y, plane) says.
+/// Returns values in the first planes of a part that are not as expected(x, y, plane) says.
 template <typename Expected>
 int wrong_values(const TileRows& rows, cv::Size part, int planes, const Expected& expected) {
   int wrong = 0;

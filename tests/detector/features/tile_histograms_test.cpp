@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kBins = HistogramSteps::kBins;
 
-/// Steps in each bin of one gradient that stands alone.
+/// Returns the steps in each bin of one gradient that stands alone.
 std::vector<int> shares_of(float dx, float dy) {
   cv::Mat across = cv::Mat::zeros(3, 21, CV_32FC1);
   cv::Mat down = across.clone();

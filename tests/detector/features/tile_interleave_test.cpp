@@ -24,7 +24,7 @@ TEST_P(TileTurn, ValuesOfAPixelLieSideBySideAndOtherPixelsStay) {
   }
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();  // the next call chooses anew
+    hwy::GetChosenTarget().DeInit();  // the next call selects the target again
     FeatureImage image(50, 8, planes);
     interleave_planes(rows, part, image);
     int wrong = 0;

@@ -12,7 +12,7 @@ namespace {
 const PatchSettings kPatch;
 constexpr std::int32_t kNobody = -77;
 
-/// The image's corners with the widest patches, then anything.
+/// The patches are the image's corners with the widest patches, then random ones.
 struct Patches {
   std::vector<std::int16_t> x;
   std::vector<std::int16_t> y;
@@ -54,7 +54,7 @@ bool walks_like_find_leaf(const Forest& forest, TreeRange trees, const FeatureIm
   return walked;
 }
 
-/// Down all trees at once, and down some.
+/// Traverses all trees at once, and then some.
 bool walks_like_find_leaf(const Forest& forest, const FeatureImage& image, const Patches& patches) {
   const std::size_t trees = forest.roots.size();
   const bool some = walks_like_find_leaf(forest, {trees / 2, trees}, image, patches);
@@ -68,7 +68,7 @@ class WideWalk : public ::testing::Test {
 
   static void use(std::int64_t target) {
     hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();  // the next call chooses anew
+    hwy::GetChosenTarget().DeInit();  // the next call selects the target again
   }
 };
 

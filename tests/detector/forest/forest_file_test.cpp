@@ -34,7 +34,7 @@ class ForestFile : public ::testing::Test {
 
   void rewrite(const std::string& bytes) const { std::ofstream(file, std::ios::binary) << bytes; }
 
-  /// The one line that comes out when the file holds these bytes.
+  /// Returns the one line that comes out when the file holds these bytes.
   std::string error_for(const std::string& bytes) const {
     rewrite(bytes);
     try {
@@ -116,7 +116,7 @@ TEST_F(ForestFile, AnOutlineBesideItsViewIsRefused) {
 TEST_F(ForestFile, ALeafThatKnowsAClassTwiceIsRefused) {
   Forest bad = forest;
   bad.leaf_classes.insert(bad.leaf_classes.begin(), bad.leaf_classes[0]);
-  for (std::uint32_t& end : bad.leaves) end += end > 0 ? 1 : 0;  // those of the first leaf that knows anything too
+  for (std::uint32_t& end : bad.leaves) end += end > 0 ? 1 : 0;  // the first non-empty leaf gets the inserted entry
   save_forest(bad, file);
   EXPECT_THROW(load_forest(file), InputError);
 }
@@ -162,7 +162,7 @@ TEST_F(ForestFile, SettingsThatNoProfileHasAreRefused) {
 
 TEST_F(ForestFile, TestsOfPlanesThatTheFamiliesLackAreRefused) {
   Forest bad = forest;
-  bad.features.families = kDepthValue;  // two planes; the forest looks at more
+  bad.features.families = kDepthValue;  // two planes; the forest reads more
   save_forest(bad, file);
   EXPECT_THROW(load_forest(file), InputError);
   bad = forest;

@@ -25,7 +25,7 @@ TEST(ForestIndex, LeafHeadsTellWhatALeafKnowsBestAndWhereItsClassesBegin) {
   EXPECT_EQ(firsts, forest.leaves);
 }
 
-/// A view of the class, turned by so many radians.
+/// Returns a view of the class, turned by so many radians.
 ViewTemplate rotated_view(std::uint32_t class_index, float angle_rad) {
   ViewTemplate view;
   view.class_index = class_index;

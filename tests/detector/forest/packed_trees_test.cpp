@@ -7,7 +7,7 @@
 namespace houghstream {
 namespace {
 
-/// A node, and the two leaves below it.
+/// Returns a node, and the two leaves below it.
 Forest one_node(const PixelTest& test) {
   Forest forest;
   forest.roots = {0};

@@ -9,8 +9,8 @@
 namespace houghstream {
 namespace {
 
-/// Two trees; leaf 0 is certain of the first class by 0.8 and of the second one by 0.2, leaf 1 of the second by 0.6,
-/// leaf 2 knows background only.
+/// Returns two trees; leaf 0 is certain of the first class by 0.8 and of the second one by 0.2, leaf 1 of the second by
+/// 0.6, leaf 2 knows background only.
 Forest three_leaves() {
   Forest forest;
   forest.classes.resize(2);

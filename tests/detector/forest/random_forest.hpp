@@ -8,7 +8,7 @@
 
 namespace houghstream::chance {
 
-/// Random bytes in every plane, in the border and behind the last pixel's planes too.
+/// Returns random bytes in every plane, in the border and behind the last pixel's planes too.
 inline FeatureImage random_image(int width, int height, int pixel_stride, Random& random) {
   FeatureImage image(width, height, pixel_stride);
   for (int y = -FeatureImage::kPad; y < image.height() + FeatureImage::kPad; ++y) {
@@ -36,7 +36,7 @@ inline PixelTest random_test(int planes, Random& random) {
   return test;
 }
 
-/// Two grown trees, the second one behind the first, and between them one that is a leaf.
+/// Returns two grown trees, the second one behind the first, and between them one that is a leaf.
 inline Forest random_forest(int planes, Random& random) {
   Forest forest;
   std::int32_t leaves = 0;

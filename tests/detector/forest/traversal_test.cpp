@@ -82,7 +82,7 @@ class Traversal : public ::testing::Test {
     }
   }
 
-  /// All levels, with a patch every so many pixels.
+  /// Processes all levels, with a patch every `stride` pixels.
   void look_at_background(int stride, std::vector<FeatureImage>& features, PatchGrid& patches) const {
     for (const FeatureLevel& level : feature_levels(forest.features)) {
       const WorkingFrame frame = make_working_frame(room, level, forest.features);

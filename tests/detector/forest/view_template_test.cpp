@@ -17,7 +17,8 @@ std::size_t cell(int column, int row) {
 
 const Camera kCamera{80, 80, 100, 100, 39.5, 39.5};
 
-/// A 40 pixel wide square, its left half 10 mm nearer and red, its right half 10 mm farther and without depth below.
+/// Returns a 40 pixel wide square, its left half 10 mm nearer and red, its right half 10 mm farther and without depth
+/// below.
 TemplateGrid square() {
   RgbdFrame view;
   view.camera = kCamera;
@@ -81,7 +82,7 @@ TEST(TemplateGrid, WhatIsTooNarrowHasFewerCrossings) {
   EXPECT_EQ(seen.outline[2].inside.row, 0) << "the strip's two ends only";
 }
 
-/// A plane that gains 5 mm a pixel to the right: 10 mm a cell.
+/// The plane is 5 mm farther per pixel to the right, which is 10 mm per cell.
 TEST(TemplateGrid, TheOutlineKnowsWhatASlopeGains) {
   RgbdFrame view;
   view.camera = kCamera;

@@ -77,7 +77,7 @@ TEST(ForestTrainer, AnObjectWithoutDepthIsRefused) {
   EXPECT_THROW(train_forest(views, toy::quick_profile(), kQuiet), InputError);
 }
 
-/// Views of one class, under the number that a folder of its own would give it, and the rooms.
+/// Returns views of one class, under the number that a folder of its own would give it, and the background images.
 std::vector<TrainingView> only(const std::string& name) {
   std::vector<TrainingView> chosen;
   for (TrainingView& view : toy::training_views()) {

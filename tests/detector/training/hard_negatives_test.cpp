@@ -16,7 +16,8 @@ TrainingSettings quick(int threads = 2) {
   return settings;
 }
 
-/// Spare background: every background sample again, and `mistaken` places that look like the object.
+/// Returns a set with spare background: every background sample again, and `mistaken` patches that look like the
+/// object.
 TrainingSet spare_set(std::size_t mistaken) {
   TrainingSet set = toy::planted_set();
   std::vector<TrainingSample> like_object;

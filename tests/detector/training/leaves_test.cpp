@@ -40,7 +40,7 @@ TEST(AddLeaf, NearOffsetsBecomeOneVoteAtTheirMean) {
 }
 
 TEST(AddLeaf, ProbabilitiesFollowTheLabelWeights) {
-  // background 4 x 0.5, class 0 twice 1, class 1 once 4: 2 + 2 + 4
+  // The weights are background 4 x 0.5, class 0 twice 1, class 1 once 4: 2 + 2 + 4.
   const std::vector<TrainingSample> samples = {sample(0, 0), sample(0, 0), sample(0, 0), sample(0, 0),
                                                sample(2, 0), sample(1, 0), sample(1, 0)};
   const Leaf leaf = build(samples, {0.5F, 1.0F, 4.0F});
@@ -73,7 +73,7 @@ TEST(AddLeaf, TheHeaviestVotesAndViewsAreKept) {
   const Forest forest = build(samples, {1, 1}, settings).forest;
   ASSERT_EQ(forest.votes.size(), 2U);
   EXPECT_FLOAT_EQ(forest.votes[0].offset.x(), 0.2F);
-  EXPECT_FLOAT_EQ(forest.votes[0].weight, 0.5F);  // of all samples: what was dropped is not made up for
+  EXPECT_FLOAT_EQ(forest.votes[0].weight, 0.5F);  // fraction of all samples, without replacement of the dropped ones
   EXPECT_FLOAT_EQ(forest.votes[1].offset.x(), 0.1F);
   ASSERT_EQ(forest.leaf_views.size(), 2U);
   EXPECT_EQ(forest.leaf_views[0].view, 7U);
@@ -97,7 +97,7 @@ TEST(AddLeaf, TheSecondLeafFollowsTheFirst) {
   EXPECT_EQ(forest.leaf_views[second.first_view].view, 5U);
 }
 
-/// A leaf that holds a fifth of its tree: 0.3 class 0, 0.1 class 1, else background.
+/// Returns a leaf that holds a fifth of its tree: 0.3 class 0, 0.1 class 1, else background.
 Forest old_forest() {
   Forest forest;
   forest.leaves = {0, 2};
@@ -115,7 +115,7 @@ Forest old_forest() {
   return forest;
 }
 
-/// The last leaf made of new samples alone: 0.8 class 2, a tenth of all new samples.
+/// Returns the last leaf made of new samples alone: 0.8 class 2, a tenth of all new samples.
 Forest new_forest() {
   Forest forest;
   forest.leaves = {0, 1};
@@ -130,7 +130,8 @@ TEST(MixIn, EveryObjectWeighsTheSameAndTheBackgroundStays) {
   const Forest old = old_forest();
   Forest forest = new_forest();
   merge_leaf({&old, 0, compute_mixture(2, 1, 4)}, 0.5F, forest);
-  // half of the old leaf: 0.06 background; objects 0.03 and 0.01, two thirds of it; new: a third of 0.08
+  // The old leaf counts half: 0.06 background; objects 0.03 and 0.01, two thirds of it; the new one counts a third of
+  // 0.08.
   const float total = 0.06F + 0.02F + 0.0066667F + 0.0266667F;
   ASSERT_EQ(forest.leaf_classes.size(), 3U);
   EXPECT_EQ(forest.leaves.back(), 3U);
@@ -143,8 +144,8 @@ TEST(MixIn, EveryObjectWeighsTheSameAndTheBackgroundStays) {
 TEST(MixIn, AmongManyANewObjectWeighsAsMuchAsAKnownOne) {
   for (const float known : {1.0F, 4.0F, 10.0F, 20.0F}) {
     const LeafMixture mixture = compute_mixture(known, 1.0F, 4.0F);
-    const float one_known = mixture.known / (known + std::min(known, 4.0F));  // of a forest of `known` objects
-    const float one_new = mixture.added / 2.0F;                               // of one object and a background
+    const float one_known = mixture.known / (known + std::min(known, 4.0F));  // weight of a forest of `known` objects
+    const float one_new = mixture.added / 2.0F;                               // weight of one object and a background
     EXPECT_NEAR(one_known, one_new, 1e-6F) << known;
     const float background = mixture.background * std::min(known, 4.0F) / (known + std::min(known, 4.0F));
     EXPECT_NEAR(known * one_known + one_new + background, 1.0F, 1e-6F) << known;

@@ -10,7 +10,7 @@
 namespace houghstream {
 namespace {
 
-constexpr double kFocal = 525.0;  // of the cameras that the profiles have in mind
+constexpr double kFocal = 525.0;  // focal length of the cameras that the profiles assume
 
 TEST(Profiles, AreKnownByTheirNames) {
   for (const std::string& name : profile_names()) EXPECT_EQ(make_profile(name).name, name);

@@ -92,8 +92,8 @@ TEST(ScoreTraining, AnyNumberOfThreadsGivesTheSameModel) {
   }
 }
 
-/// An image that is not composed of views: a tile of each kind in a room; `is_there` says whether the truth names
-/// them.
+/// Returns an image that is not composed of views: a tile of each kind in a room; `is_there` says whether the ground
+/// truth names them.
 ValidationFrame tiles_on_a_background(int index, bool is_there) {
   ValidationFrame frame;
   frame.frame = toy::background(50 + static_cast<std::uint64_t>(index));
@@ -140,7 +140,8 @@ TEST(ScoreTraining, LearnsFromAnySourceOfFrames) {
   }
 }
 
-/// By the object's mass alone, whose log odds the model gives: many are none, whatever it says.
+/// The examples are labelled by the object's mass alone, whose log odds the model gives: many are false, whatever it
+/// says.
 std::vector<ScoreExamples> judged_by_mass(int class_id, double log_odds, double offset) {
   std::vector<ScoreExamples> frames;
   Random random(7);

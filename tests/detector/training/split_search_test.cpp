@@ -108,7 +108,7 @@ void swap_planes(TrainingSet& set, int one, int other) {
   }
 }
 
-/// In how many of ten searches the best test looks at one pixel, where `plane` alone separates the labels.
+/// Returns in how many of ten searches the best test reads one pixel, where `plane` alone separates the labels.
 int alone_of_ten(const FeatureLayout& layout, int plane, double shape_single_pixel_fraction) {
   TrainingSet set = toy::planted_set();
   set.layout = layout;

@@ -11,7 +11,7 @@ namespace {
 constexpr float kArea = 0.02F;
 constexpr float kSigma = 0.016F;
 
-/// Two classes; the samples of class 0 see their centre at (0.05, 0, 0). Class 1 has no sample.
+/// Returns two classes; the samples of class 0 see their centre at (0.05, 0, 0). Class 1 has no sample.
 TrainingSet set_of(int images) {
   TrainingSet set;
   set.classes.resize(2);

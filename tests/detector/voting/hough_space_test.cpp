@@ -10,7 +10,7 @@ namespace {
 
 const Camera kHundredWide{100, 80, 100.0, 100.0, 49.5, 39.5};
 
-/// One tree that is one leaf, certain by `probability` of the only class, with one vote.
+/// Returns one tree that is one leaf, certain by `probability` of the only class, with one vote.
 Forest one_leaf(const Eigen::Vector3f& offset, float probability) {
   Forest forest;
   forest.classes.emplace_back();

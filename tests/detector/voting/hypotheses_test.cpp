@@ -9,7 +9,7 @@
 namespace houghstream {
 namespace {
 
-/// A forest of one leaf that takes every patch for the centre of the only class.
+/// Returns a forest of one leaf that takes every patch for the centre of the only class.
 Forest centre_forest() {
   Forest forest;
   forest.classes.emplace_back();

@@ -50,7 +50,7 @@ TEST(Maxima, OfEqualNeighboursTheFirstCounts) {
 }
 
 TEST(Maxima, ThoseThatMeetAreOne) {
-  // two cells apart: 3 cm, within reach of each other
+  // The maxima are two cells apart: 3 cm, within reach of each other.
   EXPECT_EQ(maxima_of(space_of({{20, 10, 1.0F, 0.2F}, {22, 10, 1.0F, 0.2F}})).size(), 1U);
 }
 

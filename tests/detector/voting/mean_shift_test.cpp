@@ -26,7 +26,7 @@ HoughSpace random_space(const Eigen::Vector3f& about, int count) {
   return space;
 }
 
-/// sum_support one vote after another.
+/// Reference implementation of sum_support, one vote after another.
 VoteSupport reference_support(const HoughSpace& space, const std::vector<VoteRange>& ranges,
                               const Eigen::Vector3f& centre) {
   SumLanes lanes{};
@@ -58,7 +58,7 @@ TEST(MeanShift, ManyAtOnceAreAsOneByOneOnEveryMachine) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     SCOPED_TRACE(hwy::TargetName(target));
     hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();  // the next call chooses anew
+    hwy::GetChosenTarget().DeInit();  // the next call selects the target again
     const VoteSupport fast = sum_support(space, ranges, centre, kSigma);
     EXPECT_EQ(fast.total, reference.total);
     EXPECT_EQ(fast.moment, reference.moment);

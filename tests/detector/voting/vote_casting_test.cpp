@@ -28,7 +28,7 @@ Forest random_forest(Random& random) {
   return forest;
 }
 
-/// One vote, as vote casting is to compute it.
+/// Returns one vote, as vote casting is to compute it.
 Vote vote_of(const Forest& forest, const LeafClass& entry, const LeafVote& leaf_vote, const Eigen::Vector3f& point) {
   const float fraction = 1.0F / static_cast<float>(forest.roots.size());
   const Eigen::Matrix3f R = ray_rotation(point);
@@ -78,11 +78,11 @@ TEST(VoteCasting, ManyAtOnceAreAsOneByOneOnEveryMachine) {
     patches.point_camera.emplace_back(random.uniform(-0.5, 0.5), random.uniform(-0.4, 0.4), random.uniform(0.3, 1.5));
     for (int t = 0; t < 3; ++t) voters.push_back({p, static_cast<std::uint32_t>(random.below(200))});
   }
-  voters.push_back({299, 199});  // whose votes are the forest's last
+  voters.push_back({299, 199});  // its votes are the forest's last
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     SCOPED_TRACE(hwy::TargetName(target));
     hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();  // the next call chooses anew
+    hwy::GetChosenTarget().DeInit();  // the next call selects the target again
     expect_as_one_by_one(forest, patches, voters);
   }
   hwy::SetSupportedTargetsForTest(0);

@@ -26,7 +26,7 @@ GroundTruthObject some_object() {
   return object;
 }
 
-/// Twelve images with one object each: enough for image 10 to come before image 9 in the order of text.
+/// Writes twelve images with one object each: enough for image 10 to come before image 9 in the order of text.
 fs::path write_scene(const std::string& name) {
   fs::path folder = fresh_folder(name);
   BopWriter writer(folder);
@@ -79,7 +79,7 @@ TEST(BopScene, ObjectsMayHaveABoxOnlyOrNoBox) {
 
 TEST(BopScene, DepthIsScaledAndSizesComeFromTheImageWhereBopHasNone) {
   const fs::path folder = write_scene("bop_scale");
-  fs::remove(folder / "scene_gt.json");  // of the other images too
+  fs::remove(folder / "scene_gt.json");  // it lists the other images too
   write_text(folder / "scene_camera.json", R"({"7": {"cam_K": [60,0,31.5, 0,61,23.5, 0,0,1], "depth_scale": 0.1}})");
   fs::rename(folder / "rgb/000000.png", folder / "rgb/000007.png");
   fs::rename(folder / "depth/000000.png", folder / "depth/000007.png");
@@ -128,14 +128,14 @@ TEST(BopScene, AbsurdNumbersAreRefused) {
   expect_refused("scene_gt_info.json", "{", "[");
 }
 
-// An image's number with one flipped bit.
+// One bit of an image's number is flipped.
 TEST(BopScene, ObjectsOfAnImageThatIsNotThereAreRefused) {
   expect_refused("scene_camera.json", "\"11\": {", "\"31\": {");
   expect_refused("scene_camera.json", "\"11\": {", "\"10\": {");
   expect_refused("scene_gt.json", "\"11\": [", "\"10\": [");
 }
 
-/// A scene with one object of this "rotation".
+/// Writes a scene with one object of this "rotation".
 fs::path scene_with_rotation(const Eigen::Matrix3d& R) {
   fs::path folder = fresh_folder("bop_rotation");
   GroundTruthObject object = some_object();

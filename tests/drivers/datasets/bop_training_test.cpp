@@ -31,7 +31,7 @@ GroundTruthObject mug() {
   return object;
 }
 
-/// One scene with `frames`, the object in each.
+/// Writes one scene with `frames`, the object in each.
 fs::path write_training(const std::string& name, const std::vector<RgbdFrame>& frames, bool masks = true) {
   fs::path folder = fresh_folder(name);
   BopWriter writer(folder / "train" / "000002");

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 const std::string kCameraText = ",64x48,60,61,31.5,23.5";
 
-/// Frames desk_1_9 and desk_1_28, whose colour is `9` and `28`.
+/// Writes frames desk_1_9 and desk_1_28, whose colour is `9` and `28`.
 fs::path write_uw_folder(const std::string& name, const std::string& colour_end) {
   fs::path folder = fresh_folder(name);
   for (const int number : {28, 9}) {

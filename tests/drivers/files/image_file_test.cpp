@@ -51,7 +51,7 @@ TEST(ImageFile, WhatIsMissingNoImageOrCannotBeWrittenIsAnError) {
   EXPECT_THROW(write_png(cv::Mat(4, 6, CV_8UC(7), cv::Scalar(0)), folder / "seven.png"), InputError);
 }
 
-// Whose rows its decoder would fill up without a word.
+// A decoder would fill up the missing rows silently.
 TEST(ImageFile, ACutJpegIsRefused) {
   const fs::path folder = fresh_folder("image_file_cut");
   cv::Mat colour(40, 30, CV_8UC3);

@@ -89,7 +89,7 @@ TEST(CameraSource, ACalibrationMustBeOfTheMode) {
   EXPECT_TRUE(contains(error_of([&] { open_camera_source("", options, {}); }), "320x240"));
 }
 
-/// The frames that the naive way would make: each depth image with the last colour image that has arrived.
+/// Returns the frames that the naive way would make: each depth image with the last colour image that has arrived.
 double mean_error_of_last_colour() {
   const auto running = keep_openni_running();
   const auto device = OpenniDevice::open_camera("houghstream-virtual://1", CameraOptions{});

@@ -8,7 +8,7 @@
 namespace houghstream::openni {
 namespace {
 
-/// A recording of the virtual camera's, without the room that OpenNI2's recorder leaves behind its end.
+/// Returns a recording of the virtual camera's, without the room that OpenNI2's recorder leaves behind its end.
 std::string recorded_bytes(const VirtualCamera& camera) {
   CameraOptions options;
   options.mode = {320, 240, 30};
@@ -21,7 +21,7 @@ std::string recorded_bytes(const VirtualCamera& camera) {
   return read_text(options.record);
 }
 
-/// As OpenNI2 plays it.
+/// Counts the images as OpenNI2 plays them.
 std::size_t images_played(const std::filesystem::path& file) {
   const auto device = OpenniDevice::open_file(file.string());
   std::size_t images = 0;

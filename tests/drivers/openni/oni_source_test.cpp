@@ -13,7 +13,7 @@ namespace {
 
 struct Recording {
   std::filesystem::path file;
-  std::vector<RgbdFrame> seen;        ///< what the live source gave meanwhile
+  std::vector<RgbdFrame> seen;        ///< frames of the live source meanwhile
   std::vector<std::int64_t> numbers;  ///< the device's numbers of those
 };
 
@@ -45,12 +45,12 @@ double depth_difference(const RgbdFrame& a, const RgbdFrame& b) {
   return cv::norm(depth_to_millimetres(a.depth), depth_to_millimetres(b.depth), cv::NORM_INF);
 }
 
-/// Mean of the channels' differences.
+/// Returns the mean of the channels' differences.
 double colour_difference(const RgbdFrame& a, const RgbdFrame& b) {
   return cv::norm(a.colour, b.colour, cv::NORM_L1) / static_cast<double>(3 * a.colour.total());
 }
 
-/// The device's number of a frame, which runs through the pattern's images.
+/// Returns the device's number of a frame, which runs through the pattern's images.
 std::int64_t number_of(const RgbdFrame& frame) {
   const std::vector<virtual_camera::CameraImage> images = virtual_camera::make_test_pattern(frame.camera).images;
   const cv::Mat depth_mm = depth_to_millimetres(frame.depth);

@@ -138,7 +138,7 @@ TEST_F(OniTimes, NoFlippedBitLeavesImagesOutWithoutAWord) {
 TEST_F(OniTimes, AnImageThatIsNotWhereItsTableSaysIsRefused) {
   const TinyOni oni;
   std::string bytes = oni.bytes();
-  bytes[oni.times(2).at(3)] ^= 1;  // of its second image
+  bytes[oni.times(2).at(3)] ^= 1;  // a bit of its second image
   write_text(file, bytes);
   EXPECT_NE(error_of([&] { check_oni(file); }).find("stream 2 are not at the times"), std::string::npos);
   write_text(file, oni.bytes() + "room");

@@ -22,7 +22,7 @@ std::filesystem::path recorded_file(const VirtualCamera& camera, int images, boo
   return options.record;
 }
 
-/// A recording's images by their times.
+/// Returns a recording's images by their times.
 std::map<Sensor, std::map<std::int64_t, cv::Mat>> images_of(const std::filesystem::path& file) {
   const auto device = OpenniDevice::open_file(file.string());
   std::map<Sensor, std::map<std::int64_t, cv::Mat>> images;
@@ -33,7 +33,7 @@ std::map<Sensor, std::map<std::int64_t, cv::Mat>> images_of(const std::filesyste
   return images;
 }
 
-/// The step of the pattern that an image shows; JPEG leaves the disc's colour where it was, roughly.
+/// Returns the step of the pattern that an image shows; JPEG leaves the disc's colour where it was, roughly.
 int image_of(const cv::Mat& image, const virtual_camera::CameraImages& pattern) {
   double minimum = 1e9;
   int found = -1;
@@ -77,7 +77,7 @@ TEST(OpenniRecording, ColourThatComesAtOnceIsAtItsDepthsTime) {
   expect_apart(recorded_file(camera, 50, false), 0);
 }
 
-// As on a full disk: the recorder goes on without a word.
+// The recorder continues silently, as on a full disk.
 TEST(OpenniRecording, WhatIsCutStaysBesideAnEarlierOne) {
   const VirtualCamera camera("recording_cut", "size 320x240\n");
   write_text(camera.folder() / "recorded.oni", "an earlier one");

@@ -8,7 +8,7 @@ namespace {
 constexpr std::int64_t kOpened = 5'000'000;
 constexpr std::int64_t kPeriod = 33'333;
 
-/// Images of a sensor, each with independent noise.
+/// Returns images of a sensor, each with independent noise.
 std::vector<ImageThumbnail> seen(int count) {
   cv::RNG random(7);
   std::vector<ImageThumbnail> images;
@@ -24,14 +24,14 @@ std::vector<ImageThumbnail> seen(int count) {
   return images;
 }
 
-/// The images from `first` on as a recorder gives them: times from zero.
+/// Returns the images from `first` on as a recorder gives them: times from zero.
 std::vector<ImageThumbnail> recorded_from(const std::vector<ImageThumbnail>& live, int first, int count) {
   std::vector<ImageThumbnail> recorded(live.begin() + first, live.begin() + first + count);
   for (ImageThumbnail& image : recorded) image.time_us -= live[first].time_us;
   return recorded;
 }
 
-/// Only every `step`-th.
+/// Returns only every `step`-th image.
 std::vector<ImageThumbnail> some_of(const std::vector<ImageThumbnail>& images, std::size_t step) {
   std::vector<ImageThumbnail> some;
   for (std::size_t i = 0; i < images.size(); i += step) some.push_back(images[i]);

@@ -15,8 +15,8 @@
 
 namespace houghstream::openni {
 
-/// A virtual camera's script, in force from construction on; OpenNI2 must not be running yet. CTest sets
-/// LD_LIBRARY_PATH so that OpenNI2 finds its driver.
+/// Sets a virtual camera's script from construction on; OpenNI2 must not be running yet. CTest sets LD_LIBRARY_PATH so
+/// that OpenNI2 finds its driver.
 class VirtualCamera {
  public:
   VirtualCamera(const std::string& name, const std::string& script) : folder_(fresh_folder("camera_" + name)) {
@@ -40,7 +40,7 @@ class VirtualCamera {
   std::filesystem::path folder_;
 };
 
-/// Centre of the test pattern's disc as a mask shows it, pixels.
+/// Returns the centre of the test pattern's disc as a mask shows it, pixels.
 inline cv::Point2d centre_of(const cv::Mat& mask) {
   const cv::Moments moments = cv::moments(mask, true);
   return {moments.m10 / moments.m00, moments.m01 / moments.m00};
@@ -55,7 +55,7 @@ inline cv::Point2d disc_in_depth_mm(const cv::Mat& depth_mm) {
   return centre_of(depth_mm == virtual_camera::kPatternDiscMm);
 }
 
-/// Offset of the disc's colour from its depth, pixels.
+/// Returns the offset of the disc's colour from its depth, pixels.
 inline double disc_error_px(const cv::Mat& bgr, const cv::Mat& depth_mm) {
   return cv::norm(disc_in_colour(bgr) - disc_in_depth_mm(depth_mm));
 }

@@ -11,7 +11,7 @@
 
 namespace houghstream::store {
 
-/// A whole store of a mug and of what the second name says, in a folder that is there.
+/// Fills an existing folder with a whole store of a mug and of a second object by its name.
 inline void fill_store(const std::filesystem::path& folder, const std::string& second_name) {
   ObjectStore store;
   store.folder = folder;
@@ -28,7 +28,7 @@ inline void fill_store(const std::filesystem::path& folder, const std::string& s
   write_store_json(store);
 }
 
-/// A whole store of a mug and a brick, in a folder of its own.
+/// Makes a whole store of a mug and a brick, in a folder of its own.
 inline std::filesystem::path whole_store(const std::string& name) {
   std::filesystem::path folder = fresh_folder(name) / "store";
   std::filesystem::create_directories(folder);
@@ -36,7 +36,7 @@ inline std::filesystem::path whole_store(const std::string& name) {
   return folder;
 }
 
-/// All files of a folder, byte for byte, by their paths.
+/// Returns all files of a folder, byte for byte, by their paths.
 inline std::map<std::string, std::string> files_of(const std::filesystem::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
@@ -45,7 +45,7 @@ inline std::map<std::string, std::string> files_of(const std::filesystem::path& 
   return files;
 }
 
-/// The store becomes one of a mug and of `second`, as teaching does it.
+/// Replaces the store by one of a mug and of `second`, as teaching does it.
 inline void exchange(const std::filesystem::path& folder, const std::string& second) {
   StoreTransaction build(folder);
   fill_store(build.folder(), second);

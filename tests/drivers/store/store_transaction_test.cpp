@@ -156,7 +156,7 @@ TEST(StoreTransaction, WhoReadsBeforeItsChangesBringsTheOldOneBack) {
   EXPECT_TRUE(fs::exists(aside)) << "he puts his own there in a moment";
 }
 
-/// Somebody's own files in a store's folder: beside the store's, among them, in folders, and links.
+/// Puts foreign files into a store's folder: beside the store's, among them, in folders, and links.
 void put_foreign_files(const fs::path& store) {
   fs::create_directories(store / "recordings" / "monday" / "empty");
   write_text(store / "NOTES.txt", "the handle faces left");
@@ -297,7 +297,7 @@ TEST(StoreTransaction, WhoeverIsKilledAtAnyMomentLeavesSomebodysFiles) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
 }
 
-/// The name of the second object; throws where any part of the store is missing or of another one.
+/// Returns the name of the second object; throws where any part of the store is missing or of another one.
 std::string second_of(const fs::path& folder) {
   const ObjectStore store = read_store(folder);
   load_store_meshes(store);

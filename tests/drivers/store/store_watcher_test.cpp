@@ -258,7 +258,7 @@ TEST(StoreWatcher, NoFrameIsLostAndHardlyOnePassedOverWhileAStoreIsReplaced) {
   EXPECT_EQ(name_in(0), "brick");
   EXPECT_EQ(name_in(test.count(channel::kDetections) - 1), "plate");
   test.stop();
-  test.bus.handle(milliseconds(50));  // what goes out after the last status
+  test.bus.handle(milliseconds(50));  // receives messages sent after the last status
   const auto status = test.last<status_t>(channel::kStatus);
   EXPECT_EQ(status.frames_lost, 0);
   EXPECT_EQ(status.frames_refused, 0);

@@ -27,7 +27,7 @@ class TakenImages {
     stream.setNewFrameCallback(&TakenImages::take, this);
   }
 
-  /// The first images as soon as there are so many; fewer where they do not come.
+  /// Returns the first images as soon as there are so many; fewer where they do not come.
   std::vector<Image> wait(std::size_t count) {
     std::unique_lock<std::mutex> lock(mutex_);
     arrived_.wait_for(lock, std::chrono::seconds(20), [&] { return images_.size() >= count; });

@@ -26,7 +26,7 @@ struct ScriptedDevice {
   VirtualDevice device{watch, pictures, "SERIAL7"};
 };
 
-/// The first images of a sensor, not mirrored.
+/// Returns the first images of a sensor, not mirrored.
 std::vector<TakenImages::Image> images_of(VirtualDevice& device, OniSensorType type, std::size_t count) {
   oni::driver::StreamBase* stream = device.createStream(type);
   TakenImages taken(*stream);

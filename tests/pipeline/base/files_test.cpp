@@ -164,7 +164,7 @@ TEST_F(Files, AreKnownToBeWritableBeforeTheyAreWritten) {
 TEST_F(Files, AreNoPipes) {
   const fs::path pipe = folder / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_THROW(read_file(pipe, "text"), InputError);  // and not: waits for ever
+  EXPECT_THROW(read_file(pipe, "text"), InputError);  // and does not wait for a writer
   EXPECT_THROW(read_file(folder, "text"), InputError);
   EXPECT_THROW(read_file(folder / "none", "text"), InputError);
 }

@@ -120,7 +120,7 @@ TEST_F(FolderExchange, ALinkStaysALink) {
   write_text(elsewhere / "data", "not ours");
   fs::create_directory_symlink(elsewhere, place / "linked");
   fs::remove_all(place / "parts");
-  fs::create_directory_symlink(elsewhere, place / "parts");  // in the place of an own folder
+  fs::create_directory_symlink(elsewhere, place / "parts");  // a link to a folder in its place
   exchange_folder(made, place, is_own);
   EXPECT_TRUE(fs::is_symlink(place / "linked"));
   EXPECT_FALSE(fs::is_symlink(place / "parts"));

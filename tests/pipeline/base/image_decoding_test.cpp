@@ -10,11 +10,11 @@
 namespace houghstream {
 namespace {
 
-/// A PNG of a few bytes whose header claims this width.
+/// Returns a PNG of a few bytes whose header claims this width.
 std::vector<std::uint8_t> png_of_width(std::uint8_t high_byte) {
   std::vector<std::uint8_t> png;
   cv::imencode(".png", cv::Mat(3, 4, CV_8UC1, cv::Scalar(7)), png);
-  png[17] = high_byte;  // of the four big-endian bytes from 16 on
+  png[17] = high_byte;  // second of the four big-endian bytes from 16 on
   return png;
 }
 

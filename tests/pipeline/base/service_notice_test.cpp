@@ -14,7 +14,7 @@
 namespace houghstream {
 namespace {
 
-/// A service manager's socket.
+/// Opens a service manager's socket.
 int open_manager(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;

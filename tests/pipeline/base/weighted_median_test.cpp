@@ -9,7 +9,7 @@ namespace {
 
 using Values = std::vector<std::pair<float, float>>;
 
-/// By sorting; weights are whole numbers, whose sums are exact.
+/// Returns the median by sorting; weights are whole numbers, whose sums are exact.
 float sorted_median(Values values) {
   std::sort(values.begin(), values.end());
   float total = 0.0F;

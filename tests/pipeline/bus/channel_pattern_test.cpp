@@ -32,7 +32,7 @@ TEST(ChannelPattern, ANameMayHaveAnyBytesAndAnyLength) {
   EXPECT_FALSE(ChannelPattern("CAMERA_*").matches("CAMERA" + std::string(8'000'000, '_') + "2"));
 }
 
-// One after another, the ways to share these letters among those stars would last longer than the test may.
+// Tried one after another, the ways to distribute these letters among those stars would take longer than the test may.
 TEST(ChannelPattern, AnExpressionOfManyWaysIsMatchedAtOnce) {
   std::string many;
   for (int i = 0; i < 100; ++i) many += "a*";

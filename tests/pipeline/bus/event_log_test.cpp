@@ -148,7 +148,7 @@ TEST_F(EventLogFile, DamageUpToTheEndIsPassedOver) {
   EXPECT_FALSE(reader.next().has_value());
 }
 
-// As on a disk that is full for a while.
+// The write fails as on a disk that is full for a while.
 TEST_F(EventLogFile, ALogThatLacksAnEventIsNotPublished) {
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};

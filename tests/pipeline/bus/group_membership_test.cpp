@@ -43,7 +43,7 @@ bool enter_own_network() {
   return true;
 }
 
-/// The exit status of `body` in a process with a network of its own.
+/// Returns the exit status of `body` in a process with a network of its own.
 int in_own_network(const std::function<int()>& body) {
   const pid_t child = fork();
   if (child == 0) _exit(enter_own_network() && plug_in() ? body() : kSkipped);
@@ -52,7 +52,7 @@ int in_own_network(const std::function<int()>& body) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// A socket that receives what is sent to the group once it has joined it.
+/// Returns a socket that receives what is sent to the group once it has joined it.
 int receiving_socket() {
   const int socket_fd = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
   sockaddr_in address{};

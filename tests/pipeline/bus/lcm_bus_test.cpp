@@ -60,7 +60,7 @@ TEST(LcmBus, ThrowingHandlersDoNotStopIt) {
   EXPECT_EQ(calls, 2);
 }
 
-/// The channels, of those that hold messages, from which a subscriber of `pattern` gets them.
+/// Returns the channels, of those that hold messages, from which a subscriber of `pattern` gets them.
 std::string heard(LcmBus& bus, const std::string& pattern, const std::function<void()>& play) {
   std::string names;
   bus.subscribe(pattern, [&](const ReceivedMessage& arrival) { names += arrival.channel + " "; });
@@ -113,7 +113,8 @@ TEST(LcmBus, AFloodOfBadMessagesIsNotLoggedLineByLine) {
   EXPECT_NE(log.find("49 more messages dropped"), std::string::npos) << log;
 }
 
-/// A server of tcpq that takes all that its clients publish, and hands on nothing. Nobody can connect before start().
+/// Runs a server of tcpq that receives all messages of its clients, and forwards none. Nobody can connect before
+/// start().
 class TcpServer {
  public:
   explicit TcpServer(bool is_started = true) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
@@ -268,7 +269,7 @@ TEST(LcmBus, FramesOnAnotherChannelAreNamed) {
 constexpr int kRefused = 3;
 constexpr int kNoNetworks = 77;
 
-/// A process that opens a bus in a network without any route, and ends with kRefused where that is refused.
+/// Starts a process that opens a bus in a network without any route, and ends with kRefused where that is refused.
 pid_t open_without_route(AtStart at_start) {
   const pid_t child = fork();
   if (child != 0) return child;

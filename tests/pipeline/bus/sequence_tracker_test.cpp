@@ -83,7 +83,7 @@ TEST(SequenceTracker, ALongSilenceIsALoss) {
 
 TEST(SequenceTracker, ASenderThatIsStartedAgainLosesNothingByIt) {
   for (const std::int64_t frames : {20, 200}) {
-    for (const std::int64_t start : {0, 7'000'000}) {  // of a dataset the times are the same again
+    for (const std::int64_t start : {0, 7'000'000}) {  // the times of a dataset are the same in each run
       Arrivals arrivals;
       for (std::int64_t number = 0; number < frames; ++number) arrivals.come(number);
       arrivals.pass(1'500'000);
@@ -95,7 +95,7 @@ TEST(SequenceTracker, ASenderThatIsStartedAgainLosesNothingByIt) {
       EXPECT_EQ(arrivals.count.lost(), 1);
     }
   }
-  Arrivals at_once;  // where it says that it is another run, no time need pass
+  Arrivals at_once;  // a stated new run needs no time between
   for (std::int64_t number = 0; number < 20; ++number) at_once.come(number, 1);
   for (std::int64_t number = 0; number < 20; ++number) EXPECT_EQ(at_once.come(number, 2), FrameOrder::kNext);
   EXPECT_EQ(at_once.count.lost(), 0);
@@ -111,7 +111,7 @@ TEST(SequenceTracker, IsExactUnderLossReorderingDuplicatesForgeriesAndRestarts) 
       const std::int64_t frames = 100 + static_cast<std::int64_t>(random() % 400);
       std::vector<std::int64_t> way;
       for (std::int64_t number = 0; number < frames; ++number) {
-        const bool is_end = number == 0 || number == frames - 1;  // what is lost there nobody can know
+        const bool is_end = number == 0 || number == frames - 1;  // losses there are unknown
         if (is_end || random() % 20 != 0) way.push_back(number);
         if (!way.empty() && random() % 10 == 0) way.push_back(way.back());
       }
@@ -147,7 +147,7 @@ TEST(SequenceTracker, IsExactWhereForgeriesLieCloseBy) {
     for (std::size_t i = 0; i < way.size(); ++i) {
       arrivals.come(way[i]);
       if (i < 4 || i + 4 > way.size() || random() % 30 != 0) continue;
-      arrivals.come(forged[random() % forged.size()], 0, 1'000 + way[i]);  // with a time of its own
+      arrivals.come(forged[random() % forged.size()], 0, 1'000 + way[i]);  // with a new time
       ++sent;
     }
     EXPECT_EQ(sent, arrivals.received + arrivals.count.lost().value()) << "seed " << seed;

@@ -15,7 +15,7 @@ constexpr const char* kMaterials =
     "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\nnewmtl green_picture\nmap_Kd green.png\n"
     "newmtl grey_picture\nmap_Kd grey.png\n";
 
-/// Two triangles, at z = 0 and z = 1 m, of two materials; texture coordinates of the second up to `maximum`.
+/// Writes two triangles, at z = 0 and z = 1 m, of two materials; texture coordinates of the second are up to `maximum`.
 fs::path write_obj(const std::string& name, const std::string& first, const std::string& second,
                    float maximum = 0.75F) {
   const fs::path folder = fs::temp_directory_path() / ("houghstream_mesh_paint_test_" + name);

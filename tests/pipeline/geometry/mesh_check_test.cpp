@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr int kRings = 6;
 constexpr int kSectors = 8;
 
-/// A closed ball of 50 mm: 42 vertices, 80 triangles.
+/// Returns a closed ball of 50 mm: 42 vertices, 80 triangles.
 Mesh ball() {
   Mesh mesh;
   mesh.vertices.emplace_back(0.0F, 0.0F, -0.05F);
@@ -213,7 +213,7 @@ TEST(MeshCheck, NodesThatGoRoundAreRefused) {
   EXPECT_NO_THROW(check_gltf(head + R"({"children":[1]},{}]})", "one.gltf"));
 }
 
-// One reader takes the first value, another the last.
+// Readers differ: one takes the first value, another the last.
 TEST(MeshCheck, NamesThatStandTwiceAreRefused) {
   EXPECT_THROW(check_gltf(R"({"asset":{"version":"2.0"},"accessors":[],"accessors":[]})", "twice.gltf"), InputError);
   EXPECT_THROW(check_gltf(R"({"asset":{"version":"2.0","version":"2.0"}})", "within.gltf"), InputError);

@@ -17,7 +17,7 @@ void append_number(std::uint32_t number, std::string& bytes) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-/// The container of glTF 2.0, section 4.4: header, JSON chunk, binary chunk.
+/// Writes the container of glTF 2.0, section 4.4: header, JSON chunk, binary chunk.
 void write_glb(std::string json, std::string binary, const fs::path& file) {
   json.resize((json.size() + 3) / 4 * 4, ' ');
   binary.resize((binary.size() + 3) / 4 * 4, '\0');
@@ -31,7 +31,8 @@ void write_glb(std::string json, std::string binary, const fs::path& file) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-/// A triangle, 0.2 m along x and y, with texture coordinates and an image of 4 x 2 pixels: left red, right blue.
+/// Returns the bytes of a triangle, 0.2 m along x and y, with texture coordinates and an image of 4 x 2 pixels: left
+/// red, right blue.
 std::string triangle_bytes(std::size_t& image_bytes) {
   const std::vector<float> numbers = {0, 0, 0, 0.2F, 0, 0, 0, 0.2F, 0, 0.1F, 0.25F, 0.9F, 0.25F, 0.1F, 0.75F};
   std::string binary(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float));

@@ -16,7 +16,7 @@ TEST(MeshNormals, LargerTrianglesWeighMore) {
   EXPECT_LT((mesh.normals[0] - shared).norm(), 1e-6F);
   EXPECT_LT((mesh.normals[2] - Eigen::Vector3f::UnitZ()).norm(), 1e-6F);
   EXPECT_LT((mesh.normals[3] - Eigen::Vector3f::UnitX()).norm(), 1e-6F);
-  EXPECT_EQ(mesh.normals[4].norm(), 0.0F);  // of no triangle
+  EXPECT_EQ(mesh.normals[4].norm(), 0.0F);  // belongs to no triangle
 }
 
 }  // namespace

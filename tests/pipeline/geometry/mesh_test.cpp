@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A box 0.1 x 0.2 x 0.3 m around the origin; two triangles a side, counter-clockwise from outside.
+/// Returns a box 0.1 x 0.2 x 0.3 m around the origin; two triangles a side, counter-clockwise from outside.
 Mesh box_mesh() {
   Mesh mesh;
   for (int i = 0; i < 8; ++i) {

@@ -52,7 +52,7 @@ TEST(Renderer, PlaneAtKnownDepthHasItAndItsExactExtent) {
 }
 
 TEST(Renderer, TiltedQuadHasTheAnalyticDepth) {
-  // Plane z = 1 + 0.8 x: along the ray (u, v, 1) z = 1 / (1 - 0.8 u).
+  // The plane is z = 1 + 0.8 x: along the ray (u, v, 1) z = 1 / (1 - 0.8 u).
   const Mesh mesh = quad({-0.5F, -0.5F, 0.6F}, {0.5F, -0.5F, 1.4F}, {0.5F, 0.5F, 1.4F}, {-0.5F, 0.5F, 0.6F});
   const cv::Mat depth = render_geometry({{&mesh, Eigen::Isometry3d::Identity(), 1}}, kVga).depth;
   int count = 0;
@@ -87,7 +87,7 @@ TEST(Renderer, BarycentricsInterpolateTextureInPerspective) {
 }
 
 TEST(Renderer, NeighbouringTrianglesLeaveNoGapAndShareNoPixel) {
-  // A jittered grid whose vertices partly lie exactly on pixel centres, each triangle drawn on its own.
+  // Returns a jittered grid whose vertices partly lie exactly on pixel centres, each triangle drawn on its own.
   std::mt19937_64 generator(5);
   constexpr int kCells = 12;
   Mesh grid;
@@ -137,7 +137,7 @@ TEST(Renderer, NearerSurfaceHidesTheFarther) {
 }
 
 TEST(Renderer, TrianglesAcrossTheNearPlaneAreClipped) {
-  // A square floor 1 m below the camera, standing on its corner, reaching from 11 m behind to 9 m in front.
+  // The floor is a square 1 m below the camera, standing on its corner, reaching from 11 m behind to 9 m in front.
   const Mesh floor = quad({0, 1, 9}, {10, 1, -1}, {0, 1, -11}, {-10, 1, -1});
   const RenderedGeometry seen = render_geometry({{&floor, Eigen::Isometry3d::Identity(), 3}}, kVga);
   int count = 0;

@@ -4,7 +4,7 @@
 
 namespace houghstream {
 
-/// A tetrahedron with corners at the origin and `side_m` along each axis.
+/// Returns a tetrahedron with corners at the origin and `side_m` along each axis.
 inline Mesh tetrahedron(float side_m) {
   Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {side_m, 0, 0}, {0, side_m, 0}, {0, 0, side_m}};

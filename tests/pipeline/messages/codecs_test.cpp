@@ -43,7 +43,7 @@ TEST(Codecs, ABombIsNotUnpacked) {
   const std::vector<std::uint8_t> bomb = zip_depth(zeros, 9);
   EXPECT_LT(bomb.size(), 10000U);
   EXPECT_THROW(unzip_depth(view(bomb), 64, 48), InputError);
-  // The other way round: a few bytes that claim a large image are refused before memory is asked for.
+  // A few bytes that claim a large image are refused before memory is allocated.
   EXPECT_THROW(unzip_depth({bomb.data(), 20}, 4096, 4096), InputError);
   EXPECT_THROW(unzip_depth(view(bomb), 100000, 100000), InputError);
 }
@@ -79,7 +79,7 @@ TEST(Codecs, SettingsOutOfRangeAreRefused) {
   EXPECT_THROW(zip_depth(frame.depth, 1), InputError);
 }
 
-/// A baseline JPEG with so many empty scans before its end.
+/// Returns a baseline JPEG with so many empty scans before its end.
 std::vector<std::uint8_t> with_scans(int scans) {
   std::vector<std::uint8_t> jpeg = encode_jpeg(cv::Mat(16, 16, CV_8UC3, cv::Scalar::all(90)), 90);
   const std::vector<std::uint8_t> scan = {0xFF, 0xDA, 0, 8, 1, 1, 0, 1, 63, 0, 0x2B};
@@ -98,7 +98,7 @@ TEST(Codecs, AJpegOfManyScansIsRefusedBeforeItIsDecoded) {
   }
 }
 
-// A marker without a length; who takes the first bytes behind it for one passes over scans that the decoder sees.
+// The marker has no length: a reader that takes the first bytes behind it for one skips scans that the decoder reads.
 TEST(Codecs, AMarkerHidesNoScans) {
   std::vector<std::uint8_t> jpeg = with_scans(0);
   const std::vector<std::uint8_t> hidden = {0xFF, 0x01, 0xFF, 0xDA, 0, 8, 1, 1, 0, 1, 63, 0, 0x2B};

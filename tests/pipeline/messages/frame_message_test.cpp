@@ -19,7 +19,7 @@ images_t raw_message() {
   return to_message(make_test_frame(99), raw, 3);
 }
 
-// Message of a third-party driver: without this project's metadata.
+// Returns the message of a third-party driver, without this project's metadata.
 images_t foreign(images_t message) {
   for (image_t& image : message.images) {
     image.metadata.clear();

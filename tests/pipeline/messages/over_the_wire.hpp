@@ -7,7 +7,7 @@
 
 namespace houghstream {
 
-/// The message as its receiver has it.
+/// Returns the message as its receiver has it.
 template <typename Message>
 Message over_the_wire(const Message& message) {
   const std::vector<std::uint8_t> bytes = encode_message(message);

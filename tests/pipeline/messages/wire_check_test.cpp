@@ -25,7 +25,7 @@ void put_int32(std::vector<std::uint8_t>& bytes, std::size_t position, std::int3
   }
 }
 
-// Where counts stand in an images_t: fingerprint, utime, n_images, 2 types, then the first image_t.
+// These are the positions of counts in an images_t: fingerprint, utime, n_images, 2 types, then the first image_t.
 constexpr std::size_t kImageCount = 16;
 constexpr std::size_t kFirstImageSize = kImageCount + 4 + 2 * 2 + 8 + 4 * 4;
 

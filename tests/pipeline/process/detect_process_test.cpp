@@ -156,7 +156,7 @@ TEST(DetectProcess, FramesThatCannotBeDecodedOrThatTheDetectorRefusesAreReported
   EXPECT_EQ(status.last_error, "the detector refuses frame 4");
 }
 
-// As openni2-camera-lcm and the bot_core drivers send them: no metadata, no frame counter.
+// openni2-camera-lcm and the bot_core drivers send such frames: without metadata and frame counter.
 TEST(DetectProcess, FramesOfOtherDriversAreWorkedOnWithTheCameraOption) {
   ProcessOnMemq test({channel::kDetections, channel::kStatus});
   DetectProcessOptions options;

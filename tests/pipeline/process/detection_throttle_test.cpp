@@ -8,7 +8,7 @@
 namespace houghstream {
 namespace {
 
-/// The frames of a 60 Hz camera, from 0 on, that are looked at.
+/// Returns the processed frames of a 60 Hz camera, from 0 on.
 std::vector<int> looks(DetectionThrottle& budget, int frames, const std::string& camera = "LEFT") {
   std::vector<int> due;
   for (int i = 0; i < frames; ++i) {

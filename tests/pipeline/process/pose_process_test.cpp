@@ -198,7 +198,7 @@ TEST(PoseProcess, PosesStartFromTheCamerasOwnLastOnes) {
   EXPECT_EQ(earlier_frames, (std::vector<FrameId>{{"", 0}, {"", 0}, {"LEFT", 1}, {"RIGHT", 1}}));
 }
 
-/// A log of detections of four frames, and of the first `frames` of these; removed in the end.
+/// Writes a log of detections of four frames, and of the first `frames` of these, and removes it at the end.
 class ResultLog {
  public:
   explicit ResultLog(int frames)

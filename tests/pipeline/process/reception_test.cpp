@@ -14,7 +14,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A reception on a bus within this thread.
+/// Holds a reception on a bus within this thread.
 struct TestReception {
   explicit TestReception(const std::string& frame_channels) : reception(bus, status, frame_channels) {}
 

@@ -9,7 +9,7 @@ namespace {
 
 using test_scene::TurntableScene;
 
-/// Where the object's axis and middle are, as the camera sees them.
+/// Returns the error of the position of the object's middle, metres.
 double middle_error_m(const DepthView& view, const Eigen::Isometry3d& truth) {
   return (view.T_camera_object.translation() - truth.translation()).norm();
 }

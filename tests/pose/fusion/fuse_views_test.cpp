@@ -11,7 +11,7 @@ namespace {
 using test_scene::median;
 using test_scene::TurntableScene;
 
-const Eigen::Vector3d kHalfBox(0.09, 0.03, 0.13);  // of the cereal box
+const Eigen::Vector3d kHalfBox(0.09, 0.03, 0.13);  // half the size of the cereal box
 
 FusionSettings settings_for_tests() {
   FusionSettings settings;
@@ -20,7 +20,7 @@ FusionSettings settings_for_tests() {
   return settings;
 }
 
-/// Wide sides green, narrow ones red, the top blue.
+/// Returns green on wide sides, red on narrow ones, blue on the top.
 cv::Vec3b side_paint(const Eigen::Vector3d& p) {
   const Eigen::Vector3d past = p.cwiseAbs() - kHalfBox;
   if (past.z() > past.x() && past.z() > past.y()) return {200, 20, 20};
@@ -75,7 +75,7 @@ TEST(FuseViews, TheUnseenBottomIsFlatAndClosed) {
   }
 }
 
-/// To the tangent plane of the nearest point.
+/// Returns the distance to the tangent plane of the nearest point.
 double plane_distance(const SurfacePoints& surface, const Eigen::Vector3f& v) {
   std::size_t nearest = 0;
   for (std::size_t i = 1; i < surface.points.size(); ++i) {

@@ -10,7 +10,7 @@ namespace {
 
 using test_scene::TurntableScene;
 
-const Eigen::Vector3d kHalf(0.09, 0.03, 0.13);  // of the cereal box
+const Eigen::Vector3d kHalf(0.09, 0.03, 0.13);  // half the size of the cereal box
 
 std::vector<DepthView> box_views() {
   std::vector<DepthView> views;

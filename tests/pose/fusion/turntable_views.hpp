@@ -15,7 +15,7 @@
 
 namespace houghstream::test_scene {
 
-/// BGR of a surface point, object frame.
+/// An albedo returns BGR of a surface point, object frame.
 using Albedo = std::function<cv::Vec3b(const Eigen::Vector3d&)>;
 
 struct TurntableScene {
@@ -27,7 +27,7 @@ struct TurntableScene {
   bool background = true;  ///< depth of a wall beside the object; false: no depth there
 };
 
-/// Object frame z up; the camera is 0.6 m away.
+/// Returns the pose on a turntable: object frame z up, the camera 0.6 m away.
 inline Eigen::Isometry3d turntable_pose(double azimuth, double elevation) {
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
   T_camera_object.linear() = (Eigen::AngleAxisd(M_PI_2 + elevation, Eigen::Vector3d::UnitX()) *
@@ -73,7 +73,7 @@ inline std::vector<TrainingView> turntable_views(const TurntableScene& scene) {
   return views;
 }
 
-/// Outside the box positive, inside negative; `half` is half its size, metres.
+/// Returns a signed distance, positive outside the box; `half` is half its size, metres.
 inline double box_distance(const Eigen::Vector3d& point, const Eigen::Vector3d& half) {
   const Eigen::Vector3d past = point.cwiseAbs() - half;
   return past.cwiseMax(0.0).norm() + std::min(0.0, past.maxCoeff());

@@ -7,7 +7,7 @@
 namespace houghstream::fusion {
 namespace {
 
-/// Two squares of 12 cm, 2 cm apart, one behind the other; both face -y.
+/// Returns two squares of 12 cm, 2 cm apart, one behind the other; both face -y.
 Mesh two_sheets() {
   Mesh mesh;
   for (const float y : {0.0F, 0.02F}) {

@@ -21,7 +21,7 @@ Eigen::Vector3d direction(Random& random) {
   }
 }
 
-/// Light from everywhere, and a lamp.
+/// Returns ambient light and the light of a lamp.
 double light_on(const Eigen::Vector3d& normal) {
   return 0.25 + std::max(0.0, normal.dot(Eigen::Vector3d(0.6, -0.2, 0.77)));
 }
@@ -92,7 +92,7 @@ TEST(Exposures, AViewAloneHasNone) {
   EXPECT_EQ(estimate_exposures({{0, 0, -1.0, 1.0}}, 1, 2), std::vector<double>(2, 0.0));
 }
 
-/// Share by which the darkest tenth of the coloured vertices is darker than the brightest tenth.
+/// Returns the fraction by which the darkest tenth of the coloured vertices is darker than the brightest tenth.
 double unevenness(const std::vector<DepthView>& views, Mesh mesh) {
   const std::vector<bool> seen = colour_mesh(views, 0.004, 1, mesh);
   std::vector<double> greens;

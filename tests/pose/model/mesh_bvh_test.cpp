@@ -10,7 +10,7 @@
 namespace houghstream {
 namespace {
 
-/// A bumpy sheet of 2 x 20 x 20 triangles over the square from 0 to 1 m.
+/// Returns a bumpy sheet of 2 x 20 x 20 triangles over the square from 0 to 1 m.
 Mesh flat_sheet() {
   constexpr std::uint32_t kCells = 20;
   Mesh mesh;

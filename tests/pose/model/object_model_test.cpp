@@ -88,7 +88,7 @@ TEST(ObjectModel, NearestViewLooksFromTheCamera) {
   EXPECT_GT(nearest_view(model, T_camera_object).direction.dot(eye.normalized().cast<float>()), std::cos(0.2F));
 }
 
-/// Without thickness: from its edge there is nothing to be seen.
+/// Returns a mesh without thickness, which is invisible from its edge.
 Mesh sheet() {
   Mesh mesh;
   mesh.vertices = {{-0.1F, -0.1F, 0.0F}, {0.1F, -0.1F, 0.0F}, {0.1F, 0.1F, 0.0F}, {-0.1F, 0.1F, 0.0F}};

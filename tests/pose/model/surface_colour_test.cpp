@@ -7,7 +7,7 @@
 namespace houghstream {
 namespace {
 
-/// A square of 0.1 m, two triangles.
+/// Returns a square of 0.1 m, two triangles.
 Mesh square() {
   Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {0.1F, 0, 0}, {0.1F, 0.1F, 0}, {0, 0.1F, 0}};

@@ -133,7 +133,7 @@ TEST(SymmetrySearch, VertexColoursCountWhereThereIsNoTexture) {
   mesh.texture.release();
   mesh.uvs.clear();
   EXPECT_EQ(find(mesh, kColour).discrete.size(), 3U) << "nothing to compare";
-  // Red at the top, blue at the bottom: only half a turn about z is left.
+  // The mesh is red at the top and blue at the bottom, so that only half a turn about z is left.
   for (const Eigen::Vector3f& vertex : mesh.vertices)
     mesh.colours.push_back(vertex.z() > 0.0F ? cv::Vec3b(0, 0, 255) : cv::Vec3b(255, 0, 0));
   const Symmetries found = find(mesh, kColour);

@@ -49,7 +49,7 @@ TEST(Symmetry, DiscreteAndContinuousOnesAreCombined) {
   const Symmetries cylinder = {{half_turn(Eigen::Vector3d::UnitX())}, {ContinuousSymmetry{}}};
   const auto all = expand_symmetries(cylinder);
   ASSERT_EQ(all.size(), 630U);
-  // bop_toolkit's order of the two: the continuous turn comes after the discrete motion.
+  // The order is bop_toolkit's: the continuous rotation comes after the discrete motion.
   const Eigen::Isometry3d expected = all[5] * half_turn(Eigen::Vector3d::UnitX());
   EXPECT_TRUE(all[315 + 5].isApprox(expected));
 }

@@ -11,14 +11,14 @@
 
 namespace houghstream::test_scene {
 
-/// A box on a table, both painted with spots; z up, the table at 0. Rendered without noise.
+/// Describes a box on a table, both painted with spots; z up, the table at 0. It is rendered without noise.
 struct ShownScene {
   Eigen::Vector3d box = {0.12, 0.08, 0.16};  ///< sides, metres; 0 = no box
   Eigen::Vector3d disc = {0.0, 0.0, 0.0};    ///< sides of a slab under the box; 0 = none
   Camera camera = {320, 240, 290.0, 290.0, 159.5, 119.5};
 };
 
-/// A rectangle from `corner` along two sides, in small squares with colours of their own.
+/// Adds a rectangle from `corner` along two sides, in small squares with colours of their own.
 inline void add_side(const Eigen::Vector3d& corner, const Eigen::Vector3d& u, const Eigen::Vector3d& v, Mesh& mesh) {
   constexpr double kSquare_m = 0.012;
   const int nu = std::max(2, static_cast<int>(u.norm() / kSquare_m));
@@ -56,14 +56,14 @@ inline Mesh table_with(const ShownScene& scene) {
   return mesh;
 }
 
-/// The scene's box by itself, where it stands.
+/// Returns the scene's box by itself, where it stands.
 inline Mesh box_of(const ShownScene& scene) {
   Mesh mesh;
   add_box(scene.box, scene.disc.z(), mesh);
   return mesh;
 }
 
-/// The camera at an azimuth and elevation, radians, looking at a point above the origin.
+/// Returns the camera at an azimuth and elevation, radians, looking at a point above the origin.
 inline Eigen::Isometry3d camera_at(double azimuth, double elevation, double distance) {
   const Eigen::Vector3d eye(distance * std::cos(elevation) * std::cos(azimuth),
                             distance * std::cos(elevation) * std::sin(azimuth), 0.07 + distance * std::sin(elevation));

@@ -8,7 +8,7 @@ namespace {
 const Eigen::Vector2d kWarm(6.0, 18.0);
 const Eigen::Vector2d kCold(-3.0, -20.0);
 
-/// A sure pose of an object, whose colours the camera shifts.
+/// Returns a sure pose of an object, whose colours the camera shifts.
 ObjectPose confirmed(const std::string& name, const Eigen::Vector2d& model, const Eigen::Vector2d& shift) {
   ObjectPose pose;
   pose.class_name = name;

@@ -66,7 +66,7 @@ TEST(ColourScore, WhereTheCameraWasAtItsLimitNothingIsCompared) {
   EXPECT_FALSE(compare(frame, box, kPose)) << "one channel is enough";
 }
 
-/// The image with its colours' distance from grey times `strength`.
+/// Returns the image with its colours' distance from grey times `strength`.
 RgbdFrame with_saturation(RgbdFrame frame, double strength) {
   cv::Mat grey;
   cv::cvtColor(frame.colour, grey, cv::COLOR_BGR2GRAY);
@@ -177,7 +177,7 @@ std::vector<ComparedPoint> random_points(std::size_t count) {
   return points;
 }
 
-/// All products of the columns, in double precision.
+/// Returns all products of the columns, in double precision.
 ColourProducts reference_means(const std::vector<ComparedPoint>& points) {
   ColourProducts means = ColourProducts::Zero();
   for (const ComparedPoint& point : points) {

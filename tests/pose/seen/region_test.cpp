@@ -12,7 +12,7 @@ namespace {
 
 using namespace test_scene;
 
-/// A wall at 2 m with a 100 x 80 pixel patch at 1 m, whose first pixel is (200,150).
+/// Returns a wall at 2 m with a 100 x 80 pixel patch at 1 m, whose first pixel is (200,150).
 RgbdFrame patch_before_wall() {
   RgbdFrame frame;
   frame.camera = kCamera;

@@ -17,7 +17,7 @@ using test::TrackedScene;
 
 using Names = std::map<std::string, std::string>;
 
-/// Models of a store, by their numbers there.
+/// Returns models of a store by their numbers there.
 TrackModels stored(const std::map<int, std::string>& names) {
   std::map<std::string, Mesh> meshes;
   for (const auto& [id, name] : names) meshes[name] = id == 1 ? block() : block_on_foot();
@@ -98,7 +98,7 @@ TEST(ClassNames, WhatIsRenamedKeepsNumberAndPoseWhoeverTakesOverFirst) {
   scene.show({{"bowl", on_table(-0.2, 0)}, {"mug", on_table(0.25, 0.1)}});
   for (int i = 0; i < 30; ++i) expect_renamed(scene.frame(), "bowl", i);
   scene.show({{"can", on_table(-0.2, 0)}, {"mug", on_table(0.25, 0.1)}});
-  for (int i = 0; i < 30; ++i) expect_renamed(scene.frame(), "bowl", i);  // of somebody who is two names behind
+  for (int i = 0; i < 30; ++i) expect_renamed(scene.frame(), "bowl", i);  // from a sender who is two names behind
 }
 
 TEST(ClassNames, TwoObjectsMayChangeTheirNames) {
@@ -126,7 +126,7 @@ TEST(ClassNames, AFormerNameThatIsTaughtAgainIsAnotherObject) {
 
 TEST(ClassNames, WhatAnotherStoreKnowsIsAnObjectOfItsOwn) {
   KnownScene scene;
-  scene.class_ids["plate"] = 1;  // as the can has in this store
+  scene.class_ids["plate"] = 1;  // the id that the can has in this store
   scene.posed.emplace_back("plate", on_table(0, 0.2));
   scene.standing.emplace_back("plate", on_table(0, 0.2));
   EXPECT_EQ(scene.frames(15).objects.size(), 3U);

@@ -17,21 +17,21 @@ namespace houghstream::tracks::test {
 inline const Camera kSmall{320, 240, 262.5, 262.5, 159.5, 119.5};
 constexpr std::int64_t kFrameUs = 33333;
 
-/// A block of 7 x 7 x 12 cm.
+/// Returns a block of 7 x 7 x 12 cm.
 inline Mesh block() {
   Mesh mesh;
   test_scene::add_box(mesh, {-0.035F, -0.035F, -0.06F}, {0.035F, 0.035F, 0.06F});
   return mesh;
 }
 
-/// The model with its origin at its foot.
+/// Returns the model with its origin at its foot.
 inline Mesh block_on_foot() {
   Mesh mesh;
   test_scene::add_box(mesh, {-0.035F, -0.035F, 0.0F}, {0.035F, 0.035F, 0.12F});
   return mesh;
 }
 
-/// Where the frame at its foot is, in that in its middle.
+/// Returns the frame at its foot in the frame in its middle.
 inline Eigen::Isometry3d foot() {
   return Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, -0.06));
 }
@@ -41,12 +41,12 @@ inline Eigen::Isometry3d half_turn() {
   return foot().inverse() * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()) * foot();
 }
 
-/// The block that has its origin at its foot as a can, which looks the same on its head.
+/// Returns the block that has its origin at its foot as a can, which looks the same on its head.
 inline TrackModels models_on_foot() {
   return make_track_models({{"can", block_on_foot()}}, {{"can", {{half_turn()}, {}}}});
 }
 
-/// From above and in front; the table is z = 0.
+/// Returns a camera above and in front of the table, which is z = 0.
 inline Eigen::Isometry3d camera_in_front(double x = 0.0) {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   T_world_camera.translate(Eigen::Vector3d(x, -0.8, 0.6));
@@ -58,7 +58,7 @@ inline Eigen::Isometry3d on_table(double x, double y, double angle_rad = 0.0) {
   return Eigen::Translation3d(x, y, 0.06) * Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ());
 }
 
-/// Depth of a block that occludes the middle of the table.
+/// Returns the pose of a block that occludes the middle of the table.
 inline Eigen::Isometry3d before_the_middle() {
   return Eigen::Isometry3d(Eigen::Translation3d(0.0, -0.22, 0.22));
 }
@@ -67,7 +67,7 @@ inline double distance(const TrackedObject& object, const Eigen::Isometry3d& T) 
   return (object.T_world_object.translation() - T.translation()).norm();
 }
 
-/// A world that is told to a tracker frame by frame.
+/// Shows a world to a tracker frame by frame.
 class TrackedScene {
  public:
   explicit TrackedScene(ObjectTrackerSettings settings = {})
@@ -79,17 +79,17 @@ class TrackedScene {
         block_(block()),
         tracker(make_track_models({{"can", block()}, {"mug", block()}}, {}), settings) {}
 
-  std::vector<std::pair<std::string, Eigen::Isometry3d>> standing;  ///< what depth shows
-  std::vector<std::pair<std::string, Eigen::Isometry3d>> posed;     ///< what poses tell
+  std::vector<std::pair<std::string, Eigen::Isometry3d>> standing;  ///< objects in the depth image
+  std::vector<std::pair<std::string, Eigen::Isometry3d>> posed;     ///< objects with a published pose
   std::optional<Eigen::Isometry3d> obstacle;                        ///< a block between
   Eigen::Isometry3d T_world_camera = camera_in_front();
   Camera camera = kSmall;
   std::string channel = "CAMERA";
-  std::map<std::string, int> class_ids = {{"can", 1}};  ///< of other classes it is 2
+  std::map<std::string, int> class_ids = {{"can", 1}};  ///< other classes have 2
   double noise_m = 0.0;
   double quality = 0.9;
   std::int64_t utime = 1000000000;
-  FrameNumber number = {};  ///< of the camera's next frame
+  FrameNumber number = {};  ///< number of the camera's next frame
 
   /// Objects that are present have poses.
   void show(const std::vector<std::pair<std::string, Eigen::Isometry3d>>& objects) { standing = posed = objects; }
@@ -105,10 +105,10 @@ class TrackedScene {
     return last;
   }
 
-  /// Without time passing: another camera.
+  /// Sends a frame at the same time, as of another camera.
   WorldObjects look() { return look_if_any().value(); }
 
-  /// Nothing where the tracker passes over the frame.
+  /// Returns nothing where the tracker ignores the frame.
   std::optional<WorldObjects> look_if_any() {
     std::optional<RgbdFrame> image;
     const auto render = [&]() -> const RgbdFrame* {

@@ -3,7 +3,7 @@
 #include "pose/tracks/tracker.hpp"
 #include "tests/pose/tracks/tracked_scene.hpp"
 
-// Which number an object has after it was carried, pushed past another one of its class, or hidden.
+// These tests check the number of an object after it was carried, pushed past another one of its class, or hidden.
 
 namespace houghstream::tracks {
 namespace {
@@ -71,7 +71,7 @@ void see_one_after_the_other(TrackedScene& scene) {
   scene.frames(30);
 }
 
-/// A hand hides the middle of the table while the first can, and one in another place, are seen.
+/// Shows the first can, and one in another place, while a hand hides the middle of the table.
 WorldObjects see_another_while_the_second_is_hidden(TrackedScene& scene) {
   scene.show({{"can", on_table(-0.25, 0)}, {"can", on_table(0.25, 0)}});
   scene.obstacle = before_the_middle();

@@ -135,7 +135,7 @@ TEST(TrackerResults, AClassThatAFrameWasToldOfIsNotToldAgain) {
   scene.show({{"can", on_table(0, 0)}});
   for (int i = 0; i < 30; ++i) {
     scene.frame();
-    scene.posed = {{"can", on_table(0.3, 0)}};  // the same frame once more, by somebody else
+    scene.posed = {{"can", on_table(0.3, 0)}};  // another result of the same frame
     EXPECT_LE(scene.look().objects.size(), 1U);
     scene.posed = scene.standing;
   }

@@ -57,7 +57,7 @@ TEST(Tracker, WhatIsSeenThroughIsGoneWithinASecondAndSaysWhy) {
   EXPECT_EQ(world.objects[0].state, TrackState::kGone);
   EXPECT_NE(world.objects[0].reason.find("free-space violation"), std::string::npos) << world.objects[0].reason;
   EXPECT_EQ(world.objects[1].state, TrackState::kVisible);
-  EXPECT_EQ(scene.frames(90).objects.size(), 1U);  // gone is told for a while
+  EXPECT_EQ(scene.frames(90).objects.size(), 1U);  // a gone object is published for a while
 }
 
 TEST(Tracker, WhatIsHiddenIsKeptForAsLongAsItIsHidden) {
@@ -84,7 +84,7 @@ TEST(Tracker, WhatMovedBeforeItWasHiddenIsGoneAndSaysWhy) {
     scene.frame();
   }
   scene.posed.clear();
-  // Near the camera: it hides all of the can's way.
+  // The obstacle is near the camera and hides the can's whole way.
   scene.obstacle = Eigen::Isometry3d(Eigen::Translation3d(0.0, -0.51, 0.404));
   WorldObjects world;
   for (int i = 0; i < 120; ++i) {
@@ -169,7 +169,7 @@ TEST(Tracker, WhatHasBeenGoneLongestMakesRoom) {
   scene.show({{"can", on_table(0, 0)}});
   scene.frames(60);
   scene.show({});
-  ASSERT_TRUE(scene.frames(120).objects.empty());  // and remembered
+  ASSERT_TRUE(scene.frames(120).objects.empty());  // and stored for reidentification
   scene.show({{"mug", on_table(0.2, 0)}});
   const WorldObjects world = scene.frames(10);
   ASSERT_EQ(world.objects.size(), 1U);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kSecondUs = 1000000;
 
-/// Told of a frame that came last.
+/// Returns the order of a frame that came last.
 TimeOrder tell(WorldClock& clock, const FrameId& frame, const FrameNumber& number = {}) {
   const TimeOrder order = clock.order_of({frame, number, frame.utime});
   if (order == TimeOrder::kReset) clock.reset();

@@ -27,7 +27,7 @@ std::optional<PrintComparison> compared_at(const Eigen::Isometry3d& T_camera_obj
   return compare_print(seen, T_camera_object, {kTolerance_m, {}}, {});
 }
 
-/// Each colour of the frame through a camera.
+/// Returns the frame with the camera's response applied to each colour.
 RgbdFrame through_camera(RgbdFrame frame, const std::function<double(double, int)>& response) {
   for (int y = 0; y < frame.colour.rows; ++y) {
     for (int x = 0; x < frame.colour.cols; ++x) {

@@ -5,7 +5,7 @@
 namespace houghstream {
 namespace {
 
-/// A pose about which nothing is wrong.
+/// Returns a pose without any fault.
 PoseEvidence good() {
   PoseEvidence evidence;
   evidence.detection_score = 0.9F;
@@ -57,7 +57,7 @@ TEST(PoseQuality, ASurfaceThatGoesOnSpeaksAgainstAPose) {
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByOutline);
 }
 
-/// A right pose as most are.
+/// Returns a typical correct pose.
 QualityTerms mean_of_correct() {
   return QualitySettings{}.mean_of_correct;
 }
@@ -96,7 +96,7 @@ TEST(PoseQuality, ColoursThatContradictCountNoMoreThanAsMuch) {
 TEST(PoseQuality, PlainThingsAgreeWithLittle) {
   PoseEvidence evidence = good();
   evidence.colour->observed_contrast = 12.0F;
-  evidence.colour->residual_stddev = 10.0F;  // of shade and highlights, most is
+  evidence.colour->residual_stddev = 10.0F;  // mostly shading and highlights
   evidence.colour->model_contrast = 5.0F;
   const QualityTerms plain = quality_terms(evidence, {});
   EXPECT_GT(plain.texture, 0.7);

@@ -180,8 +180,8 @@ TEST(LearnQualities, WhatABadPoseSaysOfPresenceIsEachObjectsOwn) {
 }
 
 TEST(LearnQualities, PresenceIsLearntFromQualitiesThatDidNotKnowTheExamples) {
-  // In one half the first term says that a pose is right, in the other one that it is wrong: what one half teaches says
-  // the opposite in the other, which a quality of both would not.
+  // In one half the first term shows that a pose is correct, in the other one that it is wrong: the settings of one
+  // half then contradict the other, which a quality fitted to both would not.
   std::vector<QualityExample> examples(400);
   for (std::size_t i = 0; i < examples.size(); ++i) {
     QualityExample& example = examples[i];

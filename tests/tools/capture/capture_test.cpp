@@ -106,7 +106,7 @@ TEST_F(CaptureLog, LoopsWithoutRepeatingATime) {
   }
 }
 
-/// A camera: its frames end with a stop signal.
+/// Simulates a camera whose frames end with a stop signal.
 class StoppedSource : public FrameSource {
  public:
   std::optional<RgbdFrame> next() override {
@@ -217,7 +217,7 @@ TEST(Capture, ABusThatCannotBeReachedEndsNothingAndFramesThatAreNotSentDoNotCoun
   settings.frames = 2;
   const CaptureResult result =
       capture_to_network([](const openni::CameraListener&) { return std::make_unique<SlowSource>(); }, settings,
-                         "tcpq://127.0.0.1:1");  // where nobody listens
+                         "tcpq://127.0.0.1:1");  // without a server
   EXPECT_EQ(result.frames, 0);
   const std::string log = testing::internal::GetCapturedStderr();
   const std::size_t said = log.find("not connected to the server");

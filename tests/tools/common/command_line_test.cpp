@@ -250,7 +250,7 @@ TEST(CommandLine, HelpEndsWithExamplesOfItsOwn) {
   EXPECT_EQ(help({"first", "--help"}).find("Examples"), std::string::npos);
 }
 
-/// A line with options of a file.
+/// Holds a command line with options of a file.
 struct Configured {
   CommandLine line{"words", "tool"};
   int count = 3;

@@ -7,7 +7,7 @@
 namespace houghstream {
 namespace {
 
-/// An output whose time passes when it is told to.
+/// Holds an output whose time a test sets.
 struct Said {
   double now = 100.0;
   std::string text;

@@ -18,7 +18,7 @@ struct Fault {
   const char* what;
   std::function<void(HealthyMachine&)> plant;
   Level level;
-  const char* name;    ///< of the finding
+  const char* name;    ///< name of the finding
   const char* remedy;  ///< a part of the command
 };
 

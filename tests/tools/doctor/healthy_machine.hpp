@@ -8,7 +8,7 @@
 
 namespace houghstream::doctor {
 
-/// A file with all folders above it.
+/// Writes a file and makes all folders above it.
 inline void plant(const std::filesystem::path& file, const std::string& text = "") {
   std::filesystem::create_directories(file.parent_path());
   write_text(file, text);

@@ -13,7 +13,7 @@ using Level = Finding::Level;
 const BusSettings kBus{"udpm://239.255.76.67:7667?ttl=0", "FRAMES", 1'500'000};
 const std::string kColumns = "Iface\tDestination\tGateway\tFlags\tRefCnt\tUse\tMetric\tMask\tMTU\tWindow\tIRTT\n";
 
-/// A line of /proc/net/route.
+/// Returns a line of /proc/net/route.
 std::string route(const std::string& name, const std::string& destination, int metric, const std::string& mask) {
   return name + "\t" + destination + "\t00000000\t0001\t0\t0\t" + std::to_string(metric) + "\t" + mask + "\t0\t0\t0\n";
 }
@@ -115,7 +115,7 @@ TEST(NetworkChecks, WhatProcessesComplainOfIsToldCamerasThatContradictAreWrong) 
   EXPECT_NE(track.remedy.find("hs-track --check"), std::string::npos);
 }
 
-/// A camera that adds so much to b* of three objects.
+/// Returns a camera that adds so much to b* of three objects.
 CameraChroma camera_with_cast(double b) {
   CameraChroma camera;
   camera.frame = {"LEFT", 1};

@@ -19,7 +19,7 @@ Eigen::Isometry3d some_pose() {
   return T;
 }
 
-/// Two images without content.
+/// Makes a scene of two images without content.
 BopScene scene_in(const fs::path& folder) {
   BopWriter writer(folder);
   writer.add(plain_frame(), {}, {});

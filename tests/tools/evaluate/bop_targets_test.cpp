@@ -25,7 +25,7 @@ NamedObject object(int object_id, double visible) {
   return out;
 }
 
-/// Images 3 and 7 of scene 000048.
+/// Returns images 3 and 7 of scene 000048.
 std::vector<EvaluatedFrame> frames() {
   std::vector<EvaluatedFrame> out(2);
   for (EvaluatedFrame& frame : out) frame.scene = "000048";

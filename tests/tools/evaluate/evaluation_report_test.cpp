@@ -25,7 +25,7 @@ Detection detect(const std::string& name, const cv::Rect& box, float score) {
   return out;
 }
 
-/// Two frames with a mug in each: found with a good pose beside a wrong bottle, and skipped.
+/// Returns two frames with a mug in each: found with a good pose beside a wrong bottle, and skipped.
 std::vector<EvaluatedFrame> two_frames() {
   std::vector<EvaluatedFrame> frames(2);
   for (std::size_t i = 0; i < 2; ++i) {

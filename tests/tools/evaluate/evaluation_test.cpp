@@ -44,7 +44,7 @@ EvaluatedFrame frame(std::vector<NamedObject> objects, std::vector<Detection> de
 }
 
 TEST(DetectionMetrics, AucIsTheSumOfPrecisionsAtTruePositivesOverTheTruth) {
-  // Ranking: true, false, true; one of three mugs missed. (1/1 + 2/3) / 3 = 5/9.
+  // The ranking is true, false, true, and one of three mugs is missed: (1/1 + 2/3) / 3 = 5/9.
   const std::vector<EvaluatedFrame> frames = {frame({object("mug", kLeft), object("mug", kRight)},
                                                     {detection("mug", kLeft, 0.9F), detection("mug", kRight, 0.5F)}),
                                               frame({object("mug", kLeft)}, {detection("mug", kRight, 0.7F)})};
@@ -209,7 +209,7 @@ TEST(PoseMetrics, AddSForgivesASymmetryAndAddDoesNot) {
   EXPECT_NEAR(add_error(kCorners, quarter, Eigen::Isometry3d::Identity()), 0.1 * std::sqrt(2.0), 1e-6);
 }
 
-/// Three frames: a good pose, a bad one, none; each object visible by `visible`.
+/// Returns three frames: a good pose, a bad one, none; each object visible by `visible`.
 std::vector<EvaluatedFrame> posed_frames(double visible) {
   std::vector<EvaluatedFrame> frames;
   for (int i = 0; i < 3; ++i) {

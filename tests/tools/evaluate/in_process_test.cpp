@@ -18,7 +18,7 @@ const Forest& toy_forest() {
   return forest;
 }
 
-/// A plate of the tiles' size.
+/// Returns a plate of the tiles' size.
 std::map<std::string, Mesh> plates() {
   Mesh mesh;
   mesh.vertices = {{-0.06F, -0.06F, 0}, {0.06F, -0.06F, 0}, {0.06F, 0.06F, 0}, {-0.06F, 0.06F, 0}};
@@ -26,7 +26,7 @@ std::map<std::string, Mesh> plates() {
   return {{"stripes", mesh}, {"rings", mesh}};
 }
 
-/// Two images with both tiles.
+/// Makes a scene of two images with both tiles.
 BopScene two_tiles(const std::string& name) {
   const std::filesystem::path folder = fresh_folder(name);
   BopWriter writer(folder);

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 class FilterLog : public testing::Test {
  protected:
-  /// Ten events a second apart, even ones on A_ONE, odd ones on B.
+  /// Writes ten events a second apart, even ones on A_ONE, odd ones on B.
   FilterLog() : folder(fresh_folder("filter_log")) {
     LogWriter writer(folder / "in");
     for (int i = 0; i < 10; ++i) {
@@ -22,7 +22,7 @@ class FilterLog : public testing::Test {
     writer.close();
   }
 
-  /// The numbers of the events that pass.
+  /// Returns the numbers of the events that pass.
   std::vector<int> pass(const LogFilter& filter) const {
     LossReport losses;
     const std::int64_t count = filter_log(folder / "in", filter, folder / "out", losses);

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Header 28, channel "CHANNEL" 7, data 10.
+// An event has a header of 28 bytes, the channel "CHANNEL" of 7, and data of 10.
 constexpr std::streamoff kEventBytes = 45;
 
 fs::path write_events(const std::string& name, int events) {

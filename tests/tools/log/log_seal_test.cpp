@@ -39,7 +39,7 @@ class SealLog : public testing::Test {
   fs::path folder;
   fs::path original;
   fs::path sealed;
-  std::vector<double> shares;  // that were told of
+  std::vector<double> shares;  // values that were reported
 };
 
 TEST_F(SealLog, KeepsEveryEvent) {

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The pixel by which numbered frames differ, frame by frame.
+/// Returns the pixel by which numbered frames differ, frame by frame.
 std::vector<int> numbers_in(const RecordingSettings& settings, LossReport& losses) {
   std::vector<int> numbers;
   const NextFrame next = open_recording(settings, losses);

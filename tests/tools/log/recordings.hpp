@@ -19,7 +19,7 @@
 
 namespace houghstream::log_tools {
 
-/// A frame that differs from its neighbours, 64x48.
+/// Returns a frame that differs from its neighbours, 64x48.
 inline RgbdFrame numbered_frame(int index) {
   RgbdFrame frame = make_test_frame(1'500'000'000'000'000 + 33'000 * index);
   frame.colour.at<cv::Vec3b>(7, 9) = cv::Vec3b(static_cast<uchar>(index), 1, 2);
@@ -116,7 +116,7 @@ class KlgWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// A log with one message after another, 33 ms apart.
+/// Writes a log with one message after another, 33 ms apart.
 class TestLog {
  public:
   explicit TestLog(const std::filesystem::path& file) : log_(file) {}

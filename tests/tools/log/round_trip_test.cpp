@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr int kFrames = 3;
 const Camera kCamera = make_test_frame(0).camera;
 
-/// The source to a log, the log to a BOP folder and to PNGs; both are compared with numbered_frame().
+/// Converts the source to a log, and the log to a BOP folder and to PNGs; both are compared with numbered_frame().
 void expect_round_trip(const std::string& source, const fs::path& folder, bool lossless_colour) {
   fs::remove_all(folder / "bop");
   fs::remove_all(folder / "png");

@@ -11,7 +11,7 @@ FrameTimes::Time at_ms(int ms) {
   return FrameTimes::Time(std::chrono::seconds(1000)) + std::chrono::milliseconds(ms);
 }
 
-// Ten frames 100 ms apart; even ones are detected after 10 ms and have poses 5 ms later.
+// Returns ten frames 100 ms apart; even ones are detected after 10 ms and have poses 5 ms later.
 FrameTimes ten_frames() {
   FrameTimes times;
   for (int i = 0; i < 10; ++i) {

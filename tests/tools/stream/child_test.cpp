@@ -91,7 +91,7 @@ TEST(ChildProcess, DoesNotOutliveAnOwnerThatIsKilled) {
     std::string name;
     std::string state = "X";
     stat >> number >> name >> state;
-    return state == "X" || state == "Z";  // nobody may be there to bury it
+    return state == "X" || state == "Z";  // its parent may have ended
   };
   for (int i = 0; i < 1000 && !ended(); ++i) std::this_thread::sleep_for(milliseconds(10));
   EXPECT_TRUE(ended());

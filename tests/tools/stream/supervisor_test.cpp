@@ -29,7 +29,7 @@ bool is_running(pid_t pid) {
   return kill(pid, 0) == 0;
 }
 
-/// Steps until `done`, for ten seconds at most.
+/// Steps the supervisor until `done`, for ten seconds at most.
 template <typename Done>
 bool step_until(Supervisor& supervisor, const Done& done) {
   for (int i = 0; i < 1000 && !done(); ++i) {
@@ -83,8 +83,8 @@ TEST(Supervisor, WhoDoesNotEndIsKilled) {
   EXPECT_GE(std::chrono::steady_clock::now() - start, settings.stop_timeout);
 }
 
-/// A process that needs a second to end once it is asked to, and has said before, or not, that it needs more time, with
-/// the words of sd_notify(3).
+/// Returns a process that needs a second to end once it is asked to, and has said before, or not, that it needs more
+/// time, with the words of sd_notify(3).
 ChildPlan slow_to_end(const std::filesystem::path& folder, bool says_so) {
   const std::string notice =
       says_so ? "python3 -c 'import os, socket; socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM).sendto("

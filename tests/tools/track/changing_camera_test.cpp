@@ -18,7 +18,7 @@ images_t picture(int frame, int width, int height) {
   return to_message(make_test_frame(time_of(frame), width, height), WireFormat{}, frame);
 }
 
-/// Message of a third-party driver.
+/// Returns the message of a third-party driver.
 images_t without_camera(images_t message) {
   for (image_t& image : message.images) {
     image.metadata.clear();

@@ -10,7 +10,7 @@
 namespace houghstream::track {
 namespace {
 
-/// At a time of the steady clock, while the host's is being set back.
+/// Receives a status at a time of the steady clock, while the host's is being set back.
 void hear_of(HeartbeatMonitor& silence, const std::string& process, std::int64_t time_us) {
   status_t status{};
   status.process = process;

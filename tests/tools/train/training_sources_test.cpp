@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 const std::string kCamera = "640x480,525,525,319.5,239.5";
 
-/// Turntable views of can_1, can_2 and cup_1, and one room.
+/// Writes turntable views of can_1, can_2 and cup_1, and one background.
 std::string write_data() {
   const fs::path folder = fresh_folder("training_sources");
   for (const std::string& instance : std::vector<std::string>{"can_1", "can_2", "cup_1"}) {
@@ -43,7 +43,7 @@ TrainingSources good_sources() {
   return sources;
 }
 
-/// The message of the refusal; empty where nothing is refused.
+/// Returns the message of the refusal; empty where nothing is refused.
 std::string refusal(const TrainingSources& sources) {
   try {
     read_training_sources(sources);

@@ -10,7 +10,7 @@
 namespace houghstream {
 namespace {
 
-/// Pose of an upright object frame whose origin is at `t`, seen from `elevation` radians above.
+/// Returns the pose of an upright object frame whose origin is at `t`, seen from `elevation` radians above.
 Eigen::Isometry3d axis_pose(double elevation, const Eigen::Vector3d& t) {
   Eigen::Isometry3d T_camera_axis = Eigen::Isometry3d::Identity();
   T_camera_axis.linear() = Eigen::AngleAxisd(M_PI / 2 + elevation, Eigen::Vector3d::UnitX()).toRotationMatrix();

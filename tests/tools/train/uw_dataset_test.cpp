@@ -21,7 +21,7 @@ void write_view(const fs::path& folder, const std::string& instance, int number,
   write_text(prefix + "_loc.txt", "300, 200");
 }
 
-/// can_1 and can_2 with four views each, cup_1 with four.
+/// Writes can_1 and can_2 with four views each, and cup_1 with four.
 fs::path write_objects(const std::string& name) {
   fs::path folder = fresh_folder(name);
   for (const std::string instance : {"can_1", "can_2", "cup_1"}) {

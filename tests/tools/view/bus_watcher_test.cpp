@@ -147,7 +147,7 @@ TEST(BusWatcher, ABusThatIsGoneDoesNotEndIt) {
   testing::internal::CaptureStderr();
   start_log("test", LogLevel::kInfo);
   {
-    LcmBus bus("tcpq://127.0.0.1:1");  // where nobody listens
+    LcmBus bus("tcpq://127.0.0.1:1");  // without a server
     BusWatcher watcher(bus, channel::kFrame, {}, 1);
     EXPECT_FALSE(watcher.next(std::chrono::milliseconds(1300)).has_value());
     watcher.stop();

@@ -102,7 +102,7 @@ TEST(FrameRenderer, ARowOrAColumnOfPixelsIsDrawnEverywhereAndEndsNothing) {
   }
 }
 
-/// The share of the image in which two files differ.
+/// Returns the fraction of the image in which two files differ.
 double difference(const FrameRendererSettings& settings, int one, int other) {
   const auto read = [&](int utime) {
     return cv::imread((settings.outputs.images / (std::to_string(utime) + ".jpg")).string());

@@ -49,7 +49,7 @@ TEST(Viewer, AStopSignalEndsIt) {
 
 TEST(Viewer, FilesAreFinishedBeforeTheLastWordWhichMayFail) {
   ViewerSettings settings = silent_stream("gone");
-  settings.lcm_url = "tcpq://127.0.0.1:1";  // where nobody listens
+  settings.lcm_url = "tcpq://127.0.0.1:1";  // without a server
   settings.duration = 0.1;
   const std::string error = error_of([&] { run_viewer(settings); });
   EXPECT_NE(error, "");

@@ -70,7 +70,7 @@ struct WatchedBus {
   BusWatcher watcher{bus, channels, every_frame(), 10};
 };
 
-/// The encoded message of a frame, with nothing found in it.
+/// Returns the encoded message of a frame, with nothing found in it.
 inline MatchedFrame matched_frame(std::int64_t utime) {
   MatchedFrame matched;
   matched.id = {channel::kFrame, utime};
@@ -78,7 +78,7 @@ inline MatchedFrame matched_frame(std::int64_t utime) {
   return matched;
 }
 
-/// A frame as a third-party program sends it: without a camera.
+/// Returns a frame as a third-party program sends it: without a camera.
 inline MatchedFrame matched_frame_without_camera(std::int64_t utime) {
   images_t message = to_message(make_test_frame(utime), WireFormat{}, 0);
   for (image_t& image : message.images) {

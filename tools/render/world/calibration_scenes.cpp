@@ -21,13 +21,13 @@ constexpr int kMaxDistractors = 12;
 constexpr int kMaxLookAlikes = 3;
 constexpr double kTaughtColours = 0.3;  // share of the distractors' surfaces
 
-/// Centre of its bounding box, object frame.
+/// Returns the centre of its bounding box, object frame.
 Eigen::Vector3d middle_of(const Asset& thing) {
   return mesh_bounds(thing.mesh).center().cast<double>();
 }
 
-/// On the table in one of its attitudes, sometimes leaning. The middle of its box stands over the group's origin,
-/// wherever its own origin lies: the place on the table is reserved about that.
+/// Puts the object on the table in one of its attitudes, sometimes leaning. The middle of its box is above the group's
+/// origin, wherever its own origin lies, since the place on the table is reserved about that.
 AssetGroup put_down(const CalibrationSceneObject& object, const AssetPtr& thing, int id, Random& random) {
   constexpr double kLeaning = 0.2;
   Eigen::Matrix3d R = random_rotation(random);
@@ -46,7 +46,7 @@ AssetGroup put_down(const CalibrationSceneObject& object, const AssetPtr& thing,
   return {placed};
 }
 
-/// With the field of view of any camera in use: 33 to 67 degrees wide.
+/// Draws a camera with the field of view of any camera in use: 33 to 67 degrees wide.
 Camera draw_camera(Random& random) {
   Camera camera = synthetic_camera();
   camera.fx = std::exp(random.uniform(std::log(480.0), std::log(1080.0)));
@@ -54,7 +54,7 @@ Camera draw_camera(Random& random) {
   return camera;
 }
 
-/// Looks at one of the objects, from anywhere above the table.
+/// Draws the pose of a camera that looks at one of the objects, from anywhere above the table.
 Eigen::Isometry3d draw_viewpoint(const World& world, Random& random) {
   std::vector<Eigen::Vector3d> places;
   for (const PlacedAsset& item : world.items) {
@@ -106,7 +106,8 @@ World CalibrationScenes::make_furnished_world(int room) const {
     Random shape(aspect_seed(scene_seed, 50U + static_cast<std::uint64_t>(i)));
     setter.put(put_down(object, make_instance_variant(*painted, shape), object.id, random), middle);
   }
-  const int max_look_alikes = std::min(kMaxLookAlikes, (count + 1) / 2);  // such as they are, they are the fewer ones
+  const int max_look_alikes =
+      std::min(kMaxLookAlikes, (count + 1) / 2);  // limits them to about half as many as the objects
   for (int i = random.between(0, max_look_alikes); i > 0; --i) {
     const CalibrationSceneObject& object = pick(random, objects_);
     setter.put(put_down(object, make_hard_negative(*object.thing, random), 0, random), all);

@@ -32,14 +32,15 @@ double radians(double degrees) {
   return degrees * M_PI / 180.0;
 }
 
-/// A rotation about a level axis of random direction.
+/// Returns a rotation about a level axis of random direction.
 Eigen::Matrix3d tilt(double angle_rad, Random& random) {
   const double towards = random.uniform(0.0, 2.0 * M_PI);
   const Eigen::Vector3d axis(std::cos(towards), std::sin(towards), 0.0);
   return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
 }
 
-/// About the middle of its bounding box: of a surface that is not closed, the volume depends on where the origin is.
+/// Returns the mesh about the middle of its bounding box: the volume of a surface that is not closed depends on the
+/// origin.
 Mesh about_its_middle(Mesh mesh) {
   const Eigen::Vector3f middle = mesh_bounds(mesh).center();
   for (Eigen::Vector3f& vertex : mesh.vertices) vertex -= middle;
@@ -76,7 +77,7 @@ PlacedAsset table_top(double height, Random& random) {
   return table;
 }
 
-/// The camera, as far as it sees the mesh and a little beside it.
+/// Returns the camera cropped to the mesh and a small margin.
 Camera cropped_around(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object) {
   const Camera whole = synthetic_camera();
   Eigen::AlignedBox2d extent;
@@ -112,7 +113,7 @@ std::vector<Eigen::Vector3d> up_directions(const Mesh& mesh, MeshAttitudes attit
   if (attitudes == MeshAttitudes::kUpright) return {Eigen::Vector3d::UnitZ()};
   try {
     return stable_ups(mesh);
-  } catch (const InputError&) {  // without a volume
+  } catch (const InputError&) {  // the mesh has no volume
     std::vector<Eigen::Vector3d> sides;
     for (int axis = 0; axis < 3; ++axis) {
       sides.emplace_back(Eigen::Vector3d::Unit(axis));
@@ -168,7 +169,7 @@ void MeshViews::add_level_views() {
         Eigen::Quaterniond::FromTwoVectors(ups_[attitude], Eigen::Vector3d::UnitZ()).toRotationMatrix();
     for (int i = 0; i < each; ++i) {
       Random random(aspect_seed(seed_, 1000000U * (attitude + 1U) + static_cast<std::uint64_t>(i)));
-      // Evenly over the part of the sphere between the two pitches: Fibonacci's spiral.
+      // The directions are spread evenly over the part of the sphere between the two pitches by Fibonacci's spiral.
       const double low = std::sin(radians(settings_.lowest_pitch_deg));
       const double high = std::sin(radians(settings_.highest_pitch_deg));
       const double azimuth = i * M_PI * (3.0 - std::sqrt(5.0));

@@ -15,7 +15,7 @@ namespace {
 constexpr int kMinVisiblePx = 50;
 constexpr std::uint64_t kFirstFrameAspect = 100000;
 
-// Pixels of the whole silhouette, those beyond the image's border included.
+// Counts pixels of the whole silhouette, those beyond the image's border included.
 int silhouette_px(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera) {
   Eigen::AlignedBox2d extent;
   for (const Eigen::Vector3f& vertex : mesh.vertices) {

@@ -10,10 +10,10 @@
 
 namespace houghstream::world {
 
-/// A rendered frame with the truth about the taught objects in it.
+/// Holds a rendered frame with the ground truth of the taught objects in it.
 struct RenderedFrame {
   RgbdFrame frame;
-  std::vector<GroundTruthObject> objects;  ///< by id; those of which enough is seen
+  std::vector<GroundTruthObject> objects;  ///< in the order of their ids; only those that are visible enough
   std::vector<cv::Mat> visible_masks;      ///< CV_8UC1 0/255, one per object
 };
 
@@ -24,19 +24,19 @@ enum class SensorKind : std::uint8_t {
   kTimeOfFlight      ///< optics/time_of_flight.hpp, and the image of other_colour_camera() (optics/photo.hpp)
 };
 
-/// "structured_light" or "time_of_flight". Throws InputError naming them for another.
+/// Parses "structured_light" or "time_of_flight". Throws InputError naming them for another.
 SensorKind parse_sensor(const std::string& name);
 
-/// Colour and measured depth seen from a camera. `noise_seed` names the frame's noise.
+/// Renders colour and measured depth seen from a camera. `noise_seed` names the frame's noise.
 RenderedFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed,
                            SensorKind sensor = SensorKind::kStructuredLight);
 
-/// Renders the sensors' images of a view of the world, structured light unless the sensor says otherwise, with the
-/// ground truth.
+/// Renders the sensors' images of a view of the world, structured light unless `sensor` is another one, with the ground
+/// truth.
 RenderedFrame record_view(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, const ShadedView& view,
                           std::uint64_t noise_seed, SensorKind sensor = SensorKind::kStructuredLight);
 
-/// Frame `index` of `count` along the scene's camera path. The utime is left 0: sources stamp their frames.
+/// Renders frame `index` of `count` along the scene's camera path. The utime is left 0: sources stamp their frames.
 RenderedFrame render_scene_frame(const Scene& scene, const LitWorld& lit_world, int index, int count,
                                  SensorKind sensor = SensorKind::kStructuredLight);
 

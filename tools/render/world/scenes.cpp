@@ -19,7 +19,7 @@ constexpr int kMonitor = 13;
 constexpr int kKeyboard = 9;
 constexpr int kBook = 1;
 
-// Bowls, cartons, mugs and cans that were never taught, as a real kitchen has them.
+// Adds bowls, cartons, mugs and cans that were never taught, as a real kitchen has them.
 void add_other_instances(TableSetter& setter, const Clutter& clutter, std::uint64_t seed) {
   const int first = Random(aspect_seed(seed, kFirstInstance - 1)).below(kClassCount);
   const Eigen::AlignedBox2d where = setter.region(-0.95, 0.95, -0.85, 0.95);
@@ -41,14 +41,14 @@ void add_distractors(TableSetter& setter, RoomStyle style, const Clutter& clutte
     if (kind == kMonitor && style != RoomStyle::kDesk) kind = kBook;
     const std::uint64_t derived_seed = aspect_seed(seed, kFirstDistractor + static_cast<std::uint64_t>(i));
     const AssetPtr thing = make_distractor(kind, derived_seed, clutter.taught_colours);
-    // Large things stand at the back, as people put them.
+    // Large assets are at the back, as people put them.
     const bool large = kind == kMonitor || thing->mesh.vertices.empty() || thing->name == "lamp";
     const double front = large ? 0.3 : -0.98;
     setter.stand(thing, setter.region(-1.0, 1.0, front, 0.98), kind == kKeyboard || kind == kMonitor ? 0.4 : M_PI, 0);
   }
 }
 
-// Twelve objects need more room than four.
+// Places more objects in a larger region, since twelve need more space than four.
 void add_many_objects(TableSetter& setter, FurtherClasses further) {
   const Eigen::AlignedBox2d where = setter.region(-0.75, 0.75, -0.65, 0.85);
   for (const int id : twenty_class_ids()) {
@@ -57,7 +57,7 @@ void add_many_objects(TableSetter& setter, FurtherClasses further) {
   }
 }
 
-// Each class once lying and once tilted.
+// Adds each class once lying and once tilted.
 void add_lying_objects(TableSetter& setter, const Eigen::AlignedBox2d& where) {
   for (int id = 1; id <= kClassCount; ++id) {
     setter.tilt_object(id, where);
@@ -65,14 +65,14 @@ void add_lying_objects(TableSetter& setter, const Eigen::AlignedBox2d& where) {
   }
 }
 
-// Each class leaning, lying and standing; first what needs most room.
+// Adds each class leaning, lying and standing; those that need most room come first.
 void add_tilted_objects(TableSetter& setter, const Eigen::AlignedBox2d& where) {
   for (int id = 1; id <= kClassCount; ++id) setter.lean_object(id, where);
   for (int id = 1; id <= kClassCount; ++id) setter.lay_object(id, where);
   for (int id = 1; id <= kClassCount; ++id) setter.stand_object(id, where);
 }
 
-// Each class in a hand, two from the sides and two from behind, and once more on the table.
+// Adds each class in a hand, two from the sides and two from behind, and once more on the table.
 void add_held_objects(TableSetter& setter, const Trajectory& trajectory) {
   Random& random = setter.random();
   HeldPlace place;
@@ -167,7 +167,8 @@ constexpr FurtherClasses kNone = FurtherClasses::kNone;
 constexpr FurtherClasses kOdd = FurtherClasses::kOddIds;
 constexpr FurtherClasses kEven = FurtherClasses::kEvenIds;
 
-// Tables on which most things have the taught objects' colours: only shape tells them apart.
+// Fraction for tables on which most distractors have the taught objects' colours, so that only shape distinguishes
+// them.
 constexpr double kAlike = 0.85;
 
 constexpr std::array<Plan, 25> kPlans = {
@@ -222,7 +223,7 @@ constexpr std::array<Plan, 25> kPlans = {
       kDay,
       {true, 1, 4, 10, kNone, 0.0, ObjectPlacement::kHeld}}}};
 
-/// The number N of "development_world_N", 0 to 999.
+/// Returns the number N of "development_world_N", 0 to 999.
 std::optional<int> development_number(const std::string& name) {
   const std::string prefix = kDevelopmentWorld;
   const std::string digits = name.substr(std::min(name.size(), prefix.size()));

@@ -8,8 +8,8 @@
 
 namespace houghstream::world {
 
-/// Training views as in the paper's Section 4 (and Lai et al. 2011): an object on a turntable in front of a fixed
-/// camera, all round at several pitches; for each way of lying in steps twice as long.
+/// Settings of training views as in the paper's Section 4 (and Lai et al. 2011): an object on a turntable in front of a
+/// fixed camera, all round at several pitches; for each way of lying in steps twice as long.
 struct TurntableSettings {
   int azimuths = 36;  ///< steps of a full turn
   int pitches = 3;    ///< camera heights, evenly spread over lowest to highest
@@ -19,7 +19,7 @@ struct TurntableSettings {
   std::vector<Attitude> attitudes = {Attitude::kUpright};  ///< each at most once
 };
 
-/// A training room with an empty turntable; one for each pitch, since light changes between recordings.
+/// Holds a training room with an empty turntable; one for each pitch, since light changes between recordings.
 class TurntableWorld {
  public:
   TurntableWorld(const TurntableSettings& settings, std::uint64_t seed);
@@ -27,8 +27,8 @@ class TurntableWorld {
   /// Returns the stable poses of an object with these attitudes; may be null where none of them is lying.
   int view_count(const AttitudeChoice* choice) const;
 
-  /// View `index` (attitude by attitude, pitch by pitch, azimuth by azimuth) of an object, with its truth. utime is
-  /// left 0. `choice`: of the object; may be null where all views are upright.
+  /// Renders view `index` (attitude by attitude, pitch by pitch, azimuth by azimuth) of an object, with its ground
+  /// truth. utime is left 0. `choice` is of the object; it may be null where all views are upright.
   RenderedFrame render(const TaughtObject& object, const AttitudeChoice* choice, int index) const;
 
  private:

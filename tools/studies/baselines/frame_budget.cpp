@@ -9,7 +9,7 @@ std::vector<std::size_t> spread_order(std::size_t count) {
   std::size_t whole = 1;
   while (whole < count) whole *= 2;
   std::vector<std::size_t> order;
-  // Odd multiples of each step: of the whole, of its half, of its quarter ...
+  // The order is the odd multiples of each step: of the whole, of its half, of its quarter and so on.
   if (count > 0) order.push_back(0);
   for (std::size_t step = whole / 2; step > 0; step /= 2) {
     for (std::size_t i = step; i < count; i += 2 * step) order.push_back(i);

@@ -6,7 +6,8 @@
 
 namespace houghstream {
 
-/// 0 to count - 1 in an order whose every beginning is spread over all of them: the middles of ever shorter parts.
+/// Returns 0 to count - 1 in an order whose every beginning is spread over all of them: the middles of ever shorter
+/// parts.
 std::vector<std::size_t> spread_order(std::size_t count);
 
 /// Calls visit(i) for each i below `count` in spread_order() until the seconds are over, the first one in any case;

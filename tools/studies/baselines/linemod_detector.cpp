@@ -49,7 +49,7 @@ std::vector<Detection> select_detections(const std::vector<LinemodMatch>& matche
                                          const LinemodSelection& selection) {
   const cv::Rect inside({0, 0}, frame.colour.size());
   std::vector<Detection> kept;
-  std::map<int, std::vector<cv::Rect2f>> boxes;  // by class id
+  std::map<int, std::vector<cv::Rect2f>> boxes;  // boxes by class id
   for (const LinemodMatch& match : matches) {
     if (match.similarity < selection.match_threshold) break;
     std::vector<cv::Rect2f>& class_boxes = boxes[match.shape->class_id];

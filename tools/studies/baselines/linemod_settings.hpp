@@ -10,27 +10,27 @@ namespace houghstream {
 //   match threshold 70, 80, 85, 90: 0.475, 0.474, 0.473, 0.452 without; 0.537, 0.533, 0.525, 0.487 with the check;
 //   339, 147, 91, 85 ms a frame. The best F1, 0.533 with the check, is at score 0.954 (0.476 at 0.970 without).
 
-/// Which templates are made. The distances should be those of the scenes, no more: the small templates of farther ones
+/// Settings of the templates. The distances should be those of the scenes, no more: the small templates of farther ones
 /// fit almost anything.
 struct LinemodTemplateSettings {
   int features = 63;            ///< per modality, 4 to 63 (the most that cv::linemod can add up in a byte)
-  float weak_gradient = 10.0F;  ///< colour gradients below are not looked at, grey levels (three-pixel Sobel)
+  float weak_gradient = 10.0F;  ///< weaker colour gradients are ignored, grey levels (three-pixel Sobel)
   float min_distance = 0.35F;   ///< nearest distance taught, metres
   float max_distance = 2.6F;    ///< farthest distance taught, metres
-  float distance_step = 1.1F;   ///< from one taught distance to the next, a factor above 1
-  float focal_px = 0.0F;        ///< of the scenes' camera; 0: that of the views
+  float distance_step = 1.1F;   ///< ratio of one taught distance to the previous one, above 1
+  float focal_px = 0.0F;        ///< focal length of the scenes' camera; 0: that of the views
   int threads = 2;              ///< share the templates; any number finds the same
 };
 
 /// Settings of the reported detections.
 struct LinemodSelection {
-  /// Smallest similarity, percent. cv::linemod looks for (100 + match_threshold) / 2 percent in the half-size image
-  /// first: with a threshold as high as the similarities one wants, it misses valid matches without a word.
+  /// Minimum similarity, percent. cv::linemod searches for (100 + match_threshold) / 2 percent in the half-size image
+  /// first: with a threshold as high as the similarities one wants, it misses valid matches silently.
   float match_threshold = 80.0F;
   bool check_depth = false;      ///< is what is seen there as far away as the template?
-  float depth_tolerance = 0.1F;  ///< of the distance: median difference that passes
+  float depth_tolerance = 0.1F;  ///< maximum median difference, as a fraction of the distance
   float max_overlap = 0.5F;      ///< IoU from which the stronger of two detections of a class stays alone
-  int max_per_class = 250;       ///< as in the paper's protocol (Haensch et al. 2017, Section 4)
+  int max_per_class = 250;       ///< maximum, as in the paper's protocol (Haensch et al. 2017, Section 4)
 };
 
 }  // namespace houghstream

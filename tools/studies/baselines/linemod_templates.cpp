@@ -12,7 +12,7 @@
 namespace houghstream {
 namespace {
 
-const char* const kOneClass = "object";  // classes are told apart by our own list of templates
+const char* const kOneClass = "object";  // classes are distinguished by our own list of templates
 
 cv::Ptr<cv::linemod::Detector> new_linemod(const LinemodTemplateSettings& settings) {
   const auto features = static_cast<std::size_t>(settings.features);

@@ -18,11 +18,11 @@ struct LinemodTemplate {
   };
   int class_id = 0;
   std::string class_name;
-  float distance = 0.0F;             ///< of the object frame's origin, metres
-  cv::Rect box_px;                   ///< of the mask
-  cv::Point2f origin_px;             ///< of the object frame
+  float distance = 0.0F;             ///< distance of the object frame's origin, metres
+  cv::Rect box_px;                   ///< bounding box of the mask
+  cv::Point2f origin_px;             ///< pixel of the object frame's origin
   std::vector<DepthSample> samples;  ///< evenly spread over the mask, never empty
-  int rank = 0;                      ///< by view, then distance; decides between equals
+  int rank = 0;                      ///< order by view, then distance; decides between equal matches
 };
 
 struct LinemodMatch {
@@ -31,11 +31,11 @@ struct LinemodMatch {
   cv::Point at_px;
 };
 
-/// Outcome of the training views.
+/// Holds the outcome of the training views.
 struct LinemodTraining {
   int templates = 0;
   int refused_templates = 0;  ///< too small or too plain for the number of features
-  int refused_views = 0;      ///< of which no template could be made: no mask, no depth, or refused at each distance
+  int refused_views = 0;      ///< views without a template: no mask, no depth, or refused at each distance
 };
 
 class LinemodShare;
@@ -50,7 +50,7 @@ class LinemodTemplates {
   ~LinemodTemplates();
   LinemodTemplates(LinemodTemplates&&) noexcept;
 
-  /// Strongest first, in an order that depends on nothing but views, settings and frame.
+  /// Matches the templates, strongest first, in an order that depends on views, settings and frame alone.
   std::vector<LinemodMatch> match(const RgbdFrame& frame, float threshold) const;
 
   const LinemodTraining& training() const { return training_; }
@@ -60,7 +60,7 @@ class LinemodTemplates {
   LinemodTraining training_;
 };
 
-/// The templates of one thread: cv::linemod itself uses one only.
+/// Holds the templates of one thread, since cv::linemod itself uses only one.
 class LinemodShare {
  public:
   explicit LinemodShare(const LinemodTemplateSettings& settings);
@@ -69,7 +69,7 @@ class LinemodShare {
   bool add(const TrainingView& view, double distance, int rank);
   void count_refused_view() { ++training_.refused_views; }
 
-  /// In no particular order. `images` as linemod_images() makes them.
+  /// Returns the matches in no particular order. `images` are those of linemod_images().
   std::vector<LinemodMatch> match(const std::vector<cv::Mat>& images, float threshold) const;
 
   cv::Size largest() const { return largest_; }  ///< width and height of the templates, each the greatest, pixels
@@ -77,7 +77,7 @@ class LinemodShare {
 
  private:
   cv::Ptr<cv::linemod::Detector> linemod_;
-  std::vector<LinemodTemplate> templates_;  // by cv::linemod's number
+  std::vector<LinemodTemplate> templates_;  // in the order of cv::linemod's numbers
   cv::Size largest_;
   LinemodTraining training_;
   float focal_px_;

@@ -25,7 +25,7 @@ EvaluatedFrame to_ground_truth(const training::ValidationFrame& composed,
   return truth;
 }
 
-/// Over the detections of all classes together, strongest first.
+/// Finds the best F1 over the detections of all classes together, strongest first.
 void find_best_f1(const std::vector<ClassResult>& classes, LinemodTrial& trial) {
   std::vector<MatchedDetection> all;
   int required = 0;

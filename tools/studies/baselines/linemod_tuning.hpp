@@ -11,26 +11,27 @@
 
 namespace houghstream {
 
-/// Training data parted into what to teach and images to choose settings on.
+/// Holds training data divided into views to teach and images to choose settings on.
 struct ComposedExamples {
   std::vector<TrainingView> taught;   ///< three views in four of each class
   std::vector<RgbdFrame> frames;      ///< the others, put into the background views
-  std::vector<EvaluatedFrame> truth;  ///< of the frames; no detections yet
+  std::vector<EvaluatedFrame> truth;  ///< ground truth of the frames; no detections yet
   std::set<std::string> class_names;
 };
 
-/// `images` of up to four views each at these distances (metres), lit and partly hidden as make_validation_frame()
-/// does; the same for the same views. Throws InputError without background or with less than four views of each class.
+/// Composes `images` of up to four views each at these distances (metres), lit and partly occluded as
+/// make_validation_frame() does; the same for the same views. Throws InputError without background or with less than
+/// four views of each class.
 ComposedExamples compose_examples(const std::vector<TrainingView>& views, float min_distance, float max_distance,
                                   int images);
 
-/// Result of one choice of settings on composed images.
+/// Holds the result of one choice of settings on composed images.
 struct LinemodTrial {
   LinemodTemplateSettings templates;
   LinemodSelection selection;
   int template_count = 0;
   double auc = 0.0;           ///< mean over the classes, see evaluate_class()
-  double best_score = 0.0;    ///< of the operating point with the best F1
+  double best_score = 0.0;    ///< score of the operating point with the best F1
   double best_f1 = 0.0;       ///< harmonic mean of precision and recall there, over all classes
   double match_ms = 0.0;      ///< median a frame
   double selection_ms = 0.0;  ///< median a frame

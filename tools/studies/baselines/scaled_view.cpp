@@ -18,7 +18,7 @@ int even(int length) {
   return length + length % 2;
 }
 
-/// The object with some of what surrounds it: all that resizing may look at.
+/// Returns the box of the object with the surroundings that resizing may read.
 cv::Rect surroundings(const TrainingView& view, double scale) {
   const cv::Rect box = cv::boundingRect(view.mask);
   if (box.empty()) return box;

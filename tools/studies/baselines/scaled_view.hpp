@@ -10,14 +10,14 @@
 
 namespace houghstream {
 
-/// Steps in pixels at which cv::linemod looks at an image and at its half: its own defaults.
+/// Steps in pixels of cv::linemod on an image and on its half: its own defaults.
 constexpr std::array<int, 2> kLinemodSteps = {5, 8};
 
-/// The frame as cv::linemod wants it: colour (CV_8UC3) and millimetres (CV_16UC1, 0 = none), enlarged to the right and
-/// below by pixels without structure where that is needed for
-/// - whole numbers of steps, and rows of 16 bytes also at half size: cv::linemod asserts the former and reads unaligned
-///   rows as if they were aligned (opencv_contrib#4194);
-/// - `largest`, the largest template, which must fit with eight steps on each side or is not found where it is.
+/// Returns the frame in the form that cv::linemod takes: colour (CV_8UC3) and millimetres (CV_16UC1, 0 = none). It is
+/// enlarged to the right and below by pixels without structure for two reasons. The size must be a whole number of
+/// steps, and rows must have multiples of 16 bytes also at half size: cv::linemod asserts the former and reads
+/// unaligned rows as if they were aligned (opencv_contrib#4194). Also `largest`, the largest template, must fit with
+/// eight steps on each side, or it is not found where it is.
 std::vector<cv::Mat> linemod_images(const RgbdFrame& frame, cv::Size largest);
 
 /// A training view as the same camera, or one of another focal length, would see it from another distance: the image is
@@ -27,13 +27,13 @@ struct ScaledView {
   cv::Mat colour;           ///< CV_8UC3, BGR
   cv::Mat depth_mm;         ///< CV_16UC1, millimetres, 0 = none; none outside the mask
   cv::Mat mask;             ///< CV_8UC1, 255 on the object
-  cv::Point2d origin_px;    ///< where the object frame's origin is seen
-  double distance = 0.0;    ///< of the object frame's origin along the optical axis, metres
+  cv::Point2d origin_px;    ///< pixel of the object frame's origin
+  double distance = 0.0;    ///< depth of the object frame's origin, metres
   double view_scale = 1.0;  ///< size here over size in the view
 };
 
-/// `focal_px` of the camera that sees it; 0: that of the view. Nothing where nothing is left of the mask or of the
-/// depth on it. The view's object must stand in front of the camera.
+/// `focal_px` is of the scenes' camera; 0: that of the view. Returns nothing where nothing is left of the mask or of
+/// the depth on it. The view's object must be in front of the camera.
 std::optional<ScaledView> scale_view(const TrainingView& view, double distance, double focal_px = 0.0);
 
 }  // namespace houghstream

@@ -24,14 +24,14 @@
 namespace houghstream::colours {
 namespace {
 
-/// Of all that was found through a camera.
+/// Holds all results through a camera.
 struct Found {
   std::vector<EvaluatedFrame> as_taught;
   std::vector<EvaluatedFrame> in_frame;
   std::vector<EvaluatedFrame> in_stream;
 };
 
-/// A pose with what the truth says of it.
+/// Holds a pose with its outcome in the ground truth.
 struct JudgedColours {
   std::size_t frame = 0;
   const ObjectPose* pose = nullptr;
@@ -118,7 +118,7 @@ class Study {
     return detector_of(load_store_forest(store_), options);
   }
 
-  /// As hs-detect and hs-pose would, but that no pose is withheld.
+  /// Detects and estimates poses as hs-detect and hs-pose do, except that no pose is rejected.
   std::vector<Found> search(const std::vector<StrangeCamera>& cameras) const {
     const Detector plain_detector = detector(false);
     const Detector learning_detector = detector(true);
@@ -174,7 +174,7 @@ class Study {
     return sent;
   }
 
-  /// The result with these poses, which are of its first detections.
+  /// Returns the result with these poses, which are of its first detections.
   static EvaluatedFrame posed(EvaluatedFrame result, ObjectPoses poses) {
     for (std::size_t i = poses.poses.size(); i < result.detections->detections.size(); ++i) {
       ObjectPose& pose = poses.poses.emplace_back();

@@ -6,8 +6,8 @@
 
 #include "tools/studies/colours/strange_cameras.hpp"
 
-// What cameras of strange colours cost, and what of it the map of a camera's colours brings back: rendered calibration
-// rooms with the objects of a store, seen through each of the cameras.
+// This study measures what cameras of strange colours cost, and how much of it the map of a camera's colours recovers:
+// rendered calibration scenes with the objects of a store, seen through each of the cameras.
 
 namespace houghstream::colours {
 
@@ -16,30 +16,30 @@ struct StudySettings {
   int cameras = 24;
   std::uint64_t seed = 1;
   int threads = 2;
-  std::string pairs;  ///< CSV file with what the poses tell of the cameras' colours; empty: none
+  std::string pairs;  ///< CSV file with the colours observed at the poses; empty: none
 };
 
-/// What was found through one camera or several ones.
+/// Holds the figures of one or several cameras.
 struct Figures {
   int objects = 0;
-  double auc = 0.0;       ///< of the detections' scores, mean over the classes
-  double pose_auc = 0.0;  ///< of the poses' qualities: average precision over all objects
+  double auc = 0.0;       ///< area under the curve of the detections' scores, mean over the classes
+  double pose_auc = 0.0;  ///< the same of the poses' qualities: average precision over all objects
   int published = 0;
-  int right = 0;          ///< of the published
-  double ece = 0.0;       ///< of the qualities
-  double off = 0.0;       ///< of right poses: from the expected to the measured chroma, median, CIE a*b*
-  double conflict = 0.0;  ///< share of pairs of a right and a wrong pose in which chroma tells which is which
+  int right = 0;          ///< correct ones of the published poses
+  double ece = 0.0;       ///< calibration error of the qualities
+  double off = 0.0;       ///< distance of correct poses' measured chroma from the expected, median, CIE a*b*
+  double conflict = 0.0;  ///< fraction of pairs of a correct and an incorrect pose that chroma distinguishes
 };
 
-/// One row of the table.
+/// Holds one row of the table.
 struct Row {
   std::string name;
   Figures as_taught;  ///< colours are not learnt
   Figures in_frame;   ///< colours are learnt in each frame
-  Figures in_stream;  ///< and of what the frames before have told, all of which were seen before
+  Figures in_stream;  ///< colours are learnt in each frame and from the earlier frames
 };
 
-/// The plain camera, then each strange one, then the mean over those.
+/// Studies the plain camera, then each strange one, then the mean over those.
 std::vector<Row> study_cameras(const std::filesystem::path& store, const StudySettings& settings);
 
 std::string to_table(const std::vector<Row>& rows);

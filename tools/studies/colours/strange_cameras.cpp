@@ -8,7 +8,7 @@
 namespace houghstream::colours {
 namespace {
 
-/// Linear sRGB of a black body, of luminance 1. Its chromaticity is by Kim et al., US patent 7024034 (2006).
+/// Returns linear sRGB of a black body, of luminance 1. Its chromaticity follows Kim et al., US patent 7024034 (2006).
 Eigen::Vector3d black_body_rgb(double kelvin) {
   const double t = 1e3 / kelvin;
   const double x = kelvin < 4000.0 ? -0.2661239 * t * t * t - 0.2343589 * t * t + 0.8776956 * t + 0.179910
@@ -20,7 +20,7 @@ Eigen::Vector3d black_body_rgb(double kelvin) {
   return xyz_of_rgb.inverse() * Eigen::Vector3d(x / y, 1.0, (1.0 - x - y) / y);
 }
 
-/// On linear light, blue, green, red; green stays.
+/// Returns gains of linear blue, green and red; green stays.
 std::array<double, 3> white_balance(double kelvin) {
   constexpr double kTakenFor = 5500.0;
   const Eigen::Vector3d gain = black_body_rgb(kelvin).cwiseQuotient(black_body_rgb(kTakenFor));

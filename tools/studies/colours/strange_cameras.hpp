@@ -14,8 +14,8 @@ struct StrangeCamera {
   std::string name() const;
 };
 
-/// `count` cameras: the light from 3000 to 8000 K, evenly in mired, saturation from 0.6 to 1.6 and gamma from 0.7 to
-/// 1.5, evenly in their logarithms. Same arguments, same cameras.
+/// Returns `count` cameras: the light from 3000 to 8000 K, evenly in mired, saturation from 0.6 to 1.6 and gamma from
+/// 0.7 to 1.5, evenly in their logarithms. The same arguments give the same cameras.
 std::vector<StrangeCamera> strange_cameras(int count, std::uint64_t seed);
 
 }  // namespace houghstream::colours

@@ -19,7 +19,7 @@ std::size_t distance(std::size_t a, std::size_t b) {
   return a < b ? b - a : a - b;
 }
 
-/// Gravest first; those near a graver one are left out.
+/// Returns the gravest first, without those near a graver one.
 std::vector<Failure> thinned(std::vector<Failure> failures, std::size_t apart) {
   std::stable_sort(failures.begin(), failures.end(),
                    [](const Failure& a, const Failure& b) { return a.weight > b.weight; });

@@ -17,7 +17,7 @@ namespace {
 using namespace houghstream;
 
 struct FailureOptions {
-  ObjectArguments known;  ///< models are not looked at
+  ObjectArguments known;  ///< its models are unused
   std::vector<std::string> scenes;
   std::string out;
   std::optional<float> operating_score;  ///< default: what hs-detect publishes
@@ -27,7 +27,7 @@ struct FailureOptions {
   SearchOptions search;
 };
 
-/// An image of each of the scene's gravest failures.
+/// Returns an image of each of the scene's gravest failures.
 std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& detector, const FailureOptions& options) {
   const BopScene scene(folder);
   std::vector<EvaluatedFrame> frames = every_nth(read_ground_truth(scene, find_bop_names(folder)), options.every);
@@ -61,7 +61,7 @@ void run(const FailureOptions& options) {
   fmt::print("{} failures in {}\n", tiles.size(), options.out);
 }
 
-/// The store's forest, where one is named, and what hs-detect publishes unless told otherwise.
+/// Returns the options with the store's forest, where one is named, and with hs-detect's defaults.
 FailureOptions with_store(FailureOptions options) {
   require(options.known.store.empty() == !options.known.forest.empty(),
           "expected either --objects STORE or --forest FILE");

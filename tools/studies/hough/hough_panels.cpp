@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kCaptionHeight = 28;
 constexpr int kBarWidth = 120;
-constexpr std::size_t kShownBoxes = 5;  // more would hide the votes
+constexpr std::size_t kShownBoxes = 5;  // a maximum, since more would hide the votes
 
 double highest_value(const cv::Mat& votes) {
   double highest = 0.0;
@@ -59,7 +59,7 @@ void draw_box(cv::Mat& image, const NamedBox& box) {
   view::draw_text(image, box.words, {std::max(edges.x, 2), y}, 0.45, box.colour);
 }
 
-/// The image below its title; with a bar that says which colour is which value, unless `top` is nothing.
+/// Returns the image below its title; with a colour bar for the values, unless `top` is nothing.
 cv::Mat captioned(const cv::Mat& image, const std::string& title, double top) {
   cv::Mat tile(image.rows + kCaptionHeight, image.cols, CV_8UC3, cv::Scalar(0, 0, 0));
   image.copyTo(tile.rowRange(kCaptionHeight, tile.rows));

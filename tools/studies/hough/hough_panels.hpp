@@ -6,7 +6,7 @@
 
 namespace houghstream {
 
-/// A box with a few words beside it.
+/// Holds a box with a few words beside it.
 struct NamedBox {
   cv::Rect2f box_px;
   std::string words;
@@ -20,8 +20,9 @@ struct HoughPanel {
   std::vector<NamedBox> found;  ///< strongest first; those that follow the first few are counted only
 };
 
-/// One image: the colour image with the true boxes, then each class's votes in colours over the darkened image. All
-/// panels share one scale, up to the highest value of any; the captions name it. Throws InputError where sizes differ.
+/// Draws one image: the colour image with the ground-truth boxes, then each class's votes in colours over the darkened
+/// image. All panels share one scale, up to the highest value of any; the captions name it. Throws InputError where
+/// sizes differ.
 cv::Mat draw_hough_panels(const cv::Mat& colour, const std::vector<NamedBox>& truth,
                           const std::vector<HoughPanel>& panels);
 

@@ -17,7 +17,7 @@
 namespace houghstream {
 namespace {
 
-/// Worse ones compare less.
+/// Returns a key by which worse trials compare less.
 std::tuple<bool, bool, double> order_of(const PoseTrial& trial) {
   const bool is_known = std::isfinite(trial.strict);
   return {trial.outcome == MatchOutcome::kTruePositive, is_known, is_known ? -trial.strict : 0.0};

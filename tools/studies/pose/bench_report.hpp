@@ -17,26 +17,26 @@ namespace houghstream {
 /// ADD-S, the largest first and unknown before all. Ignored detections are left out.
 std::vector<PoseTrial> worst_poses(const std::vector<PoseTrial>& trials, std::size_t count);
 
-/// The surroundings of a trial's box in its frame with the outline of its model, and below it what it is. The trial
-/// has a pose. Images of all trials have one size, CV_8UC3.
+/// Draws the surroundings of a trial's box in its frame with the outline of its model, and a description below. The
+/// trial has a pose. Images of all trials have one size, CV_8UC3.
 cv::Mat draw_trial(const PoseTrial& trial, const RgbdFrame& frame, const Mesh& mesh);
 
-// The variants. The unchecked one is ours with a verification that accepts everything: what it publishes beyond ours is
-// what ours withholds.
+// Names of the variants. The unchecked one is ours with a verification that accepts everything: the poses that it
+// publishes beyond ours are those that ours rejects.
 constexpr const char* kOurs = "ours";
 constexpr const char* kPcl = "pcl";
 constexpr const char* kUnchecked = "unchecked";
 constexpr const char* kPrerejective = "prerejective";
 constexpr const char* kPpf = "ppf";
 
-/// results.json and poses.csv in the folder, which is made. Throws InputError where they cannot be written.
+/// Writes results.json and poses.csv in the folder, which is made. Throws InputError where they cannot be written.
 void write_bench(const PoseBench& bench, const std::filesystem::path& folder);
 
-/// worst_1.png to worst_10.png, those of an earlier run removed. Throws InputError as above.
+/// Writes worst_1.png to worst_10.png, and removes those of an earlier run. Throws InputError as above.
 void write_worst(const std::vector<PoseTrial>& trials, const std::map<std::string, BopScene>& scenes,
                  const std::map<std::string, Mesh>& meshes, const std::filesystem::path& folder);
 
-/// Lines for the terminal.
+/// Returns lines for the terminal.
 std::string bench_summary(const PoseBench& bench);
 
 }  // namespace houghstream

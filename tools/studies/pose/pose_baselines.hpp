@@ -31,70 +31,71 @@ namespace houghstream {
 
 /// Settings of a region's point cloud.
 struct SurfaceSettings {
-  double spacing_m = 0.004;        ///< of the points that are kept
-  double normal_radius_m = 0.015;  ///< of the neighbours whose plane gives a measured normal
-  int measured_points = 8000;      ///< of a region, about, before thinning
+  double spacing_m = 0.004;        ///< distance between the points that are kept
+  double normal_radius_m = 0.015;  ///< radius of the neighbours whose plane gives a measured normal
+  int measured_points = 8000;      ///< approximate number in a region before thinning
 };
 
-/// FPFH, pcl::SampleConsensusPrerejective, ICP.
+/// Settings of FPFH, pcl::SampleConsensusPrerejective and ICP.
 struct PrerejectiveSettings {
   SurfaceSettings surface;
-  double spacing = 0.06;         ///< of the points of model and region, a share
-  double feature_radius = 0.2;   ///< of a histogram's neighbours, a share
-  int runs = 20;                 ///< each with its own draw and its own ICP
-  int iterations = 10000;        ///< of a run
-  int samples = 3;               ///< pairs that make a pose
-  int similar_features = 10;     ///< a sample's partner is drawn among so many
-  float similarity = 0.9F;       ///< of the samples' mutual distances, 0 to 1
-  float inlier_fraction = 0.1F;  ///< of the model's points; of poses with so many, PCL takes the one that they fit best
+  double spacing = 0.06;          ///< spacing of the points of model and region, a fraction
+  double feature_radius = 0.2;    ///< radius of a histogram's neighbours, a fraction
+  int runs = 20;                  ///< each with its own draw and its own ICP
+  int iterations = 10000;         ///< samples of a run
+  int samples = 3;                ///< pairs that make a pose
+  int similar_features = 10;      ///< a sample's partner is drawn among so many
+  float similarity = 0.9F;        ///< minimum similarity of the samples' mutual distances, 0 to 1
+  float inlier_fraction = 0.1F;   ///< fraction of the model's points; of poses with so many, PCL takes the best fit
   double inlier_distance = 0.04;  ///< an inlier has a measured point so near, a share
-  int icp_iterations = 30;        ///< at each of two distances
-  int icp_points = 400;           ///< of the region, about
+  int icp_iterations = 30;        ///< maximum at each of two distances
+  int icp_points = 400;           ///< approximate number in the region
   double icp_start_m = 0.02;      ///< pairs farther apart do not count
   double icp_end_m = 0.01;
 };
 
-/// cv::ppf_match_3d.
+/// Settings of cv::ppf_match_3d.
 struct PpfSettings {
   SurfaceSettings surface;
-  double spacing = 0.08;            ///< of the points of model and region, a share
-  double distance_step = 0.08;      ///< of the model's table, a share
+  double spacing = 0.08;            ///< spacing of the points of model and region, a fraction
+  double distance_step = 0.08;      ///< step of the model's table, a fraction
   int angles = 30;                  ///< steps in a full turn
-  double reference_fraction = 0.1;  ///< of the region's points that vote
+  double reference_fraction = 0.1;  ///< fraction of the region's points that vote
   double cluster_m = 0.01;          ///< poses nearer than both limits are one
   double cluster_rad = 0.2;
   int kept = 5;  ///< poses that ICP refines
   int icp_iterations = 100;
   float icp_tolerance = 0.005F;  ///< relative change of the residual that ends a level
   float icp_rejection = 2.5F;    ///< pairs farther apart than so many standard deviations do not count
-  int icp_levels = 4;            ///< of the pyramid, each of half as many points
+  int icp_levels = 4;            ///< levels of the pyramid, each with half as many points
 };
 
-/// Pose estimators of other libraries as baselines of PoseEstimator, given the same detections. They use depth only, of
+/// Estimates poses by other libraries, as baselines of PoseEstimator with the same detections. They use depth only, of
 /// the same pixels: those with depth inside find_region(). Of several poses the one with the best depth score
 /// (score_pose()) is returned, as in PoseEstimator.
 class BaselineEstimator {
  public:
   virtual ~BaselineEstimator() = default;
 
-  /// T_camera_object of the detection, metres; uses its class, box and centre, not its votes. Nothing where the class
-  /// has no model, the centre is unknown, the region holds too few points, or no pose was found whose
+  /// Returns T_camera_object of the detection, metres; uses its class, box and centre, not its votes. Returns nothing
+  /// where the class has no model, the centre is unknown, the region holds too few points, or no pose was found whose
   /// ObjectModel::vote_centre is within RegistrationSettings::max_shift_m of the centre. The same input gives the same
-  /// bits. Throws InputError for a frame that is none.
+  /// bits. Throws InputError for an invalid frame.
   virtual std::optional<Eigen::Isometry3d> estimate(const RgbdFrame& frame, const Detection& detection) const = 0;
 };
 
-/// PCL: fast point feature histograms (Rusu, Blodow, Beetz 2009) of model and region are brought together by random
-/// sampling that gives up early on samples whose distances disagree (Buch et al. 2013,
+/// Makes the baseline of PCL: fast point feature histograms (Rusu, Blodow, Beetz 2009) of model and region are matched
+/// by random sampling that rejects samples early whose distances disagree (Buch et al. 2013,
 /// pcl::SampleConsensusPrerejective), then point-to-plane ICP (register_points_pcl()). Models by class name, metres.
 /// Throws InputError for settings out of range and for models as make_object_model() does. PCL draws from std::rand(),
-/// which each estimate seeds anew: one estimate runs at a time, and nothing else may draw while it does.
+/// which each estimate seeds again: one estimate runs at a time, and nothing else may draw while it does.
 std::unique_ptr<BaselineEstimator> make_prerejective_baseline(const std::map<std::string, Mesh>& models,
                                                               const PoseSettings& pose,
                                                               const PrerejectiveSettings& settings);
 
-/// OpenCV: votes of point pairs (Drost et al. 2010, cv::ppf_match_3d::PPF3DDetector), then
-/// cv::ppf_match_3d::ICP of the best few poses. Models by class name, metres; throws as the other.
+/// Makes the baseline of OpenCV: votes of point pairs (Drost et al. 2010, cv::ppf_match_3d::PPF3DDetector), then
+/// cv::ppf_match_3d::ICP of the best few poses. Models by class name, metres; throws as make_prerejective_baseline()
+/// does.
 std::unique_ptr<BaselineEstimator> make_ppf_baseline(const std::map<std::string, Mesh>& models,
                                                      const PoseSettings& pose, const PpfSettings& settings);
 

@@ -39,11 +39,11 @@ PoseRun thin_run(const PoseRun& run, const std::vector<std::size_t>& chosen) {
 
 /// Frames with results of baselines.
 struct RivalRuns {
-  std::vector<std::size_t> frames;  ///< of the detected ones, in rising order
+  std::vector<std::size_t> frames;  ///< indices of the frames with detections, ascending
   std::map<std::string, PoseRun> by_baseline;
 };
 
-/// Frame by frame, all baselines in turn, while there is time.
+/// Runs frame by frame, all baselines in turn, while there is time.
 RivalRuns run_baselines(const DetectedScene& detected, const BenchedMakers& makers, const BenchRules& rules) {
   const auto every = static_cast<std::size_t>(rules.baselines_every);
   const std::size_t count = (detected.frames.size() + every - 1) / every;

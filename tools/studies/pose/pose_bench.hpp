@@ -20,10 +20,10 @@ namespace houghstream {
 /// Gives the pose of one detection of a frame, or the reason why there is none, on the calling thread.
 using PoseMaker = std::function<ObjectPose(const RgbdFrame&, const Detection&)>;
 
-/// PoseEstimator on one thread. Models by class name, metres.
+/// Makes poses with PoseEstimator on one thread. Models by class name, metres.
 PoseMaker estimator_maker(const std::map<std::string, Mesh>& models, PoseSettings settings);
 
-/// A baseline; where it finds a pose, that is published, else the status is kNotConverged.
+/// Makes poses with a baseline; a pose that it finds is published, else the status is kNotConverged.
 PoseMaker baseline_maker(std::unique_ptr<BaselineEstimator> baseline);
 
 /// The poses of a frame's detections, in their order, and the CPU time that each took, milliseconds.
@@ -32,8 +32,8 @@ struct TimedPoses {
   std::vector<double> ms;
 };
 
-/// One detection at a time, so that each has a time of its own. CPU time of the calling thread: what else the machine
-/// does lengthens it little.
+/// Estimates one detection at a time, so that each has its own time. It measures CPU time of the calling thread, which
+/// other load of the machine lengthens little.
 TimedPoses make_poses(const PoseMaker& maker, const RgbdFrame& frame, const Detections& detections);
 
 /// The makers of poses by name; those of `baselines` are slow and try few frames.
@@ -45,13 +45,13 @@ struct BenchedMakers {
 /// Results of each variant, pooled over scenes by add().
 struct VariantResult {
   std::vector<PoseTrial> trials;
-  std::vector<FrameErrors> errors;  ///< by BOP's measures, of all classes
+  std::vector<FrameErrors> errors;  ///< BOP's errors, all classes
 
   void add(const PoseRun& run, const BopScene& scene, const SceneModels& models, int threads);
 };
 
-/// By variant; `on_baseline_frames` holds the baselines, and the others on the baselines' frames only, so that they
-/// compare.
+/// Holds the results by variant; `on_baseline_frames` holds the baselines, and the others on the baselines' frames
+/// only, so that they compare.
 struct PoseBench {
   int frames = 0;
   int baseline_frames = 0;
@@ -68,13 +68,13 @@ struct DetectedScene {
 
 /// Settings of a scene's benchmark.
 struct BenchRules {
-  int baselines_every = 10;  ///< the baselines look at frames 0, N, 2N, ... of those that were detected in
-  double baselines_s = 0.0;  ///< of those, at as many as can be done in this time, spread over the scene; 0: at all
-  int threads = 1;           ///< for measuring errors; the makers run on one
+  int baselines_every = 10;  ///< the baselines process frames 0, N, 2N, ... of those with detections
+  double baselines_s = 0.0;  ///< time for the baselines, whose frames are spread over the scene; 0: no limit
+  int threads = 1;           ///< threads that measure errors; the makers run on one
 };
 
-/// Has every maker give poses to all detections, baselines to those of their frames, and adds what came of it. All
-/// baselines look at the same frames.
+/// Makes every maker estimate poses of all detections, baselines those of their frames, and adds the results. All
+/// baselines process the same frames.
 void bench_scene(const DetectedScene& detected, const SceneModels& models, const BenchedMakers& makers,
                  const BenchRules& rules, PoseBench& bench);
 

@@ -31,7 +31,7 @@ struct BenchOptions {
   double baselines_s = 0.0;
   bool no_baselines = false;
   SearchOptions search;
-  PoseSettings pose;  ///< what a store knows
+  PoseSettings pose;  ///< settings of the store
 };
 
 BenchedMakers make_makers(const SceneModels& models, const BenchOptions& options) {
@@ -101,7 +101,7 @@ void run(const BenchOptions& options) {
   fmt::print("{}", bench_summary(bench));
 }
 
-/// The store's forest, models, and what its objects' poses are judged by, where one is named.
+/// Returns the options with the store's forest, models, and quality settings of its objects, where one is named.
 BenchOptions with_store(BenchOptions options) {
   require(options.known.store.empty() == !options.known.forest.empty(),
           "expected either --objects STORE or --forest FILE and --models FOLDER");

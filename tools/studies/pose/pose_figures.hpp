@@ -14,24 +14,24 @@ namespace houghstream {
 struct PoseRecall {
   int detections = 0;
   double correct = 0.0;  ///< PoseTrial::is_correct()
-  double add_s = 0.0;    ///< right up to what the shape cannot tell: ADD-S below 10 % of the diameter
+  double add_s = 0.0;    ///< correct up to the symmetries of the shape: ADD-S below 10 % of the diameter
   double add = 0.0;      ///< ADD below it, ADD-S for objects that are symmetric
 };
 PoseRecall pose_recall(const std::vector<PoseTrial>& trials, float min_score);
 
-/// Over all scenes and classes. NaN where nothing was there to measure.
+/// Holds figures over all scenes and classes; NaN without anything to measure.
 struct PoseFigures {
   int detections = 0;
   int published = 0;       ///< poses
-  double ms_median = 0.0;  ///< of published poses, as all below
+  double ms_median = 0.0;  ///< median over published poses, like all below
   double ms_p99 = 0.0;
   double mm_median = 0.0;           ///< translation error of true detections
-  double mm_per_m_sq_median = 0.0;  ///< the same over the square of the distance: as depth's noise would have it at 1 m
+  double mm_per_m_sq_median = 0.0;  ///< the same over the square of the distance, since depth's noise grows with it
   double deg_median = 0.0;          ///< rotation error of true detections of objects without symmetries
   double correct_fraction = 0.0;    ///< right ones of those of true and false detections; ignored ones are left out
-  double good_fraction = 0.0;       ///< the same, right up to what the shape cannot tell
-  PoseRecall recall;                ///< of all detections
-  PoseRecall recall_strong;         ///< of detections from score 0.5 on, which are published by default
+  double good_fraction = 0.0;       ///< the same, correct up to the symmetries of the shape
+  PoseRecall recall;                ///< recall of all detections
+  PoseRecall recall_strong;         ///< recall of detections from score 0.5 on, which are published by default
 };
 PoseFigures pose_figures(const std::vector<PoseTrial>& trials);
 
@@ -40,23 +40,23 @@ struct WithheldPoses {
   int of_true = 0;
   int of_false = 0;
   int of_ignored = 0;
-  int correct = 0;              ///< of `of_true`: the pose would have been right
-  int correct_up_to_shape = 0;  ///< the same, up to what the shape cannot tell
+  int correct = 0;              ///< those of `of_true` whose pose would have been correct
+  int correct_up_to_shape = 0;  ///< the same, up to the symmetries of the shape
 };
 
-/// By status in words. `unchecked` holds the same detections in the same order with the poses that a verification that
-/// accepts everything would have published; throws std::logic_error where it does not.
+/// Counts the rejected poses by status in words. `unchecked` holds the same detections in the same order with the poses
+/// that a verification that accepts everything would have published; throws std::logic_error where it does not.
 std::map<std::string, WithheldPoses> count_withheld(const std::vector<PoseTrial>& trials,
                                                     const std::vector<PoseTrial>& unchecked);
 
-/// Non-finite numbers become null (finite_or_null).
+/// Converts to JSON; non-finite numbers become null (finite_or_null).
 OrderedJson to_json(const PoseFigures& figures);
 OrderedJson to_json(const std::map<std::string, WithheldPoses>& withheld);
 
-/// The first line of poses.csv.
+/// Returns the first line of poses.csv.
 std::string pose_table_header();
 
-/// A line for each trial; `variant` says who made the poses. What is not known is left empty.
+/// Returns a line for each trial; `variant` names the estimator. Unknown values are left empty.
 std::string pose_table_rows(const std::string& variant, const std::vector<PoseTrial>& trials);
 
 }  // namespace houghstream

@@ -17,7 +17,7 @@
 
 namespace houghstream {
 
-/// Result of one detection's pose compared with the ground truth; unknown numbers are NaN.
+/// Holds the result of one detection's pose compared with the ground truth; unknown numbers are NaN.
 struct PoseTrial {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -25,12 +25,12 @@ struct PoseTrial {
   std::size_t image = 0;  ///< position in the scene's images
   std::string class_name;
   int class_id = 0;
-  float score = 0.0F;  ///< of the detection
-  cv::Rect2f box_px;   ///< of the detection
+  float score = 0.0F;  ///< score of the detection
+  cv::Rect2f box_px;   ///< box of the detection
   MatchOutcome outcome = MatchOutcome::kFalsePositive;
   bool symmetric = false;              ///< the object looks the same in other poses
-  double visible_fraction = kUnknown;  ///< of the object; known for true detections
-  double distance_m = kUnknown;        ///< of the object along the optical axis; known for true detections
+  double visible_fraction = kUnknown;  ///< fraction of the object; known for true detections
+  double distance_m = kUnknown;        ///< distance of the object along the optical axis; known for true detections
   double ms = kUnknown;                ///< CPU time of the pose, or of finding none
   PoseStatus status = PoseStatus::kInvalid;
   float quality = 0.0F;                              ///< ObjectPose::quality; 0 for the baselines
@@ -39,12 +39,12 @@ struct PoseTrial {
   // Errors of the pose, unknown without one and without an object to compare it with: that of a true detection, for
   // others the object of the class of smallest ADD-S.
   double strict = kUnknown;  ///< strict_error(): MSSD, or ADD of an object without symmetries; in diameters
-  double add = kUnknown;     ///< in diameters
-  double add_s = kUnknown;   ///< in diameters
+  double add = kUnknown;     ///< error in diameters
+  double add_s = kUnknown;   ///< error in diameters
   double shift_m = kUnknown;
   double angle_deg = kUnknown;  ///< the smallest over the object's symmetries
 
-  /// The pose of a true detection.
+  /// Returns whether the pose of a true detection is correct.
   bool is_correct() const { return outcome == MatchOutcome::kTruePositive && strict < kCorrectBelow; }
   bool is_correct_up_to_shape() const { return outcome == MatchOutcome::kTruePositive && add_s < kCorrectBelow; }
 };
@@ -70,11 +70,11 @@ SceneModels load_scene_models(const std::filesystem::path& models, const std::se
 struct PoseRun {
   std::string scene;
   std::vector<EvaluatedFrame> frames;
-  std::vector<std::vector<double>> ms;  ///< by frame and detection
+  std::vector<std::vector<double>> ms;  ///< times by frame and detection
 };
 
-/// All detections that count, of the classes with a model, judged; those of objects whose truth has no pose are left
-/// out. By class, then strongest first, so that the order is the same whoever made the poses.
+/// Matches all detections that count, of the classes with a model; those of objects whose ground truth has no pose are
+/// left out. They are ordered by class, then strongest first, so that the order is the same for all estimators.
 std::vector<PoseTrial> match_run(const PoseRun& run, const std::map<std::string, ScoredModel>& models);
 
 }  // namespace houghstream

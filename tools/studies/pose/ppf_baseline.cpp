@@ -12,11 +12,11 @@ namespace {
 
 namespace ppf = cv::ppf_match_3d;
 
-/// OpenCV thins a cloud by a grid of this share of its extent along each axis, which squeezes flat clouds; so fine that
-/// it leaves what thinned() left.
+/// OpenCV thins a cloud by a grid of this fraction of its extent along each axis, which squeezes flat clouds; it is so
+/// fine that the result of thinned() stays.
 constexpr double kFineStep = 0.02;
 
-/// One row x, y, z, nx, ny, nz per point, as cv::ppf_match_3d takes them.
+/// Returns one row x, y, z, nx, ny, nz per point, in the form that cv::ppf_match_3d takes.
 cv::Mat rows_of(const SurfaceCloud& cloud) {
   cv::Mat rows(static_cast<int>(cloud.size()), 6, CV_32FC1);
   for (int i = 0; i < rows.rows; ++i) {

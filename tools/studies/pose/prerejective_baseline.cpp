@@ -17,7 +17,7 @@ using Features = pcl::PointCloud<pcl::FPFHSignature33>;
 
 struct DescribedSurface {
   SurfaceCloud::Ptr points;
-  Features::Ptr features;  ///< one per point
+  Features::Ptr features;  ///< features, one per point
 };
 
 /// Points whose histogram is undefined (no neighbours) are left out: PCL's search aborts on NaN.

@@ -14,7 +14,7 @@
 namespace houghstream {
 namespace {
 
-/// A cube of space and the side that the surface faces.
+/// A cell is a cube of space and the side that the surface faces.
 using Cell = std::array<int, 4>;
 
 Cell cell_of(const pcl::PointNormal& point, double spacing_m) {
@@ -48,7 +48,7 @@ SurfaceCloud::Ptr with_normals(const SurfaceCloud::Ptr& points, const SurfaceClo
   return out;
 }
 
-constexpr int kScoredPoints = 400;  // of the model's view
+constexpr int kScoredPoints = 400;  // points of the model's view
 
 }  // namespace
 

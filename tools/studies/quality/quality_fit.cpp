@@ -14,7 +14,7 @@
 namespace houghstream::quality {
 namespace {
 
-constexpr double kPriorPrecision = 10.0;  // of the numbers in use, see fit_quality()
+constexpr double kPriorPrecision = 10.0;  // precision of the prior, see fit_quality()
 constexpr double kCorrectFraction = 0.98;
 constexpr int kRoundSteps = 20;  // thresholds are multiples of one over this
 

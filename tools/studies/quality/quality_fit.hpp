@@ -10,22 +10,22 @@
 
 namespace houghstream::quality {
 
-/// Bias, weights and typical values of the examples, the former drawn to the numbers in use as strongly as by ten
-/// poses: where nearly all that is detected is there, what depth says of nothing is hardly seen. `min_quality` is the
-/// default's. Throws InputError unless some are right and some are wrong.
+/// Fits bias, weights and mean terms of the examples, with the numbers in use as a prior of the weight of ten poses:
+/// where nearly all detected objects are present, the examples hardly show the depth of missing ones. `min_quality` is
+/// the default's. Throws InputError unless some are correct and some are incorrect.
 QualitySettings fit_quality(const std::vector<Example>& examples);
 
 /// A pose with the quality that a fit gives it.
 struct CheckedPose {
   float quality = 0.0F;
-  bool is_correct = false;  ///< up to what the shape cannot tell, which is what the fit learns
+  bool is_correct = false;  ///< up to the symmetries of the shape, which is what the fit learns
 };
 
-/// The examples as these settings judge them, in their order.
+/// Returns the examples with their qualities by these settings, in their order.
 std::vector<CheckedPose> check_by(const QualitySettings& settings, const std::vector<Example>& examples);
 
-/// Every `parts`-th scene, in the order in which the examples bring them, is judged by a fit of the others, until all
-/// are. Throws InputError where there are fewer scenes than parts, and as fit_quality().
+/// Checks every `parts`-th scene, in the order of the examples, by a fit of the others, until all are checked. Throws
+/// InputError where there are fewer scenes than parts, and as fit_quality().
 std::vector<CheckedPose> check_by_scene(const std::vector<Example>& examples, int parts);
 
 /// Poses that are published from a quality on.
@@ -36,32 +36,33 @@ struct Published {
 };
 Published published_from(const std::vector<CheckedPose>& checked, float minimum);
 
-/// The smallest of 0.05, 0.1, ... 0.95 from which at least this share of the poses is right; nothing where none is.
+/// Returns the minimum of 0.05, 0.1, ... 0.95 from which at least this fraction of the poses is correct; nothing where
+/// none is.
 std::optional<float> min_quality(const std::vector<CheckedPose>& checked, double correct_fraction);
 
-/// What hs-study quality learnt.
+/// Holds the result of hs-study quality.
 struct Learnt {
   int scenes = 0;
   int examples = 0;
   int correct = 0;
   QualitySettings settings;
   std::vector<CheckedPose> checked;  ///< each by a fit that has not seen its scene
-  Published in_use;                  ///< by the numbers that hs-pose uses, from their `min_quality` on
+  Published in_use;                  ///< published poses by the settings in use, from their `min_quality` on
 };
 
 /// Minimum number of scenes with poses for learn_quality().
 inline constexpr int kMinScenes = 4;
 
-/// fit_quality(), and its `min_quality` by four parts of the scenes. Throws InputError as those, and where no quality
-/// is enough for 98 %.
+/// Runs fit_quality(), and determines its `min_quality` by four parts of the scenes. Throws InputError as those, and
+/// where no quality is enough for 98 %.
 Learnt learn_quality(const std::vector<Example>& examples);
 
-/// The initialisers of QualitySettings' members in C++.
+/// Returns the initialisers of QualitySettings' members in C++.
 std::string to_initialisers(const QualitySettings& settings);
 
-/// {"scenes", "examples", "right", "bias", "weights": {TERM: }, "typical": {TERM: }, "least", "in_use": {"poses",
-/// "right", "correct_fraction"}, "published": [{"from", "poses", "right", "correct_fraction"}]}; the last in scenes
-/// that the fit has not seen.
+/// Returns {"scenes", "examples", "right", "bias", "weights": {TERM: }, "typical": {TERM: }, "least", "in_use":
+/// {"poses", "right", "correct_fraction"}, "published": [{"from", "poses", "right", "correct_fraction"}]}; the last is
+/// of scenes that the fit has not seen.
 OrderedJson to_json(const Learnt& learnt);
 
 }  // namespace houghstream::quality

@@ -25,7 +25,7 @@ struct Fit {
   double rms_m = std::numeric_limits<double>::infinity();
 };
 
-/// Maximum correspondence distance of a registration, which shrinks.
+/// Gives the maximum correspondence distance of a registration, which shrinks.
 struct Descent {
   int iterations = 0;
   double first_limit_m = 0.0;
@@ -57,9 +57,9 @@ class Target {
     return (mesh_.vertices[b] - corner).cross(mesh_.vertices[c] - corner).cast<double>().normalized();
   }
 
-  /// The motion that lowers the distances, about the middle of the points.
+  /// Returns the motion that lowers the distances, about the middle of the points.
   Eigen::Isometry3d step(const std::vector<Eigen::Vector3f>& points, const Eigen::Isometry3d& T, double limit) const {
-    constexpr double kDamping = 1e-3;  // of the mean curvature, holds turns that round shapes leave open
+    constexpr double kDamping = 1e-3;  // of the mean curvature, constrains rotations that round shapes leave open
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3f& point : points) middle += T * point.cast<double>() / static_cast<double>(points.size());
     Matrix6d squares = Matrix6d::Zero();
@@ -104,7 +104,7 @@ Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3f>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// The source's middle on the target's, turned to each of evenly spread rotations about 30 degrees apart.
+/// Returns the source's middle on the target's, rotated by each of evenly spread rotations about 30 degrees apart.
 std::vector<Eigen::Isometry3d> starts(const Eigen::Vector3d& source_middle, const Eigen::Vector3d& target_middle) {
   constexpr int kRotations = 12;
   std::vector<Eigen::Isometry3d> out;

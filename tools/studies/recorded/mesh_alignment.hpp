@@ -6,7 +6,7 @@
 
 namespace houghstream {
 
-/// Where one mesh lies on another of the same object, and how sure that is.
+/// Gives the pose of one mesh on another of the same object, and its reliability.
 struct MeshAlignment {
   Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
   /// Root mean square distance from the source's surface to the target's, metres; what is far off (parts that the
@@ -22,7 +22,7 @@ struct MeshAlignment {
 /// more points to the end. Same meshes, same result. Throws InputError for meshes without triangles.
 MeshAlignment align_meshes(const Mesh& source, const Mesh& target);
 
-/// T_target_source, registered in the same way from a start that is off by a centimetre at most.
+/// Returns T_target_source, registered in the same way from a start that is off by a centimetre at most.
 Eigen::Isometry3d refined_alignment(const Mesh& source, const Mesh& target, const Eigen::Isometry3d& T_start);
 
 }  // namespace houghstream

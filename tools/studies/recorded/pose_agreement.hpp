@@ -14,16 +14,16 @@ namespace houghstream {
 /// A pose of one frame by other means, to be compared with.
 struct ReferencePose {
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres
-  bool reliable = false;                                              ///< by its author's word
+  bool reliable = false;                                              ///< as its author states
 };
 
-/// By frame name, from {"poses": [{"frame": NAME, "R_m2c": [3][3], "t_m2c_mm": [3], "reliable": BOOL}]}, where
-/// x_camera = R x_object + t. Throws InputError when it is missing or unreadable, or R is no rotation.
+/// Reads poses by frame name from {"poses": [{"frame": NAME, "R_m2c": [3][3], "t_m2c_mm": [3], "reliable": BOOL}]},
+/// where x_camera = R x_object + t. Throws InputError when the file is missing or unreadable, or R is no rotation.
 std::map<std::string, ReferencePose> read_reference_poses(const std::filesystem::path& file);
 
-/// Difference of two poses of one object.
+/// Holds the difference of two poses of one object.
 struct PoseDifference {
-  double shift_m = 0.0;  ///< between the places of the object frame's origin
+  double shift_m = 0.0;  ///< distance between the positions of the object frame's origin
   double angle_deg = 0.0;
 };
 
@@ -32,20 +32,20 @@ struct PoseDifference {
 PoseDifference compare_poses(const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_reference,
                              const Symmetries& symmetries);
 
-/// One frame with a reference.
+/// Holds one frame with a reference.
 struct ComparedFrame {
   std::string frame;
   bool reliable = false;
   std::string outcome;                       ///< "not detected", or the words of a PoseStatus
-  std::optional<PoseDifference> difference;  ///< nothing where there is no pose
+  std::optional<PoseDifference> difference;  ///< nothing without a pose
 };
 
-/// Over the frames with a reliable reference.
+/// Summarises the frames with a reliable reference.
 struct AgreementSummary {
   int frames = 0;
   int with_pose = 0;
   int within_5mm_5deg = 0;
-  std::optional<PoseDifference> median;  ///< of each, over those with a pose; nothing without any
+  std::optional<PoseDifference> median;  ///< median of each, over those with a pose; nothing without any
 };
 AgreementSummary summarise(const std::vector<ComparedFrame>& frames);
 

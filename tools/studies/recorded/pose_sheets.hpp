@@ -11,18 +11,18 @@
 
 namespace houghstream {
 
-/// The thinnest outline of a posed model, holes and all, into an image of the camera (CV_8UC3, BGR, its size).
+/// Draws the thinnest outline of a posed model, holes and all, into an image of the camera (CV_8UC3, BGR, its size).
 void draw_outline(cv::Mat& image, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera,
                   const cv::Scalar& colour);
 
-/// The frame's image (CV_8UC3, BGR, its size) with each valid pose's model as the thinnest outline, holes and all, so
-/// that what lies under it can be judged; below the title a line for each pose: class, score, outcome. `withheld` are
-/// poses that were found and not believed: their outlines are white.
+/// Draws the frame's image (CV_8UC3, BGR, its size) with each valid pose's model as the thinnest outline, holes and
+/// all, so that the surface under it stays visible; below the title a line for each pose: class, score, outcome.
+/// `withheld` are rejected poses: their outlines are white.
 cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const ObjectPoses& withheld,
                    const view::ClassModels& models, const std::string& title);
 
-/// The image, darkened, with each valid pose's model in its own colours (white where it has none): a wrong turn shows
-/// beside draw_poses' image.
+/// Draws the image, darkened, with each valid pose's model in its own colours (white where it has none): a wrong
+/// rotation is evident beside draw_poses' image.
 cv::Mat paint_models(const RgbdFrame& frame, const ObjectPoses& poses, const view::ClassModels& models);
 
 /// Tiles of one size on sheets of 2 by 2; at least one sheet where there are tiles.

@@ -11,7 +11,7 @@
 namespace houghstream {
 namespace {
 
-/// The strongest with a pose, else the strongest; null where the object was not detected.
+/// Returns the strongest result with a pose, else the strongest; null where the object was not detected.
 const ObjectPose* pose_of(const ObjectPoses& poses, const std::string& class_name) {
   const ObjectPose* best = nullptr;
   for (const ObjectPose& pose : poses.poses) {
@@ -52,7 +52,7 @@ ComparedFrame compare(const std::string& frame, const ReferencePose& reference, 
   const ObjectPose* pose = pose_of(poses, object.class_name);
   out.outcome = pose == nullptr ? "not detected" : to_string(pose->status);
   if (pose == nullptr || !pose->T_camera_object) return out;
-  // Compared in the frame of the views: that of the scan has its origin far from the object.
+  // The poses are compared in the frame of the views, since that of the scan has its origin far from the object.
   const Eigen::Isometry3d T_reference = reference.T_camera_object * object.scan.alignment.T_target_source.inverse();
   out.difference = compare_poses(*pose->T_camera_object, T_reference, object.symmetries);
   return out;

@@ -19,18 +19,18 @@ namespace houghstream {
 struct ComparedObject {
   std::string class_name;
   ScanModel scan;
-  Symmetries symmetries;  ///< of the scan's shape, object frame of the views
+  Symmetries symmetries;  ///< symmetries of the scan's shape, object frame of the views
   std::map<std::string, ReferencePose> references;
 };
 
-/// Result of a folder of frames.
+/// Holds the result of a folder of frames.
 struct RealBench {
   std::vector<ComparedFrame> compared;  ///< frames with a reference, in natural order
   int poses = 0;                        ///< valid ones, of all classes in all frames
-  std::vector<cv::Mat> images;          ///< of every frame two: draw_poses, paint_models
+  std::vector<cv::Mat> images;          ///< two of every frame: draw_poses, paint_models
 };
 
-/// Estimator of the poses.
+/// Refers to the estimator of the poses.
 struct BenchedMethod {
   const Detector& detector;
   const PoseEstimator& estimator;
@@ -44,9 +44,9 @@ struct BenchedMethod {
 RealBench run_real_bench(const std::filesystem::path& scenes, const DrawnBoxes& drawn, const BenchedMethod& method,
                          const ComparedObject& object);
 
-/// {"object", "poses", "frames", "with_pose", "within_5mm_5deg", "median_mm", "median_deg", "symmetries", "alignment",
-/// "per_frame": [{"frame", "reliable", "outcome", "mm", "deg"}]}; null where there is no pose. "poses" is of all
-/// classes and frames; the other counts and medians are of reliable references.
+/// Returns {"object", "poses", "frames", "with_pose", "within_5mm_5deg", "median_mm", "median_deg", "symmetries",
+/// "alignment", "per_frame": [{"frame", "reliable", "outcome", "mm", "deg"}]}; null where there is no pose. "poses" is
+/// of all classes and frames; the other counts and medians are of reliable references.
 OrderedJson to_json(const RealBench& bench, const ComparedObject& object);
 
 }  // namespace houghstream

@@ -59,7 +59,7 @@ Mesh welded(const Mesh& mesh) {
 
 double base_height(const Mesh& mesh) {
   require(!mesh.vertices.empty(), "mesh without vertices, expected one to stand on a base");
-  constexpr std::size_t kStrayFraction = 500;  // one vertex in so many
+  constexpr std::size_t kStrayFraction = 500;  // one vertex in so many may be a stray
   std::vector<float> heights;
   heights.reserve(mesh.vertices.size());
   for (const Eigen::Vector3f& vertex : mesh.vertices) heights.push_back(vertex.z());

@@ -12,13 +12,13 @@ namespace houghstream {
 /// coordinates. The edge follows the triangles; nothing is cut. A mesh that lies below as a whole becomes an empty one.
 Mesh crop_below(const Mesh& mesh, const Eigen::Hyperplane<float, 3>& plane);
 
-/// The mesh's shape with vertices of one place made one, so that triangles that touch are connected: files give a
-/// vertex of its own to each triangle corner where texture coordinates differ. Normals are made anew; no colours, no
-/// texture.
+/// Returns the mesh's shape with vertices of one position merged, so that triangles that touch are connected: files
+/// have a separate vertex for each triangle corner where texture coordinates differ. Normals are computed again; there
+/// are no colours and no texture.
 Mesh welded(const Mesh& mesh);
 
-/// The height (z, metres) on which a standing mesh rests: its lowest vertices, but for a few strays. Throws InputError
-/// for a mesh without vertices.
+/// Returns the height (z, metres) on which a standing mesh rests: its lowest vertices, except for a few strays. Throws
+/// InputError for a mesh without vertices.
 double base_height(const Mesh& mesh);
 
 /// A scanned mesh made a model of the training views.

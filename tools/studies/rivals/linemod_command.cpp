@@ -42,7 +42,7 @@ std::string folder_name(const fs::path& scene) {
   return fs::weakly_canonical(scene).filename().string();
 }
 
-/// Every Nth frame of the scene, or as many of them as can be done in time: its truth, and what was detected.
+/// Detects in every Nth frame of the scene, or as many of them as time allows: returns ground truth and detections.
 std::vector<EvaluatedFrame> detect_in_scene(const LinemodDetector& detector, const BopScene& scene,
                                             const LinemodOptions& options) {
   const std::vector<EvaluatedFrame> all = read_ground_truth(scene, find_bop_names(scene.folder()));
@@ -61,7 +61,7 @@ std::vector<EvaluatedFrame> detect_in_scene(const LinemodDetector& detector, con
   return frames;
 }
 
-/// Opened before training, so that a wrong name is told at once.
+/// Opens the scenes before training, so that a wrong name is reported at once.
 std::vector<BopScene> open_scenes(const LinemodOptions& options) {
   require(!options.scenes.empty() && !options.out.empty(), "expected --scene and --out, or --tune");
   std::vector<BopScene> scenes;

@@ -28,7 +28,7 @@ void register_codecs(const RgbdFrame& frame) {
   });
 }
 
-/// Each level of the working frame, all of it.
+/// Registers each level of the working frame, all of it.
 void register_features(const RgbdFrame& frame, const Forest& forest) {
   add("working_frame", [&frame, &forest] {
     for (const FeatureLevel& level : feature_levels(forest.features, frame.camera)) {
@@ -44,7 +44,7 @@ void register_features(const RgbdFrame& frame, const Forest& forest) {
   });
 }
 
-/// The stages of Detector::detect from the images to the leaves.
+/// Runs the stages of Detector::detect from the images to the leaves.
 void see(const SearchContext& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);
@@ -52,7 +52,7 @@ void see(const SearchContext& search, const RgbdFrame& frame, DetectorWorkspace&
 }
 
 void register_search(const RgbdFrame& frame, const ForestIndex& index, const DetectionSettings& settings) {
-  static DetectorWorkspace workspace;  // whose memory is kept, as the detector's is
+  static DetectorWorkspace workspace;  // kept from call to call, as the detector's is
   add("resize_features_leaves", [&frame, &index, &settings] { see({index, settings}, frame, workspace); });
   static DetectorWorkspace seen;
   see({index, settings}, frame, seen);

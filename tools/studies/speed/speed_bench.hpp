@@ -15,38 +15,38 @@ namespace houghstream {
 /// Something whose time on a frame is measured beside that of others.
 struct BenchmarkedDetector {
   std::string name;
-  std::size_t frames = SIZE_MAX;     ///< looks at no more than so many of the frames; for slow ones
-  std::int64_t instruction_set = 0;  ///< of Highway, that alone; 0 = the best that the processor has
+  std::size_t frames = SIZE_MAX;     ///< maximum number of frames, for slow detectors
+  std::int64_t instruction_set = 0;  ///< the only one of Highway's to use; 0 = the best of the processor
   double image_scale = 1.0;          ///< size of the frames that it is given over that of the scene's
   std::function<Detections(const RgbdFrame&)> detect;
 };
 
-/// A detector as a command line names it: "NAME=FOREST", then any of ",threads=N" (default 2), ",reference",
+/// Parses a detector of a command line: "NAME=FOREST", then any of ",threads=N" (default 2), ",reference",
 /// ",set=SSE4|AVX2|AVX3" and so on (the names of Highway), ",frames=N", ",trees=N" (the first so many), ",scale=X",
-/// ",threshold=X" and ",min-mass=X" (as of hs-evaluate, so that time and accuracy are of the same settings).
-/// Loads the forest. Throws InputError naming what was not understood.
+/// ",threshold=X" and ",min-mass=X" (as of hs-evaluate, so that time and accuracy are of the same settings). Loads the
+/// forest. Throws InputError naming the part that was not understood.
 BenchmarkedDetector parse_contender(const std::string& text);
 
-/// The frame with its image `scale` times as large: colour interpolated, depth of the nearest pixel.
+/// Returns the frame with its image `scale` times as large: colour interpolated, depth of the nearest pixel.
 RgbdFrame resized_frame(const RgbdFrame& frame, double scale);
 
-/// Time of one detector's frames, milliseconds of wall time.
+/// Holds the times of one detector's frames, milliseconds of wall time.
 struct SpeedResult {
-  std::vector<double> ms;                               ///< by frame, in the order they were looked at
+  std::vector<double> ms;                               ///< times by frame, in the order of processing
   std::map<std::string, std::vector<double>> stage_ms;  ///< likewise
-  std::size_t detections = 0;                           ///< in all frames
+  std::size_t detections = 0;                           ///< number in all frames
 };
 
-/// Every contender looks at a frame, then all at the next one: what disturbs the machine disturbs all alike. Who begins
-/// changes from frame to frame. Before that each that is to see more than a few frames looks at the first one once,
-/// which is not counted. In the order of the contenders. Throws InputError without frames.
+/// Measures every detector on a frame, then all on the next one, so that disturbances of the machine affect all alike.
+/// The first one changes from frame to frame. Before that each detector of more than a few frames processes the first
+/// one once, which is not counted. Results are in the order of the detectors. Throws InputError without frames.
 std::vector<SpeedResult> measure_speed(const std::vector<BenchmarkedDetector>& contenders,
                                        const std::vector<RgbdFrame>& frames);
 
-/// {"NAME": {"ms": {"p10", "p50", "p90"}, "frames", "detections", "stage_ms": {"STAGE": median}}}
+/// Returns {"NAME": {"ms": {"p10", "p50", "p90"}, "frames", "detections", "stage_ms": {"STAGE": median}}}.
 nlohmann::json to_json(const std::vector<BenchmarkedDetector>& contenders, const std::vector<SpeedResult>& results);
 
-/// A table for the terminal, fastest first.
+/// Returns a table for the terminal, fastest first.
 std::string speed_table(const std::vector<BenchmarkedDetector>& contenders, const std::vector<SpeedResult>& results);
 
 }  // namespace houghstream

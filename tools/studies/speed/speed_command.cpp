@@ -28,7 +28,7 @@ struct SpeedOptions {
   bool list_sets = false;
 };
 
-/// OpenCV's LINEMOD, with templates of the views at the distances given.
+/// Makes OpenCV's LINEMOD, with templates of the views at the given distances.
 BenchmarkedDetector make_linemod(const SpeedOptions& options) {
   const std::vector<TrainingView> views = read_training_sources(options.linemod_views);
   const auto linemod = std::make_shared<const LinemodDetector>(views, options.linemod, LinemodSelection{});

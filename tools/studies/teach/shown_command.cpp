@@ -26,7 +26,8 @@ cv::Vec3b texel(const cv::Mat& texture, const Eigen::Vector2f& uv) {
   return texture.at<cv::Vec3b>(y, x);
 }
 
-/// A mesh with a texture, cut so finely that colours of vertices show it: images of models have no others.
+/// Returns a mesh with a texture, cut so finely that colours of vertices show it, since images of models have only
+/// those.
 Mesh finely_coloured(const Mesh& mesh) {
   constexpr double kSide_m = 0.002;
   if (mesh.texture.empty()) return mesh;
@@ -60,7 +61,7 @@ void run(const CompareOptions& options) {
   const studies::ShownComparison comparison = studies::compare_shown(takes, options.kept, taught);
   std::filesystem::create_directories(options.out);
   write_json(to_json(comparison), options.out / "compared.json");
-  Mesh placed = taught;  // as the true mesh stands
+  Mesh placed = taught;  // in the frame of the ground-truth mesh
   for (Eigen::Vector3f& vertex : placed.vertices) vertex = comparison.T_true_taught.cast<float>() * vertex;
   for (Eigen::Vector3f& normal : placed.normals) normal = comparison.T_true_taught.linear().cast<float>() * normal;
   write_png(draw_model(placed), options.out / "taught.png");

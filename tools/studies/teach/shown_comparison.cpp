@@ -26,7 +26,7 @@ Spread spread_of(const std::vector<double>& values) {
   return {quantile(values, 0.5), quantile(values, 0.95)};
 }
 
-/// `middle` in the frame that both map from.
+/// Returns the motion between two poses; `middle` is given in the frame that both map from.
 PoseGap gap_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, const Eigen::Vector3d& middle) {
   return {(a * middle - b * middle).norm(),
           Eigen::Quaterniond(a.linear()).angularDistance(Eigen::Quaterniond(b.linear()))};
@@ -44,7 +44,7 @@ Eigen::Isometry3d mean_of(const std::vector<Eigen::Isometry3d>& poses, const Eig
     sum += pose.linear();
     place += pose * middle / static_cast<double>(poses.size());
   }
-  // The rotation nearest to the sum (chordal mean).
+  // The rotation is the nearest to the sum (chordal mean).
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
   Eigen::Isometry3d mean = Eigen::Isometry3d::Identity();
@@ -74,7 +74,7 @@ Eigen::Isometry3d robust_mean(const std::vector<Eigen::Isometry3d>& poses, const
   return mean_of(near, middle);
 }
 
-/// The taught frame in the true one as each pose says; poses of frames without truth are left out.
+/// Returns the taught frame in the ground-truth one for each pose; poses of frames without ground truth are left out.
 std::vector<Eigen::Isometry3d> ground_truth_from_taught(const TrueTakes& takes, const std::vector<ShownPose>& poses) {
   std::vector<Eigen::Isometry3d> out;
   for (const ShownPose& pose : poses) {
@@ -95,9 +95,9 @@ std::vector<double> distances(const std::vector<Eigen::Vector3f>& points, const 
   return out;
 }
 
-/// Points of the true surface that some frames saw, nothing of the object itself before them.
+/// Returns points of the ground-truth surface that some frames observed, without self-occlusion.
 std::vector<Eigen::Vector3f> seen_points(const TrueTakes& takes, const std::vector<Eigen::Vector3f>& points) {
-  constexpr std::size_t kFrames = 40;  // of each scene
+  constexpr std::size_t kFrames = 40;  // frames of each scene
   constexpr double kBehind_m = 0.003;
   std::vector<bool> seen(points.size(), false);
   for (std::size_t s = 0; s < takes.scenes.size(); ++s) {

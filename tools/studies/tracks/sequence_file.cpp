@@ -50,7 +50,7 @@ void write_message(LogWriter& writer, const std::string& channel, const Message&
   writer.write(message.utime, channel, {bytes.data(), bytes.size()});
 }
 
-/// Results of a log by frame, in their order.
+/// Returns the results of a log by frame, in their order.
 std::map<FrameId, std::vector<LogEvent>> results_of(const std::filesystem::path& log) {
   std::map<FrameId, std::vector<LogEvent>> out;
   LogReader reader(log);

@@ -11,11 +11,11 @@
 
 namespace houghstream::studies {
 
-/// An object of a sequence at a time.
+/// Gives the pose of an object of a sequence at a time.
 struct TrueInstance {
-  int instance = 0;  ///< from 1
+  int instance = 0;  ///< 1 or more
   std::string class_name;
-  std::optional<Eigen::Isometry3d> T_world_object;  ///< nothing where it has been taken away
+  std::optional<Eigen::Isometry3d> T_world_object;  ///< nothing after it has been taken away
   double visible = 0.0;                             ///< share that the camera sees which sees most of it
 };
 
@@ -31,7 +31,7 @@ struct SequenceFile {
   double fps = 30.0;
   std::vector<SequenceCamera> cameras;
   std::vector<std::int64_t> utimes;
-  std::vector<std::vector<TrueInstance>> frames;  ///< by frame, by instance
+  std::vector<std::vector<TrueInstance>> frames;  ///< ground truth by frame and instance
 
   std::optional<std::size_t> index_of(std::int64_t utime) const;
 };
@@ -48,8 +48,8 @@ SequenceFile read_sequence(const std::filesystem::path& folder);
 void write_sequence_log(const SequenceFile& sequence, const std::filesystem::path& log,
                         const std::map<std::string, Eigen::Vector3d>& wrong_m, std::size_t every = 1);
 
-/// A log of frames with the results of other logs behind each frame (same name): first those of the first log. Throws
-/// InputError where a log cannot be read or written.
+/// Joins a log of frames with the results of other logs behind each frame (same name): first those of the first log.
+/// Throws InputError where a log cannot be read or written.
 void join_logs(const std::filesystem::path& frames, const std::vector<std::filesystem::path>& results,
                const std::filesystem::path& out);
 

@@ -16,16 +16,16 @@ namespace houghstream::studies {
 namespace {
 
 constexpr int kThresholds = 19;
-constexpr double kZeroAtM = 0.1;  // two places that far apart are not alike at all
+constexpr double kZeroAtM = 0.1;  // positions that far apart have no similarity
 
-/// A true object and a published one.
+/// A pair is a ground-truth object and a published one.
 using TrackPair = std::pair<int, std::int64_t>;
 
 /// Objects of a frame that count.
 struct CountedFrame {
   std::vector<int> instances;     // true objects that must be seen
   std::vector<std::int64_t> ids;  // published objects
-  Eigen::MatrixXd similarities;   // of these by those
+  Eigen::MatrixXd similarities;   // similarity of each instance (row) to each id (column)
 };
 
 double similarity(double distance_m) {
@@ -57,7 +57,7 @@ CountedFrame counted(const std::vector<TrueInstance>& truth, const std::vector<P
   return frame;
 }
 
-/// In how many frames each object is, and how much of them two share at most.
+/// Counts in how many frames each object is, and the maximum similarity that two share.
 struct Alignment {
   std::map<int, double> of_truth;
   std::map<std::int64_t, double> of_track;
@@ -87,7 +87,7 @@ struct Alignment {
   }
 };
 
-/// For each true object the place of the published one, or -1.
+/// Returns for each ground-truth object the index of the published one, or -1.
 std::vector<int> aligned_matches(const CountedFrame& frame, const Alignment& alignment) {
   Eigen::MatrixXd costs = -frame.similarities;
   for (std::size_t i = 0; i < frame.instances.size(); ++i) {
@@ -178,8 +178,8 @@ double at_share(Numbers values, double fraction) {
 struct Errors {
   Numbers mm;
   Numbers deg;
-  Numbers deviations_mm;  ///< as they were published with some of them
-  int within_two = 0;     ///< of these deviations
+  Numbers deviations_mm;  ///< published standard deviations of some of them
+  int within_two = 0;     ///< errors within two of these deviations
 
   void add(const Vector6& error, double deviation_m) {
     mm.push_back(1e3 * error.head<3>().norm());
@@ -201,7 +201,7 @@ struct Errors {
   }
 };
 
-/// A row for each threshold.
+/// Returns a row for each threshold.
 OrderedJson counts_json(const std::vector<HotaCount>& counts) {
   OrderedJson out = OrderedJson::array();
   for (const HotaCount& count : counts)
@@ -221,10 +221,10 @@ std::vector<PublishedFrame> with_silent_frames(const SequenceFile& sequence, std
   return published;
 }
 
-/// Life of one ground-truth object.
+/// Tracks the life of one ground-truth object.
 struct Life {
-  std::int64_t last_id = 0;          // that it was given last; 0: none yet
-  std::optional<std::size_t> since;  // frame in which it was seen first, or anew, and not yet found
+  std::int64_t last_id = 0;          // last published number of it; 0: none yet
+  std::optional<std::size_t> since;  // frame in which it was observed first, or again, and not yet found
   bool there = false;
   std::optional<std::size_t> taken;  // frame from which on it is away, and its number still published
   std::vector<Vector6> window;       // differences from the true pose while it stands
@@ -314,7 +314,7 @@ class Comparison {
     if (!stands || object == nullptr) life.window.clear();
   }
 
-  /// Rest flag since the frame before: several publications may be of one frame.
+  /// Returns the rest flag since the frame before: several publications may be of one frame.
   bool stood(const TrueInstance& truth, std::size_t index) const {
     if (!truth.T_world_object || index == 0) return false;
     const std::vector<TrueInstance>& before = sequence_.frames[index - 1];
@@ -335,7 +335,9 @@ class Comparison {
     const bool told = std::any_of(frame.objects.begin(), frame.objects.end(),
                                   [&](const PublishedObject& object) { return object.track_id == life.last_id; });
     if (told && !truth.T_world_object) return;
-    to_gone_.push_back(told ? OrderedJson() : OrderedJson(seconds(*life.taken, frame.index)));  // or back before that
+    to_gone_.push_back(
+        told ? OrderedJson()
+             : OrderedJson(seconds(*life.taken, frame.index)));  // null where it came back before it was gone
     life.taken.reset();
   }
 

@@ -22,9 +22,9 @@ struct PublishedObject {
   double deviation_m = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Published objects of a frame of the sequence.
+/// Holds the published objects of a frame of the sequence.
 struct PublishedFrame {
-  std::size_t index = 0;  ///< in the sequence
+  std::size_t index = 0;  ///< index in the sequence
   std::vector<PublishedObject> objects;
   std::vector<double> qualities = {};  ///< of poses of single frames, in the order of `objects`; empty of tracks
 };
@@ -63,16 +63,17 @@ OrderedJson track_metrics(const SequenceFile& sequence, const std::vector<Publis
 /// Symmetries by class name; of others none.
 using ClassSymmetries = std::map<std::string, Symmetries>;
 
-/// The published pose of a true object that is there: of those that look the same, the one nearest to the true one.
+/// Returns the published pose of a ground-truth object that is present: of the poses equivalent by symmetry, the one
+/// nearest to the true one.
 Eigen::Isometry3d as_the_truth(const PublishedObject& object, const TrueInstance& truth,
                                const ClassSymmetries& symmetries);
 
-/// Metres from a true object to a published one of its class, but for symmetry; infinite where the classes differ, or
-/// the true one is not there.
+/// Returns the metres from a ground-truth object to a published one of its class, up to symmetry; infinite where the
+/// classes differ, or the ground-truth one is not present.
 double apart_m(const TrueInstance& truth, const PublishedObject& object, const ClassSymmetries& symmetries);
 
-/// For each true object the published one that it is given, or -1: of its class, nearer than `reach_m`, and so that the
-/// sum of distances is least.
+/// Assigns to each ground-truth object a published one, or -1: of its class, nearer than `reach_m`, and so that the sum
+/// of distances is minimal.
 std::vector<int> matches(const std::vector<TrueInstance>& truth, const std::vector<PublishedObject>& objects,
                          const ClassSymmetries& symmetries, double reach_m);
 
@@ -84,15 +85,15 @@ struct HotaCount {
   double association = 0.0;  ///< sum over the true positives of A(c)
 };
 
-/// Higher Order Tracking Accuracy (Luiten et al., "HOTA: A Higher Order Metric for Evaluating Multi-Object Tracking",
-/// IJCV 2021), as the authors' TrackEval counts it, at thresholds 0.05 to 0.95: in each frame true and published
-/// objects are given to one another once, for all thresholds, so that the sum of similarity times the global alignment
-/// of their tracks is greatest. Similarity is 1 - distance / 0.1 m. Published objects that are given (matches()) to a
-/// true one that need not be seen are left out before, with that one.
+/// Computes Higher Order Tracking Accuracy (Luiten et al., "HOTA: A Higher Order Metric for Evaluating Multi-Object
+/// Tracking", IJCV 2021), as the authors' TrackEval counts it, at thresholds 0.05 to 0.95: in each frame ground-truth
+/// and published objects are matched once, for all thresholds, so that the sum of similarity times the global alignment
+/// of their tracks is maximal. Similarity is 1 - distance / 0.1 m. Published objects that are matched (matches()) to a
+/// ground-truth one that need not be seen are left out before, with that one.
 std::vector<HotaCount> hota_counts(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
                                    const ClassSymmetries& symmetries, const TrackMetricsSettings& settings);
 
-/// Mean over the thresholds of sqrt(DetA AssA). Counts of several sequences may be added up before.
+/// Returns the mean over the thresholds of sqrt(DetA AssA). Counts of several sequences may be added up before.
 double hota_of(const std::vector<HotaCount>& counts);
 
 }  // namespace houghstream::studies

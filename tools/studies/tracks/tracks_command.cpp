@@ -14,7 +14,7 @@
 #include "tools/studies/tracks/sequence_file.hpp"
 #include "tools/studies/tracks/track_metrics.hpp"
 
-// hs-study tracks: what tools/bench tracks does with rendered sequences.
+// hs-study tracks is what tools/bench tracks runs on rendered sequences.
 
 using namespace houghstream;
 using namespace houghstream::studies;
@@ -42,7 +42,7 @@ std::map<std::string, Eigen::Vector3d> wrong_places(const std::vector<std::strin
   return out;
 }
 
-/// The objects that are said to be there: not those that are gone.
+/// Returns the objects that are published as present, without those that are gone.
 std::vector<PublishedObject> objects_of(const LogEvent& event) {
   std::vector<PublishedObject> out;
   const WorldObjects world = world_from_message(decode_message<objects_t>({event.data.data(), event.data.size()}));

@@ -27,7 +27,7 @@ const cv::Scalar kMuted(190, 190, 190);
 const cv::Scalar kBright(255, 255, 255);
 const cv::Scalar kWarning(80, 170, 255);
 
-// One block of the panel, with its heading; what does not fit is cut off at its right edge.
+// Draws one block of the panel, with its heading; text that does not fit is cut off at its right edge.
 class Block {
  public:
   Block(cv::Mat& panel, const cv::Point& corner, const std::string& heading)

@@ -26,7 +26,7 @@ double height_ms(const FrameLatency& frame) {
   return std::max(sum, frame.total_ms.value_or(0.0));
 }
 
-// The smallest of 1, 2, 5, 10, 20, 50... that holds the value.
+// Returns the smallest of 1, 2, 5, 10, 20, 50... that is not below the value.
 double round_up(double value) {
   double scale = std::pow(10.0, std::floor(std::log10(std::max(value, 1.0))));
   for (const double factor : {1.0, 2.0, 5.0}) {
@@ -66,7 +66,7 @@ cv::Scalar stage_colour(std::size_t index) {
 }
 
 void draw_stage_list(cv::Mat& image, const cv::Rect& area, const std::vector<StageTime>& stages, int rows) {
-  constexpr int kWidth = 152;  // of most entries; the longest need a little more, which the last column has beside it
+  constexpr int kWidth = 152;  // of most entries; the longest need a little more, for which the last column has space
   constexpr int kPitch = 159;
   constexpr int kSquare = 10;
   const int columns = std::max(1, (area.width + 1) / kWidth);

@@ -9,24 +9,24 @@
 
 namespace houghstream::view {
 
-/// What one frame took.
+/// Holds the times of one frame.
 struct FrameLatency {
   std::vector<StageTime> stages;
-  std::optional<double> total_ms;  ///< from the frame's arrival to its last result
+  std::optional<double> total_ms;  ///< time from the frame's arrival to its last result
 };
 
-/// The last frames, oldest first.
+/// The history holds the last frames, oldest first.
 using LatencyHistory = std::deque<FrameLatency>;
 
-/// The colour (BGR) of the Nth stage of a frame, from 0.
+/// Returns the colour (BGR) of the Nth stage of a frame, from 0.
 cv::Scalar stage_colour(std::size_t index);
 
-/// A row per stage in columns of `rows` rows, or of more and lower ones where `area` is not wide enough for all
+/// Draws a row per stage in columns of `rows` rows, or of more and lower ones where `area` is not wide enough for all
 /// columns: its colour, name and milliseconds.
 void draw_stage_list(cv::Mat& image, const cv::Rect& area, const std::vector<StageTime>& stages, int rows);
 
-/// A column per frame, newest to the right: its stages on top of each other, and a white mark at the frame's whole
-/// latency. The scale, a round number of milliseconds, stands at the upper left.
+/// Draws a column per frame, newest to the right: its stages on top of each other, and a white mark at the frame's
+/// whole latency. The scale, a round number of milliseconds, is at the upper left.
 void draw_latency_chart(cv::Mat& image, const cv::Rect& area, const LatencyHistory& history);
 
 }  // namespace houghstream::view

@@ -14,7 +14,7 @@ namespace houghstream::view {
 namespace {
 
 constexpr double kDefaultAxis = 0.05;  // metres, for a class without a model
-constexpr double kFontScale = 0.45;    // of OpenCV's simplex font
+constexpr double kFontScale = 0.45;    // scale of OpenCV's simplex font
 constexpr int kSubpixelBits = 4;       // anti-aliased lines are placed to 1/16 of a pixel
 const cv::Scalar kDark(20, 20, 20);
 
@@ -29,7 +29,7 @@ void draw_box(cv::Mat& image, const Detection& detection) {
   cv::rectangle(image, box, class_colour(detection.class_id), 2);
 }
 
-// The label sits on the box's upper edge, or just inside where there is no room above.
+// Draws the label on the box's upper edge, or just inside where there is no space above.
 void draw_label(cv::Mat& image, const Detection& detection, const ObjectPose* pose) {
   std::string text = fmt::format("{} {:.2f}", detection.class_name, detection.score);
   if (pose != nullptr && pose->status != PoseStatus::kValid) text += fmt::format(" ({})", to_string(pose->status));
@@ -44,7 +44,7 @@ void draw_label(cv::Mat& image, const Detection& detection, const ObjectPose* po
               text_colour_on(background), 1, cv::LINE_AA);
 }
 
-// What stands for a class without a model: ten centimetres around its origin.
+// Returns the shape drawn for a class without a model: ten centimetres around its origin.
 Mesh unknown_shape() {
   const float half = static_cast<float>(kDefaultAxis);
   Mesh cube;
@@ -56,7 +56,7 @@ Mesh unknown_shape() {
   return cube;
 }
 
-// Where the model may be seen; empty when any of it is at or behind the camera.
+// Returns the region in which the model may be visible; empty when any of it is at or behind the camera.
 cv::Rect projected_region(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera) {
   Eigen::Vector2d low(1e9, 1e9);
   Eigen::Vector2d high(-1e9, -1e9);
@@ -83,7 +83,7 @@ void draw_outline(cv::Mat& image, const Mesh& mesh, const ObjectPose& pose, cons
   cv::drawContours(image, contours, -1, class_colour(pose.class_id), 2, cv::LINE_AA);
 }
 
-// Half the model's largest extent: long enough to leave the surface, short enough not to hide the neighbours.
+// Returns half the model's largest extent: long enough to leave the surface, short enough not to hide the neighbours.
 double axis_length(const Mesh& mesh) {
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex);
@@ -106,7 +106,7 @@ void draw_axes(cv::Mat& image, const Eigen::Isometry3d& T_camera_object, double 
   }
 }
 
-// The pose of each detection, null where there is none.
+// Returns the pose of each detection, null where there is none.
 std::vector<const ObjectPose*> poses_by_detection(const Detections& detections,
                                                   const std::optional<ObjectPoses>& poses) {
   std::vector<const ObjectPose*> found(detections.detections.size(), nullptr);
@@ -144,7 +144,7 @@ BoxedPoses boxed(const ObjectPoses& followed, const ClassModels& models, const C
     detection.class_name = pose.class_name;
     detection.score = pose.detection_score;
     detection.box_px = region;
-    // Where votes of a store are for; the origin of a mesh may lie anywhere.
+    // The votes of a store are cast for this point; the origin of a mesh may lie anywhere.
     detection.centre_camera = pose.T_camera_object->cast<float>() * mesh_bounds(shape).center();
     all.poses.poses.push_back(pose);
     all.poses.poses.back().detection_index = static_cast<int>(all.detections.detections.size());

@@ -19,13 +19,13 @@ inline constexpr float kNearPlane = 0.05F;  ///< metres; nothing nearer is drawn
 inline constexpr double kPanelText = 0.42;  ///< scale of the text beside the image
 inline const cv::Scalar kPanelGround(38, 34, 32);
 
-/// The colour (BGR) in which a class is drawn everywhere: eight that stay apart for colour-blind eyes
-/// (Okabe and Ito 2008), then again from the first.
+/// Returns the colour (BGR) in which a class is drawn everywhere: eight that are distinct for colour-blind eyes (Okabe
+/// and Ito 2008), then again from the first.
 cv::Scalar class_colour(int class_id);
 
-/// A copy of the frame's colour image with, for every detection, its box, name and score; with poses also the outline
-/// of the model, the object's axes (x red, y green, z blue), or the reason why there is no pose.
-/// Throws InputError when detections or poses are not of this frame, or a pose names no detection.
+/// Returns a copy of the frame's colour image with, for every detection, its box, name and score; with poses also the
+/// outline of the model, the object's axes (x red, y green, z blue), or the reason why there is no pose. Throws
+/// InputError when detections or poses are not of this frame, or a pose names no detection.
 cv::Mat draw_overlay(const RgbdFrame& frame, const Detections& detections, const std::optional<ObjectPoses>& poses,
                      const ClassModels& models);
 
@@ -37,7 +37,7 @@ struct BoxedPoses {
 };
 BoxedPoses boxed(const ObjectPoses& followed, const ClassModels& models, const Camera& camera);
 
-/// The outline of the pose's model, where there is one, and its axes; nothing where there is no pose.
+/// Draws the outline of the pose's model, where there is one, and its axes; nothing where there is no pose.
 void draw_pose(cv::Mat& image, const ObjectPose& pose, const ClassModels& models, const Camera& camera);
 
 /// Text that stays readable on any background: light, with a dark rim. `origin_px` is the left end of its baseline.

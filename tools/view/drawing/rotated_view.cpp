@@ -12,7 +12,7 @@ constexpr double kFromTheRight = 35.0 * M_PI / 180.0;
 constexpr double kFromAbove = 25.0 * M_PI / 180.0;
 const cv::Scalar kTurnedGround(40, 34, 30);
 
-/// Median of the measured depths, from a part of them; 1 m where there are none.
+/// Returns the median of the measured depths, from a part of them; 1 m where there are none.
 double middle_depth(const cv::Mat& depth) {
   constexpr int kStep = 8;
   std::vector<float> measured;
@@ -27,7 +27,7 @@ double middle_depth(const cv::Mat& depth) {
   return static_cast<double>(*middle);
 }
 
-/// An image of points; the nearest one is seen.
+/// Draws an image of points, of which the nearest one is visible.
 class PointImage {
  public:
   explicit PointImage(const Camera& camera)
@@ -42,7 +42,7 @@ class PointImage {
     if (!(pixel.cwiseAbs().maxCoeff() < reach)) return;
     const int left = static_cast<int>(std::floor(pixel.x()));
     const int top = static_cast<int>(std::floor(pixel.y()));
-    // Four pixels: points that drift apart leave no gaps yet.
+    // Each point covers four pixels, so that points that drift apart leave no gaps yet.
     for (int y = std::max(top, 0); y < std::min(top + 2, image_.rows); ++y) {
       for (int x = std::max(left, 0); x < std::min(left + 2, image_.cols); ++x) {
         if (nearest_.at<float>(y, x) <= point.z()) continue;

@@ -9,12 +9,12 @@
 
 namespace houghstream::view {
 
-/// From the frame's camera to the place from which draw_rotated_view() looks: moved to the right and up about the
-/// middle of what was measured (`depth`: CV_32FC1, metres).
+/// Returns the pose from the frame's camera to the position from which draw_rotated_view() looks: moved to the right
+/// and up about the middle of the measured points (`depth`: CV_32FC1, metres).
 Eigen::Isometry3d rotated_camera(const cv::Mat& depth);
 
-/// What was measured, as points in their colours seen from rotated_camera(), with outlines and axes of the poses, of
-/// the frame's size (CV_8UC3, BGR). Dark where no point is.
+/// Draws the measured points in their colours as seen from rotated_camera(), with outlines and axes of the poses, in
+/// the frame's size (CV_8UC3, BGR). Pixels without a point are dark.
 cv::Mat draw_rotated_view(const RgbdFrame& frame, const std::optional<ObjectPoses>& poses, const ClassModels& models);
 
 }  // namespace houghstream::view

@@ -17,24 +17,24 @@
 
 namespace houghstream::view {
 
-/// What a process said about itself last.
+/// Holds the last status of a process.
 struct ProcessState {
   std::string name;           ///< executable
-  std::int64_t pid = 0;       ///< tells several of one name apart
+  std::int64_t pid = 0;       ///< distinguishes several of one name
   float rate_hz = 0.0F;       ///< frames finished per second
   std::int64_t skipped = 0;   ///< frames passed over since its start
-  std::int64_t lost = 0;      ///< frames that never arrived; -1 = cannot be told
+  std::int64_t lost = 0;      ///< frames that never arrived; -1 = unknown
   std::int64_t refused = 0;   ///< frames that could not be understood
-  std::int64_t heard_us = 0;  ///< when it was heard, local clock
+  std::int64_t heard_us = 0;  ///< time of its reception, local clock
 };
 
-/// How the stream goes at a moment.
+/// Describes the stream at one moment.
 struct StreamState {
   double frames_hz = 0.0;                    ///< frames of the camera that arrive here per second
-  std::vector<ProcessState> processes;       ///< those heard of late, by name
-  std::optional<Teaching> teaching;          ///< of an object that is shown just now
-  std::optional<WorldState> world;           ///< where somebody tells of it just now
-  std::map<std::string, ChromaMap> colours;  ///< how cameras render colours, where hs-pose has learnt it
+  std::vector<ProcessState> processes;       ///< processes of recent statuses, by name
+  std::optional<Teaching> teaching;          ///< of an object that is shown at present
+  std::optional<WorldState> world;           ///< of a recent message of hs-track
+  std::map<std::string, ChromaMap> colours;  ///< colour maps by camera, where hs-pose has learnt them
 };
 
 /// Keeps the rates of a stream. Every function may be called from any thread; times are microseconds of one clock.
@@ -54,20 +54,20 @@ class StreamWatch {
   std::deque<std::int64_t> arrivals_us_;
   std::map<std::pair<std::string, std::int64_t>, ProcessState> processes_;  // by name and process id
   std::optional<Teaching> teaching_;
-  std::int64_t taught_us_ = 0;                                         // when it was heard
-  std::map<std::string, std::pair<ChromaMap, std::int64_t>> colours_;  // by camera, and when it was heard
+  std::int64_t taught_us_ = 0;                                         // time of its reception
+  std::map<std::string, std::pair<ChromaMap, std::int64_t>> colours_;  // map and time of its reception, by camera
   WorldState world_;
-  std::int64_t world_us_ = std::numeric_limits<std::int64_t>::min() / 2;  // when it was heard
+  std::int64_t world_us_ = std::numeric_limits<std::int64_t>::min() / 2;  // time of its reception
 };
 
-/// Which camera's frames are shown, of those that are on the bus: the first that is heard until another one is asked
-/// for. May be used from any thread.
+/// Selects the camera whose frames are shown, of those on the bus: the first one received until another one is
+/// requested. May be used from any thread.
 class SelectedCamera {
  public:
   /// A frame of this camera has come.
   void note(const std::string& channel);
 
-  /// The next camera in the order of their names.
+  /// Selects the next camera in the order of their names.
   void next();
 
   /// While none was heard, each one is.

@@ -30,7 +30,7 @@ bool is_of(const Teaching& teaching, const FrameId& frame) {
   return same_camera && apart_us <= kNearlyUs && apart_us >= -kNearlyUs;
 }
 
-/// A part of the image, made darker for what is written on it.
+/// Returns a part of the image, made darker for text on it.
 cv::Mat darkened(cv::Mat& image, const cv::Rect& area) {
   cv::Mat part = image(area & cv::Rect({}, image.size()));
   if (part.empty()) return part;  // an image of a single row or column of pixels
@@ -46,7 +46,7 @@ void draw_object(cv::Mat& image, const Teaching& teaching, const Camera& camera)
   draw_pose(image, pose, {}, camera);
 }
 
-/// From where the camera is; where that is not known, from the front and a little above.
+/// Returns the rotation of the view from the camera; where its pose is unknown, from the front and a little above.
 Eigen::Matrix3f view_of(const Teaching& teaching) {
   if (teaching.T_camera_object) return teaching.T_camera_object->linear().cast<float>();
   const Eigen::Vector3f z = Eigen::Vector3f(1.0F, 0.0F, -0.5F).normalized();
@@ -90,7 +90,7 @@ void draw_words(cv::Mat& image, const Teaching& teaching) {
 
 void draw_sphere(cv::Mat& image, const cv::Rect& square, const std::vector<ViewDirection>& directions,
                  const Eigen::Matrix3f& R_view_object) {
-  constexpr float kReach = 0.86F;  // of the square's half side: what lies at the rim is drawn whole
+  constexpr float kReach = 0.86F;  // fraction of the square's half side, so that points at the rim are drawn whole
   const float radius = 0.5F * static_cast<float>(std::min(square.width, square.height));
   const auto dot = [&](float towards) { return std::max(1, static_cast<int>(radius * (0.07F + 0.07F * towards))); };
   const cv::Point middle(square.x + square.width / 2, square.y + square.height / 2);

@@ -13,8 +13,8 @@ namespace houghstream::view {
 /// with a bar as long as the state's progress.
 void draw_teaching(cv::Mat& image, const Teaching& teaching, const RgbdFrame& frame);
 
-/// A sphere of directions as seen from where `R_view_object` turns it, in a square: those on the near side, seen ones
-/// filled. Places are those of the directions' points on the sphere, seen from far away.
+/// Draws a sphere of directions, rotated by `R_view_object`, in a square: those on the near side, observed ones filled.
+/// Positions are those of the directions' points on the sphere in an orthographic view.
 void draw_sphere(cv::Mat& image, const cv::Rect& square, const std::vector<ViewDirection>& directions,
                  const Eigen::Matrix3f& R_view_object);
 

@@ -5,7 +5,8 @@
 
 namespace houghstream::view {
 
-/// Images of one size and type CV_8UC3 row by row, `columns` in a row, with a little grey between them. At least one.
+/// Returns images of one size and type CV_8UC3 row by row, `columns` in a row, with a little grey between them. At
+/// least one is required.
 cv::Mat tiled(const std::vector<cv::Mat>& tiles, int columns);
 
 }  // namespace houghstream::view

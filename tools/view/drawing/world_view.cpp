@@ -31,14 +31,14 @@ std::string label_of(const TrackedObject& object) {
   return text;
 }
 
-/// From metres of the world to pixels of the image from above.
+/// Maps metres of the world to pixels of the image from above.
 struct MapScale {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   double px_per_m = 300.0;
   cv::Size size;
 
-  /// What lies far outside is drawn no nearer than this: OpenCV walks row by row from where a shape begins, and the
-  /// largest places are no whole numbers of pixels.
+  /// Positions far outside are drawn no farther out than this: OpenCV steps row by row from the beginning of a shape,
+  /// and the largest positions exceed whole numbers of pixels.
   static constexpr double kFarPx = 1e4;
 
   cv::Point at(const Eigen::Vector3d& place) const {

@@ -12,11 +12,12 @@
 
 namespace houghstream::view {
 
-/// What hs-track said of the world last, and where its objects were before.
+/// Holds the last message of hs-track, and the earlier positions of its objects.
 struct WorldState {
   WorldObjects last;
-  std::map<std::string, Eigen::Isometry3d> T_world_camera;  ///< of each camera (64 at most), by channel, as told last
-  std::map<std::int64_t, std::deque<Eigen::Vector3d>> trails;  ///< by track_id: places of the last seconds, metres
+  std::map<std::string, Eigen::Isometry3d>
+      T_world_camera;  ///< of each camera (64 at most), by channel, as published last
+  std::map<std::int64_t, std::deque<Eigen::Vector3d>> trails;  ///< positions of the last seconds by track_id, metres
 
   /// A new world has no past.
   void add(const WorldObjects& world);
@@ -27,8 +28,8 @@ struct WorldState {
 /// seen is drawn thin, with its state in words. Nothing where the world's camera was elsewhere: it is of another time.
 void draw_tracks(cv::Mat& image, const WorldState& world, const RgbdFrame& frame);
 
-/// The world from above, x to the right and y up, of that size (CV_8UC3): objects as discs with their numbers and ways,
-/// cameras as wedges that point where they look, and a grid of 10 cm.
+/// Draws the world from above, x to the right and y up, in that size (CV_8UC3): objects as discs with their numbers and
+/// paths, cameras as wedges along their optical axes, and a grid of 10 cm.
 cv::Mat draw_world_from_above(const WorldState& world, const cv::Size& size);
 
 }  // namespace houghstream::view

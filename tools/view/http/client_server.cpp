@@ -14,7 +14,7 @@ namespace {
 
 using Clock = ClientTable::Clock;
 
-/// The bytes of one connection. Once it is broken it stays so: nothing is read or written any more.
+/// Reads and writes the bytes of one connection. A broken connection stays broken: nothing is read or written any more.
 class ClientStream final : public httplib::Stream {
  public:
   ClientStream(socket_t socket, ClientTable& clients) : socket_(socket), clients_(clients) {}
@@ -28,15 +28,15 @@ class ClientStream final : public httplib::Stream {
   bool is_writable() const override { return !broken_; }
   ssize_t read(char* to, std::size_t size) override;
   ssize_t write(const char* from, std::size_t size) override;
-  /// Nobody asks who the client is.
+  /// The address of the client is unused.
   void get_remote_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
   void get_local_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
   socket_t socket() const override { return socket_; }
 
  private:
   bool receive();
-  /// Waits until the socket can be read or written, as `events` says, or has ended. False where that takes too long, or
-  /// others are in want of the thread.
+  /// Waits until the socket can be read or written, as `events` states, or has ended. Returns false where that takes
+  /// too long, or other connections need the thread.
   bool wait_for(short events, Clock::time_point deadline);
 
   socket_t socket_;
@@ -45,7 +45,7 @@ class ClientStream final : public httplib::Stream {
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
   std::size_t request_bytes_left_ = 0;
-  Clock::time_point deadline_;  // of the request
+  Clock::time_point deadline_;  // deadline of the request
   bool broken_ = false;
 };
 

@@ -11,15 +11,15 @@
 
 namespace houghstream::view {
 
-/// The connections of a server, and which of them wait for their client: for the bytes of a request, or until it takes
-/// what it is sent. Where others are in want of a thread, those that have waited longest yield theirs. So a client that
-/// says nothing, or reads nothing, costs nobody the server. Any function may be called from any thread.
+/// Tracks the connections of a server, and which of them wait for their client: for the bytes of a request, or until it
+/// accepts a response. Where other connections need a thread, those that have waited longest yield theirs. So a client
+/// that sends nothing, or reads nothing, does not block the server. Any function may be called from any thread.
 class ClientTable {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds kGrace{100};  ///< nobody yields before he has waited for so long
+  static constexpr std::chrono::milliseconds kGrace{100};  ///< minimum wait before a connection yields
 
-  /// So many connections may be open.
+  /// Opens at most `max_clients` connections.
   explicit ClientTable(std::size_t max_clients) : max_clients_(max_clients) {}
 
   /// Adds a connection, which is in want of a thread until begin(). Closes it and returns false where too many are
@@ -47,13 +47,13 @@ class ClientTable {
   bool closed_ = false;
 };
 
-/// cpp-httplib's server with limits of its own: a request must be there within kRequestTimeout and have at most
-/// kMaxRequestBytes, what is sent must be taken at kMinBytesPerS, a crowd is handled as ClientTable does, and ranges
-/// are ignored, which HTTP allows: the library would build each of thousands that one header can ask for.
+/// Limits cpp-httplib's server: a request must arrive within kRequestTimeout and have at most kMaxRequestBytes, the
+/// client must accept at least kMinBytesPerS, too many clients are handled as in ClientTable, and ranges are ignored,
+/// which HTTP allows: the library would build each of the thousands that one header can ask for.
 class ClientServer final : public httplib::Server {
  public:
-  static constexpr std::chrono::seconds kRequestTimeout{5};  ///< also how long a connection may idle between requests
-  static constexpr std::chrono::seconds kWriteTimeout{5};    ///< and as long as kMinBytesPerS takes
+  static constexpr std::chrono::seconds kRequestTimeout{5};  ///< also the maximum idle time between requests
+  static constexpr std::chrono::seconds kWriteTimeout{5};    ///< plus the time that kMinBytesPerS takes
   static constexpr std::size_t kMinBytesPerS = 32'768;
   static constexpr std::size_t kMaxRequestBytes = 65'536;
 

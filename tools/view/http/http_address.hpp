@@ -6,18 +6,18 @@
 
 namespace houghstream::view {
 
-/// Where hs-view's page is served.
+/// Gives the address of hs-view's page.
 struct HttpAddress {
   std::string host = "127.0.0.1";  ///< a name or an address, IPv6 without brackets
   int port = 0;                    ///< 0 = any that is free
-  /// Further names that the page answers to, in lower case: of a proxy before it, or of this machine in somebody's DNS.
+  /// Further names that the page answers to, in lower case: of a proxy before it, or of this machine in a DNS.
   std::vector<std::string> names;
 };
 
 /// Parses "[ADDRESS:]PORT", an IPv6 address in brackets. Throws InputError.
 HttpAddress parse_http_address(const std::string& text);
 
-/// Whether only programs of this machine reach it: 127.x.x.x, ::1 and localhost.
+/// Returns whether only programs of this machine reach it: 127.x.x.x, ::1 and localhost.
 bool is_local(const std::string& host);
 
 /// Checks a name of `--http-host` and returns it in lower case. Throws InputError.
@@ -27,16 +27,16 @@ std::string parse_host_name(const std::string& text);
 /// and the dot of a full name; nothing where the header is anything else.
 std::optional<std::string> parse_host_header(const std::string& header);
 
-/// Whether a page at this address may be asked for by this Host header. A website that has its own name resolved to a
-/// robot's address (DNS rebinding) cannot choose what stands there: the browser sends the website's name. So names
-/// count that the page was started for, and this machine's; "localhost", which browsers resolve themselves; and
-/// addresses, which nobody resolves. A page for this machine answers to its loopback addresses only.
+/// Returns whether a page at this address answers requests with this Host header. A website that has its own name
+/// resolved to a robot's address (DNS rebinding) cannot choose the header: the browser sends the website's name. So it
+/// accepts the names that the page was started for, and this machine's; "localhost", which browsers resolve themselves;
+/// and addresses, which nobody resolves. A page for this machine answers to its loopback addresses only.
 bool answers_to(const HttpAddress& address, const std::string& host_header);
 
-/// The name of this machine, as it stands in the address that is printed; "" where it has none.
+/// Returns the name of this machine as in the printed address; "" where it has none.
 std::string machine_name();
 
-/// Why nobody can listen there, in words; "" where it can be done.
+/// Returns the reason why listening there is impossible, in words; "" where it is possible.
 std::string listening_problem(const HttpAddress& address);
 
 }  // namespace houghstream::view

@@ -16,7 +16,8 @@ namespace {
 constexpr int kJpegQuality = 75;
 constexpr std::chrono::seconds kUpdateInterval(1);
 
-// Depth stands small beside the colour image: of a large image every second or third pixel is drawn, and encoded.
+// Returns small depth, which is shown beside the colour image: of a large image every second or third pixel is drawn,
+// and encoded.
 cv::Mat small_depth(const cv::Mat& depth, const FrameViewSettings& settings) {
   constexpr int kWidth = 320;  // pixels, about
   const int step = std::max(depth.cols / kWidth, 1);
@@ -26,8 +27,8 @@ cv::Mat small_depth(const cv::Mat& depth, const FrameViewSettings& settings) {
   return colour_depth(small, settings.depth_near, settings.depth_far);
 }
 
-// Of about the shape of the frame. Smaller than one: it stands small beside the colour image, and its words are to be
-// read. A frame may be a single row or column of pixels.
+// The image has about the shape of the frame, but is smaller than one: it is small beside the colour image, and its
+// words must be legible. A frame may be a single row or column of pixels.
 cv::Mat world_from_above(const std::optional<WorldState>& world, const cv::Size& frame) {
   constexpr int kWidth = 440;      // pixels
   constexpr int kMinHeight = 110;  // pixels

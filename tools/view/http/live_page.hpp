@@ -10,7 +10,7 @@
 
 namespace houghstream::view {
 
-/// A frame and what is drawn over and told of it.
+/// Refers to a frame and the contents of its page.
 struct PageContent {
   const ViewedFrame& viewed;
   const ClassModels& models;
@@ -18,8 +18,8 @@ struct PageContent {
   const StreamView& stream;
 };
 
-/// The stream as a page for browsers. Draws and encodes what viewers look at, in the thread that calls; without viewers
-/// nothing.
+/// Serves the stream as a page for browsers. It draws and encodes the views that viewers have open, in the calling
+/// thread; without viewers it draws nothing.
 class LivePage {
  public:
   /// Serves at "[ADDRESS:]PORT", which may be asked for by these names too, and logs where. Throws InputError.
@@ -28,11 +28,13 @@ class LivePage {
   bool has_viewers() const { return board_.has_viewers(); }
   PageCommands pop_commands() { return board_.pop_commands(); }
 
-  /// Tells of a frame and draws what is wanted of it. Throws InputError as draw_overlay does.
+  /// Publishes a frame to the page and draws the requested views of it. Throws InputError as draw_overlay does.
   void show(const PageContent& content);
-  /// Whether somebody waits for an image of the frame that was shown last, or the stream was not told of for a second.
+  /// Returns whether a viewer waits for an image of the frame that was shown last, or the stream was not reported for a
+  /// second.
   bool is_due() const;
-  /// Draws that image, and tells of the stream. Throws where an image cannot be drawn; nobody waits for it then.
+  /// Draws that image, and publishes the state of the stream. Throws where an image cannot be drawn; its viewers then
+  /// stop waiting.
   void catch_up(const std::optional<ViewedFrame>& viewed, const ClassModels& models, const FrameViewSettings& settings,
                 const StreamView& stream);
 

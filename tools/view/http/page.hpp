@@ -2,7 +2,7 @@
 
 namespace houghstream::view {
 
-/// page.html, NUL-terminated: style and script are in it, and nothing of it lies elsewhere.
+/// The text is page.html, NUL-terminated: it includes style and script, and loads no other file.
 extern const char* const kPageHtml;
 
 }  // namespace houghstream::view

@@ -12,13 +12,13 @@
 
 namespace houghstream::view {
 
-/// What a page can show of a frame, and of the world after it.
+/// Views of a frame, and of the world after it, on a page.
 enum class PageView { kColour, kDepth, k3d, kWorld };
 constexpr std::size_t kPageViews = 4;
 
 using Jpeg = std::shared_ptr<const std::vector<std::uint8_t>>;
 
-/// What the buttons of the page ask for.
+/// Holds the commands of the page's buttons.
 struct PageCommands {
   std::optional<bool> paused;
   std::optional<float> min_score;
@@ -27,7 +27,8 @@ struct PageCommands {
   bool empty() const { return !paused && !min_score && !next_camera; }
 };
 
-/// What pages are told, as numbered JSON: what somebody has not seen yet has a higher number than what he has.
+/// Holds the state that pages receive as numbered JSON: an update that a page does not have yet has a higher number
+/// than its last one.
 struct PageUpdates {
   std::int64_t frame_number = 0;
   std::string frame;
@@ -35,27 +36,27 @@ struct PageUpdates {
   std::string stream;
 };
 
-/// Stands between the thread that draws and those that serve pages: the newest of everything, what pages look at, and
-/// what their buttons ask for. Any function may be called from any thread.
+/// Connects the thread that draws with those that serve pages: it holds the latest of each view, the views that are
+/// open, and the commands of their buttons. Any function may be called from any thread.
 class PageBoard {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr int kMaxViewers = 8;
   static constexpr std::chrono::seconds kViewTimeout{2};  ///< after a request its view is drawn for so long
 
-  /// For the thread that draws. Somebody listens, or asked for an image of late.
+  /// The thread that draws calls these. Returns whether a page listens, or requested an image recently.
   bool has_viewers() const;
   /// Views that were asked for of late.
   std::vector<PageView> wanted() const;
-  /// Views that somebody waits for, and that were not drawn of the frame that is shown.
+  /// Returns views that a viewer waits for, and that were not drawn of the frame that is shown.
   std::vector<PageView> missing() const;
-  /// The next frame. Its images follow.
+  /// Puts the next frame. Its images follow.
   void put_frame(std::string json);
   void put_image(PageView view, std::vector<std::uint8_t> jpeg);
   void put_stream(std::string json);
   PageCommands pop_commands();
 
-  /// For those that serve. False where kMaxViewers listen already.
+  /// The threads that serve pages call these. Returns false where kMaxViewers listen already.
   bool join();
   void leave();
   /// Waits until there is more than `seen`, or for `timeout`; what is not new is empty. Nothing once it is closed.
@@ -64,7 +65,7 @@ class PageBoard {
   Jpeg image(PageView view, std::chrono::milliseconds timeout);
   void push_command(const PageCommands& commands);
 
-  /// Nobody waits any longer.
+  /// Ends all waiting.
   void close();
 
  private:

@@ -23,7 +23,7 @@ json or_null(const std::optional<T>& value) {
   return value ? json(*value) : json(nullptr);
 }
 
-// -1 is what cannot be told.
+// Returns the count; null for -1, which means unknown.
 json counted(std::int64_t lost) {
   return lost < 0 ? json(nullptr) : json(lost);
 }

@@ -13,7 +13,7 @@ std::string why_no_pose(const ObjectPose* pose);
 /// quaternions (w, x, y, z); what is not known is null. `age_ms` is from the frame's arrival until now.
 std::string frame_json(const ViewedFrame& viewed, double age_ms);
 
-/// The stream as a whole, and what hs-view shows of it.
+/// Returns the state of the stream as a whole, and of its display in hs-view.
 std::string stream_json(const StreamView& stream, const FrameViewSettings& settings);
 
 }  // namespace houghstream::view

@@ -20,11 +20,11 @@ namespace houghstream::view {
 namespace {
 
 constexpr std::size_t kThreads = 4 * PageBoard::kMaxViewers;  // a page has one for events, two or three for the rest
-constexpr std::chrono::milliseconds kEventTimeout(1000);      // for an event
+constexpr std::chrono::milliseconds kEventTimeout(1000);      // for the next event
 constexpr std::chrono::milliseconds kImageTimeout(2000);      // for an image of the frame that is shown
 constexpr std::size_t kMaxOrderLength = 4096;                 // bytes
 constexpr const char* kTokenHeader = "X-Houghstream-Token";
-// Nothing from elsewhere is loaded or asked, and no other page shows this one.
+// The page loads and sends nothing elsewhere, and no other page may embed it.
 constexpr const char* kPolicy =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src 'self' blob: data:; "
     "connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
@@ -36,7 +36,7 @@ std::string fresh_token() {
   return token;
 }
 
-// In a time that does not tell how much of it is right.
+// Compares in a time that does not depend on how much of it is correct.
 bool same_token(const std::string& given, const std::string& wanted) {
   if (given.size() != wanted.size()) return false;
   unsigned difference = 0;
@@ -49,7 +49,7 @@ void answer(httplib::Response& response, int status, const std::string& words) {
   response.set_content(words + "\n", "text/plain");
 }
 
-// What such a request brings stays unread and must not be taken for the next request: so the connection ends.
+// The rest of such a request stays unread and must not be taken for the next request, so that the connection ends.
 void refuse_unread(httplib::Response& response, int status, const std::string& words) {
   response.status = status;
   response.set_header("Connection", "close");
@@ -119,7 +119,7 @@ struct PageServer::State {
   }
 
   void set_limits();
-  /// Returns the words of the refusal of a Host header that somebody else may have chosen; "" where it is none.
+  /// Returns the text that refuses a Host header which another site may have chosen; "" where it is accepted.
   std::string refusal_of_host(const httplib::Request& request) const;
   void add_pages();
   void serve_image(const httplib::Request& request, httplib::Response& response);

@@ -26,7 +26,7 @@ class PageServer {
   int port() const;
   /// Empty where the address is local.
   const std::string& token() const;
-  /// What a browser takes, with the token.
+  /// Returns the address for a browser, with the token.
   std::string url() const;
 
  private:

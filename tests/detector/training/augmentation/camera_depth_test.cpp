@@ -14,7 +14,7 @@ constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 const Camera kView{160, 120, 500.0, 500.0, 79.5, 59.5};
 const cv::Rect kNear(60, 40, 40, 40);
 
-/// Something near in the middle of a wall, a hole at the left.
+/// Returns the depth of a near square in the middle of a wall, with a hole at the left.
 cv::Mat near_square() {
   cv::Mat depth(kView.height, kView.width, CV_32FC1, cv::Scalar(1.2));
   depth(kNear) = 0.8;
@@ -37,7 +37,7 @@ cv::Mat holes(const cv::Mat& depth) {
   return ~(depth == depth);
 }
 
-/// Within so many pixels of the square's outline.
+/// Returns the pixels within `reach_px` of the square's outline.
 cv::Mat outline(int reach_px) {
   cv::Mat band = cv::Mat::zeros(kView.height, kView.width, CV_8UC1);
   band(kNear + cv::Point(-reach_px, -reach_px) + cv::Size(2 * reach_px, 2 * reach_px)).setTo(255);

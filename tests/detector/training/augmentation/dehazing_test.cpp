@@ -8,7 +8,7 @@
 namespace houghstream::training {
 namespace {
 
-/// A grey ramp from `dark` to `bright` with some red in it.
+/// Returns a grey ramp from `dark` to `bright` with some red in it.
 cv::Mat ramp(int dark, int bright) {
   constexpr int kLast = 99;
   cv::Mat out(20, kLast + 1, CV_8UC3);

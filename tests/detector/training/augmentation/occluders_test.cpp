@@ -26,7 +26,7 @@ struct Pair {
   Composite after;
 };
 
-/// The pairs of those seeds whose occluder found a place.
+/// Returns the pairs of those seeds whose occluder found a place.
 std::vector<Pair> occluded_tiles() {
   std::vector<Pair> pairs;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {

@@ -16,7 +16,7 @@ namespace {
 constexpr int kSide = 60;
 const cv::Rect kNearSquare(20, 20, 20, 20);
 
-/// Something near in the middle, a hole at the left.
+/// Returns the depth of a near square in the middle, with a hole at the left.
 cv::Mat image_with_near_square() {
   cv::Mat depth(kSide, kSide, CV_32FC1, cv::Scalar(1.5));
   depth(kNearSquare) = 0.5;
@@ -111,7 +111,7 @@ TEST(Misregistration, TheSameSeedMisfitsAlike) {
 constexpr int kWidth = 160;
 constexpr int kHeight = 120;
 
-/// Near on the left, far on the right, unknown at the bottom.
+/// Returns depth that is near on the left, far on the right, and unknown at the bottom.
 cv::Mat half_near() {
   cv::Mat depth(kHeight, kWidth, CV_32FC1, cv::Scalar(1.5));
   depth.colRange(0, kWidth / 2) = 0.5;
@@ -233,7 +233,7 @@ TEST(Resurfaced, OnlyTheObjectsColoursChange) {
   EXPECT_EQ(cv::norm(view.frame.colour, untouched.frame.colour, cv::NORM_INF), 0.0) << "the view's own stay";
 }
 
-/// Mean change of the object's colours over some seeds, 8-bit steps.
+/// Returns the mean change of the object's colours over some seeds, 8-bit steps.
 double change_by(double strength) {
   const TrainingView view = toy::training_views().front();
   double sum = 0.0;

@@ -17,9 +17,9 @@ namespace {
 constexpr double kFocal = 262.5;
 constexpr double kTaught = 0.7;  // metres
 constexpr int kMargin = 48;      // frame pixels around the object in a composite
-constexpr int kRadius = 22;      // of the mask, frame pixels
+constexpr int kRadius = 22;      // radius of the mask, frame pixels
 
-/// A round part of a flat tile.
+/// Returns a round part of a flat tile.
 TrainingView round_view() {
   TrainingView view = toy::training_views().front();
   view.mask.setTo(0);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kTileArea = 0.0151F;  // 46 pixels of 0.7 m / 262.5 squared
 
-/// One flat tile 0.7 m away and one room, taught at one distance.
+/// Returns one flat tile 0.7 m away and one background, taught at one distance.
 std::vector<TrainingView> flat_tile() {
   const std::vector<TrainingView> all = toy::training_views();
   std::vector<TrainingView> views = {all.front(), all.back()};

@@ -21,7 +21,7 @@ struct TilesAndBackgrounds {
 
 constexpr ComposedThings kThings = {4, 2, 0};
 
-/// By the camera that taught: another one's depth has other holes and lies a few pixels beside.
+/// Composes frames by the camera used for teaching: another one's depth has other holes and is shifted by a few pixels.
 ValidationFrame compose(const TilesAndBackgrounds& toys, std::uint64_t seed, double occluded_fraction,
                         double camera_fraction = 0.0) {
   TrainingSettings settings = toy::quick_profile().training;
@@ -76,7 +76,7 @@ TEST(ValidationFrames, AsManyLookAlikesAndStrangersOfEachSortAsAskedForStandTher
   EXPECT_TRUE(hard_negatives.objects.empty());
 }
 
-/// Width over height of what stands before the room, which is flat.
+/// Returns the width over height of what stands before the room, which is flat.
 std::vector<double> widths_of_things(const cv::Mat& depth, const cv::Mat& room) {
   constexpr float kBefore_m = 0.1F;
   constexpr int kMinPixels = 100;

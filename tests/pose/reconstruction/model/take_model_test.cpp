@@ -32,7 +32,7 @@ TEST(FuseMaskedViews, PicturesThatCutTheObjectOffDoNotCutTheModelOff) {
   EXPECT_NEAR(bounds.sizes().z(), scene.box.z(), 0.01);
 }
 
-/// Images of the box on its table from all round, from an azimuth on.
+/// Returns images of the box on its table from all round, from an azimuth on.
 Take take_about_box(double azimuth) {
   constexpr int kImages = 12;
   const test_scene::ShownScene scene;
@@ -47,7 +47,7 @@ Take take_about_box(double azimuth) {
   return take;
 }
 
-/// The true box as the model of a take, which says of itself that it agrees badly.
+/// Returns the true box as the model of a take, which says of itself that it agrees badly.
 ReconstructedModel ground_truth_model(const Take& take) {
   ReconstructedModel model;
   model.mesh = test_scene::box_of({});

@@ -115,7 +115,7 @@ TEST(TakePlacer, FollowsAnObjectThatTurnsBeforeAStillCamera) {
   EXPECT_LT(untracked, 10);
 }
 
-/// A plain round tin on a plain table; boxes painted with spots stand about it, farther away.
+/// Returns a plain round tin on a plain table; boxes painted with spots stand about it, farther away.
 Mesh plain_tin_among_boxes() {
   constexpr int kSides = 60;
   constexpr float kRadius_m = 0.06F;
@@ -153,7 +153,7 @@ Mesh plain_tin_among_boxes() {
 
 /// Depth in steps, as a structured-light camera has it: its pattern moves with the camera, not with the scene.
 void step_depth(RgbdFrame& frame) {
-  constexpr double kStep = 0.004;  // of 1/z, per metre
+  constexpr double kStep = 0.004;  // step of 1/z, per metre
   for (int y = 0; y < frame.depth.rows; ++y) {
     for (int x = 0; x < frame.depth.cols; ++x) {
       auto& z = frame.depth.at<float>(y, x);

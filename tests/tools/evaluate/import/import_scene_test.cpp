@@ -56,7 +56,7 @@ TEST(ImportScene, PicturesThatAreThereAreNotMixedWithOthers) {
   EXPECT_THROW(import_boxes(source, source / "scene"), InputError);
 }
 
-/// desk/desk_1/ with frames 1 and 2, and its annotations: two boxes in the first one.
+/// Writes desk/desk_1/ with frames 1 and 2, and its annotations: two boxes in the first one.
 fs::path write_video(const std::string& name) {
   fs::path video = fresh_folder(name) / "desk" / "desk_1";
   fs::create_directories(video);

@@ -21,7 +21,7 @@ struct MatField {
 };
 using MatBox = std::vector<MatField>;
 
-/// An annotation as the UW scenes have it.
+/// Returns an annotation as the UW scenes have it.
 inline MatBox uw_box(const std::string& category, double instance, const std::array<double, 4>& top_bottom_left_right) {
   const auto& [top, bottom, left, right] = top_bottom_left_right;
   return {{"category", category, 0.0}, {"instance", "", instance}, {"top", "", top},
@@ -39,7 +39,7 @@ inline matvar_t* mat_char(const char* name, const std::string& text) {
   return Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UINT8, 2, size.data(), copy.data(), 0);
 }
 
-/// One frame's cell: an empty array, or a struct array with the fields of its first box.
+/// Makes one frame's cell: an empty array, or a struct array with the fields of its first box.
 inline matvar_t* mat_boxes(const std::vector<MatBox>& boxes) {
   std::array<std::size_t, 2> size = {boxes.empty() ? 0U : 1U, boxes.size()};
   if (boxes.empty()) return Mat_VarCreate(nullptr, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size.data(), nullptr, 0);

@@ -90,7 +90,7 @@ ObjectPose pose_at(double x, float score) {
   return out;
 }
 
-/// A square plate in front of the camera, and a scene of one image that measured its depth.
+/// Holds a square plate in front of the camera, and a scene of one image with its measured depth.
 struct MeasuredScene {
   std::map<std::string, BopModel> models;
   BopScene scene;

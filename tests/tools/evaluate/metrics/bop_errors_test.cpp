@@ -11,7 +11,7 @@ namespace {
 const std::vector<Eigen::Isometry3d> kNoSymmetry = {Eigen::Isometry3d::Identity()};
 const Camera kHundredWide = {100, 80, 100.0, 100.0, 49.5, 39.5};
 
-/// A square of 0.2 m, facing a camera that looks along z.
+/// Returns a square of 0.2 m, facing a camera that looks along z.
 Mesh square() {
   Mesh mesh;
   mesh.vertices = {{-0.1F, -0.1F, 0}, {0.1F, -0.1F, 0}, {0.1F, 0.1F, 0}, {-0.1F, 0.1F, 0}};
@@ -23,7 +23,7 @@ Eigen::Isometry3d at(double x, double y, double z) {
   return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
 }
 
-/// Measured depth everywhere the same, metres.
+/// Returns a frame with the same measured depth everywhere, metres.
 RgbdFrame wall(float depth) {
   RgbdFrame frame;
   frame.camera = kHundredWide;
@@ -42,7 +42,7 @@ TEST(BopErrors, TheFarthestVertexCounts) {
 TEST(BopErrors, InTheImageADistanceIsSmallerTheFartherItIs) {
   const auto vertices = square().vertices;
   EXPECT_NEAR(mspd_error(vertices, kNoSymmetry, at(0.02, 0, 2), at(0, 0, 2), kHundredWide), 1.0, 1e-6);
-  // Nearer by half: the corners go from 5 to 10 pixels off the centre, along both axes.
+  // The plate is nearer by half, so that the corners go from 5 to 10 pixels off the centre, along both axes.
   EXPECT_NEAR(mspd_error(vertices, kNoSymmetry, at(0, 0, 1), at(0, 0, 2), kHundredWide), 5.0 * std::sqrt(2.0), 1e-5);
   EXPECT_TRUE(std::isinf(mspd_error(vertices, kNoSymmetry, at(0, 0, -1), at(0, 0, 2), kHundredWide)));
   EXPECT_TRUE(std::isinf(mspd_error(vertices, kNoSymmetry, at(0, 0, 1), at(0, 0, 0), kHundredWide)));
@@ -65,8 +65,8 @@ TEST(BopErrors, VsdOfATruePoseIsNothing) {
 }
 
 TEST(BopErrors, VsdCountsSurfacesThatAreTooFarApart) {
-  // 0.05 m too far, of a diameter of 0.4 m: 0.125 diameters, beyond the taus 0.05 and 0.1. Both poses cover the same
-  // 20 x 20 pixels: 19.05 pixels of width still reach the outermost centres.
+  // The pose is 0.05 m too far, of a diameter of 0.4 m: 0.125 diameters, beyond the taus 0.05 and 0.1. Both poses cover
+  // the same 20 x 20 pixels: 19.05 pixels of width still reach the outermost centres.
   const auto errors = vsd_errors(square(), 0.4, at(0, 0, 1.05), at(0, 0, 1), wall(1.0F));
   for (std::size_t i = 0; i < errors.size(); ++i) EXPECT_EQ(errors[i], i < 2 ? 1.0 : 0.0) << bop_step(i);
   // Too far by 0.25 m, 0.625 diameters, it covers 16 x 16 of them.
@@ -77,7 +77,7 @@ TEST(BopErrors, VsdCountsSurfacesThatAreTooFarApart) {
 }
 
 TEST(BopErrors, VsdCountsPixelsThatSeeTheObjectInOnePoseOnly) {
-  // Half its width to the side: a third of the union is in both.
+  // The pose is off by half its width to the side, so that a third of the union is in both.
   const auto errors = vsd_errors(square(), 0.3, at(0.1, 0, 1), at(0, 0, 1), wall(1.0F));
   for (const double error : errors) EXPECT_NEAR(error, 2.0 / 3.0, 1e-6);
   const auto apart = vsd_errors(square(), 0.3, at(0.25, 0, 1), at(0, 0, 1), wall(1.0F));

@@ -8,7 +8,8 @@ namespace houghstream {
 namespace {
 
 TEST(Calibration, TheErrorIsTheBinsDifferencesWeightedByTheirCounts) {
-  // 0.8 to 0.9: mean 0.85, 1 of 2 true: off by 0.35. 0.1 to 0.2: 0.15, none of 1 true. 1.0 counts to the last bin.
+  // The bin 0.8 to 0.9 has mean 0.85 and 1 of 2 true: off by 0.35. The bin 0.1 to 0.2 has 0.15 and none of 1 true. 1.0
+  // counts to the last bin.
   const Calibration found = calibrate({{0.82, true}, {0.88, false}, {0.15, false}, {1.0, true}}, 2);
   EXPECT_EQ(found.count, 4);
   EXPECT_NEAR(found.ece, (2 * 0.35 + 0.15 + 0.0) / 4, 1e-12);
@@ -37,7 +38,7 @@ TEST(Calibration, NothingWasStated) {
 }
 
 TEST(Calibration, AThresholdIsTheSmallestScoreFromWhichThePrecisionHolds) {
-  // 1 of 2 at the top; from 0.3 on 18 of 20 are true.
+  // At the top 1 of 2 predictions is true, and from 0.3 on 18 of 20.
   std::vector<Prediction> statements = {{0.99, true}, {0.98, false}};
   for (int i = 0; i < 17; ++i) statements.push_back({0.5 + 0.01 * i, true});
   statements.push_back({0.3, false});

@@ -31,12 +31,12 @@ CalibrationScenes two_bricks(std::uint64_t seed) {
   return {{brick(3, {0.08, 0.12, 0.18}, {30, 30, 200}), brick(8, {0.1, 0.1, 0.06}, {200, 60, 20})}, seed};
 }
 
-// Equal bytes, NaN included.
+// Returns whether the bytes are equal, NaN included.
 bool identical(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && std::equal(a.datastart, a.dataend, b.datastart);
 }
 
-/// Pose of the second object relative to the first, in a frame that shows both.
+/// Returns the pose of the second object relative to the first, in a frame that shows both.
 Eigen::Matrix4d between(const RenderedFrame& view) {
   if (view.objects.size() != 2) throw std::runtime_error("both bricks expected");
   return (view.objects[0].T_camera_object.inverse() * view.objects[1].T_camera_object).matrix();
@@ -54,7 +54,7 @@ TEST(CalibrationScenes, TheSameSeedGivesTheSameFrameAndAnotherOneAnotherRoom) {
   EXPECT_GT((between(frame) - between(other)).cwiseAbs().maxCoeff(), 0.02) << "not only the camera's place";
 }
 
-/// Median distance of the measured depth from the mesh's at the true pose, metres.
+/// Returns the median distance of the measured depth from the mesh's at the true pose, metres.
 float median_error(const RenderedFrame& view, std::size_t index, const Mesh& mesh) {
   const cv::Rect all({0, 0}, view.frame.depth.size());
   const cv::Mat rendered = render_depth(mesh, view.objects[index].T_camera_object, view.frame.camera, all);
@@ -89,7 +89,7 @@ TEST(CalibrationScenes, TheTruthAgreesWithTheMeasuredDepth) {
   EXPECT_GE(judged, kFrames);
 }
 
-/// The object with another origin.
+/// Returns the object with another origin.
 CalibrationSceneObject displaced(CalibrationSceneObject object, const Eigen::Vector3f& away) {
   Mesh mesh = object.thing->mesh;
   for (Eigen::Vector3f& vertex : mesh.vertices) vertex += away;

@@ -35,7 +35,7 @@ inline double signed_volume(const Mesh& mesh) {
   return volume;
 }
 
-/// Share of triangles whose own normal agrees with that of their vertices.
+/// Returns the fraction of triangles whose own normal agrees with that of their vertices.
 inline double agreeing_normals(const Mesh& mesh) {
   int agreeing = 0;
   for (const auto& [a, b, c] : mesh.triangles) {

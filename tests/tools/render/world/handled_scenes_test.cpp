@@ -92,7 +92,7 @@ TEST(HandledScenes, HeldOnesHoldEachClassInAHandAndOnTheTable) {
   }
 }
 
-/// The share of item `index` that item `other` hides, along the camera's way.
+/// Returns the fraction of item `index` that item `other` occludes, along the camera's way.
 double hidden_by(const Scene& scene, std::size_t index, std::size_t other) {
   const Camera camera = synthetic_camera();
   const cv::Rect image(-camera.width, -camera.height, 3 * camera.width, 3 * camera.height);

@@ -31,7 +31,8 @@ std::vector<Eigen::Vector3d> corners_world(const PlacedAsset& placed) {
   return corners;
 }
 
-// Depth to which `corners` reach into the wedge's upper side, metres; the wedge's is its steepest normal upwards.
+// Returns the depth to which `corners` reach into the wedge's upper side, metres; the wedge's is its steepest normal
+// upwards.
 double depth_in_wedge(const PlacedAsset& wedge, const std::vector<Eigen::Vector3d>& corners) {
   const Mesh& mesh = wedge.thing->mesh;
   double deepest = -1.0;
@@ -46,7 +47,7 @@ double depth_in_wedge(const PlacedAsset& wedge, const std::vector<Eigen::Vector3
   return deepest;
 }
 
-// Everything movable on the table: what lies wholly above z = -1 mm and within arm's reach of the origin.
+// Returns all movable assets on the table: those wholly above z = -1 mm and within arm's reach of the origin.
 std::vector<const PlacedAsset*> on_table(const World& world) {
   std::vector<const PlacedAsset*> things;
   for (const PlacedAsset& placed : world.items) {
@@ -59,7 +60,7 @@ std::vector<const PlacedAsset*> on_table(const World& world) {
   return things;
 }
 
-// Rectangle along the thing's own turn about the vertical round all of it.
+// Returns the rectangle round the whole asset, along its own rotation about the vertical.
 Footprint footprint_of(const PlacedAsset& placed) {
   const Eigen::Matrix3d R = placed.T_world_object.rotation();
   const int column = R.col(0).head<2>().norm() > 0.5 ? 0 : 1;

@@ -14,7 +14,7 @@
 namespace houghstream::world {
 namespace {
 
-/// 8 x 12 x 18 cm, its lower corner at `low`: a mesh's origin means nothing.
+/// Makes a brick of 8 x 12 x 18 cm with its lower corner at `low`, since a mesh's origin has no meaning.
 Mesh brick(const cv::Vec3b& colour, const Eigen::Vector3f& low = {0.3F, -0.2F, 0.1F}) {
   Mesh mesh = box({0.08, 0.12, 0.18}, cv::Mat(8, 8, CV_8UC3, cv::Scalar::all(0)));
   mesh.texture.release();
@@ -27,7 +27,7 @@ Mesh brick(const cv::Vec3b& colour, const Eigen::Vector3f& low = {0.3F, -0.2F, 0
 
 const cv::Vec3b kRed(30, 30, 200);
 
-/// A brick of which the first so many sides are missing.
+/// Returns a brick of which the first so many sides are missing.
 Mesh open_brick(int sides) {
   Mesh mesh = brick(kRed);
   mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.begin() + 2 * sides);
@@ -42,12 +42,12 @@ MeshViewSettings few_views(MeshAttitudes attitudes = MeshAttitudes::kResting) {
   return settings;
 }
 
-// Equal bytes, NaN included.
+// Returns whether the bytes are equal, NaN included.
 bool same_pixels(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && std::equal(a.datastart, a.dataend, b.datastart);
 }
 
-/// The brick as a camera sees it: its sides are rough and bulge, so that it stands firmly on none of them.
+/// Returns the brick as a camera sees it: its sides are rough and bulge, so that it stands firmly on none of them.
 Mesh bulging_brick() {
   constexpr int kSteps = 48;
   constexpr double kBulge_m = 0.0005;
@@ -184,7 +184,7 @@ TEST(MeshViews, ShowAMeshUpsideDownToo) {
   EXPECT_EQ(towards_camera.size(), 6U) << "every side is seen";
 }
 
-/// Mean of a* and b* over the mask.
+/// Returns the mean of a* and b* over the mask.
 Eigen::Vector2d chroma(const TrainingView& view) {
   cv::Mat lab;
   cv::cvtColor(view.frame.colour, lab, cv::COLOR_BGR2Lab);
@@ -192,7 +192,7 @@ Eigen::Vector2d chroma(const TrainingView& view) {
   return {mean[1] - 128.0, mean[2] - 128.0};
 }
 
-/// Largest distance between the chroma of two views.
+/// Returns the largest distance between the chroma of two views.
 double spread_of_chroma(const MeshViews& views) {
   std::vector<Eigen::Vector2d> all;
   for (int index = 0; index < views.count(); index += 3) all.push_back(chroma(views.render(index)));

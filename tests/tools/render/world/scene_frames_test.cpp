@@ -27,7 +27,7 @@ class SceneFrames : public ::testing::Test {
   static inline LitWorld lit_world;
 };
 
-// Equal bytes, NaN included.
+// Returns whether the bytes are equal, NaN included.
 bool identical(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && std::equal(a.datastart, a.dataend, b.datastart);
 }

@@ -33,7 +33,7 @@ std::multiset<int> ids_in_ground_truth(const Scene& scene) {
   return ids;
 }
 
-// Footprints of what stands on the table: its lowest point is at the table's height.
+// Returns footprints of the assets that stand on the table: their lowest points are at the table's height.
 std::vector<Footprint> standing(const World& world) {
   std::vector<Footprint> footprints;
   for (const PlacedAsset& placed : world.items) {
@@ -53,7 +53,7 @@ void expect_apart(const World& world, std::size_t min_count) {
   }
 }
 
-// All scenes whose truth names something.
+// Returns all scenes whose ground truth names an object.
 std::vector<const char*> scenes_with_ground_truth() {
   std::vector<const char*> names(kTestScenes.begin(), kTestScenes.end());
   names.insert(names.end(), kTwentyClassScenes.begin(), kTwentyClassScenes.end());

@@ -51,7 +51,8 @@ TurntableSettings few_views(const std::vector<Attitude>& attitudes) {
   return settings;
 }
 
-// Share of the mask's pixels with depth at which the model, rendered by the truth, has the same depth.
+// Returns the fraction of the mask's pixels with depth at which the model, rendered by the ground truth, has the same
+// depth.
 double agreeing_fraction(const RenderedFrame& view, const Mesh& mesh) {
   const cv::Rect frame({0, 0}, view.frame.depth.size());
   const cv::Mat rendered = render_depth(mesh, view.objects.at(0).T_camera_object, view.frame.camera, frame);

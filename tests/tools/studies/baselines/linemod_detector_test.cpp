@@ -25,7 +25,7 @@ LinemodTemplateSettings quick_templates() {
   return settings;
 }
 
-/// One view of each kind of tile: the rooms behind them differ, the tiles do not.
+/// Returns one view of each kind of tile: the backgrounds differ, the tiles do not.
 std::vector<TrainingView> toy_views() {
   const std::vector<TrainingView> all = toy::training_views();
   return {all[0], all[1]};

@@ -21,7 +21,7 @@ Detection detection(const std::string& name, const cv::Rect2f& box, float score)
   return out;
 }
 
-// A mug in each of twelve frames, found in none of the last six, and a false one that grows surer.
+// Returns a mug in each of twelve frames, found in none of the last six, and a false one that grows surer.
 std::vector<EvaluatedFrame> twelve_frames() {
   std::vector<EvaluatedFrame> frames(12);
   for (std::size_t f = 0; f < frames.size(); ++f) {

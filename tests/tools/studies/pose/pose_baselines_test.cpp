@@ -13,7 +13,7 @@ namespace {
 
 using namespace test_scene;
 
-/// A table with one object on it.
+/// Describes a table with one object on it.
 struct Table {
   Mesh object;
   Mesh top = table();

@@ -23,7 +23,7 @@ PoseTrial withheld(MatchOutcome outcome, double visible, PoseStatus status) {
   return trial;
 }
 
-/// Without symmetries: ADD says whether it is right.
+/// Returns a trial of an object without symmetries: ADD decides whether it is correct.
 PoseTrial published(MatchOutcome outcome, double ms, double add_s, double add) {
   PoseTrial trial = withheld(outcome, 1.0, PoseStatus::kValid);
   trial.T_camera_object = Eigen::Isometry3d::Identity();

@@ -11,7 +11,7 @@ namespace {
 
 const cv::Rect kBox(100, 100, 80, 80);
 
-/// A corner of three points, 0.2 m in diameter.
+/// Returns a corner of three points, 0.2 m in diameter.
 std::map<std::string, ScoredModel> corner() {
   ScoredModel model;
   model.surface.points = {{0.1F, 0.0F, 0.0F}, {0.0F, 0.1F, 0.0F}, {0.0F, 0.0F, 0.1F}};
@@ -33,7 +33,7 @@ Eigen::Isometry3d at(double x, double z) {
   return T;
 }
 
-/// One corner at 2 m, detected rightly, and wrongly beside it; both with the pose that `maker` gives.
+/// Returns the run of one corner at 2 m, detected correctly, and incorrectly beside it; both have the pose of `maker`.
 PoseRun one_frame(const PoseMaker& maker) {
   EvaluatedFrame frame;
   NamedObject object{"corner", {}};

@@ -72,7 +72,7 @@ TEST(QualityFit, APoseIsCheckedByAFitThatHasNotSeenItsScene) {
     if (example.scene != "2") seen.push_back(example);
   }
   others = fit_quality(seen);
-  const auto first = checked.begin() + 2000;  // of the third part
+  const auto first = checked.begin() + 2000;  // first example of the third part
   for (std::size_t i = 0, n = 0; i < examples.size(); ++i) {
     if (examples[i].scene != "2") continue;
     EXPECT_EQ((first + static_cast<std::ptrdiff_t>(n))->quality, shape_quality(examples[i].terms, others));

@@ -9,7 +9,7 @@
 namespace houghstream {
 namespace {
 
-/// A square of 0.2 m, 1 m in front of the camera: pixels 26 to 37 each way of plain_frame().
+/// Returns a square of 0.2 m, 1 m in front of the camera: pixels 26 to 37 each way of plain_frame().
 view::ClassModels square(const cv::Vec3b& colour) {
   Mesh mesh;
   mesh.vertices = {{-0.1F, -0.1F, 0.0F}, {0.1F, -0.1F, 0.0F}, {0.1F, 0.1F, 0.0F}, {-0.1F, 0.1F, 0.0F}};

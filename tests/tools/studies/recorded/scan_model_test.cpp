@@ -8,7 +8,7 @@
 namespace houghstream {
 namespace {
 
-/// Three boxes that touch at corners; no turn and no mirror brings the figure onto itself.
+/// Returns three boxes that touch at corners; no turn and no mirror brings the figure onto itself.
 Mesh figure() {
   Mesh mesh;
   test_scene::add_box(mesh, {-0.03F, -0.03F, -0.09F}, {0.03F, 0.03F, 0.03F});

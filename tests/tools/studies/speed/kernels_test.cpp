@@ -9,7 +9,7 @@
 namespace houghstream {
 namespace {
 
-/// Remembers what ran.
+/// Records the names of the benchmarks that ran.
 class Names : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context&) override { return true; }

@@ -19,7 +19,7 @@ const Camera kCamera{160, 120, 140.0, 140.0, 79.5, 59.5};
 constexpr int kFrames = 6;
 constexpr int kId = 3;
 
-/// A block of 60 x 80 x 100 mm with a step in it, so that it has no symmetry.
+/// Returns a block of 60 x 80 x 100 mm with a step in it, so that it has no symmetry.
 Mesh block() {
   Mesh mesh;
   for (const float x : {-0.03F, 0.03F}) {
@@ -42,7 +42,7 @@ Eigen::Isometry3d view(int frame) {
   return T;
 }
 
-/// The taught model's frame in the true one.
+/// Returns the taught model's frame in the true one.
 Eigen::Isometry3d known_frame() {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translate(Eigen::Vector3d(0.01, -0.02, -0.05));
@@ -80,8 +80,8 @@ void write_takes(const fs::path& folder) {
   std::ofstream(folder / "takes.json") << R"([{"scene": 1, "object": "block", "id": 3}])";
 }
 
-/// As if it had been shown: every other frame is a keyframe, with the upper half of its mask; the last frame's pose is
-/// 4 mm off.
+/// Writes a take as hs-teach show keeps it: every other frame is a keyframe, with the upper half of its mask; the last
+/// frame's pose is 4 mm off.
 Mesh write_kept(const fs::path& folder) {
   fs::create_directories(folder);
   BopWriter writer(folder / "views" / "000001");

@@ -26,7 +26,7 @@ ScoredHypothesis candidate(const std::string& name, const cv::Rect& box, float s
   return out;
 }
 
-/// A mug that weighs likeness by 2.
+/// Returns a model of mugs that weighs colour_correlation by 2.
 ModelsByClass mugs() {
   ScoreModel model;
   model.weights = {};

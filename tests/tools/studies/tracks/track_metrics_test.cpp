@@ -9,7 +9,7 @@ Eigen::Isometry3d at(double x) {
   return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0));
 }
 
-/// Two cans that stand a metre apart.
+/// Returns two cans that stand a metre apart.
 SequenceFile two_cans(int frames) {
   SequenceFile out;
   out.fps = 10.0;

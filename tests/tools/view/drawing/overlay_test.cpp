@@ -41,7 +41,7 @@ ObjectPoses one_pose(const Eigen::Isometry3d& T_camera_object) {
   return ObjectPoses{{"TEST", 7}, {pose}, {}};
 }
 
-// A square plate of 0.2 m, facing the camera.
+// Returns a square plate of 0.2 m, facing the camera.
 Mesh plate() {
   Mesh mesh;
   mesh.vertices = {{-0.1F, -0.1F, 0}, {0.1F, -0.1F, 0}, {0.1F, 0.1F, 0}, {-0.1F, 0.1F, 0}};
@@ -55,7 +55,7 @@ Eigen::Isometry3d one_metre_ahead() {
   return T_camera_object;
 }
 
-// Pixels of about this colour within `radius` of (x, y).
+// Returns whether there are pixels of about this colour within `radius` of (x, y).
 bool shows(const cv::Mat& image, const cv::Scalar& colour, int x, int y, int radius) {
   const cv::Mat region = image(cv::Rect(x - radius, y - radius, 2 * radius + 1, 2 * radius + 1));
   cv::Mat close;

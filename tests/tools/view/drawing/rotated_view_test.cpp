@@ -13,7 +13,7 @@ namespace {
 const cv::Vec3b kRed(0, 0, 250);
 const cv::Vec3b kWall(120, 120, 120);
 
-/// A grey wall at 2 m, and before its middle a red square of 21 pixels at 1.5 m.
+/// Returns a grey wall at 2 m, and before its middle a red square of 21 pixels at 1.5 m.
 RgbdFrame wall_and_square() {
   RgbdFrame frame;
   frame.camera = Camera{160, 120, 130.0, 130.0, 79.5, 59.5};

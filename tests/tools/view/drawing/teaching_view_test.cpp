@@ -10,7 +10,7 @@ namespace {
 
 const cv::Vec3b kSeen(110, 200, 60);
 
-/// Sixty directions, those with positive x seen.
+/// Returns sixty directions, those with positive x seen.
 Teaching half_seen() {
   Teaching mug;
   mug.frame = {"", 1000};
@@ -42,7 +42,7 @@ TEST(TeachingView, TheSphereFillsWhereItWasSeen) {
     draw_sphere(image, {0, 0, 100, 100}, mug.directions, R_view_object);
     return count_colour(image, kSeen);
   };
-  // The view's z points away from the camera: who looks from positive x sees the object's x towards him.
+  // The view's z points away from the camera: from positive x the object's x points towards the viewer.
   Eigen::Matrix3f from_x;
   from_x << 0, 1, 0, 0, 0, -1, -1, 0, 0;
   Eigen::Matrix3f from_minus_x;

@@ -94,7 +94,7 @@ TEST(WorldView, FromAboveObjectsAndCamerasAreDrawn) {
   EXPECT_EQ(pixels_of(draw_world_from_above({}, {320, 240}), class_colour(2)), 0);
 }
 
-/// Caption of the world.
+/// Returns the caption of the world.
 cv::Mat caption_of(const WorldObjects& world) {
   WorldState state;
   state.add(world);

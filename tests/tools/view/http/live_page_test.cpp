@@ -21,13 +21,13 @@ ViewedFrame viewed_frame(std::int64_t utime, int width = 64, int height = 48) {
   return viewed;
 }
 
-// A page with a browser that may look at it.
+// Holds a page with a browser that may view it.
 struct Looked {
   Looked() : client("127.0.0.1", page.server().port()) {}
 
   void show(const ViewedFrame& viewed) { page.show({viewed, models, settings, stream}); }
 
-  /// The image, while the page's own thread goes on as hs-view's loop does.
+  /// Returns the image, while the page's own thread goes on as hs-view's loop does.
   cv::Mat fetched(const std::string& view, const ViewedFrame& viewed) {
     std::optional<httplib::Result> answer;
     std::atomic<bool> answered{false};
@@ -99,7 +99,7 @@ TEST(LivePage, AViewThatCannotBeDrawnIsSaidToBeSoAndTheOthersAreDrawn) {
   ViewedFrame viewed = viewed_frame(5);
   looked.show(viewed);
   ViewedFrame wrong = viewed;
-  wrong.detections.frame.utime = 6;  // of another frame
+  wrong.detections.frame.utime = 6;  // time of another frame
   std::optional<httplib::Result> answer;
   std::atomic<bool> answered{false};
   std::thread browser([&] {

@@ -71,7 +71,7 @@ std::string answer_to(int port, const std::string& request) {
 
 using RawClients = std::vector<std::unique_ptr<RawClient>>;
 
-/// More of them than there are threads, each of which has said this.
+/// Opens more connections than there are threads, each of which sends these words.
 RawClients crowd(int port, const std::string& words) {
   RawClients clients;
   for (int i = 0; i < 40; ++i) {

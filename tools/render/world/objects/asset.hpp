@@ -15,7 +15,7 @@ struct Asset {
   Mesh mesh;
   float specular = 0.1F;  ///< strength of the mirror-like part of the reflection, 0 = matt to 1
   float emission = 0.0F;  ///< share of its texture that it emits by itself (screens, windows), 0 to 1
-  /// CV_8UC3: the texture, each level half the size of the one before. Empty where vertices have colours instead.
+  /// Texture, CV_8UC3, each level half the size of the one before. It is empty where vertices have colours instead.
   std::vector<cv::Mat> mip_levels;
   std::vector<float> texels_per_m;  ///< per triangle, of level 0; empty without texture
 };
@@ -25,7 +25,7 @@ std::shared_ptr<const Asset> make_asset(std::string name, Mesh mesh, float specu
 
 using AssetPtr = std::shared_ptr<const Asset>;
 
-/// Of its mesh along z, metres.
+/// Returns the extent of its mesh along z, metres.
 double thing_height(const Asset& thing);
 
 }  // namespace houghstream::world

@@ -28,7 +28,7 @@ cv::Mat pores(const cv::Size& size, const cv::Scalar& colour, Random& random) {
   return image;
 }
 
-// A turned part with its axis along y (wheels) or x (what lies on its side).
+// Returns a part of revolution with its axis along y (wheels) or x (parts lying on their side).
 Part lying(Mesh mesh, const Eigen::Vector3d& translation, const Eigen::Vector3d& axis) {
   Part part{std::move(mesh), Eigen::Isometry3d::Identity()};
   part.T_object_part.translate(translation);
@@ -95,7 +95,7 @@ AssetPtr make_office_stapler(Random& random) {
   cv::Mat shell = plain({512, 96}, hsv(2, 0.82, 0.62), 0.06, random);
   const cv::Mat rubber = plain({128, 64}, hsv(220, 0.1, 0.14), 0.08, random);
   const cv::Mat steel = metal({128, 64}, random);
-  // Seen from the side: the arm is high in the middle and low at both ends.
+  // The outline is seen from the side: the arm is high in the middle and low at both ends.
   const std::vector<Eigen::Vector2d> arm = {{-0.08, 0.0},  {0.068, 0.0},   {0.072, 0.008}, {0.06, 0.02},
                                             {0.01, 0.028}, {-0.05, 0.027}, {-0.074, 0.02}, {-0.082, 0.008}};
   const std::vector<Eigen::Vector2d> foot = {{-0.08, 0.0}, {0.07, 0.0}, {0.066, 0.01}, {-0.076, 0.012}};

@@ -11,14 +11,14 @@ namespace {
 
 const Eigen::Vector3d kOrigin = Eigen::Vector3d::Zero();
 
-// Ring round a lathe's texture, `from` to `to` in shares of its height.
+// Draws a ring round a lathe's texture, `from` to `to` in fractions of its height.
 void draw_ring(cv::Mat& texture, double from, double to, const cv::Scalar& colour) {
   const int top = static_cast<int>(from * texture.rows);
   const int bottom = static_cast<int>(to * texture.rows);
   cv::rectangle(texture, {0, top, texture.cols, bottom - top}, colour, cv::FILLED);
 }
 
-// Half an ellipse in the x-z plane from (low_x, low_z) out and back to (high_x, high_z): a handle.
+// Returns half an ellipse in the x-z plane from (low_x, low_z) out and back to (high_x, high_z), for a handle.
 std::vector<Eigen::Vector3d> handle_path(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double reach) {
   std::vector<Eigen::Vector3d> path;
   constexpr int kSteps = 12;
@@ -48,14 +48,14 @@ Mesh with_lip(Mesh vessel, double reach, double from_z, double to_z) {
   return vessel;
 }
 
-// Ridged screw cap standing on z = 0, as a closed solid.
+// Makes a ridged screw cap standing on z = 0, as a closed solid.
 Mesh cap_mesh(double radius, double height, const cv::Scalar& colour, Random& random) {
   cv::Mat texture = plain({256, 64}, colour, 0.03, random);
   for (int x = 0; x < texture.cols; x += 8) cv::line(texture, {x, 0}, {x, texture.rows}, colour * 0.75, 2);
   return rotated_mesh({{radius, 0.0}, {radius, 0.8 * height}, {0.9 * radius, height}}, texture);
 }
 
-// Chequered cloth, closed round a lathe.
+// Draws chequered cloth, closed round a lathe.
 cv::Mat gingham(const cv::Size& size, const cv::Scalar& colour, int squares, Random& random) {
   cv::Mat image = plain(size, hsv(40, 0.03, 0.94), 0.03, random);
   const int side = size.width / (2 * squares);

@@ -14,13 +14,13 @@ cv::Point point_in(const cv::Rect& region, double x, double y) {
   return {region.x + static_cast<int>(x * region.width), region.y + static_cast<int>(y * region.height)};
 }
 
-// A region given in fractions of the image.
+// Returns a region given in fractions of the image.
 cv::Rect part_of(const cv::Size& size, double x, double y, double width, double height) {
   return {static_cast<int>(x * size.width), static_cast<int>(y * size.height), static_cast<int>(width * size.width),
           static_cast<int>(height * size.height)};
 }
 
-// Band with a wavy upper edge that closes on itself round a can.
+// Draws a band with a wavy upper edge that closes on itself round a can.
 void draw_wave(cv::Mat& image, double level, double height, const cv::Scalar& colour, Random& random) {
   const int waves = random.between(1, 4);
   const double phase = random.uniform(0, 2 * M_PI);
@@ -202,7 +202,7 @@ cv::Mat can_label(const cv::Size& size, const Palette& palette, Random& random) 
   cv::Mat image = plain(size, palette.base, 0.05, random);
   draw_wave(image, random.uniform(0.55, 0.8), 0.5, palette.accent, random);
   draw_wave(image, random.uniform(0.5, 0.8), random.uniform(0.02, 0.08), palette.light, random);
-  // The title stands twice, as on most cans, so that one of them is seen from most sides.
+  // The title is drawn twice, as on most cans, so that one of them is visible from most sides.
   for (const double x : {0.03, 0.53}) {
     draw_logo(image, part_of(size, x + 0.11, random.uniform(0.08, 0.16), 0.18, 0.3), palette, random);
     draw_title(image, part_of(size, x, 0.36, 0.4, 0.28), palette.light, random);
@@ -279,7 +279,7 @@ cv::Mat poster(const cv::Size& size, Random& random) {
 
 namespace {
 
-// White noise in [-1,1], CV_32FC1.
+// Returns white noise in [-1,1], CV_32FC1.
 cv::Mat white_noise(const cv::Size& size, Random& random) {
   cv::Mat noise(size, CV_32FC1);
   const std::uint64_t seed = random.bits();
@@ -291,7 +291,7 @@ cv::Mat white_noise(const cv::Size& size, Random& random) {
   return noise;
 }
 
-// colour * (1 + gain * noise), per pixel.
+// Returns colour * (1 + gain * noise), per pixel.
 cv::Mat tint(const cv::Mat& noise, const cv::Scalar& colour, double gain) {
   cv::Mat factor;
   noise.convertTo(factor, CV_32F, gain, 1.0);

@@ -5,11 +5,12 @@
 
 #include "pipeline/base/random.hpp"
 
-// Print-like textures: what is on boxes, cans, mugs and covers. All CV_8UC3 BGR, drawn from the given generator only.
+// These draw textures like those printed on boxes, cans, mugs and covers. All are CV_8UC3 BGR, drawn from the given
+// generator only.
 
 namespace houghstream::world {
 
-/// The colours one print uses.
+/// Holds the colours of one texture.
 struct Palette {
   cv::Scalar base;    ///< most of the surface
   cv::Scalar accent;  ///< panels, stripes
@@ -18,20 +19,20 @@ struct Palette {
 };
 Palette random_palette(Random& random);
 
-/// BGR of a hue 0-360 degrees, saturation and value 0-1.
+/// Returns BGR of a hue 0-360 degrees, saturation and value 0-1.
 cv::Scalar hsv(double hue_deg, double saturation, double value);
 
-/// Made-up brand word of capital and small letters.
+/// Returns a made-up brand word of capital and small letters.
 std::string brand_word(Random& random);
 
-// Elements, drawn inside a region of an image.
+// These draw elements inside a region of an image.
 void draw_title(cv::Mat& image, const cv::Rect& region, const cv::Scalar& colour, Random& random);
 void draw_text_lines(cv::Mat& image, const cv::Rect& region, const cv::Scalar& colour, Random& random);
 void draw_barcode(cv::Mat& image, const cv::Rect& region, Random& random);
 void draw_logo(cv::Mat& image, const cv::Rect& region, const Palette& palette, Random& random);
 void draw_photo(cv::Mat& image, const cv::Rect& region, Random& random);  ///< noise blobs like a product photograph
 
-// Whole surfaces.
+// These draw whole surfaces.
 cv::Mat carton_front(const cv::Size& size, const Palette& palette, Random& random);
 cv::Mat carton_side(const cv::Size& size, const Palette& palette, Random& random);
 cv::Mat can_label(const cv::Size& size, const Palette& palette, Random& random);  ///< wraps round, u = 0 meets u = 1
@@ -43,15 +44,15 @@ cv::Mat poster(const cv::Size& size, Random& random);
 
 }  // namespace houghstream::world
 
-// Textures of things that are not printed. All CV_8UC3 BGR, drawn from the given generator only.
+// These are textures without print. All are CV_8UC3 BGR, drawn from the given generator only.
 
 namespace houghstream::world {
 
-/// Smooth noise of several octaves, CV_32FC1, mean about 0, range about -1 to 1. `cells` is the number of
-/// grid cells across the width in the coarsest octave.
+/// Returns smooth noise of several octaves, CV_32FC1, mean about 0, range about -1 to 1. `cells` is the number of grid
+/// cells across the width in the coarsest octave.
 cv::Mat smooth_noise(const cv::Size& size, double cells, int octaves, Random& random);
 
-/// One colour with faint unevenness (`strength` 0-1): paint, plastic, glaze, plaster.
+/// Draws one colour with faint unevenness (`strength` 0-1): paint, plastic, glaze, plaster.
 cv::Mat plain(const cv::Size& size, const cv::Scalar& colour, double strength, Random& random);
 
 cv::Mat wood(const cv::Size& size, Random& random);
@@ -61,7 +62,7 @@ cv::Mat stone(const cv::Size& size, Random& random);   ///< speckled worktop
 cv::Mat carpet(const cv::Size& size, Random& random);  ///< floor textile
 cv::Mat wallpaper(const cv::Size& size, Random& random);
 
-/// Brushed or cast metal.
+/// Draws brushed or cast metal.
 cv::Mat metal(const cv::Size& size, Random& random);
 
 }  // namespace houghstream::world

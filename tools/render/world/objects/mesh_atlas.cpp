@@ -62,7 +62,7 @@ cv::Mat draw(const Atlas& atlas) {
   return image;
 }
 
-// From the part's own texture to the atlas, pixel centre to pixel centre at the borders.
+// Maps the part's own texture to the atlas, pixel centre to pixel centre at the borders.
 Eigen::Vector2f to_atlas(const Eigen::Vector2f& uv, const cv::Rect& place, const cv::Size& size) {
   const double x = place.x + 0.5 + static_cast<double>(uv.x()) * (place.width - 1);
   const double y = place.y + 0.5 + static_cast<double>(uv.y()) * (place.height - 1);

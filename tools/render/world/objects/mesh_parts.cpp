@@ -60,7 +60,7 @@ void add_corner(Mesh& mesh, const Eigen::Vector3d& position, const Eigen::Vector
   mesh.uvs.push_back(uv.cast<float>());
 }
 
-// The flat front (y < 0) or back of a prism, as a fan round its first corner.
+// Makes the flat front (y < 0) or back of a prism, as a fan round its first corner.
 Mesh prism_end(const std::vector<Eigen::Vector2d>& outline, double y, const cv::Mat& texture) {
   Eigen::AlignedBox2d bounds;
   for (const Eigen::Vector2d& point : outline) bounds.extend(point);
@@ -80,7 +80,7 @@ Mesh prism_end(const std::vector<Eigen::Vector2d>& outline, double y, const cv::
   return mesh;
 }
 
-// The texture stands upright on sides that rise, and on those that fall.
+// Makes a side of a prism; its texture is upright on sides that rise, and on those that fall.
 Mesh prism_side(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double half, const cv::Mat& texture) {
   Mesh mesh;
   const double low = from.y() > to.y() ? 0.0 : 1.0;

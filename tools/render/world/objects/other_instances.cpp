@@ -9,8 +9,7 @@
 namespace houghstream::world {
 namespace {
 
-// Either of the taught object's colour and of another size, or of its size and another colour: never both the same,
-// so that a person can tell them apart.
+// Varies either the size or the colour of the taught object, never neither, so that a person can tell them apart.
 struct InstanceVariation {
   double size = 1.0;  // factor
   Palette palette;

@@ -11,7 +11,7 @@
 namespace houghstream::world {
 namespace {
 
-/// A smooth displacement: a few waves of random directions, none of which is much shorter than the thing.
+/// Displaces smoothly by a few waves of random directions, none of which is much shorter than the asset.
 class Bending {
  public:
   /// Returns the deformation of an object with this diameter, by this displacement at its centre, metres.
@@ -41,7 +41,7 @@ class Bending {
   std::array<Wave, 4> waves_;
 };
 
-/// Turned hues, or next to none where there were some; darker or brighter.
+/// Returns an image with rotated hues, or nearly without saturation; darker or brighter.
 cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
   constexpr double kGreyed = 0.35;
   constexpr double kColourful = 80.0;  // mean saturation, of 255
@@ -58,7 +58,7 @@ cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
         pixel[1] = cv::saturate_cast<std::uint8_t>(strength * pixel[1]);
       } else {
         pixel[0] = static_cast<std::uint8_t>((pixel[0] + angle) % 180);
-        pixel[1] = std::max<std::uint8_t>(pixel[1], 60);  // what is grey takes on a colour
+        pixel[1] = std::max<std::uint8_t>(pixel[1], 60);  // grey gets a colour
       }
       pixel[2] = cv::saturate_cast<std::uint8_t>(lightness * pixel[2]);
     }
@@ -80,7 +80,8 @@ cv::Mat moved_round(const cv::Mat& image, Random& random) {
   return out;
 }
 
-/// The mesh in other colours, and with another print or not. Another print alone would leave what is plain as it is.
+/// Paints the mesh in other colours, and with another texture or not. Another texture alone would leave uniform
+/// surfaces as they are.
 void repaint(bool other_print, Random& random, Mesh& mesh) {
   const auto painted = [&](const cv::Mat& image) {
     return recoloured(other_print ? moved_round(image, random) : image, random);
@@ -116,7 +117,7 @@ AssetPtr make_hard_negative(const Asset& thing, Random& random) {
 AssetPtr make_instance_variant(const Asset& thing, Random& random) {
   constexpr double kMaxScale = 0.015;
   constexpr double kMaxBent_m = 0.003;
-  constexpr double kMaxBent = 0.02;  // of what it measures across
+  constexpr double kMaxBent = 0.02;  // fraction of its extent
   Mesh mesh = thing.mesh;
   const Eigen::AlignedBox3f bounds = mesh_bounds(mesh);
   const Eigen::Vector3d middle = bounds.center().cast<double>();

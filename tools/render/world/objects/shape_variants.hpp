@@ -13,8 +13,8 @@ namespace houghstream::world {
 /// project.
 AssetPtr make_instance_variant(const Asset& thing, Random& random);
 
-/// Another object: clearly smaller or larger, of other proportions, or in other colours and often with another print,
-/// as other packages are.
+/// Makes another object: clearly smaller or larger, of other proportions, or in other colours and often with another
+/// texture, as other packages are.
 AssetPtr make_hard_negative(const Asset& thing, Random& random);
 
 }  // namespace houghstream::world

@@ -4,7 +4,7 @@
 
 #include "pipeline/base/random.hpp"
 
-// The colours by which the four classes are known, so that other things can be given them too.
+// These are the typical colours of the four classes, so that distractors can be given them too.
 
 namespace houghstream::world {
 
@@ -14,7 +14,7 @@ struct Hsv {
   double value = 0.0;       ///< 0-1
 };
 
-/// Main colours of a class; those of one without a second colour are the same.
+/// Gives the main colours of a class; those of one without a second colour are the same.
 struct ClassColours {
   Hsv base;
   Hsv accent;
@@ -25,7 +25,7 @@ const ClassColours& class_colours(int class_id);
 
 cv::Scalar bgr(const Hsv& colour);
 
-/// One that a person would call the same: BGR.
+/// Returns a colour that a person would call the same: BGR.
 cv::Scalar near_colour(const Hsv& colour, Random& random);
 
 }  // namespace houghstream::world

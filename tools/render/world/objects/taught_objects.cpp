@@ -26,7 +26,7 @@ struct FurtherClass {
   AssetPtr (*make)(Random&);
 };
 
-// By id, from kFirstFurtherId on.
+// The table is ordered by id, from kFirstFurtherId on.
 constexpr std::array<FurtherClass, kFurtherClassCount> kFurther = {{{"plate", true, make_plate},
                                                                     {"teapot", false, make_teapot},
                                                                     {"pitcher", false, make_pitcher},
@@ -81,7 +81,7 @@ TaughtObject make_further_object(int id) {
   return {id, further.name, further.symmetric_about_z, further.make(random)};
 }
 
-/// Its name says what it is and its number.
+/// Makes an instance, whose name holds its class and number.
 TaughtObject make_instance(int id) {
   const int number = id - kFirstInstanceId;
   const int kind = number % kClassCount;

@@ -7,7 +7,7 @@
 namespace houghstream::world {
 namespace {
 
-// Outline of a thick-walled cup: foot, outside, rim, inside, inner bottom.
+// Returns the outline of a thick-walled cup: foot, outside, rim, inside, inner bottom.
 std::vector<ProfilePoint> cup_profile(const MugShape& shape) {
   const double foot = shape.foot_radius;
   const double rim = shape.rim_radius;
@@ -75,7 +75,7 @@ Mesh mug_mesh(const MugShape& shape, const Palette& palette, Random& random) {
     const bool outside = i >= 2 && i <= 5;
     profile[i].v = outside ? edge * (1.0 - profile[i].z / shape.height) : 0.98;
   }
-  // The print ends where the rim begins: the rim's first ring carries both texture rows.
+  // The texture ends where the rim begins: the rim's first ring carries both texture rows.
   profile.insert(profile.begin() + 6, profile[5]);
   profile[6].v = 0.98;
   const cv::Mat glaze = plain({64, 64}, palette.base, 0.03, random);

@@ -21,7 +21,7 @@ struct MugShape {
   double height = 0.095;
   double wall = 0.004;
 };
-/// With a handle to +x.
+/// Makes a mug with a handle to +x.
 Mesh mug_mesh(const MugShape& shape, const Palette& palette, Random& random);
 
 /// Makes a vessel without a handle: glasses, cups, pots.
@@ -30,10 +30,10 @@ Mesh cup_mesh(const MugShape& shape, const cv::Mat& texture);
 /// Drinks can: label round the side, metal ends with necks.
 Mesh can_mesh(double radius, double height, const Palette& palette, Random& random);
 
-/// Printed carton.
+/// Makes a printed carton.
 Mesh carton_mesh(const Eigen::Vector3d& size, const Palette& palette, Random& random);
 
-/// Solid body of revolution through (radius, z) points from bottom to top, ends closed.
+/// Makes a solid body of revolution through (radius, z) points from bottom to top, with closed ends.
 Mesh rotated_mesh(const std::vector<Eigen::Vector2d>& outline, const cv::Mat& texture);
 
 }  // namespace houghstream::world

@@ -11,11 +11,11 @@
 
 namespace houghstream::world {
 
-/// A thing in its place.
+/// Holds an asset with its pose.
 struct PlacedAsset {
   AssetPtr thing;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
-  int object_id = 0;         ///< TaughtObject::id where the truth is to name it, else 0
+  int object_id = 0;         ///< TaughtObject::id of an object in the ground truth, else 0
   bool casts_shadow = true;  ///< false for walls: lamps may stand behind them
 };
 
@@ -39,7 +39,7 @@ struct ColourCameraSettings {
   Eigen::Vector3f white_balance_bgr = Eigen::Vector3f::Ones();
 };
 
-/// The camera of nearly everything rendered: 640x480, as the usual structured-light cameras.
+/// Returns the camera of nearly all renderings: 640x480, as the usual structured-light cameras.
 Camera synthetic_camera();
 
 struct World {
@@ -51,7 +51,7 @@ struct World {
   Camera camera = synthetic_camera();
 };
 
-/// Camera at `eye` looking at `target` with the image upright.
+/// Returns the pose of a camera at `eye` looking at `target` with the image upright.
 Eigen::Isometry3d look_at(const Eigen::Vector3d& eye_world, const Eigen::Vector3d& target_world);
 
 }  // namespace houghstream::world

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMaxIncidence = 1.45;  // radians; the model's terms grow without bound towards pi/2
 
-// Normal noise, deviation 1, that neighbours share: the sensor matches windows, not pixels.
+// Returns normal noise, deviation 1, that neighbours share: the sensor matches windows, not pixels.
 cv::Mat window_noise(const cv::Size& size, std::uint64_t seed) {
   cv::Mat noise(size, CV_32FC1);
   for (int y = 0; y < size.height; ++y) {
@@ -25,7 +25,7 @@ cv::Mat window_noise(const cv::Size& size, std::uint64_t seed) {
   return noise * 3.0;  // a mean of nine has a third of the deviation
 }
 
-// 255 where depth changes by more than the settings' step within a pixel's neighbourhood.
+// Returns 255 where depth changes by more than the settings' step within a pixel's neighbourhood.
 cv::Mat depth_edges(const cv::Mat& depth, double relative_step) {
   cv::Mat known = depth.clone();
   cv::patchNaNs(known, 100.0);

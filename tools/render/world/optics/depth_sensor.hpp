@@ -38,16 +38,18 @@ struct SensorView {
   cv::Mat specular;       ///< CV_32FC1, 0 to 1
 };
 
-/// Axial deviation of measurements at depth z (m) and incidence cosine, metres (Nguyen et al. 2012).
+/// Returns the axial deviation of measurements at depth z (m) and incidence cosine, metres (Nguyen et al. 2012).
 double axial_sigma(double z, double cos_incidence);
 
-/// Distance between neighbouring measurable depths at depth z, metres (Khoshelham & Elberink 2012).
+/// Returns the distance between neighbouring measurable depths at depth z, metres (Khoshelham & Elberink 2012).
 double depth_step(double z, const DepthSensorSettings& settings);
 
-/// Pixels that the projector, to the right of the camera, does not reach: CV_8UC1, 255 = in the infrared shadow.
+/// Returns the pixels that the projector, to the right of the camera, does not reach: CV_8UC1, 255 = in the infrared
+/// shadow.
 cv::Mat infrared_shadow(const cv::Mat& depth, const Camera& camera, double baseline_m);
 
-/// The measured depth: CV_32FC1, whole millimetres given in metres, NaN = none. Same seed, same noise.
+/// Returns the measured depth: CV_32FC1, whole millimetres given in metres, NaN = none. The same seed gives the same
+/// noise.
 cv::Mat measure_depth(const SensorView& view, const Camera& camera, const DepthSensorSettings& settings,
                       std::uint64_t seed);
 

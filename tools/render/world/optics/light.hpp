@@ -6,7 +6,7 @@ namespace houghstream::world {
 
 enum class TimeOfDay : std::uint8_t { kDay, kEvening };
 
-/// A lamp or window and a weak overhead light, ambient light, and the camera's image settings. In the evening they
+/// Sets a lamp or window and a weak overhead light, ambient light, and the camera's image settings. In the evening they
 /// are weaker and warmer, and the image is darker and noisier.
 void set_lighting(World& world, TimeOfDay time, std::uint64_t seed);
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kLevels = 4096;
 
-// Linear 0..1 in steps to sRGB bytes (IEC 61966-2-1).
+// Returns the table from linear 0..1 in steps to sRGB bytes (IEC 61966-2-1).
 std::array<std::uint8_t, kLevels> make_srgb_table() {
   std::array<std::uint8_t, kLevels> table{};
   for (int i = 0; i < kLevels; ++i) {

@@ -6,18 +6,18 @@
 
 namespace houghstream::world {
 
-/// The factor on the light that automatic exposure settles at for an image (CV_32FC3, linear). Cameras do not follow
-/// the scene's brightness all the way: dark rooms stay darker.
+/// Returns the factor on the light at which automatic exposure settles for an image (CV_32FC3, linear). Cameras do not
+/// follow the scene's brightness all the way: dark rooms stay darker.
 double automatic_exposure(const cv::Mat& radiance, const ColourCameraSettings& settings);
 
 /// The image a colour camera takes of linear light (CV_32FC3 BGR): lens blur, vignetting, automatic exposure
 /// unless the settings fix it, white balance, shot and read noise, sRGB. Returns CV_8UC3 BGR. Same seed, same image.
 cv::Mat simulate_colour_camera(const cv::Mat& radiance, const ColourCameraSettings& settings, std::uint64_t seed);
 
-/// Deviation of a camera's processing from plain sRGB; the defaults have none. The steps and their order are those of
-/// Karaimer & Brown, "A Software Platform for Manipulating the Camera Imaging Pipeline", ECCV 2016; cameras differ in
-/// each of them (Kim, Lin, Lu, Suesstrunk, Lin & Brown, "A New In-Camera Imaging Model for Color Computer Vision and
-/// Its Application", PAMI 34(12), 2012). The numbers of other_colour_camera() were chosen for this project.
+/// Describes how a camera's processing departs from plain sRGB; the defaults do not. The steps and their order are
+/// those of Karaimer & Brown, "A Software Platform for Manipulating the Camera Imaging Pipeline", ECCV 2016; cameras
+/// differ in each of them (Kim, Lin, Lu, Suesstrunk, Lin & Brown, "A New In-Camera Imaging Model for Color Computer
+/// Vision and Its Application", PAMI 34(12), 2012). The numbers of other_colour_camera() were chosen for this project.
 struct ColourResponse {
   double further_vignetting = 0.0;                              ///< light lost in the corners besides, 0 to 1
   Eigen::Vector3d white_balance_bgr = Eigen::Vector3d::Ones();  ///< gain on each coded channel

@@ -10,14 +10,14 @@
 namespace houghstream::world {
 namespace {
 
-constexpr double kMapPxPerM = 430.0;  // of the part of the world that the map shows
+constexpr double kMapPxPerM = 430.0;  // resolution of the map, which shows a part of the world
 constexpr float kBiasM = 0.006F;
 constexpr int kTaps = 8;
 constexpr int kRotations = 64;
 
 using Taps = std::array<std::array<Eigen::Vector2f, kTaps>, kRotations>;
 
-// Vogel's spiral in the unit disc, from the rim inwards, for each turn of the pattern.
+// Returns Vogel's spiral in the unit disc, from the rim inwards, for each rotation of the pattern.
 Taps make_taps() {
   Taps taps;
   for (int angle_rad = 0; angle_rad < kRotations; ++angle_rad) {
@@ -33,7 +33,7 @@ Taps make_taps() {
 
 constexpr std::uint64_t kPatternSeed = 77;
 
-// sRGB to linear (IEC 61966-2-1).
+// Returns the table from sRGB to linear (IEC 61966-2-1).
 std::array<float, 256> make_linear_table() {
   std::array<float, 256> table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -84,7 +84,7 @@ struct Point {
   float angle_rad;
 };
 
-// Lambert's diffuse and Blinn's (1977) specular term.
+// Returns Lambert's diffuse and Blinn's (1977) specular term.
 Eigen::Vector3f reflected(const Point& point, const std::vector<LightInView>& lights, const Eigen::Vector3f& ambient) {
   Eigen::Vector3f sum = ambient.cwiseProduct(point.reflectance_bgr);
   for (const LightInView& light : lights) {
@@ -119,7 +119,7 @@ class Shader {
       R_camera_object_.push_back((T_camera_world * placed.T_world_object).linear().cast<float>());
   }
 
-  /// The view's pixel (x, y), which is the image's (x, y) + first_px.
+  /// Shades the view's pixel (x, y), which is the image's (x, y) + first_px.
   void shade_pixel(int x, int y, ShadedView& view) const {
     const std::uint16_t id = view.geometry.id.at<std::uint16_t>(y, x);
     if (id == 0) return;
@@ -152,7 +152,7 @@ class Shader {
     const auto number = static_cast<std::uint64_t>(image_y) * 4096U + static_cast<std::uint64_t>(image_x);
     point.angle_rad = pixel_uniform(kPatternSeed, number);
 
-    // More of the light from everywhere comes from above.
+    // Ambient light is stronger from above.
     const Eigen::Vector3f ambient = world_.ambient_bgr * (0.72F + 0.28F * point.normal.dot(up_));
     const Eigen::Vector3f light =
         (1.0F - thing.emission) * reflected(point, lights_, ambient) + thing.emission * point.reflectance_bgr;

@@ -8,9 +8,9 @@
 
 namespace houghstream::world {
 
-/// Depth of the world seen from a light: what lies deeper is in shadow (Williams 1978).
+/// Stores the depth of the world seen from a light: deeper points are in shadow (Williams 1978).
 struct ShadowMap {
-  Camera camera;  ///< of the light; width 0 = no shadows
+  Camera camera;  ///< camera of the light; width 0 = no shadows
   Eigen::Isometry3d T_light_world = Eigen::Isometry3d::Identity();
   cv::Mat inverse_depth;  ///< CV_32FC1, 1/m, 0 = nothing
 };
@@ -23,8 +23,8 @@ class ShadowLookup {
  public:
   ShadowLookup(const ShadowMap& map, const Eigen::Isometry3d& T_world_camera, double penumbra_m);
 
-  /// Share of the light that arrives at a point, 0 to 1. `turn` in [0,1) turns the pattern of samples, so that
-  /// penumbrae show grain instead of bands (percentage-closer filtering, Reeves et al. 1987).
+  /// Returns the fraction of the light that arrives at a point, 0 to 1. `angle` in [0,1) rotates the pattern of
+  /// samples, so that penumbrae show grain instead of bands (percentage-closer filtering, Reeves et al. 1987).
   float lit(const Eigen::Vector3f& point_camera, float angle) const;
 
  private:
@@ -33,23 +33,23 @@ class ShadowLookup {
   float penumbra_m_;
 };
 
-/// A world with the shadows of its lights computed once.
+/// Holds a world with the shadows of its lights, which are computed once.
 struct LitWorld {
   World world;
   std::vector<ShadowMap> shadows;  ///< one per light
 };
 LitWorld light_world(World world);
 
-/// Geometry and radiance of each pixel. Ids in `geometry` are the index in World::items plus 1.
+/// Holds geometry and radiance of each pixel. Ids in `geometry` are the index in World::items plus 1.
 struct ShadedView {
   RenderedGeometry geometry;
   cv::Mat radiance;       ///< CV_32FC3 BGR, linear, 0 = black
   cv::Mat cos_incidence;  ///< CV_32FC1, between surface normal and viewing ray, 0 to 1; 0 where nothing is
   cv::Mat reflectance;    ///< CV_32FC1, of the surface, linear, 0 to 1
-  cv::Mat specular;       ///< CV_32FC1, Thing::gloss
+  cv::Mat specular;       ///< CV_32FC1, Asset::specular
 };
 
-/// Geometry, then texture (mip-mapped, bilinear), Lambert and Blinn-Phong light per pixel.
+/// Renders geometry, then texture (mip-mapped, bilinear), Lambert and Blinn-Phong light per pixel.
 ShadedView shade_view(const LitWorld& lit_world, const Camera& camera, const Eigen::Isometry3d& T_camera_world);
 
 /// Shades the part of the image inside `region_px`; the result has the region's size.

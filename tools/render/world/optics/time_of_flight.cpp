@@ -30,8 +30,8 @@ class TimeOfFlight {
  private:
   double depth(const cv::Point& pixel) const { return view_.depth.at<float>(pixel); }
 
-  /// The depth of a flying pixel between the nearest and the farthest of its neighbours, each weighted by the light
-  /// that returns from the part of the pixel that it fills.
+  /// Returns the depth of a flying pixel between the nearest and the farthest of its neighbours, each weighted by the
+  /// light that returns from the part of the pixel that it fills.
   std::optional<double> mixed(const cv::Point& pixel, std::uint64_t index) const {
     cv::Point nearest = pixel;
     cv::Point farthest = pixel;

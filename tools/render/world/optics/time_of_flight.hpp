@@ -26,20 +26,21 @@ struct TimeOfFlightSettings {
   double light_m = 0.0006;           ///< deviation at amplitude 1 m^-2, inverse to the amplitude
   double min_amplitude = 0.0025;     ///< m^-2; less gives nothing
   double edge_step = 0.02;           ///< a depth edge, relative to depth
-  double flying_fraction = 0.5;      ///< of the pixels at depth edges that see both surfaces, 0 to 1
+  double flying_fraction = 0.5;      ///< fraction of the pixels at depth edges that see both surfaces, 0 to 1
   double multipath = 0.4;            ///< bias of a concave place, in depths by which it lies behind its surroundings
-  double multipath_reach_px = 15.0;  ///< how far round a pixel surroundings are
-  double multipath_reach_m = 0.1;    ///< and how far in depth: what lies farther off is no concave place but an edge
+  double multipath_reach_px = 15.0;  ///< radius of the surroundings of a pixel
+  double multipath_reach_m = 0.1;    ///< maximum difference in depth: larger ones are edges, not concave places
 };
 
-/// Amplitude of the light that returns, m^-2: reflectance * cosine / z^2. A glossy surface returns less along the ray.
+/// Returns the amplitude of the light that returns, m^-2: reflectance * cosine / z^2. A glossy surface returns less
+/// along the ray.
 double returned_amplitude(const SensorView& view, const cv::Point& pixel);
 
-/// Deviation of measurements at this amplitude, metres.
+/// Returns the deviation of measurements at this amplitude, metres.
 double time_of_flight_sigma(double amplitude, const TimeOfFlightSettings& settings);
 
-/// The measured depth as measure_depth() gives it: CV_32FC1, whole millimetres given in metres, NaN = none. Same seed,
-/// same noise. May be called from several threads.
+/// Returns the measured depth in the form of measure_depth(): CV_32FC1, whole millimetres given in metres, NaN = none.
+/// The same seed gives the same noise. May be called from several threads.
 cv::Mat measure_time_of_flight(const SensorView& view, const TimeOfFlightSettings& settings, std::uint64_t seed);
 
 }  // namespace houghstream::world

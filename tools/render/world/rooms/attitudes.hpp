@@ -11,11 +11,11 @@ namespace houghstream::world {
 /// Attitude in which an object is placed.
 enum class Attitude : std::uint8_t {
   kUpright,  ///< z up
-  kTilted,   ///< at a slant, as if held or leaning: its lowest point touches
-  kLying     ///< at rest in another way: on a side or upside down
+  kTilted,   ///< tilted, as if held or leaning: its lowest point touches
+  kLying     ///< at rest on a side or upside down
 };
 
-/// "upright", "tilted" or "lying". Throws InputError listing them for another name.
+/// Parses "upright", "tilted" or "lying". Throws InputError listing them for another name.
 Attitude parse_attitude(const std::string& name);
 
 /// Range of the tilt, degrees.
@@ -31,17 +31,17 @@ class AttitudeChoice {
   /// Number of lying poses that are distinguished: one for a family of one, two for a larger one.
   int lying_count() const { return static_cast<int>(turns_.size()); }
 
-  /// Rotation from the object into the table frame (z up). Consecutive indices go through the ways of lying; the
-  /// rest follows `random`.
+  /// Returns the rotation from the object into the table frame (z up). Consecutive indices go through the ways of
+  /// lying; the rest follows `random`.
   Eigen::Matrix3d R_table_object(Attitude attitude, int index, Random& random) const;
 
  private:
   Eigen::Matrix3d lying(int index, Random& random) const;
 
-  std::vector<StablePoseFamily> turns_;  ///< those without upright, in the order in which they are shown
+  std::vector<StablePoseFamily> turns_;  ///< families without upright, in the order in which they are shown
 };
 
-/// Height of the object frame's origin over a table that the mesh's lowest point touches, metres.
+/// Returns the height of the object frame's origin over a table that the mesh's lowest point touches, metres.
 double height_above_table(const Mesh& mesh, const Eigen::Matrix3d& R_table_object);
 
 }  // namespace houghstream::world

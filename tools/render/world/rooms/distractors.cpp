@@ -12,7 +12,7 @@
 namespace houghstream::world {
 namespace {
 
-// Palette of the distractors: random, or with some probability that of the taught objects.
+// Draws colours of the distractors: random, or with some probability those of the taught objects.
 class Dyes {
  public:
   explicit Dyes(double taught_fraction) : taught_fraction_(taught_fraction) {}

@@ -18,18 +18,18 @@ constexpr double kFingerRadiusM = 0.0085;
 constexpr double kFingerStepM = 0.02;
 constexpr double kPalmRadiusM = 0.021;
 constexpr double kArmLengthM = 0.75;
-constexpr double kOverTableM = 0.004;  // that the hand keeps
+constexpr double kOverTableM = 0.004;  // distance of the hand from the table
 
-/// Grip of the hand. Axes: `back` from the object towards the arm, `close` from the thumb to the fingers, `along` from
-/// finger to finger.
+/// Describes the grip of the hand. Axes: `back` from the object towards the arm, `close` from the thumb to the fingers,
+/// `along` from finger to finger.
 struct Grip {
   Eigen::Matrix3d axes;  ///< columns back, close, along; world
-  double reach_m;        ///< of the fingers round the thing, from where the palm touches it
+  double reach_m;        ///< reach of the fingers round the asset, from the point that the palm touches
 };
 
-/// The thing's surface in the grip's axes, from its origin.
+/// Returns points of the asset's surface in the grip's axes, from its origin.
 std::vector<Eigen::Vector3d> surface_points(const Mesh& mesh, const Eigen::Matrix3d& R_grip_object) {
-  constexpr int kSplit = 6;  // of a triangle's sides
+  constexpr int kSplit = 6;  // parts of a triangle's sides
   std::vector<Eigen::Vector3d> points;
   points.reserve(mesh.triangles.size() * (kSplit + 1) * (kSplit + 2) / 2);
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -46,7 +46,7 @@ std::vector<Eigen::Vector3d> surface_points(const Mesh& mesh, const Eigen::Matri
   return points;
 }
 
-/// The farthest that points reach to one side of `close` (sign), between two depths of `back` and about `along`.
+/// Returns the maximum that points reach to one side of `close` (sign), between two depths of `back` and about `along`.
 double side_of(const std::vector<Eigen::Vector3d>& points, double sign, const Eigen::Vector2d& back, double along) {
   double farthest = 0.0;
   for (const Eigen::Vector3d& point : points) {
@@ -56,10 +56,10 @@ double side_of(const std::vector<Eigen::Vector3d>& points, double sign, const Ei
   return farthest;
 }
 
-/// Where a finger lies, in the grip's axes.
+/// Gives the position of a finger, in the grip's axes.
 struct FingerPlace {
-  double sign;   ///< of its side: 1 for a finger, -1 for the thumb
-  double along;  ///< from finger to finger
+  double sign;   ///< sign of its side: 1 for a finger, -1 for the thumb
+  double along;  ///< position from finger to finger
 };
 
 Mesh finger(const std::vector<Eigen::Vector3d>& points, const FingerPlace& place, double palm, const Grip& grip,
@@ -80,7 +80,7 @@ Mesh finger(const std::vector<Eigen::Vector3d>& points, const FingerPlace& place
 
 AssetPtr make_hand(const std::vector<Eigen::Vector3d>& points, const Grip& grip, const cv::Mat& skin,
                    const cv::Mat& sleeve) {
-  double palm = 0.0;  // where it touches the thing, along `back`
+  double palm = 0.0;  // position where it touches the asset, along `back`
   for (const Eigen::Vector3d& point : points) {
     if (std::abs(point.y()) < 0.03 && std::abs(point.z()) < 0.04) palm = std::max(palm, point.x());
   }
@@ -101,7 +101,7 @@ AssetPtr make_hand(const std::vector<Eigen::Vector3d>& points, const Grip& grip,
   parts.push_back(at(tapered_tube({{middle + 0.16, 0, 0}, {middle + 0.3, 0, 0}, {middle + kArmLengthM, 0, 0}},
                                   {0.038, 0.045, 0.055}, sleeve, 20),
                      origin));
-  // In the thing's place: finish_object() would move the origin.
+  // The mesh stays in the asset's place: finish_object() would move the origin.
   Mesh mesh = compose(parts);
   const Eigen::Vector3f centre = mesh_bounds(mesh).center();
   mesh = finish_object(mesh);
@@ -110,7 +110,7 @@ AssetPtr make_hand(const std::vector<Eigen::Vector3d>& points, const Grip& grip,
   return make_asset("hand", mesh, 0.08F);
 }
 
-/// The share of the thing's silhouette that the hand hides in a view.
+/// Returns the fraction of the asset's silhouette that the hand occludes in a view.
 double hidden_fraction(const PlacedAsset& hand, const PlacedAsset& thing, const Eigen::Isometry3d& T_camera_world) {
   const Camera camera{320, 240, 262.5, 262.5, 159.5, 119.5};
   const Eigen::Isometry3d T_camera_object = T_camera_world * thing.T_world_object;
@@ -141,7 +141,7 @@ double lowest_point(const PlacedAsset& placed) {
   return lowest;
 }
 
-/// `liberty`, 0 to 1: how far from the usual the arm may come.
+/// `liberty`, 0 to 1, limits how far from the usual direction the arm may come.
 Grip draw_grip(double arm_azimuth_rad, double liberty, Random& random) {
   const double max_aside = 0.3 + 0.6 * liberty;
   const double azimuth = arm_azimuth_rad + random.uniform(-max_aside, max_aside);

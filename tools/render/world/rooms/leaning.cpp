@@ -15,17 +15,17 @@
 namespace houghstream::world {
 namespace {
 
-constexpr double kReserveM = 0.004;  // by which the centre of mass lies inside what carries the thing
+constexpr double kReserveM = 0.004;  // margin by which the centre of mass lies inside the support
 constexpr double kMinHeightM = 0.008;
 constexpr double kMaxHeightM = 0.22;
 
-/// A tilted thing, its lowest point at z = 0, and the block that it leans on towards +x.
+/// Gives a tilted asset, its lowest point at z = 0, and the block that it leans on towards +x.
 struct Leaning {
   double edge_m = 0.0;    ///< x of the block's near side
-  double height_m = 0.0;  ///< of the block
+  double height_m = 0.0;  ///< height of the block
 };
 
-/// The farthest towards +x that the mesh reaches up to that height.
+/// Returns the maximum towards +x that the mesh reaches up to that height.
 double reach_below(const Mesh& mesh, const std::vector<Eigen::Vector3d>& points, double height_m) {
   double farthest = -std::numeric_limits<double>::infinity();
   for (const auto& triangle : mesh.triangles) {
@@ -65,7 +65,7 @@ PlacedAsset make_block(const Leaning& leaning, const Eigen::AlignedBox3d& object
   return block;
 }
 
-/// Moved to the middle of the group.
+/// Returns the group moved to its middle.
 AssetGroup centred(AssetGroup group) {
   Eigen::AlignedBox2d extent;
   for (const PlacedAsset& placed : group) {

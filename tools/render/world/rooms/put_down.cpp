@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kMinSlopeDeg = 12.0;
 constexpr double kMaxSlopeDeg = 20.0;
-constexpr double kReserveRad = 0.02;  // by which it stands safer than the slope asks for
+constexpr double kReserveRad = 0.02;  // margin over the angle that the slope requires
 constexpr double kThinEndM = 0.004;
-constexpr double kBesideM = 0.015;  // of the wedge, on each side of what stands on it
+constexpr double kBesideM = 0.015;  // width of the wedge beyond the asset, on each side
 
 double radians(double degrees) {
   return degrees * M_PI / 180.0;

@@ -15,7 +15,8 @@
 namespace houghstream::world {
 namespace {
 
-// Furniture, as things whose origin is on the floor (or wall) in the middle, front to -y. Lengths in metres.
+// Furniture consists of assets whose origin is on the floor (or wall) in the middle, front to -y. Lengths are in
+// metres.
 
 cv::Scalar paint(Random& random) {
   return hsv(random.uniform(0, 360), random.uniform(0.0, 0.5), random.uniform(0.15, 0.9));
@@ -87,7 +88,7 @@ AssetPtr make_bookshelf(Random& random) {
   return from_parts("bookshelf", parts, 0.05F);
 }
 
-/// With doors and handles; the origin is at its centre.
+/// Makes a cabinet with doors and handles; the origin is at its centre.
 AssetPtr make_cabinet(const Eigen::Vector3d& size, Random& random) {
   const cv::Mat side = wood_or_paint(random);
   cv::Mat door;
@@ -105,7 +106,7 @@ AssetPtr make_cabinet(const Eigen::Vector3d& size, Random& random) {
   return make_asset("cabinet", box(size, faces), 0.12F);
 }
 
-/// A poster to hang; the origin is at its centre.
+/// Makes a poster to hang; the origin is at its centre.
 AssetPtr make_wall_image(Random& random) {
   const double width = random.uniform(0.3, 0.7);
   const double height = random.uniform(0.3, 0.8);
@@ -115,7 +116,7 @@ AssetPtr make_wall_image(Random& random) {
   return make_asset("picture", box({width, 0.02, height}, faces), 0.08F);
 }
 
-/// Bright, with a frame; the origin is at its centre.
+/// Makes a bright window with a frame; the origin is at its centre.
 AssetPtr make_window(Random& random) {
   const double width = random.uniform(0.8, 1.4);
   const double height = random.uniform(0.8, 1.2);

@@ -13,10 +13,10 @@ namespace {
 constexpr int kDrops = 400;  // attitudes from which it is let go
 constexpr double kMinSlopeRad = 1.0 * M_PI / 180.0;
 constexpr double kSame = 0.9998;       // cosine between two directions that are one: 1.1 degrees
-constexpr double kSameHeightM = 5e-4;  // of the centre of mass, within a family
-constexpr double kSameUpright = 0.03;  // of the cosine between down and the object's z axis, within a family
+constexpr double kSameHeightM = 5e-4;  // height of the centre of mass, within a family
+constexpr double kSameUpright = 0.03;  // cosine between down and the object's z axis, within a family
 
-/// Evenly spread over the sphere (Fibonacci's spiral).
+/// Returns directions evenly spread over the sphere (Fibonacci's spiral).
 Eigen::Vector3d spread_direction(int index, int count) {
   const double z = 1.0 - (2.0 * index + 1.0) / count;
   const double angle = index * M_PI * (3.0 - std::sqrt(5.0));
@@ -24,7 +24,7 @@ Eigen::Vector3d spread_direction(int index, int count) {
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
-// The shortest turn that brings `down` to -z; what stands on its head is turned over its x axis first.
+// Returns the shortest rotation that brings `down` to -z; an upside-down object is rotated over its x axis first.
 Eigen::Matrix3d face_down(Eigen::Vector3d down) {
   Eigen::Matrix3d over = Eigen::Matrix3d::Identity();
   if (down.z() > 0.0) over.diagonal() = Eigen::Vector3d(1.0, -1.0, -1.0);
@@ -42,7 +42,7 @@ StablePose attitude_of(const TippingBody& body, const Eigen::Vector3d& down, dou
   return attitude;
 }
 
-/// The object's upward direction at rest, in the object frame.
+/// Returns the object's upward direction at rest, in the object frame.
 Eigen::Vector3d up_of(const StablePose& attitude) {
   return attitude.R_table_object.row(2);
 }

@@ -33,7 +33,7 @@ bool separated_by(const Footprint& a, const Footprint& b, double gap_m) {
          (extent.max().array() < -a.half.array() - gap_m).any();
 }
 
-// The truth does not name look-alikes.
+// Returns the id for the ground truth, which does not name hard negatives.
 int ground_truth_id(int id) {
   return id > kClassCount && id <= kTaughtObjectCount ? 0 : id;
 }

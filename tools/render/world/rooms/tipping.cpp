@@ -20,7 +20,7 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Andrew's monotone chain; counter-clockwise, without points on the sides.
+/// Computes the hull by Andrew's monotone chain: counter-clockwise, without points on the sides.
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   std::sort(points.begin(), points.end(),
             [](const auto& a, const auto& b) { return std::tuple(a.x(), a.y()) < std::tuple(b.x(), b.y()); });
@@ -39,7 +39,7 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   return hull.empty() ? std::vector<Eigen::Vector2d>{points.front()} : hull;
 }
 
-/// The point between a and b that is nearest to the origin.
+/// Returns the point between a and b that is nearest to the origin.
 Eigen::Vector2d nearest_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Eigen::Vector2d side = b - a;
   const double length_sq = side.squaredNorm();
@@ -56,7 +56,8 @@ Eigen::Vector2d nearest_on_border(const std::vector<Eigen::Vector2d>& corners) {
   return nearest;
 }
 
-/// From the pivot towards the centre of mass's foot; balanced on an edge or a point, to one side of it.
+/// Returns the direction from the pivot towards the centre of mass's foot; for a body balanced on an edge or a point, a
+/// direction to one side of it.
 Eigen::Vector2d falls_towards(const std::vector<Eigen::Vector2d>& corners, const Eigen::Vector2d& pivot) {
   if (pivot.norm() > 1e-9) return -pivot.normalized();
   const Eigen::Vector2d edge = corners.back() - corners.front();
@@ -106,7 +107,7 @@ Support TippingBody::support(const Eigen::Vector3d& down, double nearly_m) const
   return support;
 }
 
-// Turns about `pivot` until the next point touches the plane.
+// Rotates about `pivot` until the next point touches the plane.
 Eigen::Vector3d TippingBody::tipped(const Eigen::Vector3d& down, const Support& support, const Eigen::Vector2d& pivot,
                                     const Eigen::Vector2d& towards) const {
   const Eigen::Vector3d forward = support.in_object(towards);

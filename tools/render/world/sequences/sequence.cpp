@@ -19,8 +19,8 @@ enum : std::uint64_t { kRoom = 1, kLight, kTable, kHands, kPath, kNoise, kFirstT
 }  // namespace sequence_aspect
 
 constexpr std::uint64_t kFirstWorld = 1ULL << 43U;  // far beyond the numbers of other uses
-constexpr double kComeS = 0.6;                      // how long a hand takes to come, and to go
-constexpr double kTallestBesideM = 0.16;            // what stands about must not hide the objects
+constexpr double kComeS = 0.6;                      // duration of a hand's coming, and of its going
+constexpr double kTallestBesideM = 0.16;            // a maximum, so that surrounding assets do not hide the objects
 const Eigen::Vector3d kOutOfSight(0.0, 0.0, -50.0);
 
 double eased(double fraction) {
@@ -43,7 +43,7 @@ bool is_away(const Eigen::Vector3d& place) {
   return place.head<2>().norm() > kAwayM;
 }
 
-/// Between two stops; the way to a later one may be lifted.
+/// Returns the pose between two stops; the way to a later one may be lifted.
 Eigen::Isometry3d between(const Stop& from, const Stop& to, double seconds, double height_m) {
   const double fraction = eased((seconds - from.at_s) / (to.at_s - from.at_s));
   Eigen::Vector3d place = from.place + fraction * (to.place - from.place);
@@ -58,7 +58,8 @@ Eigen::Isometry3d look_from(double azimuth_rad, double elevation_rad, double dis
   return look_at(target + distance_m * direction, target);
 }
 
-/// Turned and moved by a push that begins at `start_s`, is over after a quarter of a second and leaves some of it.
+/// Returns the pose after a push that begins at `start_s`, is over after a quarter of a second and leaves some of its
+/// motion.
 Eigen::Isometry3d jerked(const Eigen::Isometry3d& T_camera_world, double seconds, double start_s, double sign) {
   const double rise = eased((seconds - start_s) / 0.12);
   const double back = 0.7 * eased((seconds - start_s - 0.12) / 0.25);
@@ -70,7 +71,7 @@ Eigen::Isometry3d jerked(const Eigen::Isometry3d& T_camera_world, double seconds
 }  // namespace
 
 Sequence::Sequence(SequencePlan plan, DatasetSplit use) : plan_(std::move(plan)) {
-  std::uint64_t number = kFirstWorld;  // every sequence has a room of its own
+  std::uint64_t number = kFirstWorld;  // every sequence has its own room
   for (const char letter : plan_.name) number = number * 31 + static_cast<std::uint8_t>(letter);
   seed_ = world_seed(use, number);
   furnish();
@@ -86,7 +87,7 @@ void Sequence::furnish() {
   world.items = std::move(room.items);
   set_lighting(world, TimeOfDay::kDay, aspect_seed(seed_, sequence_aspect::kLight));
   TableSetter setter(world, room.table_half, aspect_seed(seed_, sequence_aspect::kTable));
-  // Things that are not taught, about the objects: to both sides and behind; one is a look-alike.
+  // Distractors surround the objects to both sides and behind; one is a hard negative.
   const int alike = kClassCount + 1 + setter.random().below(kClassCount);
   setter.stand(make_taught_object(alike).thing, setter.region(0.6, 0.95, -0.3, 0.9), M_PI, 0);
   for (int i = 0; i < 9; ++i) {
@@ -203,7 +204,7 @@ World Sequence::world_at(double seconds) const {
     if (away >= 1.0 || is_away(T.translation())) T.translation() = kOutOfSight;
   }
   if (arm_) {
-    // In front of all that stands there, from the right to the left within five seconds, and back.
+    // The arm moves in front of all objects, from the right to the left within five seconds, and back.
     const double fraction = eased((seconds - 1.5) / 3.0) - eased((seconds - 5.0) / 2.5);
     world.items[*arm_].T_world_object = Eigen::Translation3d(0.75 - 1.2 * fraction, 0.0, 0.0) * T_world_arm_;
   }

@@ -10,14 +10,14 @@
 
 namespace houghstream::world {
 
-/// State of a sequence at a time.
+/// Holds the state of a sequence at a time.
 struct SequenceGroundTruth {
   std::vector<std::optional<Eigen::Isometry3d>> T_world_object;  ///< per actor; nothing where it has been taken away
   std::vector<Eigen::Isometry3d> T_camera_world;                 ///< per camera
 };
 
-/// A room with its actors, hands and cameras. Light and shadows stand still: what is moved casts none. const calls may
-/// be made from several threads at once.
+/// Renders a room with its actors, hands and cameras. Light and shadows are static: moving assets cast none. const
+/// calls may be made from several threads at once.
 class Sequence {
  public:
   Sequence(SequencePlan plan, DatasetSplit use);
@@ -51,7 +51,7 @@ class Sequence {
   SequencePlan plan_;
   std::uint64_t seed_;
   LitWorld lit_;
-  std::vector<std::size_t> items_;  ///< of the actors, in the world
+  std::vector<std::size_t> items_;  ///< indices of the actors in the world
   std::vector<Carry> carries_;
   std::optional<std::size_t> arm_;  ///< item of the arm that passes
   Eigen::Isometry3d T_world_arm_ = Eigen::Isometry3d::Identity();

@@ -14,7 +14,7 @@ const Eigen::Vector3d kMugPlace(0.13, -0.12, 0.0);
 const Eigen::Vector3d kCanPlace(-0.10, -0.14, 0.0);
 const Eigen::Vector3d kGone(-1.6, -0.1, 0.35);
 
-/// The four, each at its place.
+/// Returns the four classes, each at its place.
 std::vector<Actor> standing() {
   return {{kBowl, {{0.0, kBowlPlace, 0.4, 0.0}}},
           {kBox, {{0.0, kBoxPlace, -0.5, 0.0}}},
@@ -30,7 +30,7 @@ SequencePlan still(const std::string& name, double seconds) {
   return plan;
 }
 
-// Slowly, then quickly, then turned on the spot.
+// Plans a slow push, a quick one, and a rotation on the spot.
 SequencePlan pushed() {
   SequencePlan plan = still("pushed", 10.0);
   plan.actors[2].stops = {{2.0, kMugPlace, 2.2, 0.0},
@@ -70,7 +70,7 @@ SequencePlan swapped() {
   return plan;
 }
 
-// Two equal ones side by side; one is carried round the other.
+// Plans two equal cans side by side; one is carried round the other.
 SequencePlan cans() {
   SequencePlan plan = still("cans", 11.0);
   plan.actors[3].stops = {{0.0, {-0.10, -0.12, 0.0}, -0.3, 0.0}};

@@ -6,29 +6,30 @@
 
 namespace houghstream::world {
 
-/// A place on a thing's way.
+/// Gives a position on an asset's way.
 struct Stop {
-  double at_s = 0.0;                                ///< when it is there
+  double at_s = 0.0;                                ///< time of its arrival
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< world x and y, and how high it is over the table, metres
   double angle_rad = 0.0;                           ///< about the vertical
-  double arc_m = 0.0;                               ///< how much higher it is lifted on the way to it
+  double arc_m = 0.0;                               ///< height by which it is lifted on the way to it
 };
 
-/// One of the objects whose truth is told. Where two stops differ, a hand moves it from one to the other.
+/// Describes one of the objects whose ground truth is written. Where two stops differ, a hand moves it from one to the
+/// other.
 struct Actor {
-  int object_id = 1;  ///< of make_taught_object(); two actors may be equal
+  int object_id = 1;  ///< id for make_taught_object(); two actors may be equal
   std::vector<Stop> stops;
 };
 
 /// Motion of a sequence's cameras.
 enum class CameraWork : std::uint8_t {
   kWalk,       ///< one is carried half round the table
-  kStill,      ///< one stands still
-  kJerk,       ///< one stands still and is pushed twice
-  kThreeStill  ///< three stand still, in front and to both sides
+  kStill,      ///< one static camera
+  kJerk,       ///< one static camera, which is pushed twice
+  kThreeStill  ///< three static cameras, in front and to both sides
 };
 
-/// A recording of objects over time.
+/// Plans a recording of objects over time.
 struct SequencePlan {
   std::string name;
   CameraWork cameras = CameraWork::kStill;

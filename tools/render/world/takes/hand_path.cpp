@@ -10,7 +10,7 @@ namespace houghstream::world {
 namespace {
 
 constexpr double kStepsPerSecond = 240.0;
-constexpr double kGentleSeconds = 0.8;  // in which a movement starts or ends
+constexpr double kGentleSeconds = 0.8;  // duration of a movement's start and end
 
 std::vector<Wander> three(double slowest_hz, double fastest_hz, double deviation, Random& random) {
   std::vector<Wander> axes;

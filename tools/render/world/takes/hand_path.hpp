@@ -51,16 +51,16 @@ class UnevenProgress {
   std::vector<double> done_;  ///< at even steps of time
 };
 
-/// Where somebody walks a camera.
+/// Settings of the path of a camera carried by hand.
 struct HandPathSettings {
   double seconds = 16.0;
   double angle_rad = 6.6;    ///< round the target; a little more than a turn, so that the end meets the start
-  double distance_m = 0.65;  ///< to the target, on average
+  double distance_m = 0.65;  ///< mean distance to the target
   Eigen::Vector3d target_world = Eigen::Vector3d(0.0, 0.0, 0.05);
 };
 
-/// A camera carried by hand round one object: height and distance swing, the aim wanders, the hand shakes. World frame
-/// as in world.hpp.
+/// Simulates a camera carried by hand round one object: height and distance swing, the aim wanders, the hand shakes.
+/// World frame as in world.hpp.
 class HandPath {
  public:
   HandPath(const HandPathSettings& settings, std::uint64_t seed);
@@ -78,8 +78,8 @@ class HandPath {
   double swing_phase_rad_;
   Wander elevation_drift_, distance_drift_, roll_;
   std::vector<Wander> aim_;      ///< metres, along x, y, z
-  std::vector<Wander> shift_;    ///< of the eye, metres
-  std::vector<Wander> tremble_;  ///< of the camera's axes, radians
+  std::vector<Wander> shift_;    ///< shift of the eye, metres
+  std::vector<Wander> tremble_;  ///< rotation of the camera's axes, radians
 };
 
 }  // namespace houghstream::world

@@ -14,10 +14,10 @@ namespace houghstream::world {
 namespace {
 
 constexpr int kBands = 16;
-constexpr double kStillPx = 0.25;  // less is not seen
+constexpr double kStillPx = 0.25;  // shorter motions are invisible
 constexpr int kMaxTaps = 12;       // on each side
 
-/// Where each thing is seen: T_camera_object.
+/// Returns the pose of each asset: T_camera_object.
 std::vector<Eigen::Isometry3d> places(World& world, const SceneMotion& motion, double seconds) {
   const Eigen::Isometry3d T_camera_world = motion(world, seconds);
   std::vector<Eigen::Isometry3d> result;
@@ -68,7 +68,7 @@ void smear(const cv::Mat& ways, cv::Mat& radiance) {
   radiance = result;
 }
 
-/// A view of the whole image, without contents.
+/// Returns a view of the whole image, without contents.
 ShadedView empty_view(const cv::Size& size) {
   ShadedView view;
   view.geometry = {cv::Mat(size, CV_32FC1), cv::Mat(size, CV_16UC1), cv::Mat(size, CV_32SC1), cv::Mat(size, CV_32FC2)};
@@ -92,9 +92,9 @@ void copy_band(const ShadedView& band, const cv::Range& rows, const ShadedView& 
 
 constexpr int kMeterEvery = 4;  // frames
 constexpr double kMeterScale = 0.125;
-constexpr double kFollowPerS = 3.0;  // how fast automatic exposure follows
+constexpr double kFollowPerS = 3.0;  // rate at which automatic exposure follows
 constexpr double kReadoutS = 0.02;
-constexpr double kUsualExposureS = 0.010;  // at exposure 1; longer in the dark
+constexpr double kUsualExposureS = 0.010;  // exposure time at exposure 1; longer in the dark
 constexpr double kMinDurationS = 0.003;
 constexpr double kMaxDurationS = 0.025;
 constexpr std::uint64_t kNoiseAspect = 7;
@@ -148,7 +148,7 @@ LitWorld RenderedTake::lit_at(double seconds) const {
   return stage_.things_move() ? light_world(std::move(lit_world.world)) : lit_world;
 }
 
-// Automatic exposure sees a small image of the room and follows it with a delay, proportionally.
+// Automatic exposure reads a small image of the room and follows it with a delay, proportionally.
 void RenderedTake::meter_light(int threads) {
   const int count = (frames_ - 1) / kMeterEvery + 2;
   std::vector<double> metered(static_cast<std::size_t>(count));

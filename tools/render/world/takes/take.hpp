@@ -10,13 +10,13 @@
 
 namespace houghstream::world {
 
-/// Exposure of an image: a rolling shutter, with motion blur.
+/// Models the exposure of an image: a rolling shutter, with motion blur.
 struct Shutter {
   double exposure_s = 0.01;  ///< each row gathers light for so long
-  double readout_s = 0.02;   ///< from the first row to the last; the middle row is exposed about the frame's time
+  double readout_s = 0.02;   ///< time from the first row to the last; the middle row is exposed about the frame's time
 };
 
-/// Motion of a scene: moves the world's assets to their poses at a time in seconds, and returns the camera's pose
+/// A scene motion moves the world's assets to their poses at a time in seconds, and returns the camera's pose
 /// (T_camera_world).
 using SceneMotion = std::function<Eigen::Isometry3d(World& world, double seconds)>;
 
@@ -26,14 +26,15 @@ using SceneMotion = std::function<Eigen::Isometry3d(World& world, double seconds
 ShadedView expose(LitWorld lit_world, const Camera& camera, const SceneMotion& motion, double seconds,
                   const Shutter& shutter);
 
-/// A recording of an object being shown, with the truth of every frame: a rolling shutter, motion blur, automatic
-/// exposure that lags behind.
+/// Renders a recording of an object being shown, with the ground truth of every frame: a rolling shutter, motion blur,
+/// automatic exposure that lags behind.
 class RenderedTake {
  public:
-  /// `frames` over the plan's seconds, at least 2.
+  /// Distributes `frames` over the plan's seconds; at least 2.
   RenderedTake(const TakePlan& plan, int frames, int threads);
 
-  /// Frame `index`, with its truth at the time of its middle row. The utime is left 0. const calls are thread-safe.
+  /// Renders frame `index`, with its ground truth at the time of its middle row. The utime is left 0. const calls are
+  /// thread-safe.
   RenderedFrame render(int index) const;
 
  private:
@@ -44,21 +45,21 @@ class RenderedTake {
   TakeStage stage_;
   double seconds_;
   int frames_;
-  LitWorld lit_world_;             ///< at 0 seconds
+  LitWorld lit_world_;             ///< world at 0 seconds
   std::vector<double> exposures_;  ///< factor on the light, per frame
 };
 
 /// A take among those that `hs-render takes` makes.
 struct NumberedTake {
-  int scene = 1;  ///< of test/00000N/; an object's takes keep their numbers, whichever others are asked for
-  int take = 1;   ///< 1: upright, 2: laid on its side or turned over
+  int scene = 1;  ///< N of test/00000N/; an object's takes keep their numbers, whichever others are rendered
+  int take = 1;   ///< 1: upright, 2: on its side or upside down
   std::string object;
   TakePlan plan;
 };
 
-/// Both takes of the twelve objects of the scenes objects_20_b, _d and _f, from plain (bowl, tumbler, teapot) to
-/// printed (cartons, cans): eight before a camera that is carried round them, two on a turntable, two turned by hand.
-/// Every object has a room of its own, which both takes share. `world` names a set of rooms and movements.
+/// Returns both takes of the twelve objects of the scenes objects_20_b, _d and _f, from uniform (bowl, tumbler, teapot)
+/// to textured (cartons, cans): eight before a camera that is carried round them, two on a turntable, two rotated by
+/// hand. Every object has a room of its own, which both takes share. `world` names a set of rooms and movements.
 std::vector<NumberedTake> twelve_objects_takes(DatasetSplit use, int world, double seconds);
 
 }  // namespace houghstream::world

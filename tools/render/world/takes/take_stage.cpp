@@ -14,7 +14,7 @@
 namespace houghstream::world {
 namespace {
 
-// Aspects of a take's world, each with a seed of its own (aspect_seed). Those of the room are the same in both takes.
+// Aspects of a take's world have seeds of their own (aspect_seed). Those of the room are the same in both takes.
 namespace take_aspect {
 enum : std::uint64_t { kRoom = 1, kLight, kTable, kFirstThing, kTakeAspects = 1000, kPath, kPlace, kTurning };
 }  // namespace take_aspect
@@ -24,7 +24,7 @@ constexpr double kShadowRadiusM = 0.5;
 constexpr double kDiscM = 0.02;  // height of the turntable
 constexpr double kTurnRad = 2.0 * M_PI + 0.25;
 constexpr int kStrokes = 6;
-constexpr double kTallestBesideShownM = 0.13;  // what stands about must not hide the object
+constexpr double kTallestBesideShownM = 0.13;  // a maximum, so that surrounding assets do not hide the object
 
 // Parts of a stroke: the hand comes, turns the object, goes, and is away.
 constexpr double kComeFraction = 0.15;
@@ -129,7 +129,7 @@ void TakeStage::choose_camera(const TakePlan& plan) {
   if (kind_ == TakeKind::kTurntable) turning_.emplace(plan.seconds, aspect_seed(seed_, take_aspect::kTurning));
 }
 
-// About where it stands; a turntable turns about its own middle.
+// Returns the object's pose, rotated about its own position; a turntable rotates about its own middle.
 Eigen::Isometry3d TakeStage::object_at(double rotated_rad) const {
   const Eigen::Isometry3d& T_world_object = world_.items[object_].T_world_object;
   Eigen::Vector3d axis = T_world_object.translation();
@@ -148,9 +148,9 @@ void TakeStage::add_hands() {
     stroke.start_rad = kTurnRad * i / kStrokes;
     PlacedAsset object = world_.items[object_];
     object.T_world_object = object_at(stroke.start_rad);
-    // From the camera's right, or its left.
+    // The arm comes from the camera's right, or its left.
     place.arm_azimuth_rad = std::atan2(eye.y(), eye.x()) + (i % 2 == 0 ? 1.2 : -1.2);
-    Random random(aspect_seed(seed_, take_aspect::kTurning));  // the same skin and sleeve each time
+    Random random(aspect_seed(seed_, take_aspect::kTurning));  // gives the same skin and sleeve each time
     const PlacedAsset hand = take_hold(object, place, random);
     stroke.T_object_hand = object.T_world_object.inverse() * hand.T_world_object;
     stroke.hand = world_.items.size();

@@ -15,32 +15,32 @@ namespace houghstream::world {
 /// Kind of a take.
 enum class TakeKind : std::uint8_t {
   kHandHeld,   ///< it stands on a table, the camera is carried round it
-  kTurntable,  ///< it stands on a turntable before a camera that stands still
-  kHandTurns   ///< the camera stands still, and a hand turns the object a part of a turn at a time
+  kTurntable,  ///< it stands on a turntable before a static camera
+  kHandTurns   ///< before a static camera, a hand rotates the object a part of a turn at a time
 };
 
-/// "hand_held", "turntable" or "hand_turns".
+/// Returns "hand_held", "turntable" or "hand_turns".
 std::string take_kind_name(TakeKind kind);
 
-/// One recording of an object being shown.
+/// Plans one recording of an object being shown.
 struct TakePlan {
-  int object_id = 1;  ///< as of make_taught_object()
+  int object_id = 1;  ///< id for make_taught_object()
   TakeKind kind = TakeKind::kHandHeld;
-  bool laid_down = false;  ///< on its side or turned over; else upright
+  bool laid_down = false;  ///< on its side or upside down; else upright
   DatasetSplit use = DatasetSplit::kTest;
-  std::uint64_t number = 0;  ///< of the world: takes of one number are of one room, whatever its objects do
+  std::uint64_t number = 0;  ///< number of the world: takes of one number share a room, whatever its objects do
   double seconds = 16.0;
 };
 
-/// The room of a take, with all that moves in it.
+/// Holds the room of a take, with all its moving assets.
 class TakeStage {
  public:
   explicit TakeStage(const TakePlan& plan);
 
-  /// As it is at 0 seconds.
+  /// Returns the world at 0 seconds.
   const World& world() const { return world_; }
 
-  /// Puts what moves where it is at a time; `world` is a copy of world(). Returns T_camera_world.
+  /// Moves assets to their poses at a time; `world` is a copy of world(). Returns T_camera_world.
   Eigen::Isometry3d move(World& world, double seconds) const;
 
   /// Returns whether anything but the camera moves, and the shadows with it.
@@ -74,9 +74,9 @@ class TakeStage {
   World world_;
   std::size_t object_ = 0;  ///< index in world_.items
   std::optional<std::size_t> turntable_;
-  std::optional<HandPath> path_;                                     ///< of a camera that is carried
-  Eigen::Isometry3d T_still_world_ = Eigen::Isometry3d::Identity();  ///< of one that stands
-  std::optional<UnevenProgress> turning_;                            ///< of a turntable
+  std::optional<HandPath> path_;                                     ///< path of a camera that is carried
+  Eigen::Isometry3d T_still_world_ = Eigen::Isometry3d::Identity();  ///< pose of a static camera
+  std::optional<UnevenProgress> turning_;                            ///< progress of a turntable
   std::vector<Stroke> strokes_;
 };
 

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-// In place of RealSense's SDK: the part of its interface that the example uses, with the SDK's own names. Colour is
-// 64x48, red, in RGB where it comes from a file; depth counts in quarters of a millimetre: 0.9 m, and none at the first
-// pixel.
+// This file replaces RealSense's SDK by the part of its interface that the example uses, with the SDK's own names.
+// Colour is 64x48, red, in RGB where it comes from a file; depth counts in quarters of a millimetre: 0.9 m, and none at
+// the first pixel.
 
 // NOLINTBEGIN(readability-identifier-naming)
 enum rs2_stream { RS2_STREAM_DEPTH, RS2_STREAM_COLOR };

@@ -13,7 +13,7 @@
 namespace houghstream::world {
 namespace {
 
-// Objects that can be taught: the four classes, their look-alikes and the sixteen further ones.
+// Returns objects that can be taught: the four classes, their hard negatives and the sixteen further ones.
 std::vector<int> taught_ids() {
   std::vector<int> ids = twenty_class_ids();
   for (int id = kClassCount + 1; id <= kTaughtObjectCount; ++id) ids.push_back(id);

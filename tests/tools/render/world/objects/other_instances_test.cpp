@@ -15,7 +15,7 @@ double height_ratio(const Asset& other, const Asset& taught) {
   return mesh_bounds(other.mesh).sizes().z() / mesh_bounds(taught.mesh).sizes().z();
 }
 
-/// Distance of the mean colours in the a*b* plane.
+/// Returns the distance of the mean colours in the a*b* plane.
 double colour_distance(const Asset& a, const Asset& b) {
   const auto mean = [](const Asset& thing) {
     cv::Mat lab;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kSeeds = 40;
 
-/// Mean square distance of the vertices, after the best scale about the middle of the first mesh, metres^2.
+/// Returns the mean square distance of the vertices, after the best scale about the middle of the first mesh, metres^2.
 double bent_by_m2(const Mesh& a, const Mesh& b) {
   const Eigen::Vector3f middle = mesh_bounds(a).center();
   double along = 0.0;

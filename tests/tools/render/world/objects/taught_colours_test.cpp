@@ -10,7 +10,7 @@
 namespace houghstream::world {
 namespace {
 
-/// Share of a jar's surface, of several jars, that has about a colour of the four classes.
+/// Returns the fraction of a jar's surface, of several jars, that has about a colour of the four classes.
 double taught_share_of_jars(double taught_colours) {
   constexpr int kJar = 15;  // two plain surfaces
   constexpr int kJars = 20;

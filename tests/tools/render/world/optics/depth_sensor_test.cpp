@@ -13,7 +13,7 @@ const Camera kCamera{160, 120, 525.0, 525.0, 79.5, 59.5};
 const cv::Size kSize(160, 120);
 const DepthSensorSettings kSettings;
 
-// A wall at one depth, facing the camera, of a bright matt paint.
+// Returns a wall at one depth, facing the camera, of a bright matt paint.
 SensorView wall(double z) {
   return {cv::Mat(kSize, CV_32FC1, cv::Scalar(z)), cv::Mat(kSize, CV_32FC1, cv::Scalar(1.0)),
           cv::Mat(kSize, CV_32FC1, cv::Scalar(0.5)), cv::Mat(kSize, CV_32FC1, cv::Scalar(0.0))};
@@ -51,7 +51,7 @@ TEST(DepthSensor, ShadowFallsToTheLeftOfANearThing) {
   cv::Mat depth(kSize, CV_32FC1, cv::Scalar(2.0));
   depth.colRange(80, 110).setTo(1.0);
   const cv::Mat shadow = infrared_shadow(depth, kCamera, 0.075);
-  // f b (1/1 - 1/2) = 19.7 px
+  // The shadow's width is f b (1/1 - 1/2) = 19.7 px.
   EXPECT_EQ(shadow.at<std::uint8_t>(60, 79), 255);
   EXPECT_EQ(shadow.at<std::uint8_t>(60, 62), 255);
   EXPECT_EQ(shadow.at<std::uint8_t>(60, 58), 0);

@@ -28,7 +28,7 @@ TEST(Photo, NoiseFollowsTheSeed) {
   EXPECT_EQ(deviation[0], 0.0);
 }
 
-/// An edge between two colours of the camera's own kind.
+/// Returns an edge between two colours that the camera usually sees.
 cv::Mat two_colours() {
   cv::Mat photo(60, 80, CV_8UC3, cv::Scalar(60, 90, 140));
   photo.colRange(40, 80).setTo(cv::Scalar(120, 110, 100));

@@ -9,7 +9,7 @@ namespace {
 
 const Camera kShadingCamera{160, 120, 150.0, 150.0, 79.5, 59.5};
 
-// A white floor, a lamp above it to the right, and a plate between the two.
+// Returns a white floor, a lamp above it to the right, and a plate between the two.
 World floor_under_a_plate() {
   World world;
   const cv::Mat white(32, 32, CV_8UC3, cv::Scalar::all(255));

@@ -5,7 +5,7 @@
 namespace houghstream::world {
 namespace {
 
-/// A plate of 0.4 m, half a metre above the floor, under a lamp.
+/// Returns a plate of 0.4 m, half a metre above the floor, under a lamp.
 World shaded_floor() {
   Mesh mesh;
   mesh.vertices = {{-0.2F, -0.2F, 0.5F}, {0.2F, -0.2F, 0.5F}, {0.2F, 0.2F, 0.5F}, {-0.2F, 0.2F, 0.5F}};

@@ -12,7 +12,7 @@ namespace {
 const cv::Size kTofSize(160, 120);
 const TimeOfFlightSettings kTofSettings;
 
-/// A wall at one depth, facing the camera, of matt paint.
+/// Returns a wall at one depth, facing the camera, of matt paint.
 SensorView plane_wall(double z, double reflectance = 0.5) {
   return {cv::Mat(kTofSize, CV_32FC1, cv::Scalar(z)), cv::Mat(kTofSize, CV_32FC1, cv::Scalar(1.0)),
           cv::Mat(kTofSize, CV_32FC1, cv::Scalar(reflectance)), cv::Mat(kTofSize, CV_32FC1, cv::Scalar(0.0))};
@@ -70,7 +70,8 @@ TEST(TimeOfFlight, PixelsFlyBetweenTheTwoDepthsOfAnEdge) {
   EXPECT_LT(sum / count, 1.23);
 }
 
-/// Two planes that meet in the middle column, `slope` metres a pixel away from the camera (a corner) or towards it.
+/// Returns two planes that meet in the middle column, `slope` metres a pixel away from the camera (a corner) or towards
+/// it.
 double bias_in_the_middle(double slope) {
   SensorView view = plane_wall(1.0);
   for (int x = 0; x < kTofSize.width; ++x) view.depth.col(x).setTo(1.0 - slope * std::abs(x - 80));

@@ -15,13 +15,13 @@ namespace {
 
 constexpr int kSeeds = 6;
 
-/// Block and leaning object.
+/// Returns a block and a leaning object.
 AssetGroup leaning(int id, std::uint64_t seed) {
   Random random(seed);
   return put_leaning(make_taught_object(id).thing, id, random);
 }
 
-/// From the attitude nearest to which the thing would rest to that in which it leans, degrees.
+/// Returns the angle between the lean and the nearest stable pose, degrees.
 double min_lean_deg(const PlacedAsset& placed, const std::vector<StablePoseFamily>& families) {
   const Eigen::Vector3d up = placed.T_world_object.linear().row(2);
   double max_cosine = -1.0;

@@ -22,7 +22,7 @@ Eigen::Vector3d up_of(const StablePose& attitude) {
   return attitude.R_table_object.row(2);
 }
 
-// The family of an attitude in which `up`, object frame, points upwards; null where there is none.
+// Returns the family of an attitude in which `up`, object frame, points upwards; null where there is none.
 const StablePoseFamily* family_with(const std::vector<StablePoseFamily>& families, const Eigen::Vector3d& up) {
   for (const StablePoseFamily& family : families) {
     for (const StablePose& attitude : family) {

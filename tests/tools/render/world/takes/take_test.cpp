@@ -104,7 +104,7 @@ TEST(TakeStage, TheSecondTakeIsOfTheSameRoomWithTheObjectLaidDown) {
 
 const Camera kMovedCamera{160, 120, 140.0, 140.0, 79.5, 59.5};
 
-/// A white post before nothing, 1 m away.
+/// Returns a white post before nothing, 1 m away.
 LitWorld post() {
   World world;
   const cv::Mat white(8, 8, CV_8UC3, cv::Scalar::all(255));
@@ -148,7 +148,7 @@ TEST(MovingCamera, WhatStandsStillIsAsAPictureOfOneMoment) {
 
 TEST(MovingCamera, RowsAreExposedOneAfterTheOther) {
   const ShadedView view = expose(post(), kMovedCamera, sideways(1.0), 0.0, {0.0, 0.1});
-  // 0.1 s of 1 m/s seen from 1 m at 140 px: 14 px from the first row to the last, none in the middle.
+  // The motion is 0.1 s of 1 m/s seen from 1 m at 140 px: 14 px from the first row to the last, none in the middle.
   EXPECT_NEAR(middle_of_row(view.geometry.id, 59), 79.5, 0.8);
   EXPECT_NEAR(middle_of_row(view.geometry.id, 2) - middle_of_row(view.geometry.id, 117), 14.0, 1.5);
 }
@@ -157,7 +157,7 @@ TEST(MovingCamera, EdgesAreSmearedByTheWayOfAnExposure) {
   const ShadedView sharp = expose(post(), kMovedCamera, sideways(1.0), 0.0, {0.0, 0.0});
   const ShadedView blurred = expose(post(), kMovedCamera, sideways(1.0), 0.0, {0.05, 0.0});
   EXPECT_EQ(partly_lit(sharp, 60), 0);
-  // 7 px of way: the post's own half of both its edges; nothing is behind it that could be smeared.
+  // The motion is 7 px: half of both edges belong to the post; nothing is behind it that could be smeared.
   EXPECT_NEAR(partly_lit(blurred, 60), 7, 2);
   EXPECT_EQ(cv::countNonZero(sharp.geometry.id != blurred.geometry.id), 0);
 }
