@@ -36,8 +36,15 @@ set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "finds taught objects in an RGB-D ca
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-houghstream)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy, python3-pil")
+if(TARGET houghstream_native) # which is of one machine and one Python
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  get_target_property(python_minor houghstream_native PYTHON_MINOR)
+  math(EXPR next_python "${python_minor} + 1")
+  string(PREPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${python_minor}), python3 (<< 3.${next_python}), ")
+else()
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+endif()
 file(WRITE "${PROJECT_BINARY_DIR}/python_package/prerm"
 "#!/bin/sh
 set -e
@@ -46,7 +53,8 @@ rm -rf /usr/lib/python3/dist-packages/houghstream/__pycache__
 ")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${PROJECT_BINARY_DIR}/python_package/prerm")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "finds taught objects in an RGB-D camera's stream: Python
- Message types, logs, and frames as numpy arrays.")
+ ObjectFinder, which finds them in numpy arrays; what a stream publishes;
+ message types, logs, and frames as numpy arrays.")
 
 set(CPACK_DEBIAN_JAVA_PACKAGE_NAME houghstream-java)
 set(CPACK_DEBIAN_JAVA_PACKAGE_SECTION java)
