@@ -76,13 +76,10 @@ License: none-chosen
  or distribute this work.
 ")
 string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
-file(WRITE "${PROJECT_BINARY_DIR}/changelog"
-"houghstream (${PROJECT_VERSION}) unstable; urgency=low
-
-  * As built.
-
- -- ${CPACK_PACKAGE_CONTACT}  ${now}
-")
+execute_process(
+  COMMAND awk -v "version=${PROJECT_VERSION}" -v "signature=${CPACK_PACKAGE_CONTACT}  ${now}"
+          -f "${PROJECT_SOURCE_DIR}/.cmake/debian_changelog.awk" "${PROJECT_SOURCE_DIR}/tools/CHANGELOG.md"
+  OUTPUT_FILE "${PROJECT_BINARY_DIR}/changelog" COMMAND_ERROR_IS_FATAL ANY)
 find_program(GZIP gzip REQUIRED)
 execute_process(COMMAND "${GZIP}" -9nf "${PROJECT_BINARY_DIR}/changelog")
 foreach(pair programs:houghstream development:libhoughstream-dev python:python3-houghstream java:houghstream-java)

@@ -128,6 +128,14 @@ class Programs(unittest.TestCase):
                 run(program, "--version", cwd="/", env={"PATH": "/usr/bin:/bin"}), rf"^{program.name} \d+\.\d+\.\d+\n$"
             )
 
+    def test_their_version_and_the_packages_changelog_are_those_of_the_changelog(self):
+        text = (SOURCE / "tools/CHANGELOG.md").read_text()
+        version, newest = re.search(r"^## \[(\d+\.\d+\.\d+)\][^\n]*\n(.*?)(?=^## \[|\Z)", text, re.M | re.S).groups()
+        self.assertEqual(run(HOME / "bin/hs-log", "--version"), f"hs-log {version}\n")
+        log = gzip.decompress((HOME / "share/doc/houghstream/changelog.gz").read_bytes()).decode()
+        self.assertTrue(log.startswith(f"houghstream ({version}) unstable; urgency=low\n\n  * "), log[:100])
+        self.assertEqual(log.count("\n  * "), len(re.findall(r"^- ", newest, re.M)))
+
     @unittest.skipUnless(shutil.which("help2man"), "no manual pages without help2man")
     def test_they_have_manual_pages_with_the_options_of_their_jobs(self):
         pages = {page.name: gzip.decompress(page.read_bytes()).decode() for page in HOME.glob("share/man/man1/*.gz")}

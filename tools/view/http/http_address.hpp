@@ -36,6 +36,10 @@ bool answers_to(const HttpAddress& address, const std::string& host_header);
 /// The name of this machine, as it stands in the address that is printed; "" where it has none.
 std::string machine_name();
 
+/// Returns this machine's addresses that others reach a listener at `host` by: those of all its links for 0.0.0.0 and
+/// ::, IPv6 for the latter too, without loopback and addresses of a single link; none for another host.
+std::vector<std::string> network_addresses(const std::string& host);
+
 /// Why nobody can listen there, in words; "" where it can be done.
 std::string listening_problem(const HttpAddress& address);
 
