@@ -68,13 +68,13 @@ function(houghstream_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# houghstream_share_headers(NAME [QUICKLY] HEADERS x ... LINK y ...): what nearly every source includes is
+# houghstream_share_headers(NAME [QUICKLY] [RELOCATABLE] HEADERS x ... LINK y ...): what nearly every source includes is
 # read once, into the target NAME, and not again by each: a third of the build time. g++ takes the optimisation options of
 # the precompiled headers for all that follows: they must be those of the targets that use them. Where
 # HOUGHSTREAM_SHARED_HEADERS is off, as for clang-tidy, a source that lives on headers which it does not include itself is
 # noticed.
 function(houghstream_share_headers name)
-  cmake_parse_arguments(ARG "QUICKLY" "" "HEADERS;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "QUICKLY;RELOCATABLE" "" "HEADERS;LINK" ${ARGN})
   if(NOT HOUGHSTREAM_SHARED_HEADERS OR HOUGHSTREAM_FUZZ)
     return()
   endif()
@@ -85,6 +85,9 @@ function(houghstream_share_headers name)
   houghstream_compile_options(${name})
   if(ARG_QUICKLY)
     houghstream_compile_quickly(${name})
+  endif()
+  if(ARG_RELOCATABLE)
+    set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   endif()
   target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
 endfunction()
@@ -113,13 +116,19 @@ function(houghstream_prepare_unity target)
   endif()
 endfunction()
 
-# houghstream_library(NAME SOURCES a.cpp ... LINK x ...)
+# houghstream_library(NAME [RELOCATABLE] SOURCES a.cpp ... LINK x ...). RELOCATABLE: a shared library may link it, as Python's
+# module does.
 function(houghstream_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "RELOCATABLE" "" "SOURCES;LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC ${ARG_LINK})
   houghstream_compile_options(${name})
-  houghstream_use_shared_headers(${name} library_headers)
+  if(ARG_RELOCATABLE)
+    set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    houghstream_use_shared_headers(${name} relocatable_headers)
+  else()
+    houghstream_use_shared_headers(${name} library_headers)
+  endif()
   houghstream_prepare_unity(${name})
 endfunction()
 

@@ -115,8 +115,13 @@ install(CODE "
     execute_process(COMMAND /usr/bin/python3 -c \"import sys; print('lib/python%d.%d' % sys.version_info[:2])\"
                     OUTPUT_VARIABLE python_folder OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
   endif()
-  file(INSTALL \"${PROJECT_BINARY_DIR}/python/houghstream\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/\${python_folder}/dist-packages\"
-       FILES_MATCHING PATTERN \"*.py\" PATTERN \"__pycache__\" EXCLUDE)
+  set(package \"\${CMAKE_INSTALL_PREFIX}/\${python_folder}/dist-packages\")
+  file(INSTALL \"${PROJECT_BINARY_DIR}/python/houghstream\" DESTINATION \"\${package}\"
+       FILES_MATCHING PATTERN \"*.py\" PATTERN \"*.pyi\" PATTERN \"py.typed\" PATTERN \"*.so\" PATTERN \"__pycache__\" EXCLUDE)
+  file(GLOB modules \"\$ENV{DESTDIR}\${package}/houghstream/*.so\")
+  if(modules AND CMAKE_INSTALL_DO_STRIP)
+    execute_process(COMMAND \"${CMAKE_STRIP}\" --strip-unneeded \${modules} COMMAND_ERROR_IS_FATAL ANY)
+  endif()
 " COMPONENT python)
 if(TARGET houghstream_types_jar)
   install(FILES "${PROJECT_BINARY_DIR}/bin/houghstream_types.jar" "${PROJECT_BINARY_DIR}/bin/houghstream_spy.jar"

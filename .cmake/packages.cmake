@@ -36,8 +36,15 @@ set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "finds taught objects in an RGB-D ca
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-houghstream)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy, python3-pil")
+if(TARGET houghstream_native) # which is of one machine and one Python
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  get_target_property(python_minor houghstream_native PYTHON_MINOR)
+  math(EXPR next_python "${python_minor} + 1")
+  string(PREPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${python_minor}), python3 (<< 3.${next_python}), ")
+else()
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+endif()
 file(WRITE "${PROJECT_BINARY_DIR}/python_package/prerm"
 "#!/bin/sh
 set -e
@@ -46,7 +53,8 @@ rm -rf /usr/lib/python3/dist-packages/houghstream/__pycache__
 ")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${PROJECT_BINARY_DIR}/python_package/prerm")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "finds taught objects in an RGB-D camera's stream: Python
- Message types, logs, and frames as numpy arrays.")
+ ObjectFinder, which finds them in numpy arrays; what a stream publishes;
+ message types, logs, and frames as numpy arrays.")
 
 set(CPACK_DEBIAN_JAVA_PACKAGE_NAME houghstream-java)
 set(CPACK_DEBIAN_JAVA_PACKAGE_SECTION java)
@@ -68,13 +76,10 @@ License: none-chosen
  or distribute this work.
 ")
 string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
-file(WRITE "${PROJECT_BINARY_DIR}/changelog"
-"houghstream (${PROJECT_VERSION}) unstable; urgency=low
-
-  * As built.
-
- -- ${CPACK_PACKAGE_CONTACT}  ${now}
-")
+execute_process(
+  COMMAND awk -v "version=${PROJECT_VERSION}" -v "signature=${CPACK_PACKAGE_CONTACT}  ${now}"
+          -f "${PROJECT_SOURCE_DIR}/.cmake/debian_changelog.awk" "${PROJECT_SOURCE_DIR}/tools/CHANGELOG.md"
+  OUTPUT_FILE "${PROJECT_BINARY_DIR}/changelog" COMMAND_ERROR_IS_FATAL ANY)
 find_program(GZIP gzip REQUIRED)
 execute_process(COMMAND "${GZIP}" -9nf "${PROJECT_BINARY_DIR}/changelog")
 foreach(pair programs:houghstream development:libhoughstream-dev python:python3-houghstream java:houghstream-java)

@@ -2,10 +2,12 @@
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <memory>
 
 #include "pipeline/base/printable.hpp"
+#include "pipeline/base/terminal_colour.hpp"
 
 namespace houghstream {
 namespace {
@@ -23,9 +25,12 @@ spdlog::level::level_enum to_spdlog(LogLevel level) {
 }  // namespace
 
 void start_log(const std::string& name, LogLevel minimum) {
-  spdlog::set_default_logger(
-      std::make_shared<spdlog::logger>(name, std::make_shared<spdlog::sinks::stderr_color_sink_mt>()));
-  spdlog::set_pattern("%H:%M:%S.%e %n: %v");
+  const auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>(
+      shows_colours(STDERR_FILENO) ? spdlog::color_mode::always : spdlog::color_mode::never);
+  for (const spdlog::level::level_enum level : {spdlog::level::debug, spdlog::level::info})
+    sink->set_color(level, sink->reset);  // warnings are yellow, errors red
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>(name, sink));
+  spdlog::set_pattern("%H:%M:%S.%e %^%n:%$ %v");
   spdlog::set_level(to_spdlog(minimum));
 }
 

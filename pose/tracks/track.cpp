@@ -7,6 +7,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/logit.hpp"
 #include "pose/model/symmetry.hpp"
+#include "pose/motion/pose_covariance.hpp"
 #include "pose/motion/twist.hpp"
 #include "pose/verification/verification.hpp"
 
@@ -16,25 +17,6 @@ namespace {
 constexpr std::size_t kHypotheses = 3;
 constexpr double kMaxWeight = 6.0;
 constexpr double kForget_s = 3.0;
-
-Covariance6 covariance_of(const ObjectPose& pose, const Eigen::Isometry3d& T_world_camera,
-                          const Eigen::Vector3d& centre, double radius_m) {
-  constexpr double kAcross = 0.0015;  // metres a metre of distance, of an object of which all is seen
-  constexpr double kAlong = 0.002;
-  constexpr double kMinRotation = 0.008;  // radians
-  const Eigen::Vector3d ray = *pose.T_camera_object * centre;
-  const double distance = std::max(0.3, ray.norm());
-  const double unclear = 1.0 / std::sqrt(std::clamp(static_cast<double>(pose.visible_fraction), 0.1, 1.0));
-  const double across = kAcross * distance * unclear;
-  const double along = kAlong * distance * distance * unclear;
-  const double angle_rad = kMinRotation + across / std::max(0.02, radius_m);
-  const Eigen::Vector3d direction = T_world_camera.linear() * ray.normalized();
-  const Eigen::Matrix3d beam = direction * direction.transpose();
-  Covariance6 out = Covariance6::Zero();
-  out.topLeftCorner<3, 3>() = across * across * (Eigen::Matrix3d::Identity() - beam) + along * along * beam;
-  out.bottomRightCorner<3, 3>().diagonal().setConstant(angle_rad * angle_rad);
-  return out;
-}
 
 }  // namespace
 
@@ -89,8 +71,8 @@ std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen
     seen.quality = static_cast<double>(pose.quality);
     seen.measured.utime = poses.frame.utime;
     seen.measured.T_world_object = T_world_camera * *pose.T_camera_object;
-    seen.measured.covariance =
-        covariance_of(pose, T_world_camera, centre_of(models, pose.class_name), radius_of(models, pose.class_name));
+    seen.measured.covariance = measured_pose_covariance(
+        pose, T_world_camera, {centre_of(models, pose.class_name), radius_of(models, pose.class_name)});
   }
   return out;
 }

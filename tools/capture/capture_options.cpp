@@ -8,6 +8,7 @@
 #include "drivers/openni/camera_source.hpp"
 #include "drivers/openni/openni_device.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream::capture {
 namespace {
@@ -81,6 +82,25 @@ std::string devices_text() {
   const std::vector<openni::CameraDescription> cameras = openni::list_cameras(true);
   if (cameras.empty()) return "no camera found by OpenNI2's drivers";
   return openni::cameras_text(cameras);
+}
+
+OrderedJson devices_json() {
+  const auto known = [](const std::string& text) {
+    return text.empty() ? OrderedJson() : OrderedJson(printable(text));
+  };
+  OrderedJson devices = OrderedJson::array();
+  for (const openni::CameraDescription& camera : openni::list_cameras(true)) {
+    OrderedJson device;
+    device["uri"] = printable(camera.uri);
+    device["vendor"] = known(camera.vendor);
+    device["name"] = known(camera.name);
+    device["serial"] = known(camera.serial);
+    device["modes"] = OrderedJson::array();
+    for (const openni::CameraMode& mode : camera.modes)
+      device["modes"].push_back({{"width", mode.width}, {"height", mode.height}, {"rate_hz", mode.rate_hz}});
+    devices.push_back(std::move(device));
+  }
+  return devices;
 }
 
 }  // namespace houghstream::capture

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "drivers/files/json_file.hpp"
 #include "drivers/frame_source.hpp"
 #include "drivers/openni/camera_options.hpp"
 #include "tools/common/command_line.hpp"
@@ -28,5 +29,9 @@ std::unique_ptr<FrameSource> open_source(const SourceOptions& options, const ope
 
 /// Returns the text of --list-devices: the connected cameras. Throws InputError where OpenNI2 finds no driver.
 std::string devices_text();
+
+/// The same for scripts: [{"uri", "vendor", "name", "serial", "modes": [{"width", "height", "rate_hz"}]}]. What the
+/// driver does not tell is null.
+OrderedJson devices_json();
 
 }  // namespace houghstream::capture

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   CommandLine app("Publishes RGB-D frames as images_t, or writes them to an LCM log", "hs-capture");
   SourceOptions source;
   bool list = false;
+  bool json = false;
   std::string log;
   std::string url;
   bool raw_colour = false;
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
   CaptureSettings settings;
   add_source_options(app, source);
   app.add_flag("--list-devices", list, "print the cameras that OpenNI2 finds, and end");
+  app.add_flag("--json", json, "with --list-devices: print them as JSON, for scripts");
   app.add_option("--log", log, "write this LCM log instead of publishing");
   add_replace_option(app, settings.replace, "--log or --record");
   app.add_option("--rate", settings.rate_hz, "frames per second; default: the source's; a camera keeps its own")
@@ -35,7 +37,9 @@ int main(int argc, char** argv) {
   app.add_example("hs-capture --source bop:out/demo/data/scene --log scene.lcmlog");
 
   return run_tool(app, argc, argv, [&] {
+    require(list || !json, "--json goes with --list-devices");
     if (list) {
+      if (json) return print_json(devices_json());
       std::puts(devices_text().c_str());
       return;
     }

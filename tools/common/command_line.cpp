@@ -276,6 +276,7 @@ void CommandLine::set_version(const std::string& version) {
 }
 
 std::optional<int> CommandLine::parse(const std::vector<std::string>& words) {
+  constexpr int kUsageError = 2;  // as of bash's builtins and of argparse
   try {
     app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the last one first
     return std::nullopt;
@@ -283,10 +284,10 @@ std::optional<int> CommandLine::parse(const std::vector<std::string>& words) {
     return app_->exit(end);
   } catch (const CLI::ParseError& error) {
     std::cerr << fault_line(*app_, error) << "\n";
-    return error.get_exit_code();
+    return kUsageError;
   } catch (const InputError& error) {  // of a line of the configuration file
     std::cerr << config_fault_line(*app_, error.what()) << "\n";
-    return static_cast<int>(CLI::ExitCodes::ConfigError);
+    return kUsageError;
   }
 }
 

@@ -73,8 +73,8 @@ class CommandLine {
 
   std::string name() const;
   void set_version(const std::string& version);  ///< printed for --version
-  /// Fills the options' values from `words`, without the executable's name. An exit status where that was all: after
-  /// help or version, which go to stdout, or after a fault of the words, whose one line goes to stderr.
+  /// Fills the options' values from `words`, without the executable's name. An exit status where that was all: 0
+  /// after help or version, which go to stdout, 2 after a fault of the words, whose one line goes to stderr.
   std::optional<int> parse(const std::vector<std::string>& words);
 
  private:

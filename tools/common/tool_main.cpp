@@ -1,12 +1,15 @@
 #include "tools/common/tool_main.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <exception>
+#include <nlohmann/json.hpp>
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/printable.hpp"
+#include "pipeline/base/terminal_colour.hpp"
 
 namespace houghstream {
 
@@ -20,9 +23,14 @@ int run_tool(CommandLine& line, int argc, char** argv, const std::function<void(
     body();
     return 0;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}: {}\n", line.name(), printable_lines(error.what()));
+    const std::string name = in_colour(line.name() + ":", TerminalColour::kRed, shows_colours(STDERR_FILENO));
+    fmt::print(stderr, "{} {}\n", name, printable_lines(error.what()));
     return 1;
   }
+}
+
+void print_json(const nlohmann::ordered_json& json) {
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 void add_lcm_url_option(CommandLine& line, std::string& url) {

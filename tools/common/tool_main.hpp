@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "tools/common/command_line.hpp"
@@ -10,6 +11,9 @@ namespace houghstream {
 /// Frame of every executable: -h, --version, -v, the log on stderr under the tool's name, and errors as one line with a
 /// non-zero exit status.
 int run_tool(CommandLine& line, int argc, char** argv, const std::function<void()>& body);
+
+/// Prints a value for scripts, which read it whole: indented by two, names in their order, what is no UTF-8 replaced.
+void print_json(const nlohmann::ordered_json& json);
 
 /// The option -l, --lcm-url, the same for every process.
 void add_lcm_url_option(CommandLine& line, std::string& url);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "pipeline/base/printable.hpp"
+#include "pipeline/base/terminal_colour.hpp"
 #include "tools/doctor/camera_checks.hpp"
 #include "tools/doctor/installation_checks.hpp"
 #include "tools/doctor/network_checks.hpp"
@@ -18,6 +20,15 @@ const char* to_string(Finding::Level level) {
     case Finding::Level::kWrong: break;
   }
   return "WRONG";
+}
+
+TerminalColour colour_of(Finding::Level level) {
+  switch (level) {
+    case Finding::Level::kOk: return TerminalColour::kGreen;
+    case Finding::Level::kNote: return TerminalColour::kYellow;
+    case Finding::Level::kWrong: break;
+  }
+  return TerminalColour::kRed;
 }
 
 /// The URL that LcmBus takes.
@@ -41,13 +52,31 @@ Findings examine(const Machine& machine, const ExaminationSettings& settings) {
   return all;
 }
 
-std::string to_text(const Findings& findings) {
+std::string to_text(const Findings& findings, bool in_colours) {
   std::string text;
   for (const Finding& finding : findings) {
-    text += fmt::format("{:<5}  {:<15}  {}\n", to_string(finding.level), finding.name, finding.what);
+    const std::string level = fmt::format("{:<5}", to_string(finding.level));
+    text += fmt::format("{}  {:<15}  {}\n", in_colour(level, colour_of(finding.level), in_colours), finding.name,
+                        finding.what);
     if (!finding.remedy.empty()) text += fmt::format("       mend it with:    {}\n", finding.remedy);
   }
   return text;
+}
+
+OrderedJson to_json(const Findings& findings) {
+  OrderedJson entries = OrderedJson::array();
+  for (const Finding& finding : findings) {
+    OrderedJson entry;
+    entry["level"] = finding.level == Finding::Level::kWrong ? "wrong" : to_string(finding.level);
+    entry["name"] = finding.name;
+    entry["found"] = printable(finding.what);
+    entry["remedy"] = finding.remedy.empty() ? OrderedJson() : OrderedJson(finding.remedy);
+    entries.push_back(std::move(entry));
+  }
+  OrderedJson json;
+  json["works"] = count_wrong(findings) == 0;
+  json["findings"] = std::move(entries);
+  return json;
 }
 
 int count_wrong(const Findings& findings) {

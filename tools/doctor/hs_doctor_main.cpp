@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <filesystem>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/terminal_colour.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/doctor/examination.hpp"
 
@@ -21,6 +23,8 @@ int main(int argc, char** argv) {
       .capture_default_str();
   app.add_option("--height", settings.height, "pixels").range(1, 16384).capture_default_str();
   app.add_option("-c,--channel", settings.frame_channel, "channel of the frames").capture_default_str();
+  bool json = false;
+  app.add_flag("--json", json, "print it as JSON, for scripts");
   add_lcm_url_option(app, settings.lcm_url);
   app.add_example("hs-doctor");
   app.add_example("hs-doctor --live -c CAMERA_1");
@@ -34,10 +38,11 @@ int main(int argc, char** argv) {
     if (!std::filesystem::exists(settings.types_jar))
       settings.types_jar = program_folder / "../share/java/houghstream_types.jar";
     const Findings findings = examine(this_machine(), settings);
-    fmt::print("{}", to_text(findings));
+    if (json) print_json(to_json(findings));
+    if (!json) fmt::print("{}", to_text(findings, shows_colours(STDOUT_FILENO)));
     std::fflush(stdout);
     const int wrongs = count_wrong(findings);
     require(wrongs == 0, "the stream would not work: {} of the lines above", wrongs);
-    fmt::print("the stream works\n");
+    if (!json) fmt::print("the stream works\n");
   });
 }

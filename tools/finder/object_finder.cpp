@@ -1,7 +1,11 @@
 #include "tools/finder/object_finder.hpp"
 
+#include <algorithm>
+
 #include "detector/stages.hpp"
 #include "drivers/store/object_store.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pose/motion/pose_covariance.hpp"
 #include "pose/pose_estimator.hpp"
 #include "tools/finder/search_options.hpp"
 #include "tools/finder/stored_forest.hpp"
@@ -24,14 +28,24 @@ PoseEstimator make_estimator(const store::ObjectStore& store, const FinderOption
   return PoseEstimator(store::load_store_meshes(store), pose_settings_of(common, store, options.min_quality));
 }
 
+std::vector<FinderObject> objects_of(const PoseEstimator& estimator) {
+  std::vector<FinderObject> objects;
+  for (const auto& [name, model] : estimator.models())
+    objects.push_back({name, mesh_bounds(model.mesh).cast<double>()});
+  return objects;
+}
+
 }  // namespace
 
 struct ObjectFinder::State {
   State(const store::ObjectStore& store, const FinderOptions& options)
-      : detector(make_detector(store, options)), estimator(make_estimator(store, options)) {}
+      : detector(make_detector(store, options)),
+        estimator(make_estimator(store, options)),
+        objects(objects_of(estimator)) {}
 
   Detector detector;
   PoseEstimator estimator;
+  std::vector<FinderObject> objects;
   DetectorWorkspace workspace;
 };
 
@@ -45,6 +59,19 @@ FoundObjects ObjectFinder::find(const RgbdFrame& frame) {
   found.detections = state_->detector.detect(frame, state_->workspace);
   found.poses = state_->estimator.estimate(frame, found.detections);
   return found;
+}
+
+const std::vector<FinderObject>& ObjectFinder::objects() const {
+  return state_->objects;
+}
+
+Covariance6 ObjectFinder::covariance(const ObjectPose& pose) const {
+  require(pose.T_camera_object.has_value(), "{}: found {}, expected a pose", pose.class_name, to_string(pose.status));
+  const auto object = std::find_if(state_->objects.begin(), state_->objects.end(),
+                                   [&](const FinderObject& known) { return known.name == pose.class_name; });
+  require(object != state_->objects.end(), "{}: found no such object in the finder's store", pose.class_name);
+  const ObjectExtent extent{object->bounds.center(), 0.5 * object->bounds.sizes().norm()};
+  return measured_pose_covariance(pose, Eigen::Isometry3d::Identity(), extent);
 }
 
 }  // namespace houghstream

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
+#include "pipeline/types/tracked_object.hpp"
 
 namespace houghstream {
 
@@ -23,6 +27,12 @@ struct FoundObjects {
   ObjectPoses poses;      ///< a pose into the camera's frame where status is kValid, else the reason why there is none
 };
 
+/// An object that a finder looks for.
+struct FinderObject {
+  std::string name;
+  Eigen::AlignedBox3d bounds;  ///< of its mesh, object frame, metres
+};
+
 /// Finds the objects of an object store (hs-teach) in single frames, within one's own program and without LCM: what
 /// hs-detect and hs-pose do in a stream. Calls of one finder follow one another; several threads take one each.
 class ObjectFinder {
@@ -35,6 +45,13 @@ class ObjectFinder {
   /// Colour, depth and camera as RgbdFrame states them; the frame's name may be empty. Same frame, same result, bit for
   /// bit. Throws InputError where they do not agree.
   FoundObjects find(const RgbdFrame& frame);
+
+  /// Objects of the store, sorted by name.
+  const std::vector<FinderObject>& objects() const;
+
+  /// Covariance of a pose that find() has returned: translation, m^2, then rotation, rad^2, along and about the
+  /// camera's axes. Throws InputError for a result without a pose, and for an object that is not of the store.
+  Covariance6 covariance(const ObjectPose& pose) const;
 
  private:
   struct State;

@@ -20,6 +20,7 @@ namespace houghstream::log_tools {
 namespace {
 
 struct Options {
+  bool json = false;
   std::string in;
   std::string out;
   std::string camera;
@@ -34,6 +35,7 @@ constexpr const char* kSources =
 CommandLine add_info(CommandLine& app, Options& options) {
   CommandLine info = app.add_subcommand("info", "channels, types, rates, gaps and sizes");
   info.add_option("log", options.in, "LCM log").required();
+  info.add_flag("--json", options.json, "print it as JSON, for scripts");
   info.add_example("hs-log info out/demo/data/stream.lcmlog");
   return info;
 }
@@ -142,7 +144,9 @@ int main(int argc, char** argv) {
     options.recording.source = options.in;
     if (!options.camera.empty()) options.recording.camera = camera_of_option(options.camera);
     if (info.given()) {
-      fmt::print("{}", to_text(read_log_info(options.in, losses)));
+      const LogInfo read = read_log_info(options.in, losses);
+      if (options.json) print_json(to_json(read));
+      if (!options.json) fmt::print("{}", to_text(read));
     } else if (repair.given()) {
       fmt::print("{} images in {}; colour may lie an image beside its depth\n",
                  openni::copy_repaired_oni(options.in, options.out), options.out);

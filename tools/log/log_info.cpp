@@ -135,4 +135,36 @@ std::string to_text(const LogInfo& info) {
   return text;
 }
 
+OrderedJson to_json(const LogInfo& info) {
+  OrderedJson channels = OrderedJson::array();
+  for (const auto& [name, channel] : info.channels) {
+    const bool has_gap = channel.messages > 1;
+    OrderedJson entry;
+    entry["name"] = printable(name);
+    entry["types"] = OrderedJson::array();
+    for (const std::string& type : channel.types) entry["types"].push_back(printable(type));
+    entry["messages"] = channel.messages;
+    entry["bytes"] = channel.bytes;
+    entry["first_utime"] = channel.first;
+    entry["last_utime"] = channel.last;
+    entry["rate_hz"] = channel.last > channel.first ? OrderedJson(channel.rate_hz()) : OrderedJson();
+    entry["longest_gap_s"] = has_gap ? OrderedJson(seconds(channel.max_gap)) : OrderedJson();
+    entry["longest_gap_until_utime"] = has_gap ? OrderedJson(channel.gap_at) : OrderedJson();
+    if (!channel.frames.empty()) {
+      entry["frames"] = channel.frames;
+      entry["frames_lost"] = channel.frames_lost;
+    }
+    channels.push_back(std::move(entry));
+  }
+  OrderedJson json;
+  json["file"] = printable(info.file);
+  json["bytes"] = info.file_bytes;
+  json["events"] = info.events;
+  json["first_utime"] = info.first;
+  json["last_utime"] = info.last;
+  json["duration_s"] = seconds(microseconds_between(info.first, info.last));
+  json["channels"] = std::move(channels);
+  return json;
+}
+
 }  // namespace houghstream::log_tools

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "drivers/files/json_file.hpp"
 #include "tools/log/good_events.hpp"
 
 namespace houghstream::log_tools {
@@ -40,5 +41,9 @@ LogInfo read_log_info(const std::filesystem::path& log_file, LossReport& losses)
 
 /// Returns a table for people, with times from the log's first event.
 std::string to_text(const LogInfo& info);
+
+/// The same for scripts: times in microseconds since the epoch (_utime) and seconds (_s), sizes in bytes, channels by
+/// name. What a channel of a single message has no value of is null.
+OrderedJson to_json(const LogInfo& info);
 
 }  // namespace houghstream::log_tools

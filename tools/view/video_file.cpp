@@ -143,7 +143,8 @@ void remux_video(const std::filesystem::path& from, const std::filesystem::path&
 
 VideoFile::VideoFile(std::filesystem::path file, double rate_hz, Existing existing)
     : file_(std::move(file)), existing_(existing), rate_hz_(rate_hz) {
-  require(is_video_name(file_), "{}: no name of a video, expected one that ends with .mp4", file_.string());
+  require(is_video_name(file_), "{}: no name of a video, expected one that ends with .mp4, .m4v, .mov, .mkv or .avi",
+          file_.string());
   require_writable(file_);
 }
 

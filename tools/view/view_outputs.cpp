@@ -15,10 +15,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+void require_folder(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  require(file.empty() || fs::is_directory(folder), "{}: found no folder {}, expected one that is there", file.string(),
+          folder.string());
+}
+
 void make_folder(const fs::path& folder) {
   if (folder.empty()) return;
   std::error_code error;
-  fs::create_directories(folder, error);
+  require_folder(folder.has_filename() ? folder : folder.parent_path());  // "new/" is named as well as "new"
+  fs::create_directory(folder, error);
   require(fs::is_directory(folder), "{}: folder cannot be made: {}", folder.string(), error.message());
 }
 
@@ -29,8 +36,8 @@ void save_image(const fs::path& file, const cv::Mat& image) {
 }
 
 ViewOutputs::ViewOutputs(OutputSettings settings) : settings_(std::move(settings)) {
-  make_folder(settings_.snapshot.parent_path());
-  make_folder(settings_.video.parent_path());
+  require_folder(settings_.snapshot);
+  require_folder(settings_.video);
   make_folder(settings_.images);
   if (!settings_.snapshot.empty()) {
     require_image_format(settings_.snapshot);

@@ -14,14 +14,14 @@ namespace {
 /// The exit status of a fault, which says a line.
 void expect_refused(CommandLine& line, const std::vector<std::string>& words) {
   testing::internal::CaptureStderr();
-  EXPECT_NE(line.parse(words).value_or(0), 0) << words.back();
+  EXPECT_EQ(line.parse(words), 2) << words.back();
   EXPECT_NE(testing::internal::GetCapturedStderr().find(words.front()), std::string::npos) << words.back();
 }
 
 /// Returns the error for words that are refused.
 std::string fault(CommandLine& line, const std::vector<std::string>& words) {
   testing::internal::CaptureStderr();
-  EXPECT_NE(line.parse(words).value_or(0), 0);
+  EXPECT_EQ(line.parse(words), 2);
   return testing::internal::GetCapturedStderr();
 }
 

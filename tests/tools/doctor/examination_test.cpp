@@ -163,6 +163,24 @@ TEST(Examination, WithoutACameraRecordingsStillWork) {
   EXPECT_EQ(count_wrong(examine(machine.machine, machine.settings)), 2);
 }
 
+TEST(Examination, JsonAndColoursSayTheSameAsTheText) {
+  const Findings findings = {ok("route", "there"), note("camera", "none"), wrong("bus", "deaf", "sudo hear")};
+  const OrderedJson json = to_json(findings);
+  EXPECT_FALSE(json["works"]);
+  ASSERT_EQ(json["findings"].size(), 3U);
+  EXPECT_EQ(json["findings"][0]["level"], "ok");
+  EXPECT_TRUE(json["findings"][0]["remedy"].is_null());
+  EXPECT_EQ(json["findings"][2]["level"], "wrong");
+  EXPECT_EQ(json["findings"][2]["found"], "deaf");
+  EXPECT_EQ(json["findings"][2]["remedy"], "sudo hear");
+  EXPECT_TRUE(to_json({ok("route", "there")})["works"]);
+
+  EXPECT_EQ(to_text(findings).find('\x1b'), std::string::npos);
+  std::string coloured = to_text(findings, true);
+  for (const char* part : {"\x1b[32mok   \x1b[0m  route", "\x1b[33mnote \x1b[0m  camera", "\x1b[31mWRONG\x1b[0m  bus"})
+    EXPECT_NE(coloured.find(part), std::string::npos) << part << " in\n" << coloured;
+}
+
 TEST(Examination, BuffersAreComparedWithTheFramesInUse) {
   HealthyMachine machine("doctor_frames");
   machine.machine.granted_receive_buffer = [](std::int64_t) { return 500'000; };

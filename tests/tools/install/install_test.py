@@ -109,6 +109,15 @@ class PythonPackage(unittest.TestCase):
         version = run("/usr/bin/python3", "-c", "import sys; print('python%d.%d' % sys.version_info[:2])").strip()
         self.assertTrue((local / "lib" / version / "dist-packages/houghstream/event_log.py").is_file())
 
+    def test_it_has_the_finder_and_its_types(self):
+        if not list((BUILD / "python/houghstream").glob("_native.*.so")):
+            self.skipTest("built without pybind11")
+        script = "import houghstream; print(houghstream.ObjectFinder.__module__, houghstream.listen.__module__)"
+        said = run("/usr/bin/python3", "-c", script, cwd="/", env=python_of_installation())
+        self.assertEqual(said, "houghstream.finder houghstream.listener\n")
+        for file in ("py.typed", "_native.pyi"):
+            self.assertTrue((HOME / "lib/python3/dist-packages/houghstream" / file).is_file(), file)
+
 
 class Programs(unittest.TestCase):
     def test_they_run_from_where_they_are(self):
@@ -118,6 +127,14 @@ class Programs(unittest.TestCase):
             self.assertRegex(
                 run(program, "--version", cwd="/", env={"PATH": "/usr/bin:/bin"}), rf"^{program.name} \d+\.\d+\.\d+\n$"
             )
+
+    def test_their_version_and_the_packages_changelog_are_those_of_the_changelog(self):
+        text = (SOURCE / "tools/CHANGELOG.md").read_text()
+        version, newest = re.search(r"^## \[(\d+\.\d+\.\d+)\][^\n]*\n(.*?)(?=^## \[|\Z)", text, re.M | re.S).groups()
+        self.assertEqual(run(HOME / "bin/hs-log", "--version"), f"hs-log {version}\n")
+        log = gzip.decompress((HOME / "share/doc/houghstream/changelog.gz").read_bytes()).decode()
+        self.assertTrue(log.startswith(f"houghstream ({version}) unstable; urgency=low\n\n  * "), log[:100])
+        self.assertEqual(log.count("\n  * "), len(re.findall(r"^- ", newest, re.M)))
 
     @unittest.skipUnless(shutil.which("help2man"), "no manual pages without help2man")
     def test_they_have_manual_pages_with_the_options_of_their_jobs(self):
@@ -213,6 +230,16 @@ for number in range(100):
             said = run("/usr/bin/python3", self.source / "python/subscribe.py", status=1, env=python_of_installation())
             self.assertIn("no Python module 'lcm': ", said)
             self.assertIn("pip install lcm", said)
+
+    def test_python_listens_to_poses_and_reads_them_of_a_log(self):
+        if not list((BUILD / "python/houghstream").glob("_native.*.so")):
+            self.skipTest("built without pybind11")
+        example = self.source / "python/listen.py"
+        line = "mug                  at 0.100 0.200 1.500 m in camera"
+        self.assertIn(line, self.listen("/usr/bin/python3", example))
+        said = run("/usr/bin/python3", example, f"file://{self.log}", env=python_of_installation())
+        self.assertEqual(said.count(line), 100)
+        self.assertEqual(run("/usr/bin/python3", example, "file:///nowhere", status=1, env=python_of_installation()).count("\n"), 1)
 
     def test_java_prints_poses(self):
         jars = [HOME / "share/java/houghstream_types.jar", pathlib.Path("/usr/share/java/lcm.jar")]

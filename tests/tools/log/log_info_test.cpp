@@ -44,6 +44,16 @@ TEST(LogInfo, CountsChannelsTypesRatesAndGaps) {
         "0.500 s before 0.900 s", "JPEG 64x48, zipped depth 64x48, camera 64x48,57.6,57.6,32,24", "2 frames missing"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   }
+  const OrderedJson json = to_json(info);
+  EXPECT_EQ(json["events"], 8);
+  EXPECT_EQ(json["duration_s"], 2.0);
+  ASSERT_EQ(json["channels"].size(), 3U);
+  EXPECT_TRUE(json["channels"][1]["rate_hz"].is_null());  // of a single message
+  const OrderedJson& named = json["channels"][2];
+  EXPECT_EQ(named["name"], "OPENNI_FRAME");
+  EXPECT_EQ(named["longest_gap_s"], 0.5);
+  EXPECT_EQ(named["longest_gap_until_utime"], frames.gap_at);
+  EXPECT_EQ(named["frames_lost"], 2);
 }
 
 TEST(LogInfo, AFrameThatIsDamagedIsCounted) {

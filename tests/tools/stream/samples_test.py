@@ -121,6 +121,13 @@ class Completion(unittest.TestCase):
         self.assertEqual(self.completed("hs-stream", "--objects", "in"), [], "that is a file")
         self.assertEqual(self.completed("hs-study", "li"), ["linemod"])
 
+    def test_the_build_folder_has_one_to_source(self):
+        script = 'source "$1" && complete -p hs-log hs-teach && COMP_WORDS=("$2" ex) COMP_CWORD=1 && _houghstream "$2" && echo "${COMPREPLY[@]}"'
+        words = (EXECUTABLES.parent / "completion.bash", EXECUTABLES / "hs-log")
+        said = subprocess.run(["bash", "-c", script, "bash", *map(str, words)], capture_output=True, text=True, check=True)
+        self.assertEqual(said.stdout.splitlines()[-1], "export")
+        self.assertEqual(said.stdout.count("-F _houghstream hs-"), 2, said.stdout)
+
     def test_options_of_the_job_that_help_lists(self):
         self.assertEqual(self.completed("hs-view", "--3"), ["--3d"])
         self.assertEqual(self.completed("hs-log", "export", "csv", "--"), ["--help", "--verbose"])

@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/base/checks.hpp"
+#include "tests/expect_says.hpp"
 #include "tests/test_files.hpp"
 
 namespace houghstream::view {
@@ -24,7 +25,7 @@ int level_of(const fs::path& file) {
 TEST(ViewOutputs, SnapshotIsThePictureAskedForAndThenAllIsDone) {
   const fs::path folder = fresh_folder("view_outputs_snapshot");
   OutputSettings settings;
-  settings.snapshot = folder / "new" / "shot.png";
+  settings.snapshot = folder / "shot.png";
   settings.snapshot_after = 2;
   ViewOutputs outputs(settings);
   outputs.add(grey(10), 1, 0);
@@ -34,6 +35,32 @@ TEST(ViewOutputs, SnapshotIsThePictureAskedForAndThenAllIsDone) {
   outputs.add(grey(30), 3, 2);
   outputs.finish();
   EXPECT_EQ(level_of(settings.snapshot), 20);
+}
+
+TEST(ViewOutputs, AFolderThatIsNotThereIsNotMadeForAFile) {
+  const fs::path folder = fresh_folder("view_outputs_no_folder");
+  OutputSettings snapshot;
+  snapshot.snapshot = folder / "nosuch" / "dir" / "x.png";
+  OutputSettings video;
+  video.video = folder / "nosuch" / "x.mp4";
+  OutputSettings images;
+  images.images = folder / "nosuch" / "pictures";
+  for (const OutputSettings& settings : {snapshot, video, images})
+    expect_says(error_of([&] { ViewOutputs{settings}; }), {"nosuch", "found no folder", "expected one that is there"});
+  EXPECT_FALSE(fs::exists(folder / "nosuch"));
+  images.images = folder / "pictures/";
+  const ViewOutputs outputs(images);
+  EXPECT_TRUE(fs::is_directory(folder / "pictures"));
+}
+
+TEST(ViewOutputs, AVideoThatNobodyCanPlayIsRefused) {
+  OutputSettings settings;
+  for (const char* name : {"x.bmp", "x.png", "x", "x.mp3"}) {
+    settings.video = fresh_folder("view_outputs_no_video") / name;
+    expect_says(error_of([&] { ViewOutputs{settings}; }),
+                {name, "no name of a video, expected one that ends with .mp4"});
+    EXPECT_FALSE(fs::exists(settings.video));
+  }
 }
 
 TEST(ViewOutputs, SnapshotOfAShortStreamIsItsLastPicture) {

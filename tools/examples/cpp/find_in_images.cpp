@@ -2,8 +2,16 @@
 //   find_in_images STORE COLOUR DEPTH FX,FY,CX,CY      depth: 16 bits, millimetres, registered to colour
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+#include <string>
 
 #include "tools/finder/object_finder.hpp"
+
+static cv::Mat read_image(const char* file, int flags) {
+  cv::Mat image = cv::imread(file, flags);
+  if (image.empty()) throw std::runtime_error(std::string(file) + ": found no image");
+  return image;
+}
 
 int main(int argc, char** argv) {
   if (argc != 5) {
@@ -12,8 +20,8 @@ int main(int argc, char** argv) {
   }
   try {
     houghstream::RgbdFrame frame;
-    frame.colour = cv::imread(argv[2], cv::IMREAD_COLOR);
-    frame.depth = houghstream::depth_from_millimetres(cv::imread(argv[3], cv::IMREAD_UNCHANGED));
+    frame.colour = read_image(argv[2], cv::IMREAD_COLOR);
+    frame.depth = houghstream::depth_from_millimetres(read_image(argv[3], cv::IMREAD_UNCHANGED));
     frame.camera.width = frame.colour.cols;
     frame.camera.height = frame.colour.rows;
     std::sscanf(argv[4], "%lf,%lf,%lf,%lf", &frame.camera.fx, &frame.camera.fy, &frame.camera.cx, &frame.camera.cy);

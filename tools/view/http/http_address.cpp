@@ -2,7 +2,10 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <netdb.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -110,6 +113,28 @@ bool answers_to(const HttpAddress& address, const std::string& host_header) {
 std::string machine_name() {
   std::array<char, 256> name{};
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+std::vector<std::string> network_addresses(const std::string& host) {
+  std::vector<std::string> addresses;
+  ifaddrs* first = nullptr;
+  if ((host != "0.0.0.0" && host != "::") || getifaddrs(&first) != 0) return addresses;
+  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owned(first, freeifaddrs);
+  for (const ifaddrs* link = first; link != nullptr; link = link->ifa_next) {
+    const bool is_up = (link->ifa_flags & IFF_UP) != 0 && (link->ifa_flags & IFF_LOOPBACK) == 0;
+    if (!is_up || link->ifa_addr == nullptr) continue;
+    std::array<char, INET6_ADDRSTRLEN> text{};
+    const void* bytes = nullptr;
+    if (link->ifa_addr->sa_family == AF_INET) {
+      bytes = &reinterpret_cast<const sockaddr_in*>(link->ifa_addr)->sin_addr;
+    } else if (link->ifa_addr->sa_family == AF_INET6 && host == "::") {
+      const in6_addr& address = reinterpret_cast<const sockaddr_in6*>(link->ifa_addr)->sin6_addr;
+      if (!IN6_IS_ADDR_LINKLOCAL(&address)) bytes = &address;
+    }
+    if (bytes != nullptr && inet_ntop(link->ifa_addr->sa_family, bytes, text.data(), text.size()) != nullptr)
+      addresses.emplace_back(text.data());
+  }
+  return addresses;
 }
 
 std::string listening_problem(const HttpAddress& address) {

@@ -36,6 +36,10 @@ bool answers_to(const HttpAddress& address, const std::string& host_header);
 /// Returns the name of this machine as in the printed address; "" where it has none.
 std::string machine_name();
 
+/// Returns this machine's addresses that others reach a listener at `host` by: those of all its links for 0.0.0.0 and
+/// ::, IPv6 for the latter too, without loopback and addresses of a single link; none for another host.
+std::vector<std::string> network_addresses(const std::string& host);
+
 /// Returns the reason why listening there is impossible, in words; "" where it is possible.
 std::string listening_problem(const HttpAddress& address);
 

@@ -59,6 +59,7 @@ HttpAddress address_of(const std::string& text, const std::vector<std::string>& 
 LivePage::LivePage(const std::string& address, const std::vector<std::string>& names)
     : server_(address_of(address, names), board_) {
   log_info("page: {}", server_.url());
+  for (const std::string& url : server_.network_urls()) log_info("page for phones and other machines: {}", url);
 }
 
 void LivePage::draw(const std::vector<PageView>& views, const PageContent& content) {

@@ -125,6 +125,7 @@ struct PageServer::State {
   void serve_image(const httplib::Request& request, httplib::Response& response);
   void serve_events(httplib::Response& response);
   void pop_commands(const httplib::Request& request, httplib::Response& response);
+  std::string url_at(const std::string& host) const;
 
   HttpAddress address;
   PageBoard& board;
@@ -132,6 +133,12 @@ struct PageServer::State {
   ClientServer server{kThreads};
   std::thread thread;
 };
+
+std::string PageServer::State::url_at(const std::string& host) const {
+  const bool is_ipv6 = host.find(':') != std::string::npos;
+  const std::string page = fmt::format("http://{}:{}/", is_ipv6 ? "[" + host + "]" : host, address.port);
+  return token.empty() ? page : page + "?token=" + token;
+}
 
 void PageServer::State::set_limits() {
   server.set_payload_max_length(kMaxOrderLength);
@@ -252,9 +259,13 @@ std::string PageServer::url() const {
     const std::string machine = machine_name();
     if (!machine.empty()) host = machine;
   }
-  if (host.find(':') != std::string::npos) host = fmt::format("[{}]", host);
-  const std::string page = fmt::format("http://{}:{}/", host, port());
-  return token().empty() ? page : page + "?token=" + token();
+  return state_->url_at(host);
+}
+
+std::vector<std::string> PageServer::network_urls() const {
+  std::vector<std::string> urls;
+  for (const std::string& address : network_addresses(state_->address.host)) urls.push_back(state_->url_at(address));
+  return urls;
 }
 
 }  // namespace houghstream::view

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "tools/view/http/http_address.hpp"
 #include "tools/view/http/page_board.hpp"
@@ -28,6 +29,9 @@ class PageServer {
   const std::string& token() const;
   /// Returns the address for a browser, with the token.
   std::string url() const;
+  /// What the browser of another device takes, with the token: one for each address of this machine that the page is
+  /// served at, but for those of a single link; empty where the page is for this machine only, or for one address.
+  std::vector<std::string> network_urls() const;
 
  private:
   struct State;

@@ -75,6 +75,24 @@ TEST(HttpAddress, AnOpenPageAnswersToTheNameThatItPrints) {
   EXPECT_EQ(named.url().rfind("http://robot.example:", 0), 0U) << named.url();
 }
 
+TEST(HttpAddress, AnOpenPagePrintsWhatAPhoneCanUse) {
+  for (const std::string& address : network_addresses("0.0.0.0")) {
+    EXPECT_TRUE(parse_host_header(address).has_value()) << address;
+    EXPECT_FALSE(is_local(address)) << address;
+  }
+  for (const char* one : {"127.0.0.1", "192.168.1.5", "robot.example"}) EXPECT_TRUE(network_addresses(one).empty());
+  EXPECT_GE(network_addresses("::").size(), network_addresses("0.0.0.0").size());
+  PageBoard board;
+  const PageServer server({"0.0.0.0", 0, {}}, board);
+  const std::vector<std::string> urls = server.network_urls();
+  ASSERT_EQ(urls.size(), network_addresses("0.0.0.0").size());
+  for (const std::string& url : urls) {
+    EXPECT_TRUE(answers_to({"0.0.0.0", server.port(), {}}, url.substr(7, url.find('/', 7) - 7))) << url;
+    EXPECT_NE(url.find("?token=" + server.token()), std::string::npos) << url;
+  }
+  EXPECT_TRUE(PageServer({"127.0.0.1", 0, {}}, board).network_urls().empty());
+}
+
 TEST(HttpAddress, ANameThatIsNoneIsRefused) {
   EXPECT_EQ(parse_host_name("Robot.Example"), "robot.example");
   for (const char* bad : {"", "robot:80", "http://robot", "robot/", "ro bot", "*", "*.example", "."}) {

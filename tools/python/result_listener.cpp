@@ -1,0 +1,178 @@
+#include "tools/python/result_listener.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "pipeline/base/stop_signal.hpp"
+#include "pipeline/messages/channels.hpp"
+#include "pipeline/messages/messages.hpp"
+#include "pipeline/process/reception.hpp"
+#include "pipeline/types/frame_results.hpp"
+
+namespace houghstream {
+namespace {
+
+/// Results that wait to be taken. Of a network those of a camera's newest frame, which several processes may have
+/// published; of a log all.
+class ResultQueue {
+ public:
+  explicit ResultQueue(bool keeps_all) : keeps_all_(keeps_all) {}
+
+  void push(const std::string& kind, const FrameId& frame, StreamResult result) {
+    constexpr std::size_t kMaxWaiting = 256;  // a sender of rubbish may make up cameras
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!keeps_all_) {
+      waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(),
+                                    [&](const Waiting& waiting) {
+                                      return waiting.kind == kind && waiting.frame.channel == frame.channel &&
+                                             waiting.frame.utime != frame.utime;
+                                    }),
+                     waiting_.end());
+      if (waiting_.size() >= kMaxWaiting) waiting_.pop_front();
+    }
+    waiting_.push_back({kind, frame, std::move(result)});
+    filled_.notify_one();
+  }
+
+  void fail(std::exception_ptr failure) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    failure_ = std::move(failure);
+    filled_.notify_one();
+  }
+
+  /// Throws the failure where nothing waits.
+  std::optional<StreamResult> pop(std::chrono::milliseconds timeout) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    filled_.wait_for(lock, timeout, [this] { return !waiting_.empty() || failure_ != nullptr; });
+    if (waiting_.empty() && failure_ != nullptr) std::rethrow_exception(failure_);
+    if (waiting_.empty()) return std::nullopt;
+    StreamResult result = std::move(waiting_.front().result);
+    waiting_.pop_front();
+    return result;
+  }
+
+  bool is_empty() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return waiting_.empty();
+  }
+
+ private:
+  struct Waiting {
+    std::string kind;  // channel of the result
+    FrameId frame;
+    StreamResult result;
+  };
+
+  const bool keeps_all_;
+  mutable std::mutex mutex_;
+  std::condition_variable filled_;
+  std::deque<Waiting> waiting_;
+  std::exception_ptr failure_;
+};
+
+/// What comes before the poses that it belongs to: the last of each of at most so many.
+template <typename Message>
+class LastMessages {
+ public:
+  void add(Message message) {
+    constexpr std::size_t kMax = 64;
+    messages_.push_front(std::move(message));
+    if (messages_.size() > kMax) messages_.pop_back();
+  }
+
+  /// Null where none is wanted.
+  template <typename IsWanted>
+  const Message* find(const IsWanted& is_wanted) const {
+    const auto found = std::find_if(messages_.begin(), messages_.end(), is_wanted);
+    return found == messages_.end() ? nullptr : &*found;
+  }
+
+ private:
+  std::deque<Message> messages_;  // the newest first
+};
+
+}  // namespace
+
+struct ResultListener::State {
+  explicit State(const ListenOptions& options)
+      : bus(options.url, "", Existing::kReplaced, AtStart::kFail),
+        reception(bus, status, options.cameras),
+        results(bus.is_log()) {
+    if (options.poses) subscribe_to_poses();
+    if (!options.objects) return;
+    reception.subscribe_to_results<objects_t>(
+        channel::kObjects, Account::kOthers, [this](const ReceivedResult& result) {
+          results.push(channel::kObjects, result.id, world_from_message(decode_message<objects_t>(result.bytes)));
+        });
+  }
+
+  void subscribe_to_poses() {
+    reception.subscribe_to_results<detections_t>(
+        channel::kDetections, Account::kOthers, [this](const ReceivedResult& result) {
+          detections.add(detections_from_message(decode_message<detections_t>(result.bytes)));
+        });
+    reception.subscribe_to_messages<pose_probabilities_t>(
+        channel::kPoseProbabilities,
+        [this](const pose_probabilities_t& message, const ReceivedMessage&) { probabilities.add(message); });
+    reception.subscribe_to_results<object_poses_t>(
+        channel::kPoses, Account::kOthers, [this](const ReceivedResult& result) {
+          PosedDetections posed{poses_from_message(decode_message<object_poses_t>(result.bytes)), std::nullopt};
+          probabilities.find([&](const auto& message) { return apply_probabilities(message, posed.poses); });
+          const Detections* answered =
+              detections.find([&](const Detections& other) { return is_result_of(posed.poses, other); });
+          if (answered != nullptr) posed.detections = *answered;
+          results.push(channel::kPoses, result.id, std::move(posed));
+        });
+  }
+
+  void receive() {
+    constexpr std::chrono::milliseconds kTimeout(50);
+    try {
+      while (!stopping) bus.handle(kTimeout);
+    } catch (...) {
+      results.fail(std::current_exception());
+    }
+  }
+
+  StatusReporter status{"listener"};  // counts and logs what is refused; nothing of it is published
+  LcmBus bus;
+  Reception reception;
+  LastMessages<Detections> detections;
+  LastMessages<pose_probabilities_t> probabilities;
+  ResultQueue results;
+  bool log_has_ended = false;
+  std::atomic<bool> stopping{false};
+  std::thread receiver;  // of a network
+};
+
+ResultListener::ResultListener(const ListenOptions& options) : state_(std::make_unique<State>(options)) {
+  if (state_->bus.is_log()) return;
+  const BlockStopSignals block;  // which are for the program's own threads
+  state_->receiver = std::thread([this] { state_->receive(); });
+}
+
+ResultListener::~ResultListener() {
+  state_->stopping = true;
+  if (state_->receiver.joinable()) state_->receiver.join();
+}
+
+std::optional<StreamResult> ResultListener::next(std::chrono::milliseconds timeout) {
+  if (!state_->bus.is_log()) return state_->results.pop(timeout);
+  const auto until = std::chrono::steady_clock::now() + timeout;
+  while (state_->results.is_empty() && !state_->log_has_ended && std::chrono::steady_clock::now() < until) {
+    state_->log_has_ended = !state_->bus.handle(timeout);
+  }
+  return state_->results.pop(std::chrono::milliseconds(0));
+}
+
+bool ResultListener::has_ended() const {
+  return state_->log_has_ended && state_->results.is_empty();
+}
+
+}  // namespace houghstream
