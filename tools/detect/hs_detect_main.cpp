@@ -60,7 +60,7 @@ void give_way() {
   if (nice(kPolite) == -1) log_debug("the priority of looks cannot be lowered");
 }
 
-/// What hs-pose has learnt last of each camera's colours. Every function may be called from any thread.
+/// Holds the colours that hs-pose has learnt last of each camera. Every function may be called from any thread.
 class KnownColours {
  public:
   void update(const CameraChroma& colours) {

@@ -11,9 +11,8 @@ namespace houghstream::track {
 
 /// Messages for third-party tools, published beside the objects_t.
 struct WorldOutputOptions {
-  std::optional<std::filesystem::path>
-      drake_meshes;            ///< folder of the mesh files for Drake's viewers; none = no messages for them
-  bool pose_channels = false;  ///< a pose_t of each object on a channel of its own
+  std::optional<std::filesystem::path> drake_meshes;  ///< folder of meshes for Drake; none = no messages
+  bool pose_channels = false;                         ///< a pose_t of each object on a channel of its own
 };
 
 /// Makes bot_core's pose of an object of the world, whose axes are those of its local frame.

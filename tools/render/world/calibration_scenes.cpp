@@ -106,8 +106,8 @@ World CalibrationScenes::make_furnished_world(int room) const {
     Random shape(aspect_seed(scene_seed, 50U + static_cast<std::uint64_t>(i)));
     setter.put(put_down(object, make_instance_variant(*painted, shape), object.id, random), middle);
   }
-  const int max_look_alikes =
-      std::min(kMaxLookAlikes, (count + 1) / 2);  // limits them to about half as many as the objects
+  // The hard negatives are at most about half as many as the objects.
+  const int max_look_alikes = std::min(kMaxLookAlikes, (count + 1) / 2);
   for (int i = random.between(0, max_look_alikes); i > 0; --i) {
     const CalibrationSceneObject& object = pick(random, objects_);
     setter.put(put_down(object, make_hard_negative(*object.thing, random), 0, random), all);

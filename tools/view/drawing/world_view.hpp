@@ -15,8 +15,7 @@ namespace houghstream::view {
 /// Holds the last message of hs-track, and the earlier positions of its objects.
 struct WorldState {
   WorldObjects last;
-  std::map<std::string, Eigen::Isometry3d>
-      T_world_camera;  ///< of each camera (64 at most), by channel, as published last
+  std::map<std::string, Eigen::Isometry3d> T_world_camera;     ///< last, by channel (64 at most)
   std::map<std::int64_t, std::deque<Eigen::Vector3d>> trails;  ///< positions of the last seconds by track_id, metres
 
   /// A new world has no past.
