@@ -19,7 +19,7 @@ struct CameraScript {
   int rate_hz = 30;                    ///< images per second, in all modes
   bool plugged = true;                 ///< whether the cameras are plugged in
   bool can_sync = true;                ///< depth and colour can be taken at the same time
-  bool can_register = true;            ///< depth can be registered to colour,
+  bool can_register = true;            ///< depth can be registered to colour
   bool registers_running = false;      ///< depth can be registered only while a stream runs
   int register_late = 0;               ///< depth images after that which are not registered yet
   double colour_phase_ms = 0.0;        ///< unless synchronised, colour is taken so long after depth

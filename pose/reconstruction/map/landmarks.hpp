@@ -22,9 +22,8 @@ Landmarks detect_landmarks(const RgbdFrame& frame, const cv::Mat& mask);
 
 /// Holds the match of the landmarks of two images.
 struct LandmarkMatch {
-  Eigen::Isometry3d T_b_a = Eigen::Isometry3d::Identity();  ///< motion from camera a to camera b
-  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>
-      inliers;  ///< points in a and in b, which agree within millimetres
+  Eigen::Isometry3d T_b_a = Eigen::Isometry3d::Identity();           ///< motion from camera a to camera b
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> inliers;  ///< points in a and b
 };
 
 /// Matches similar corners by RANSAC (Fischler & Bolles 1981); returns nothing where fewer than eight pairs agree. The
