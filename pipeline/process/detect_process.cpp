@@ -54,7 +54,7 @@ class DetectProcess {
                                             : newest_.push(frame.id.channel, std::move(waiting), frame.bytes.size);
   }
 
-  /// Of what is followed: where something is lost, or has become doubtful, the camera is looked at soon.
+  /// Expedites the next detection of a camera on which a followed object is lost, or has become doubtful.
   void note_losses(const ReceivedResult& result) {
     const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(result.bytes));
     constexpr float kDoubtful = 0.5F;

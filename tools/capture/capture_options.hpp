@@ -30,8 +30,8 @@ std::unique_ptr<FrameSource> open_source(const SourceOptions& options, const ope
 /// Returns the text of --list-devices: the connected cameras. Throws InputError where OpenNI2 finds no driver.
 std::string devices_text();
 
-/// The same for scripts: [{"uri", "vendor", "name", "serial", "modes": [{"width", "height", "rate_hz"}]}]. What the
-/// driver does not tell is null.
+/// Returns the same for scripts: [{"uri", "vendor", "name", "serial", "modes": [{"width", "height", "rate_hz"}]}].
+/// Values that the driver does not state are null.
 OrderedJson devices_json();
 
 }  // namespace houghstream::capture

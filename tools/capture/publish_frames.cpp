@@ -45,7 +45,8 @@ class FrameFeed {
     if (!frame) return std::nullopt;
     frame->id.utime += offset_us_;
     if (count_ == 0) first_utime_ = frame->id.utime;
-    // What is played at another rate happens at that rate: a speed is a distance over the time between stamps.
+    // A recording that is played at another rate gets the times of that rate, since a speed is a distance over the time
+    // between stamps.
     if (settings_.rate_hz) frame->id.utime = first_utime_ + std::llround(static_cast<double>(count_) * period_us());
     last_utime_ = frame->id.utime;
     ++count_;

@@ -42,8 +42,8 @@ LogInfo read_log_info(const std::filesystem::path& log_file, LossReport& losses)
 /// Returns a table for people, with times from the log's first event.
 std::string to_text(const LogInfo& info);
 
-/// The same for scripts: times in microseconds since the epoch (_utime) and seconds (_s), sizes in bytes, channels by
-/// name. What a channel of a single message has no value of is null.
+/// Returns the same for scripts: times in microseconds since the epoch (_utime) and seconds (_s), sizes in bytes,
+/// channels by name. Values that a channel of a single message lacks are null.
 OrderedJson to_json(const LogInfo& info);
 
 }  // namespace houghstream::log_tools

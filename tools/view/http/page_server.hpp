@@ -29,8 +29,9 @@ class PageServer {
   const std::string& token() const;
   /// Returns the address for a browser, with the token.
   std::string url() const;
-  /// What the browser of another device takes, with the token: one for each address of this machine that the page is
-  /// served at, but for those of a single link; empty where the page is for this machine only, or for one address.
+  /// Returns the addresses for browsers of other devices, with the token: one for each address of this machine that the
+  /// page is served at, but for those of a single link; empty where the page is for this machine only, or for one
+  /// address.
   std::vector<std::string> network_urls() const;
 
  private:
