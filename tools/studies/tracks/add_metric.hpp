@@ -26,8 +26,7 @@ AddModel make_add_model(const Mesh& mesh);
 ///   "add"              by class: share of the frames in which the object is there whose pose is below it; a frame in
 ///                      which it is not published counts as one that is not
 ///   "median_error"     by class, of what is published and at least a third visible: "mm" between the points' means,
-///   "deg"
-///                      about any axis
+///                      "deg" about any axis
 ///   "wrong_above_0_9"  of what was published with a quality above 0.9: "published", and "wrong", which is above it
 OrderedJson add_metrics(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
                         const ClassSymmetries& symmetries, const std::map<std::string, AddModel>& models);
