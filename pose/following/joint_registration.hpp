@@ -15,8 +15,8 @@ namespace houghstream {
 /// How what is followed is registered to depth and colours at once.
 struct JointSettings {
   int points = 400;           ///< of the model's view, at the finest level
-  double start_m = 0.03;      ///< pairs of depth farther apart have no weight, at the coarsest level
-  double depth_sigmas = 1.0;  ///< standard deviation that a pair of depth is given, over its noise
+  double start_m = 0.02;      ///< pairs of depth farther apart have no weight, at the coarsest level
+  double depth_sigmas = 1.4;  ///< standard deviation that a pair of depth is given, over its noise
   // Regularisation after Tikhonov (Stoiber et al. 2022, "Iterative Corresponding Geometry", equation 21): what nothing
   // observes stays as it was.
   double tikhonov_rad = 0.015;  ///< standard deviation of a step's rotation

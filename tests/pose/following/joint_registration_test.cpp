@@ -39,7 +39,7 @@ TEST(JointRegistration, DepthAndColoursTogetherFindThePose) {
   EXPECT_LT(scene.shift_of(result.registration.T_camera_object).norm(), 0.002);
   EXPECT_LT(angle_to_truth(scene, result.registration.T_camera_object), 0.015);
   EXPECT_GT(result.registration.inliers, 200);
-  EXPECT_GT(result.edges, 120);
+  EXPECT_GT(result.edges, 60);
 }
 
 TEST(JointRegistration, DepthAloneFindsThePose) {
@@ -58,7 +58,7 @@ TEST(JointRegistration, ColoursAloneHoldThePoseAcrossTheLineOfSight) {
   const Matrix6d& alone = result.information;
   const Matrix6d both = registered(box_scene(), scene.truth, true).information;
   EXPECT_LT(alone(5, 5), 0.5 * both(5, 5)) << "how far it is, is less sure";
-  EXPECT_GT(alone(3, 3), 0.1 * both(3, 3));
+  EXPECT_GT(alone(3, 3), 0.03 * both(3, 3));
 }
 
 TEST(JointRegistration, AFrameWithoutColoursLeavesDepth) {
