@@ -1,6 +1,7 @@
 #include "drivers/store/object_store.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "drivers/datasets/bop_dataset.hpp"
@@ -65,6 +66,36 @@ OrderedJson to_json(const ShapeSymmetry& shape) {
   return json;
 }
 
+constexpr const char* kFramesKey = "frames";
+
+/// {"handle": {"translation_m": [x, y, z], "rotation": [w, x, y, z]}}
+std::vector<ObjectFrame> object_frames(const nlohmann::json& object, const std::string& where) {
+  std::vector<ObjectFrame> frames;
+  const auto found = object.find(kFramesKey);
+  if (found == object.end()) return frames;
+  require(found->is_object(), "{}: '{}' is {}, expected frames by name", where, kFramesKey, json_text(*found));
+  for (const auto& [name, entry] : found->items()) {
+    const std::string place = fmt::format("{} frame '{}'", where, name);
+    require_new_name(name, place);
+    require_known_names(entry, {"translation_m", "rotation"}, place);
+    const std::vector<double> xyz = json_numbers(entry, "translation_m", 3, place);
+    const std::vector<double> wxyz = json_numbers(entry, "rotation", 4, place);
+    frames.push_back({name, object_frame_pose({xyz[0], xyz[1], xyz[2]}, {wxyz[0], wxyz[1], wxyz[2], wxyz[3]}, place)});
+  }
+  return frames;  // nlohmann::json keeps names sorted
+}
+
+OrderedJson to_json(const std::vector<ObjectFrame>& frames) {
+  OrderedJson json = OrderedJson::object();
+  for (const ObjectFrame& frame : frames) {
+    const Eigen::Vector3d xyz = frame.T_object_frame.translation();
+    const Eigen::Quaterniond q(frame.T_object_frame.linear());
+    json[frame.name]["translation_m"] = {xyz.x(), xyz.y(), xyz.z()};
+    json[frame.name]["rotation"] = {q.w(), q.x(), q.y(), q.z()};
+  }
+  return json;
+}
+
 /// Returns the range of brightness; for a store that states none it holds every image.
 BrightnessRange parse_tone(const nlohmann::json& json, const std::string& file) {
   BrightnessRange tone;
@@ -85,7 +116,9 @@ StoredObject parse_object(const nlohmann::json& entry, const std::string& file) 
   object.id = json_integer(entry, "id", file);
   const std::string where = fmt::format("{} object {}", file, object.id);
   require_known_names(
-      entry, {"id", "name", "mesh", "coloured", "views", "attitudes", "vote_centre_m", kShapeKey, "quality"}, where);
+      entry,
+      {"id", "name", "mesh", "coloured", "views", "attitudes", "vote_centre_m", kShapeKey, kFramesKey, "quality"},
+      where);
   require(object.id >= 1, "{}: expected an id from 1 on", where);
   object.name = text(entry, "name", where);
   object.mesh = text(entry, "mesh", where);
@@ -94,6 +127,7 @@ StoredObject parse_object(const nlohmann::json& entry, const std::string& file) 
   object.attitudes = text(entry, "attitudes", where);
   object.vote_centre = vote_centre(entry, where);
   object.shape_symmetry = shape_symmetry(entry, where);
+  object.frames = object_frames(entry, where);
   if (entry.contains("quality")) object.quality = entry.at("quality");
   require(object.quality.is_null() || object.quality.is_object(), "{}: 'quality' is {}, expected numbers by name",
           where, json_text(object.quality));
@@ -288,12 +322,27 @@ void write_store_json(const ObjectStore& store) {
     entry["attitudes"] = object.attitudes;
     entry["vote_centre_m"] = {object.vote_centre.x(), object.vote_centre.y(), object.vote_centre.z()};
     if (object.shape_symmetry) entry[kShapeKey] = to_json(*object.shape_symmetry);
+    if (!object.frames.empty()) entry[kFramesKey] = to_json(object.frames);
     if (!object.quality.is_null()) entry["quality"] = object.quality;
     json["objects"].push_back(entry);
   }
   for_each_number(store.tone, [&](const auto& field, float value) { json["tone"][field.name] = value; });
   json["settings"] = store.settings;
   write_json(json, store.json_file());
+}
+
+Eigen::Isometry3d object_frame_pose(const Eigen::Vector3d& translation_m, const Eigen::Vector4d& wxyz,
+                                    const std::string& where) {
+  constexpr double kUnitTolerance = 1e-3;  // of numbers that somebody has typed
+  require(translation_m.allFinite() && translation_m.norm() < kMaxCentre_m, "{}: at {}, {}, {}, expected metres", where,
+          translation_m.x(), translation_m.y(), translation_m.z());
+  require(wxyz.allFinite() && std::abs(wxyz.norm() - 1.0) <= kUnitTolerance,
+          "{}: rotation {}, {}, {}, {}, expected a unit quaternion w, x, y, z", where, wxyz[0], wxyz[1], wxyz[2],
+          wxyz[3]);
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized().toRotationMatrix();
+  T.translation() = translation_m;
+  return T;
 }
 
 void require_utf8_name(const std::string& name, const std::string& where) {

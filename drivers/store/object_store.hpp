@@ -10,6 +10,7 @@
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/symmetry.hpp"
 #include "pipeline/types/brightness.hpp"
+#include "pipeline/types/placed_objects.hpp"
 
 // The object store is a folder with all data of the taught objects, which hs-teach writes and hs-detect and hs-pose
 // take as one argument.
@@ -34,6 +35,7 @@ struct StoredObject {
   Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();
   nlohmann::json quality{};  ///< learnt settings of its poses' quality, an object; null where none were learnt
   std::optional<ShapeSymmetry> shape_symmetry{};  ///< unknown in a store that was taught before it was looked for
+  std::vector<ObjectFrame> frames{};              ///< that somebody has named on it (hs-teach frame), by name
 };
 
 struct ObjectStore {
@@ -82,6 +84,11 @@ void require_utf8_name(const std::string& name, const std::string& where);
 /// Throws InputError naming `where` for a new object's name that lists, tables or files could not hold: it is a word of
 /// at most 100 bytes of UTF-8, without commas, slashes, '=' and control characters, and no dot comes first.
 void require_new_name(const std::string& name, const std::string& where);
+
+/// Makes the pose of a named frame in its object's frame, from metres and a quaternion w, x, y, z. Throws InputError
+/// naming `where` for one that is farther away than kMaxCentre_m, and for a quaternion of another length than 1.
+Eigen::Isometry3d object_frame_pose(const Eigen::Vector3d& translation_m, const Eigen::Vector4d& wxyz,
+                                    const std::string& where);
 
 /// Returns the names of the folders in `folder` that are object stores, torn ones included, sorted.
 std::vector<std::string> find_stores(const std::filesystem::path& folder);

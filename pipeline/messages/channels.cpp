@@ -50,6 +50,12 @@ std::string object_pose(const std::string& class_name, std::int64_t track_id) {
   return upper_case(class_name.substr(0, kMaxChannelLength - suffix.size())) + suffix;
 }
 
+std::string frame_pose(const std::string& class_name, std::int64_t track_id, const std::string& frame) {
+  constexpr std::size_t kMaxFrame = 20;
+  const std::string suffix = fmt::format("_{}_{}_POSE", track_id, upper_case(frame.substr(0, kMaxFrame)));
+  return upper_case(class_name.substr(0, kMaxChannelLength - suffix.size())) + suffix;
+}
+
 void require_name(const std::string& name) {
   require(!name.empty() && name.size() <= kMaxChannelLength, "channel '{}': {} bytes, expected 1 to {}", name,
           name.size(), kMaxChannelLength);

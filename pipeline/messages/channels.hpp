@@ -15,6 +15,7 @@ inline const std::string kPoses = "HOUGHSTREAM_POSES";                          
 inline const std::string kPoseProbabilities = "HOUGHSTREAM_POSE_PROBABILITIES";  ///< pose_probabilities_t
 inline const std::string kCameraColours = "HOUGHSTREAM_CAMERA_COLOURS";          ///< camera_colours_t, 1 Hz
 inline const std::string kObjects = "HOUGHSTREAM_OBJECTS";                       ///< objects_t
+inline const std::string kPlacedObjects = "HOUGHSTREAM_PLACED_OBJECTS";          ///< placed_objects_t
 inline const std::string kStatus = "HOUGHSTREAM_STATUS";                         ///< status_t, 1 Hz, every process
 inline const std::string kKnownObjects = "HOUGHSTREAM_KNOWN_OBJECTS";  ///< known_objects_t, 1 Hz, who has a store
 inline const std::string kTeaching = "HOUGHSTREAM_TEACHING";           ///< teaching_t, while an object is shown
@@ -35,6 +36,10 @@ std::string to_world(const std::string& camera_channel);
 /// Returns the channel of the pose_t of one object of the world: "cereal_box", 3 -> "CEREAL_BOX_3_POSE"; long names are
 /// cut.
 std::string object_pose(const std::string& class_name, std::int64_t track_id);
+
+/// Returns the channel of the pose_t of a frame that is named on an object: "cereal_box", 3, "lid" ->
+/// "CEREAL_BOX_3_LID_POSE"; long names are cut.
+std::string frame_pose(const std::string& class_name, std::int64_t track_id, const std::string& frame);
 
 /// Returns the camera's part of these channels.
 std::string camera_name(const std::string& camera_channel);

@@ -7,6 +7,7 @@
 #include <houghstream/known_objects_t.hpp>
 #include <houghstream/object_poses_t.hpp>
 #include <houghstream/objects_t.hpp>
+#include <houghstream/placed_objects_t.hpp>
 #include <houghstream/pose_probabilities_t.hpp>
 #include <houghstream/rigid_transform_t.hpp>
 #include <houghstream/status_t.hpp>
@@ -23,7 +24,7 @@ std::size_t max_bytes(std::int64_t fingerprint) {
   if (fingerprint == images_t::getHash()) return kMaxFrameBytes;
   if (fingerprint == status_t::getHash()) return std::size_t{1} << 16U;
   if (fingerprint == known_objects_t::getHash() || fingerprint == teaching_t::getHash()) return std::size_t{1} << 20U;
-  if (fingerprint == objects_t::getHash()) return std::size_t{1} << 22U;
+  if (fingerprint == objects_t::getHash() || fingerprint == placed_objects_t::getHash()) return std::size_t{1} << 22U;
   return std::size_t{1} << 28U;
 }
 
@@ -35,6 +36,7 @@ constexpr std::size_t kVote = 4 * 4 + 4;
 constexpr std::size_t kDetectionNumbers = 4 + 1 + 4 * 4 + 3 * 4 + 4 + 4;  // score to n_votes_total
 constexpr std::size_t kPoseNumbers = 4 + 4 + 1 + 3 * 8 + 4 * 8 + 1 + 4 + 4 + 5 * 4;
 constexpr std::size_t kTrackNumbers = 1 + 4 + 1 + (3 + 4 + 36 + 3 + 3) * 8 + 4 + 8 + 8;  // state to seen_utime
+constexpr std::size_t kTransform = (3 + 4) * 8;
 constexpr std::size_t kStatusNumbers = 4 + 4 + 5 * 8 + 3 * 4;
 constexpr std::size_t kKnownObject = 5 + 8;
 constexpr std::size_t kTeachingNumbers = 4 + 4 + 4 + 4 * 4 + 3 * 8 + 4 * 8;  // progress to quat
@@ -121,6 +123,22 @@ void walk_objects(WireReader& reader) {
     reader.read_string();
   }
   walk_stages(reader);
+}
+
+void walk_placed_objects(WireReader& reader) {
+  reader.skip(8);
+  read_channel(reader);
+  read_channel(reader);  // the world
+  reader.skip(4);
+  for (std::size_t objects = reader.read_count(8 + 5 + kTransform + 3 * 8 + 4); objects > 0; --objects) {
+    reader.skip(8);
+    walk_name(reader);
+    reader.skip(kTransform + 3 * 8);
+    for (std::size_t frames = reader.read_count(5 + kTransform); frames > 0; --frames) {
+      walk_name(reader);
+      reader.skip(kTransform);
+    }
+  }
 }
 
 void walk_status(WireReader& reader) {
@@ -246,6 +264,8 @@ void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& typ
     walk_camera_colours(reader);
   } else if (fingerprint == objects_t::getHash()) {
     walk_objects(reader);
+  } else if (fingerprint == placed_objects_t::getHash()) {
+    walk_placed_objects(reader);
   } else if (fingerprint == status_t::getHash()) {
     walk_status(reader);
   } else if (fingerprint == known_objects_t::getHash()) {

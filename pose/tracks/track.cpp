@@ -33,6 +33,7 @@ TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map
     require(!mesh.triangles.empty(), "model {}: no triangles, expected a mesh", name);
     TrackModel model;
     const Eigen::AlignedBox3f bounds = mesh_bounds(mesh);
+    model.bounds = bounds.cast<double>();
     model.centre = bounds.center().cast<double>();
     model.box_radius_m = 0.5 * static_cast<double>(bounds.sizes().norm());
     if (const auto known = symmetries.find(name); known != symmetries.end()) model.symmetries = known->second;
@@ -57,6 +58,25 @@ const Symmetries& symmetries_of(const TrackModels& models, const std::string& na
   static const Symmetries none;
   const auto model = models.find(name);
   return model == models.end() ? none : model->second.symmetries;
+}
+
+ObjectPlacements place_objects(const WorldObjects& world, const TrackModels& models) {
+  ObjectPlacements placed;
+  placed.frame = world.frame;
+  placed.world = world.world;
+  placed.world_number = world.world_number;
+  for (const TrackedObject& object : world.objects) {
+    const auto model = models.find(object.class_name);
+    if (model == models.end() || object.state == TrackState::kGone) continue;
+    ObjectPlacement& place = placed.objects.emplace_back();
+    place.track_id = object.track_id;
+    place.class_name = object.class_name;
+    place.T_world_box = object.T_world_object * Eigen::Translation3d(model->second.centre);
+    place.box_size = model->second.bounds.sizes();
+    for (const ObjectFrame& frame : model->second.frames)
+      place.frames.push_back({frame.name, object.T_world_object * frame.T_object_frame});
+  }
+  return placed;
 }
 
 std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,

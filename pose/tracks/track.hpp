@@ -16,6 +16,7 @@
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
+#include "pipeline/types/placed_objects.hpp"
 #include "pipeline/types/tracked_object.hpp"
 #include "pose/motion/motion_filter.hpp"
 #include "pose/seen/region.hpp"
@@ -26,10 +27,12 @@ namespace houghstream::tracks {
 struct TrackModel {
   Mesh mesh;
   Symmetries symmetries;
+  Eigen::AlignedBox3d bounds;                        ///< bounds of the mesh, object frame, metres
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centre of the bounding box, object frame, metres
   double box_radius_m = 0.0;  ///< half the bounding box' diagonal; ObjectModel::radius is that of the farthest vertex
   Eigen::Vector3d vote_centre = Eigen::Vector3d::Zero();  ///< centre of its detections, object frame, metres
-  int object_id = 0;  ///< number of the object in its store, from 1; 0 without a store
+  int object_id = 0;                ///< number of the object in its store, from 1; 0 without a store
+  std::vector<ObjectFrame> frames;  ///< frames that somebody has named on the object, sorted by name
 };
 using TrackModels = std::map<std::string, TrackModel>;
 
@@ -46,6 +49,10 @@ const Symmetries& symmetries_of(const TrackModels& models, const std::string& na
 /// Makes models by class name; those without known symmetries have none. Throws InputError naming a mesh without
 /// triangles.
 TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map<std::string, Symmetries>& symmetries);
+
+/// Returns the boxes and named frames of a world's objects, by their poses; those that are gone, and those without a
+/// model, are left out.
+ObjectPlacements place_objects(const WorldObjects& world, const TrackModels& models);
 
 /// A frame of a camera with everything that the tracker gets of it.
 struct FrameObservation {

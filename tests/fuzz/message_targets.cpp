@@ -2,6 +2,7 @@
 #include <houghstream/status_t.hpp>
 
 #include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/placed_objects_message.hpp"
 #include "pipeline/messages/wire_check.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
 #include "tests/tools/log/recordings.hpp"
@@ -51,6 +52,7 @@ Taken read_result(ByteView input) {
   if (fingerprint == status_t::getHash()) decode_message<status_t>(input);
   if (fingerprint == known_objects_t::getHash()) decode_message<known_objects_t>(input);
   if (fingerprint == objects_t::getHash()) world_from_message(decode_message<objects_t>(input));
+  if (fingerprint == placed_objects_t::getHash()) placed_objects_from_message(decode_message<placed_objects_t>(input));
   if (fingerprint == rigid_transform_t::getHash()) transform_from_message(decode_message<rigid_transform_t>(input));
   return {};
 }
@@ -94,7 +96,15 @@ std::vector<Bytes> results() {
   known.objects = {{"mug", 5}};
   status_t status{};
   status.process = "hs-detect";
+  ObjectPlacement placed;
+  placed.track_id = 3;
+  placed.class_name = "mug";
+  placed.frames.push_back({"handle", Eigen::Isometry3d::Identity()});
+  ObjectPlacements all_placed;
+  all_placed.frame = detections.frame;
+  all_placed.objects = {placed};
   return {encode_message(to_message(detections)),
+          encode_message(to_message(all_placed)),
           encode_message(to_message(poses)),
           encode_message(probabilities_to_message(poses)),
           encode_message(to_message(teaching)),

@@ -247,6 +247,7 @@ class Listening(WithAFinder):
     def test_the_objects_of_the_world(self):
         log = FOLDERS.out / "objects.lcmlog"
         *_, results = publish_poses(10, "--objects", self.store)
+        run(FOLDERS.tools / "hs-teach", "frame", self.store, "soda_can", "lid", "--at", "-0.01,0,0.06,0,0,1,0")
         run(FOLDERS.tools / "hs-track", "--objects", self.store, "-l", f"file://{results}", "--output-log", log)
         published = [message for message in messages_of(log, "HOUGHSTREAM_OBJECTS", objects_t)]
         worlds = [result for result in listen(f"file://{log}") if isinstance(result, WorldObjects)]
@@ -258,6 +259,19 @@ class Listening(WithAFinder):
                 self.assertEqual((entry.number, entry.name), (expected.track_id, expected.class_name))
                 self.assertEqual(entry.position.tolist(), list(expected.trans))
                 numpy.testing.assert_array_equal(entry.covariance, expected.covariance)
+                self.check_box_and_frames(entry)
+
+    def check_box_and_frames(self, entry):
+        """The object lies in its box, and named frames move with it."""
+        self.assertTrue((entry.extents > 0.01).all() and (entry.extents < 0.5).all(), entry.extents)
+        numpy.testing.assert_allclose(entry.box_matrix[:3, :3], entry.matrix[:3, :3], rtol=0, atol=1e-12)
+        self.assertLess(numpy.linalg.norm(entry.corners.mean(axis=0) - entry.box_matrix[:3, 3]), 1e-9)
+        inside = numpy.linalg.inv(entry.box_matrix) @ (*entry.position, 1)
+        self.assertTrue((numpy.abs(inside[:3]) <= 0.51 * entry.extents).all(), inside)
+        if entry.name == "soda_can":
+            lid = numpy.linalg.inv(entry.matrix) @ entry.frames["lid"]
+            expected = [[-1, 0, 0, -0.01], [0, 1, 0, 0], [0, 0, -1, 0.06], [0, 0, 0, 1]]
+            numpy.testing.assert_allclose(lid, expected, rtol=0, atol=1e-9)
 
     def test_urls_and_logs_that_are_none_are_refused(self):
         for url, part in (("http://here", "http://here"), ("file:///nowhere", "/nowhere")):

@@ -14,6 +14,7 @@ tracks::TrackModels stored_track_models(const store::ObjectStore& store) {
     tracks::TrackModel& model = models.at(object.name);
     model.vote_centre = object.vote_centre.cast<double>();
     model.object_id = object.id;
+    model.frames = object.frames;
   }
   return models;
 }

@@ -12,6 +12,7 @@
 #include <houghstream/known_objects_t.hpp>
 #include <houghstream/object_poses_t.hpp>
 #include <houghstream/objects_t.hpp>
+#include <houghstream/placed_objects_t.hpp>
 #include <houghstream/pose_t.hpp>
 #include <houghstream/rigid_transform_t.hpp>
 #include <houghstream/status_t.hpp>
@@ -38,6 +39,7 @@ std::string type_name(std::int64_t fingerprint) {
       {detections_t::getHash(), "detections_t"},
       {object_poses_t::getHash(), "object_poses_t"},
       {objects_t::getHash(), "objects_t"},
+      {placed_objects_t::getHash(), "placed_objects_t"},
       {status_t::getHash(), "status_t"},
       {known_objects_t::getHash(), "known_objects_t"},
       {teaching_t::getHash(), "teaching_t"},

@@ -107,6 +107,29 @@ py::dict poses_to_python(const ObjectPoses& poses, const Detections* detections,
   return out;
 }
 
+/// Null where it is not known.
+const ObjectPlacement* find_placed(const PlacedWorld& placed_world, std::int64_t track_id) {
+  if (!placed_world.placed) return nullptr;
+  for (const ObjectPlacement& place : placed_world.placed->objects) {
+    if (place.track_id == track_id) return &place;
+  }
+  return nullptr;
+}
+
+void add_place(const ObjectPlacement* place, py::dict& entry) {
+  py::dict frames;
+  if (place == nullptr) {
+    entry["box_matrix"] = py::none();
+    entry["extents"] = py::none();
+  } else {
+    entry["box_matrix"] = matrix_to_python(place->T_world_box.matrix());
+    entry["extents"] = vector_to_python(place->box_size);
+    for (const PlacedFrame& frame : place->frames)
+      frames[py::str(frame.name)] = matrix_to_python(frame.T_world_frame.matrix());
+  }
+  entry["frames"] = frames;
+}
+
 cv::Mat depth_from_metres(const cv::Mat& metres) {
   constexpr float kMaxDepth_m = 65.535F;
   cv::Mat depth = metres.clone();
@@ -158,7 +181,8 @@ py::dict to_python(const PosedDetections& posed) {
   return poses_to_python(posed.poses, posed.detections ? &*posed.detections : nullptr, nullptr);
 }
 
-py::dict to_python(const WorldObjects& world) {
+py::dict to_python(const PlacedWorld& placed_world) {
+  const WorldObjects& world = placed_world.world;
   py::list objects;
   for (const TrackedObject& object : world.objects) {
     py::dict entry;
@@ -175,6 +199,7 @@ py::dict to_python(const WorldObjects& world) {
     entry["seen_utime"] = object.last_seen.utime;
     entry["seen_by"] = object.last_seen.channel;
     entry["reason"] = object.reason;
+    add_place(find_placed(placed_world, object.track_id), entry);
     objects.append(entry);
   }
   py::dict out = frame_to_python(world.frame);

@@ -33,6 +33,6 @@ pybind11::dict to_python(const FoundObjects& found, const ObjectFinder& finder);
 /// The same of what came over a bus; boxes are those of the detections that are known.
 pybind11::dict to_python(const PosedDetections& posed);
 
-pybind11::dict to_python(const WorldObjects& world);
+pybind11::dict to_python(const PlacedWorld& placed_world);
 
 }  // namespace houghstream

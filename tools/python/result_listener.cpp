@@ -12,6 +12,7 @@
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/placed_objects_message.hpp"
 #include "pipeline/process/reception.hpp"
 #include "pipeline/types/frame_results.hpp"
 
@@ -105,10 +106,23 @@ struct ResultListener::State {
         reception(bus, status, options.cameras),
         results(bus.is_log()) {
     if (options.poses) subscribe_to_poses();
-    if (!options.objects) return;
+    if (options.objects) subscribe_to_objects();
+  }
+
+  void subscribe_to_objects() {
+    reception.subscribe_to_messages<placed_objects_t>(channel::kPlacedObjects,
+                                                      [this](const placed_objects_t& message, const ReceivedMessage&) {
+                                                        placed.add(placed_objects_from_message(message));
+                                                      });
     reception.subscribe_to_results<objects_t>(
         channel::kObjects, Account::kOthers, [this](const ReceivedResult& result) {
-          results.push(channel::kObjects, result.id, world_from_message(decode_message<objects_t>(result.bytes)));
+          PlacedWorld placed_world{world_from_message(decode_message<objects_t>(result.bytes)), std::nullopt};
+          const WorldObjects& world = placed_world.world;
+          const ObjectPlacements* known = placed.find([&](const ObjectPlacements& other) {
+            return other.frame == world.frame && other.world == world.world && other.world_number == world.world_number;
+          });
+          if (known != nullptr) placed_world.placed = *known;
+          results.push(channel::kObjects, result.id, std::move(placed_world));
         });
   }
 
@@ -145,6 +159,7 @@ struct ResultListener::State {
   Reception reception;
   LastMessages<Detections> detections;
   LastMessages<pose_probabilities_t> probabilities;
+  LastMessages<ObjectPlacements> placed;
   ResultQueue results;
   bool log_has_ended = false;
   std::atomic<bool> stopping{false};

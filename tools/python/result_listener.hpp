@@ -9,6 +9,7 @@
 
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/object_pose.hpp"
+#include "pipeline/types/placed_objects.hpp"
 #include "pipeline/types/tracked_object.hpp"
 
 namespace houghstream {
@@ -26,7 +27,13 @@ struct PosedDetections {
   std::optional<Detections> detections;
 };
 
-using StreamResult = std::variant<PosedDetections, WorldObjects>;
+/// The world after a frame, with what its objects take up where that has come before it.
+struct PlacedWorld {
+  WorldObjects world;
+  std::optional<ObjectPlacements> placed;
+};
+
+using StreamResult = std::variant<PosedDetections, PlacedWorld>;
 
 /// Receives the results of a stream for a program that takes them one after another. Of a network the newest frame's
 /// results of each camera wait: a slow program misses frames and never lags behind. Of a log each result is returned.

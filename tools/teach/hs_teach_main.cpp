@@ -1,9 +1,12 @@
+#include <fmt/format.h>
+
 #include <opencv2/core.hpp>
 #include <sstream>
 
 #include "pipeline/base/checks.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/teach/mesh/store_rename.hpp"
+#include "tools/teach/mesh/store_summary.hpp"
 #include "tools/teach/mesh/teach_jobs.hpp"
 #include "tools/teach/show/show_jobs.hpp"
 #include "tools/teach/show/show_stream.hpp"
@@ -159,6 +162,8 @@ int main(int argc, char** argv) {
   const CommandLine show = add_show(app, shown, words);
   CommandLine list = app.add_subcommand("list", "the objects of a store");
   list.add_option("store", folder, "object store").required();
+  bool json = false;
+  list.add_flag("--json", json, "print them as JSON, for scripts");
   list.add_example("hs-teach list my.store");
   CommandLine remove = app.add_subcommand("remove", "takes an object out of a store");
   remove.add_option("store", folder, "object store").required();
@@ -169,6 +174,16 @@ int main(int argc, char** argv) {
   rename.add_option("name", name, "of the object").required();
   rename.add_option("new-name", new_name, "that it gets").required();
   rename.add_example("hs-teach rename my.store object_1 cup");
+  std::string frame_name;
+  std::string place;
+  bool remove_frame = false;
+  CommandLine frame = app.add_subcommand("frame", "names a frame on an object, a grasp for instance, or moves it");
+  frame.add_option("store", folder, "object store").required();
+  frame.add_option("name", name, "of the object").required();
+  frame.add_option("frame", frame_name, "its name").required();
+  const CommandOption at = frame.add_option("--at", place, "x,y,z or x,y,z,qw,qx,qy,qz in the object's frame, metres");
+  frame.add_flag("--remove", remove_frame, "takes it away").excludes(at);
+  frame.add_example("hs-teach frame my.store mug handle --at 0.05,0,0.04");
   CommandLine practise = app.add_subcommand("practise", "recalibrates scores and pose quality of a store");
   practise.add_option("store", folder, "object store").required();
   practise.add_option("--names", lists.names, "MUG,DRILL: these only; default: all");
@@ -188,7 +203,13 @@ int main(int argc, char** argv) {
       options.calibration.threads = options.threads;
       calibrate_store(folder, options.calibration, split(lists.names));
     } else if (list.given()) {
-      list_store(folder);
+      const store::ObjectStore listed = store::read_store(folder);
+      if (json) print_json(store_json(listed));
+      if (!json) fmt::print("{}", store_text(listed));
+    } else if (frame.given()) {
+      require(remove_frame != !place.empty(), "expected either --at x,y,z[,qw,qx,qy,qz] or --remove");
+      set_frame_in_store(folder, name, frame_name,
+                         remove_frame ? std::nullopt : std::optional(parse_frame_place(place)));
     } else if (rename.given()) {
       rename_in_store(folder, name, new_name);
     } else {

@@ -90,6 +90,27 @@ void write_new_file(const fs::path& file, const std::string& text) {
   if (!fs::exists(file, error)) write_file_atomically(file, text);
 }
 
+/// Three thin boxes along the axes of a frame: x red, y green, z blue.
+void add_axes(const ObjectFrame& frame, drake_viewer_link_data_t& link) {
+  constexpr double kLength_m = 0.04;
+  constexpr float kThickness_m = 0.002F;
+  const Eigen::Quaternionf rotation(Eigen::Quaterniond(frame.T_object_frame.linear()).cast<float>());
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3f middle =
+        (frame.T_object_frame * (0.5 * kLength_m * Eigen::Vector3d::Unit(axis))).cast<float>();
+    drake_viewer_geometry_data_t shape{};
+    shape.type = drake_viewer_geometry_data_t::BOX;
+    std::copy_n(middle.data(), 3, shape.position);
+    const std::array<float, 4> quaternion = {rotation.w(), rotation.x(), rotation.y(), rotation.z()};
+    std::copy_n(quaternion.data(), 4, shape.quaternion);
+    shape.color[axis] = shape.color[3] = 1.0F;
+    shape.float_data.assign(3, kThickness_m);
+    shape.float_data[static_cast<std::size_t>(axis)] = static_cast<float>(kLength_m);
+    shape.num_float_data = 3;
+    link.geom.push_back(std::move(shape));
+  }
+}
+
 constexpr float kBoxM = 0.05F;  // side of the box in place of a mesh
 
 /// Viewers make folders of "::" and "/".
@@ -156,9 +177,11 @@ DrakeScene::DrakeScene(std::filesystem::path mesh_folder) : folder_(std::move(me
 
 void DrakeScene::set_models(const tracks::TrackModels& models) {
   meshes_.clear();
+  frames_.clear();
   told_.clear();
   changed_ = true;
   for (const auto& [name, model] : models) {
+    frames_[name] = model.frames;
     try {
       meshes_.emplace(name, write_viewer_mesh(model.mesh, name, folder_));
     } catch (const InputError& error) {
@@ -190,7 +213,10 @@ drake_viewer_load_robot_t DrakeScene::load_message(const WorldObjects& world) {
     drake_viewer_link_data_t link{};
     link.name = link_name(object);
     link.geom.push_back(shape_of(object.class_name));
-    link.num_geom = 1;
+    if (const auto named = frames_.find(object.class_name); named != frames_.end()) {
+      for (const ObjectFrame& frame : named->second) add_axes(frame, link);
+    }
+    link.num_geom = static_cast<std::int32_t>(link.geom.size());
     message.link.push_back(std::move(link));
   }
   message.num_links = static_cast<std::int32_t>(message.link.size());

@@ -35,7 +35,8 @@ class DrakeScene {
   /// Meshes go to files in this folder, for viewers on this machine.
   explicit DrakeScene(std::filesystem::path mesh_folder);
 
-  /// Replaces the classes' meshes. For a mesh that cannot be written the reason is logged, and a box takes its place.
+  /// Replaces the classes' meshes and the axes of their named frames (x red, y green, z blue). For a mesh that cannot
+  /// be written the reason is logged, and a box takes its place.
   void set_models(const tracks::TrackModels& models);
 
   struct Messages {
@@ -51,8 +52,9 @@ class DrakeScene {
   drake_viewer_load_robot_t load_message(const WorldObjects& world);
 
   std::filesystem::path folder_;
-  std::map<std::string, ViewerMesh> meshes_;  // meshes by class
-  std::set<std::string> told_;                // classes without a mesh
+  std::map<std::string, ViewerMesh> meshes_;                // meshes by class
+  std::map<std::string, std::vector<ObjectFrame>> frames_;  // named frames by class
+  std::set<std::string> told_;                              // classes without a mesh
   std::optional<std::vector<std::string>> loaded_;
   bool changed_ = false;
   std::int64_t load_utime_ = 0;

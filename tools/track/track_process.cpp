@@ -161,7 +161,7 @@ class TrackProcess {
                                            tracks::ObjectTrackerSettings().max_objects));
     objects->world = world_.name();
     objects->stages.insert(objects->stages.end(), clock.times().begin(), clock.times().end());
-    output_.publish(*objects);
+    output_.publish(*objects, tracks::place_objects(*objects, *used_models_));
     return true;
   }
 

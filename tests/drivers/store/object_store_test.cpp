@@ -42,6 +42,33 @@ TEST(ObjectStore, WhatIsWrittenIsReadBack) {
   EXPECT_TRUE(meshes.at("brick").colours.empty()) << "that its file has some does not make them known";
 }
 
+TEST(ObjectStore, NamedFramesAreReadBackAndWhatIsNoneIsRefused) {
+  const fs::path folder = whole_store("store_frames");
+  ObjectStore store = read_store(folder);
+  EXPECT_TRUE(store.objects[0].frames.empty());
+  const Eigen::Isometry3d handle =
+      Eigen::Translation3d(0.05, 0, -0.04) * Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX());
+  store.objects[0].frames = {{"handle", handle}, {"rim", Eigen::Isometry3d::Identity()}};
+  write_store_json(store);
+  const std::vector<ObjectFrame> read = read_store(folder).objects[0].frames;
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[0].name, "handle");
+  EXPECT_TRUE(read[0].T_object_frame.isApprox(handle, 1e-12));
+
+  const std::string text = read_text(folder / "store.json");
+  const auto refused = [&](const std::string& part, const std::string& other) {
+    std::string damaged = text;
+    damaged.replace(damaged.find(part), part.size(), other);
+    write_text(folder / "store.json", damaged);
+    return error_of_reading(folder);
+  };
+  expect_says(refused("\"rim\"", "\"r im\""), {"object 2 frame 'r im'", "expected a word"});
+  expect_says(refused("0.05", "50"), {"frame 'handle'", "expected metres"});
+  expect_says(refused("\"translation_m\"", "\"translation_mm\""), {"frame 'handle'", "translation_mm"});
+  expect_says(refused("\"rotation\": [\n      1.0", "\"rotation\": [\n      2.0"),
+              {"frame 'rim'", "expected a unit quaternion"});
+}
+
 TEST(ObjectStore, AnObjectThatIsNotThereIsNamedBesideThoseThatAre) {
   const fs::path folder = whole_store("store_called");
   const ObjectStore store = read_store(folder);

@@ -16,6 +16,8 @@ TEST(Channels, ObjectsHaveTransformChannels) {
 TEST(Channels, ObjectsOfTheWorldHavePoseChannels) {
   EXPECT_EQ(channel::object_pose("cereal_box", 3), "CEREAL_BOX_3_POSE");
   EXPECT_EQ(channel::object_pose(std::string(100, 'x'), 12).size(), 63U);
+  EXPECT_EQ(channel::frame_pose("cereal_box", 3, "lid.top"), "CEREAL_BOX_3_LID_TOP_POSE");
+  EXPECT_EQ(channel::frame_pose(std::string(100, 'x'), 12, std::string(100, 'y')).size(), 63U);
 }
 
 TEST(Channels, NamesThatLcmDoesNotSendAreRefused) {

@@ -9,6 +9,7 @@ import houghstream.known_objects_t;
 import houghstream.object_pose_t;
 import houghstream.object_poses_t;
 import houghstream.objects_t;
+import houghstream.placed_objects_t;
 import houghstream.pose_t;
 import houghstream.rigid_transform_t;
 import houghstream.stage_time_t;
@@ -55,6 +56,7 @@ final class PluginsTest {
     Check.equal(known.getClassByFingerprint(drake_viewer_load_robot_t.LCM_FINGERPRINT), drake_viewer_load_robot_t.class);
     Check.equal(known.getClassByFingerprint(drake_viewer_draw_t.LCM_FINGERPRINT), drake_viewer_draw_t.class);
     Check.equal(known.getClassByFingerprint(status_t.LCM_FINGERPRINT), status_t.class);
+    Check.equal(known.getClassByFingerprint(placed_objects_t.LCM_FINGERPRINT), placed_objects_t.class);
     Check.equal(known.getClassByFingerprint(known_objects_t.LCM_FINGERPRINT), known_objects_t.class);
     Check.equal(known.getClassByFingerprint(teaching_t.LCM_FINGERPRINT), teaching_t.class);
   }

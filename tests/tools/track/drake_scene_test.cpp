@@ -70,6 +70,34 @@ TEST(DrakeScene, LoadsTheMeshOfEachObjectAndDrawsItWhereItIs) {
   EXPECT_NEAR(messages.draw.quaternion[0][3], std::sqrt(0.5), 1e-6);
 }
 
+TEST(DrakeScene, NamedFramesAreAxesOnTheirObject) {
+  tracks::TrackModels models = mug_model();
+  models.at("mug").frames.push_back({"handle", Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.0, 0.0))});
+  DrakeScene scene(folder());
+  scene.set_models(models);
+  const auto load = scene.messages(world(0, {object(3, "mug", {1, 2, 3})})).load;
+  ASSERT_EQ(load->link[0].num_geom, 4) << "the mesh, and x, y, z";
+  const drake_viewer_geometry_data_t& y = load->link[0].geom[2];
+  EXPECT_EQ(y.type, drake_viewer_geometry_data_t::BOX);
+  EXPECT_NEAR(y.position[0], 0.1F, 1e-6F);
+  EXPECT_GT(y.position[1], 0.0F);
+  EXPECT_GT(y.float_data[1], 5.0F * y.float_data[0]);
+  EXPECT_EQ(y.color[0], 0.0F);
+  EXPECT_EQ(y.color[1], 1.0F);
+}
+
+TEST(DrakeScene, AFrameOfWhatTurnsMovesAsAPointOfIt) {
+  TrackedObject mug = object(3, "mug", {1, 2, 3});
+  mug.velocity << 0.1, 0, 0, 0, 0, 2;  // m/s, and rad/s about z
+  const PlacedFrame handle{"handle", Eigen::Translation3d(1.05, 2, 3) * Eigen::Isometry3d::Identity()};
+  const pose_t pose = frame_pose_message(mug, handle, 5);
+  EXPECT_EQ(pose.utime, 5);
+  EXPECT_EQ(pose.pos[0], 1.05);
+  EXPECT_NEAR(pose.vel[0], 0.1, 1e-12);
+  EXPECT_NEAR(pose.vel[1], 0.1, 1e-12) << "2 rad/s at 5 cm";
+  EXPECT_EQ(pose.rotation_rate[2], 2.0);
+}
+
 TEST(DrakeScene, LoadsAgainWhenTheObjectsChangeAndEveryTenSeconds) {
   DrakeScene scene(folder());
   scene.set_models(mug_model());

@@ -173,11 +173,25 @@ class WorldObject:
     """Channel of that frame."""
     reason: str
     """Why it is in its state, one line."""
+    box_matrix: Array | None
+    """(4, 4), takes points of the box about the object to the world's frame, metres, its middle being the origin; None where
+    hs-track knows no model of it."""
+    extents: Array | None
+    """(3,) sizes of that box along its own axes, metres."""
+    frames: dict[str, Array]
+    """Frames that are named on the object (hs-teach frame), by name: (4, 4), to the world's frame, metres."""
 
     @property
     def position(self) -> Array:
         """(3,) origin of the object's frame in the world's, metres."""
         return self.matrix[:3, 3]
+
+    @property
+    def corners(self) -> Array | None:
+        """(8, 3) corners of the oriented box about the object in the world's frame, metres; None where it is not known."""
+        if self.box_matrix is None or self.extents is None:
+            return None
+        return Bounds(-0.5 * self.extents, 0.5 * self.extents).corners(self.box_matrix)
 
     def __repr__(self) -> str:
         return f"WorldObject({self.name} {self.number} at {_place(self.matrix)} m, {self.state})"

@@ -55,6 +55,11 @@ std::vector<std::string> rotation_words(const std::vector<Eigen::Isometry3d>& ro
   return words;
 }
 
+std::string millimetres(double metres) {
+  constexpr double kSmall_m = 0.01;
+  return metres < kSmall_m ? fmt::format("{:.1f}", 1e3 * metres) : fmt::format("{:.0f}", 1e3 * metres);
+}
+
 }  // namespace
 
 std::string symmetry_words(const ShapeSymmetry& shape) {
@@ -66,9 +71,14 @@ std::string symmetry_words(const ShapeSymmetry& shape) {
   return words.empty() ? "none" : fmt::format("{}", fmt::join(words, " and "));
 }
 
-std::string title_of(const store::StoredObject& object) {
-  return fmt::format("{} (object {}): {} views, {}{}{}", object.name, object.id, object.views, object.attitudes,
-                     object.coloured ? "" : ", colour unknown",
+std::string size_words(const Eigen::Vector3d& size_m) {
+  if (!size_m.allFinite()) return "size unknown";
+  return fmt::format("{} x {} x {} mm", millimetres(size_m.x()), millimetres(size_m.y()), millimetres(size_m.z()));
+}
+
+std::string title_of(const store::StoredObject& object, const Eigen::Vector3d& size_m) {
+  return fmt::format("{} (object {}): {}, {} views, {}{}{}", object.name, object.id, size_words(size_m), object.views,
+                     object.attitudes, object.coloured ? "" : ", colour unknown",
                      object.shape_symmetry ? "; shape symmetries: " + symmetry_words(*object.shape_symmetry) : "");
 }
 

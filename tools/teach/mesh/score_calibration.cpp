@@ -14,6 +14,7 @@
 #include "pipeline/base/parallel.hpp"
 #include "pose/verification/quality_training.hpp"
 #include "tools/common/progress_line.hpp"
+#include "tools/finder/stored_quality.hpp"
 #include "tools/teach/mesh/quality_examples.hpp"
 
 namespace houghstream::teach {
@@ -149,6 +150,29 @@ std::map<std::string, std::vector<QualityExample>> quality_examples(const qualit
   return by_name;
 }
 
+/// Counts the poses that hs-pose would publish; those that are right up to what their shape cannot tell are right.
+PracticeCount count_practice(const std::vector<QualityExample>& examples, const QualitySettings& quality,
+                             float reported_from) {
+  PracticeCount count;
+  for (const QualityExample& example : examples) {
+    const float published_from = example.score >= reported_from ? kStoreQuality : kStoreCandidateQuality;
+    if (shape_quality(example.terms, quality) < published_from) continue;
+    ++(example.is_correct_up_to_shape ? count.right : count.wrong);
+  }
+  return count;
+}
+
+int count_shown(const quality::FoundPoses& found, const std::string& name) {
+  int shown = 0;
+  for (const EvaluatedFrame& frame : found.frames) {
+    for (const NamedObject& object : frame.objects) {
+      const bool counts = object.class_name == name && object.truth.visible_fraction >= DetectionRules{}.min_visible;
+      shown += counts ? 1 : 0;
+    }
+  }
+  return shown;
+}
+
 }  // namespace
 
 int scene_count_for(std::size_t new_objects, const CalibrationSettings& settings) {
@@ -173,9 +197,9 @@ std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFra
   return names;
 }
 
-std::map<std::string, QualitySettings> calibrate_on_scenes(const std::vector<CalibrationObject>& objects,
-                                                           const std::set<int>& new_ids,
-                                                           const CalibrationSettings& settings, Forest& forest) {
+std::map<std::string, CalibratedObject> calibrate_on_scenes(const std::vector<CalibrationObject>& objects,
+                                                            const std::set<int>& new_ids,
+                                                            const CalibrationSettings& settings, Forest& forest) {
   const int scene_count = scene_count_for(new_ids.size(), settings);
   require(scene_count <= CalibrationSettings::kMaxScenes, "{} practice rooms, expected at most {}: all are in memory",
           scene_count, CalibrationSettings::kMaxScenes);
@@ -198,10 +222,16 @@ std::map<std::string, QualitySettings> calibrate_on_scenes(const std::vector<Cal
   }
   const quality::FoundPoses found = find_poses({frames, examples, new_ids, settings.threads}, models, forest);
   training::fit_scores(examples, new_ids, forest);
-  std::map<std::string, QualitySettings> all = learn_qualities(quality_examples(found, judged_by));
-  std::map<std::string, QualitySettings> learnt;
+  const std::map<std::string, std::vector<QualityExample>> by_name = quality_examples(found, judged_by);
+  const std::map<std::string, QualitySettings> all = learn_qualities(by_name);
+  const float reported_from = detection_settings(forest).evidence.threshold;
+  std::map<std::string, CalibratedObject> learnt;
   for (const CalibrationObject& object : objects) {
-    if (new_ids.count(object.in_scene.id) > 0) learnt[object.name] = all.at(object.name);
+    if (new_ids.count(object.in_scene.id) == 0) continue;
+    CalibratedObject& calibrated = learnt[object.name];
+    calibrated.quality = all.at(object.name);
+    calibrated.practice = count_practice(by_name.at(object.name), calibrated.quality, reported_from);
+    calibrated.practice.shown = count_shown(found, object.name);
   }
   return learnt;
 }

@@ -36,6 +36,19 @@ struct CalibrationSettings {
   int threads = 2;
 };
 
+/// How often an object was looked for in the rooms of a calibration, and found.
+struct PracticeCount {
+  int shown = 0;  ///< times that it stood in a frame's view
+  int right = 0;  ///< of these, times that it was found with a right pose that would be published
+  int wrong = 0;  ///< poses that would be published and are wrong
+};
+
+/// What a calibration learns of an object.
+struct CalibratedObject {
+  QualitySettings quality;
+  PracticeCount practice;
+};
+
 /// In how many rooms so many new objects are practised. Where the settings do not say: as many as one more object in
 /// 60 s, and seven in five minutes, leave time for.
 int scene_count_for(std::size_t new_objects, const CalibrationSettings& settings = {});
@@ -46,11 +59,11 @@ std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFra
                                             const std::set<int>& new_ids);
 
 /// Looks for the objects in rendered rooms (world::CalibrationScenes) through widely varied cameras, and learns what
-/// its detections and poses are worth: the scores' weights in `forest`, and the qualities, by name; both of the classes
-/// in `new_ids` only. A line of the log names those of them that stand in no room. Same result for any number of
-/// threads. Throws InputError for more rooms than CalibrationSettings::kMaxScenes.
-std::map<std::string, QualitySettings> calibrate_on_scenes(const std::vector<CalibrationObject>& objects,
-                                                           const std::set<int>& new_ids,
-                                                           const CalibrationSettings& settings, Forest& forest);
+/// its detections and poses are worth: the scores' weights in `forest`, and the qualities, with what was found by them,
+/// by name; both of the classes in `new_ids` only. A line of the log names those of them that stand in no room. Same
+/// result for any number of threads. Throws InputError for more rooms than CalibrationSettings::kMaxScenes.
+std::map<std::string, CalibratedObject> calibrate_on_scenes(const std::vector<CalibrationObject>& objects,
+                                                            const std::set<int>& new_ids,
+                                                            const CalibrationSettings& settings, Forest& forest);
 
 }  // namespace houghstream::teach

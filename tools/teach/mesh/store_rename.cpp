@@ -1,7 +1,11 @@
 #include "tools/teach/mesh/store_rename.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <map>
+#include <sstream>
 #include <vector>
 
 #include "detector/forest/forest_file.hpp"
@@ -12,6 +16,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tools/finder/stored_forest.hpp"
 #include "tools/teach/mesh/contact_sheet.hpp"
+#include "tools/teach/mesh/store_summary.hpp"
 
 namespace houghstream::teach {
 namespace {
@@ -44,11 +49,17 @@ void write_names(const ObjectStore& store) {
 
 void write_images(const ObjectStore& store, const StoredObject& renamed) {
   cv::Mat image = read_colour_image(store.view_image(renamed.id));
-  write_title(title_of(renamed), image);
+  write_title(title_of(renamed, object_sizes(store).at(renamed.id)), image);
   write_png(image, store.view_image(renamed.id));
   std::vector<fs::path> images;
   for (const StoredObject& object : store.objects) images.push_back(store.view_image(object.id));
   write_contact_sheet(images, store.contact_sheet());
+}
+
+std::string frame_names(const std::vector<ObjectFrame>& frames) {
+  std::vector<std::string> names;
+  for (const ObjectFrame& frame : frames) names.push_back(frame.name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace
@@ -78,6 +89,62 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
   write_images(store, store::find_object(store, new_name));
   store::write_store_json(store);
   load_store_forest(store::read_store(build.folder()));  // what nothing can read takes no store's place
+  build.commit();
+}
+
+Eigen::Isometry3d parse_frame_place(const std::string& text) {
+  constexpr std::size_t kPlace = 3;
+  constexpr std::size_t kWithRotation = 7;
+  std::vector<double> numbers;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');) {
+    char* end = nullptr;
+    numbers.push_back(std::strtod(part.c_str(), &end));
+    require(!part.empty() && *end == '\0', "place '{}': '{}' is no number, expected x,y,z or x,y,z,qw,qx,qy,qz", text,
+            part);
+  }
+  require(numbers.size() == kPlace || numbers.size() == kWithRotation,
+          "place '{}': {} numbers, expected x,y,z or x,y,z,qw,qx,qy,qz", text, numbers.size());
+  if (numbers.size() == kPlace) numbers.insert(numbers.end(), {1.0, 0.0, 0.0, 0.0});
+  return store::object_frame_pose({numbers[0], numbers[1], numbers[2]},
+                                  {numbers[3], numbers[4], numbers[5], numbers[6]}, "place '" + text + "'");
+}
+
+void set_frame_in_store(const fs::path& folder, const std::string& object_name, const std::string& frame_name,
+                        const std::optional<Eigen::Isometry3d>& T_object_frame) {
+  store::recover_store(folder);
+  store::read_store(folder);  // nothing is made beside what is no store
+  store::StoreTransaction build(folder);
+  ObjectStore store = store::read_store(folder);  // nobody else changes it from here on
+  const int id = store::find_object(store, object_name).id;
+  store::require_new_name(frame_name, store.json_file().string());
+  std::vector<ObjectFrame>* frames = nullptr;
+  for (StoredObject& object : store.objects) {
+    if (object.id == id) frames = &object.frames;
+  }
+  const auto place =
+      std::lower_bound(frames->begin(), frames->end(), frame_name,
+                       [](const ObjectFrame& frame, const std::string& name) { return frame.name < name; });
+  const bool is_known = place != frames->end() && place->name == frame_name;
+  if (!T_object_frame) {
+    require(is_known, "{}: '{}' has no frame '{}', expected one of {}", store.json_file().string(), object_name,
+            frame_name, frames->empty() ? "none" : frame_names(*frames));
+    frames->erase(place);
+  } else if (is_known) {
+    place->T_object_frame = *T_object_frame;
+  } else {
+    frames->insert(place, {frame_name, *T_object_frame});
+  }
+  copy_files(store, build.folder());
+  for (const fs::path& file : {store.forest_file(), store.contact_sheet()}) {
+    std::error_code error;
+    if (file == store.contact_sheet() && !fs::exists(file)) continue;  // a store can do without
+    fs::copy_file(file, build.folder() / file.filename(), error);
+    require(!error, "{}: cannot be copied to {}: {}", file.string(), build.folder().string(), error.message());
+  }
+  store.folder = build.folder();
+  store::write_store_json(store);
+  store::read_store(build.folder());  // what nothing can read takes no store's place
   build.commit();
 }
 

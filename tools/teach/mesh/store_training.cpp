@@ -117,8 +117,9 @@ std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, cons
     object.views = static_cast<int>(views.size());
     object.attitudes = options.attitudes;
     object.shape_symmetry = find_shape_symmetry(taught.mesh);
-    report(title_of(object));
-    write_png(view_image(views, title_of(object)), made.view_image(object.id));
+    const std::string title = title_of(object, mesh_bounds(taught.mesh).sizes().cast<double>());
+    report(title);
+    write_png(view_image(views, title), made.view_image(object.id));
     if (!options.dump_views.empty()) dump_views(views, options.dump_views / fmt::format("{:06d}", object.id));
     object.vote_centre = vote_centre_of(taught.mesh);
     vote_for(object.vote_centre, views);

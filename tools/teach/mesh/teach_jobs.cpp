@@ -22,6 +22,8 @@
 #include "tools/finder/stored_quality.hpp"
 #include "tools/teach/mesh/contact_sheet.hpp"
 #include "tools/teach/mesh/lookalikes.hpp"
+#include "tools/teach/mesh/stop_notice.hpp"
+#include "tools/teach/mesh/store_summary.hpp"
 #include "tools/teach/mesh/store_training.hpp"
 
 namespace houghstream::teach {
@@ -82,9 +84,11 @@ void require_new(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) 
   }
 }
 
+using Practice = std::map<std::string, PracticeCount>;
+
 /// The objects of the finished store, looked for in rooms; what is learnt of the new ones goes into forest and store.
-void calibrate_all(const std::vector<NamedModel>& models, const std::set<int>& new_ids,
-                   const CalibrationSettings& settings, Forest& forest, ObjectStore& made) {
+Practice calibrate_all(const std::vector<NamedModel>& models, const std::set<int>& new_ids,
+                       const CalibrationSettings& settings, Forest& forest, ObjectStore& made) {
   std::vector<CalibrationObject> objects(models.size());
   parallel_for(settings.threads, static_cast<int>(models.size()), [&](int i) {
     const NamedModel& model = models[static_cast<std::size_t>(i)];
@@ -102,11 +106,20 @@ void calibrate_all(const std::vector<NamedModel>& models, const std::set<int>& n
     object.in_scene.has_colour = stored.coloured;
     object.in_scene.is_calibrated = new_ids.count(model.object_id) > 0;
   });
-  const std::map<std::string, QualitySettings> learnt = calibrate_on_scenes(objects, new_ids, settings, forest);
+  const std::map<std::string, CalibratedObject> learnt = calibrate_on_scenes(objects, new_ids, settings, forest);
+  Practice practice;
   for (StoredObject& object : made.objects) {
-    if (const auto found = learnt.find(object.name); found != learnt.end())
-      object.quality = quality_to_json(found->second);
+    const auto found = learnt.find(object.name);
+    if (found == learnt.end()) continue;
+    object.quality = quality_to_json(found->second.quality);
+    practice[object.name] = found->second.practice;
   }
+  return practice;
+}
+
+std::string unchanged_notice(const fs::path& folder) {
+  return fmt::format("hs-teach: stopped; {}",
+                     fs::exists(folder) ? folder.string() + " is as it was" : "nothing was made in " + folder.string());
 }
 
 std::string calibration_step(const CalibrationSettings& settings, std::size_t new_objects) {
@@ -208,6 +221,7 @@ void require_no_store(const fs::path& folder) {
 
 void teach_meshes(const TeachOptions& options) {
   const Progress progress;
+  StopNotice stop(unchanged_notice(options.out));
   world::parse_mesh_attitudes(options.attitudes);
   if (options.backgrounds.camera) parse_camera(*options.backgrounds.camera);
   require_free(options.dump_views);
@@ -245,27 +259,25 @@ void teach_meshes(const TeachOptions& options) {
   calibration.seed = options.seed;
   calibration.threads = options.threads;
   progress(calibration_step(calibration, new_ids.size()));
-  calibrate_all(models, new_ids, calibration, forest, made);
+  const Practice practice = calibrate_all(models, new_ids, calibration, forest, made);
   progress("scores and qualities learnt");
   made.settings = {{"attitudes", options.attitudes}, {"seed", options.seed}, {"profile", forest.profile}};
   write_store(made, models, forest);
+  stop.release();
   build.commit();
   name_lookalikes(models);
+  fmt::print("{}", teaching_summary(store::read_store(options.out), new_ids, practice));
   fmt::print("teach_seconds {:.1f}\n", progress.seconds());
-}
-
-void list_store(const fs::path& folder) {
-  for (const StoredObject& object : store::read_store(folder).objects)
-    fmt::print("{:>6} {:<24} {:>5} views, {}, {}; shape symmetries: {}; {}\n", object.id, object.name, object.views,
-               object.attitudes, object.coloured ? "coloured" : "colour unknown",
-               object.shape_symmetry ? symmetry_words(*object.shape_symmetry) : "unknown, hs-teach practise finds them",
-               object.mesh);
 }
 
 void remove_from_store(const fs::path& folder, const std::string& name) {
   require_store(folder);
   store::StoreTransaction build(folder);
   const Contents old = read_contents(folder);
+  require(old.list.objects.size() > 1 || store::find_object(old.list, name).name != name,
+          "{}: '{}' is its only object, expected another one to stay; hs-teach mesh MESH --out {} --replace teaches "
+          "others in its place, rm -r {} removes the store",
+          folder.string(), name, folder.string(), folder.string());
   const Forest forest = training::remove_object(*old.forest, store::find_object(old.list, name).name);
   ObjectStore made = start_store(build.folder());
   made.settings = old.list.settings;
@@ -278,6 +290,7 @@ void remove_from_store(const fs::path& folder, const std::string& name) {
 void calibrate_store(const fs::path& folder, const CalibrationSettings& settings,
                      const std::vector<std::string>& names) {
   const Progress progress;
+  StopNotice stop(unchanged_notice(folder));
   require_store(folder);
   store::StoreTransaction build(folder);
   const Contents old = read_contents(folder);
@@ -288,10 +301,12 @@ void calibrate_store(const fs::path& folder, const CalibrationSettings& settings
   keep(old, "", made, models);
   Forest forest = *old.forest;
   progress(calibration_step(settings, ids.size()));
-  calibrate_all(models, ids, settings, forest, made);
+  const Practice practice = calibrate_all(models, ids, settings, forest, made);
   write_store(made, models, forest);
+  stop.release();
   build.commit();
   progress("scores and qualities learnt");
+  fmt::print("{}", teaching_summary(store::read_store(folder), ids, practice));
 }
 
 }  // namespace houghstream::teach

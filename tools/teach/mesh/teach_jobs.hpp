@@ -13,12 +13,10 @@ namespace houghstream::teach {
 void require_no_store(const std::filesystem::path& folder);
 
 /// Teaches objects from their meshes. Says on standard error what is done, and at the end which objects can hardly be
-/// told apart. The store that was there stays whole until the new one is. Throws InputError for what cannot be taught,
-/// and before all work for a store that is there where `options` say neither add nor replace.
+/// told apart, and on standard output teaching_summary(). The store that was there stays whole until the new one is.
+/// Throws InputError for what cannot be taught, and before all work for a store that is there where `options` say
+/// neither add nor replace.
 void teach_meshes(const TeachOptions& options);
-
-/// Prints what the store knows, an object a line.
-void list_store(const std::filesystem::path& folder);
 
 /// Learns scores and qualities of a store's objects anew: of all, or of those of the `names`. Throws InputError for a
 /// name that is not there.

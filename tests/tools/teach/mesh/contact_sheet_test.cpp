@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "drivers/files/image_file.hpp"
 #include "tests/test_files.hpp"
 
@@ -41,9 +43,12 @@ TEST(ContactSheet, ShapeSymmetriesAreSaidInWords) {
   EXPECT_EQ(symmetry_words(shape), "2 half turns and 2 turns by 90 degrees");
   store::StoredObject object;
   object.name = "tin";
-  EXPECT_EQ(title_of(object).find("shape symmetries"), std::string::npos) << "not known";
+  const Eigen::Vector3d size_m(0.1184, 0.0826, 0.0096);
+  EXPECT_EQ(title_of(object, size_m).find("shape symmetries"), std::string::npos) << "not known";
   object.shape_symmetry = shape;
-  EXPECT_NE(title_of(object).find("; shape symmetries: 2 half turns and"), std::string::npos);
+  EXPECT_NE(title_of(object, size_m).find("; shape symmetries: 2 half turns and"), std::string::npos);
+  EXPECT_NE(title_of(object, size_m).find("tin (object 0): 118 x 83 x 9.6 mm, "), std::string::npos);
+  EXPECT_EQ(size_words(Eigen::Vector3d(NAN, 0.0, 0.0)), "size unknown");
 }
 
 }  // namespace

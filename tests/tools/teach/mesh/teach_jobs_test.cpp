@@ -71,7 +71,15 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   store::fill_store(options.out, "brick");
   put_notes(options.out);
   options.replace = true;
+  testing::internal::CaptureStdout();
   teach_meshes(options);
+  const std::string summary = testing::internal::GetCapturedStdout();
+  for (const std::string& part :
+       {options.out.string() + ": 1 object; look at " + (options.out / "contact_sheet.jpg").string() + "\n  bracket ",
+        std::string(" mm "), std::string(" practice views"),
+        "\nnext: hs-stream --source openni2 --objects " + options.out.string() + "\n"})
+    EXPECT_NE(summary.find(part), std::string::npos) << part << " in\n" << summary;
+  EXPECT_LT(summary.find("next: "), summary.find("teach_seconds ")) << "which scripts read last";
   expect_notes(options.out, "mesh --replace");
   const store::ObjectStore first = store::read_store(options.out);
   ASSERT_EQ(first.objects.size(), 1U);
@@ -111,7 +119,8 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   EXPECT_EQ(forest_names(options.out), std::vector<std::string>{"grey"});
   EXPECT_EQ(store::load_store_meshes(store::read_store(options.out)).count("grey"), 1U);
   EXPECT_NE(error_of([&] { remove_from_store(options.out, "bracket"); }), "");
-  EXPECT_NE(error_of([&] { remove_from_store(options.out, "grey"); }), "") << "the only one";
+  expect_says(error_of([&] { remove_from_store(options.out, "grey"); }),
+              {"'grey' is its only object", "--replace", "rm -r " + options.out.string()});
   EXPECT_EQ(store::read_store(options.out).objects.size(), 1U) << "a refusal loses nothing";
 }
 

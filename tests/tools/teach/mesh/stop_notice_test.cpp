@@ -1,0 +1,45 @@
+#include "tools/teach/mesh/stop_notice.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+
+namespace houghstream::teach {
+namespace {
+
+void wait_a_second() {
+  for (int i = 0; i < 100; ++i) usleep(10'000);
+}
+
+TEST(StopNoticeDeathTest, SaysWhatIsLeftAndEndsByTheSignal) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  for (const int signal : {SIGINT, SIGTERM}) {
+    EXPECT_EXIT(
+        {
+          const StopNotice notice("stopped; all is as it was");
+          kill(getpid(), signal);
+          wait_a_second();
+        },
+        testing::KilledBySignal(signal), "^stopped; all is as it was\n$");
+  }
+}
+
+TEST(StopNoticeDeathTest, AfterItsReleaseASignalWaitsWithoutAWord) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(
+      {
+        {
+          StopNotice notice("stopped; all is as it was");
+          notice.release();
+          kill(getpid(), SIGINT);
+          wait_a_second();
+          std::fprintf(stderr, "exchanged");
+        }
+        wait_a_second();
+      },
+      testing::KilledBySignal(SIGINT), "^exchanged$");
+}
+
+}  // namespace
+}  // namespace houghstream::teach

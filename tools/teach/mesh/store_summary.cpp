@@ -1,0 +1,113 @@
+#include "tools/teach/mesh/store_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "drivers/datasets/bop_dataset.hpp"
+#include "tools/teach/mesh/contact_sheet.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+std::string practice_words(const PracticeCount& count) {
+  if (count.shown == 0) return "not practised";
+  return fmt::format("found in {:.0f} % of {} practice views", 100.0 * count.right / count.shown, count.shown) +
+         (count.wrong == 0 ? "" : fmt::format(", {} wrong poses", count.wrong));
+}
+
+std::string known_symmetries(const store::StoredObject& object) {
+  return object.shape_symmetry ? symmetry_words(*object.shape_symmetry) : "unknown, hs-teach practise finds them";
+}
+
+/// As a person has to type it here: with its folder where that is not searched for programs.
+std::string stream_program() {
+  namespace fs = std::filesystem;
+  const std::string name = "hs-stream";
+  std::error_code error;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+  const char* searched = std::getenv("PATH");
+  const std::string list = fmt::format(":{}:", searched == nullptr ? "" : searched);
+  const bool is_searched = list.find(":" + folder.string() + ":") != std::string::npos;
+  return is_searched || !fs::exists(folder / name, error) ? name : fs::proximate(folder / name, error).string();
+}
+
+}  // namespace
+
+std::map<int, Eigen::Vector3d> object_sizes(const store::ObjectStore& store) {
+  const BopModels models = read_bop_models(store.models_folder());
+  std::map<int, Eigen::Vector3d> sizes;
+  for (const store::StoredObject& object : store.objects) {
+    const auto bounds = models.bounds.find(object.id);
+    sizes[object.id] = bounds != models.bounds.end()
+                           ? bounds->second.sizes()
+                           : Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()).eval();
+  }
+  return sizes;
+}
+
+std::string teaching_summary(const store::ObjectStore& store, const std::set<int>& taught,
+                             const std::map<std::string, PracticeCount>& practice) {
+  const std::map<int, Eigen::Vector3d> sizes = object_sizes(store);
+  std::string text = fmt::format("{}: {} object{}; look at {}\n", store.folder.string(), store.objects.size(),
+                                 store.objects.size() == 1 ? "" : "s", store.contact_sheet().string());
+  for (const store::StoredObject& object : store.objects) {
+    if (taught.count(object.id) == 0) continue;
+    const auto count = practice.find(object.name);
+    text += fmt::format("  {:<24} {:<22} {}\n", object.name, size_words(sizes.at(object.id)),
+                        practice_words(count == practice.end() ? PracticeCount() : count->second));
+  }
+  return text + fmt::format("next: {} --source openni2 --objects {}\n", stream_program(), store.folder.string());
+}
+
+std::string store_text(const store::ObjectStore& store) {
+  const std::map<int, Eigen::Vector3d> sizes = object_sizes(store);
+  std::string text;
+  for (const store::StoredObject& object : store.objects) {
+    text += fmt::format("{:>6} {:<24} {:<22} {:>5} views, {}, {}; shape symmetries: {}; {}\n", object.id, object.name,
+                        size_words(sizes.at(object.id)), object.views, object.attitudes,
+                        object.coloured ? "coloured" : "colour unknown", known_symmetries(object), object.mesh);
+    for (const ObjectFrame& frame : object.frames) {
+      const Eigen::Vector3d at = frame.T_object_frame.translation();
+      const Eigen::Quaterniond q(frame.T_object_frame.linear());
+      text += fmt::format("       frame {:<20} at {:g},{:g},{:g} m, rotation {:.4g},{:.4g},{:.4g},{:.4g}\n", frame.name,
+                          at.x(), at.y(), at.z(), q.w(), q.x(), q.y(), q.z());
+    }
+  }
+  return text;
+}
+
+OrderedJson store_json(const store::ObjectStore& store) {
+  const std::map<int, Eigen::Vector3d> sizes = object_sizes(store);
+  OrderedJson objects = OrderedJson::array();
+  for (const store::StoredObject& object : store.objects) {
+    const Eigen::Vector3d& size = sizes.at(object.id);
+    OrderedJson entry;
+    entry["id"] = object.id;
+    entry["name"] = object.name;
+    entry["size_m"] = size.allFinite() ? OrderedJson({size.x(), size.y(), size.z()}) : OrderedJson();
+    entry["views"] = object.views;
+    entry["attitudes"] = object.attitudes;
+    entry["coloured"] = object.coloured;
+    entry["shape_symmetries"] =
+        object.shape_symmetry ? OrderedJson(symmetry_words(*object.shape_symmetry)) : OrderedJson();
+    entry["frames"] = OrderedJson::object();
+    for (const ObjectFrame& frame : object.frames) {
+      const Eigen::Vector3d at = frame.T_object_frame.translation();
+      const Eigen::Quaterniond q(frame.T_object_frame.linear());
+      entry["frames"][frame.name] = {{"translation_m", {at.x(), at.y(), at.z()}},
+                                     {"rotation", {q.w(), q.x(), q.y(), q.z()}}};
+    }
+    entry["mesh"] = object.mesh;
+    objects.push_back(std::move(entry));
+  }
+  OrderedJson json;
+  json["store"] = store.folder.string();
+  json["contact_sheet"] = store.contact_sheet().string();
+  json["objects"] = std::move(objects);
+  return json;
+}
+
+}  // namespace houghstream::teach
