@@ -21,7 +21,7 @@ placed_object_t placed_to_message(const ObjectPlacement& object) {
   message.class_name = object.class_name;
   set_transform(object.T_world_box, message.box_trans, message.box_quat);
   std::copy_n(object.box_size.data(), 3, message.box_size);
-  for (const PlacedFrame& frame : object.frames) {
+  for (const PlacedObjectFrame& frame : object.frames) {
     placed_frame_t& entry = message.frames.emplace_back();
     entry.name = frame.name;
     set_transform(frame.T_world_frame, entry.trans, entry.quat);
@@ -42,7 +42,7 @@ ObjectPlacement placed_from_message(const placed_object_t& message) {
           "{}: a box of {} x {} x {} m, expected 0 to {:g}", name, message.box_size[0], message.box_size[1],
           message.box_size[2], kMaxDistanceM);
   for (const placed_frame_t& frame : message.frames) {
-    PlacedFrame& entry = object.frames.emplace_back();
+    PlacedObjectFrame& entry = object.frames.emplace_back();
     entry.name = frame.name;
     entry.T_world_frame = pose_from_wire(frame.trans, frame.quat, name + " frame '" + frame.name + "'");
   }

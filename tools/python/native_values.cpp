@@ -124,7 +124,7 @@ void add_place(const ObjectPlacement* place, py::dict& entry) {
   } else {
     entry["box_matrix"] = matrix_to_python(place->T_world_box.matrix());
     entry["extents"] = vector_to_python(place->box_size);
-    for (const PlacedFrame& frame : place->frames)
+    for (const PlacedObjectFrame& frame : place->frames)
       frames[py::str(frame.name)] = matrix_to_python(frame.T_world_frame.matrix());
   }
   entry["frames"] = frames;

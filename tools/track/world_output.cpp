@@ -29,7 +29,7 @@ pose_t pose_message(const TrackedObject& object, std::int64_t utime) {
   return message;
 }
 
-pose_t frame_pose_message(const TrackedObject& object, const PlacedFrame& frame, std::int64_t utime) {
+pose_t frame_pose_message(const TrackedObject& object, const PlacedObjectFrame& frame, std::int64_t utime) {
   TrackedObject at_frame = object;
   at_frame.T_world_object = frame.T_world_frame;
   const Eigen::Vector3d arm = frame.T_world_frame.translation() - object.T_world_object.translation();
@@ -53,7 +53,7 @@ void WorldOutput::publish_poses(const WorldObjects& world, const ObjectPlacement
     bus_.publish(channel::object_pose(object.class_name, object.track_id), pose_message(object, world.frame.utime));
     for (const ObjectPlacement& place : placed.objects) {
       if (place.track_id != object.track_id) continue;
-      for (const PlacedFrame& frame : place.frames)
+      for (const PlacedObjectFrame& frame : place.frames)
         bus_.publish(channel::frame_pose(object.class_name, object.track_id, frame.name),
                      frame_pose_message(object, frame, world.frame.utime));
     }

@@ -19,7 +19,7 @@ struct WorldOutputOptions {
 pose_t pose_message(const TrackedObject& object, std::int64_t utime);
 
 /// Makes the pose of a frame that is named on the object and moves with it.
-pose_t frame_pose_message(const TrackedObject& object, const PlacedFrame& frame, std::int64_t utime);
+pose_t frame_pose_message(const TrackedObject& object, const PlacedObjectFrame& frame, std::int64_t utime);
 
 /// Publishes the objects_t after each frame, before it their boxes and named frames where models are known, and what
 /// the options ask for. Not thread-safe.

@@ -89,7 +89,7 @@ TEST(DrakeScene, NamedFramesAreAxesOnTheirObject) {
 TEST(DrakeScene, AFrameOfWhatTurnsMovesAsAPointOfIt) {
   TrackedObject mug = object(3, "mug", {1, 2, 3});
   mug.velocity << 0.1, 0, 0, 0, 0, 2;  // m/s, and rad/s about z
-  const PlacedFrame handle{"handle", Eigen::Translation3d(1.05, 2, 3) * Eigen::Isometry3d::Identity()};
+  const PlacedObjectFrame handle{"handle", Eigen::Translation3d(1.05, 2, 3) * Eigen::Isometry3d::Identity()};
   const pose_t pose = frame_pose_message(mug, handle, 5);
   EXPECT_EQ(pose.utime, 5);
   EXPECT_EQ(pose.pos[0], 1.05);
