@@ -174,6 +174,23 @@ void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
   it.pose = std::move(judged);
 }
 
+/// Of two poses of a class in one place, as of two detections of one object, the less probable one is withheld.
+void withhold_duplicates(const PoseEstimator& estimator, std::vector<ObjectPose>& poses) {
+  constexpr double kDistanceRatio = 0.5;
+  for (ObjectPose& pose : poses) {
+    if (!pose.T_camera_object) continue;
+    const PlacedObject here{pose.class_name, *pose.T_camera_object};
+    const bool is_weaker = std::any_of(poses.begin(), poses.end(), [&](const ObjectPose& other) {
+      if (&other == &pose || !other.T_camera_object || other.class_name != pose.class_name) return false;
+      const bool is_surer = other.quality > pose.quality || (other.quality == pose.quality && &other < &pose);
+      return is_surer && estimator.is_duplicate(here, {other.class_name, *other.T_camera_object}, kDistanceRatio);
+    });
+    if (!is_weaker) continue;
+    pose.T_camera_object.reset();
+    pose.status = PoseStatus::kLowScore;
+  }
+}
+
 }  // namespace
 
 struct PoseEstimator::State {
@@ -255,6 +272,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   clock.mark("pose.verification");
   parallel_for(settings.threads, static_cast<int>(estimations.size()),
                [&](int i) { resolve_symmetry(settings, estimations[i]); });
+  withhold_duplicates(*this, result.poses);
   clock.mark("pose.print");
 
   result.stages.insert(result.stages.end(), clock.times().begin(), clock.times().end());

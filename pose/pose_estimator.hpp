@@ -43,7 +43,8 @@ class PoseEstimator {
 
   /// Returns one ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
   /// pose.registration, pose.choice and pose.verification are appended to those of the detections. The detections must
-  /// be of this frame (same name); throws std::logic_error otherwise, and InputError for an invalid frame.
+  /// be of this frame (same name). Of two poses of a class in one place (is_duplicate at 0.5) the less probable one is
+  /// withheld with kLowScore. Throws std::logic_error for another frame, and InputError for an invalid frame.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 
   /// Estimates with the poses of an earlier frame as a warm start: they are candidates beside those of the votes, never

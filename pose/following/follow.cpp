@@ -72,7 +72,7 @@ JointResult register_near(const ObjectObservation& seen, const Eigen::Isometry3d
   JointStart joint;
   joint.T_camera_object = start;
   joint.appearance = expected.appearance;
-  joint.depth_lag_m = expected.depth_lag_m;
+  joint.depth_lag = expected.depth_lag;
   int iterations = 0;
   if (expected.is_lost) {
     const RegistrationResult near =

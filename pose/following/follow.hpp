@@ -59,7 +59,7 @@ struct ExpectedObject {
   ChromaMap camera_colours = {};   ///< by which its colours are judged
   float shape_quality = 0.0F;      ///< of its last pose for which depth spoke
   FollowedAppearance appearance;   ///< learnt in earlier frames
-  double depth_lag_m = 0.0;        ///< as JointStart has it
+  DepthLag depth_lag;              ///< as JointStart has it
 };
 
 /// What came of it.

@@ -40,7 +40,7 @@ class JointRegistration {
         settings_(settings),
         registration_(registration),
         end_m_(correspondence_distances(seen, registration).end),
-        sigma_m_(std::hypot(settings.depth_sigmas * seen.noise.sigma(seen.centre_camera.z()), start.depth_lag_m)) {
+        sigma_m_(settings.depth_sigmas * seen.noise.sigma(seen.centre_camera.z())) {
     result_.silhouette = start.appearance.silhouette;
     result_.registration.T_camera_object = start.T_camera_object;
     if (start.appearance.texture) brightness_ = make_brightness(seen.frame, seen.region.box_px);
@@ -82,6 +82,32 @@ class JointRegistration {
     }
   }
 
+  /// The motion of one deviation of the lag, as MotionEquations have it.
+  Vector6d lag_motion() {
+    const Eigen::Vector3d arm = pose().linear() * seen_.model.centre.cast<double>();
+    Vector6d motion;
+    motion << seen_.model.radius * start_.depth_lag.rotation_rad,
+        start_.depth_lag.shift_m + start_.depth_lag.rotation_rad.cross(arm);
+    return motion;
+  }
+
+  /// Where the object was when depth was measured, by the lag's estimate.
+  Eigen::Isometry3d depth_pose() {
+    Eigen::Isometry3d T = pose();
+    move_by_step(lag_.deviations * lag_motion(), seen_.model, T);
+    return T;
+  }
+
+  /// Marginalises the lag out of depth's equations (Schur complement; its prior is one deviation).
+  void marginalise_lag(MotionEquations& equations) {
+    const Vector6d motion = lag_motion();
+    lag_.mixed = equations.hessian.selfadjointView<Eigen::Lower>() * motion;
+    lag_.hessian = 1.0 + motion.dot(lag_.mixed);
+    lag_.gradient = motion.dot(equations.gradient) - lag_.deviations;
+    equations.gradient -= lag_.mixed * (lag_.gradient / lag_.hessian);
+    equations.hessian.selfadjointView<Eigen::Lower>().rankUpdate(lag_.mixed, -1.0 / lag_.hessian);
+  }
+
   static void add(const MotionEquations& part, double weight, MotionEquations& all) {
     all.hessian += weight * part.hessian;
     all.gradient += weight * part.gradient;
@@ -91,12 +117,22 @@ class JointRegistration {
   bool add_depth(const JointLevel& level, double distance_m, MotionEquations& all) {
     const auto points = static_cast<std::size_t>(std::lround(level.points * settings_.points));
     const CorrespondenceSums pairs =
-        sum_correspondences(seen_, pose(), points, {static_cast<float>(distance_m), level.search_steps});
+        sum_correspondences(seen_, depth_pose(), points, {static_cast<float>(distance_m), level.search_steps});
     if (pairs.count < kMinPairs) return false;
     // So many pairs stand for all that the finest level would have had.
     const double weight = 1.0 / (level.points * sigma_m_ * sigma_m_);
-    add(build_equations(pairs, registration_.point_weight), weight, all);
-    result_.information += weight * build_equations(pairs, 0.0).hessian;
+    MotionEquations depth;
+    MotionEquations across;
+    add(build_equations(pairs, registration_.point_weight), weight, depth);
+    add(build_equations(pairs, 0.0), weight, across);
+    lag_.hessian = 0.0;
+    const bool is_told_by_colours = !all.hessian.isZero(0.0);
+    if (is_told_by_colours) {
+      marginalise_lag(across);
+      marginalise_lag(depth);
+    }
+    add(depth, 1.0, all);
+    result_.information += across.hessian;
     return true;
   }
 
@@ -114,6 +150,7 @@ class JointRegistration {
     all.hessian.diagonal().head<3>().array() += 1.0 / (turn_m * turn_m);
     all.hessian.diagonal().tail<3>().array() += 1.0 / (settings_.tikhonov_m * settings_.tikhonov_m);
     const Vector6d step = all.hessian.selfadjointView<Eigen::Lower>().ldlt().solve(all.gradient);
+    if (lag_.hessian > 0.0) lag_.deviations += (lag_.gradient - lag_.mixed.dot(step)) / lag_.hessian;
     ++result_.registration.iterations;
     result_.registration.converged =
         step.allFinite() && move_by_step(step, seen_.model, pose()) < registration_.converged_m;
@@ -122,12 +159,20 @@ class JointRegistration {
   void note_evidence() {
     RegistrationResult& out = result_.registration;
     const auto points = static_cast<std::size_t>(settings_.points);
-    const CorrespondenceSums last = sum_correspondences(seen_, pose(), points, {static_cast<float>(end_m_), 1});
+    const CorrespondenceSums last = sum_correspondences(seen_, depth_pose(), points, {static_cast<float>(end_m_), 1});
     const std::size_t used = std::min(points, nearest_view(seen_.model, pose()).points.size());
     out.inliers = last.count;
     out.inlier_fraction = static_cast<float>(last.count) / static_cast<float>(used);
     out.residual = static_cast<float>(std::sqrt(last.squares / last.count));  // 0/0 is NaN
   }
+
+  /// How far the object had moved when depth was measured, in deviations of the lag, and its normal equation.
+  struct Lag {
+    double deviations = 0.0;
+    Vector6d mixed = Vector6d::Zero();  // with the motion
+    double hessian = 0.0;
+    double gradient = 0.0;
+  };
 
   const ObjectObservation& seen_;
   const RegionView view_;
@@ -137,6 +182,7 @@ class JointRegistration {
   const double end_m_;
   const double sigma_m_;  // of a pair of depth
   BrightnessImage brightness_;
+  Lag lag_;
   JointResult result_;
 };
 

@@ -15,7 +15,7 @@ namespace houghstream {
 /// How what is followed is registered to depth and colours at once.
 struct JointSettings {
   int points = 400;           ///< of the model's view, at the finest level
-  double start_m = 0.02;      ///< pairs of depth farther apart have no weight, at the coarsest level
+  double start_m = 0.03;      ///< pairs of depth farther apart have no weight, at the coarsest level
   double depth_sigmas = 1.4;  ///< standard deviation that a pair of depth is given, over its noise
   // Regularisation after Tikhonov (Stoiber et al. 2022, "Iterative Corresponding Geometry", equation 21): what nothing
   // observes stays as it was.
@@ -47,13 +47,20 @@ struct FollowedAppearance {
 /// Moves a pose to where something else than depth and silhouette speaks for it.
 using RefinePose = std::function<Eigen::Isometry3d(const Eigen::Isometry3d& T_camera_object)>;
 
+/// One standard deviation of the object's motion between a frame's depth and its colours, which a camera takes apart in
+/// time: about its origin, along the camera's axes.
+struct DepthLag {
+  Eigen::Vector3d rotation_rad = Eigen::Vector3d::Zero();
+  Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+};
+
 /// From where on an object is registered.
 struct JointStart {
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
   FollowedAppearance appearance;
   /// After the coarser half of the levels; may be empty. From there on the texture of an earlier frame says nothing.
   RefinePose refine_by_texture;
-  double depth_lag_m = 0.0;  ///< how far the object may have moved between depth and colours
+  DepthLag depth_lag;  ///< along it, colours say where the object is, and depth as far as it is short
 };
 
 /// Where joint registration ended.

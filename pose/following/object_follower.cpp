@@ -1,6 +1,8 @@
 #include "pose/following/object_follower.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <string_view>
 
 #include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/logit.hpp"
@@ -56,6 +58,33 @@ void follow_clock(std::int64_t utime, FollowedCamera& camera) {
   } else {
     camera.ahead_us = microseconds_between(utime, shifted(last.clock_us, camera.interval_us));
   }
+}
+
+/// Returns a digest of every fourth row: sensor noise makes those of two measurements differ.
+std::uint64_t depth_digest(const cv::Mat& depth) {
+  constexpr int kEvery = 4;
+  std::uint64_t digest = 0;
+  for (int row = 0; row < depth.rows; row += kEvery) {
+    const auto* bytes = depth.ptr<char>(row);
+    const std::string_view values(bytes, static_cast<std::size_t>(depth.cols) * depth.elemSize());
+    digest = digest * 31 + std::hash<std::string_view>()(values);
+  }
+  return digest;
+}
+
+/// Notes since when the camera has sent the depth of this frame.
+void note_depth(const RgbdFrame& frame, std::int64_t clock_us, FollowedCamera& camera) {
+  const std::uint64_t digest = depth_digest(frame.depth);
+  const bool is_repeated = !camera.recent_frames.empty() && digest == camera.depth_digest;
+  if (!is_repeated) camera.depth_us = clock_us;
+  camera.depth_digest = digest;
+}
+
+DepthLag depth_lag(double seconds, const SmoothedVelocity& velocity) {
+  DepthLag lag;
+  lag.rotation_rad = seconds * velocity.angular_velocity();
+  lag.shift_m = seconds * velocity.linear_velocity();
+  return lag;
 }
 
 /// A frame's detections beside what was followed in it.
@@ -147,6 +176,19 @@ int choose_recheck(const DetectionAssociation& look, const FollowerSettings& set
   return place;
 }
 
+/// Withholds the pose of a detection where an object of its class was followed already: it has one.
+void withhold_where_followed(const PoseEstimator& estimator, const FollowedFrame& followed_frame, double ratio,
+                             ObjectPose& pose) {
+  const PlacedObject here{pose.class_name, *pose.T_camera_object};
+  for (const FollowedPose& followed : followed_frame.poses) {
+    if (!followed.pose.T_camera_object || followed.pose.class_name != pose.class_name) continue;
+    if (!estimator.is_duplicate(here, {pose.class_name, *followed.pose.T_camera_object}, ratio)) continue;
+    pose.T_camera_object.reset();
+    pose.status = PoseStatus::kLowScore;
+    return;
+  }
+}
+
 /// What was followed in the frame of the detections, and which of them are of that. Notes in the camera's objects what
 /// the look says of them: found, with this score, or not found though in full view; and which one is doubted.
 DetectionAssociation associate_detections(const PoseEstimator& estimator, const Detections& detections,
@@ -209,6 +251,7 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
   follow_clock(frame.id.utime, camera);
   const std::int64_t clock_us = clock_of(frame.id.utime, camera);
   camera.is_colourless = is_colourless(frame.colour);
+  note_depth(frame, clock_us, camera);
   FollowedFrame followed_frame{frame.id.utime, clock_us, {}, follow_all(estimator, frame, camera)};
   for (std::size_t i = 0; i < camera.objects.size(); ++i) {
     note_result(estimator, followed_frame.poses[i], clock_us, camera.objects[i]);
@@ -242,7 +285,8 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
     ExpectedObject& it =
         expected.emplace_back(expected_at(object.velocity.predict(object.T_camera_object, used), object));
     it.refine_by_texture = refine_by_texture;
-    it.depth_lag_m = settings_.depth_lag_s * object.velocity.speed();
+    const double depth_age_s = seconds_between(camera.depth_us, clock_of(frame.id.utime, camera));
+    it.depth_lag = depth_lag(settings_.depth_lag_s + depth_age_s, object.velocity);
     if (!refine_by_texture) it.verified = object.verified;
     it.camera_colours = colours_for(object, estimator, camera);
   }
@@ -388,6 +432,8 @@ ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, c
   std::size_t next = 0;
   for (std::size_t i = 0; i < detections.detections.size(); ++i) {
     ObjectPose pose = look.needs_estimate(i) ? std::move(found.poses[next++]) : ObjectPose();
+    if (pose.T_camera_object && look.matches[i] < 0)
+      withhold_where_followed(estimator, look.followed_frame, settings_.duplicate_distance_ratio, pose);
     if (look.matches[i] >= 0) {
       const auto place = static_cast<std::size_t>(look.matches[i]);
       FollowedObject* object = find_followed(look.followed_frame.numbers[place], camera);

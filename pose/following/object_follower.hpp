@@ -33,7 +33,9 @@ struct FollowerSettings {
   float doubtful_quality = 0.85F;         ///< below it that does not wait: the next detection of it is posed anew
   double better_log_odds = 0.3;           ///< ...and takes its place where its quality is so much better
   double velocity_gain = 0.5;             ///< how much the last step moves the speed
-  double depth_lag_s = 0.02;              ///< by which a camera's depth and colours may be apart in time
+  /// By which a camera's depth and colours may be apart in time. Depth that was in the frame before already, as where
+  /// colours come more often, is older by that frame.
+  double depth_lag_s = 0.01;
 };
 
 template <typename Visit>
@@ -90,6 +92,8 @@ struct FollowedCamera {
   std::deque<FollowedFrame> recent_frames;  ///< the last ones
   CameraColours colours;                    ///< that its objects are judged by
   bool is_colourless = false;               ///< of the last frame: they say nothing
+  std::uint64_t depth_digest = 0;           ///< of the last frame's depth
+  std::int64_t depth_us = 0;                ///< when that depth came first, on the camera's clock
   std::int64_t frames = 0;
   /// The camera's clock minus its frames' utimes, which jump where the host's clock is set or a stamp is wrong. The
   /// camera's clock does not.

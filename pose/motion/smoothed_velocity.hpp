@@ -26,8 +26,8 @@ class SmoothedVelocity {
 
   bool is_zero() const;
 
-  /// Metres a second.
-  double speed() const { return speed_.norm(); }
+  const Eigen::Vector3d& linear_velocity() const { return speed_; }              ///< of the origin, m/s
+  const Eigen::Vector3d& angular_velocity() const { return angular_velocity_; }  ///< rad/s
 
  private:
   Eigen::Vector3d speed_ = Eigen::Vector3d::Zero();             // m/s

@@ -61,6 +61,25 @@ TEST(JointRegistration, ColoursAloneHoldThePoseAcrossTheLineOfSight) {
   EXPECT_GT(alone(3, 3), 0.03 * both(3, 3));
 }
 
+TEST(JointRegistration, DepthThatIsOlderSaysNothingAlongTheMotion) {
+  constexpr double kShift = 0.006;  // to the right since depth was measured
+  const ModalityScene& scene = box_scene();
+  const ModalityScene before(cereal_box(), -0.13, Eigen::Translation3d(-kShift, 0.0, 0.0) * scene.truth);
+  ModalityScene mixed = scene.copy();
+  mixed.frame.depth = before.frame.depth;
+  JointStart joint;
+  joint.T_camera_object = mixed.truth;
+  joint.appearance.colours = std::make_shared<const ColourStatistics>(scene.learnt());
+  const ObjectObservation seen =
+      observe_object({mixed.frame, {}, {}}, detection_of("it", mixed.object, mixed.truth, 1), mixed.model, {});
+  const auto error_m = [&] {
+    return mixed.shift_of(register_jointly(seen, joint, {}, {}).registration.T_camera_object).norm();
+  };
+  EXPECT_GT(error_m(), 0.6 * kShift) << "depth is surer";
+  joint.depth_lag.shift_m = {2.0 * kShift, 0.0, 0.0};
+  EXPECT_LT(error_m(), 0.3 * kShift);
+}
+
 TEST(JointRegistration, AFrameWithoutColoursLeavesDepth) {
   ModalityScene scene = box_scene().copy();
   const auto colours = std::make_shared<const ColourStatistics>(scene.learnt());

@@ -1,7 +1,5 @@
 #include "tools/studies/tracks/add_metric.hpp"
 
-#include <algorithm>
-
 #include "pose/model/angles.hpp"
 #include "pose/motion/twist.hpp"
 
@@ -28,12 +26,6 @@ struct AddCount {
   std::vector<double> errors_mm;  // where it is published and visible enough
   std::vector<double> errors_deg;
 };
-
-double middle_value(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Eigen::Vector3d mean_point(const AddModel& model) {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
@@ -87,7 +79,7 @@ OrderedJson add_metrics(const SequenceFile& sequence, const std::vector<Publishe
   for (const auto& [name, count] : counts) {
     add[name] = static_cast<double>(count.right) / count.frames;
     if (!count.errors_mm.empty())
-      errors[name] = {{"mm", middle_value(count.errors_mm)}, {"deg", middle_value(count.errors_deg)}};
+      errors[name] = {{"mm", quantile(count.errors_mm, 0.5)}, {"deg", quantile(count.errors_deg, 0.5)}};
   }
   return {{"add", add}, {"median_error", errors}, {"wrong_above_0_9", {{"published", sure}, {"wrong", wrong}}}};
 }

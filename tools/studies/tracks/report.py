@@ -118,6 +118,8 @@ def summarise(options, plan, store):
                              "mm_worst": max(one["mm_worst"] for one in known),
                              "deg_worst": max(one["deg_worst"] for one in known)}  # fmt: skip
     summary["add"] = {name: one["add"] for name, one in single.items()}
+    summary["median_error"] = {name: one["median_error"] for name, one in single.items()}
+    summary["outline_px"] = {name: one["outline_px"] for name, one in single.items()}
     summary["wrong_above_0_9"] = wrong_share([one["wrong_above_0_9"] for one in single.values()])
     if options.follow:
         slow = {name: read_json(store.path(f"single_10hz/{name}.json")) for name in names}

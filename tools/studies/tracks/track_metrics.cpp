@@ -162,17 +162,17 @@ std::vector<int> matches(const std::vector<TrueInstance>& truth, const std::vect
   return solve_assignment(costs, reach_m);
 }
 
+double quantile(std::vector<double> values, double fraction) {
+  if (values.empty()) return std::nan("");
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(std::lround(fraction * static_cast<double>(values.size() - 1)))];
+}
+
 namespace {
 
 constexpr double kDegrees = 180.0 / M_PI;
 
 using Numbers = std::vector<double>;
-
-double at_share(Numbers values, double fraction) {
-  if (values.empty()) return std::nan("");
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(std::lround(fraction * static_cast<double>(values.size() - 1)))];
-}
 
 /// Errors of poses in millimetres and degrees.
 struct Errors {
@@ -191,11 +191,11 @@ struct Errors {
 
   OrderedJson json() const {
     return {{"frames", mm.size()},
-            {"mm_median", finite_or_null(at_share(mm, 0.5))},
-            {"mm_p95", finite_or_null(at_share(mm, 0.95))},
-            {"deg_median", finite_or_null(at_share(deg, 0.5))},
-            {"deg_p95", finite_or_null(at_share(deg, 0.95))},
-            {"deviation_mm_median", finite_or_null(at_share(deviations_mm, 0.5))},
+            {"mm_median", finite_or_null(quantile(mm, 0.5))},
+            {"mm_p95", finite_or_null(quantile(mm, 0.95))},
+            {"deg_median", finite_or_null(quantile(deg, 0.5))},
+            {"deg_p95", finite_or_null(quantile(deg, 0.95))},
+            {"deviation_mm_median", finite_or_null(quantile(deviations_mm, 0.5))},
             {"within_two_deviations",
              finite_or_null(static_cast<double>(within_two) / static_cast<double>(deviations_mm.size()))}};
   }
@@ -269,10 +269,10 @@ class Comparison {
             {"error", {{"standing", standing_.json()}, {"moving", moving_.json()}}},
             {"jitter",
              {{"windows", jitter_.mm.size()},
-              {"mm", finite_or_null(at_share(jitter_.mm, 0.5))},
-              {"deg", finite_or_null(at_share(jitter_.deg, 0.5))},
-              {"mm_worst", finite_or_null(at_share(jitter_.mm, 1.0))},
-              {"deg_worst", finite_or_null(at_share(jitter_.deg, 1.0))}}},
+              {"mm", finite_or_null(quantile(jitter_.mm, 0.5))},
+              {"deg", finite_or_null(quantile(jitter_.deg, 0.5))},
+              {"mm_worst", finite_or_null(quantile(jitter_.mm, 1.0))},
+              {"deg_worst", finite_or_null(quantile(jitter_.deg, 1.0))}}},
             {"seconds_to_find", to_find_},
             {"seconds_to_gone", to_gone_},
             {"hidden_kept", hidden_ == 0 ? OrderedJson() : OrderedJson(static_cast<double>(kept_hidden_) / hidden_)},

@@ -77,6 +77,9 @@ double apart_m(const TrueInstance& truth, const PublishedObject& object, const C
 std::vector<int> matches(const std::vector<TrueInstance>& truth, const std::vector<PublishedObject>& objects,
                          const ClassSymmetries& symmetries, double reach_m);
 
+/// Returns the value below which a fraction (0 to 1) of the values lies; NaN of none.
+double quantile(std::vector<double> values, double fraction);
+
 /// Metrics at one threshold of similarity.
 struct HotaCount {
   double true_positives = 0.0;

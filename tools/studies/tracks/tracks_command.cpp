@@ -11,6 +11,7 @@
 #include "tools/finder/track_models.hpp"
 #include "tools/studies/commands.hpp"
 #include "tools/studies/tracks/add_metric.hpp"
+#include "tools/studies/tracks/outline_metric.hpp"
 #include "tools/studies/tracks/sequence_file.hpp"
 #include "tools/studies/tracks/track_metrics.hpp"
 
@@ -94,13 +95,16 @@ void compare(const Arguments& arguments) {
   const SequenceFile sequence = thinned(read_sequence(arguments.sequence), arguments.every);
   std::map<std::string, Symmetries> symmetries;
   std::map<std::string, AddModel> models;
+  std::map<std::string, ObjectModel> outlined;
   for (const auto& [name, model] : load_track_models(arguments.models, 1e-3)) {
     symmetries[name] = model.symmetries;
     models[name] = make_add_model(model.mesh);
+    outlined[name] = make_object_model(name, model.mesh, ModelSettings());
   }
   const std::vector<PublishedFrame> published = published_in(arguments, sequence);
   OrderedJson json = track_metrics(sequence, published, symmetries, {});
   json.update(add_metrics(sequence, published, symmetries, models));
+  if (arguments.single_frames) json["outline_px"] = outline_metrics(sequence, published, symmetries, outlined);
   json["name"] = sequence.name;
   write_json(json, arguments.out);
 }
