@@ -7,7 +7,7 @@
 
 namespace houghstream {
 
-/// Colour of words on a terminal: SGR 31 to 33 (ECMA-48, 8.3.117).
+/// Colours of words on a terminal: SGR 31 to 33 (ECMA-48, 8.3.117).
 enum class TerminalColour { kRed = 31, kGreen = 32, kYellow = 33 };
 
 /// Returns whether words on this file descriptor are shown in colours: it is a terminal that knows them, and NO_COLOR

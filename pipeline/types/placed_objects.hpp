@@ -12,13 +12,13 @@ namespace houghstream {
 /// A frame that somebody has named on an object: a handle, a grasp.
 struct ObjectFrame {
   std::string name;
-  Eigen::Isometry3d T_object_frame = Eigen::Isometry3d::Identity();  ///< metres
+  Eigen::Isometry3d T_object_frame = Eigen::Isometry3d::Identity();  ///< pose in the object, metres
 };
 
-/// The same of an object of the world.
+/// A named frame of an object of the world, where it is.
 struct PlacedObjectFrame {
   std::string name;
-  Eigen::Isometry3d T_world_frame = Eigen::Isometry3d::Identity();  ///< metres
+  Eigen::Isometry3d T_world_frame = Eigen::Isometry3d::Identity();  ///< pose in the world, metres
 };
 
 /// The room that an object of the world takes up.
@@ -31,7 +31,7 @@ struct ObjectPlacement {
   std::vector<PlacedObjectFrame> frames;               ///< by name
 };
 
-/// What the objects of the world take up after a frame; those whose model is known, by track_id.
+/// The room that the objects of the world take up after a frame: of those whose model is known, by track_id.
 struct ObjectPlacements {
   FrameId frame;      ///< after which it is so
   std::string world;  ///< as in WorldObjects

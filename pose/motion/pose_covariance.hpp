@@ -9,7 +9,7 @@ namespace houghstream {
 
 /// Extent of a pose's object, as far as the uncertainty of the pose depends on it.
 struct ObjectExtent {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of the bounding box, object frame, metres
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centre of the bounding box, object frame, metres
   double radius_m = 0.0;                             ///< half the bounding box' diagonal
 };
 

@@ -5,6 +5,7 @@ Forest, models, scene and log are those that end_to_end_test.py has made.
 """
 
 import contextlib
+import json
 import math
 import os
 import pathlib
@@ -248,6 +249,8 @@ class Listening(WithAFinder):
         log = FOLDERS.out / "objects.lcmlog"
         *_, results = publish_poses(10, "--objects", self.store)
         run(FOLDERS.tools / "hs-teach", "frame", self.store, "soda_can", "lid", "--at", "-0.01,0,0.06,0,0,1,0")
+        listed = json.loads(run(FOLDERS.tools / "hs-teach", "list", self.store, "--json"))
+        self.assertIn({"lid": {"translation_m": [-0.01, 0, 0.06], "rotation": [0, 0, 1, 0]}}, [entry["frames"] for entry in listed["objects"]])
         run(FOLDERS.tools / "hs-track", "--objects", self.store, "-l", f"file://{results}", "--output-log", log)
         published = [message for message in messages_of(log, "HOUGHSTREAM_OBJECTS", objects_t)]
         worlds = [result for result in listen(f"file://{log}") if isinstance(result, WorldObjects)]

@@ -30,7 +30,7 @@ struct FoundObjects {
 /// An object that a finder looks for.
 struct FinderObject {
   std::string name;
-  Eigen::AlignedBox3d bounds;  ///< of its mesh, object frame, metres
+  Eigen::AlignedBox3d bounds;  ///< bounds of its mesh, object frame, metres
 };
 
 /// Finds the objects of an object store (hs-teach) in single frames, within one's own program and without LCM: what

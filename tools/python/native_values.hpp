@@ -9,7 +9,7 @@
 #include "tools/finder/object_finder.hpp"
 #include "tools/python/result_listener.hpp"
 
-// C++ values as Python's, and back. All of it wants the interpreter's lock, but for make_frame().
+// C++ values become Python's here, and back. All functions want the interpreter's lock, but for make_frame().
 
 namespace houghstream {
 
@@ -26,11 +26,11 @@ struct FrameArrays {
 /// is none, and where more than half of the metres are more than 65.535, as millimetres are.
 RgbdFrame make_frame(const FrameArrays& arrays);
 
-/// {"frame": , "poses": [{...}], "without_pose": [{...}]}, with the names of houghstream.results. Candidates that no
-/// pose has confirmed are left out.
+/// Returns {"utime": , "camera": , "poses": [{...}], "without_pose": [{...}]}, with the names of houghstream.results.
+/// Candidates that no pose has confirmed are left out.
 pybind11::dict to_python(const FoundObjects& found, const ObjectFinder& finder);
 
-/// The same of what came over a bus; boxes are those of the detections that are known.
+/// Returns such a dict for results that came over a bus; boxes are those of the detections that are known.
 pybind11::dict to_python(const PosedDetections& posed);
 
 pybind11::dict to_python(const PlacedWorld& placed_world);

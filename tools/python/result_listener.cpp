@@ -19,8 +19,8 @@
 namespace houghstream {
 namespace {
 
-/// Results that wait to be taken. Of a network those of a camera's newest frame, which several processes may have
-/// published; of a log all.
+/// Results that wait to be popped: from a network those of a camera's newest frame, which several processes may have
+/// published; from a log all.
 class ResultQueue {
  public:
   explicit ResultQueue(bool keeps_all) : keeps_all_(keeps_all) {}
@@ -47,7 +47,7 @@ class ResultQueue {
     filled_.notify_one();
   }
 
-  /// Throws the failure where nothing waits.
+  /// Returns the oldest result; throws the failure where nothing waits.
   std::optional<StreamResult> pop(std::chrono::milliseconds timeout) {
     std::unique_lock<std::mutex> lock(mutex_);
     filled_.wait_for(lock, timeout, [this] { return !waiting_.empty() || failure_ != nullptr; });
@@ -77,7 +77,7 @@ class ResultQueue {
   std::exception_ptr failure_;
 };
 
-/// What comes before the poses that it belongs to: the last of each of at most so many.
+/// Messages that come before the results which they belong to; the last ones are kept.
 template <typename Message>
 class LastMessages {
  public:
@@ -87,7 +87,7 @@ class LastMessages {
     if (messages_.size() > kMax) messages_.pop_back();
   }
 
-  /// Null where none is wanted.
+  /// Returns the newest message that is wanted; null where none is.
   template <typename IsWanted>
   const Message* find(const IsWanted& is_wanted) const {
     const auto found = std::find_if(messages_.begin(), messages_.end(), is_wanted);
@@ -163,12 +163,12 @@ struct ResultListener::State {
   ResultQueue results;
   bool log_has_ended = false;
   std::atomic<bool> stopping{false};
-  std::thread receiver;  // of a network
+  std::thread receiver;  // receives from a network
 };
 
 ResultListener::ResultListener(const ListenOptions& options) : state_(std::make_unique<State>(options)) {
   if (state_->bus.is_log()) return;
-  const BlockStopSignals block;  // which are for the program's own threads
+  const BlockStopSignals block;  // signals are for the threads of the program
   state_->receiver = std::thread([this] { state_->receive(); });
 }
 

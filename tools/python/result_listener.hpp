@@ -37,7 +37,7 @@ using StreamResult = std::variant<PosedDetections, PlacedWorld>;
 
 /// Receives the results of a stream for a program that takes them one after another. Of a network the newest frame's
 /// results of each camera wait: a slow program misses frames and never lags behind. Of a log each result is returned.
-/// For one thread, but for the one that receives, which is its own.
+/// One thread may call it; it receives in a thread of its own.
 class ResultListener {
  public:
   /// Throws InputError where the URL is none, the log cannot be read, the network cannot be reached, or the pattern is

@@ -13,7 +13,8 @@ namespace houghstream::teach {
 /// Describes the symmetries of a shape: "3 half turns", "a spin and a half turn", "a spin but for its handle", "none".
 std::string symmetry_words(const ShapeSymmetry& shape);
 
-/// "118 x 83 x 96 mm", sizes along the axes of an object's frame, metres; tenths below 10 mm. "size unknown" for NaN.
+/// Returns "118 x 83 x 96 mm": sizes along the axes of an object's frame, metres; tenths below 10 mm. "size unknown"
+/// for NaN.
 std::string size_words(const Eigen::Vector3d& size_m);
 
 /// Caption of an object's views; its size stands along the axes of its frame, metres, where a wrong unit shows.

@@ -36,14 +36,14 @@ struct CalibrationSettings {
   int threads = 2;
 };
 
-/// How often an object was looked for in the rooms of a calibration, and found.
+/// Counts of an object in the rooms of a calibration.
 struct PracticeCount {
   int shown = 0;  ///< times that it stood in a frame's view
-  int right = 0;  ///< of these, times that it was found with a right pose that would be published
+  int right = 0;  ///< times that it was found with a right pose that would be published
   int wrong = 0;  ///< poses that would be published and are wrong
 };
 
-/// What a calibration learns of an object.
+/// Results of a calibration for an object.
 struct CalibratedObject {
   QualitySettings quality;
   PracticeCount practice;
