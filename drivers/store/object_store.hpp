@@ -16,8 +16,9 @@
 
 namespace houghstream::store {
 
-/// Version of store.json; another one is refused.
-constexpr int kStoreVersion = 1;
+/// Newest version of store.json; a newer one is refused. A store of one group is written as version 1, which programs
+/// read that know no groups.
+constexpr int kStoreVersion = 2;
 
 /// A vote centre is nearer to the origin than this, metres: farther away coordinates lose what a mesh shows.
 constexpr float kMaxCentre_m = 10.0F;
@@ -34,19 +35,25 @@ struct StoredObject {
   Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();
   nlohmann::json quality{};  ///< what was learnt of its poses' quality, an object; null where nothing was
   std::optional<ShapeSymmetry> shape_symmetry{};  ///< unknown in a store that was taught before it was looked for
+  /// Whose forest it is in: the smallest id among the objects of its group; 0 in a list that was not written yet, where
+  /// all are of one group.
+  int group = 0;
+  int taught_id = 0;  ///< that it was taught with, where a merge gave it another; 0: id
 };
 
 struct ObjectStore {
   std::filesystem::path folder;
-  std::vector<StoredObject> objects;               ///< by id
-  BrightnessRange tone;                            ///< of the images in which they were practised
-  OrderedJson settings;                            ///< of the last teaching, for people
-  std::map<int, Symmetries> symmetries;            ///< by id, of models_info.json; empty for an object without any
-  std::filesystem::path json_file() const;         ///< the list
-  std::filesystem::path forest_file() const;       ///< of the detector
-  std::filesystem::path models_folder() const;     ///< a BOP models folder
-  std::filesystem::path view_image(int id) const;  ///< some of its views, side by side
-  std::filesystem::path contact_sheet() const;     ///< the images of all objects
+  std::vector<StoredObject> objects;                   ///< by id
+  BrightnessRange tone;                                ///< of the images in which they were practised
+  OrderedJson settings;                                ///< of the last teaching, for people
+  std::map<int, Symmetries> symmetries;                ///< by id, of models_info.json; empty for an object without any
+  std::filesystem::path json_file() const;             ///< the list
+  std::vector<int> groups() const;                     ///< StoredObject::group of all objects, each once, ascending
+  std::filesystem::path forest_file(int group) const;  ///< of the detector, one for each group
+  std::filesystem::path forests_folder() const;        ///< of the forests of a store of several groups
+  std::filesystem::path models_folder() const;         ///< a BOP models folder
+  std::filesystem::path view_image(int id) const;      ///< some of its views, side by side
+  std::filesystem::path contact_sheet() const;         ///< the images of all objects
   std::map<std::string, nlohmann::json> quality() const;          ///< by name, of those that have any
   std::map<std::string, Eigen::Vector3f> vote_centres() const;    ///< by name
   std::map<std::string, ShapeSymmetry> shape_symmetries() const;  ///< by name, of those whose are known
@@ -69,10 +76,13 @@ std::map<std::string, Mesh> load_store_meshes(const ObjectStore& store, int thre
 /// than 2 % of the largest side.
 void check_bounds(const Mesh& mesh, const Eigen::AlignedBox3d& stated, const std::string& file);
 
-/// Throws InputError where the forest, whose classes have these names, is not that of the store.
-void require_same_objects(const ObjectStore& store, const std::vector<std::string>& forest_names);
+/// Throws InputError where the forest of the group, whose classes have these names, is not that of the store.
+void require_same_objects(const ObjectStore& store, int group, const std::vector<std::string>& forest_names);
 
-/// Writes FOLDER/store.json, last of all files: a folder without it is half written.
+/// Names each group by the smallest id of its objects, as a store that is written has it.
+void number_groups(ObjectStore& store);
+
+/// Writes FOLDER/store.json, last of all files: a folder without it is half written. The groups are numbered.
 void write_store_json(const ObjectStore& store);
 
 /// Throws InputError naming `where` for an object's name that is not UTF-8: JSON would hold another one (RFC 8259,

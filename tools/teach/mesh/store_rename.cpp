@@ -12,6 +12,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tools/finder/stored_forest.hpp"
 #include "tools/teach/mesh/contact_sheet.hpp"
+#include "tools/teach/mesh/store_contents.hpp"
 
 namespace houghstream::teach {
 namespace {
@@ -33,6 +34,18 @@ void copy_files(const ObjectStore& from, const fs::path& to) {
       if (error) break;
     }
     require(!error, "{}: cannot be copied to {}: {}", (from.folder / folder).string(), to.string(), error.message());
+  }
+}
+
+/// The forests of other groups, bit for bit.
+void carry_other_forests(const ObjectStore& from, int group, const fs::path& to) {
+  ObjectStore made = from;
+  made.folder = to;
+  std::error_code error;
+  if (from.groups().size() > 1) fs::create_directory(made.forests_folder(), error);
+  require(!error, "{}: cannot make this folder: {}", made.forests_folder().string(), error.message());
+  for (const int other : from.groups()) {
+    if (other != group) carry_over(from.forest_file(other), made.forest_file(other));
   }
 }
 
@@ -64,8 +77,10 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
                                     [&](const StoredObject& other) { return other.name == new_name; });
   require(!is_taken, "{}: has a '{}' already, expected a new name for '{}'", store.json_file().string(), new_name,
           old_name);
-  Forest forest = load_forest(store.forest_file());
+  const int group = store::find_object(store, old_name).group;
+  Forest forest = load_forest(store.forest_file(group));
   copy_files(store, build.folder());
+  carry_other_forests(store, group, build.folder());
   store.folder = build.folder();
   for (StoredObject& object : store.objects) {
     if (object.id == id) object.name = new_name;
@@ -73,11 +88,11 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
   for (ObjectClass& known : forest.classes) {
     if (known.name == old_name) known.name = new_name;
   }
-  save_forest(forest, store.forest_file());
+  save_forest(forest, store.forest_file(group));
   write_names(store);
   write_images(store, store::find_object(store, new_name));
   store::write_store_json(store);
-  load_store_forest(store::read_store(build.folder()));  // what nothing can read takes no store's place
+  load_group_forest(store::read_store(build.folder()), group);  // what nothing can read takes no store's place
   build.commit();
 }
 

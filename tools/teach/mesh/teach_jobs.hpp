@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/teach/mesh/store_contents.hpp"
 #include "tools/teach/mesh/teach_options.hpp"
 
 namespace houghstream::teach {
@@ -16,6 +17,9 @@ void require_no_store(const std::filesystem::path& folder);
 /// told apart. The store that was there stays whole until the new one is. Throws InputError for what cannot be taught,
 /// and before all work for a store that is there where `options` say neither add nor replace.
 void teach_meshes(const TeachOptions& options);
+
+/// Says in the log which objects can hardly be told apart.
+void name_lookalikes(const std::vector<StoreModel>& models);
 
 /// Prints what the store knows, an object a line.
 void list_store(const std::filesystem::path& folder);
