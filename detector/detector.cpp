@@ -1,34 +1,77 @@
 #include "detector/detector.hpp"
 
+#include <set>
+#include <string>
 #include <utility>
 
 #include "detector/stages.hpp"
 #include "pipeline/base/check_settings.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 
-struct Detector::State {
-  State(Forest given, const DetectionSettings& how) : forest(std::move(given)), index(forest), settings(how) {}
+namespace {
 
-  Forest forest;
-  ForestIndex index;
+std::vector<Forest> one_group(Forest forest) {
+  std::vector<Forest> groups;  // a list would copy it
+  groups.push_back(std::move(forest));
+  return groups;
+}
+
+/// Groups whose detections could be taken for one another's, or that see a frame in different ways, find nothing
+/// together.
+void require_searchable_together(const std::vector<Forest>& groups) {
+  require(!groups.empty(), "detector: no forest, expected at least one");
+  std::set<int> ids;
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < groups.size() && groups.size() > 1; ++i) {
+    const std::string group = fmt::format("forest {} of {}", i + 1, groups.size());
+    require(can_share_features(groups[i], groups.front()),
+            "{}: of profile '{}', expected profile '{}' and the settings of the first", group, groups[i].profile,
+            groups.front().profile);
+    for (const ObjectClass& object : groups[i].classes)
+      require(ids.insert(object.class_id).second && names.insert(object.name).second,
+              "{}: object {} '{}', expected an id and a name that no other has", group, object.class_id, object.name);
+  }
+}
+
+}  // namespace
+
+struct Detector::State {
+  State(std::vector<Forest> given, const DetectionSettings& how)
+      : groups(std::move(given)), indices(groups.begin(), groups.end()), settings(how) {}
+
+  /// The search of each group.
+  std::vector<SearchContext> searches(const std::vector<ChromaPair>& camera_colours) const {
+    std::vector<SearchContext> all;
+    all.reserve(indices.size());
+    for (const ForestIndex& index : indices) all.push_back({index, settings, {}, camera_colours});
+    return all;
+  }
+
+  std::vector<Forest> groups;
+  std::vector<ForestIndex> indices;
   DetectionSettings settings;
 };
 
 Detector::Detector(Forest forest, DetectionSettings settings)
-    : state_(std::make_unique<State>(std::move(forest), settings)) {
-  require_searchable(state_->forest.features, "forest");
+    : Detector(one_group(std::move(forest)), std::move(settings)) {}
+
+Detector::Detector(std::vector<Forest> groups, DetectionSettings settings) {
+  for (const Forest& forest : groups) require_searchable(forest.features, "forest");
+  require_searchable_together(groups);
   check_settings(settings, "detection settings");
+  state_ = std::make_unique<State>(std::move(groups), settings);
 }
 Detector::~Detector() = default;
 Detector::Detector(Detector&&) noexcept = default;
 
-const Forest& Detector::forest() const {
-  return state_->forest;
+const std::vector<Forest>& Detector::groups() const {
+  return state_->groups;
 }
 
-Forest Detector::take_forest() && {
-  return std::move(state_->forest);
+std::vector<Forest> Detector::take_groups() && {
+  return std::move(state_->groups);
 }
 
 const DetectionSettings& Detector::settings() const {
@@ -38,20 +81,23 @@ const DetectionSettings& Detector::settings() const {
 // The method on one page; sections are those of Haensch, Kaiser and Hellwich (2017).
 Detections Detector::detect(const RgbdFrame& frame, DetectorWorkspace& workspace,
                             const std::vector<ChromaPair>& camera_colours) const {
-  const SearchContext search{state_->index, state_->settings, {}, camera_colours};
+  const std::vector<SearchContext> groups = state_->searches(camera_colours);
   check_frame(frame, "detector");
   StageClock clock;
-  make_working_images(search, frame, workspace);  // Section 5.1.1
+  make_working_images(groups.front(), frame, workspace);  // Section 5.1.1
   clock.mark("detect.resize");
-  compute_features(search, workspace);  // Section 3, around the patches of Section 5.1.3
+  compute_features(groups.front(), workspace);  // Section 3, around the patches of Section 5.1.3; once for all groups
   clock.mark("detect.features");
-  find_posteriors(search, workspace);  // Section 5.1.2: leaves of every tree
-  clock.mark("detect.leaves");
-  const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);  // Section 2: votes and their maxima
-  clock.mark("detect.votes");
-  std::vector<ScoredHypothesis> candidates = score_hypotheses(search, frame, hypotheses, workspace);  // scores
+  std::vector<std::vector<Hypothesis>> hypotheses;
+  for (const SearchContext& searched : groups) {
+    find_posteriors(searched, workspace);  // Section 5.1.2: leaves of every tree
+    clock.mark("detect.leaves");
+    hypotheses.push_back(find_hypotheses(searched, workspace));  // Section 2: votes and their maxima
+    clock.mark("detect.votes");
+  }
+  std::vector<ScoredHypothesis> candidates = score_hypotheses(groups, frame, hypotheses, workspace);  // scores
   clock.mark("detect.evidence");
-  return report_detections(search, frame, candidates, clock);  // Section 2: non-maximum suppression
+  return report_detections(groups.front(), frame, candidates, clock);  // Section 2: non-maximum suppression
 }
 
 Detections Detector::detect(const RgbdFrame& frame) const {

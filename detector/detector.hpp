@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "detector/detection_settings.hpp"
 #include "detector/forest/forest.hpp"
@@ -20,6 +22,11 @@ class Detector {
   /// Throws InputError for a forest of another ScaleHandling than depth normalisation and for one with surface
   /// features: such are searched by hs-study evaluate and hs-study hough; and for settings out of their range.
   Detector(Forest forest, DetectionSettings settings);
+  /// Searches the forests of several groups of objects in one go: working images, patches and features of a frame are
+  /// computed once, each forest casts its votes, and their candidates suppress one another. Throws InputError as above,
+  /// for no group, for two objects of one name or id, and for a group of other settings than the first's, which could
+  /// not share its features.
+  Detector(std::vector<Forest> groups, DetectionSettings settings);
   ~Detector();
   Detector(Detector&&) noexcept;
 
@@ -34,9 +41,15 @@ class Detector {
   /// Searches a single frame, with a workspace that it makes for this call.
   Detections detect(const RgbdFrame& frame) const;
 
-  const Forest& forest() const;
-  /// The forest, for another detector; this one is not to be used any more.
-  Forest take_forest() &&;
+  /// The groups' forests, in the order in which they were given.
+  const std::vector<Forest>& groups() const;
+  /// The groups, for another detector; this one is not to be used any more.
+  std::vector<Forest> take_groups() &&;
+
+  // The names of before, for one release, of the first group.
+  [[deprecated("is groups now")]] const Forest& forest() const { return groups().front(); }
+  [[deprecated("is take_groups now")]] Forest take_forest() && { return std::move(*this).take_groups().front(); }
+
   const DetectionSettings& settings() const;
 
  private:

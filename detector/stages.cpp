@@ -2,9 +2,29 @@
 
 #include "detector/evidence/camera_chroma.hpp"
 #include "detector/evidence/suppression.hpp"
+#include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/checks.hpp"
 
 namespace houghstream {
+namespace {
+
+template <typename Settings>
+std::vector<double> numbers_of(const Settings& settings) {
+  std::vector<double> numbers;
+  for_each_number(settings, [&](const auto& /*field*/, auto value) { numbers.push_back(static_cast<double>(value)); });
+  return numbers;
+}
+
+std::vector<ScoredHypothesis> score_in_colours(const SearchContext& search, const std::vector<GroupHypotheses>& groups,
+                                               DetectorWorkspace& workspace) {
+  const DetectionSettings& settings = search.settings;
+  const bool is_coloured = search.forest().scoring == Scoring::kEvidence && settings.evidence.learn_camera_colours;
+  return is_coloured
+             ? weigh_in_camera_colours(groups, search.remembered_colours, settings.threads, workspace.scoring_workspace)
+             : score_groups(groups, settings.threads, workspace.scoring_workspace);
+}
+
+}  // namespace
 
 void make_working_images(const SearchContext& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
   make_working_images(frame, search.forest().features, search.settings.threads, workspace.images);
@@ -42,11 +62,21 @@ std::vector<ScoredHypothesis> score_hypotheses(const SearchContext& search, cons
                                                DetectorWorkspace& workspace) {
   const LabFrame in_lab{frame, workspace.images.lab, workspace.images.levels.at(0).scale};
   const ScoringInput input{search.index, in_lab, workspace.patches, search.settings.evidence, search.excluded_views};
-  const bool is_coloured =
-      search.forest().scoring == Scoring::kEvidence && search.settings.evidence.learn_camera_colours;
-  return is_coloured ? weigh_in_camera_colours(input, search.remembered_colours, hypotheses, search.settings.threads,
-                                               workspace.scoring_workspace)
-                     : score_hypotheses(input, hypotheses, search.settings.threads, workspace.scoring_workspace);
+  return score_in_colours(search, {{input, hypotheses}}, workspace);
+}
+
+std::vector<ScoredHypothesis> score_hypotheses(const std::vector<SearchContext>& groups, const RgbdFrame& frame,
+                                               const std::vector<std::vector<Hypothesis>>& hypotheses,
+                                               DetectorWorkspace& workspace) {
+  const LabFrame in_lab{frame, workspace.images.lab, workspace.images.levels.at(0).scale};
+  const SearchContext& first = groups.front();
+  std::vector<GroupHypotheses> inputs;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const SearchContext& search = groups[i];
+    inputs.push_back(
+        {{search.index, in_lab, workspace.patches, first.settings.evidence, search.excluded_views}, hypotheses[i]});
+  }
+  return score_in_colours(first, inputs, workspace);
 }
 
 Detections report_detections(const SearchContext& search, const RgbdFrame& frame,
@@ -58,6 +88,14 @@ Detections report_detections(const SearchContext& search, const RgbdFrame& frame
   out.stages = frame.stages;
   out.stages.insert(out.stages.end(), clock.times().begin(), clock.times().end());
   return out;
+}
+
+bool can_share_features(const Forest& a, const Forest& b) {
+  const FeatureSettings& one = a.features;
+  const FeatureSettings& other = b.features;
+  return a.profile == b.profile && a.scoring == b.scoring && one.families == other.families &&
+         one.handling == other.handling && one.scales == other.scales && numbers_of(one) == numbers_of(other) &&
+         numbers_of(a.patch) == numbers_of(b.patch);
 }
 
 void require_searchable(const FeatureSettings& settings, const std::string& source) {

@@ -64,6 +64,13 @@ std::vector<Hypothesis> find_hypotheses(const SearchContext& search, DetectorWor
 std::vector<ScoredHypothesis> score_hypotheses(const SearchContext& search, const RgbdFrame& frame,
                                                const std::vector<Hypothesis>& hypotheses, DetectorWorkspace& workspace);
 
+/// Does so for the hypotheses of several forests that are searched in one frame (can_share_features()), one list for
+/// each: how the camera renders colours is learnt of all of them together. The groups' candidates follow one another;
+/// those settings and remembered colours count that the first group has.
+std::vector<ScoredHypothesis> score_hypotheses(const std::vector<SearchContext>& groups, const RgbdFrame& frame,
+                                               const std::vector<std::vector<Hypothesis>>& hypotheses,
+                                               DetectorWorkspace& workspace);
+
 /// Returns what is likely enough, and weaker candidates for a pose to confirm; of overlapping boxes the stronger
 /// (Section 2): evidence/suppression. It closes the stage "detect.suppression"; the clock's times follow those of the
 /// frame.
@@ -72,6 +79,10 @@ Detections report_detections(const SearchContext& search, const RgbdFrame& frame
 
 /// Returns the inputs of the votes in the workspace.
 VotingInput voting_input(const SearchContext& search, const DetectorWorkspace& workspace);
+
+/// Returns whether two forests find their objects in the same working images, patches and features, and score them
+/// alike: of the same profile, with the same settings.
+bool can_share_features(const Forest& a, const Forest& b);
 
 /// Throws InputError in one line that names `source`, for instance a forest file, what it needs and who has it, unless
 /// the stages can search by these settings: depth-normalised, without surface features.

@@ -1,6 +1,7 @@
 #include "detector/evidence/camera_chroma.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -9,9 +10,16 @@
 namespace houghstream {
 namespace {
 
+/// The candidates of each group.
+using GroupCandidates = std::vector<std::vector<ScoredHypothesis>>;
+
+/// How the camera renders the colours of each class of each group.
+using GroupCameras = std::vector<std::vector<ChromaMap>>;
+
 /// A candidate that says something of the camera's colours.
 struct Witness {
   const ScoredHypothesis* candidate = nullptr;
+  const ObjectClass* object = nullptr;
   float probability = 0.0F;  ///< that it is an object of its class, whatever the camera's colours
 };
 
@@ -28,23 +36,32 @@ bool is_beside(const ScoredHypothesis& a, const ScoredHypothesis& b, float radiu
   return (a.detection.centre_camera - b.detection.centre_camera).norm() < radius;
 }
 
-/// Of each class the likeliest; of maxima that lie within one object the likeliest alone.
-std::vector<Witness> find_likeliest(const Forest& forest, const std::vector<ScoredHypothesis>& candidates) {
+using WitnessesByClass = std::map<std::string, std::vector<Witness>>;
+
+void add_witnesses(const Forest& forest, const std::vector<ScoredHypothesis>& candidates, WitnessesByClass& by_class) {
   constexpr float kMinProbability = 0.05F;
-  constexpr std::size_t kMaxPerClass = 3;
-  std::map<std::string, std::vector<Witness>> by_class;
   for (const ScoredHypothesis& candidate : candidates) {
     if (candidate.evidence.view == Evidence::kNoView || !candidate.evidence.fit.colours.is_known) continue;
-    const float probability = score_as_taught(class_of(forest, candidate).score_model, candidate.evidence);
-    if (probability >= kMinProbability) by_class[candidate.detection.class_name].push_back({&candidate, probability});
+    const ObjectClass& object = class_of(forest, candidate);
+    const float probability = score_as_taught(object.score_model, candidate.evidence);
+    if (probability >= kMinProbability)
+      by_class[candidate.detection.class_name].push_back({&candidate, &object, probability});
   }
+}
+
+/// Of each class the likeliest; of maxima that lie within one object the likeliest alone.
+std::vector<Witness> find_likeliest(const std::vector<GroupHypotheses>& groups, const GroupCandidates& candidates) {
+  constexpr std::size_t kMaxPerClass = 3;
+  WitnessesByClass by_class;
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    add_witnesses(groups[i].input.index.forest(), candidates[i], by_class);
   std::vector<Witness> likeliest;
   for (auto& [name, witnesses] : by_class) {
     std::stable_sort(witnesses.begin(), witnesses.end(),
                      [](const Witness& a, const Witness& b) { return a.probability > b.probability; });
     std::vector<Witness> kept;
     for (const Witness& witness : witnesses) {
-      const float radius = class_of(forest, *witness.candidate).radius;
+      const float radius = witness.object->radius;
       const bool is_known = std::any_of(kept.begin(), kept.end(), [&](const Witness& other) {
         return is_beside(*witness.candidate, *other.candidate, radius);
       });
@@ -57,15 +74,15 @@ std::vector<Witness> find_likeliest(const Forest& forest, const std::vector<Scor
 
 /// In one place stands one object, whichever class it is of, or none of them: the odds of all that are taken to stand
 /// there share what is certain.
-void share_places(const Forest& forest, std::vector<Witness>& witnesses) {
+void share_places(std::vector<Witness>& witnesses) {
   std::vector<float> odds;
   odds.reserve(witnesses.size());
   for (const Witness& witness : witnesses) odds.push_back(witness.probability / (1.0F - witness.probability));
   for (std::size_t i = 0; i < witnesses.size(); ++i) {
-    const float radius = class_of(forest, *witnesses[i].candidate).radius;
+    const float radius = witnesses[i].object->radius;
     float all = 1.0F;
     for (std::size_t k = 0; k < witnesses.size(); ++k) {
-      const float reach = 0.5F * (radius + class_of(forest, *witnesses[k].candidate).radius);
+      const float reach = 0.5F * (radius + witnesses[k].object->radius);
       if (is_beside(*witnesses[i].candidate, *witnesses[k].candidate, reach)) all += odds[k];
     }
     witnesses[i].probability = odds[i] / all;
@@ -84,18 +101,21 @@ ChromaPair to_pair(const Witness& witness) {
 }
 
 /// For each class how the camera renders its colours, learnt of the pairs of the others.
-std::vector<ChromaMap> learn_cameras(const Forest& forest, const std::vector<ChromaPair>& pairs) {
-  std::vector<ChromaMap> cameras;
-  cameras.reserve(forest.classes.size());
-  for (const ObjectClass& object : forest.classes) cameras.push_back(fit_chroma_map_without(object.name, pairs));
+GroupCameras learn_cameras(const std::vector<GroupHypotheses>& groups, const std::vector<ChromaPair>& pairs) {
+  GroupCameras cameras;
+  for (const GroupHypotheses& searched : groups) {
+    std::vector<ChromaMap>& by_class = cameras.emplace_back();
+    for (const ObjectClass& object : searched.input.index.forest().classes)
+      by_class.push_back(fit_chroma_map_without(object.name, pairs));
+  }
   return cameras;
 }
 
 /// The pairs that are remembered, and those of the frame's candidates.
-std::vector<ChromaPair> all_pairs(const Forest& forest, std::vector<ChromaPair> pairs,
-                                  const std::vector<ScoredHypothesis>& candidates) {
-  std::vector<Witness> witnesses = find_likeliest(forest, candidates);
-  share_places(forest, witnesses);
+std::vector<ChromaPair> all_pairs(const std::vector<GroupHypotheses>& groups, std::vector<ChromaPair> pairs,
+                                  const GroupCandidates& candidates) {
+  std::vector<Witness> witnesses = find_likeliest(groups, candidates);
+  share_places(witnesses);
   std::transform(witnesses.begin(), witnesses.end(), std::back_inserter(pairs), to_pair);
   return pairs;
 }
@@ -111,6 +131,30 @@ bool are_far(const std::vector<ChromaMap>& cameras, const std::vector<ChromaMap>
     }
   }
   return false;
+}
+
+/// The groups' frames in the colours of their cameras; views have to be looked for anew where one of them is far.
+bool bring_into_cameras(GroupCameras cameras, std::vector<LabFrame>& frames) {
+  bool is_far = false;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    is_far = are_far(cameras[i], frames[i].cameras) || is_far;
+    frames[i].cameras = std::move(cameras[i]);
+  }
+  return is_far;
+}
+
+GroupCandidates score_each(const std::vector<GroupHypotheses>& groups, int threads, ScoringWorkspace& workspace) {
+  GroupCandidates candidates;
+  for (const GroupHypotheses& searched : groups)
+    candidates.push_back(score_hypotheses(searched.input, searched.hypotheses, threads, workspace));
+  return candidates;
+}
+
+std::vector<ScoredHypothesis> joined(GroupCandidates by_group) {
+  std::vector<ScoredHypothesis> all = std::move(by_group.front());
+  for (std::size_t i = 1; i < by_group.size(); ++i)
+    std::move(by_group[i].begin(), by_group[i].end(), std::back_inserter(all));
+  return all;
 }
 
 /// Compares the views where they stand once more.
@@ -133,23 +177,32 @@ void judge_again(const ScoringInput& input, int threads, std::vector<ScoredHypot
 
 }  // namespace
 
-std::vector<ScoredHypothesis> weigh_in_camera_colours(const ScoringInput& input, const std::vector<ChromaPair>& colours,
-                                                      const std::vector<Hypothesis>& hypotheses, int threads,
+std::vector<ScoredHypothesis> score_groups(const std::vector<GroupHypotheses>& groups, int threads,
+                                           ScoringWorkspace& workspace) {
+  return joined(score_each(groups, threads, workspace));
+}
+
+std::vector<ScoredHypothesis> weigh_in_camera_colours(const std::vector<GroupHypotheses>& groups,
+                                                      const std::vector<ChromaPair>& colours, int threads,
                                                       ScoringWorkspace& workspace) {
-  const Forest& forest = input.index.forest();
-  LabFrame frame = input.frame;
-  const ScoringInput in_camera{input.index, frame, input.patches, input.settings, input.excluded_views};
-  const bool is_grey = is_colourless(frame.frame.colour);
-  if (is_grey) frame.cameras.assign(forest.classes.size(), colourless_camera());
-  if (!is_grey && !colours.empty()) frame.cameras = learn_cameras(forest, colours);
-  std::vector<ScoredHypothesis> candidates = score_hypotheses(in_camera, hypotheses, threads, workspace);
-  if (is_grey) return candidates;
-  std::vector<ChromaMap> cameras = learn_cameras(forest, all_pairs(forest, colours, candidates));
-  const bool is_new = are_far(cameras, frame.cameras);
-  frame.cameras = std::move(cameras);
-  if (is_new) return score_hypotheses(in_camera, hypotheses, threads, workspace);
-  judge_again(in_camera, threads, candidates);
-  return candidates;
+  std::vector<LabFrame> frames;
+  frames.reserve(groups.size());  // the inputs refer to them
+  std::vector<GroupHypotheses> in_camera;
+  for (const auto& [input, hypotheses] : groups) {
+    frames.push_back(input.frame);
+    in_camera.push_back(
+        {{input.index, frames.back(), input.patches, input.settings, input.excluded_views}, hypotheses});
+  }
+  const bool is_grey = is_colourless(frames.front().frame.colour);
+  for (std::size_t i = 0; i < groups.size() && is_grey; ++i)
+    frames[i].cameras.assign(groups[i].input.index.forest().classes.size(), colourless_camera());
+  if (is_grey) return score_groups(in_camera, threads, workspace);
+  if (!colours.empty()) bring_into_cameras(learn_cameras(groups, colours), frames);
+  GroupCandidates candidates = score_each(in_camera, threads, workspace);
+  if (bring_into_cameras(learn_cameras(groups, all_pairs(groups, colours, candidates)), frames))
+    return score_groups(in_camera, threads, workspace);
+  for (std::size_t i = 0; i < groups.size(); ++i) judge_again(in_camera[i].input, threads, candidates[i]);
+  return joined(std::move(candidates));
 }
 
 }  // namespace houghstream

@@ -7,15 +7,27 @@
 
 namespace houghstream {
 
-/// score_hypotheses(), with the view templates brought to the colours of the camera (ChromaMap), so that a cast,
-/// which all objects of a frame share, speaks against none of them. How the camera renders colours is learnt of what
-/// earlier frames told (`colours`) and of the likely candidates of the frame together, for each class without itself:
-/// what an object is judged by may not be learnt of itself. Where the camera turns out to be far from what was
-/// remembered of it, or from what was taught if nothing was, everything is weighed again. Where no other class is known
-/// or likely, scores are as taught; in an image without colours chroma speaks neither for a candidate nor against it.
-/// The same for any number of threads.
-std::vector<ScoredHypothesis> weigh_in_camera_colours(const ScoringInput& input, const std::vector<ChromaPair>& colours,
-                                                      const std::vector<Hypothesis>& hypotheses, int threads,
+/// The hypotheses of one of the forests that a frame is searched with, and what they are scored with. What it refers to
+/// must outlive it.
+struct GroupHypotheses {
+  ScoringInput input;
+  const std::vector<Hypothesis>& hypotheses;
+};
+
+/// Returns the candidates of all groups, one group's after another's, as score_hypotheses() finds them: in colours as
+/// taught.
+std::vector<ScoredHypothesis> score_groups(const std::vector<GroupHypotheses>& groups, int threads,
+                                           ScoringWorkspace& workspace);
+
+/// score_groups(), with the view templates brought to the colours of the camera (ChromaMap), so that a cast,
+/// which all objects of a frame share, of whichever group, speaks against none of them. How the camera renders colours
+/// is learnt of what earlier frames told (`colours`) and of the likely candidates of the frame together, for each class
+/// without itself: what an object is judged by may not be learnt of itself. Where the camera turns out to be far from
+/// what was remembered of it, or from what was taught if nothing was, everything is weighed again. Where no other class
+/// is known or likely, scores are as taught; in an image without colours chroma speaks neither for a candidate nor
+/// against it. The same for any number of threads.
+std::vector<ScoredHypothesis> weigh_in_camera_colours(const std::vector<GroupHypotheses>& groups,
+                                                      const std::vector<ChromaPair>& colours, int threads,
                                                       ScoringWorkspace& workspace);
 
 }  // namespace houghstream

@@ -64,7 +64,8 @@ void PatchPosteriors::reset(const ForestIndex& index, std::size_t runs, float mi
   index_ = &index;
   min_fraction_ = min_fraction;
   workers_.resize(threads);
-  supporters_.resize(runs * index.forest().classes.size());
+  used_ = runs * index.forest().classes.size();
+  supporters_.resize(std::max(supporters_.size(), used_));
   for (SupportingPatches& supporters : supporters_) {
     supporters.patches.clear();
     supporters.ends.clear();

@@ -37,7 +37,7 @@ class PatchPosteriors {
   void for_each_supporting_patch(int class_index, const Visit& visit) const {
     if (index_ == nullptr) return;
     const std::size_t classes = index_->forest().classes.size();
-    for (std::size_t s = static_cast<std::size_t>(class_index); s < supporters_.size(); s += classes) {
+    for (std::size_t s = static_cast<std::size_t>(class_index); s < used_; s += classes) {
       const SupportingPatches& supporters = supporters_[s];
       std::uint32_t begin = 0;
       for (std::size_t i = 0; i < supporters.patches.size(); ++i) {
@@ -55,7 +55,8 @@ class PatchPosteriors {
 
   const ForestIndex* index_ = nullptr;
   float min_fraction_ = 0.0F;
-  std::vector<SupportingPatches> supporters_;  // [run * classes + class]
+  std::vector<SupportingPatches> supporters_;  // [run * classes + class]; more where another forest had more classes
+  std::size_t used_ = 0;                       // of the supporters
   PerWorker<Worker> workers_;
 };
 

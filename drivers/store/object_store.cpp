@@ -18,6 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kJsonFile = "store.json";
+constexpr const char* kForestFile = "forest";  // of the only group
+constexpr const char* kForestsFolder = "forests";
 constexpr const char* kVersionKey = "houghstream_store";
 
 std::string text(const nlohmann::json& entry, const char* key, const std::string& where) {
@@ -44,6 +46,8 @@ Eigen::Vector3f vote_centre(const nlohmann::json& entry, const std::string& wher
   return centre;
 }
 
+constexpr const char* kGroupKey = "group";
+constexpr const char* kTaughtIdKey = "taught_id";
 constexpr const char* kShapeKey = "shape_symmetries";
 constexpr const char* kRoundKey = "nearly_round";
 
@@ -115,10 +119,10 @@ StoredObject parse_object(const nlohmann::json& entry, const std::string& file) 
   StoredObject object;
   object.id = json_integer(entry, "id", file);
   const std::string where = fmt::format("{} object {}", file, object.id);
-  require_known_names(
-      entry,
-      {"id", "name", "mesh", "coloured", "views", "attitudes", "vote_centre_m", kShapeKey, kFramesKey, "quality"},
-      where);
+  require_known_names(entry,
+                      {"id", "name", "mesh", "coloured", "views", "attitudes", "vote_centre_m", kShapeKey, kFramesKey,
+                       "quality", kGroupKey, kTaughtIdKey},
+                      where);
   require(object.id >= 1, "{}: expected an id from 1 on", where);
   object.name = text(entry, "name", where);
   object.mesh = text(entry, "mesh", where);
@@ -128,6 +132,8 @@ StoredObject parse_object(const nlohmann::json& entry, const std::string& file) 
   object.vote_centre = vote_centre(entry, where);
   object.shape_symmetry = shape_symmetry(entry, where);
   object.frames = object_frames(entry, where);
+  if (entry.contains(kGroupKey)) object.group = json_integer(entry, kGroupKey, where);
+  if (entry.contains(kTaughtIdKey)) object.taught_id = json_integer(entry, kTaughtIdKey, where);
   if (entry.contains("quality")) object.quality = entry.at("quality");
   require(object.quality.is_null() || object.quality.is_object(), "{}: 'quality' is {}, expected numbers by name",
           where, json_text(object.quality));
@@ -150,6 +156,22 @@ std::vector<StoredObject> parse_objects(const nlohmann::json& json, const std::s
   }
   std::sort(objects.begin(), objects.end(), [](const StoredObject& a, const StoredObject& b) { return a.id < b.id; });
   return objects;
+}
+
+/// Groups are called by the smallest of their ids: those of a list in which somebody has changed one are not.
+void check_groups(const ObjectStore& store, const std::string& file) {
+  ObjectStore numbered = store;
+  number_groups(numbered);
+  const bool has_numbers = std::any_of(store.objects.begin(), store.objects.end(),
+                                       [](const StoredObject& object) { return object.group != 0; });
+  for (std::size_t i = 0; i < store.objects.size(); ++i) {
+    const StoredObject& object = store.objects[i];
+    require(object.taught_id >= 0, "{} object {}: '{}' is {}, expected an id from 1 on", file, object.id, kTaughtIdKey,
+            object.taught_id);
+    require(!has_numbers || object.group == numbered.objects[i].group,
+            "{} object {}: '{}' is {}, expected {}, the smallest id of its group", file, object.id, kGroupKey,
+            object.group, numbered.objects[i].group);
+  }
 }
 
 void require_file(const fs::path& file, const fs::path& store) {
@@ -191,8 +213,18 @@ fs::path ObjectStore::json_file() const {
   return folder / kJsonFile;
 }
 
-fs::path ObjectStore::forest_file() const {
-  return folder / "forest";
+std::vector<int> ObjectStore::groups() const {
+  std::set<int> numbers;
+  for (const StoredObject& object : objects) numbers.insert(object.group);
+  return {numbers.begin(), numbers.end()};
+}
+
+fs::path ObjectStore::forest_file(int group) const {
+  return groups().size() < 2 ? folder / kForestFile : forests_folder() / fmt::format("{:06d}", group);
+}
+
+fs::path ObjectStore::forests_folder() const {
+  return folder / kForestsFolder;
 }
 
 fs::path ObjectStore::models_folder() const {
@@ -244,15 +276,20 @@ ObjectStore read_store(const fs::path& folder) {
           file.string());
   const nlohmann::json json = read_json_object(file);
   const int version = json_integer(json, kVersionKey, file.string());
-  require(version == kStoreVersion, "{}: object store of version {}, expected {}: teach it again", file.string(),
-          version, kStoreVersion);
+  require(
+      version >= 1 && version <= kStoreVersion,
+      "{}: object store of version {}, expected at most {}: it is newer than this program; update this, or teach it "
+      "again",
+      file.string(), version, kStoreVersion);
   require_known_names(json, {kVersionKey, "objects", "tone", "settings"}, file.string());
   ObjectStore store;
   store.folder = folder;
   store.objects = parse_objects(json, file.string());
+  check_groups(store, file.string());
+  number_groups(store);
   store.tone = parse_tone(json, file.string());
   if (json.contains("settings")) store.settings = json.at("settings");
-  require_file(store.forest_file(), folder);
+  for (const int group : store.groups()) require_file(store.forest_file(group), folder);
   require_file(store.models_folder() / "models_info.json", folder);
   require_file(store.models_folder() / "names.json", folder);
   const BopModels models = read_bop_models(store.models_folder());
@@ -300,22 +337,38 @@ std::map<std::string, Mesh> load_store_meshes(const ObjectStore& store, int thre
   return meshes;
 }
 
-void require_same_objects(const ObjectStore& store, const std::vector<std::string>& forest_names) {
+void require_same_objects(const ObjectStore& store, int group, const std::vector<std::string>& forest_names) {
   std::set<std::string> listed;
-  for (const StoredObject& object : store.objects) listed.insert(object.name);
+  for (const StoredObject& object : store.objects) {
+    if (object.group == group) listed.insert(object.name);
+  }
   const std::set<std::string> known(forest_names.begin(), forest_names.end());
-  require(known == listed, "{}: knows {}, expected the objects of {}: {}", store.forest_file().string(),
+  require(known == listed, "{}: knows {}, expected the objects of {}: {}", store.forest_file(group).string(),
           fmt::join(known, ", "), store.json_file().string(), fmt::join(listed, ", "));
 }
 
+void number_groups(ObjectStore& store) {
+  std::map<int, int> smallest;
+  for (const StoredObject& object : store.objects) {
+    const auto [known, is_new] = smallest.emplace(object.group, object.id);
+    if (!is_new) known->second = std::min(known->second, object.id);
+  }
+  for (StoredObject& object : store.objects) object.group = smallest.at(object.group);
+}
+
 void write_store_json(const ObjectStore& store) {
+  const bool has_groups = store.groups().size() > 1;
+  const bool is_renumbered = std::any_of(store.objects.begin(), store.objects.end(),
+                                         [](const StoredObject& object) { return object.taught_id != 0; });
   OrderedJson json;
-  json[kVersionKey] = kStoreVersion;
+  json[kVersionKey] = has_groups || is_renumbered ? kStoreVersion : 1;
   json["objects"] = OrderedJson::array();
   for (const StoredObject& object : store.objects) {
     OrderedJson entry;
     entry["id"] = object.id;
     entry["name"] = object.name;
+    if (has_groups) entry[kGroupKey] = object.group;
+    if (object.taught_id != 0) entry[kTaughtIdKey] = object.taught_id;
     entry["mesh"] = object.mesh;
     entry["coloured"] = object.coloured;
     entry["views"] = object.views;
@@ -370,11 +423,13 @@ std::vector<std::string> find_stores(const fs::path& folder) {
 }
 
 bool is_store_entry(const fs::path& relative) {
-  static const std::set<std::string> files = {kJsonFile, "forest", "contact_sheet.jpg", "models/models_info.json",
+  static const std::set<std::string> files = {kJsonFile, kForestFile, "contact_sheet.jpg", "models/models_info.json",
                                               "models/names.json"};
   fs::path entry = relative;
   if (entry.extension() == kPartialEnding) entry.replace_extension();
-  if (entry == "models" || entry == "views" || files.count(entry.string()) > 0) return true;
+  if (entry == "models" || entry == "views" || entry == kForestsFolder || files.count(entry.string()) > 0) return true;
+  if (entry.parent_path() == kForestsFolder)
+    return entry.filename().string().find_first_not_of("0123456789") == std::string::npos;
   // A mesh, its texture or an image of its views has a name such as obj_000001.ply.
   const std::string name = entry.stem().string();
   const bool is_of_object = name.size() > 4 && name.rfind("obj_", 0) == 0 &&

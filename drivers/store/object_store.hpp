@@ -17,8 +17,9 @@
 
 namespace houghstream::store {
 
-/// Version of store.json; other versions are refused.
-constexpr int kStoreVersion = 1;
+/// Newest version of store.json; a newer one is refused. A store of one group is written as version 1, which programs
+/// read that know no groups.
+constexpr int kStoreVersion = 2;
 
 /// A vote centre is nearer to the origin than this, metres: farther away coordinates lose what a mesh shows.
 constexpr float kMaxCentre_m = 10.0F;
@@ -36,16 +37,22 @@ struct StoredObject {
   nlohmann::json quality{};  ///< learnt settings of its poses' quality, an object; null where none were learnt
   std::optional<ShapeSymmetry> shape_symmetry{};  ///< unknown in a store that was taught before it was looked for
   std::vector<ObjectFrame> frames{};              ///< that somebody has named on it (hs-teach frame), by name
+  /// The number of its group: the smallest id among the group's objects; 0 in a list that was not written yet, where
+  /// all are of one group.
+  int group = 0;
+  int taught_id = 0;  ///< id with which it was taught, where a merge gave it another; 0: id
 };
 
 struct ObjectStore {
   std::filesystem::path folder;
-  std::vector<StoredObject> objects;          ///< in the order of their ids
-  BrightnessRange tone;                       ///< brightness of the images of their calibration
-  OrderedJson settings;                       ///< settings of the last teaching, for people
-  std::map<int, Symmetries> symmetries;       ///< symmetries of models_info.json by id; empty for an object without any
-  std::filesystem::path json_file() const;    ///< the list
-  std::filesystem::path forest_file() const;  ///< file of the detector
+  std::vector<StoredObject> objects;        ///< in the order of their ids
+  BrightnessRange tone;                     ///< brightness of the images of their calibration
+  OrderedJson settings;                     ///< settings of the last teaching, for people
+  std::map<int, Symmetries> symmetries;     ///< symmetries of models_info.json by id; empty for an object without any
+  std::filesystem::path json_file() const;  ///< the list
+  std::vector<int> groups() const;          ///< StoredObject::group of all objects, each once, ascending
+  std::filesystem::path forest_file(int group) const;           ///< file of a group's detector
+  std::filesystem::path forests_folder() const;                 ///< folder of the forests of a store of several groups
   std::filesystem::path models_folder() const;                  ///< a BOP models folder
   std::filesystem::path view_image(int id) const;               ///< some of its views, side by side
   std::filesystem::path contact_sheet() const;                  ///< the images of all objects
@@ -71,10 +78,13 @@ std::map<std::string, Mesh> load_store_meshes(const ObjectStore& store, int thre
 /// than 2 % of the largest side.
 void check_bounds(const Mesh& mesh, const Eigen::AlignedBox3d& stated, const std::string& file);
 
-/// Throws InputError where the forest, whose classes have these names, is not that of the store.
-void require_same_objects(const ObjectStore& store, const std::vector<std::string>& forest_names);
+/// Throws InputError where the forest of the group, whose classes have these names, is not that of the store.
+void require_same_objects(const ObjectStore& store, int group, const std::vector<std::string>& forest_names);
 
-/// Writes FOLDER/store.json, last of all files: a folder without it is half written.
+/// Names each group by the smallest id of its objects, as a store that is written has it.
+void number_groups(ObjectStore& store);
+
+/// Writes FOLDER/store.json, last of all files: a folder without it is half written. The groups are numbered.
 void write_store_json(const ObjectStore& store);
 
 /// Throws InputError naming `where` for an object's name that is not UTF-8: JSON would hold another one (RFC 8259,

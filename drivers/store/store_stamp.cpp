@@ -26,6 +26,12 @@ std::string folder_stamp(const fs::path& folder) {
   return fmt::format("{}", fmt::join(states, "\n"));
 }
 
+std::string forest_stamp(const ObjectStore& store) {
+  ObjectStore of_one_group;
+  of_one_group.folder = store.folder;
+  return fmt::format("{}\n{}", file_stamp(of_one_group.forest_file(0)), folder_stamp(store.forests_folder()));
+}
+
 std::string mesh_stamp(const ObjectStore& store) {
   return fmt::format("{}\n{}", file_stamp(store.json_file()), folder_stamp(store.models_folder()));
 }

@@ -27,7 +27,7 @@ constexpr int kReportMissing = 50;
 
 /// Differs whenever a file that is loaded has been written or exchanged, without reading any.
 std::string state_of_store(const ObjectStore& store) {
-  return fmt::format("{}\n{}\n{}", file_stamp(store.folder), file_stamp(store.forest_file()), mesh_stamp(store));
+  return fmt::format("{}\n{}\n{}", file_stamp(store.folder), forest_stamp(store), mesh_stamp(store));
 }
 
 std::string state_of_store(const fs::path& folder) {

@@ -81,7 +81,7 @@ TEST(Detector, AnotherOneFindsTheSameWithTheForestThatItTakes) {
   Detector one(toy::forest(), settings);
   const Detections found = one.detect(frame);
   ASSERT_FALSE(found.detections.empty());
-  const Detector another(std::move(one).take_forest(), settings);
+  const Detector another(std::move(one).take_groups(), settings);
   expect_same(another.detect(frame), found);
 }
 

@@ -20,9 +20,11 @@ namespace {
 
 using namespace houghstream;
 
-Detector make_detector(Forest forest, const SearchOptions& search) {
-  for (const ObjectClass& object : forest.classes) log_debug("class {}: {}", object.class_id, object.name);
-  return detector_of(std::move(forest), search);
+Detector make_detector(std::vector<Forest> groups, const SearchOptions& search) {
+  for (const Forest& forest : groups) {
+    for (const ObjectClass& object : forest.classes) log_debug("class {}: {}", object.class_id, object.name);
+  }
+  return detector_of(std::move(groups), search);
 }
 
 /// A detector and the memory of its frames, which are looked at one after another. Its first frame takes no longer than
@@ -38,7 +40,7 @@ struct ReadyDetector {
 
 std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& store, const SearchOptions& search,
                                                    const RgbdFrame& made_up) {
-  return std::make_shared<const ReadyDetector>(make_detector(load_store_forest(store), search), made_up);
+  return std::make_shared<const ReadyDetector>(make_detector(load_store_forests(store), search), made_up);
 }
 
 /// Options of the command line.
@@ -84,7 +86,8 @@ class KnownColours {
 /// A forest stays what it is.
 void run_with_forest(const DetectOptions& options, const KnownColours& colours) {
   const std::shared_future<RgbdFrame> made_up = start_warm_up();
-  const ReadyDetector ready(make_detector(load_forest(options.forest_file), options.search), made_up.get());
+  const ReadyDetector ready(make_detector(load_named_forests({{}, options.forest_file, {}}), options.search),
+                            made_up.get());
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
     return ready.detector.detect(frame, ready.workspace, colours.objects_seen_by(frame.id.channel));

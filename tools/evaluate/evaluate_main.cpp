@@ -17,6 +17,7 @@
 #include "tools/evaluate/scene_figures.hpp"
 #include "tools/finder/search_arguments.hpp"
 #include "tools/finder/searched_objects.hpp"
+#include "tools/finder/stored_forest.hpp"
 #include "tools/finder/stored_quality.hpp"
 
 namespace houghstream {
@@ -71,19 +72,21 @@ NamedSide ground_truth_side(const EvaluateOptions& options, const std::vector<Op
 }
 
 /// Whose names are measured: those that were asked for, else the forest's, else the truth's.
-NamedSide listed_side(const EvaluateOptions& options, const std::optional<Forest>& forest, const NamedSide& truth) {
+NamedSide listed_side(const EvaluateOptions& options, const std::vector<Forest>& groups, const NamedSide& truth) {
   if (!options.classes.empty()) return {"--classes", {options.classes.begin(), options.classes.end()}};
-  if (!forest) return truth;
+  if (groups.empty()) return truth;
   NamedSide side{"the forest " + options.known.forest, {}};
-  for (const ObjectClass& known : forest->classes) side.names.insert(known.name);
+  for (const Forest& forest : groups) {
+    for (const ObjectClass& known : forest.classes) side.names.insert(known.name);
+  }
   return side;
 }
 
 /// The classes to measure, in the order in which they were asked for, else by name. Throws InputError where they are no
 /// class of the truth or of the models; a scene without objects is there to count false detections.
-std::vector<std::string> listed_classes(const EvaluateOptions& options, const std::optional<Forest>& forest,
+std::vector<std::string> listed_classes(const EvaluateOptions& options, const std::vector<Forest>& groups,
                                         const NamedSide& truth, const std::map<std::string, Mesh>& meshes) {
-  const NamedSide listed = listed_side(options, forest, truth);
+  const NamedSide listed = listed_side(options, groups, truth);
   if (!truth.names.empty()) require_shared_name(listed, truth);
   if (!meshes.empty() && !listed.names.empty()) {
     NamedSide models{"the models " + options.known.models, {}};
@@ -95,15 +98,15 @@ std::vector<std::string> listed_classes(const EvaluateOptions& options, const st
 }
 
 /// Returns from which score on detections are listed.
-float search_in_process(const EvaluateOptions& options, Forest forest, const std::map<std::string, Mesh>& meshes,
-                        std::vector<OpenScene>& scenes) {
+float search_in_process(const EvaluateOptions& options, std::vector<Forest> groups,
+                        const std::map<std::string, Mesh>& meshes, std::vector<OpenScene>& scenes) {
   PublishingRules rules;
   rules.score = options.rules.operating_score;
   if (!options.operating_score) rules.candidates_from = kCandidatesFrom;
   rules.pose = options.pose;
   if (!options.known.models.empty()) rules.pose.model.symmetries = load_class_symmetries(options.known.models);
-  const DetectionSettings settings = options.search.change(options.in_process.settings(forest));
-  InProcess process(std::move(forest), settings, options.in_process.make, meshes, rules);
+  const DetectionSettings settings = options.search.change(options.in_process.settings(groups.front()));
+  InProcess process(std::move(groups), settings, options.in_process.make, meshes, rules);
   for (OpenScene& it : scenes) process.run(it.scene, it.frames);
   return process.ranked_from();
 }
@@ -151,17 +154,17 @@ void run(EvaluateOptions options) {
   std::optional<Latencies> latencies;
   if (!options.latency.empty()) latencies = read_latencies(options.latency);
   std::vector<OpenScene> scenes = open_scenes(options);
-  std::optional<Forest> forest;
-  if (!options.known.forest.empty()) forest = load_forest(options.known.forest);
+  std::vector<Forest> groups;
+  if (!options.known.forest.empty()) groups = load_named_forests(options.known);
   const std::map<std::string, Mesh> meshes =
       options.known.models.empty() ? std::map<std::string, Mesh>() : load_class_models(options.known.models);
   const NamedSide truth = ground_truth_side(options, scenes);
-  const std::vector<std::string> classes = listed_classes(options, forest, truth, meshes);
-  if (!options.log.empty()) add_log(options, !forest, truth, scenes.front());
+  const std::vector<std::string> classes = listed_classes(options, groups, truth, meshes);
+  if (!options.log.empty()) add_log(options, groups.empty(), truth, scenes.front());
   choose_frames(options, scenes);
   if (options.log.empty()) {
     options.rules.min_quality = options.pose.quality.min_quality;
-    options.rules.ranked_from = search_in_process(options, *std::move(forest), meshes, scenes);
+    options.rules.ranked_from = search_in_process(options, std::move(groups), meshes, scenes);
   }
   const SceneFigures figures =
       measure_scenes(scenes, classes, make_scored_models(options.known.models, meshes, classes), options.rules,

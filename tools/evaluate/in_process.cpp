@@ -98,21 +98,21 @@ struct InProcess::State {
   }
 };
 
-FrameSearch detector_search(Forest forest, const DetectionSettings& settings) {
-  const auto detector = std::make_shared<const Detector>(std::move(forest), settings);
+FrameSearch detector_search(std::vector<Forest> groups, const DetectionSettings& settings) {
+  const auto detector = std::make_shared<const Detector>(std::move(groups), settings);
   const auto workspace = std::make_shared<DetectorWorkspace>();
   return [detector, workspace](const RgbdFrame& frame) { return detector->detect(frame, *workspace); };
 }
 
-InProcess::InProcess(Forest forest, const DetectionSettings& settings, const MakeSearch& make_search,
+InProcess::InProcess(std::vector<Forest> groups, const DetectionSettings& settings, const MakeSearch& make_search,
                      const std::map<std::string, Mesh>& models, const PublishingRules& rules)
     : state_(std::make_unique<State>(models, rules, settings.threads)) {
   const DetectionSettings all = finding_all(settings, rules);
   state_->ranked_from = all.evidence.threshold;
   state_->max_candidates = all.evidence.max_candidates;
   if (!models.empty() && all.evidence.threshold < std::min(rules.score, rules.candidates_from))
-    state_->publishing = make_search(forest, as_published(settings, rules));
-  state_->search = make_search(std::move(forest), all);
+    state_->publishing = make_search(groups, as_published(settings, rules));
+  state_->search = make_search(std::move(groups), all);
 }
 
 InProcess::~InProcess() = default;

@@ -17,11 +17,11 @@ namespace houghstream {
 /// Finds the objects in a frame, with memory of its own that it uses again. For one frame at a time.
 using FrameSearch = std::function<Detections(const RgbdFrame&)>;
 
-/// Makes a search of a forest: detector_search, or what a study puts in its place.
-using MakeSearch = std::function<FrameSearch(Forest forest, const DetectionSettings& settings)>;
+/// Makes a search of the forests of a store's groups: detector_search, or what a study puts in its place.
+using MakeSearch = std::function<FrameSearch(std::vector<Forest> groups, const DetectionSettings& settings)>;
 
 /// A search by Detector.
-FrameSearch detector_search(Forest forest, const DetectionSettings& settings);
+FrameSearch detector_search(std::vector<Forest> groups, const DetectionSettings& settings);
 
 /// Rules of publication.
 struct PublishingRules {
@@ -35,7 +35,7 @@ class InProcess {
  public:
   /// `settings` may find detections of lower score than those that would be published, to rank and judge them too.
   /// Models by class name.
-  InProcess(Forest forest, const DetectionSettings& settings, const MakeSearch& make_search,
+  InProcess(std::vector<Forest> groups, const DetectionSettings& settings, const MakeSearch& make_search,
             const std::map<std::string, Mesh>& models, const PublishingRules& rules);
   ~InProcess();
 

@@ -19,7 +19,7 @@ Detector make_detector(const store::ObjectStore& store, const FinderOptions& opt
   search.threads = options.threads;
   search.threshold = options.threshold;
   search.candidates_from = kCandidatesFrom;
-  return detector_of(load_store_forest(store), search);
+  return detector_of(load_store_forests(store), search);
 }
 
 PoseEstimator make_estimator(const store::ObjectStore& store, const FinderOptions& options) {

@@ -2,8 +2,10 @@
 
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "detector/detector.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 
@@ -34,7 +36,13 @@ struct SearchOptions {
   }
 };
 
-/// Searches as the forest's profile says and the options change it.
+/// Searches the groups of a store, or a forest by itself, as their profile says and the options change it.
+inline Detector detector_of(std::vector<Forest> groups, const SearchOptions& options) {
+  require(!groups.empty(), "no forest, expected one for each group of objects");
+  const DetectionSettings settings = options.settings_for(groups.front());
+  return Detector(std::move(groups), settings);
+}
+
 inline Detector detector_of(Forest forest, const SearchOptions& options) {
   const DetectionSettings settings = options.settings_for(forest);
   return Detector(std::move(forest), settings);

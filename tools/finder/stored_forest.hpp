@@ -5,17 +5,34 @@
 
 #include "detector/forest/forest_file.hpp"
 #include "drivers/store/object_store.hpp"
+#include "tools/finder/searched_objects.hpp"
 
 namespace houghstream {
 
-/// The forest of an object store. Throws InputError where it cannot be read, or is not of the objects in the store's
-/// list.
-inline Forest load_store_forest(const store::ObjectStore& store) {
-  Forest forest = load_forest(store.forest_file());
+/// The forest of a group of an object store; its classes have the ids of the store's list. Throws InputError where it
+/// cannot be read, or is not of the group's objects.
+inline Forest load_group_forest(const store::ObjectStore& store, int group) {
+  Forest forest = load_forest(store.forest_file(group));
   std::vector<std::string> names;
   for (const ObjectClass& object : forest.classes) names.push_back(object.name);
-  store::require_same_objects(store, names);
+  store::require_same_objects(store, group, names);
+  for (ObjectClass& object : forest.classes) object.class_id = store::find_object(store, object.name).id;
   return forest;
+}
+
+/// The forests of all groups, in order of their numbers.
+inline std::vector<Forest> load_store_forests(const store::ObjectStore& store) {
+  std::vector<Forest> forests;
+  for (const int group : store.groups()) forests.push_back(load_group_forest(store, group));
+  return forests;
+}
+
+/// The forests of the store that a command line names, or the one of its forest file.
+inline std::vector<Forest> load_named_forests(const ObjectArguments& objects) {
+  if (!objects.store.empty()) return load_store_forests(store::read_store(objects.store));
+  std::vector<Forest> forests;
+  forests.push_back(load_forest(objects.forest));
+  return forests;
 }
 
 }  // namespace houghstream

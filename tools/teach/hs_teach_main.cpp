@@ -5,6 +5,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/teach/mesh/store_merge.hpp"
 #include "tools/teach/mesh/store_rename.hpp"
 #include "tools/teach/mesh/store_summary.hpp"
 #include "tools/teach/mesh/teach_jobs.hpp"
@@ -74,6 +75,23 @@ CommandLine add_mesh(CommandLine& app, TeachOptions& options, Lists& lists) {
   mesh.add_option("--dump-views", options.dump_views, "writes the training views as a BOP training folder too");
   mesh.add_example("hs-teach mesh mug.ply drill.glb --out my.store");
   return mesh;
+}
+
+/// What hs-teach merge is given.
+struct MergeArguments {
+  std::vector<std::string> stores;
+  std::string out;
+  bool replace = false;
+};
+
+CommandLine add_merge(CommandLine& app, MergeArguments& merged) {
+  CommandLine merge = app.add_subcommand("merge", "joins object stores that were taught apart");
+  merge.add_option("stores", merged.stores, "object stores, taught with the same --seed").required();
+  merge.add_option("--out", merged.out, "object store to write; one that is there wants --replace").required();
+  merge.add_flag("--replace", merged.replace,
+                 "the new store takes the place of the one that is there, when all is done");
+  merge.add_example("hs-teach merge a.store b.store --out household.store");
+  return merge;
 }
 
 cv::Rect parse_box(const std::string& text) {
@@ -160,6 +178,8 @@ int main(int argc, char** argv) {
   app.add_example("hs-teach mesh mug.ply drill.glb --out my.store");
   const CommandLine mesh = add_mesh(app, options, lists);
   const CommandLine show = add_show(app, shown, words);
+  MergeArguments merged;
+  const CommandLine merge = add_merge(app, merged);
   CommandLine list = app.add_subcommand("list", "the objects of a store");
   list.add_option("store", folder, "object store").required();
   bool json = false;
@@ -202,6 +222,8 @@ int main(int argc, char** argv) {
       options.calibration.seed = options.seed;
       options.calibration.threads = options.threads;
       calibrate_store(folder, options.calibration, split(lists.names));
+    } else if (merge.given()) {
+      merge_stores({merged.stores.begin(), merged.stores.end()}, merged.out, merged.replace);
     } else if (list.given()) {
       const store::ObjectStore listed = store::read_store(folder);
       if (json) print_json(store_json(listed));

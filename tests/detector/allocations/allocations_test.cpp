@@ -9,6 +9,7 @@
 #include "detector/detector.hpp"
 #include "detector/stages.hpp"
 #include "detector/training/forest_trainer.hpp"
+#include "detector/training/object_removal.hpp"
 #include "tests/detector/toy_data.hpp"
 
 // Counts the allocations of the whole process, OpenCV's images and operator new included: glibc lets a program replace
@@ -88,8 +89,21 @@ TEST(Allocations, AreCounted) {
   EXPECT_GE(small_ones, before.small + 1);
 }
 
-TEST(Allocations, FramesTakeTheMemoryOfThoseBefore) {
-  const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
+/// Looks at frames until as many in a row as are wanted ask for no memory that grows with the image.
+void expect_few_allocations(const Detector& detector, const RgbdFrame& frame, std::size_t few) {
+  DetectorWorkspace workspace;
+  // Which worker gets which items is chance, so that one may meet something for the first time after many frames.
+  int in_a_row = 0;
+  Allocations last;
+  for (int number = 0; number < 200 && in_a_row < kInARow; ++number) {
+    last = allocations_of(detector, frame, workspace);
+    in_a_row = last.small <= few && last.large == 0 ? in_a_row + 1 : 0;
+  }
+  EXPECT_EQ(in_a_row, kInARow) << detector.settings().threads << " threads, the last frame: " << last.small
+                               << " small ones and " << last.large << " large ones";
+}
+
+RgbdFrame frame_with_tiles() {
   RgbdFrame frame = toy::background(5);
   toy::put_tile(0, 90, 120, 0.8, frame);
   toy::put_tile(1, 230, 120, 0.9, frame);
@@ -97,21 +111,28 @@ TEST(Allocations, FramesTakeTheMemoryOfThoseBefore) {
   frame.camera = frame.camera.scaled(2.0);
   cv::resize(frame.colour, frame.colour, cv::Size(), 2.0, 2.0, cv::INTER_NEAREST);
   cv::resize(frame.depth, frame.depth, cv::Size(), 2.0, 2.0, cv::INTER_NEAREST);
+  return frame;
+}
+
+TEST(Allocations, FramesTakeTheMemoryOfThoseBefore) {
+  const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
+  const RgbdFrame frame = frame_with_tiles();
   for (const int threads : {1, 2}) {
     DetectionSettings settings = toy::quick_profile().detection;
     settings.threads = threads;
-    const Detector detector(forest, settings);
-    DetectorWorkspace workspace;
-    // The items of each worker are random, so that one may meet something for the first time after many frames.
-    int in_a_row = 0;
-    Allocations last;
-    for (int number = 0; number < 200 && in_a_row < kInARow; ++number) {
-      last = allocations_of(detector, frame, workspace);
-      in_a_row = last.small <= kFew && last.large == 0 ? in_a_row + 1 : 0;
-    }
-    EXPECT_EQ(in_a_row, kInARow) << threads << " threads, the last frame: " << last.small << " small ones and "
-                                 << last.large << " large ones";
+    expect_few_allocations(Detector(forest, settings), frame, kFew);
   }
+}
+
+/// The second group has one object, the first has two: what one leaves in the workspace serves the other.
+TEST(Allocations, GroupsTakeTheMemoryOfOneAnother) {
+  const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
+  Forest other = training::remove_object(forest, "stripes");
+  other.classes.front().class_id = 3;
+  other.classes.front().name = "circles";
+  DetectionSettings settings = toy::quick_profile().detection;
+  settings.threads = 2;
+  expect_few_allocations(Detector(std::vector<Forest>{forest, other}, settings), frame_with_tiles(), 2 * kFew);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ std::vector<ScoredHypothesis> weighed(const Forest& forest, const RgbdFrame& fra
     hypotheses[i].views = {{static_cast<std::uint32_t>(i), 1.0F}};
   }
   ScoringWorkspace workspace;
-  return weigh_in_camera_colours({index, in_lab, {}, {}, {}}, reference, hypotheses, 2, workspace);
+  return weigh_in_camera_colours({{{index, in_lab, {}, {}, {}}, hypotheses}}, reference, 2, workspace);
 }
 
 std::vector<ChromaPair> seen_with_cast(double a, double b) {

@@ -97,8 +97,8 @@ Forest stripes_then_rings(int threads) {
 
 TEST(AddObjects, BothTheOldAndTheNewObjectAreFound) {
   const Detector detector(stripes_then_rings(2), DetectionSettings{});
-  ASSERT_EQ(detector.forest().classes.size(), 2U);
-  EXPECT_EQ(detector.forest().classes[1].class_id, 2);
+  ASSERT_EQ(detector.groups().front().classes.size(), 2U);
+  EXPECT_EQ(detector.groups().front().classes[1].class_id, 2);
   for (const int kind : {0, 1}) {
     RgbdFrame frame = toy::background(77);
     const cv::Mat mask = toy::put_tile(kind, 150, 110, 0.7, frame);

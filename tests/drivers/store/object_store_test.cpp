@@ -94,7 +94,77 @@ TEST(ObjectStore, AHalfWrittenOneIsRefused) {
 TEST(ObjectStore, AnotherVersionIsRefused) {
   const fs::path folder = whole_store("store_version");
   replace_in_file(folder / "store.json", "\"houghstream_store\": 1", "\"houghstream_store\": 7");
-  expect_says(error_of_reading(folder), {"store.json", "version 7", "expected 1"});
+  expect_says(error_of_reading(folder), {"store.json", "version 7", "expected at most 2", "newer than this program"});
+}
+
+/// The mug and the brick, each in a group of its own.
+fs::path grouped_store(const std::string& name) {
+  const fs::path folder = whole_store(name);
+  ObjectStore store = read_store(folder);
+  store.objects[1].group = store.objects[1].id;
+  fs::remove(folder / "forest");
+  fs::create_directories(store.forests_folder());
+  for (const int group : store.groups()) write_text(store.forest_file(group), "a forest");
+  write_store_json(store);
+  return folder;
+}
+
+TEST(ObjectStore, OneOfOneGroupIsWrittenAsBeforeThereWereGroups) {
+  const fs::path folder = whole_store("store_one_group");
+  const std::string text = read_text(folder / "store.json");
+  EXPECT_NE(text.find("\"houghstream_store\": 1,"), std::string::npos) << "which older programs read";
+  EXPECT_EQ(text.find("group"), std::string::npos);
+  const ObjectStore store = read_store(folder);
+  EXPECT_EQ(store.groups(), std::vector<int>{2}) << "the smallest id";
+  EXPECT_EQ(store.forest_file(2), folder / "forest");
+  write_store_json(store);
+  EXPECT_EQ(read_text(folder / "store.json"), text);
+}
+
+TEST(ObjectStore, GroupsHaveAForestEach) {
+  const fs::path folder = grouped_store("store_groups");
+  EXPECT_NE(read_text(folder / "store.json").find("\"houghstream_store\": 2,"), std::string::npos);
+  const ObjectStore store = read_store(folder);
+  EXPECT_EQ(store.groups(), (std::vector<int>{2, 5}));
+  EXPECT_EQ(store.forest_file(5), folder / "forests" / "000005");
+  EXPECT_EQ(error_of([&] { require_same_objects(store, 5, {"brick"}); }), "");
+  expect_says(error_of([&] { require_same_objects(store, 2, {"brick"}); }),
+              {"forests/000002: knows brick, expected the objects", "mug"});
+  EXPECT_TRUE(is_store_entry("forests"));
+  EXPECT_TRUE(is_store_entry("forests/000005"));
+  EXPECT_TRUE(is_store_entry("forests/000005.partial"));
+  EXPECT_FALSE(is_store_entry("forests/oak.txt"));
+  fs::remove(store.forest_file(2));
+  expect_says(error_of_reading(folder), {store.forest_file(2).string(), "missing", "half written"});
+}
+
+TEST(ObjectStore, AGroupIsCalledByTheSmallestOfItsIds) {
+  ObjectStore store;
+  for (const auto& [id, group] : {std::make_pair(7, 3), std::make_pair(4, 3), std::make_pair(2, 9)}) {
+    store.objects.emplace_back();
+    store.objects.back().id = id;
+    store.objects.back().group = group;
+  }
+  number_groups(store);
+  EXPECT_EQ(store.groups(), (std::vector<int>{2, 4}));
+  EXPECT_EQ(store.objects[0].group, 4);
+  const fs::path folder = grouped_store("store_group_number");
+  replace_in_file(folder / "store.json", "\"group\": 5", "\"group\": 4");
+  expect_says(error_of_reading(folder), {"store.json object 5: 'group' is 4, expected 5"});
+  replace_in_file(folder / "store.json", "\"group\": 4,", "");
+  expect_says(error_of_reading(folder), {"store.json object 5: 'group' is 0, expected 5"});
+}
+
+TEST(ObjectStore, AnIdOfTeachingIsKeptBesideThatOfAMerge) {
+  const fs::path folder = whole_store("store_taught_id");
+  ObjectStore store = read_store(folder);
+  store.objects[1].taught_id = 2;
+  write_store_json(store);
+  EXPECT_NE(read_text(folder / "store.json").find("\"houghstream_store\": 2,"), std::string::npos);
+  EXPECT_EQ(read_store(folder).objects[1].taught_id, 2);
+  EXPECT_EQ(read_store(folder).objects[0].taught_id, 0);
+  replace_in_file(folder / "store.json", "\"taught_id\": 2", "\"taught_id\": -2");
+  expect_says(error_of_reading(folder), {"store.json object 5: 'taught_id' is -2, expected an id from 1 on"});
 }
 
 TEST(ObjectStore, AVoteCentreIsThreeNumbersOrTheOrigin) {
@@ -237,9 +307,9 @@ TEST(ObjectStore, PartsThatContradictOneAnotherAreRefused) {
   replace_in_file(size / "models" / "models_info.json", "\"size_x\": 200", "\"size_x\": 300");
   expect_says(error_of_loading(size), {"obj_000005.ply", "200.0 x 200.0 x 200.0 mm", "300.0 x 200.0 x 200.0 mm"});
   const ObjectStore store = read_store(whole_store("store_forest"));
-  EXPECT_EQ(error_of([&] { require_same_objects(store, {"brick", "mug"}); }), "");
+  EXPECT_EQ(error_of([&] { require_same_objects(store, 2, {"brick", "mug"}); }), "");
   expect_says(error_of([&] {
-                require_same_objects(store, {"brick", "bowl"});
+                require_same_objects(store, 2, {"brick", "bowl"});
               }),
               {"forest", "knows bowl, brick", "expected", "brick, mug"});
 }

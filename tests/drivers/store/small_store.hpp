@@ -24,7 +24,7 @@ inline void fill_store(const std::filesystem::path& folder, const std::string& s
   Mesh second = tetrahedron(0.2F);
   for (Mesh* mesh : {&mug, &second}) mesh->colours.assign(mesh->vertices.size(), {128, 128, 128});
   write_bop_models({{2, "mug", mug, half_turn}, {5, second_name, second, {}}}, store.models_folder());
-  write_text(store.forest_file(), "a forest");
+  write_text(store.forest_file(0), "a forest");
   write_store_json(store);
 }
 

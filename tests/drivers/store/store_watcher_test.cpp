@@ -170,7 +170,7 @@ TEST(StoreWatcher, WhatCannotBeLoadedForAMomentIsTriedAgain) {
     Second watch(folder, [&](const ObjectStore& store) {
       if (store.objects.at(1).name == "bowl" && failures++ < 3) {
         if (failures == 1) throw std::bad_alloc();
-        fail("{}: Too many open files", store.forest_file().string());
+        fail("{}: Too many open files", store.forest_file(2).string());
       }
       return load_second(store);
     });

@@ -13,7 +13,7 @@ TEST(ObjectArguments, AStoreGivesItsForestAndItsModels) {
   const std::optional<store::ObjectStore> store = resolve_store(objects);
   ASSERT_TRUE(store.has_value());
   EXPECT_EQ(store->objects.size(), 2U);
-  EXPECT_EQ(objects.forest, store->forest_file().string());
+  EXPECT_EQ(objects.forest, store->forest_file(2).string());
   EXPECT_EQ(objects.models, store->models_folder().string());
 }
 

@@ -48,7 +48,7 @@ DetectionSettings settings_from(float threshold) {
 
 std::vector<EvaluatedFrame> run(const BopScene& scene, float threshold, const PublishingRules& rules) {
   std::vector<EvaluatedFrame> frames = read_ground_truth(scene, {});
-  InProcess(toy_forest(), settings_from(threshold), detector_search, plates(), rules).run(scene, frames);
+  InProcess({toy_forest()}, settings_from(threshold), detector_search, plates(), rules).run(scene, frames);
   return frames;
 }
 
@@ -61,7 +61,7 @@ TEST(InProcess, SaysFromWhichScoreOnDetectionsAreListed) {
   PublishingRules rules;
   rules.score = 0.5F;
   const auto ranked_from = [&](float threshold) {
-    return InProcess(toy_forest(), settings_from(threshold), detector_search, plates(), rules).ranked_from();
+    return InProcess({toy_forest()}, settings_from(threshold), detector_search, plates(), rules).ranked_from();
   };
   EXPECT_EQ(ranked_from(0.75F), 0.5F) << "what would be sent is listed in any case";
   EXPECT_EQ(ranked_from(0.1F), 0.1F);
@@ -153,7 +153,7 @@ TEST(InProcess, WithoutModelsNobodyLooksForPoses) {
   const BopScene scene = two_tiles("in_process_models");
   std::vector<EvaluatedFrame> frames = read_ground_truth(scene, {});
   frames.erase(frames.begin());
-  InProcess(toy_forest(), settings_from(0.5F), detector_search, {}, {}).run(scene, frames);
+  InProcess({toy_forest()}, settings_from(0.5F), detector_search, {}, {}).run(scene, frames);
   ASSERT_EQ(frames.size(), 1U) << "those that were asked for";
   EXPECT_EQ(frames[0].detections->frame.utime, frames[0].utime);
   EXPECT_FALSE(frames[0].poses.has_value());

@@ -2,13 +2,13 @@
 
 #include <optional>
 
-#include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/finder/search_arguments.hpp"
 #include "tools/finder/searched_objects.hpp"
+#include "tools/finder/stored_forest.hpp"
 #include "tools/studies/commands.hpp"
 #include "tools/studies/failures/failures.hpp"
 
@@ -36,7 +36,9 @@ std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& dete
     frames[f].detections = detector.detect(scene.read_frame(f * static_cast<std::size_t>(options.every)), workspace);
   }
   std::vector<std::string> classes;
-  for (const ObjectClass& known : detector.forest().classes) classes.push_back(known.name);
+  for (const Forest& forest : detector.groups()) {
+    for (const ObjectClass& known : forest.classes) classes.push_back(known.name);
+  }
   constexpr std::size_t kPartsOfTheWay = 6;
   const std::vector<Failure> chosen =
       choose_failures(frames, classes,
@@ -51,8 +53,7 @@ std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& dete
 }
 
 void run(const FailureOptions& options) {
-  Forest forest = load_forest(options.known.forest);
-  const Detector detector = detector_of(std::move(forest), options.search);
+  const Detector detector = detector_of(load_named_forests(options.known), options.search);
   std::vector<cv::Mat> tiles;
   for (const std::string& scene : options.scenes) {
     for (const cv::Mat& tile : failures_in(scene, detector, options)) tiles.push_back(tile);

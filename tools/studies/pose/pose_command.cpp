@@ -5,7 +5,6 @@
 #include <set>
 #include <utility>
 
-#include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
@@ -14,6 +13,7 @@
 #include "tools/evaluate/metrics/evaluated_frame.hpp"
 #include "tools/finder/search_arguments.hpp"
 #include "tools/finder/searched_objects.hpp"
+#include "tools/finder/stored_forest.hpp"
 #include "tools/finder/stored_quality.hpp"
 #include "tools/studies/commands.hpp"
 #include "tools/studies/pose/bench_report.hpp"
@@ -71,10 +71,11 @@ void run(const BenchOptions& options) {
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   // A thread's CPU time is all of a pose's only where OpenCV starts no threads of its own.
   cv::setNumThreads(1);
-  Forest forest = load_forest(options.known.forest);
+  const Detector detector = detector_of(load_named_forests(options.known), options.search);
   std::set<std::string> classes;
-  for (const ObjectClass& known : forest.classes) classes.insert(known.name);
-  const Detector detector = detector_of(std::move(forest), options.search);
+  for (const Forest& forest : detector.groups()) {
+    for (const ObjectClass& known : forest.classes) classes.insert(known.name);
+  }
   PoseBench bench;
   std::map<std::string, BopScene> scenes;
   std::map<std::string, Mesh> meshes;

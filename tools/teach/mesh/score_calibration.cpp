@@ -23,12 +23,9 @@ namespace {
 constexpr std::uint64_t kCameras = 0x63616D657261ULL;
 
 /// Rendered once, looked at twice. The objects are not quite those that were taught: light, wear and printer differ.
-std::vector<world::RenderedFrame> render_frames(const std::vector<CalibrationObject>& objects,
+std::vector<world::RenderedFrame> render_frames(const std::vector<world::CalibrationSceneObject>& objects,
                                                 const CalibrationSettings& settings, int scene_count) {
-  std::vector<world::CalibrationSceneObject> in_scene;
-  in_scene.reserve(objects.size());
-  for (const CalibrationObject& object : objects) in_scene.push_back(object.in_scene);
-  const world::CalibrationScenes scenes(std::move(in_scene), settings.seed);
+  const world::CalibrationScenes scenes(objects, settings.seed);
   constexpr int kEach = world::CalibrationScenes::kFramesPerScene;
   std::vector<world::RenderedFrame> frames(static_cast<std::size_t>(scene_count * kEach));
   ProgressLine progress("practice rooms", scene_count);
@@ -77,54 +74,99 @@ int half_of(std::size_t frame) {
   return static_cast<int>(frame) / world::CalibrationScenes::kFramesPerScene % kHalves;
 }
 
-/// Examples of the calibration, and the classes that it is for.
-struct Calibrated {
-  const std::vector<world::RenderedFrame>& frames;
-  const std::vector<training::ScoreExamples>& examples;  ///< of each frame
-  const std::set<int>& new_ids;
-  int threads;
+/// The calibration of a group, in rooms of its own.
+struct GroupCalibration {
+  std::size_t place = 0;                               ///< of its forest among the groups
+  std::set<int> ids;                                   ///< of the classes that it is for
+  std::vector<world::CalibrationSceneObject> objects;  ///< of all groups, as they stand in its rooms
+  CalibrationSettings settings;                        ///< its seed is the group's
+  std::vector<world::RenderedFrame> frames;            ///< not kept from step to step where there are several groups
+  std::vector<training::ScoreExamples> examples;       ///< of each frame, of the group's classes
 };
 
-std::vector<std::size_t> frames_of(int half, const Calibrated& calibrated) {
+std::vector<GroupCalibration> calibrations_of(const std::vector<CalibrationObject>& objects,
+                                              const std::set<int>& new_ids, const CalibrationSettings& settings,
+                                              const std::vector<Forest>& groups) {
+  constexpr std::uint64_t kNextSeed = 1000003U;
+  std::vector<world::CalibrationSceneObject> in_scene;
+  in_scene.reserve(objects.size());
+  for (const CalibrationObject& object : objects) in_scene.push_back(object.in_scene);
+  std::vector<GroupCalibration> all;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    GroupCalibration made;
+    made.place = i;
+    made.ids = new_objects_of(groups[i], new_ids);
+    if (made.ids.empty()) continue;
+    made.objects = groups.size() == 1 ? in_scene : among_strangers(in_scene, made.ids);
+    for (world::CalibrationSceneObject& object : made.objects) object.is_calibrated = made.ids.count(object.id) > 0;
+    made.settings = settings;
+    made.settings.seed += kNextSeed * i;
+    all.push_back(std::move(made));
+  }
+  return all;
+}
+
+void render_frames_of(GroupCalibration& calibration) {
+  const int scene_count = scene_count_for(calibration.ids.size(), calibration.settings);
+  calibration.frames = render_frames(calibration.objects, calibration.settings, scene_count);
+}
+
+/// Fits the scores of a group's objects to what is found of them in its rooms.
+void learn_scores(GroupCalibration& calibration, Forest& forest) {
+  Profile profile = training::profile_of(forest);
+  profile.training.threads = calibration.settings.threads;
+  calibration.examples = training::find_score_examples(validation_source(calibration.frames), 0, profile, forest);
+  training::fit_scores(calibration.examples, calibration.ids, forest);
+}
+
+std::vector<std::size_t> frames_of(int half, const GroupCalibration& calibration) {
   std::vector<std::size_t> of_half;
-  for (std::size_t f = 0; f < calibrated.frames.size(); ++f) {
+  for (std::size_t f = 0; f < calibration.frames.size(); ++f) {
     if (half_of(f) == half) of_half.push_back(f);
   }
   return of_half;
 }
 
-void fit_scores_without(int half, const Calibrated& calibrated, Forest& forest) {
+void fit_scores_without(int half, const GroupCalibration& calibration, Forest& forest) {
   std::vector<training::ScoreExamples> others;
-  for (std::size_t f = 0; f < calibrated.examples.size(); ++f) {
-    if (half_of(f) != half) others.push_back(calibrated.examples[f]);
+  for (std::size_t f = 0; f < calibration.examples.size(); ++f) {
+    if (half_of(f) != half) others.push_back(calibration.examples[f]);
   }
-  training::fit_scores(others, calibrated.new_ids, forest);
+  training::fit_scores(others, calibration.ids, forest);
 }
 
-/// Each half of the rooms is searched with scores that were fitted without it: what a score is worth to a pose is
-/// learnt where the score is as uncertain as it will be. The forest, which may be too large to be in memory twice,
-/// takes the scores of one half after the other, and is left with those of the last.
-quality::FoundPoses find_poses(const Calibrated& calibrated, const quality::PosedModels& models, Forest& forest) {
+DetectionSettings detection_of(const Forest& forest) {
   DetectionSettings detection = detection_settings(forest);
   detection.threads = 1;
   detection.evidence.threshold = PoseSettings{}.min_score;
   detection.evidence.learn_camera_colours = false;
+  return detection;
+}
+
+/// Each half of the group's rooms is searched with scores that were fitted without it: what a score is worth to a pose
+/// is learnt where the score is as uncertain as it will be. The forests, which may be too large to be in memory twice,
+/// are lent to a detector; the group's takes the scores of one half after the other, and is left with those of all.
+quality::FoundPoses find_poses(const GroupCalibration& calibration, const quality::UnfilteredPoseFinder& finder,
+                               std::vector<Forest>& groups) {
+  const DetectionSettings detection = detection_of(groups.front());
+  const int threads = calibration.settings.threads;
   std::map<int, std::string> names;
-  for (const ObjectClass& known : forest.classes) names[known.class_id] = known.name;
-  const quality::UnfilteredPoseFinder finder(models, 1);
+  for (const Forest& forest : groups) {
+    for (const ObjectClass& known : forest.classes) names[known.class_id] = known.name;
+  }
   quality::FoundPoses found;
-  found.frames.resize(calibrated.frames.size());
-  found.terms.resize(calibrated.frames.size());
+  found.frames.resize(calibration.frames.size());
+  found.terms.resize(calibration.frames.size());
   PerWorker<DetectorWorkspace> workspaces;
-  workspaces.resize(calibrated.threads);
-  ProgressLine progress("search in practice rooms", static_cast<double>(calibrated.frames.size()));
+  workspaces.resize(threads);
+  ProgressLine progress("search in practice rooms", static_cast<double>(calibration.frames.size()));
   for (int half = 0; half < kHalves; ++half) {
-    fit_scores_without(half, calibrated, forest);
-    Detector detector(std::move(forest), detection);
-    const std::vector<std::size_t> searched = frames_of(half, calibrated);
-    parallel_for_workers(calibrated.threads, static_cast<int>(searched.size()), [&](int worker, int i) {
+    fit_scores_without(half, calibration, groups[calibration.place]);
+    Detector detector(std::move(groups), detection);
+    const std::vector<std::size_t> searched = frames_of(half, calibration);
+    parallel_for_workers(threads, static_cast<int>(searched.size()), [&](int worker, int i) {
       const std::size_t index = searched[static_cast<std::size_t>(i)];
-      const world::RenderedFrame& seen = calibrated.frames[index];
+      const world::RenderedFrame& seen = calibration.frames[index];
       EvaluatedFrame& frame = found.frames[index];
       for (const GroundTruthObject& object : seen.objects)
         frame.objects.push_back({names.at(object.object_id), object, std::nullopt});
@@ -132,8 +174,9 @@ quality::FoundPoses find_poses(const Calibrated& calibrated, const quality::Pose
       found.terms[index] = finder.find_in(seen.frame, frame);
       progress.add(1.0);
     });
-    forest = std::move(detector).take_forest();
+    groups = std::move(detector).take_groups();
   }
+  training::fit_scores(calibration.examples, calibration.ids, groups[calibration.place]);
   return found;
 }
 
@@ -197,21 +240,51 @@ std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFra
   return names;
 }
 
+std::set<int> new_objects_of(const Forest& forest, const std::set<int>& new_ids) {
+  std::set<int> ids;
+  for (const ObjectClass& object : forest.classes) {
+    if (new_ids.count(object.class_id) > 0) ids.insert(object.class_id);
+  }
+  return ids;
+}
+
+std::vector<world::CalibrationSceneObject> among_strangers(const std::vector<world::CalibrationSceneObject>& objects,
+                                                           const std::set<int>& group_ids) {
+  constexpr std::size_t kFurther = 6;  // objects beside the first that a room may have
+  std::vector<const world::CalibrationSceneObject*> members;
+  std::vector<const world::CalibrationSceneObject*> strangers;
+  for (const world::CalibrationSceneObject& object : objects)
+    (group_ids.count(object.id) > 0 ? members : strangers).push_back(&object);
+  const std::size_t between = (kFurther + members.size() - 1) / members.size();
+  const std::size_t rounds =
+      std::max<std::size_t>((strangers.size() + between * members.size() - 1) / (between * members.size()), 1);
+  const std::size_t places = rounds * members.size();
+  std::vector<world::CalibrationSceneObject> ordered;
+  for (std::size_t i = 0; i < places; ++i) {
+    ordered.push_back(*members[i % members.size()]);
+    for (std::size_t k = i * strangers.size() / places; k < (i + 1) * strangers.size() / places; ++k)
+      ordered.push_back(*strangers[k]);
+  }
+  return ordered;
+}
+
 std::map<std::string, CalibratedObject> calibrate_on_scenes(const std::vector<CalibrationObject>& objects,
                                                             const std::set<int>& new_ids,
-                                                            const CalibrationSettings& settings, Forest& forest) {
-  const int scene_count = scene_count_for(new_ids.size(), settings);
-  require(scene_count <= CalibrationSettings::kMaxScenes, "{} practice rooms, expected at most {}: all are in memory",
-          scene_count, CalibrationSettings::kMaxScenes);
-  const std::vector<world::RenderedFrame> frames = render_frames(objects, settings, scene_count);
-  warn_of(unobserved_objects(frames, objects, new_ids), scene_count);
-  Profile profile = training::profile_of(forest);
-  profile.training.threads = settings.threads;
-  const std::vector<training::ScoreExamples> examples =
-      training::find_score_examples(validation_source(frames), 0, profile, forest);
-
+                                                            const CalibrationSettings& settings,
+                                                            std::vector<Forest>& groups) {
+  require(settings.scenes.value_or(0) <= CalibrationSettings::kMaxScenes,
+          "{} practice rooms, expected at most {}: all are in memory", settings.scenes.value_or(0),
+          CalibrationSettings::kMaxScenes);
+  std::vector<GroupCalibration> calibrations = calibrations_of(objects, new_ids, settings, groups);
+  for (GroupCalibration& calibration : calibrations) {
+    render_frames_of(calibration);
+    warn_of(unobserved_objects(calibration.frames, objects, calibration.ids),
+            static_cast<int>(calibration.frames.size()) / world::CalibrationScenes::kFramesPerScene);
+    learn_scores(calibration, groups[calibration.place]);
+    if (calibrations.size() > 1) calibration.frames.clear();  // of all groups at once they take too much memory
+  }
   quality::PosedModels models;
-  models.tone = forest.features.tone;
+  models.tone = groups.front().features.tone;
   std::map<std::string, PoseModel> judged_by;
   for (const CalibrationObject& object : objects) {
     models.meshes[object.name] = object.mesh;
@@ -220,18 +293,22 @@ std::map<std::string, CalibratedObject> calibrate_on_scenes(const std::vector<Ca
     models.shape_symmetries[object.name] = object.shape_symmetry;
     judged_by[object.name] = make_pose_model(object.mesh, object.symmetries);
   }
-  const quality::FoundPoses found = find_poses({frames, examples, new_ids, settings.threads}, models, forest);
-  training::fit_scores(examples, new_ids, forest);
-  const std::map<std::string, std::vector<QualityExample>> by_name = quality_examples(found, judged_by);
-  const std::map<std::string, QualitySettings> all = learn_qualities(by_name);
-  const float reported_from = detection_settings(forest).evidence.threshold;
+  const quality::UnfilteredPoseFinder finder(models, 1);
   std::map<std::string, CalibratedObject> learnt;
-  for (const CalibrationObject& object : objects) {
-    if (new_ids.count(object.in_scene.id) == 0) continue;
-    CalibratedObject& calibrated = learnt[object.name];
-    calibrated.quality = all.at(object.name);
-    calibrated.practice = count_practice(by_name.at(object.name), calibrated.quality, reported_from);
-    calibrated.practice.shown = count_shown(found, object.name);
+  for (GroupCalibration& calibration : calibrations) {
+    if (calibration.frames.empty()) render_frames_of(calibration);
+    const quality::FoundPoses found = find_poses(calibration, finder, groups);
+    calibration.frames.clear();
+    const std::map<std::string, std::vector<QualityExample>> by_name = quality_examples(found, judged_by);
+    const std::map<std::string, QualitySettings> all = learn_qualities(by_name);
+    const float reported_from = detection_settings(groups[calibration.place]).evidence.threshold;
+    for (const CalibrationObject& object : objects) {
+      if (calibration.ids.count(object.in_scene.id) == 0) continue;
+      CalibratedObject& calibrated = learnt[object.name];
+      calibrated.quality = all.at(object.name);
+      calibrated.practice = count_practice(by_name.at(object.name), calibrated.quality, reported_from);
+      calibrated.practice.shown = count_shown(found, object.name);
+    }
   }
   return learnt;
 }

@@ -58,12 +58,24 @@ std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFra
                                             const std::vector<CalibrationObject>& objects,
                                             const std::set<int>& new_ids);
 
+/// Returns those of the ids whose objects the forest knows.
+std::set<int> new_objects_of(const Forest& forest, const std::set<int>& new_ids);
+
+/// Returns the objects in an order in which neighbours, which stand together in a room, are of the group and strangers:
+/// each stranger once, and so many after each of the group's objects that none of these comes twice in a room.
+std::vector<world::CalibrationSceneObject> among_strangers(const std::vector<world::CalibrationSceneObject>& objects,
+                                                           const std::set<int>& group_ids);
+
 /// Looks for the objects in rendered rooms (world::CalibrationScenes) through widely varied cameras, and learns what
-/// its detections and poses are worth: the scores' weights in `forest`, and the qualities, with what was found by them,
-/// by name; both of the classes in `new_ids` only. A line of the log names those of them that stand in no room. Same
-/// result for any number of threads. Throws InputError for more rooms than CalibrationSettings::kMaxScenes.
+/// its detections and poses are worth: the scores' weights in the groups' forests, and the qualities, with what was
+/// found by them, by name; both of the classes in `new_ids` only. Each group with such classes has rooms of its own,
+/// scene_count_for() many, in which the other groups' objects stand as strangers, and where all groups are searched
+/// together: what one finds may suppress what another finds. The result is independent of what was learnt before of the
+/// classes in `new_ids`. A line of the log names those of them that stand in no room. Same result for any number of
+/// threads. Throws InputError for more rooms of a group than CalibrationSettings::kMaxScenes.
 std::map<std::string, CalibratedObject> calibrate_on_scenes(const std::vector<CalibrationObject>& objects,
                                                             const std::set<int>& new_ids,
-                                                            const CalibrationSettings& settings, Forest& forest);
+                                                            const CalibrationSettings& settings,
+                                                            std::vector<Forest>& groups);
 
 }  // namespace houghstream::teach

@@ -16,6 +16,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tools/finder/stored_forest.hpp"
 #include "tools/teach/mesh/contact_sheet.hpp"
+#include "tools/teach/mesh/store_contents.hpp"
 #include "tools/teach/mesh/store_summary.hpp"
 
 namespace houghstream::teach {
@@ -38,6 +39,18 @@ void copy_files(const ObjectStore& from, const fs::path& to) {
       if (error) break;
     }
     require(!error, "{}: cannot be copied to {}: {}", (from.folder / folder).string(), to.string(), error.message());
+  }
+}
+
+/// Carries the forests of all groups but `group` over, bit for bit.
+void carry_other_forests(const ObjectStore& from, int group, const fs::path& to) {
+  ObjectStore made = from;
+  made.folder = to;
+  std::error_code error;
+  if (from.groups().size() > 1) fs::create_directory(made.forests_folder(), error);
+  require(!error, "{}: cannot make this folder: {}", made.forests_folder().string(), error.message());
+  for (const int other : from.groups()) {
+    if (other != group) carry_over(from.forest_file(other), made.forest_file(other));
   }
 }
 
@@ -75,8 +88,10 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
                                     [&](const StoredObject& other) { return other.name == new_name; });
   require(!is_taken, "{}: has a '{}' already, expected a new name for '{}'", store.json_file().string(), new_name,
           old_name);
-  Forest forest = load_forest(store.forest_file());
+  const int group = store::find_object(store, old_name).group;
+  Forest forest = load_forest(store.forest_file(group));
   copy_files(store, build.folder());
+  carry_other_forests(store, group, build.folder());
   store.folder = build.folder();
   for (StoredObject& object : store.objects) {
     if (object.id == id) object.name = new_name;
@@ -84,11 +99,11 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
   for (ObjectClass& known : forest.classes) {
     if (known.name == old_name) known.name = new_name;
   }
-  save_forest(forest, store.forest_file());
+  save_forest(forest, store.forest_file(group));
   write_names(store);
   write_images(store, store::find_object(store, new_name));
   store::write_store_json(store);
-  load_store_forest(store::read_store(build.folder()));  // what nothing can read takes no store's place
+  load_group_forest(store::read_store(build.folder()), group);  // what nothing can read takes no store's place
   build.commit();
 }
 
@@ -135,13 +150,11 @@ void set_frame_in_store(const fs::path& folder, const std::string& object_name, 
   } else {
     frames->insert(place, {frame_name, *T_object_frame});
   }
+  constexpr int kNoGroup = 0;
   copy_files(store, build.folder());
-  for (const fs::path& file : {store.forest_file(), store.contact_sheet()}) {
-    std::error_code error;
-    if (file == store.contact_sheet() && !fs::exists(file)) continue;  // a store can do without
-    fs::copy_file(file, build.folder() / file.filename(), error);
-    require(!error, "{}: cannot be copied to {}: {}", file.string(), build.folder().string(), error.message());
-  }
+  carry_other_forests(store, kNoGroup, build.folder());
+  const fs::path sheet = store.contact_sheet();
+  if (fs::exists(sheet)) carry_over(sheet, build.folder() / sheet.filename());  // a store can do without
   store.folder = build.folder();
   store::write_store_json(store);
   store::read_store(build.folder());  // what nothing can read takes no store's place

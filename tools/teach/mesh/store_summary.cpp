@@ -64,11 +64,14 @@ std::string teaching_summary(const store::ObjectStore& store, const std::set<int
 
 std::string store_text(const store::ObjectStore& store) {
   const std::map<int, Eigen::Vector3d> sizes = object_sizes(store);
+  const bool has_groups = store.groups().size() > 1;
   std::string text;
   for (const store::StoredObject& object : store.objects) {
-    text += fmt::format("{:>6} {:<24} {:<22} {:>5} views, {}, {}; shape symmetries: {}; {}\n", object.id, object.name,
-                        size_words(sizes.at(object.id)), object.views, object.attitudes,
-                        object.coloured ? "coloured" : "colour unknown", known_symmetries(object), object.mesh);
+    text +=
+        fmt::format("{:>6} {:<24} {:<22} {:>5} views, {}, {}; {}shape symmetries: {}; {}\n", object.id, object.name,
+                    size_words(sizes.at(object.id)), object.views, object.attitudes,
+                    object.coloured ? "coloured" : "colour unknown",
+                    has_groups ? fmt::format("group {}; ", object.group) : "", known_symmetries(object), object.mesh);
     for (const ObjectFrame& frame : object.frames) {
       const Eigen::Vector3d at = frame.T_object_frame.translation();
       const Eigen::Quaterniond q(frame.T_object_frame.linear());
@@ -88,6 +91,7 @@ OrderedJson store_json(const store::ObjectStore& store) {
     entry["id"] = object.id;
     entry["name"] = object.name;
     entry["size_m"] = size.allFinite() ? OrderedJson({size.x(), size.y(), size.z()}) : OrderedJson();
+    entry["group"] = object.group;
     entry["views"] = object.views;
     entry["attitudes"] = object.attitudes;
     entry["coloured"] = object.coloured;

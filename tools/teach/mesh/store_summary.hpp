@@ -24,9 +24,9 @@ std::string teaching_summary(const store::ObjectStore& store, const std::set<int
 /// Returns a line for each object of the store, and below it one for each of its named frames.
 std::string store_text(const store::ObjectStore& store);
 
-/// Returns the list for scripts: {"store", "contact_sheet", "objects": [{"id", "name", "size_m", "views", "attitudes",
-/// "coloured", "shape_symmetries", "frames": {NAME: {"translation_m", "rotation"}}, "mesh"}]}; what is not known is
-/// null.
+/// Returns the list for scripts: {"store", "contact_sheet", "objects": [{"id", "name", "size_m", "group", "views",
+/// "attitudes", "coloured", "shape_symmetries", "frames": {NAME: {"translation_m", "rotation"}}, "mesh"}]}; what is not
+/// known is null.
 OrderedJson store_json(const store::ObjectStore& store);
 
 }  // namespace houghstream::teach

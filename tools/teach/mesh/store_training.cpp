@@ -127,12 +127,11 @@ std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, cons
     std::move(views.begin(), views.end(), std::back_inserter(all));
     line.add(1.0);
   }
-  if (!options.dump_views.empty()) write_bop_models(models_of(meshes), options.dump_views / "models");
   return all;
 }
 
-Forest train_store_forest(std::vector<TrainingView> views, const std::optional<Forest>& old,
-                          const TeachOptions& options, const std::function<void(const std::string&)>& report) {
+Forest train_store_forest(std::vector<TrainingView> views, const Forest* old, const TeachOptions& options,
+                          const std::function<void(const std::string&)>& report) {
   constexpr double kToneFraction = 0.7;  // see TrainingSettings
   constexpr int kPatches = 26000;        // of an object: what trees are grown of, and how long that takes
   constexpr int kMinPatches = 100;

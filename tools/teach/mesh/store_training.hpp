@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +21,9 @@ std::vector<NamedModel> models_of(const std::vector<TaughtMesh>& meshes);
 std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, const TeachOptions& options,
                                      store::ObjectStore& made, const std::function<void(const std::string&)>& report);
 
-/// The forest of a teaching, from the views of its objects and of rooms. With an `old` one, that with these objects
-/// added, and of the profile of `options` only what is for training. `report` gets a line for each step.
-Forest train_store_forest(std::vector<TrainingView> views, const std::optional<Forest>& old,
-                          const TeachOptions& options, const std::function<void(const std::string&)>& report);
+/// The forest of a group, from the views of its objects and of rooms. With an `old` one, which else is null, that with
+/// these objects added, and of the profile of `options` only what is for training. `report` gets a line for each step.
+Forest train_store_forest(std::vector<TrainingView> views, const Forest* old, const TeachOptions& options,
+                          const std::function<void(const std::string&)>& report);
 
 }  // namespace houghstream::teach

@@ -6,10 +6,8 @@
 #include <chrono>
 #include <cstdio>
 #include <iterator>
-#include <optional>
 #include <set>
 
-#include "detector/forest/forest_file.hpp"
 #include "detector/training/object_removal.hpp"
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/store/object_store.hpp"
@@ -17,12 +15,11 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/parallel.hpp"
-#include "pose/model/symmetry_search.hpp"
-#include "tools/finder/stored_forest.hpp"
 #include "tools/finder/stored_quality.hpp"
 #include "tools/teach/mesh/contact_sheet.hpp"
 #include "tools/teach/mesh/lookalikes.hpp"
 #include "tools/teach/mesh/stop_notice.hpp"
+#include "tools/teach/mesh/store_contents.hpp"
 #include "tools/teach/mesh/store_summary.hpp"
 #include "tools/teach/mesh/store_training.hpp"
 
@@ -42,21 +39,6 @@ class Progress {
  private:
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
-
-/// A store with its forest and meshes, all of it in memory.
-struct Contents {
-  ObjectStore list;
-  std::optional<Forest> forest;
-  std::map<std::string, Mesh> meshes;
-};
-
-Contents read_contents(const fs::path& folder) {
-  Contents contents;
-  contents.list = store::read_store(folder);
-  contents.meshes = store::load_store_meshes(contents.list);
-  contents.forest = load_store_forest(contents.list);
-  return contents;
-}
 
 /// Ids of BOP folders are kept where they are free; what has none, or another object's, gets the next free one.
 void give_ids(const ObjectStore& old, std::vector<TaughtMesh>& meshes) {
@@ -86,12 +68,13 @@ void require_new(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) 
 
 using Practice = std::map<std::string, PracticeCount>;
 
-/// The objects of the finished store, looked for in rooms; what is learnt of the new ones goes into forest and store.
-Practice calibrate_all(const std::vector<NamedModel>& models, const std::set<int>& new_ids,
-                       const CalibrationSettings& settings, Forest& forest, ObjectStore& made) {
+/// The objects of the finished store, looked for in rooms; what is learnt of the new ones goes into their groups'
+/// forests and the store.
+Practice calibrate_all(const std::vector<StoreModel>& models, const std::set<int>& new_ids,
+                       const CalibrationSettings& settings, std::vector<GroupForest>& groups, ObjectStore& made) {
   std::vector<CalibrationObject> objects(models.size());
   parallel_for(settings.threads, static_cast<int>(models.size()), [&](int i) {
-    const NamedModel& model = models[static_cast<std::size_t>(i)];
+    const NamedModel& model = models[static_cast<std::size_t>(i)].model;
     const auto of_model = [&](const StoredObject& object) { return object.id == model.object_id; };
     const StoredObject& stored = *std::find_if(made.objects.begin(), made.objects.end(), of_model);
     CalibrationObject& object = objects[static_cast<std::size_t>(i)];
@@ -106,7 +89,13 @@ Practice calibrate_all(const std::vector<NamedModel>& models, const std::set<int
     object.in_scene.has_colour = stored.coloured;
     object.in_scene.is_calibrated = new_ids.count(model.object_id) > 0;
   });
-  const std::map<std::string, CalibratedObject> learnt = calibrate_on_scenes(objects, new_ids, settings, forest);
+  std::vector<Forest> forests;
+  for (GroupForest& it : groups) {
+    forests.push_back(std::move(it.forest));
+    if (!new_objects_of(forests.back(), new_ids).empty()) it.file.clear();
+  }
+  const std::map<std::string, CalibratedObject> learnt = calibrate_on_scenes(objects, new_ids, settings, forests);
+  for (std::size_t i = 0; i < groups.size(); ++i) groups[i].forest = std::move(forests[i]);
   Practice practice;
   for (StoredObject& object : made.objects) {
     const auto found = learnt.find(object.name);
@@ -122,47 +111,70 @@ std::string unchanged_notice(const fs::path& folder) {
                      fs::exists(folder) ? folder.string() + " is as it was" : "nothing was made in " + folder.string());
 }
 
-std::string calibration_step(const CalibrationSettings& settings, std::size_t new_objects) {
-  return fmt::format("looked for in {} rendered rooms, of which scores and qualities are learnt",
-                     scene_count_for(new_objects, settings));
+std::string calibration_step(const CalibrationSettings& settings, const std::set<int>& new_ids,
+                             const std::vector<GroupForest>& groups) {
+  int scenes = 0;
+  for (const GroupForest& it : groups) {
+    const std::size_t count = new_objects_of(it.forest, new_ids).size();
+    if (count > 0) scenes += scene_count_for(count, settings);
+  }
+  return fmt::format("looked for in {} rendered rooms, of which scores and qualities are learnt", scenes);
 }
 
-/// The forest's classes get the ids of the store.
+/// Objects that are taught together.
+struct GroupPlan {
+  int grown = 0;  ///< number of the group that they join; 0: a new one
+  std::vector<TaughtMesh> meshes;
+};
+
+/// The objects join the last group where all of them have room there; else they make new groups of about the same size.
+std::vector<GroupPlan> divide(std::vector<TaughtMesh> meshes, const ObjectStore& old, int max_objects) {
+  const auto room = static_cast<std::size_t>(max_objects);
+  if (!old.objects.empty()) {
+    const int last = old.groups().back();
+    const auto known = std::count_if(old.objects.begin(), old.objects.end(),
+                                     [&](const StoredObject& object) { return object.group == last; });
+    if (static_cast<std::size_t>(known) + meshes.size() <= room) return {{last, std::move(meshes)}};
+  }
+  const std::size_t parts = (meshes.size() + room - 1) / room;
+  std::vector<GroupPlan> plans(parts);
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    plans[i * parts / meshes.size()].meshes.push_back(std::move(meshes[i]));
+  return plans;
+}
+
+/// The classes of a forest that has grown get the ids of the store.
 void take_ids(const ObjectStore& list, Forest& forest) {
-  for (ObjectClass& known : forest.classes) {
-    for (const StoredObject& object : list.objects) {
-      if (object.name == known.name) known.class_id = object.id;
-    }
+  for (ObjectClass& known : forest.classes) known.class_id = store::find_object(list, known.name).id;
+}
+
+/// Grows the forest of a group, whose objects join the list.
+void teach_group(const GroupPlan& plan, const TeachOptions& options, const Progress& progress, ObjectStore& made,
+                 std::vector<GroupForest>& groups) {
+  std::vector<TrainingView> views = read_backgrounds(options.backgrounds);  // of each group: training changes them
+  progress(fmt::format("{} pictures of rooms read", views.size()));
+  const std::size_t known = made.objects.size();
+  std::vector<TrainingView> of_objects = make_views(plan.meshes, options, made, progress);
+  std::move(of_objects.begin(), of_objects.end(), std::back_inserter(views));
+  const auto is_grown = [&](const GroupForest& it) { return number_of(it.forest, made) == plan.grown; };
+  const auto old = std::find_if(groups.begin(), groups.end(), is_grown);
+  for (std::size_t i = known; i < made.objects.size(); ++i)
+    made.objects[i].group = plan.grown > 0 ? plan.grown : plan.meshes.front().id;
+  if (old == groups.end()) {
+    groups.push_back({train_store_forest(std::move(views), nullptr, options, progress), {}});
+  } else {
+    old->forest = train_store_forest(std::move(views), &old->forest, options, progress);
+    old->file.clear();
+    take_ids(made, old->forest);
   }
 }
 
-/// Everything but the images of views, which are there, and store.json last. All of it is read back: a store that
-/// nothing can read must not take the place of one that works.
-void write_store(ObjectStore list, const std::vector<NamedModel>& models, const Forest& forest) {
-  std::sort(list.objects.begin(), list.objects.end(),
-            [](const StoredObject& a, const StoredObject& b) { return a.id < b.id; });
-  write_bop_models(models, list.models_folder());
-  save_forest(forest, list.forest_file());
-  std::vector<fs::path> images;
-  for (const StoredObject& object : list.objects) images.push_back(list.view_image(object.id));
-  write_contact_sheet(images, list.contact_sheet());
-  list.tone = forest.features.tone;
-  store::write_store_json(list);
-  load_store_forest(store::read_store(list.folder));
-}
-
-/// Copies the unchanged part of a store into the new one.
-void keep(const Contents& old, const std::string& except, ObjectStore& made, std::vector<NamedModel>& models) {
-  for (const StoredObject& object : old.list.objects) {
-    if (object.name == except) continue;
-    made.objects.push_back(object);
-    std::optional<ShapeSymmetry>& shape = made.objects.back().shape_symmetry;
-    if (!shape) shape = find_shape_symmetry(old.meshes.at(object.name));  // taught before it was looked for
-    models.push_back({object.id, object.name, old.meshes.at(object.name), old.list.symmetries.at(object.id)});
-    std::error_code error;
-    fs::copy_file(old.list.view_image(object.id), made.view_image(object.id), error);
-    require(!error, "{}: cannot be copied: {}", old.list.view_image(object.id).string(), error.message());
-  }
+/// As a store that is read has them.
+void put_in_order(ObjectStore& made, std::vector<GroupForest>& groups) {
+  store::number_groups(made);
+  std::stable_sort(groups.begin(), groups.end(), [&](const GroupForest& a, const GroupForest& b) {
+    return number_of(a.forest, made) < number_of(b.forest, made);
+  });
 }
 
 /// All objects are meant where no names are given.
@@ -172,15 +184,6 @@ std::set<int> ids_of(const ObjectStore& list, const std::vector<std::string>& na
   if (!names.empty()) return ids;
   for (const StoredObject& object : list.objects) ids.insert(object.id);
   return ids;
-}
-
-ObjectStore start_store(const fs::path& folder) {
-  ObjectStore made;
-  made.folder = folder;
-  std::error_code error;
-  fs::create_directories(folder / "views", error);
-  require(!error, "{}: cannot make this folder: {}", (folder / "views").string(), error.message());
-  return made;
 }
 
 /// Nothing is made beside what is no store.
@@ -194,13 +197,6 @@ void require_free(const fs::path& dump) {
   std::error_code error;
   require(dump.empty() || !fs::exists(dump, error) || (fs::is_directory(dump, error) && fs::is_empty(dump, error)),
           "--dump-views {}: holds something already, expected a new folder or an empty one", dump.string());
-}
-
-void name_lookalikes(const std::vector<NamedModel>& models) {
-  std::vector<NamedMesh> named;
-  named.reserve(models.size());
-  for (const NamedModel& model : models) named.emplace_back(model.name, &model.mesh);
-  for (const Lookalike& pair : find_lookalikes(named)) log_warning("{}", describe(pair));
 }
 
 }  // namespace
@@ -227,7 +223,7 @@ void teach_meshes(const TeachOptions& options) {
   require_free(options.dump_views);
   store::StoreTransaction build(options.out);  // before the store is read: nobody else changes it from here on
   if (!options.add && !options.replace) require_no_store(options.out);
-  Contents old;
+  StoreContents old;
   if (options.add) {
     old = read_contents(options.out);
     stored_quality(old.list, QualitySettings{});  // of other terms: refused before anything is taught, not by hs-pose
@@ -242,27 +238,27 @@ void teach_meshes(const TeachOptions& options) {
   progress(fmt::format("{} meshes read", meshes.size()));
 
   ObjectStore made = start_store(build.folder());
-  std::vector<NamedModel> models;
-  keep(old, "", made, models);
-  std::vector<TrainingView> views = read_backgrounds(options.backgrounds);
-  progress(fmt::format("{} pictures of rooms read", views.size()));
-  std::vector<TrainingView> of_objects = make_views(meshes, options, made, progress);
-  std::move(of_objects.begin(), of_objects.end(), std::back_inserter(views));
-  Forest forest = train_store_forest(std::move(views), old.forest, options, progress);
-  take_ids(made, forest);
+  std::vector<StoreModel> models;
+  keep_objects(old, "", made, models);
+  if (!options.dump_views.empty()) write_bop_models(models_of(meshes), options.dump_views / "models");
   std::set<int> new_ids;
   for (NamedModel& model : models_of(meshes)) {
     new_ids.insert(model.object_id);
-    models.push_back(std::move(model));
+    models.push_back({std::move(model), {}});
   }
+  std::vector<GroupForest>& groups = old.groups;
+  for (const GroupPlan& plan : divide(std::move(meshes), old.list, options.max_group_objects))
+    teach_group(plan, options, progress, made, groups);
+  put_in_order(made, groups);
   CalibrationSettings calibration = options.calibration;
   calibration.seed = options.seed;
   calibration.threads = options.threads;
-  progress(calibration_step(calibration, new_ids.size()));
-  const Practice practice = calibrate_all(models, new_ids, calibration, forest, made);
+  progress(calibration_step(calibration, new_ids, groups));
+  const Practice practice = calibrate_all(models, new_ids, calibration, groups, made);
   progress("scores and qualities learnt");
-  made.settings = {{"attitudes", options.attitudes}, {"seed", options.seed}, {"profile", forest.profile}};
-  write_store(made, models, forest);
+  made.settings = {
+      {"attitudes", options.attitudes}, {"seed", options.seed}, {"profile", groups.front().forest.profile}};
+  write_store(made, models, groups);
   stop.release();
   build.commit();
   name_lookalikes(models);
@@ -270,20 +266,36 @@ void teach_meshes(const TeachOptions& options) {
   fmt::print("teach_seconds {:.1f}\n", progress.seconds());
 }
 
+void name_lookalikes(const std::vector<StoreModel>& models) {
+  std::vector<NamedMesh> named;
+  named.reserve(models.size());
+  for (const StoreModel& it : models) named.emplace_back(it.model.name, &it.model.mesh);
+  for (const Lookalike& pair : find_lookalikes(named)) log_warning("{}", describe(pair));
+}
+
 void remove_from_store(const fs::path& folder, const std::string& name) {
   require_store(folder);
   store::StoreTransaction build(folder);
-  const Contents old = read_contents(folder);
+  StoreContents old = read_contents(folder);
   require(old.list.objects.size() > 1 || store::find_object(old.list, name).name != name,
           "{}: '{}' is its only object, expected another one to stay; hs-teach mesh MESH --out {} --replace teaches "
           "others in its place, rm -r {} removes the store",
           folder.string(), name, folder.string(), folder.string());
-  const Forest forest = training::remove_object(*old.forest, store::find_object(old.list, name).name);
+  const int group = store::find_object(old.list, name).group;
+  std::vector<GroupForest>& groups = old.groups;
+  const auto of_object = std::find_if(groups.begin(), groups.end(),
+                                      [&](const GroupForest& it) { return number_of(it.forest, old.list) == group; });
+  if (groups.size() > 1 && of_object->forest.classes.size() == 1) {
+    groups.erase(of_object);
+  } else {
+    *of_object = {training::remove_object(of_object->forest, name), {}};
+  }
   ObjectStore made = start_store(build.folder());
   made.settings = old.list.settings;
-  std::vector<NamedModel> models;
-  keep(old, name, made, models);
-  write_store(made, models, forest);
+  std::vector<StoreModel> models;
+  keep_objects(old, name, made, models);
+  put_in_order(made, groups);
+  write_store(made, models, groups);
   build.commit();
 }
 
@@ -293,16 +305,15 @@ void calibrate_store(const fs::path& folder, const CalibrationSettings& settings
   StopNotice stop(unchanged_notice(folder));
   require_store(folder);
   store::StoreTransaction build(folder);
-  const Contents old = read_contents(folder);
+  StoreContents old = read_contents(folder);
   const std::set<int> ids = ids_of(old.list, names);
   ObjectStore made = start_store(build.folder());
   made.settings = old.list.settings;
-  std::vector<NamedModel> models;
-  keep(old, "", made, models);
-  Forest forest = *old.forest;
-  progress(calibration_step(settings, ids.size()));
-  const Practice practice = calibrate_all(models, ids, settings, forest, made);
-  write_store(made, models, forest);
+  std::vector<StoreModel> models;
+  keep_objects(old, "", made, models);
+  progress(calibration_step(settings, ids, old.groups));
+  const Practice practice = calibrate_all(models, ids, settings, old.groups, made);
+  write_store(made, models, old.groups);
   stop.release();
   build.commit();
   progress("scores and qualities learnt");

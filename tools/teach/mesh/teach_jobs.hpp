@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/teach/mesh/store_contents.hpp"
 #include "tools/teach/mesh/teach_options.hpp"
 
 namespace houghstream::teach {
@@ -17,6 +18,9 @@ void require_no_store(const std::filesystem::path& folder);
 /// Throws InputError for what cannot be taught, and before all work for a store that is there where `options` say
 /// neither add nor replace.
 void teach_meshes(const TeachOptions& options);
+
+/// Says in the log which objects can hardly be told apart.
+void name_lookalikes(const std::vector<StoreModel>& models);
 
 /// Learns scores and qualities of a store's objects anew: of all, or of those of the `names`. Throws InputError for a
 /// name that is not there.

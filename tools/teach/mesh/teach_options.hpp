@@ -22,10 +22,13 @@ struct TeachOptions {
   std::vector<TaughtMesh> shown;        ///< beside those: checked as they are (mesh_checks.hpp)
   std::vector<TrainingView> own_views;  ///< of a camera, by class_name, beside the rendered ones; in the mesh's frame
   BackgroundSettings backgrounds;
-  std::filesystem::path out;                   ///< the store
-  std::string attitudes = "resting";           ///< see world::parse_mesh_attitudes
-  bool add = false;                            ///< to the store that is there
-  bool replace = false;                        ///< that store; with neither one that is there is refused
+  std::filesystem::path out;          ///< the store
+  std::string attitudes = "resting";  ///< see world::parse_mesh_attitudes
+  bool add = false;                   ///< to the store that is there
+  bool replace = false;               ///< that store; with neither one that is there is refused
+  /// Largest group of objects that one forest is taught: seven find their objects as four do, and as many searches of a
+  /// frame as there are groups take the less time, the fewer they are.
+  int max_group_objects = 7;
   std::filesystem::path dump_views;            ///< BOP training folder to write the views to as well; empty = none
   world::MeshViewSettings views;               ///< attitudes and colour are those of the object
   Profile profile = make_profile("realtime");  ///< with `add` its training only, the rest is the forest's

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/test_files.hpp"
 
 namespace houghstream::teach {
@@ -34,9 +36,45 @@ TEST(Calibration, NewObjectsThatNoFrameShowsAreNamed) {
 TEST(Calibration, MoreRoomsThanMemoryHoldsAreRefused) {
   CalibrationSettings settings;
   settings.scenes = CalibrationSettings::kMaxScenes + 1;
-  Forest forest;
-  EXPECT_EQ(error_of([&] { calibrate_on_scenes({}, {}, settings, forest); }),
+  std::vector<Forest> groups(1);
+  EXPECT_EQ(error_of([&] { calibrate_on_scenes({}, {}, settings, groups); }),
             "501 practice rooms, expected at most 500: all are in memory");
+}
+
+std::vector<int> ids_among_strangers(int members, int strangers) {
+  std::vector<world::CalibrationSceneObject> objects;
+  std::set<int> group;
+  for (int id = 1; id <= members + strangers; ++id) {
+    objects.emplace_back();
+    objects.back().id = id;
+    if (id <= members) group.insert(id);
+  }
+  std::vector<int> ids;
+  for (const world::CalibrationSceneObject& object : among_strangers(objects, group)) ids.push_back(object.id);
+  return ids;
+}
+
+TEST(Calibration, EachStrangerStandsBesideMembersOfTheGroup) {
+  EXPECT_EQ(ids_among_strangers(2, 0), (std::vector<int>{1, 2}));
+  EXPECT_EQ(ids_among_strangers(1, 8), (std::vector<int>{1, 2, 3, 4, 5, 1, 6, 7, 8, 9}));
+  EXPECT_EQ(ids_among_strangers(3, 3), (std::vector<int>{1, 4, 2, 5, 3, 6}));
+  constexpr int kOfARoom = 7;
+  for (const int members : {4, 6, 7}) {
+    const std::vector<int> ids = ids_among_strangers(members, 53);
+    for (int id = members + 1; id <= members + 53; ++id)
+      EXPECT_EQ(std::count(ids.begin(), ids.end(), id), 1) << "stranger " << id;
+    for (std::size_t first = 0; first < ids.size(); ++first) {
+      int in_room = 0;
+      std::set<int> different;
+      for (std::size_t i = 0; i < kOfARoom; ++i) {
+        const int id = ids[(first + i) % ids.size()];
+        in_room += id <= members ? 1 : 0;
+        if (id <= members) different.insert(id);
+      }
+      EXPECT_EQ(static_cast<int>(different.size()), in_room) << "none twice";
+      EXPECT_GE(in_room, 1);
+    }
+  }
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   EXPECT_EQ(static_cast<int>(read_bop_training_views(options.dump_views).size()), first.objects[0].views);
 
   EXPECT_EQ(first.tone.min_mean, kCalibrationBrightness.min_mean) << "hs-pose reads it here";
-  EXPECT_EQ(load_forest(first.forest_file()).features.tone.max_deviation, kCalibrationBrightness.max_deviation);
+  EXPECT_EQ(load_forest(first.forest_file(1)).features.tone.max_deviation, kCalibrationBrightness.max_deviation);
 
   EXPECT_EQ(first.shape_symmetries().count("bracket"), 1U);
   const nlohmann::json learnt = first.objects[0].quality;
@@ -155,7 +155,7 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   store::ObjectStore before = store::read_store(options.out);
   before.objects[0].shape_symmetry->nearly_round = ContinuousSymmetry{};
   store::write_store_json(before);
-  const std::string forest = read_text(before.forest_file());
+  const std::string forest = read_text(before.forest_file(1));
   const cv::Mat views = read_colour_image(before.view_image(1));
   put_notes(options.out);
   rename_in_store(options.out, "bracket", "shelf_support");
@@ -195,7 +195,7 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
             std::string::npos);
   rename_in_store(options.out, "shelf_support", "bracket");
   expect_named(options.out, "bracket");
-  EXPECT_EQ(read_text(before.forest_file()), forest) << "byte for byte";
+  EXPECT_EQ(read_text(before.forest_file(1)), forest) << "byte for byte";
   EXPECT_EQ(std::distance(fs::directory_iterator(options.out.parent_path()), {}), 3) << "nothing is left beside it";
 }
 
