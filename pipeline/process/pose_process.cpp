@@ -35,8 +35,11 @@ void require_max_detections(const Detections& detections) {
 /// thread.
 class TransformPublisher {
  public:
-  TransformPublisher(LcmBus& bus, const std::string& frame_channels)
-      : bus_(bus), frame_channels_(frame_channels), several_cameras_(!ChannelPattern(frame_channels).is_name()) {}
+  TransformPublisher(LcmBus& bus, const std::string& frame_channels, const std::function<NamedFrames()>& named_frames)
+      : bus_(bus),
+        frame_channels_(frame_channels),
+        named_frames_(named_frames),
+        several_cameras_(!ChannelPattern(frame_channels).is_name()) {}
 
   /// Notes that detections of a frame on this other channel have come.
   void note_other_camera(const std::string& channel) {
@@ -45,18 +48,25 @@ class TransformPublisher {
              channel::camera_name(frame_channels_));
   }
 
-  /// Publishes a rigid_transform_t for each valid pose.
+  /// Publishes a rigid_transform_t for each valid pose, and for each frame that is named on its object.
   void publish(const ObjectPoses& poses) {
     const std::string camera = several_cameras_ ? poses.frame.channel : "";
+    const NamedFrames named = named_frames_ ? named_frames_() : NamedFrames();
     for (const ObjectPose& pose : poses.poses) {
       if (!pose.T_camera_object) continue;
       bus_.publish(channel::to_camera(pose.class_name, camera), to_message(poses.frame.utime, *pose.T_camera_object));
+      const auto frames = named.find(pose.class_name);
+      if (frames == named.end()) continue;
+      for (const ObjectFrame& frame : frames->second)
+        bus_.publish(channel::to_camera(pose.class_name + "_" + frame.name, camera),
+                     to_message(poses.frame.utime, *pose.T_camera_object * frame.T_object_frame));
     }
   }
 
  private:
   LcmBus& bus_;
   std::string frame_channels_;
+  std::function<NamedFrames()> named_frames_;
   std::atomic<bool> several_cameras_;
 };
 
@@ -75,7 +85,7 @@ class PoseProcess {
         synchroniser_(!bus.is_log(), !follow),
         decoded_(options.camera, "pose.decode"),
         models_(options.models),
-        transforms_(bus, options.frame_channels) {}
+        transforms_(bus, options.frame_channels, options.frames) {}
 
   void run() {
     status_.set_known_objects(options_.objects);

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/messages/channels.hpp"
@@ -12,8 +14,12 @@
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/known_objects.hpp"
 #include "pipeline/types/object_pose.hpp"
+#include "pipeline/types/placed_objects.hpp"
 
 namespace houghstream {
+
+/// Frames that are named on objects, by class.
+using NamedFrames = std::map<std::string, std::vector<ObjectFrame>>;
 
 struct PoseProcessOptions {
   std::string process = "hs-pose";               ///< its name in status_t
@@ -22,6 +28,8 @@ struct PoseProcessOptions {
   bool keep_frames = false;                      ///< for a log: frames and their detections go to the output log too
   std::set<std::string> models;                  ///< classes that have one; where none is detected, it warns
   std::function<KnownObjects()> objects;         ///< objects of its store, for the status; they have models too
+  /// Returns the frames that are named on its objects now, by class; empty = there are none.
+  std::function<NamedFrames()> frames;
   /// Returns the colours learnt of the camera with this channel; empty = none are.
   std::function<CameraChroma(const std::string&)> camera_colours;
 };
@@ -35,7 +43,8 @@ using EstimatePoses = std::function<ObjectPoses(const RgbdFrame&, const Detectio
 /// on other channels than `frame_channels` are somebody else's.
 ///
 /// Transforms go to <OBJECT>_TO_CAMERA where there is one camera, to <OBJECT>_TO_<CAMERA'S CHANNEL> where the channels
-/// are a pattern, and from the moment on when detections of another camera's frames are heard.
+/// are a pattern, and from the moment on when detections of another camera's frames are heard. Those of named frames go
+/// to <OBJECT>_<FRAME>_TO_CAMERA, or _TO_<CAMERA'S CHANNEL>.
 ///
 /// On a network the newest detections of each camera come first, the cameras in turn; each frame is decoded as soon as
 /// there is time, also before it is known whether something was detected in it. A log (which must hold frames and

@@ -146,6 +146,20 @@ void run_with_models(PoseOptions options) {
   run(bus, options, [&] { return estimator; });
 }
 
+/// Estimator and named frames of a store.
+struct StoredEstimator {
+  std::shared_ptr<const PoseEstimator> estimator;
+  NamedFrames frames;
+};
+
+NamedFrames named_frames_of(const store::ObjectStore& store) {
+  NamedFrames frames;
+  for (const store::StoredObject& object : store.objects) {
+    if (!object.frames.empty()) frames[object.name] = object.frames;
+  }
+  return frames;
+}
+
 /// A store may change while frames go by: each frame's poses are those of what is there when its turn comes.
 void run_with_store(PoseOptions options) {
   const ModelCache kept(folder_to_keep_in(options));
@@ -155,16 +169,21 @@ void run_with_store(PoseOptions options) {
     const PoseSettings settings = pose_settings_of(options.settings, store, options.min_quality);
     const ModelFiles files{store.folder, [&] { return store::mesh_stamp(store); },
                            [&] { return store::load_store_meshes(store, threads); }};
-    return warmed_up(estimator_of(files, settings, kept, threads), made_up.get());
+    return std::make_shared<const StoredEstimator>(StoredEstimator{
+        warmed_up(estimator_of(files, settings, kept, threads), made_up.get()), named_frames_of(store)});
   };
-  store::StoreWatcher<PoseEstimator> watch(options.objects, load);
+  store::StoreWatcher<StoredEstimator> watch(options.objects, load);
   const auto without_models = std::make_shared<const PoseEstimator>(std::map<std::string, Mesh>(), options.settings);
   options.process.objects = [&] { return watch.known(); };
+  options.process.frames = [&] {
+    const std::shared_ptr<const StoredEstimator> stored = watch.current();
+    return stored ? stored->frames : NamedFrames();
+  };
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   bus.is_log() ? watch.require_store() : watch.follow();
   run(bus, options, [&] {
-    std::shared_ptr<const PoseEstimator> estimator = watch.current();
-    return estimator ? estimator : without_models;
+    const std::shared_ptr<const StoredEstimator> stored = watch.current();
+    return stored ? stored->estimator : without_models;
   });
 }
 

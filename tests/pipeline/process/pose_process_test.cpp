@@ -51,6 +51,25 @@ TEST(PoseProcess, PublishesPosesAndTransforms) {
   test.stop();
 }
 
+TEST(PoseProcess, FramesThatAreNamedOnAnObjectHaveTransformsToo) {
+  ProcessOnMemq test({"BOWL_TO_CAMERA", "BOWL_RIM_TO_CAMERA", "CAN_LID_TO_CAMERA"});
+  PoseProcessOptions options;
+  options.frames = [] {
+    const Eigen::Isometry3d above(Eigen::Translation3d(0, 0.25, 0));
+    return NamedFrames{{"bowl", {{"rim", above}}}, {"can", {{"lid", above}}}};
+  };
+  test.start([&](LcmBus& bus) { run_pose_process(bus, options, at_one_metre); });
+  send_frame(test, 10);
+  test.bus.publish(channel::kDetections, to_message(one_bowl(10)));
+  ASSERT_TRUE(test.wait_for("BOWL_RIM_TO_CAMERA", 1));
+  const auto rim = test.at<rigid_transform_t>("BOWL_RIM_TO_CAMERA", 0);
+  EXPECT_EQ(rim.utime, 10);
+  EXPECT_EQ(rim.trans[1], 0.25);
+  EXPECT_EQ(rim.trans[2], 1.0);
+  EXPECT_EQ(test.count("CAN_LID_TO_CAMERA"), 0U);
+  test.stop();
+}
+
 TEST(PoseProcess, WhatIsLearntOfACamerasColoursIsToldOnceASecond) {
   ProcessOnMemq test({channel::kPoses, channel::kCameraColours});
   PoseProcessOptions options;
