@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <houghstream/camera_colours_t.hpp>
 #include <houghstream/detections_t.hpp>
 #include <houghstream/drake_image_array_t.hpp>
 #include <houghstream/drake_viewer_draw_t.hpp>
@@ -13,6 +14,7 @@
 #include <houghstream/object_poses_t.hpp>
 #include <houghstream/objects_t.hpp>
 #include <houghstream/placed_objects_t.hpp>
+#include <houghstream/pose_probabilities_t.hpp>
 #include <houghstream/pose_t.hpp>
 #include <houghstream/rigid_transform_t.hpp>
 #include <houghstream/status_t.hpp>
@@ -38,6 +40,8 @@ std::string type_name(std::int64_t fingerprint) {
       {drake_viewer_draw_t::getHash(), "lcmt_viewer_draw (drake)"},
       {detections_t::getHash(), "detections_t"},
       {object_poses_t::getHash(), "object_poses_t"},
+      {pose_probabilities_t::getHash(), "pose_probabilities_t"},
+      {camera_colours_t::getHash(), "camera_colours_t"},
       {objects_t::getHash(), "objects_t"},
       {placed_objects_t::getHash(), "placed_objects_t"},
       {status_t::getHash(), "status_t"},

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <houghstream/camera_colours_t.hpp>
 #include <houghstream/drake_viewer_draw_t.hpp>
 #include <houghstream/drake_viewer_load_robot_t.hpp>
+#include <houghstream/placed_objects_t.hpp>
+#include <houghstream/pose_probabilities_t.hpp>
 #include <houghstream/pose_t.hpp>
 #include <houghstream/status_t.hpp>
 
@@ -15,6 +18,9 @@ namespace {
 TEST(MessageTypes, AreKnownByFingerprint) {
   EXPECT_EQ(type_name(status_t::getHash()), "status_t");
   EXPECT_EQ(type_name(images_t::getHash()), "images_t (bot_core)");
+  EXPECT_EQ(type_name(placed_objects_t::getHash()), "placed_objects_t");
+  EXPECT_EQ(type_name(pose_probabilities_t::getHash()), "pose_probabilities_t");
+  EXPECT_EQ(type_name(camera_colours_t::getHash()), "camera_colours_t");
   EXPECT_EQ(type_name(0), "no message");
   EXPECT_EQ(type_name(0x1234), "?? 0000000000001234");
   EXPECT_EQ(type_name(-1), "?? ffffffffffffffff");
