@@ -17,6 +17,7 @@ from studies.tracks.plan import CAMERAS, WRONG, Plan
 # Stoiber, Sundermeyer and Triebel 2022, "Iterative Corresponding Geometry: Fusing Region and Depth for Highly Efficient 3D
 # Tracking of Textureless Objects": as its readme states it, without naming the machine.
 ICG = {"ms_per_object": 1.3, "machine": "one CPU core", "source": "readme of ICG, Stoiber et al. 2022"}
+OBJECTS = "HOUGHSTREAM_OBJECTS"
 MOVED = ("pushed", "carried", "removed", "swapped", "cans")
 
 
@@ -88,9 +89,11 @@ def cameras(options, plan, store, tracked):
 def told(log):
     """What a log tells of the world, byte for byte but for the times that stages took."""
     for timestamp, channel, data in read_log(log):
-        world = objects_t.decode(data)
-        world.n_stages, world.stages = 0, []
-        yield timestamp, channel, world.encode()
+        if channel == OBJECTS:
+            world = objects_t.decode(data)
+            world.n_stages, world.stages = 0, []
+            data = world.encode()
+        yield timestamp, channel, data
 
 
 def tracks_are_equal(store, names):
