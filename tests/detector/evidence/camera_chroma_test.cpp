@@ -35,11 +35,8 @@ Forest alike(std::size_t classes) {
   return forest;
 }
 
-/// Returns the results at the position of the toy's view, for a hypothesis of each class.
-std::vector<ScoredHypothesis> weighed(const Forest& forest, const RgbdFrame& frame,
-                                      const std::vector<ChromaPair>& reference = {}) {
-  const ForestIndex index(forest);
-  const LabFrame in_lab = toy::lab_frame(frame, frame.colour, 1.0F);
+/// Returns a hypothesis of each class at the position of the toy's view.
+std::vector<Hypothesis> one_of_each_class(const Forest& forest) {
   std::vector<Hypothesis> hypotheses(forest.classes.size());
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     hypotheses[i].class_index = i;
@@ -48,8 +45,29 @@ std::vector<ScoredHypothesis> weighed(const Forest& forest, const RgbdFrame& fra
     hypotheses[i].weight = 1.0F;
     hypotheses[i].views = {{static_cast<std::uint32_t>(i), 1.0F}};
   }
+  return hypotheses;
+}
+
+/// What is found there by groups of classes.
+std::vector<ScoredHypothesis> weighed(const std::vector<Forest>& forests, const RgbdFrame& frame,
+                                      const std::vector<ChromaPair>& reference = {}) {
+  const LabFrame in_lab = toy::lab_frame(frame, frame.colour, 1.0F);
+  const std::vector<ForestIndex> indices(forests.begin(), forests.end());
+  std::vector<std::vector<Hypothesis>> hypotheses;
+  for (const Forest& forest : forests) hypotheses.push_back(one_of_each_class(forest));
+  const PatchGrid patches;
+  const EvidenceSettings settings;
+  const std::vector<std::uint32_t> excluded;
+  std::vector<GroupHypotheses> groups;
+  for (std::size_t i = 0; i < forests.size(); ++i)
+    groups.push_back({{indices[i], in_lab, patches, settings, excluded}, hypotheses[i]});
   ScoringWorkspace workspace;
-  return weigh_in_camera_colours({{{index, in_lab, {}, {}, {}}, hypotheses}}, reference, 2, workspace);
+  return weigh_in_camera_colours(groups, reference, 2, workspace);
+}
+
+std::vector<ScoredHypothesis> weighed(const Forest& forest, const RgbdFrame& frame,
+                                      const std::vector<ChromaPair>& reference = {}) {
+  return weighed(std::vector<Forest>{forest}, frame, reference);
 }
 
 std::vector<ChromaPair> seen_with_cast(double a, double b) {
@@ -86,6 +104,22 @@ TEST(CameraChroma, ObjectsOfAFrameTellTheCastToEachOther) {
   const RgbdFrame cast = with_cast(toy::training_views().front().frame, kA, kB);
   const float alone = weighed(alike(1), cast).front().detection.score;
   for (const ScoredHypothesis& together : weighed(alike(5), cast)) EXPECT_GT(together.detection.score, alone + 0.01F);
+}
+
+TEST(CameraChroma, InWhichGroupAnObjectIsMakesNoDifference) {
+  const RgbdFrame cast = with_cast(toy::training_views().front().frame, kA, kB);
+  const std::vector<ScoredHypothesis> together = weighed(alike(5), cast);
+  const Forest first = alike(2);
+  Forest second = alike(5);
+  second.classes.erase(second.classes.begin(), second.classes.begin() + 2);
+  second.views.erase(second.views.begin(), second.views.begin() + 2);
+  for (ViewTemplate& view : second.views) view.class_index -= 2;
+  const std::vector<ScoredHypothesis> in_groups = weighed(std::vector<Forest>{first, second}, cast);
+  ASSERT_EQ(in_groups.size(), together.size());
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    EXPECT_EQ(in_groups[i].detection.class_name, together[i].detection.class_name);
+    EXPECT_EQ(in_groups[i].detection.score, together[i].detection.score) << i;
+  }
 }
 
 TEST(CameraChroma, AKnownCastDoesNotMakeAnotherColourRight) {

@@ -51,14 +51,13 @@ class Cluster(unittest.TestCase):
         return subprocess.run([str(SCRIPTS / script), *map(str, words)], capture_output=True, text=True, timeout=60,
                               env=self.environment, check=False)
 
-    def expect_taught(self, threads):
+    def expect_taught(self):
         groups = ["1,2,3,4,5,6,7", "8,9,21,101,102,103,104", "105,106"]
         lines = self.log.read_text(encoding="utf-8").splitlines()
         parts = {group: f"{self.out}.parts/{group}.store" for group in groups}
         self.assertEqual(sorted(lines[:3]), sorted(
             f"mesh {self.models} --ids {group} --out {part} --threads 2" for group, part in parts.items()))
-        self.assertEqual(lines[3:], [f"merge {' '.join(sorted(parts.values()))} --out {self.out}",
-                                     f"practise {self.out}{threads}"])
+        self.assertEqual(lines[3:], [f"merge {' '.join(sorted(parts.values()))} --out {self.out}"])
 
     def test_ids_come_in_sevens(self):
         said = self.start("id_groups", self.models)
@@ -71,16 +70,16 @@ class Cluster(unittest.TestCase):
     def test_a_job_array_teaches_and_a_job_after_it_merges(self):
         said = self.start("teach_with_slurm", self.models, self.out)
         self.assertEqual(said.returncode, 0, said.stderr)
-        self.expect_taught(" --threads 8")
+        self.expect_taught()
         self.start("teach_with_slurm", self.models, self.out)
         lines = self.log.read_text(encoding="utf-8").splitlines()
-        self.assertEqual([line.split()[0] for line in lines[5:]], ["merge", "practise"], "parts are not taught again")
+        self.assertEqual([line.split()[0] for line in lines[4:]], ["merge"], "parts are not taught again")
 
     @unittest.skipUnless(shutil.which("parallel"), "not run: GNU parallel is not installed")
     def test_gnu_parallel_teaches_and_merges(self):
         said = self.start("teach_with_parallel", self.models, self.out, 2)
         self.assertEqual(said.returncode, 0, said.stderr)
-        self.expect_taught("")
+        self.expect_taught()
 
     def test_what_is_not_meant_is_refused_in_a_line(self):
         for script in ("id_groups", "teach_with_parallel", "teach_with_slurm"):

@@ -26,8 +26,8 @@ struct TeachOptions {
   std::string attitudes = "resting";  ///< see world::parse_mesh_attitudes
   bool add = false;                   ///< to the store that is there
   bool replace = false;               ///< that store; with neither one that is there is refused
-  /// Largest group of objects that one forest is taught: seven find their objects as four do, and as many searches of a
-  /// frame as there are groups take the less time, the fewer they are.
+  /// Largest group of objects that one forest is taught: objects that lose AUC in a forest of 21 keep it in one of
+  /// seven, and the fewer groups there are, the less time a frame takes.
   int max_group_objects = 7;
   std::filesystem::path dump_views;            ///< BOP training folder to write the views to as well; empty = none
   world::MeshViewSettings views;               ///< attitudes and colour are those of the object
