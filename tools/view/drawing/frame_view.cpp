@@ -51,6 +51,7 @@ class Block {
 };
 
 std::string process_line(const ProcessState& process) {
+  if (process.ended) return process.name + " ended";
   std::string text = fmt::format("{} {:.1f} Hz, {} skipped", process.name, process.rate_hz, process.skipped);
   if (process.lost > 0) text += fmt::format(", {} lost", process.lost);
   if (process.refused > 0) text += fmt::format(", {} refused", process.refused);
@@ -70,7 +71,7 @@ void draw_stream(Block block, const StreamState& state, const std::string& camer
   for (const ProcessState& process : state.processes) {
     if (row >= kRows) return;
     const bool wrong = process.lost > 0 || process.refused > 0;
-    block.line(row++, process_line(process), wrong ? kWarning : kBright);
+    block.line(row++, process_line(process), process.ended ? kMuted : wrong ? kWarning : kBright);
   }
 }
 

@@ -15,6 +15,7 @@ constexpr int kColumn = 3;  // pixels of one frame
 constexpr double kChartText = 0.4;
 const cv::Scalar kChartGround(52, 48, 46);
 const cv::Scalar kMark(255, 255, 255);
+const cv::Scalar kBeyond(60, 160, 240);
 
 double milliseconds(const StageTime& stage) {
   return static_cast<double>(std::max<std::int64_t>(stage.duration_us, 0)) * 1e-3;
@@ -35,9 +36,22 @@ double round_up(double value) {
   return 10.0 * scale;
 }
 
+// Returns the top of the scale: it holds 95 of 100 frames, so that a single slow one does not flatten all others.
+double scale_top(const LatencyHistory& history) {
+  constexpr double kFraction = 0.95;
+  std::vector<double> heights;
+  heights.reserve(history.size());
+  for (const FrameLatency& frame : history) heights.push_back(height_ms(frame));
+  if (heights.empty()) return 0.0;
+  std::sort(heights.begin(), heights.end());
+  const double height = heights[static_cast<std::size_t>(kFraction * static_cast<double>(heights.size() - 1))];
+  return height > 0.0 ? round_up(height) : 0.0;
+}
+
 void draw_frame(cv::Mat& image, const cv::Rect& column, const FrameLatency& frame, double top_ms) {
+  constexpr int kCap = 3;  // pixels
   const auto row_of = [&](double ms) {
-    return column.br().y - static_cast<int>(std::lround(ms / top_ms * column.height));
+    return column.br().y - static_cast<int>(std::lround(std::min(ms / top_ms, 1.0) * column.height));
   };
   double from_ms = 0.0;
   for (std::size_t i = 0; i < frame.stages.size(); ++i) {
@@ -50,6 +64,8 @@ void draw_frame(cv::Mat& image, const cv::Rect& column, const FrameLatency& fram
     cv::rectangle(image, cv::Rect(column.x, std::min(row_of(*frame.total_ms), column.br().y - 1), column.width, 1),
                   kMark, cv::FILLED);
   }
+  if (height_ms(frame) > top_ms)
+    cv::rectangle(image, cv::Rect(column.x, column.y, column.width, kCap) & column, kBeyond, cv::FILLED);
 }
 
 }  // namespace
@@ -87,15 +103,16 @@ void draw_latency_chart(cv::Mat& image, const cv::Rect& area, const LatencyHisto
   const cv::Rect inside = area & cv::Rect(0, 0, image.cols, image.rows);
   if (inside.empty()) return;
   cv::rectangle(image, inside, kChartGround, cv::FILLED);
-  double highest = 0.0;
-  for (const FrameLatency& frame : history) highest = std::max(highest, height_ms(frame));
-  if (highest <= 0.0) return;
-  const double top_ms = round_up(highest);
+  const double top_ms = scale_top(history);
+  if (top_ms <= 0.0) return;
   int x = inside.br().x - kColumn;
   for (auto frame = history.rbegin(); frame != history.rend() && x >= inside.x; ++frame, x -= kColumn) {
     draw_frame(image, cv::Rect(x, inside.y, kColumn - 1, inside.height), *frame, top_ms);
   }
-  draw_text(image, fmt::format("{:.0f} ms", top_ms), {inside.x + 3, inside.y + 12}, kChartText);
+  double highest = 0.0;
+  for (const FrameLatency& frame : history) highest = std::max(highest, height_ms(frame));
+  const std::string beyond = highest > top_ms ? fmt::format(", orange: up to {:.0f} ms", highest) : "";
+  draw_text(image, fmt::format("{:.0f} ms{}", top_ms, beyond), {inside.x + 3, inside.y + 12}, kChartText);
 }
 
 }  // namespace houghstream::view

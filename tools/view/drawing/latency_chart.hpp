@@ -26,7 +26,8 @@ cv::Scalar stage_colour(std::size_t index);
 void draw_stage_list(cv::Mat& image, const cv::Rect& area, const std::vector<StageTime>& stages, int rows);
 
 /// Draws a column per frame, newest to the right: its stages on top of each other, and a white mark at the frame's
-/// whole latency. The scale, a round number of milliseconds, is at the upper left.
+/// whole latency. The scale, a round number of milliseconds, holds 95 of 100 frames and is at the upper left; a column
+/// that exceeds it is cut off there and has an orange cap, and the longest one is named beside the scale.
 void draw_latency_chart(cv::Mat& image, const cv::Rect& area, const LatencyHistory& history);
 
 }  // namespace houghstream::view

@@ -7,6 +7,7 @@ namespace {
 
 constexpr std::int64_t kWindowUs = 2'000'000;   // over which rates are counted
 constexpr std::int64_t kSilenceUs = 5'000'000;  // five times the interval of status_t, and of teaching_t at its slowest
+constexpr std::int64_t kListedUs = 60'000'000;  // after its last status, a process that has ended is listed for so long
 
 }  // namespace
 
@@ -47,6 +48,22 @@ void StreamWatch::note_world(const WorldObjects& world, std::int64_t now_us) {
   world_us_ = now_us;
 }
 
+std::vector<ProcessState> StreamWatch::listed_processes(std::int64_t now_us) const {
+  const auto is_alive = [&](const ProcessState& process) { return now_us - process.heard_us <= kSilenceUs; };
+  std::set<std::string> alive;
+  for (const auto& [key, process] : processes_) {
+    if (is_alive(process)) alive.insert(process.name);
+  }
+  std::vector<ProcessState> listed;
+  for (const auto& [key, process] : processes_) {
+    const bool ended = !is_alive(process);
+    if (ended && (alive.count(process.name) > 0 || now_us - process.heard_us > kListedUs)) continue;
+    listed.push_back(process);
+    listed.back().ended = ended;
+  }
+  return listed;
+}
+
 StreamState StreamWatch::state(std::int64_t now_us) {
   const std::lock_guard lock(mutex_);
   while (!arrivals_us_.empty() && now_us - arrivals_us_.front() > kWindowUs) arrivals_us_.pop_front();
@@ -55,9 +72,7 @@ StreamState StreamWatch::state(std::int64_t now_us) {
     state.frames_hz = static_cast<double>(arrivals_us_.size() - 1) * 1e6 /
                       static_cast<double>(arrivals_us_.back() - arrivals_us_.front());
   }
-  for (const auto& [key, process] : processes_) {
-    if (now_us - process.heard_us <= kSilenceUs) state.processes.push_back(process);
-  }
+  state.processes = listed_processes(now_us);
   if (now_us - taught_us_ <= kSilenceUs) state.teaching = teaching_;
   for (const auto& [camera, heard] : colours_) {
     if (now_us - heard.second <= kSilenceUs) state.colours.emplace(camera, heard.first);

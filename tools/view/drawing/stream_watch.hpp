@@ -26,14 +26,15 @@ struct ProcessState {
   std::int64_t lost = 0;      ///< frames that never arrived; -1 = unknown
   std::int64_t refused = 0;   ///< frames that could not be understood
   std::int64_t heard_us = 0;  ///< time of its reception, local clock
+  bool ended = false;         ///< no status came within the heartbeat timeout of five seconds
 };
 
 /// Describes the stream at one moment.
 struct StreamState {
-  double frames_hz = 0.0;                    ///< frames of the camera that arrive here per second
-  std::vector<ProcessState> processes;       ///< processes of recent statuses, by name
-  std::optional<Teaching> teaching;          ///< of an object that is shown at present
-  std::optional<WorldState> world;           ///< of a recent message of hs-track
+  double frames_hz = 0.0;               ///< frames of the camera that arrive here per second
+  std::vector<ProcessState> processes;  ///< processes of recent statuses, and ended ones of the last minute, by name
+  std::optional<Teaching> teaching;     ///< of an object that is shown at present
+  std::optional<WorldState> world;      ///< of a recent message of hs-track
   std::map<std::string, ChromaMap> colours;  ///< colour maps by camera, where hs-pose has learnt them
 };
 
@@ -46,10 +47,13 @@ class StreamWatch {
   void note_colours(const CameraChroma& colours, std::int64_t now_us);
   void note_world(const WorldObjects& world, std::int64_t now_us);
 
-  /// A process that has been silent for five seconds is gone, and so is a teaching, or a world.
+  /// A process that has been silent for five seconds has ended; it is listed for a minute more, unless another one of
+  /// its name is alive. A teaching or a world that is silent for so long is gone.
   StreamState state(std::int64_t now_us);
 
  private:
+  std::vector<ProcessState> listed_processes(std::int64_t now_us) const;
+
   std::mutex mutex_;
   std::deque<std::int64_t> arrivals_us_;
   std::map<std::pair<std::string, std::int64_t>, ProcessState> processes_;  // by name and process id

@@ -81,7 +81,7 @@ std::optional<PageUpdates> PageBoard::updates_after(const PageUpdates& seen, std
   return fresh;
 }
 
-Jpeg PageBoard::image(PageView view, std::chrono::milliseconds timeout) {
+PageImage PageBoard::image(PageView view, std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   Image& image = images_[static_cast<std::size_t>(view)];
   image.asked = Clock::now();
@@ -89,7 +89,7 @@ Jpeg PageBoard::image(PageView view, std::chrono::milliseconds timeout) {
   const std::int64_t wanted = std::max<std::int64_t>(updates_.frame_number, 1);
   changed_.wait_for(lock, timeout, [&] { return closed_ || image.frame_number >= wanted; });
   --image.waiting;
-  return image.jpeg;
+  return {image.jpeg, image.frame_number};
 }
 
 void PageBoard::push_command(const PageCommands& commands) {

@@ -18,6 +18,12 @@ constexpr std::size_t kPageViews = 4;
 
 using Jpeg = std::shared_ptr<const std::vector<std::uint8_t>>;
 
+/// Holds an encoded image and the number of the frame that it was drawn of.
+struct PageImage {
+  Jpeg jpeg;  ///< nothing while none was drawn; empty where it cannot be drawn
+  std::int64_t frame_number = 0;
+};
+
 /// Holds the commands of the page's buttons.
 struct PageCommands {
   std::optional<bool> paused;
@@ -62,7 +68,7 @@ class PageBoard {
   /// Waits until there is more than `seen`, or for `timeout`; what is not new is empty. Nothing once it is closed.
   std::optional<PageUpdates> updates_after(const PageUpdates& seen, std::chrono::milliseconds timeout);
   /// The image of the frame that is shown, waited for if need be; an older one, or nothing, after `timeout`.
-  Jpeg image(PageView view, std::chrono::milliseconds timeout);
+  PageImage image(PageView view, std::chrono::milliseconds timeout);
   void push_command(const PageCommands& commands);
 
   /// Ends all waiting.

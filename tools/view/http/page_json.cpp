@@ -146,7 +146,8 @@ std::string stream_json(const StreamView& stream, const FrameViewSettings& setti
   for (const ProcessState& process : stream.state.processes) {
     processes.push_back({{"name", process.name},
                          {"pid", process.pid},
-                         {"hz", process.rate_hz},
+                         {"hz", process.ended ? json(nullptr) : json(process.rate_hz)},
+                         {"ended", process.ended},
                          {"skipped", process.skipped},
                          {"lost", counted(process.lost)},
                          {"refused", process.refused}});

@@ -24,6 +24,7 @@ constexpr std::chrono::milliseconds kEventTimeout(1000);      // for the next ev
 constexpr std::chrono::milliseconds kImageTimeout(2000);      // for an image of the frame that is shown
 constexpr std::size_t kMaxOrderLength = 4096;                 // bytes
 constexpr const char* kTokenHeader = "X-Houghstream-Token";
+constexpr const char* kFrameHeader = "X-Houghstream-Frame";  // number of the event `frame` that an image belongs to
 // The page loads and sends nothing elsewhere, and no other page may embed it.
 constexpr const char* kPolicy =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src 'self' blob: data:; "
@@ -100,7 +101,8 @@ class EventSender {
     }
     std::string text;
     if (!updates->stream.empty()) text += fmt::format("event: stream\ndata: {}\n\n", updates->stream);
-    if (!updates->frame.empty()) text += fmt::format("event: frame\ndata: {}\n\n", updates->frame);
+    if (!updates->frame.empty())
+      text += fmt::format("event: frame\nid: {}\ndata: {}\n\n", updates->frame_number, updates->frame);
     if (text.empty()) text = ": still here\n\n";
     seen_ = *updates;
     return sink.write(text.data(), text.size());
@@ -189,9 +191,10 @@ void PageServer::State::add_pages() {
 void PageServer::State::serve_image(const httplib::Request& request, httplib::Response& response) {
   static const std::map<std::string, PageView> views = {
       {"colour", PageView::kColour}, {"depth", PageView::kDepth}, {"3d", PageView::k3d}, {"world", PageView::kWorld}};
-  const Jpeg jpeg = board.image(views.at(request.matches[1]), kImageTimeout);
+  const auto [jpeg, frame_number] = board.image(views.at(request.matches[1]), kImageTimeout);
   if (!jpeg) return answer(response, 503, "no frame has come yet");
   if (jpeg->empty()) return answer(response, 503, "this view of the frame cannot be drawn");
+  response.set_header(kFrameHeader, std::to_string(frame_number));
   response.set_content(reinterpret_cast<const char*>(jpeg->data()), jpeg->size(), "image/jpeg");
 }
 

@@ -30,6 +30,21 @@ TEST(LatencyChart, AFrameIsAsHighAsItsTime) {
   EXPECT_EQ(image.at<cv::Vec3b>(20 + 5, 10 + 87), cv::Vec3b(255, 255, 255));  // 90 ms
 }
 
+TEST(LatencyChart, ASingleSlowFrameIsMarkedAndDoesNotFlattenTheOthers) {
+  LatencyHistory history(20, {{{"a", 40000}}, std::nullopt});
+  const cv::Rect wide(10, 20, 390, 50);  // the words above the columns leave its right side free
+  cv::Mat even(80, 420, CV_8UC3, cv::Scalar::all(7));
+  cv::Mat image = even.clone();
+  draw_latency_chart(even, wide, history);
+  history[15].stages[0].duration_us = 5'000'000;
+  draw_latency_chart(image, wide, history);
+  // The scale is 50 ms: 40 ms are 40 rows of 50, two pixels wide.
+  const int x = 10 + 390 - 3 * 5;
+  EXPECT_EQ(image.at<cv::Vec3b>(20 + 11, x + 3), even.at<cv::Vec3b>(20 + 11, x + 3));
+  EXPECT_EQ(count(image(cv::Rect(x + 3, 20, 2, 50)), stage_colour(0)), 2 * 40);
+  EXPECT_EQ(image.at<cv::Vec3b>(20 + 1, x), cv::Vec3b(60, 160, 240)) << "what is beyond the scale has a cap";
+}
+
 TEST(LatencyChart, NothingLeavesItsArea) {
   LatencyHistory history(300, {{{"a", 40000}, {"b", -5}}, 1e6});
   history.push_back({});

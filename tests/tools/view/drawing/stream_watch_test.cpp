@@ -21,7 +21,7 @@ TEST(StreamWatch, RateIsThatOfTheLastTwoSeconds) {
   EXPECT_EQ(watch.state(110'000'000).frames_hz, 0.0);  // nothing comes any more
 }
 
-TEST(StreamWatch, ProcessesAreShownByNameUntilTheyFallSilent) {
+TEST(StreamWatch, ProcessesAreShownByNameAndHaveEndedWhenTheyFallSilent) {
   StreamWatch watch;
   watch.note_process(heard("hs-pose", 1'000'000));
   watch.note_process(heard("hs-detect", 2'000'000));
@@ -30,8 +30,23 @@ TEST(StreamWatch, ProcessesAreShownByNameUntilTheyFallSilent) {
   ASSERT_EQ(both.processes.size(), 2U);
   EXPECT_EQ(both.processes[0].name, "hs-detect");
   const StreamState later = watch.state(7'000'000);
-  ASSERT_EQ(later.processes.size(), 1U);
+  ASSERT_EQ(later.processes.size(), 2U);
   EXPECT_EQ(later.processes[0].heard_us, 3'000'000);
+  EXPECT_FALSE(later.processes[0].ended);
+  EXPECT_EQ(later.processes[1].name, "hs-pose");
+  EXPECT_TRUE(later.processes[1].ended);
+  EXPECT_EQ(watch.state(62'000'000).processes.size(), 1U) << "an ended process is listed for a minute";
+}
+
+TEST(StreamWatch, AProcessThatRunsAgainReplacesTheOneThatEnded) {
+  StreamWatch watch;
+  watch.note_process(heard("hs-pose", 1'000'000));
+  ProcessState again = heard("hs-pose", 8'000'000);
+  again.pid = 17;
+  watch.note_process(again);
+  const StreamState state = watch.state(9'000'000);
+  ASSERT_EQ(state.processes.size(), 1U);
+  EXPECT_EQ(state.processes[0].pid, 17);
 }
 
 TEST(StreamWatch, ATeachingIsShownUntilItFallsSilent) {

@@ -18,7 +18,7 @@ TEST(PageBoard, WithoutViewersNothingIsWanted) {
   EXPECT_TRUE(board.wanted().empty());
   board.leave();
   EXPECT_FALSE(board.has_viewers());
-  EXPECT_EQ(board.image(PageView::kDepth, kNow), nullptr);
+  EXPECT_EQ(board.image(PageView::kDepth, kNow).jpeg, nullptr);
   EXPECT_TRUE(board.has_viewers());
   EXPECT_EQ(board.wanted(), std::vector<PageView>{PageView::kDepth});
 }
@@ -44,15 +44,25 @@ TEST(PageBoard, APictureThatIsWaitedForIsMissing) {
   PageBoard board;
   board.put_frame("a");
   EXPECT_TRUE(board.missing().empty());
-  Jpeg seen;
+  PageImage seen;
   std::thread viewer([&] { seen = board.image(PageView::k3d, kLong); });
   while (board.missing().empty()) std::this_thread::yield();
   EXPECT_EQ(board.missing(), std::vector<PageView>{PageView::k3d});
   board.put_image(PageView::k3d, {1, 2, 3});
   viewer.join();
-  ASSERT_TRUE(seen);
-  EXPECT_EQ(seen->size(), 3U);
+  ASSERT_TRUE(seen.jpeg);
+  EXPECT_EQ(seen.jpeg->size(), 3U);
+  EXPECT_EQ(seen.frame_number, 1);
   EXPECT_TRUE(board.missing().empty());
+}
+
+TEST(PageBoard, AnImageNamesTheFrameThatItWasDrawnOf) {
+  PageBoard board;
+  board.put_frame("a");
+  board.put_image(PageView::kColour, {1});
+  board.put_frame("b");
+  EXPECT_EQ(board.image(PageView::kColour, kNow).frame_number, 1) << "the second frame's image is not drawn yet";
+  EXPECT_EQ(board.updates_after({}, kNow)->frame_number, 2);
 }
 
 TEST(PageBoard, OrdersAreTakenOnceAndTheLastCounts) {

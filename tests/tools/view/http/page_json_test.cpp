@@ -100,6 +100,11 @@ TEST(PageJson, TheStreamTellsRatesLossesAndWhatIsShown) {
   EXPECT_EQ(told["cameras"].size(), 2U);
   EXPECT_EQ(told["processes"][0]["hz"], 9.5);
   EXPECT_TRUE(told["processes"][0]["lost"].is_null());
+  EXPECT_EQ(told["processes"][0]["ended"], false);
+  stream.state.processes[0].ended = true;
+  const json ended = json::parse(stream_json(stream, settings))["processes"][0];
+  EXPECT_EQ(ended["ended"], true);
+  EXPECT_TRUE(ended["hz"].is_null()) << "a process that has ended has no rate";
   EXPECT_EQ(told["paused"], true);
   EXPECT_EQ(told["min_score"], 0.5);
   EXPECT_TRUE(told["teaching"].is_null());

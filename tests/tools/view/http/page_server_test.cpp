@@ -128,7 +128,7 @@ TEST(PageServer, EventsComeAsTheyHappen) {
     return heard.find("\"f\":2}\n\n") == std::string::npos;
   });
   EXPECT_NE(heard.find("event: stream\ndata: {\"s\":1}\n\n"), std::string::npos) << heard;
-  EXPECT_NE(heard.find("event: frame\ndata: {\"f\":2}\n\n"), std::string::npos) << heard;
+  EXPECT_NE(heard.find("event: frame\nid: 1\ndata: {\"f\":2}\n\n"), std::string::npos) << heard;
 }
 
 TEST(PageServer, ThisMachinesButtonsNeedNoTokenButTheHeaderThatOthersCannotSend) {

@@ -1,7 +1,8 @@
 """hs-view's page in a real browser: what is there, what changes while the stream goes on, what the buttons do, and that it
-comes back by itself when hs-view does. Leaves page_desktop.png and page_phone.png in OUT."""
+comes back by itself when hs-view does. Leaves page_desktop.png, page_phone.png and page_WIDTH.png in OUT."""
 
 import argparse
+import contextlib
 import pathlib
 import socket
 import sys
@@ -18,6 +19,18 @@ DRAWN = """(() => { const canvas = document.createElement('canvas'), image = PIC
   const pen = canvas.getContext('2d'); pen.drawImage(image, 0, 0, 64, 48);
   return pen.getImageData(0, 0, 64, 48).data.reduce((sum, value, i) => (31 * sum + value * (i % 7 + 1)) % 1000003, 0); })()"""
 WORDS = "document.getElementById('link').textContent"
+
+
+# Samples of the page: which of thirty frames the picture is of, by the commonest brightness of its pixels, and which the list.
+SAMPLE_BOTH = """(async () => { const pairs = []; const canvas = document.createElement('canvas'); canvas.width = 64; canvas.height = 48;
+  const pen = canvas.getContext('2d', { willReadFrequently: true });
+  for (let i = 0; i < 120; ++i) { await new Promise(done => setTimeout(done, 25));
+    pen.drawImage(document.getElementById('colour'), 0, 0, 64, 48);
+    const data = pen.getImageData(0, 0, 64, 48).data, counts = new Array(32).fill(0);
+    for (let at = 0; at < data.length; at += 4) if (Math.abs(data[at] - data[at + 1]) < 6 && Math.abs(data[at] - data[at + 2]) < 6) ++counts[data[at] >> 3];
+    const score = Number(document.querySelector('#objects td.n').innerText);
+    pairs.push([counts.indexOf(Math.max(...counts)), Math.round(100 * (score - 0.6))]); }
+  return pairs; })()"""
 
 
 def free_port():
@@ -45,6 +58,70 @@ def check_elements(page):
     page.value("{ const view = document.getElementById('second-view'); view.value = '3d'; view.dispatchEvent(new Event('change')); }")
     before = page.value(f"{second}.src")
     page.wait_for(f"{second}.src !== '{before}' && {second}.naturalWidth === 64")
+
+
+def check_loading(page):
+    """Until the first frame the page says that it waits, and shows no broken picture."""
+    page.wait_for(f"{WORDS} === 'no frames'", 60)
+    for picture in ("colour", "second"):
+        hidden = f"(image => getComputedStyle(image).visibility === 'hidden' && getComputedStyle(image.parentElement, '::before').content)(document.getElementById('{picture}'))"
+        assert page.value(hidden) == '"waiting for the first frame"', picture
+
+
+def check_same_frame(page):
+    """The list and the picture beside it are of one frame at any moment: the picture's brightness and the score both name it."""
+    told = page.value(SAMPLE_BOTH)
+    assert len({score for _, score in told}) >= 5, told
+    others = [pair for pair in told if pair[0] != pair[1]]
+    assert not others, others
+
+
+def check_chart(page):
+    """One frame in forty takes five seconds; the scale is that of the others, and it is marked."""
+    page.wait_for("Number(document.getElementById('latency').dataset.beyond) >= 1", 60)
+    top = page.value("Number(document.getElementById('latency').dataset.top)")
+    assert top <= 2000, f"one slow frame makes a scale of {top} ms"
+
+
+def check_terms(page):
+    """A score and a quality are explained where they stand: beside a mouse's pointer, at a touch, and below the list."""
+    score, quality = page.value("(row => [row.querySelector('td.n').title, row.querySelector('.muted').title])(document.querySelector('#objects tr[data-key]'))")
+    assert "object is there" in score and "pose is right" in quality, (score, quality)
+    page.value("document.querySelector('#objects td.n').dispatchEvent(new PointerEvent('pointerup', { bubbles: true, pointerType: 'touch' }))")
+    assert page.value(text_of("#explanation")) == score
+    page.value("document.body.dispatchEvent(new PointerEvent('pointerup', { bubbles: true, pointerType: 'touch' }))")
+    assert page.value("document.getElementById('explanation').hidden")
+    assert "score" in page.value(text_of("#terms")) and "quality" in page.value(text_of("#terms"))
+
+
+def check_processes(page, told):
+    """A process that falls silent is shown as ended, without its rate."""
+    row = "[...document.querySelectorAll('#processes tbody tr')].find(row => row.innerText.includes('hs-pose'))"
+    page.wait_for(f"{row} && {row}.className === 'alive' && {row}.innerText.includes('10.0')")
+    told.pose_process_ended.set()
+    page.wait_for(f"{row}.className === 'ended' && {row}.innerText.includes('ended') && !{row}.innerText.includes('10.0')")
+
+
+def box_of(page, selector):
+    return page.value(f"(box => [box.left, box.top, box.right, box.bottom])(document.querySelector('{selector}').getBoundingClientRect())")
+
+
+def check_layout(page, out):
+    """The camera's picture is the largest thing, with the objects beside it, on a phone below it."""
+    for width, height in ((360, 740), (1300, 900), (1920, 1080)):
+        page.resize(width, height, width < 900)
+        page.wait_for(f"innerWidth === {width} && scrollY === 0")
+        left, top, right, bottom = box_of(page, "#colour-frame")
+        assert right - left > (0.98 if width < 900 else 0.55) * width, (width, left, right)
+        assert bottom <= height, f"the picture leaves the screen of {width} x {height}"
+        objects = box_of(page, "#objects-card")
+        assert objects[1] >= bottom if width < 900 else objects[0] >= right and objects[1] < top + 50, (width, objects)
+        for other in page.value("[...document.querySelectorAll('main section:not([hidden]), .frame')].map(it => it.id || 'second')"):
+            if other in ("colour-card", "colour-frame"):
+                continue
+            box = box_of(page, f"#{other}" if other != "second" else "#second-card .frame")
+            assert (other != "second" and width < 900) or (box[2] - box[0]) * (box[3] - box[1]) < (right - left) * (bottom - top), (width, other, box)
+        page.photograph(out / f"page_{width}.png", whole=width < 900)
 
 
 def check_world(page):
@@ -122,7 +199,8 @@ def check_phone(page, out):
 
 def check_page(program, arguments):
     out, port = arguments.out, free_port()
-    with Processes(out) as processes, ToldStream(), Browser(program) as page:
+    with contextlib.ExitStack() as stack:
+        processes, page = stack.enter_context(Processes(out)), stack.enter_context(Browser(program))
 
         def start_view(address, name="hs-view"):
             view = processes.start(name, arguments.tools / "hs-view", "--http", address, "--camera", CAMERA)
@@ -132,8 +210,16 @@ def check_page(program, arguments):
         view = start_view(port)
         page.resize(1280, 900, False)
         page.open(f"http://127.0.0.1:{port}/")
+        check_loading(page)
+        told = stack.enter_context(ToldStream())
         check_elements(page)
         check_live_change(page)
+        check_same_frame(page)
+        check_chart(page)
+        check_terms(page)
+        check_layout(page, out)
+        page.resize(1280, 900, False)
+        check_processes(page, told)
         check_world(page)
         check_picking(page)
         page.photograph(out / "page_desktop.png")

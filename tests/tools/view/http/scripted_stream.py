@@ -2,7 +2,6 @@
 
 import math
 import os
-import random
 import re
 import socket
 import struct
@@ -17,6 +16,7 @@ from houghstream.object_pose_t import object_pose_t
 from houghstream.object_poses_t import object_poses_t
 from houghstream.objects_t import objects_t
 from houghstream.stage_time_t import stage_time_t
+from houghstream.status_t import status_t
 from houghstream.tracked_object_t import tracked_object_t
 
 CAMERA = "64x48,58,58,32,24"
@@ -24,12 +24,13 @@ WIDTH, HEIGHT = 64, 48
 NAN = float("nan")
 
 
-def frame_message(utime):
+def frame_message(utime, turn):
+    """A grey picture, whose brightness names the frame: 8 * (turn % 30) + 4."""
     message = images_t()
     message.utime, message.n_images = utime, 2
     message.image_types = [images_t.LEFT, images_t.DEPTH_MM]
     for pixelformat, stride, data in (
-        (image_t.PIXEL_FORMAT_BGR, 3 * WIDTH, random.randbytes(3 * WIDTH * HEIGHT)),
+        (image_t.PIXEL_FORMAT_BGR, 3 * WIDTH, bytes([8 * (turn % 30) + 4]) * (3 * WIDTH * HEIGHT)),
         (image_t.PIXEL_FORMAT_LE_GRAY16, 2 * WIDTH, struct.pack("<H", 900) * (WIDTH * HEIGHT)),
     ):
         image = image_t()
@@ -63,7 +64,7 @@ def detections_message(utime, channel, objects):
     return message
 
 
-def poses_message(utime, channel, objects):
+def poses_message(utime, channel, objects, slowest_ms):
     message = object_poses_t()
     message.utime, message.source_channel = utime, channel
     for index, (name, score, status) in enumerate(objects):
@@ -74,7 +75,7 @@ def poses_message(utime, channel, objects):
         pose.converged, pose.quality, pose.visible_fraction, pose.residual_m = 1, 0.9 if valid else 0.1, 0.75, 0.002
         message.poses.append(pose)
     message.n_poses = len(message.poses)
-    message.stages = stages(("detect.leaves", 12.5), ("pose.registration", 7.5))
+    message.stages = stages(("detect.leaves", 12.5), ("pose.registration", slowest_ms))
     message.n_stages = len(message.stages)
     return message
 
@@ -101,9 +102,15 @@ def objects_message(utime, channel, turn):
     return message
 
 
+def status_message(utime):
+    message = status_t()
+    message.utime, message.process, message.pid, message.rate_hz = utime, "hs-pose", 4242, 10.0
+    return message
+
+
 class ToldStream:
     """Sends frames and what is told of them at 10 Hz while it lasts, on the bus of LCM_DEFAULT_URL. The first object's score
-    changes with each frame. Use with `with`."""
+    changes with each frame. hs-pose tells its status until `pose_process_ended`; every fortieth frame took it five seconds. Use with `with`."""
 
     def __init__(self, channel="OPENNI_FRAME"):
         address, port, ttl = re.fullmatch(r"udpm://([\d.]+):(\d+)\?ttl=(\d+)", os.environ["LCM_DEFAULT_URL"]).groups()
@@ -111,6 +118,7 @@ class ToldStream:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, int(ttl))
         self.channel, self.sequence, self.ending = channel, 0, threading.Event()
+        self.pose_process_ended = threading.Event()
         self.thread = threading.Thread(target=self.run)
 
     def send(self, channel, message):
@@ -124,11 +132,13 @@ class ToldStream:
             turn += 1
             utime = int(1e6 * time.time())
             objects = [("bowl", 0.6 + 0.01 * (turn % 30), object_pose_t.VALID), ("mug <b>", 0.3, object_pose_t.REJECTED_BY_DEPTH)]
-            self.send(self.channel, frame_message(utime))
+            self.send(self.channel, frame_message(utime, turn))
             self.send("HOUGHSTREAM_DETECTIONS", detections_message(utime, self.channel, objects))
-            self.send("HOUGHSTREAM_POSES", poses_message(utime, self.channel, objects))
+            self.send("HOUGHSTREAM_POSES", poses_message(utime, self.channel, objects, 5000.0 if turn % 40 == 15 else 7.5))
             for camera in (self.channel, "SIDE"):
                 self.send("HOUGHSTREAM_OBJECTS", objects_message(utime, camera, turn))
+            if not self.pose_process_ended.is_set():
+                self.send("HOUGHSTREAM_STATUS", status_message(utime))
 
     def __enter__(self):
         self.thread.start()
