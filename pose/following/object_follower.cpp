@@ -274,7 +274,8 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
 /// Each from where it is expected at constant speed; those that are not found there once more.
 std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                                      FollowedCamera& camera) const {
-  constexpr double kMaxLength = 0.25;  // seconds; no speed says anything about a later frame
+  constexpr double kMaxLength = 0.25;   // seconds; no speed says anything about a later frame
+  constexpr double kMaxDepthAge = 0.1;  // seconds; what repeats longer is an image that stands, colours and all
   constexpr std::int64_t kRefineEvery =
       4;  // refined and rendered in one frame of so many, not all objects in the same one
   std::vector<ExpectedObject> expected;
@@ -285,7 +286,8 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
     ExpectedObject& it =
         expected.emplace_back(expected_at(object.velocity.predict(object.T_camera_object, used), object));
     it.refine_by_texture = refine_by_texture;
-    const double depth_age_s = seconds_between(camera.depth_us, clock_of(frame.id.utime, camera));
+    const double depth_age_s =
+        std::min(kMaxDepthAge, seconds_between(camera.depth_us, clock_of(frame.id.utime, camera)));
     it.depth_lag = depth_lag(settings_.depth_lag_s + depth_age_s, object.velocity);
     if (!refine_by_texture) it.verified = object.verified;
     it.camera_colours = colours_for(object, estimator, camera);

@@ -140,10 +140,10 @@ class Recordings(unittest.TestCase):
             (self.folder / "take.mp4.partial.mkv").write_bytes(b"of a killed one")
             view = self.start_view("--video", video)
             wait_for_bytes(self.folder / "take.interrupted-1.mkv", 1)
-            view.stop(SECONDS)
+            view.stop(4 * SECONDS)  # a busy machine encodes slowly
             second = self.start_view("--video", video)
             wait_for_bytes(self.folder / "take_2.mp4.partial.mkv", 0)
-            second.stop(SECONDS)
+            second.stop(4 * SECONDS)  # a busy machine encodes slowly
         finally:
             capture.kill()
         self.assertEqual(names(self.folder, "take"), ["take.interrupted-1.mkv", "take.mp4", "take_2.mp4"])
