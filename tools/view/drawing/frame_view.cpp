@@ -128,7 +128,7 @@ std::string camera_heading(const FrameId& frame, const std::vector<std::string>&
 
 std::string objects_heading(const ViewedFrame& viewed, float min_score) {
   const std::size_t shown = viewed.detections.detections.size();
-  if (min_score <= 0.0F) return fmt::format("{} objects, all that are reported", shown);
+  if (min_score <= 0.0F) return fmt::format("{} objects: score, metres, quality of pose", shown);
   return fmt::format("{} of {} objects, from score {:.2f}", shown, shown + viewed.weak, min_score);
 }
 
@@ -189,11 +189,16 @@ ViewedFrame without_weak(ViewedFrame viewed, float min_score) {
 
 cv::Mat draw_over_colour(const ViewedFrame& viewed, const ClassModels& models, const FrameViewSettings& settings,
                          const StreamView& stream) {
-  cv::Mat picture = draw_overlay(viewed.frame, viewed.detections, viewed.poses, models);
+  RgbdFrame frame = viewed.frame;
+  TrackLabels tracks;
+  if (stream.state.world && frame.colour.type() == CV_8UC3) {
+    frame.colour = frame.colour.clone();
+    tracks = draw_tracks(frame.colour, *stream.state.world, viewed.frame);
+  }
+  cv::Mat picture = draw_overlay(frame, viewed.detections, viewed.poses, models, tracks);
   if (!settings.box.empty()) cv::rectangle(picture, settings.box, {255, 255, 255}, 1, cv::LINE_AA);
   if (settings.at) cv::drawMarker(picture, *settings.at, {255, 255, 255}, cv::MARKER_CROSS, 15, 1, cv::LINE_AA);
   if (stream.state.teaching) draw_teaching(picture, *stream.state.teaching, viewed.frame);
-  if (stream.state.world) draw_tracks(picture, *stream.state.world, viewed.frame);
   return picture;
 }
 
