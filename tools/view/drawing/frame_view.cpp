@@ -64,7 +64,7 @@ std::string colours_line(const ChromaMap& map) {
 }
 
 void draw_stream(Block block, const StreamState& state, const std::string& camera, std::int64_t lost) {
-  block.line(0, fmt::format("frames {:.1f} Hz, {} lost", state.frames_hz, lost), lost > 0 ? kWarning : kBright);
+  block.line(0, rates_line(state.frames_hz, lost), lost > 0 ? kWarning : kBright);
   int row = 1;
   const auto colours = state.colours.find(camera);
   if (colours != state.colours.end()) block.line(row++, colours_line(colours->second), kMuted);
@@ -124,6 +124,10 @@ std::string camera_heading(const FrameId& frame, const std::vector<std::string>&
   const auto found = std::find(cameras.begin(), cameras.end(), frame.channel);
   if (cameras.size() < 2 || found == cameras.end()) return frame.channel + ", " + time;
   return fmt::format("{} ({} of {}), {}", frame.channel, found - cameras.begin() + 1, cameras.size(), time);
+}
+
+std::string rates_line(double frames_hz, std::int64_t lost) {
+  return fmt::format("frames {:.1f} Hz, {}", frames_hz, lost < 0 ? "losses unknown" : fmt::format("{} lost", lost));
 }
 
 std::string objects_heading(const ViewedFrame& viewed, float min_score) {

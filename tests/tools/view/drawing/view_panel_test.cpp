@@ -58,6 +58,11 @@ TEST(ViewPanel, WhatTheDetectorSendsIsAllShownUnlessAskedOtherwise) {
   EXPECT_EQ(objects_heading(without_weak(viewed, 0.5F), 0.5F), "1 of 3 objects, from score 0.50");
 }
 
+TEST(ViewPanel, LossesThatNobodyKnowsAreNoNumber) {
+  EXPECT_EQ(rates_line(30.0, 2), "frames 30.0 Hz, 2 lost");
+  EXPECT_EQ(rates_line(30.0, -1), "frames 30.0 Hz, losses unknown");
+}
+
 TEST(ViewPanel, RatesLossesAndLatencyAreShown) {
   StreamView stream;
   const cv::Mat plain = draw_panel({}, stream, {}, 1280);
