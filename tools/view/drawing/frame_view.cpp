@@ -64,7 +64,7 @@ std::string colours_line(const ChromaMap& map) {
 }
 
 void draw_stream(Block block, const StreamState& state, const std::string& camera, std::int64_t lost) {
-  block.line(0, fmt::format("frames {:.1f} Hz, {} lost", state.frames_hz, lost), lost > 0 ? kWarning : kBright);
+  block.line(0, rates_line(state.frames_hz, lost), lost > 0 ? kWarning : kBright);
   int row = 1;
   const auto colours = state.colours.find(camera);
   if (colours != state.colours.end()) block.line(row++, colours_line(colours->second), kMuted);
@@ -126,9 +126,13 @@ std::string camera_heading(const FrameId& frame, const std::vector<std::string>&
   return fmt::format("{} ({} of {}), {}", frame.channel, found - cameras.begin() + 1, cameras.size(), time);
 }
 
+std::string rates_line(double frames_hz, std::int64_t lost) {
+  return fmt::format("frames {:.1f} Hz, {}", frames_hz, lost < 0 ? "losses unknown" : fmt::format("{} lost", lost));
+}
+
 std::string objects_heading(const ViewedFrame& viewed, float min_score) {
   const std::size_t shown = viewed.detections.detections.size();
-  if (min_score <= 0.0F) return fmt::format("{} objects, all that are reported", shown);
+  if (min_score <= 0.0F) return fmt::format("{} objects: score, metres, quality of pose", shown);
   return fmt::format("{} of {} objects, from score {:.2f}", shown, shown + viewed.weak, min_score);
 }
 
@@ -189,11 +193,16 @@ ViewedFrame without_weak(ViewedFrame viewed, float min_score) {
 
 cv::Mat draw_over_colour(const ViewedFrame& viewed, const ClassModels& models, const FrameViewSettings& settings,
                          const StreamView& stream) {
-  cv::Mat picture = draw_overlay(viewed.frame, viewed.detections, viewed.poses, models);
+  RgbdFrame frame = viewed.frame;
+  TrackLabels tracks;
+  if (stream.state.world && frame.colour.type() == CV_8UC3) {
+    frame.colour = frame.colour.clone();
+    tracks = draw_tracks(frame.colour, *stream.state.world, viewed.frame);
+  }
+  cv::Mat picture = draw_overlay(frame, viewed.detections, viewed.poses, models, tracks);
   if (!settings.box.empty()) cv::rectangle(picture, settings.box, {255, 255, 255}, 1, cv::LINE_AA);
   if (settings.at) cv::drawMarker(picture, *settings.at, {255, 255, 255}, cv::MARKER_CROSS, 15, 1, cv::LINE_AA);
   if (stream.state.teaching) draw_teaching(picture, *stream.state.teaching, viewed.frame);
-  if (stream.state.world) draw_tracks(picture, *stream.state.world, viewed.frame);
   return picture;
 }
 

@@ -39,7 +39,7 @@ struct FrameViewSettings {
 /// Holds what the panel below the images shows of the stream as a whole.
 struct StreamView {
   StreamState state;
-  std::int64_t frames_lost = 0;      ///< frames that never arrived here
+  std::int64_t frames_lost = 0;      ///< frames that never arrived here; -1 = unknown
   std::vector<std::string> cameras;  ///< channels that frames come on, in order
   LatencyHistory history;
 };
@@ -62,6 +62,9 @@ cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const
 
 /// Returns the heading that names frame and camera: "LEFT_CAMERA (1 of 2), frame 1499876543.210 s".
 std::string camera_heading(const FrameId& frame, const std::vector<std::string>& cameras);
+
+/// Returns the rate of frames and the number of those lost: "frames 30.0 Hz, 2 lost". A negative number is unknown.
+std::string rates_line(double frames_hz, std::int64_t lost);
 
 /// Returns the heading with the numbers of shown and received objects. The minimum score is hs-view's own; that of the
 /// detector, below which it sends nothing, is not on the wire.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -14,14 +15,8 @@ namespace houghstream::view {
 namespace {
 
 constexpr double kDefaultAxis = 0.05;  // metres, for a class without a model
-constexpr double kFontScale = 0.45;    // scale of OpenCV's simplex font
 constexpr int kSubpixelBits = 4;       // anti-aliased lines are placed to 1/16 of a pixel
 const cv::Scalar kDark(20, 20, 20);
-
-cv::Scalar text_colour_on(const cv::Scalar& background) {
-  const double brightness = 0.114 * background[0] + 0.587 * background[1] + 0.299 * background[2];
-  return brightness > 130.0 ? kDark : cv::Scalar(255, 255, 255);
-}
 
 void draw_box(cv::Mat& image, const Detection& detection) {
   const cv::Rect box = detection.box_px;
@@ -29,19 +24,32 @@ void draw_box(cv::Mat& image, const Detection& detection) {
   cv::rectangle(image, box, class_colour(detection.class_id), 2);
 }
 
-// Draws the label on the box's upper edge, or just inside where there is no space above.
-void draw_label(cv::Mat& image, const Detection& detection, const ObjectPose* pose) {
-  std::string text = fmt::format("{} {:.2f}", detection.class_name, detection.score);
-  if (pose != nullptr && pose->status != PoseStatus::kValid) text += fmt::format(" ({})", to_string(pose->status));
-  int baseline = 0;
-  const cv::Size size = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, kFontScale, 1, &baseline);
-  const int height = size.height + baseline + 4;
-  const int x = std::clamp(static_cast<int>(detection.box_px.x), 0, std::max(0, image.cols - size.width - 6));
-  const int y = std::clamp(static_cast<int>(detection.box_px.y) - height, 0, std::max(0, image.rows - height));
-  const cv::Scalar background = class_colour(detection.class_id);
-  cv::rectangle(image, cv::Rect(x, y, size.width + 6, height), background, cv::FILLED);
-  cv::putText(image, text, {x + 3, y + size.height + 2}, cv::FONT_HERSHEY_SIMPLEX, kFontScale,
-              text_colour_on(background), 1, cv::LINE_AA);
+Label label_of_detection(const Detection& detection, const ObjectPose* pose) {
+  Label label{fmt::format("{} {:.2f}", detection.class_name, detection.score), detection.box_px,
+              class_colour(detection.class_id), detection.class_id};
+  if (pose != nullptr && pose->status != PoseStatus::kValid)
+    label.text += fmt::format(" ({})", to_string(pose->status));
+  return label;
+}
+
+// Returns the index of the track that a detection shows: of its class, with its centre in the detection's box and
+// nearest to the middle of it. Returns nothing where there is none.
+std::optional<std::size_t> track_of(const Detection& detection, const std::vector<Label>& tracks) {
+  const auto middle_of = [](const auto& rectangle) {
+    return cv::Point2f(static_cast<float>(rectangle.x) + 0.5F * static_cast<float>(rectangle.width),
+                       static_cast<float>(rectangle.y) + 0.5F * static_cast<float>(rectangle.height));
+  };
+  std::optional<std::size_t> nearest;
+  double nearest_px = std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const cv::Point2f centre = middle_of(tracks[i].thing);
+    const double distance_px = cv::norm(centre - middle_of(detection.box_px));
+    if (tracks[i].class_id != detection.class_id || !detection.box_px.contains(centre) || distance_px >= nearest_px)
+      continue;
+    nearest = i;
+    nearest_px = distance_px;
+  }
+  return nearest;
 }
 
 // Returns the shape drawn for a class without a model: ten centimetres around its origin.
@@ -120,6 +128,22 @@ std::vector<const ObjectPose*> poses_by_detection(const Detections& detections,
   return found;
 }
 
+// Returns the labels of detections, each with the text of its track where it shows one, and of the other tracks.
+std::vector<Label> one_label_an_object(const Detections& detections, const std::vector<const ObjectPose*>& pose_of,
+                                       std::vector<Label> tracks) {
+  std::vector<Label> labels;
+  for (std::size_t i = 0; i < detections.detections.size(); ++i) {
+    const Detection& detection = detections.detections[i];
+    labels.push_back(label_of_detection(detection, pose_of[i]));
+    const std::optional<std::size_t> track = track_of(detection, tracks);
+    if (!track) continue;
+    labels.back().text = tracks[*track].text;
+    tracks.erase(tracks.begin() + static_cast<std::ptrdiff_t>(*track));
+  }
+  labels.insert(labels.end(), tracks.begin(), tracks.end());
+  return labels;
+}
+
 }  // namespace
 
 cv::Scalar class_colour(int class_id) {
@@ -154,7 +178,7 @@ BoxedPoses boxed(const ObjectPoses& followed, const ClassModels& models, const C
 }
 
 cv::Mat draw_overlay(const RgbdFrame& frame, const Detections& detections, const std::optional<ObjectPoses>& poses,
-                     const ClassModels& models) {
+                     const ClassModels& models, const TrackLabels& tracks) {
   const std::string name = to_string(frame.id);
   check_frame(frame, "frame " + name);
   require(detections.frame == frame.id, "detections of frame {} drawn over frame {}", to_string(detections.frame),
@@ -167,10 +191,8 @@ cv::Mat draw_overlay(const RgbdFrame& frame, const Detections& detections, const
   for (const ObjectPose* pose : pose_of) {
     if (pose != nullptr) draw_pose(image, *pose, models, frame.camera);
   }
-  // Labels last and weakest first: nothing covers the name of the surest object.
-  for (std::size_t i = detections.detections.size(); i-- > 0;) {
-    draw_label(image, detections.detections[i], pose_of[i]);
-  }
+  // Labels come last and the surest first: nothing covers their names.
+  draw_labels(image, one_label_an_object(detections, pose_of, tracks.labels), tracks.occupied);
   return image;
 }
 

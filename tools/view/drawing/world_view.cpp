@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kTrail = 150;  // places
 constexpr double kNearM = 0.05;
+constexpr int kDisc = 7;  // pixels; radius of an object from above
 constexpr double kOfThisTimeS = 0.3;
 constexpr std::size_t kCameras = 64;  // a sender of rubbish may make up channels without end
 
@@ -95,13 +96,48 @@ void draw_camera(cv::Mat& image, const MapScale& scale, const std::string& chann
 }
 
 void draw_object(cv::Mat& image, const MapScale& scale, const TrackedObject& object) {
-  constexpr int kDisc = 7;  // pixels
   const cv::Scalar colour = class_colour(object.class_id);
   const cv::Point place = scale.at(object.T_world_object.translation());
-  const int sure = static_cast<int>(std::lround(std::min(2.0 * deviation_of(object) * scale.px_per_m, 2000.0)));
+  const int sure = static_cast<int>(std::lround(std::min(2.0 * deviation_of(object) * scale.px_per_m, 1e4)));
+  const int max_ring = std::min(image.cols, image.rows) / 4;
   cv::circle(image, place, kDisc, colour, is_seen(object) ? cv::FILLED : 1, cv::LINE_AA);
-  if (sure > kDisc) cv::circle(image, place, sure, colour, 1, cv::LINE_AA);
-  draw_text(image, label_of(object), place + cv::Point(10, 4), 0.4);
+  if (sure > kDisc && sure <= max_ring) cv::circle(image, place, sure, colour, 1, cv::LINE_AA);
+}
+
+Label map_label_of(const MapScale& scale, const TrackedObject& object) {
+  const cv::Point place = scale.at(object.T_world_object.translation());
+  return {label_of(object), cv::Rect(place.x - kDisc, place.y - kDisc, 2 * kDisc, 2 * kDisc),
+          class_colour(object.class_id), object.class_id};
+}
+
+// Draws a ring of two standard deviations of the position and returns the object's label. A ring wider than a quarter
+// of the image would only hide it: the label names the deviation in its place.
+Label draw_ring(cv::Mat& image, const cv::Point& centre, const TrackedObject& object, double metres_per_px) {
+  constexpr double kMinPx = 4.0;
+  const double max_px = std::max(kMinPx, std::min(image.cols, image.rows) / 8.0);
+  const double radius_m = 2.0 * deviation_of(object);
+  const cv::Scalar colour = class_colour(object.class_id);
+  Label label{label_of(object), cv::Rect(centre, cv::Size(1, 1)), colour, object.class_id};
+  const bool is_wide = !(radius_m / metres_per_px <= max_px);
+  const int radius = static_cast<int>(is_wide ? kMinPx : std::max(radius_m / metres_per_px, kMinPx));
+  if (is_wide)
+    label.text += fmt::format(", +-{:.2g} m", radius_m);
+  else
+    cv::circle(image, centre, radius, colour, is_seen(object) ? 2 : 1, cv::LINE_AA);
+  label.thing = cv::Rect(centre.x - radius, centre.y - radius, 2 * radius + 1, 2 * radius + 1);
+  return label;
+}
+
+// Draws the meaning of the rings at the lower left, and returns its pixels.
+cv::Rect draw_ring_legend(cv::Mat& image) {
+  constexpr int kHeight = 18;  // pixels
+  constexpr int kRadius = 5;
+  const std::string text = "position within 2 sigma";
+  const cv::Point centre(10, image.rows - kHeight / 2);
+  cv::circle(image, centre, kRadius, {255, 255, 255}, 1, cv::LINE_AA);
+  draw_text(image, text, centre + cv::Point(kRadius + 4, 4), 0.38);
+  const int width = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, 0.38, 1, nullptr).width + 2 * (10 + kRadius);
+  return cv::Rect(0, image.rows - kHeight, width, kHeight) & cv::Rect({}, image.size());
 }
 
 }  // namespace
@@ -124,10 +160,11 @@ void WorldState::add(const WorldObjects& world) {
   trails = std::move(kept);
 }
 
-void draw_tracks(cv::Mat& image, const WorldState& world, const RgbdFrame& frame) {
+TrackLabels draw_tracks(cv::Mat& image, const WorldState& world, const RgbdFrame& frame) {
+  TrackLabels drawn;
   const auto camera = world.T_world_camera.find(frame.id.channel);
   const double apart_s = std::abs(seconds_between(world.last.frame.utime, frame.id.utime));
-  if (camera == world.T_world_camera.end() || apart_s > kOfThisTimeS) return;
+  if (camera == world.T_world_camera.end() || apart_s > kOfThisTimeS) return drawn;
   const Eigen::Isometry3d T_camera_world = camera->second.inverse();
   const auto pixel_of = [&](const Eigen::Vector3d& place) -> std::optional<cv::Point> {
     const Eigen::Vector3d point = T_camera_world * place;
@@ -146,11 +183,10 @@ void draw_tracks(cv::Mat& image, const WorldState& world, const RgbdFrame& frame
     const std::optional<cv::Point> centre = pixel_of(object.T_world_object.translation());
     if (!centre || object.state == TrackState::kGone) continue;
     const double depth = (T_camera_world * object.T_world_object.translation()).z();
-    const int radius =
-        static_cast<int>(std::clamp(2.0 * deviation_of(object) / frame.camera.metres_per_px(depth), 4.0, 400.0));
-    cv::circle(image, *centre, radius, colour, is_seen(object) ? 2 : 1, cv::LINE_AA);
-    draw_text(image, label_of(object), *centre + cv::Point(radius + 4, 4), 0.4);
+    drawn.labels.push_back(draw_ring(image, *centre, object, frame.camera.metres_per_px(depth)));
   }
+  if (!drawn.labels.empty()) drawn.occupied.push_back(draw_ring_legend(image));
+  return drawn;
 }
 
 cv::Mat draw_world_from_above(const WorldState& world, const cv::Size& size) {
@@ -158,12 +194,17 @@ cv::Mat draw_world_from_above(const WorldState& world, const cv::Size& size) {
   const MapScale scale = scale_of(world, size);
   draw_grid(image, scale);
   for (const auto& [channel, T] : world.T_world_camera) draw_camera(image, scale, channel, T);
+  std::vector<Label> labels;
   for (const TrackedObject& object : world.last.objects) {
     std::vector<cv::Point> way;
     for (const Eigen::Vector3d& place : world.trails.at(object.track_id)) way.push_back(scale.at(place));
     cv::polylines(image, way, false, class_colour(object.class_id), 1, cv::LINE_AA);
-    if (object.state != TrackState::kGone) draw_object(image, scale, object);
+    if (object.state == TrackState::kGone) continue;
+    draw_object(image, scale, object);
+    labels.push_back(map_label_of(scale, object));
   }
+  constexpr int kCaption = 22;  // pixels
+  draw_labels(image, labels, {cv::Rect(0, 0, size.width, kCaption) & cv::Rect({}, size)});
   const auto there = std::count_if(world.last.objects.begin(), world.last.objects.end(),
                                    [](const TrackedObject& object) { return object.state != TrackState::kGone; });
   draw_text(image, fmt::format("{} from above, grid 10 cm, {} objects", world.last.world, there), {8, 16});

@@ -9,6 +9,7 @@
 #include "pipeline/types/camera.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/tracked_object.hpp"
+#include "tools/view/drawing/overlay.hpp"
 
 namespace houghstream::view {
 
@@ -22,10 +23,11 @@ struct WorldState {
   void add(const WorldObjects& world);
 };
 
-/// Draws over an image of a frame (CV_8UC3, BGR) the objects of the world in it: a ring as wide as the place is
-/// uncertain (two standard deviations), number, class and probability, and the way of the last seconds. What is not
-/// seen is drawn thin, with its state in words. Nothing where the world's camera was elsewhere: it is of another time.
-void draw_tracks(cv::Mat& image, const WorldState& world, const RgbdFrame& frame);
+/// Draws over an image of a frame (CV_8UC3, BGR) the objects of the world in it: a ring of two standard deviations of
+/// the position, unless it is wider than a quarter of the image, the path of the last seconds, and a legend. Rings of
+/// objects that are not visible are thin. Returns the labels, which are not drawn: number, class, probability, state,
+/// and the deviation where there is no ring. Draws and returns nothing for a frame of another time than the world.
+TrackLabels draw_tracks(cv::Mat& image, const WorldState& world, const RgbdFrame& frame);
 
 /// Draws the world from above, x to the right and y up, in that size (CV_8UC3): objects as discs with their numbers and
 /// paths, cameras as wedges along their optical axes, and a grid of 10 cm.

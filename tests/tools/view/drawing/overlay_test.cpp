@@ -120,6 +120,23 @@ TEST(Overlay, FollowedPosesHaveTheBoxesOfTheirModels) {
   EXPECT_NO_THROW(draw_overlay(grey_frame(), all.detections, all.poses, {{"box", plate()}}));
 }
 
+TEST(Overlay, AnObjectHasOneLabelThatOfItsTrack) {
+  const Detections detections = one_detection();
+  Label track{"#4 box 0.90", cv::Rect(150, 120, 9, 9), class_colour(1), 1};
+  const cv::Mat own = draw_overlay(grey_frame(), detections, std::nullopt, {});
+  const cv::Mat joined = draw_overlay(grey_frame(), detections, std::nullopt, {}, {{track}, {}});
+  const cv::Rect above(100, 55, 120, 24);
+  EXPECT_GT(cv::norm(own(above), joined(above)), 0.0) << "the detection has the text of its track";
+  const cv::Rect inside(106, 90, 108, 74);
+  EXPECT_EQ(cv::norm(own(inside), joined(inside)), 0.0) << "the track has no label of its own";
+  for (const Label& other : {Label{track.text, track.thing, track.background, 2},
+                             Label{track.text, cv::Rect(20, 200, 9, 9), track.background, 1}}) {
+    const cv::Mat both = draw_overlay(grey_frame(), detections, std::nullopt, {}, {{other}, {}});
+    EXPECT_EQ(cv::norm(own(above), both(above)), 0.0) << "another object keeps its label";
+    EXPECT_GT(cv::norm(own, both), 0.0);
+  }
+}
+
 TEST(Overlay, MissingPoseChangesTheLabel) {
   ObjectPoses poses = one_pose(one_metre_ahead());
   poses.poses[0].T_camera_object.reset();

@@ -53,9 +53,14 @@ TEST(ViewPanel, WhatTheDetectorSendsIsAllShownUnlessAskedOtherwise) {
   for (Detection& detection : viewed.detections.detections) detection.score = 0.1F;
   const FrameViewSettings settings;
   EXPECT_EQ(objects_heading(without_weak(viewed, settings.min_score), settings.min_score),
-            "3 objects, all that are reported");
+            "3 objects: score, metres, quality of pose");
   viewed.detections.detections[1].score = 0.6F;
   EXPECT_EQ(objects_heading(without_weak(viewed, 0.5F), 0.5F), "1 of 3 objects, from score 0.50");
+}
+
+TEST(ViewPanel, LossesThatNobodyKnowsAreNoNumber) {
+  EXPECT_EQ(rates_line(30.0, 2), "frames 30.0 Hz, 2 lost");
+  EXPECT_EQ(rates_line(30.0, -1), "frames 30.0 Hz, losses unknown");
 }
 
 TEST(ViewPanel, RatesLossesAndLatencyAreShown) {

@@ -52,6 +52,25 @@ TEST(WorldView, AnObjectIsDrawnWhereItIsWithItsWayAndNotIntoAFrameOfAnotherTime)
   EXPECT_EQ(cv::norm(later), 0.0);
 }
 
+TEST(WorldView, ARingHasALegendAndAWideOneIsNamedInsteadOfDrawn) {
+  WorldState state;
+  state.add(one_can(0.0));
+  cv::Mat image = black_frame(1000000).colour;
+  const TrackLabels sure = draw_tracks(image, state, black_frame(1000000));
+  ASSERT_EQ(sure.labels.size(), 1U);
+  EXPECT_EQ(sure.labels[0].text, "#4 can 0.90");
+  ASSERT_EQ(sure.occupied.size(), 1U);
+  EXPECT_GT(cv::norm(image(sure.occupied[0])), 0.0) << "the legend of the ring";
+  WorldObjects unsure = one_can(0.0);
+  unsure.objects[0].covariance = 0.04 * Covariance6::Identity();  // a ring of 100 pixels, in an image of 240 rows
+  WorldState wide;
+  wide.add(unsure);
+  cv::Mat empty = black_frame(1000000).colour;
+  const TrackLabels named = draw_tracks(empty, wide, black_frame(1000000));
+  EXPECT_EQ(named.labels.at(0).text, "#4 can 0.90, +-0.4 m");
+  EXPECT_EQ(pixels_of(empty, class_colour(2)), 0) << "no ring fills the picture";
+}
+
 TEST(WorldView, AnotherWorldHasNoPast) {
   WorldState state;
   state.add(one_can(0.0));
