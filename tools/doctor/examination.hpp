@@ -22,11 +22,12 @@ struct ExaminationSettings {
 /// Examines all parts that the stream needs. Changes nothing.
 Findings examine(const Machine& machine, const ExaminationSettings& settings);
 
-/// Returns a line for each finding, and below it the command that mends it; its level in a colour where a terminal shows them.
+/// Returns a line for each finding, and below it the command that mends it; its level in a colour where a terminal
+/// shows them.
 std::string to_text(const Findings& findings, bool in_colours = false);
 
-/// Returns {"works": , "findings": [{"level": "ok", "note" or "wrong", "name": , "found": , "remedy": }]}; the remedy is null
-/// where there is no command.
+/// Returns {"works": , "findings": [{"level": "ok", "note" or "wrong", "name": , "found": , "remedy": }]}; the remedy
+/// is null where there is no command.
 OrderedJson to_json(const Findings& findings);
 
 /// Returns the number of findings that keep the stream from working.
