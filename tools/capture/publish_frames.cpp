@@ -45,9 +45,9 @@ class FrameFeed {
     if (!frame) return std::nullopt;
     frame->id.utime += offset_us_;
     if (count_ == 0) first_utime_ = frame->id.utime;
-    // A recording that is played at another rate gets the times of that rate, since a speed is a distance over the time
-    // between stamps.
-    if (settings_.rate_hz) frame->id.utime = first_utime_ + std::llround(static_cast<double>(count_) * period_us());
+    // A recording that is played at another rate than its own gets the times of that rate, since a speed is a distance
+    // over the time between stamps.
+    if (is_other_rate()) frame->id.utime = first_utime_ + std::llround(static_cast<double>(count_) * period_us());
     last_utime_ = frame->id.utime;
     ++count_;
     return frame;
@@ -59,6 +59,8 @@ class FrameFeed {
   double period_us() const { return 1e6 / rate_hz_; }
 
  private:
+  bool is_other_rate() const { return settings_.rate_hz && *settings_.rate_hz != source_->rate_hz(); }
+
   std::optional<RgbdFrame> start_again() {
     source_.reset();
     source_ = open_(listener_);

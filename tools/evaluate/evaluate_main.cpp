@@ -39,6 +39,7 @@ struct EvaluateOptions {
   EvaluateSearch in_process;
   std::optional<float> min_quality;
   int every = 1;
+  double rate_hz = kDatasetRateHz;
 };
 
 std::vector<OpenScene> open_scenes(const EvaluateOptions& options) {
@@ -50,6 +51,7 @@ std::vector<OpenScene> open_scenes(const EvaluateOptions& options) {
             folder);
     std::map<int, std::string> names = find_bop_names(folder);
     std::vector<EvaluatedFrame> frames = read_ground_truth(scene, names);
+    stamp_at_rate(options.rate_hz, frames);
     scenes.push_back({scene, std::move(names), std::move(frames)});
   }
   return scenes;
@@ -181,6 +183,8 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
   app.add_option("--targets", options.targets,
                  "BOP's list of targets (test_targets_bop19.json): only its images and objects are asked for");
   app.add_option("--log", options.log, "LCM log with published results");
+  app.add_option("--rate", options.rate_hz, "with --log: hs-capture's --rate, by which it stamped the scene's frames")
+      .range(1e-3, 1000.0);
   add_frame_channels_option(app, options.channel)
       .description(
           "with --log: results of frames on these channels, a regular expression for the whole name; one camera's");

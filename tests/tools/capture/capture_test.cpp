@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -31,6 +32,20 @@ class FakeSource : public FrameSource {
  private:
   int left_;
   int count_ = 0;
+};
+
+/// Simulates a recording of 20 Hz whose stamps tremble.
+class UnevenSource : public FrameSource {
+ public:
+  std::optional<RgbdFrame> next() override {
+    constexpr std::array<std::int64_t, 3> kUtimes = {1000, 51003, 100999};
+    if (count_ == kUtimes.size()) return std::nullopt;
+    return make_test_frame(kUtimes[count_++]);
+  }
+  double rate_hz() const override { return 20.0; }
+
+ private:
+  std::size_t count_ = 0;
 };
 
 class CaptureLog : public testing::Test {
@@ -79,6 +94,18 @@ TEST_F(CaptureLog, IsStampedAtTheRateAskedFor) {
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[2].timestamp, 1000 + 200000);
   EXPECT_EQ(lines[2].utime, 1000 + 200000) << "what is played faster or slower is so by its own stamps too";
+}
+
+TEST_F(CaptureLog, KeepsTheStampsOfARecordingAtItsOwnRate) {
+  CaptureSettings settings;
+  settings.rate_hz = 20.0;
+  const auto uneven = [](const openni::CameraListener&) { return std::make_unique<UnevenSource>(); };
+  capture_to_log(uneven, settings, file.string());
+  std::vector<std::int64_t> utimes;
+  LogReader reader(file);
+  while (const std::optional<LogEvent> event = reader.next())
+    utimes.push_back(read_frame_header({event->data.data(), event->data.size()}).utime);
+  EXPECT_EQ(utimes, (std::vector<std::int64_t>{1000, 51003, 100999})) << "a frame is known by its stamp";
 }
 
 TEST_F(CaptureLog, IsStampedAtTheRateAskedForOverLoopsToo) {

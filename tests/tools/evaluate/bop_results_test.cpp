@@ -100,6 +100,18 @@ TEST(BopResults, BadFilesAreRefusedWithOneLine) {
             "results.csv line 2: R is 1 0 0 0 1 0 0 0 -1, expected a rotation");
 }
 
+TEST(GroundTruth, HasTheStampsOfTheRateAtWhichItWasSent) {
+  const BopScene scene = scene_in(fresh_folder("ground_truth_rate") / "000001");
+  std::vector<EvaluatedFrame> frames = read_ground_truth(scene, {});
+  const std::int64_t first = frames[0].utime;
+  const std::int64_t second = frames[1].utime;
+  stamp_at_rate(30.0, frames);
+  EXPECT_EQ(frames[1].utime, second) << "datasets are stamped so";
+  stamp_at_rate(15.0, frames);
+  EXPECT_EQ(frames[0].utime, first);
+  EXPECT_EQ(frames[1].utime, first + 66667);
+}
+
 TEST(BopEstimates, CarryTheIdsOfTheScene) {
   const BopScene scene = scene_in(fresh_folder("bop_estimates") / "000048");
   std::vector<EvaluatedFrame> frames = read_ground_truth(scene, {});

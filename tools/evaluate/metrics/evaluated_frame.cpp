@@ -1,6 +1,7 @@
 #include "tools/evaluate/metrics/evaluated_frame.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -67,6 +68,12 @@ std::vector<EvaluatedFrame> read_ground_truth(const BopScene& scene, const std::
     frames.push_back(std::move(frame));
   }
   return frames;
+}
+
+void stamp_at_rate(double rate_hz, std::vector<EvaluatedFrame>& frames) {
+  if (rate_hz == kDatasetRateHz) return;  // these are stamped so
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    frames[i].utime = dataset_utime(0) + std::llround(static_cast<double>(i) * 1e6 / rate_hz);
 }
 
 void add_results(std::vector<EvaluatedFrame>& frames, const PublishedResults& published, const std::string& source) {

@@ -45,6 +45,9 @@ int scene_number(const std::string& scene_name);
 /// The truth of a scene, frame by frame, with the utimes of its frames. Objects without a name are "object_N".
 std::vector<EvaluatedFrame> read_ground_truth(const BopScene& scene, const std::map<int, std::string>& names);
 
+/// Gives the frames of a scene, all of them in their order, the utimes that hs-capture --rate stamps them with.
+void stamp_at_rate(double rate_hz, std::vector<EvaluatedFrame>& frames);
+
 /// Puts the results of one camera beside the truth of the same time, those of several detectors of one frame joined.
 /// Throws InputError naming `source` for a result of an unknown frame, two results of one frame that share a class but
 /// not what they found, and poses of no result of their frame.

@@ -43,6 +43,7 @@ def add_log(units, name, scene, rate):
 class Demo:
     def __init__(self, options, programs, units):
         self.options, self.programs, self.out = options, programs, options.out
+        self.rate = SINGLE_PICTURES_RATE if options.real else RATE
         self.store = Store(options.out, programs, units.all(), files="data")
         make(self.store, options.fresh)
 
@@ -67,8 +68,8 @@ class Demo:
         out = self.out / name
         with_models = ("--models", models) if models else ()
         call(self.programs / "hs-evaluate", "--scene", self.store.path(scene), "--log", out / "results.lcmlog",
-             "--forest", self.store.path("forest"), "--latency", out / "frame_times.csv", "--threads", threads(),
-             *with_models, *options, "--out", out / what, into=out / f"{what}.txt")  # fmt: skip
+             "--rate", self.rate, "--forest", self.store.path("forest"), "--latency", out / "frame_times.csv",
+             "--threads", threads(), *with_models, *options, "--out", out / what, into=out / f"{what}.txt")  # fmt: skip
 
 
 def run_replay(options, programs):
