@@ -278,17 +278,17 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
   constexpr double kMaxDepthAge = 0.1;  // seconds; what repeats longer is an image that stands, colours and all
   constexpr std::int64_t kRefineEvery =
       4;  // refined and rendered in one frame of so many, not all objects in the same one
+  const std::int64_t clock_us = clock_of(frame.id.utime, camera);
+  const double lag_s = settings_.depth_lag_s + std::min(kMaxDepthAge, seconds_between(camera.depth_us, clock_us));
   std::vector<ExpectedObject> expected;
   for (const FollowedObject& object : camera.objects) {
-    const double dt = seconds_between(object.clock_us, clock_of(frame.id.utime, camera));
+    const double dt = seconds_between(object.clock_us, clock_us);
     const double used = dt <= kMaxLength ? dt : 0.0;
     const bool refine_by_texture = (camera.frames + object.number) % kRefineEvery == 0;
     ExpectedObject& it =
         expected.emplace_back(expected_at(object.velocity.predict(object.T_camera_object, used), object));
     it.refine_by_texture = refine_by_texture;
-    const double depth_age_s =
-        std::min(kMaxDepthAge, seconds_between(camera.depth_us, clock_of(frame.id.utime, camera)));
-    it.depth_lag = depth_lag(settings_.depth_lag_s + depth_age_s, object.velocity);
+    it.depth_lag = depth_lag(lag_s, object.velocity);
     if (!refine_by_texture) it.verified = object.verified;
     it.camera_colours = colours_for(object, estimator, camera);
   }

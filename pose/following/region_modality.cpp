@@ -157,18 +157,6 @@ bool find_edge(const SegmentProbabilities& segments, RegionLine& line) {
   return true;
 }
 
-/// Where a motion leads the point of a line: its displacement along the line's normal in pixels for a unit of each
-/// coordinate of MotionEquations.
-Vector6d motion_row(const RegionView& view, const RegionLine& line, const Eigen::Vector3d& point,
-                    const Eigen::Vector3d& centre) {
-  const Camera& camera = view.frame.camera;
-  const Eigen::Vector2d scaled(line.normal.x() * camera.fx / point.z(), line.normal.y() * camera.fy / point.z());
-  const Eigen::Vector3d towards(scaled.x(), scaled.y(), -scaled.dot(point.head<2>()) / point.z());
-  Vector6d row;
-  row << ((point - centre) / view.model.radius).cross(towards), towards;
-  return row;
-}
-
 /// Derivative of the logarithm of the posterior at a position between two of its values; zero beyond them.
 float gradient_at(const RegionLine& line, float position) {
   constexpr float kFloor = 1e-12F;
@@ -211,6 +199,16 @@ class CommonError {
 };
 
 }  // namespace
+
+Vector6d image_motion_row(const RegionView& view, const Eigen::Vector3d& point, const Eigen::Vector2d& direction,
+                          const Eigen::Vector3d& centre) {
+  const Camera& camera = view.frame.camera;
+  const Eigen::Vector2d scaled(direction.x() * camera.fx / point.z(), direction.y() * camera.fy / point.z());
+  const Eigen::Vector3d towards(scaled.x(), scaled.y(), -scaled.dot(point.head<2>()) / point.z());
+  Vector6d row;
+  row << ((point - centre) / view.model.radius).cross(towards), towards;
+  return row;
+}
 
 RegionLines find_region_lines(const RegionView& view, const Silhouette& silhouette, const ColourStatistics& colours,
                               const Eigen::Isometry3d& T_camera_object, const RegionScale& scale,
@@ -269,7 +267,7 @@ MotionEquations region_equations(const RegionView& view, const std::vector<Regio
     const double pull = step == EdgeStep::kToMean
                             ? (line.mean - position) / line.variance
                             : static_cast<double>(gradient_at(line, static_cast<float>(position)));
-    const Vector6d row = per_px * motion_row(view, line, point, centre);
+    const Vector6d row = per_px * image_motion_row(view, point, line.normal.cast<double>(), centre);
     equations.hessian.selfadjointView<Eigen::Lower>().rankUpdate(row, weight / line.variance);
     equations.gradient += weight * pull * row;
     common.add(row, weight / line.variance, weight * pull,

@@ -73,6 +73,12 @@ struct RegionView {
   DepthNoise noise;
 };
 
+/// Returns how far a point, camera frame, metres, moves along a direction of the image, times the direction's length,
+/// for a unit of each coordinate of MotionEquations: pixels a metre for a unit direction. `centre` is the model's,
+/// camera frame, metres.
+Vector6d image_motion_row(const RegionView& view, const Eigen::Vector3d& point, const Eigen::Vector2d& direction,
+                          const Eigen::Vector3d& centre);
+
 /// Draws a line through each point of the silhouette at the pose and finds its edge. Points that nearer depth covers,
 /// or has beside them, say nothing; neither do lines on which the model begins again or ends within three segments, nor
 /// lines all of whose colours are those of one side.

@@ -74,17 +74,6 @@ struct Compared {
   float residual = 0.0F;  // brightness of the keyframe less that of the frame
 };
 
-Vector6d brightness_row(const RegionView& view, const SurfacePoint& at, const Eigen::Vector2f& gradient,
-                        const Eigen::Vector3d& centre) {
-  const Eigen::Vector3d point = at.point.cast<double>();
-  const Eigen::Vector2d scaled(static_cast<double>(gradient.x()) * view.frame.camera.fx / point.z(),
-                               static_cast<double>(gradient.y()) * view.frame.camera.fy / point.z());
-  const Eigen::Vector3d towards(scaled.x(), scaled.y(), -scaled.dot(point.head<2>()) / point.z());
-  Vector6d row;
-  row << ((point - centre) / view.model.radius).cross(towards), towards;
-  return row;
-}
-
 float median_residual(const std::vector<Compared>& compared) {
   std::vector<float> values;
   values.reserve(compared.size());
@@ -151,7 +140,9 @@ MotionEquations texture_equations(const RegionView& view, const BrightnessImage&
     if (!at) continue;
     const std::optional<BrightnessSample> sample = sample_brightness(image, at->pixel, level);
     if (!sample) continue;
-    compared.push_back({brightness_row(view, *at, sample->gradient, centre), point.brightness[level] - sample->value});
+    const Eigen::Vector2d gradient = sample->gradient.cast<double>();
+    compared.push_back(
+        {image_motion_row(view, at->point.cast<double>(), gradient, centre), point.brightness[level] - sample->value});
   }
   if (compared.size() < kMinPoints) return equations;
   const float offset = median_residual(compared);

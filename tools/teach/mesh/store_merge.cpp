@@ -113,9 +113,10 @@ void give_merged_ids(std::vector<MergedObject>& objects) {
 }
 
 /// The images of an object's views, under the title of its id.
-void copy_views(const MergedObject& merged, const StoredObject& before, const ObjectStore& made) {
+void copy_views(const MergedObject& merged, const StoredObject& before, const Eigen::Vector3d& size_m,
+                const ObjectStore& made) {
   cv::Mat image = read_colour_image(merged.from->list.view_image(before.id));
-  write_title(title_of(merged.object, object_sizes(merged.from->list).at(before.id)), image);
+  write_title(title_of(merged.object, size_m), image);
   write_png(image, made.view_image(merged.object.id));
 }
 
@@ -140,19 +141,28 @@ OrderedJson settings_of(const std::vector<MergedObject>& objects, const StoreCon
   return settings;
 }
 
+/// What models_info.json of a store says of its objects, by id.
+struct ModelEntries {
+  std::map<int, OrderedJson> entries;
+  std::map<int, Eigen::Vector3d> sizes_m;
+};
+
 /// The objects join the list and the models, their views the folder. A group is called by an id of one of its objects.
 std::vector<StoreModel> add_objects(const std::vector<MergedObject>& objects, ObjectStore& made) {
   std::vector<StoreModel> models;
   std::map<std::pair<const StoreContents*, int>, int> groups;
+  std::map<const StoreContents*, ModelEntries> known;
   for (const MergedObject& it : objects) {
     const StoredObject& before = store::find_object(it.from->list, it.object.name);
     StoredObject& object = made.objects.emplace_back(it.object);
     object.group = groups.emplace(std::make_pair(it.from, before.group), object.id).first->second;
     const ObjectStore& list = it.from->list;
+    if (known.count(it.from) == 0) known[it.from] = {read_model_entries(list), object_sizes(list)};
+    const ModelEntries& stated = known.at(it.from);
     models.push_back({{object.id, object.name, it.mesh(), list.symmetries.at(before.id)},
                       list.models_folder() / fmt::format("obj_{:06d}.ply", before.id),
-                      read_model_entries(list).at(before.id)});
-    copy_views(it, before, made);
+                      stated.entries.at(before.id)});
+    copy_views(it, before, stated.sizes_m.at(before.id), made);
   }
   return models;
 }
