@@ -181,7 +181,7 @@ Take follow(const TakeSource& source, const ShowOptions& options, ProgressReport
     }
     reporter.frame(frame->id, placer.process(*frame));
   }
-  reporter.step(ShowState::kFusing, 0.0, "all keyframes are laid on one another");
+  reporter.step(TeachingState::kFusing, 0.0, "all keyframes are laid on one another");
   Take take = placer.finish();
   require(take.frames.size() >= kMin, "{} frames, expected at least {}, of a whole turn", take.frames.size(), kMin);
   return take;
@@ -192,7 +192,7 @@ ModelledTake follow_and_model(const TakeSource& source, const ShowOptions& optio
   try {
     ModelledTake made;
     made.take = follow(source, options, reporter);
-    reporter.step(ShowState::kFusing, 0.3, "the model is made");
+    reporter.step(TeachingState::kFusing, 0.3, "the model is made");
     made.model = reconstruct_model(made.take, making_of(options));
     return made;
   } catch (const InputError& error) {
@@ -212,7 +212,7 @@ ShowResult show_takes(const ShowOptions& options, const ShownFrames& frames, con
   if (second) {
     const std::string name = options.second.empty() ? "the second take" : options.second;
     ModelledTake other = follow_and_model({name, second, std::nullopt, std::nullopt}, options, reporter);
-    reporter.step(ShowState::kFusing, 0.4, "the second take is laid on the first");
+    reporter.step(TeachingState::kFusing, 0.4, "the second take is laid on the first");
     shown.second_fits = merge_takes(shown.takes.front(), model, other.take, other.model, making_of(options));
     if (shown.second_fits) {
       shown.takes.push_back(std::move(other.take));
@@ -237,9 +237,9 @@ void teach_shown(const ShowOptions& options, const ShowResult& shown, ProgressRe
   thorough.seed = options.seed;
   thorough.threads = options.threads;
   teach.calibration.scenes = kFirstScenes;
-  reporter.step(ShowState::kTraining, 0.5, "the model is taught");
+  reporter.step(TeachingState::kTraining, 0.5, "the model is taught");
   teach_meshes(teach);
-  reporter.step(ShowState::kTraining, 0.8,
+  reporter.step(TeachingState::kTraining, 0.8,
                 fmt::format("{} is known, and what its detections are worth is learnt in more rooms", options.name));
   calibrate_store(options.out, thorough, {options.name});
 }
@@ -251,13 +251,13 @@ int conclude(const ShowOptions& options, const ShowResult& shown, ProgressReport
   fmt::print("{}", describe(shown, assessment));
   if (!options.keep.empty()) archive_session(shown, assessment, options.keep);
   if (!assessment.good && !options.accept_poor_model) {
-    reporter.step(ShowState::kFailed, 1.0,
+    reporter.step(TeachingState::kFailed, 1.0,
                   fmt::format("poor: {}{}", assessment.reasons.front(),
                               options.teach ? "; not taught (--go-on teaches it all the same)" : ""));
     return kPoor;
   }
   if (options.teach) teach_shown(options, shown, reporter);
-  reporter.step(ShowState::kDone, 1.0,
+  reporter.step(TeachingState::kDone, 1.0,
                 options.teach ? fmt::format("{} is known", options.name) : fmt::format("{} has a model", options.name));
   return 0;
 }

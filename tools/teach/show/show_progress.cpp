@@ -5,19 +5,6 @@
 #include <cstdio>
 
 namespace houghstream::teach {
-const char* name_of(ShowState state) {
-  switch (state) {
-    case ShowState::kChoosing: return "choosing";
-    case ShowState::kTracking: return "tracking";
-    case ShowState::kLost: return "lost";
-    case ShowState::kFusing: return "fusing";
-    case ShowState::kTraining: return "training";
-    case ShowState::kDone: return "done";
-    case ShowState::kFailed: break;
-  }
-  return "failed";
-}
-
 ProgressReporter::ProgressReporter(const std::string& name, ShowObserver* observer) : observer_(observer) {
   now_.name = name;
 }
@@ -25,9 +12,9 @@ ProgressReporter::ProgressReporter(const std::string& name, ShowObserver* observ
 void ProgressReporter::frame(const FrameId& id, const reconstruction::TakePlacerStatus& state) {
   using reconstruction::TakePlacerState;
   now_.frame = id;
-  now_.state = state.state == TakePlacerState::kTracking ? ShowState::kTracking
-               : state.state == TakePlacerState::kLost   ? ShowState::kLost
-                                                         : ShowState::kChoosing;
+  now_.state = state.state == TakePlacerState::kTracking ? TeachingState::kTracking
+               : state.state == TakePlacerState::kLost   ? TeachingState::kLost
+                                                         : TeachingState::kChoosing;
   now_.message = state.message;
   now_.seen = state.seen;
   now_.frames = state.frames;
@@ -38,7 +25,7 @@ void ProgressReporter::frame(const FrameId& id, const reconstruction::TakePlacer
   tell();
 }
 
-void ProgressReporter::step(ShowState state, double progress, const std::string& message) {
+void ProgressReporter::step(TeachingState state, double progress, const std::string& message) {
   now_.state = state;
   now_.progress = progress;
   now_.message = message;
@@ -49,15 +36,15 @@ void ProgressReporter::step(ShowState state, double progress, const std::string&
 }
 
 void ProgressReporter::fail(const std::string& message) {
-  now_.state = ShowState::kFailed;
+  now_.state = TeachingState::kFailed;
   now_.message = message;
   if (observer_ != nullptr) observer_->progress(now_);
 }
 
 void ProgressReporter::tell() {
   constexpr std::int64_t kApart_us = 1'000'000;  // of the take's time
-  const std::string line = fmt::format("{}: {}", name_of(now_.state), now_.message);
-  const bool is_choice = printed_state_ == ShowState::kChoosing && now_.state != ShowState::kChoosing;
+  const std::string line = fmt::format("{}: {}", to_string(now_.state), now_.message);
+  const bool is_choice = printed_state_ == TeachingState::kChoosing && now_.state != TeachingState::kChoosing;
   const std::int64_t since_us = microseconds_between(printed_us_, now_.frame.utime);
   const bool soon = printed_us_ != 0 && !is_choice && since_us > -kApart_us && since_us < kApart_us;
   if (line != printed_ && !soon) {

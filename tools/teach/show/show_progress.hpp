@@ -8,23 +8,10 @@
 #include <string>
 
 #include "pipeline/types/frame_id.hpp"
+#include "pipeline/types/teaching.hpp"
 #include "pose/reconstruction/tracking/take_placer.hpp"
 
 namespace houghstream::teach {
-
-/// Where showing an object stands.
-enum class ShowState : std::uint8_t {
-  kChoosing,  ///< looks for the object in the first frames
-  kTracking,
-  kLost,      ///< does not know where the camera is; goes on looking
-  kFusing,    ///< the take is over, the model is made
-  kTraining,  ///< the model is taught into the store
-  kDone,
-  kFailed,
-};
-
-/// "choosing", "tracking" ... "failed".
-const char* name_of(ShowState state);
 
 /// Progress of showing an object: after each frame, and during fusion and teaching.
 struct ShowProgress {
@@ -32,7 +19,7 @@ struct ShowProgress {
 
   FrameId frame;     ///< the last that was looked at
   std::string name;  ///< of the object
-  ShowState state = ShowState::kChoosing;
+  TeachingState state = TeachingState::kChoosing;
   std::string message;                   ///< for a person, one line: what was seen, what is missing, why it failed
   std::array<bool, kDirections> seen{};  ///< from which directions of the object's frame
   int frames = 0;                        ///< looked at so far
@@ -58,7 +45,7 @@ class ProgressReporter {
   void frame(const FrameId& id, const reconstruction::TakePlacerStatus& state);
 
   /// A step after the takes; `progress` of all work, 0 to 1.
-  void step(ShowState state, double progress, const std::string& message);
+  void step(TeachingState state, double progress, const std::string& message);
 
   /// The terminal gets the exception's line itself.
   void fail(const std::string& message);
@@ -69,7 +56,7 @@ class ProgressReporter {
   ShowObserver* observer_;
   ShowProgress now_;
   std::string printed_;
-  ShowState printed_state_ = ShowState::kChoosing;
+  TeachingState printed_state_ = TeachingState::kChoosing;
   std::int64_t printed_us_ = 0;
 };
 

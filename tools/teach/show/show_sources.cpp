@@ -137,7 +137,7 @@ std::optional<RgbdFrame> CameraTake::next() {
 }
 
 void CameraTake::progress(const ShowProgress& now) {
-  if (now.state == ShowState::kTracking && is_covered_(now)) is_over_ = true;
+  if (now.state == TeachingState::kTracking && is_covered_(now)) is_over_ = true;
   if (observer_ != nullptr) observer_->progress(now);
 }
 

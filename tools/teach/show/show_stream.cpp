@@ -28,8 +28,8 @@ class TakeObserver : public ShowObserver {
 
   void progress(const ShowProgress& now) override {
     publisher_.progress(now);
-    if (now.state == ShowState::kChoosing) take_.skip_to_newest();  // until something is chosen, only now counts
-    if (now.state == ShowState::kTracking && is_covered_(now)) take_.end();
+    if (now.state == TeachingState::kChoosing) take_.skip_to_newest();  // until something is chosen, only now counts
+    if (now.state == TeachingState::kTracking && is_covered_(now)) take_.end();
   }
 
  private:

@@ -14,19 +14,6 @@ namespace {
 constexpr std::chrono::milliseconds kApart(100);
 constexpr std::chrono::milliseconds kRepeat(1000);
 
-TeachingState state_of(ShowState state) {
-  switch (state) {
-    case ShowState::kChoosing: return TeachingState::kChoosing;
-    case ShowState::kTracking: return TeachingState::kTracking;
-    case ShowState::kLost: return TeachingState::kLost;
-    case ShowState::kFusing: return TeachingState::kFusing;
-    case ShowState::kTraining: return TeachingState::kTraining;
-    case ShowState::kDone: return TeachingState::kDone;
-    case ShowState::kFailed: return TeachingState::kFailed;
-  }
-  return TeachingState::kInvalid;
-}
-
 }  // namespace
 
 Teaching teaching_of(const ShowProgress& now,
@@ -34,7 +21,7 @@ Teaching teaching_of(const ShowProgress& now,
   Teaching teaching;
   teaching.frame = now.frame;
   teaching.name = now.name;
-  teaching.state = state_of(now.state);
+  teaching.state = now.state;
   teaching.message = now.message;
   teaching.progress = static_cast<float>(std::clamp(now.progress, 0.0, 1.0));
   teaching.frames = now.frames;

@@ -47,7 +47,7 @@ std::string line_of(const ShowOptions& options, const ShownFrames& frames, const
 
 struct Heard : ShowObserver {
   void progress(const ShowProgress& now) override { states.push_back(now.state); }
-  std::vector<ShowState> states;
+  std::vector<TeachingState> states;
 };
 
 TEST(ShowJobs, NamesAQuarterTurnPoorAndKeepsItsReport) {
@@ -57,7 +57,7 @@ TEST(ShowJobs, NamesAQuarterTurnPoorAndKeepsItsReport) {
   options.keep = folder;
   Heard heard;
   EXPECT_EQ(show_object(options, take_of(40, 90.0), {}, &heard), 3);
-  EXPECT_EQ(heard.states.back(), ShowState::kFailed);
+  EXPECT_EQ(heard.states.back(), TeachingState::kFailed);
   for (const char* file : {"model.ply", "camera_poses.csv", "report.json", "report.html", "contact_sheet.jpg",
                            "chosen.png", "views/000001/scene_gt.json", "views/models/models_info.json"})
     EXPECT_TRUE(fs::exists(folder / file)) << file;
@@ -168,7 +168,7 @@ TEST(ShowJobs, AFolderThatHoldsSomethingElseIsRefusedBeforeTheTake) {
   EXPECT_EQ(line_of(options, frames).find("/dev/null: cannot be a folder to write to"), 0U);
   Heard heard;
   EXPECT_THROW(show_object(options, frames, {}, &heard), InputError);
-  EXPECT_EQ(heard.states, std::vector<ShowState>{ShowState::kFailed}) << "hs-view says it too";
+  EXPECT_EQ(heard.states, std::vector<TeachingState>{TeachingState::kFailed}) << "hs-view says it too";
   options.teach = false;
   options.keep = "/dev/null/kept";
   EXPECT_EQ(line_of(options, frames).find("/dev/null: cannot be a folder to write to"), 0U);

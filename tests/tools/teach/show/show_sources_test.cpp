@@ -33,7 +33,7 @@ TEST(CameraTake, EndsWhenEnoughWasSeenAndLetsTheProgramBeInterrupted) {
       &counted);
   EXPECT_TRUE(take.next().has_value());
   ShowProgress now;
-  now.state = ShowState::kTracking;
+  now.state = TeachingState::kTracking;
   std::fill_n(now.seen.begin(), 40, true);
   now.frame.utime = 1'000'000;
   take.progress(now);

@@ -23,7 +23,7 @@ ShowProgress tracked(std::int64_t utime) {
   ShowProgress now;
   now.frame = {"OPENNI_FRAME", utime};
   now.name = "mug";
-  now.state = ShowState::kTracking;
+  now.state = TeachingState::kTracking;
   now.message = "seen from 2 of 60 directions";
   now.seen[0] = now.seen[7] = true;
   now.frames = 5;
@@ -59,13 +59,13 @@ TEST(TeachingPublisher, SaysOnTheBusWhatTheObserverIsTold) {
   EXPECT_NEAR(*said.progress, 1.0F / 30.0F, 1e-6F);
   ShowProgress choosing;
   EXPECT_FALSE(teaching_of(choosing, all_up()).box_px.has_value());
-  const std::array<std::pair<ShowState, const char*>, 7> words = {{{ShowState::kChoosing, "choosing"},
-                                                                   {ShowState::kTracking, "tracking"},
-                                                                   {ShowState::kLost, "lost"},
-                                                                   {ShowState::kFusing, "fusing"},
-                                                                   {ShowState::kTraining, "training"},
-                                                                   {ShowState::kDone, "done"},
-                                                                   {ShowState::kFailed, "failed"}}};
+  const std::array<std::pair<TeachingState, const char*>, 7> words = {{{TeachingState::kChoosing, "choosing"},
+                                                                       {TeachingState::kTracking, "tracking"},
+                                                                       {TeachingState::kLost, "lost"},
+                                                                       {TeachingState::kFusing, "fusing"},
+                                                                       {TeachingState::kTraining, "training"},
+                                                                       {TeachingState::kDone, "done"},
+                                                                       {TeachingState::kFailed, "failed"}}};
   for (const auto& [state, word] : words) {
     choosing.state = state;
     EXPECT_STREQ(to_string(teaching_of(choosing, all_up()).state), word);
@@ -81,7 +81,7 @@ TEST(TeachingPublisher, ManyFramesAreFewMessagesAndTheLastOneIsSaidAgain) {
   EXPECT_LE(heard.teachings.size(), 10U);
   EXPECT_EQ(heard.teachings.back().frame.utime, 50) << "the last one is not held back for long";
   ShowProgress fusing = tracked(50);
-  fusing.state = ShowState::kFusing;
+  fusing.state = TeachingState::kFusing;
   publisher.progress(fusing);
   heard.listen(milliseconds(50));
   EXPECT_EQ(heard.teachings.back().state, TeachingState::kFusing) << "a new state at once";
