@@ -11,7 +11,7 @@
 #include "pipeline/base/parallel.hpp"
 #include "pose/seen/camera_colours.hpp"
 #include "pose/verification/pose_decision.hpp"
-#include "pose/verification/print_comparison.hpp"
+#include "pose/verification/texture_comparison.hpp"
 
 namespace houghstream {
 namespace {
@@ -152,22 +152,22 @@ void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
   constexpr float kWorthTelling = 0.1F;  // a pose that is wrong by its shape stays wrong
   if (it.pose.shape_quality < kWorthTelling) return;
   const DepthTolerance tolerance{settings.verification.tolerance_m, it.seen->noise};
-  const PrintSettings& learnt = class_quality_of(settings, it.pose.class_name).print;
+  const TextureSettings& learnt = class_quality_of(settings, it.pose.class_name).texture;
   const RegistrationResult& published = it.chosen[it.published];
-  const std::optional<PrintComparison> print =
-      compare_print(*it.seen, published.T_camera_object, tolerance, settings.registration);
-  if (!print) return;
+  const std::optional<TextureComparison> texture =
+      compare_with_alternatives(*it.seen, published.T_camera_object, tolerance, settings.registration);
+  if (!texture) return;
   PoseEvidence& published_evidence = it.evidence[it.published];
-  published_evidence.print_probability = print_probability(print->margin, learnt);
+  published_evidence.texture_probability = texture_probability(texture->margin, learnt);
   ObjectPose judged = judged_pose(it, published, published_evidence, settings);
-  if (print->better) {
+  if (texture->better) {
     const RegistrationResult other =
-        refine_pose(*it.seen, *print->better, it.rotations, pose_selection_settings(settings));
-    const std::optional<PrintComparison> there =
-        compare_print(*it.seen, other.T_camera_object, tolerance, settings.registration);
+        refine_pose(*it.seen, *texture->better, it.rotations, pose_selection_settings(settings));
+    const std::optional<TextureComparison> there =
+        compare_with_alternatives(*it.seen, other.T_camera_object, tolerance, settings.registration);
     PoseEvidence evidence = gather_evidence(*it.seen, other.T_camera_object, it.detection.score, settings.verification);
     bring_to_camera(it.pose.camera_colours, evidence);
-    evidence.print_probability = there ? print_probability(there->margin, learnt) : 1.0F;
+    evidence.texture_probability = there ? texture_probability(there->margin, learnt) : 1.0F;
     ObjectPose rotated = judged_pose(it, other, evidence, settings);
     if (other.inliers > 0 && rotated.quality > judged.quality) judged = std::move(rotated);
   }

@@ -55,7 +55,7 @@ bool is_depth_measured(const ObjectObservation& seen, const FollowerInput& input
   return cv::countNonZero(part == part) >= input.pose.region.min_points;  // NaN differs from itself
 }
 
-/// The print moves the pose a little, where depth and silhouette leave it free.
+/// The texture moves the pose a little, where depth and silhouette leave it free.
 RefinePose texture_refinement(const ObjectObservation& seen, const FollowerInput& input) {
   return [&](const Eigen::Isometry3d& T_camera_object) {
     const FollowSettings& follow = input.follow;
@@ -95,7 +95,7 @@ void decide_followed(const ObjectObservation& seen, const ExpectedObject& expect
   const QualitySettings& quality = class_quality_of(settings, followed.pose.class_name);
   const Eigen::Isometry3d& T = followed.T_camera_object;
   const ProjectedView look = project_view(seen.frame, seen.model, T, settings.verification.points);
-  PoseEvidence evidence{expected.score, {}, compare_texture(seen, look, tolerance), expected.print_probability};
+  PoseEvidence evidence{expected.score, {}, compare_texture(seen, look, tolerance), expected.texture_probability};
   bring_to_camera(expected.camera_colours, evidence);
   followed.pose.camera_colours = expected.camera_colours;
   if (expected.verified) {
@@ -125,7 +125,7 @@ void judge_without_depth(const ExpectedObject& expected, const JointResult& resu
   const int judged = result.edges + result.blank;
   const float explained = judged == 0 ? 0.0F : static_cast<float>(result.edges) / static_cast<float>(judged);
   pose.shape_quality = expected.shape_quality * explained;
-  pose.quality = pose.shape_quality * expected.print_probability;
+  pose.quality = pose.shape_quality * expected.texture_probability;
   followed.verified = expected.verified;
   const float minimum = class_quality_of(input.pose, pose.class_name).min_quality;
   pose.status = PoseStatus::kTooFewPoints;

@@ -21,7 +21,7 @@ struct FollowSettings {
 
   int min_edges = 40;  ///< lines of the silhouette by which a pose is measured where there is no depth
 
-  // The print turns a round thing back, which depth alone lets drift.
+  // The texture turns a round thing back, which depth alone lets drift.
   double refine_step_deg = 2.0;
   double refine_step_m = 0.002;
   int refine_rounds = 4;
@@ -51,15 +51,15 @@ struct ExpectedObject {
   std::string class_name;
   float score = 0.0F;                            ///< of the detections that it was found by
   std::vector<Eigen::Isometry3d> initial_poses;  ///< T_camera_object, the likeliest first; at least one
-  bool refine_by_texture = false;                ///< its print may move it a little too, at some cost
+  bool refine_by_texture = false;                ///< its texture may move it a little too, at some cost
   bool is_lost = false;                          ///< it is looked for as far away as a detection's pose is
   bool check_occlusion = true;           ///< whether it is hidden where it is expected first: that renders it once more
   std::optional<Verification> verified;  ///< of an earlier frame: its outline is taken for this one's
-  float print_probability = 1.0F;  ///< PoseEvidence::print_probability of the detection's pose that it goes on from
-  ChromaMap camera_colours = {};   ///< by which its colours are judged
-  float shape_quality = 0.0F;      ///< of its last pose for which depth spoke
-  FollowedAppearance appearance;   ///< learnt in earlier frames
-  DepthLag depth_lag;              ///< as JointStart has it
+  float texture_probability = 1.0F;  ///< PoseEvidence::texture_probability of the detection's pose that it goes on from
+  ChromaMap camera_colours = {};     ///< by which its colours are judged
+  float shape_quality = 0.0F;        ///< of its last pose for which depth spoke
+  FollowedAppearance appearance;     ///< learnt in earlier frames
+  DepthLag depth_lag;                ///< as JointStart has it
 };
 
 /// What came of it.

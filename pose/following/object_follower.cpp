@@ -26,7 +26,7 @@ ExpectedObject expected_at(const Eigen::Isometry3d& T_camera_object, const Follo
   expected.class_name = object.class_name;
   expected.score = probability(object.score_logit);
   expected.initial_poses = {T_camera_object};
-  expected.print_probability = object.print_probability;
+  expected.texture_probability = object.texture_probability;
   expected.shape_quality = object.shape_quality;
   expected.appearance = object.appearance;
   return expected;
@@ -204,8 +204,8 @@ DetectionAssociation associate_detections(const PoseEstimator& estimator, const 
   return look;
 }
 
-/// What its print said of a detection's pose: following looks at it no more.
-float print_probability_of(const ObjectPose& pose) {
+/// What its texture said of a detection's pose: following looks at it no more.
+float texture_probability_of(const ObjectPose& pose) {
   return pose.shape_quality > 0.0F ? pose.quality / pose.shape_quality : 1.0F;
 }
 
@@ -214,12 +214,12 @@ float print_probability_of(const ObjectPose& pose) {
 void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, const FollowerSettings& settings,
                        FollowedObject& object) {
   constexpr double kMargin = 1e-6;  // of two poses of one object small differences count
-  // By its shape alone, or with its print, at which following does not look.
+  // By its shape alone, or with its texture, at which following does not look.
   const double by_shape = logit(pose.shape_quality, kMargin) - logit(followed.pose.shape_quality, kMargin);
   const double by_all = logit(pose.quality, kMargin) - logit(followed.pose.quality, kMargin);
   if (std::max(by_shape, by_all) < settings.better_log_odds) return;
   object.T_camera_object = object.T_camera_object * followed.T_camera_object.inverse() * *pose.T_camera_object;
-  object.print_probability = print_probability_of(pose);
+  object.texture_probability = texture_probability_of(pose);
   object.appearance.texture.reset();  // was where the pose was wrong
 }
 
@@ -276,8 +276,8 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
                                                      FollowedCamera& camera) const {
   constexpr double kMaxLength = 0.25;   // seconds; no speed says anything about a later frame
   constexpr double kMaxDepthAge = 0.1;  // seconds; what repeats longer is an image that stands, colours and all
-  constexpr std::int64_t kRefineEvery =
-      4;  // refined and rendered in one frame of so many, not all objects in the same one
+  // Refined and rendered in one frame of so many, not all objects in the same one.
+  constexpr std::int64_t kRefineEvery = 4;
   const std::int64_t clock_us = clock_of(frame.id.utime, camera);
   const double lag_s = settings_.depth_lag_s + std::min(kMaxDepthAge, seconds_between(camera.depth_us, clock_us));
   std::vector<ExpectedObject> expected;
@@ -461,7 +461,7 @@ void ObjectFollower::add_object(const PoseEstimator& estimator, const RgbdFrame&
   found.class_id = pose.class_id;
   found.class_name = pose.class_name;
   found.score_logit = logit(pose.detection_score);
-  found.print_probability = print_probability_of(pose);
+  found.texture_probability = texture_probability_of(pose);
   found.T_camera_object = *pose.T_camera_object;
   const auto then =
       std::find_if(camera.recent_frames.rbegin(), camera.recent_frames.rend(),

@@ -64,8 +64,9 @@ struct FollowedObject {
   std::int64_t number = 0;  ///< in the order in which they were found
   int class_id = 0;
   std::string class_name;
-  double score_logit = 0.0;        ///< log odds of its detections' scores
-  float print_probability = 1.0F;  ///< of the detection's pose that it goes on from: PoseEvidence::print_probability
+  double score_logit = 0.0;  ///< log odds of its detections' scores
+  /// Of the detection's pose that it goes on from: PoseEvidence::texture_probability.
+  float texture_probability = 1.0F;
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres
   std::int64_t clock_us = 0;                                          ///< of the frame in which it was there
   SmoothedVelocity velocity;

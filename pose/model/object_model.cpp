@@ -106,7 +106,7 @@ class ViewMaker {
   ModelView make(const Eigen::Vector3f& direction, std::uint64_t seed) const;
 
   /// The colours of all that is seen from one direction.
-  void add_print(const Eigen::Vector3f& direction, SurfacePrintMaker& print) const;
+  void add_texture(const Eigen::Vector3f& direction, SurfaceTextureBuilder& texture) const;
 
   bool has_colours() const { return colour_.has_colour(); }
 
@@ -163,20 +163,20 @@ ModelView ViewMaker::make(const Eigen::Vector3f& direction, std::uint64_t seed) 
   return view;
 }
 
-void ViewMaker::add_print(const Eigen::Vector3f& direction, SurfacePrintMaker& print) const {
+void ViewMaker::add_texture(const Eigen::Vector3f& direction, SurfaceTextureBuilder& texture) const {
   float area_px = 0.0F;
   for (const SeenPoint& seen : seen_from(direction, area_px))
-    print.add(seen.point, seen.normal, colour_.at(seen.triangle, seen.bary));
+    texture.add(seen.point, seen.normal, colour_.at(seen.triangle, seen.bary));
 }
 
 /// Makes the colours by position. Views from fewer directions than the model has suffice here: they see the whole
 /// surface, and all visible points are kept.
-SurfacePrint make_print(const ViewMaker& maker, double detail_m) {
+SurfaceTexture make_surface_texture(const ViewMaker& maker, double detail_m) {
   constexpr int kParts = 2;
   if (!maker.has_colours()) return {};
-  SurfacePrintMaker print(detail_m);
-  for (const Eigen::Vector3f& direction : sphere_directions(kParts)) maker.add_print(direction, print);
-  return print.make();
+  SurfaceTextureBuilder texture(detail_m);
+  for (const Eigen::Vector3f& direction : sphere_directions(kParts)) maker.add_texture(direction, texture);
+  return texture.make();
 }
 
 /// Makes views from the directions in which some of the surface is visible.
@@ -247,13 +247,13 @@ std::vector<Eigen::Vector3f> unround_points(const MeasuredMesh& measured, const 
   return unround;
 }
 
-void set_alternatives(const MeasuredMesh& measured, const Symmetries& same_print, double right_within,
+void set_alternatives(const MeasuredMesh& measured, const Symmetries& same_appearance, double right_within,
                       ObjectModel& model) {
   constexpr double kShapeStep = 0.13;  // diameters: turns of about 15 degrees
   constexpr double kSameStep = 0.02;
   constexpr double kSame_rad = 0.17;
   constexpr int kPoints = 300;
-  const std::vector<Eigen::Isometry3d> same = expand_symmetries(same_print, kSameStep);
+  const std::vector<Eigen::Isometry3d> same = expand_symmetries(same_appearance, kSameStep);
   const std::vector<Eigen::Vector3f> points = sample_surface(model.mesh, kPoints, 1).points;
   const double right_m = right_within * measured.diameter_m;
   const auto add_others = [&](const std::vector<Eigen::Isometry3d>& motions, std::vector<Eigen::Isometry3d>& list) {
@@ -337,9 +337,9 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
   float largest = 0.0F;
   for (const ModelView& view : model.views) largest = std::max(largest, view.area);
   for (ModelView& view : model.views) view.area /= largest;
-  model.print = make_print(maker, 2.0 * static_cast<double>(model.radius) / settings.pixels_per_diameter);
-  const auto same_print = settings.symmetries.find(name);
-  set_alternatives(measured, same_print != settings.symmetries.end() ? same_print->second : Symmetries(),
+  model.texture = make_surface_texture(maker, 2.0 * static_cast<double>(model.radius) / settings.pixels_per_diameter);
+  const auto same_appearance = settings.symmetries.find(name);
+  set_alternatives(measured, same_appearance != settings.symmetries.end() ? same_appearance->second : Symmetries(),
                    settings.right_within, model);
   return model;
 }

@@ -10,7 +10,7 @@
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/symmetry.hpp"
 #include "pose/model/surface_colour.hpp"
-#include "pose/model/surface_print.hpp"
+#include "pose/model/surface_texture.hpp"
 
 namespace houghstream {
 
@@ -64,7 +64,7 @@ struct ObjectModel {
   /// Axis about which all but a part such as a handle measures the same, where no symmetry is continuous.
   std::optional<ContinuousSymmetry> nearly_round;
   std::vector<ModelView> views;
-  SurfacePrint print;  ///< empty where the mesh has no colours
+  SurfaceTexture texture;  ///< empty where the mesh has no colours
   /// Motions of the object frame, metres, after which the shape is as before and the pose is another one: only the
   /// texture distinguishes a pose from the poses after these. Rotations about a continuous symmetry are sampled.
   std::vector<Eigen::Isometry3d> alternatives;

@@ -48,7 +48,7 @@ class PoseSelector {
   }
 
   /// `result`, and it turned by half a turn about each principal axis, registered again: a box looks the same to depth
-  /// then, and only its print tells. The best first, and none that ends elsewhere.
+  /// then, and only its texture tells. The best first, and none that ends elsewhere.
   std::vector<Scored> flips_of(const RegistrationResult& result) const {
     std::vector<Scored> flips = {{result, score_of(result)}};
     const Eigen::Vector3d middle = seen_.model.surface_median.cast<double>();

@@ -28,7 +28,7 @@ struct RotationRange {
 
 /// The pose turned about the object's z axis, through the middle of its surface; those turns that are better than their
 /// neighbours, best first. Views of a standing object are most easily confused that way, and of a round one only its
-/// print tells them apart.
+/// texture tells them apart.
 std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
                                                const RotationRange& range, const DepthTolerance& tolerance);
 

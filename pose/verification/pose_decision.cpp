@@ -13,7 +13,7 @@ void decide_status(const PoseEvidence& evidence, const Eigen::Isometry3d& T_came
   pose.visible_fraction = evidence.depth.visible_fraction();
   pose.free_space_violation = evidence.depth.free_space_violation();
   pose.shape_quality = shape_quality(terms, quality);
-  pose.quality = pose.shape_quality * evidence.print_probability;
+  pose.quality = pose.shape_quality * evidence.texture_probability;
   const float presence = presence_probability(evidence.detection_score, pose.shape_quality, quality.presence);
   const float minimum = reported ? quality.min_quality : quality.min_candidate_quality;
   if (pose.shape_quality >= minimum) {

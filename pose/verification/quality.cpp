@@ -68,7 +68,7 @@ float shape_quality(const QualityTerms& terms, const QualitySettings& settings) 
   return static_cast<float>(logistic(sum));
 }
 
-float print_probability(double margin, const PrintSettings& settings) {
+float texture_probability(double margin, const TextureSettings& settings) {
   constexpr double kMax = 8.0;  // log odds: what is surer has not been learnt from
   return static_cast<float>(logistic(settings.bias + settings.margin_weight * std::clamp(margin, -kMax, kMax)));
 }

@@ -19,7 +19,7 @@ struct PoseEvidence {
   Verification depth;
   std::optional<ColourComparison> colour;  ///< empty where the model has no colours
   /// Probability that the pose is the correct one of those that are equivalent by shape; 1 where there are no others.
-  float print_probability = 1.0F;
+  float texture_probability = 1.0F;
 };
 
 /// Renders the model at the pose and compares its depth and its colours with what is seen.
@@ -71,22 +71,22 @@ void fields(const QualityTerms& /*settings*/, const Visit& visit) {
 }
 
 /// The probability that one of the poses that are equivalent by shape is correct is a logistic regression on its
-/// texture's margin (PrintComparison::margin). The default takes the margin as it is. Settings that hs-teach learns of
-/// an object replace it.
-struct PrintSettings {
+/// texture's margin (TextureComparison::margin). The default takes the margin as it is. Settings that hs-teach learns
+/// of an object replace it.
+struct TextureSettings {
   double bias = 0.0;
   double margin_weight = 1.0;
 };
 
 template <typename Visit>
-void fields(const PrintSettings& /*settings*/, const Visit& visit) {
-  using S = PrintSettings;
+void fields(const TextureSettings& /*settings*/, const Visit& visit) {
+  using S = TextureSettings;
   visit(number("bias", &S::bias, -1e6, 1e6));
   visit(number("of_margin", &S::margin_weight, -1e6, 1e6));
 }
 
 /// Returns a probability in (0, 1).
-float print_probability(double margin, const PrintSettings& settings);
+float texture_probability(double margin, const TextureSettings& settings);
 
 /// The probability that a pose is correct up to its shape's symmetries is a logistic regression on the evidence.
 /// hs-study quality (tools/studies/quality) learns these numbers, and reports how many poses are correct from which
@@ -103,7 +103,7 @@ struct QualitySettings {
   float min_quality = 0.75F;            ///< poses of lower quality are not published...
   float min_candidate_quality = 0.75F;  ///< ...nor are these of candidates (Detection::reported): most are false
   PresenceSettings presence;            ///< presence of the object as a function of score and quality
-  PrintSettings print;                  ///< choice between poses that are equivalent by shape
+  TextureSettings texture;              ///< choice between poses that are equivalent by shape
 };
 
 template <typename Visit>
@@ -115,7 +115,7 @@ void fields(const QualitySettings& /*settings*/, const Visit& visit) {
   visit(number("least", &S::min_quality, 0, 1));
   visit(number("min_candidate_quality", &S::min_candidate_quality, 0, 1));
   visit(group("presence", &S::presence));
-  visit(group("print", &S::print));
+  visit(group("print", &S::texture));
 }
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings);
@@ -131,5 +131,8 @@ std::optional<ChromaPair> chroma_pair(const std::string& class_name, const PoseE
 
 /// Returns the status that names the term with the strongest evidence against the pose.
 PoseStatus find_rejection_reason(const QualityTerms& terms, const QualitySettings& settings, bool colours_known = true);
+
+// The names of before, for one release.
+using PrintSettings [[deprecated("is TextureSettings now")]] = TextureSettings;
 
 }  // namespace houghstream

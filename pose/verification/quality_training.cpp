@@ -77,14 +77,14 @@ std::map<std::string, std::vector<PresenceExample>> presence_examples(const Exam
 
 }  // namespace
 
-PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, const PrintSettings& prior,
-                                 double precision) {
+TextureSettings fit_texture_settings(const std::vector<QualityExample>& examples, const TextureSettings& prior,
+                                     double precision) {
   // Margins are clamped here, so that a few extreme examples do not dominate those near the decision boundary.
   constexpr double kMax = 8.0;
   std::vector<LogisticExample<2>> judged;
   for (const QualityExample& example : examples) {
-    if (!example.is_correct_up_to_shape || !example.print_margin) continue;
-    judged.push_back({{1.0, std::clamp(*example.print_margin, -kMax, kMax)}, example.is_correct});
+    if (!example.is_correct_up_to_shape || !example.texture_margin) continue;
+    judged.push_back({{1.0, std::clamp(*example.texture_margin, -kMax, kMax)}, example.is_correct});
   }
   const Eigen::Vector2d weights = fit_logistic<2>(judged, {{prior.bias, prior.margin_weight}, precision});
   return {weights[0], weights[1]};
@@ -126,9 +126,9 @@ std::map<std::string, QualitySettings> learn_qualities(const ExamplesByName& exa
   std::vector<QualityExample> posed;
   for (const auto& [name, class_examples] : examples)
     posed.insert(posed.end(), class_examples.begin(), class_examples.end());
-  const PrintSettings common_print = fit_print_settings(posed, PrintSettings{}, kCommonStiffness);
+  const TextureSettings common_texture = fit_texture_settings(posed, TextureSettings{}, kCommonStiffness);
   for (const auto& [name, class_examples] : examples)
-    learnt.at(name).print = fit_print_settings(class_examples, common_print, kPriorPrecision);
+    learnt.at(name).texture = fit_texture_settings(class_examples, common_texture, kPriorPrecision);
   return learnt;
 }
 

@@ -16,16 +16,16 @@ struct QualityExample {
   bool is_correct_up_to_shape = false;  ///< the same by ADD-S: correct up to the symmetries of the shape
   /// Evidence of a pose that is correct up to its shape if the object had another texture: the fit separates the two.
   std::optional<QualityTerms> with_swapped_texture = std::nullopt;
-  std::optional<double> print_margin = std::nullopt;  ///< PrintComparison::margin, where the pose has alternatives
-  float score = 0.0F;                                 ///< score of the detection
+  std::optional<double> texture_margin = std::nullopt;  ///< TextureComparison::margin, where the pose has alternatives
+  float score = 0.0F;                                   ///< score of the detection
   bool is_present = false;  ///< the object that was detected, whether the pose is right or not
   int half = 0;             ///< 0 or 1: half of the calibration examples
 };
 
 /// Fits the probability of the texture's margins by logistic regression over the examples that are correct up to their
 /// shape and have alternatives, with a prior as for fit_quality_settings().
-PrintSettings fit_print_settings(const std::vector<QualityExample>& examples, const PrintSettings& prior,
-                                 double precision);
+TextureSettings fit_texture_settings(const std::vector<QualityExample>& examples, const TextureSettings& prior,
+                                     double precision);
 
 /// Fits the bias, weights and mean terms that explain the examples best (maximum a posteriori, with a Gaussian about
 /// each weight of `prior`, as strong as `precision` examples): few examples move them little from there. `min_quality`

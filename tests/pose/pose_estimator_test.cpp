@@ -220,7 +220,7 @@ ObjectPose found_from_turned_votes(const Mesh& taught, const Eigen::Isometry3d& 
   return estimator_for("box", taught, settings).estimate(frame, only(detection)).poses.at(0);
 }
 
-TEST(PoseEstimator, ThePrintTellsABoxFromItselfTurnedOver) {
+TEST(PoseEstimator, TheTextureTellsABoxFromItselfTurnedOver) {
   const Eigen::Isometry3d truth = standing(30.0, 30.0, 0.8);
   const ObjectPose found = found_from_turned_votes(printed_box(), truth, coloured_frame(printed_box(), truth, 1));
   ASSERT_EQ(found.status, PoseStatus::kValid) << to_string(found.status);
@@ -228,7 +228,7 @@ TEST(PoseEstimator, ThePrintTellsABoxFromItselfTurnedOver) {
   EXPECT_GT(found.quality, 0.8F * found.shape_quality);
 }
 
-TEST(PoseEstimator, WhatHasNoPrintIsValidUpToTheSymmetryOfItsShape) {
+TEST(PoseEstimator, WhatHasNoTextureIsValidUpToTheSymmetryOfItsShape) {
   const Eigen::Isometry3d truth = standing(30.0, 30.0, 0.8);
   const ObjectPose found = found_from_turned_votes(cereal_box(), truth, coloured_frame(printed_box(), truth, 1));
   EXPECT_EQ(found.status, PoseStatus::kValidUpToSymmetry) << to_string(found.status);

@@ -43,14 +43,15 @@ PresenceSettings presence_from(const nlohmann::json& entry, const PresenceSettin
 }
 
 /// A store that was written before this was learnt has the value of `otherwise`.
-PrintSettings print_from(const nlohmann::json& entry, const PrintSettings& otherwise, const std::string& where) {
+TextureSettings texture_settings_from(const nlohmann::json& entry, const TextureSettings& otherwise,
+                                      const std::string& where) {
   if (!entry.contains("print")) return otherwise;
   const nlohmann::json& stored = entry["print"];
   require(stored.is_object() && stored.size() == 2, "{}: 'print' of the quality expected, with bias and of_margin",
           where);
-  PrintSettings print;
-  for_each_number(print, [&](const auto& field, double& value) { value = json_number(stored, field.name, where); });
-  return print;
+  TextureSettings texture;
+  for_each_number(texture, [&](const auto& field, double& value) { value = json_number(stored, field.name, where); });
+  return texture;
 }
 
 }  // namespace
@@ -60,7 +61,7 @@ nlohmann::json quality_to_json(const QualitySettings& settings) {
           {"weights", numbers_to_json(settings.weights)},
           {"typical", numbers_to_json(settings.mean_of_correct)},
           {"presence", numbers_to_json(settings.presence)},
-          {"print", numbers_to_json(settings.print)}};
+          {"print", numbers_to_json(settings.texture)}};
 }
 
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects,
@@ -73,7 +74,7 @@ std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& 
     settings.weights = terms_from(entry, "weights", where);
     settings.mean_of_correct = terms_from(entry, "typical", where);
     settings.presence = presence_from(entry, others.presence, where);
-    settings.print = print_from(entry, others.print, where);
+    settings.texture = texture_settings_from(entry, others.texture, where);
     check_settings(settings, where + ": quality");
     learnt[name] = settings;
   }

@@ -22,7 +22,7 @@ nlohmann::json quality_to_json(const QualitySettings& settings);
 
 /// Returns the quality settings that the store has learnt for its objects, by name; the thresholds of each are those of
 /// `others`. Throws InputError naming the store for a missing or unknown number, and for one out of its range. A store
-/// that was taught before presence or print was learnt has that of `others`.
+/// that was taught before presence or texture was learnt has that of `others`.
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects, const QualitySettings& others);
 
 /// Returns the pose settings, composed in this order: `common`; of a store, where there is one, its learnt qualities,

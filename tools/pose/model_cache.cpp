@@ -44,10 +44,10 @@ void archive_model(Archive& archive, ModelType& model) {
   archive(model.shape_symmetries.continuous);
   archive(model.nearly_round);
   archive(model.views);
-  archive(model.print.detail_m);
-  archive(model.print.cubes);
-  archive(model.print.normals);
-  archive(model.print.colours);
+  archive(model.texture.detail_m);
+  archive(model.texture.cubes);
+  archive(model.texture.normals);
+  archive(model.texture.colours);
   archive(model.alternatives);
   archive(model.near_alternatives);
   archive(model.partial_alternatives);
@@ -129,8 +129,8 @@ void check_model(const ObjectModel& model) {
     require(points > 0 && view.normals.size() == points && (view.colours.empty() || view.colours.size() == points),
             "lists of a view");
   }
-  const std::size_t sides = model.print.cubes.size();
-  require(model.print.normals.size() == sides && model.print.colours.size() == sides, "lists of a print");
+  const std::size_t sides = model.texture.cubes.size();
+  require(model.texture.normals.size() == sides && model.texture.colours.size() == sides, "lists of a print");
 }
 
 int add_library(dl_phdr_info* info, std::size_t /*size*/, void* names) {

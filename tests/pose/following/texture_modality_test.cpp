@@ -34,7 +34,7 @@ TextureKeyframe keyframe_of(const ModalityScene& scene) {
   return make_texture_keyframe({frame, scene.model, {}}, make_brightness(frame, kAbout), scene.truth, {});
 }
 
-TEST(TextureModality, ARoundThingsTurnIsSeenByItsPrint) {
+TEST(TextureModality, ARoundThingsTurnIsSeenByItsTexture) {
   const ModalityScene& scene = can_scene();
   const TextureKeyframe keyframe = keyframe_of(scene);
   ASSERT_GE(keyframe.points.size(), 100U);

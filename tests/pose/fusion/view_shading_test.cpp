@@ -34,8 +34,8 @@ struct Ball {
     Random random(5);
     for (int i = 0; i < 3000; ++i) {
       normals.push_back(direction(random));
-      const bool is_print = random.uniform() < 0.2;
-      paints.push_back(is_print ? kBlack : normals.back().y() > 0.0 ? kBlue : kYellow);
+      const bool is_black = random.uniform() < 0.2;
+      paints.push_back(is_black ? kBlack : normals.back().y() > 0.0 ? kBlue : kYellow);
     }
   }
 };

@@ -32,7 +32,7 @@ TEST(SurfaceColour, VertexColoursAreMixed) {
   EXPECT_EQ(colour.at(0, {0.0F, 0.5F}), lab_of({100, 0, 100}));
 }
 
-TEST(SurfaceColour, ATextureIsReadWhereItIsMappedAndFinePrintIsAveraged) {
+TEST(SurfaceColour, ATextureIsReadWhereItIsMappedAndFineTextureIsAveraged) {
   Mesh mesh = square();
   mesh.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};  // v down
   mesh.texture = cv::Mat(200, 200, CV_8UC3, cv::Scalar(0, 0, 200));

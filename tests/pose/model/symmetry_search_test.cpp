@@ -119,7 +119,7 @@ TEST(SymmetrySearch, ALabelBreaksTheSymmetryOfACan) {
   EXPECT_TRUE(find(taught("soda_can"), kColour).continuous.empty());
 }
 
-TEST(SymmetrySearch, APrintBreaksTheSymmetriesOfACarton) {
+TEST(SymmetrySearch, ATextureBreaksTheSymmetriesOfACarton) {
   EXPECT_EQ(angles(find(taught("cereal_box"))), (std::multiset<int>{180, 180, 180}));
   EXPECT_TRUE(find(taught("cereal_box"), kColour).empty());
 }

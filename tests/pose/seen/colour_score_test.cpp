@@ -114,7 +114,7 @@ TEST(ColourScore, ContrastsAreOfWhatIsCompared) {
   EXPECT_EQ(plain.model_contrast, printed.model_contrast);
 }
 
-TEST(ColourScore, APrintIsJudgedWhereItAgreesBestWithinTwoPixels) {
+TEST(ColourScore, ATextureIsJudgedWhereItAgreesBestWithinTwoPixels) {
   const Mesh box = printed_box();
   const ObjectModel model = make_object_model("box", box, {});
   const auto judged = [&](const Eigen::Isometry3d& T_camera_object, double moved_px) {
@@ -130,7 +130,7 @@ TEST(ColourScore, APrintIsJudgedWhereItAgreesBestWithinTwoPixels) {
   EXPECT_LT(judged(rotated(kPose, 180.0), 0.0), judged(kPose, 0.0) - 0.4F);
 }
 
-TEST(ColourScore, JudgingAPrintLeavesThePictureAsItIs) {
+TEST(ColourScore, JudgingATextureLeavesThePictureAsItIs) {
   const Mesh box = printed_box();
   const ObjectModel model = make_object_model("box", box, {});
   const RgbdFrame frame = coloured_frame(box, kPose, 1);

@@ -97,7 +97,7 @@ TEST(CameraExtrinsics, OursAreReadWithTheirParents) {
   EXPECT_TRUE((places.at("RIGHT") * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d(1.0, 3.0, 0.5), 1e-6));
 }
 
-TEST(CameraExtrinsics, StaticTransformsAreReadAsRosPrintsThem) {
+TEST(CameraExtrinsics, StaticTransformsAreReadAsRosTexturesThem) {
   const auto places = read_camera_extrinsics(written("ros.yaml",
                                                      "transforms:\n"
                                                      "- header:\n"

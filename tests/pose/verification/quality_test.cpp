@@ -62,7 +62,7 @@ QualityTerms mean_of_correct() {
   return QualitySettings{}.mean_of_correct;
 }
 
-TEST(PoseQuality, AnotherPrintSpeaksAgainstAPose) {
+TEST(PoseQuality, AnotherTextureSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
   evidence.colour->residual_stddev = evidence.colour->observed_contrast;
   EXPECT_LT(quality(evidence), quality(good()));
@@ -103,7 +103,7 @@ TEST(PoseQuality, PlainThingsAgreeWithLittle) {
   EXPECT_GT(plain.model_contrast, quality_terms(good(), {}).model_contrast + 1.0) << "there was little to agree with";
 }
 
-TEST(PoseQuality, WhatTheCameraWasAtItsLimitForIsNoProofOfAnotherPrint) {
+TEST(PoseQuality, WhatTheCameraWasAtItsLimitForIsNoProofOfAnotherTexture) {
   PoseEvidence evidence = good();
   evidence.colour->residual_stddev = evidence.colour->observed_contrast;
   const double compared = quality_terms(evidence, {}).texture;

@@ -53,7 +53,7 @@ TEST(QualityTraining, FewExamplesLeaveThePriorLittle) {
   EXPECT_LT(way_from_prior(fit_quality_settings(drawn(3), QualitySettings{}, 100.0)), 0.1 * by_few);
 }
 
-TEST(QualityTraining, AnotherPrintMovesTheWeightsOfColourBeyondAllOthers) {
+TEST(QualityTraining, AnotherTextureMovesTheWeightsOfColourBeyondAllOthers) {
   std::vector<QualityExample> examples = drawn(2000);
   const QualitySettings alone = fit_quality_settings(examples, QualitySettings{}, 1.0);
   for (QualityExample& example : examples) {
@@ -122,53 +122,53 @@ std::vector<QualityExample> calibrated(double there_anyway) {
 }
 
 /// Poses that are right up to their shape, with margins drawn evenly; which is right is decided by `weight` and `bias`.
-std::vector<QualityExample> with_print(double bias, double weight) {
+std::vector<QualityExample> with_texture(double bias, double weight) {
   std::vector<QualityExample> examples(2000);
   Random random(5);
   for (QualityExample& example : examples) {
     example.is_correct_up_to_shape = example.is_present = true;
-    example.print_margin = -4.0 + 8.0 * random.uniform();
-    example.is_correct = random.uniform() < logistic(bias + weight * *example.print_margin);
+    example.texture_margin = -4.0 + 8.0 * random.uniform();
+    example.is_correct = random.uniform() < logistic(bias + weight * *example.texture_margin);
   }
   return examples;
 }
 
-TEST(FitPrintSettings, LearnsWhatAMarginIsWorth) {
-  const PrintSettings found = fit_print_settings(with_print(1.0, 0.5), PrintSettings{}, 1.0);
+TEST(FitTextureSettings, LearnsWhatAMarginIsWorth) {
+  const TextureSettings found = fit_texture_settings(with_texture(1.0, 0.5), TextureSettings{}, 1.0);
   EXPECT_NEAR(found.bias, 1.0, 0.2);
   EXPECT_NEAR(found.margin_weight, 0.5, 0.1);
 }
 
-TEST(FitPrintSettings, LooksOnlyAtPosesThatAreRightUpToTheirShapeAndHaveAlternatives) {
-  std::vector<QualityExample> examples = with_print(1.0, 0.5);
-  const PrintSettings found = fit_print_settings(examples, PrintSettings{}, 1.0);
+TEST(FitTextureSettings, LooksOnlyAtPosesThatAreRightUpToTheirShapeAndHaveAlternatives) {
+  std::vector<QualityExample> examples = with_texture(1.0, 0.5);
+  const TextureSettings found = fit_texture_settings(examples, TextureSettings{}, 1.0);
   QualityExample other;
-  other.print_margin = 3.0;
+  other.texture_margin = 3.0;
   examples.insert(examples.end(), 500, other);  // wrong by its shape
   other.is_correct_up_to_shape = true;
-  other.print_margin.reset();
+  other.texture_margin.reset();
   examples.insert(examples.end(), 500, other);
-  const PrintSettings again = fit_print_settings(examples, PrintSettings{}, 1.0);
+  const TextureSettings again = fit_texture_settings(examples, TextureSettings{}, 1.0);
   EXPECT_EQ(again.bias, found.bias);
   EXPECT_EQ(again.margin_weight, found.margin_weight);
-  const PrintSettings prior{0.3, 0.7};
-  EXPECT_EQ(fit_print_settings({other}, prior, 1.0).bias, prior.bias) << "of no example comes the prior";
+  const TextureSettings prior{0.3, 0.7};
+  EXPECT_EQ(fit_texture_settings({other}, prior, 1.0).bias, prior.bias) << "of no example comes the prior";
 }
 
-TEST(PrintProbability, IsNeverCertain) {
+TEST(TextureProbability, IsNeverCertain) {
   for (const double margin : {-1e6, 0.0, 1e6}) {
-    const float probability = print_probability(margin, {});
+    const float probability = texture_probability(margin, {});
     EXPECT_GT(probability, 0.0F) << margin;
     EXPECT_LT(probability, 1.0F) << margin;
   }
-  EXPECT_EQ(print_probability(0.0, {}), 0.5F);
+  EXPECT_EQ(texture_probability(0.0, {}), 0.5F);
 }
 
 TEST(LearnQualities, WhatAMarginIsWorthIsEachObjectsOwn) {
   const std::map<std::string, QualitySettings> learnt =
-      learn_qualities({{"printed", with_print(0.0, 2.0)}, {"plain", with_print(0.0, 0.1)}});
-  EXPECT_GT(learnt.at("printed").print.margin_weight, 1.5);
-  EXPECT_LT(learnt.at("plain").print.margin_weight, 0.3);
+      learn_qualities({{"printed", with_texture(0.0, 2.0)}, {"plain", with_texture(0.0, 0.1)}});
+  EXPECT_GT(learnt.at("printed").texture.margin_weight, 1.5);
+  EXPECT_LT(learnt.at("plain").texture.margin_weight, 0.3);
 }
 
 TEST(LearnQualities, WhatABadPoseSaysOfPresenceIsEachObjectsOwn) {

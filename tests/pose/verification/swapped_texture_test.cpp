@@ -27,11 +27,11 @@ std::optional<PoseEvidence> with_swapped_texture(const Mesh& box) {
   return other;
 }
 
-TEST(OtherPrint, ExplainsWhatIsSeenWorseThanItsOwn) {
+TEST(SwappedTexture, ExplainsWhatIsSeenWorseThanItsOwn) {
   EXPECT_TRUE(with_swapped_texture(printed_box()).has_value());
 }
 
-TEST(OtherPrint, APlainObjectHasNone) {
+TEST(SwappedTexture, APlainObjectHasNone) {
   Mesh plain = printed_box();
   for (cv::Vec3b& colour : plain.colours) colour = cv::Vec3b(40, 90, 160);
   EXPECT_FALSE(with_swapped_texture(plain).has_value());

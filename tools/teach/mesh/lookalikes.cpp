@@ -21,8 +21,8 @@ constexpr float kSpreadTolerance = 0.08F;  // of the spread along each principal
 constexpr float kTolerance = 0.02F;        // mean distance between the surfaces, of the diameter
 constexpr int kFirstLook = 50;             // points that rule most ways out
 constexpr int kRotations = 36;
-constexpr double kDetail_m = 0.005;       // finer print does not count
-constexpr float kColourDistance = 30.0F;  // in L*a*b* of 8 bits: the same print in another light
+constexpr double kDetail_m = 0.005;       // finer texture does not count
+constexpr float kColourDistance = 30.0F;  // in L*a*b* of 8 bits: the same texture in another light
 constexpr float kMinAlike = 0.75F;        // share of the surface whose colours agree
 
 /// A mesh as it is compared.

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "pose/verification/print_comparison.hpp"
 #include "pose/verification/swapped_texture.hpp"
+#include "pose/verification/texture_comparison.hpp"
 #include "tools/finder/stored_quality.hpp"
 
 namespace houghstream::quality {
@@ -36,7 +36,7 @@ std::vector<Example> label_examples(const FoundPoses& found, const std::map<std:
       example.frame = judged.frame;
       example.terms = terms->own;
       example.score = judged.score;
-      example.print_margin = terms->print_margin;
+      example.texture_margin = terms->texture_margin;
       if (judged.outcome == MatchOutcome::kTruePositive) {
         const EvaluatedFrame& frame = found.frames[judged.frame];
         const GroundTruthObject& truth = frame.objects[judged.object].truth;
@@ -90,9 +90,9 @@ std::vector<std::optional<PoseTerms>> UnfilteredPoseFinder::terms_of(const RgbdF
         evidence_with_swapped_texture(seen, *pose.T_camera_object, own, settings_.verification);
     terms = PoseTerms{quality_terms(own, settings_.quality), std::nullopt, std::nullopt};
     const DepthTolerance tolerance{settings_.verification.tolerance_m, seen.noise};
-    const std::optional<PrintComparison> print =
-        compare_print(seen, *pose.T_camera_object, tolerance, settings_.registration);
-    if (print) terms->print_margin = print->margin;
+    const std::optional<TextureComparison> texture =
+        compare_with_alternatives(seen, *pose.T_camera_object, tolerance, settings_.registration);
+    if (texture) terms->texture_margin = texture->margin;
     if (other) terms->with_swapped_texture = quality_terms(*other, settings_.quality);
     if (shape_quality(terms->own, settings_.quality) != pose.shape_quality) {
       throw std::logic_error(

@@ -23,8 +23,8 @@ struct Example : QualityExample {
 struct PoseTerms {
   QualityTerms own;
   std::optional<QualityTerms> with_swapped_texture = std::nullopt;  ///< see evidence_with_swapped_texture()
-  /// PrintComparison::margin; nothing where there are no alternatives.
-  std::optional<double> print_margin = std::nullopt;
+  /// TextureComparison::margin; nothing where there are no alternatives.
+  std::optional<double> texture_margin = std::nullopt;
 };
 
 /// Frames of a scene with detections and poses, one pose for each detection in their order, and what each pose is

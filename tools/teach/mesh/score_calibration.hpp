@@ -19,7 +19,7 @@ struct CalibrationObject {
   std::string name;
   Mesh mesh;                                              ///< as poses are compared with it, metres
   Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();  ///< see store::StoredObject
-  Symmetries symmetries;                                  ///< of models_info.json: the same pose, print included
+  Symmetries symmetries;                                  ///< of models_info.json: the same pose, texture included
   ShapeSymmetry shape_symmetry;                           ///< see store::StoredObject
   world::CalibrationSceneObject in_scene;                 ///< its id is the class's
 };

@@ -9,7 +9,7 @@
 namespace houghstream {
 
 /// Compares a pose's texture with that of its alternatives (ObjectModel::alternatives).
-struct PrintComparison {
+struct TextureComparison {
   /// Log odds of the pose against all alternatives, given the image. It is about minus the logarithm of their number
   /// where the texture is not informative: the model has no colours, is untextured, or is hardly visible.
   double margin = 0.0;
@@ -25,7 +25,9 @@ struct PrintComparison {
 /// camera causes. Returns nothing where the pose has no alternatives. `registration` registers near ones to the depth.
 /// It follows the background-free correlation of Lewis (1995, "Fast Normalized Cross-Correlation") and the Gaussian
 /// likelihood whose maximum over gain and offset that is.
-std::optional<PrintComparison> compare_print(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
-                                             const DepthTolerance& tolerance, const RegistrationSettings& registration);
+std::optional<TextureComparison> compare_with_alternatives(const ObjectObservation& seen,
+                                                           const Eigen::Isometry3d& T_camera_object,
+                                                           const DepthTolerance& tolerance,
+                                                           const RegistrationSettings& registration);
 
 }  // namespace houghstream

@@ -1,4 +1,4 @@
-#include "pose/model/surface_print.hpp"
+#include "pose/model/surface_texture.hpp"
 
 #include <algorithm>
 #include <array>
@@ -33,7 +33,8 @@ int direction_of(const Eigen::Vector3f& normal) {
 
 }  // namespace
 
-std::optional<Eigen::Vector3f> SurfacePrint::find(const Eigen::Vector3f& point, const Eigen::Vector3f& towards) const {
+std::optional<Eigen::Vector3f> SurfaceTexture::find(const Eigen::Vector3f& point,
+                                                    const Eigen::Vector3f& towards) const {
   const Eigen::Vector3i cube = cube_of(point, detail_m);
   for (const Eigen::Vector3i& offset : neighbours()) {
     const std::int64_t number = number_of(cube + offset);
@@ -52,22 +53,22 @@ std::optional<Eigen::Vector3f> SurfacePrint::find(const Eigen::Vector3f& point, 
   return std::nullopt;
 }
 
-void SurfacePrintMaker::add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, const LabColour& colour) {
+void SurfaceTextureBuilder::add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, const LabColour& colour) {
   Sum& sum = sums_[{number_of(cube_of(point, detail_m_)), direction_of(normal)}];
   sum.normal += normal;
   sum.colour += Eigen::Vector3f(colour[0], colour[1], colour[2]);
   sum.count += 1.0F;
 }
 
-SurfacePrint SurfacePrintMaker::make() const {
-  SurfacePrint print;
-  print.detail_m = detail_m_;
+SurfaceTexture SurfaceTextureBuilder::make() const {
+  SurfaceTexture texture;
+  texture.detail_m = detail_m_;
   for (const auto& [place, sum] : sums_) {
-    print.cubes.push_back(place.first);
-    print.normals.emplace_back(sum.normal / sum.count);
-    print.colours.emplace_back(sum.colour / sum.count);
+    texture.cubes.push_back(place.first);
+    texture.normals.emplace_back(sum.normal / sum.count);
+    texture.colours.emplace_back(sum.colour / sum.count);
   }
-  return print;
+  return texture;
 }
 
 }  // namespace houghstream

@@ -14,7 +14,7 @@ namespace houghstream {
 /// Stores the colours of a surface by position: small cubes, and in each of them the sides that the surface shows. It
 /// yields the colour at any point of the surface without rendering. An empty one has no colours. The lists have equal
 /// lengths and are sorted by cube.
-struct SurfacePrint {
+struct SurfaceTexture {
   float detail_m = 1.0F;                 ///< edge of a cube: what is smaller is averaged
   std::vector<std::int64_t> cubes;       ///< once for each of its sides
   std::vector<Eigen::Vector3f> normals;  ///< mean over the side, outwards
@@ -27,15 +27,15 @@ struct SurfacePrint {
   std::optional<Eigen::Vector3f> find(const Eigen::Vector3f& point, const Eigen::Vector3f& towards) const;
 };
 
-/// Collects points of the surface and makes a SurfacePrint of them.
-class SurfacePrintMaker {
+/// Collects points of the surface and makes a SurfaceTexture of them.
+class SurfaceTextureBuilder {
  public:
-  explicit SurfacePrintMaker(double detail_m) : detail_m_(static_cast<float>(detail_m)) {}
+  explicit SurfaceTextureBuilder(double detail_m) : detail_m_(static_cast<float>(detail_m)) {}
 
   /// Adds a point of the surface, object frame, metres; `normal` has unit length and points outwards.
   void add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, const LabColour& colour);
 
-  SurfacePrint make() const;
+  SurfaceTexture make() const;
 
  private:
   struct Sum {
@@ -48,5 +48,9 @@ class SurfacePrintMaker {
   /// Sums by cube, and by the axis to which the normal is nearest, with its sign.
   std::map<std::pair<std::int64_t, int>, Sum> sums_;
 };
+
+// The names of before, for one release.
+using SurfacePrint [[deprecated("is SurfaceTexture now")]] = SurfaceTexture;
+using SurfacePrintMaker [[deprecated("is SurfaceTextureBuilder now")]] = SurfaceTextureBuilder;
 
 }  // namespace houghstream

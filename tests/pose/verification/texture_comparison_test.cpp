@@ -1,4 +1,4 @@
-#include "pose/verification/print_comparison.hpp"
+#include "pose/verification/texture_comparison.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,15 +16,15 @@ constexpr double kTolerance_m = 0.008;
 const Eigen::Isometry3d kTruth = standing(30.0, 30.0, 0.8);
 
 /// Compares the box in the frame with alternatives of a pose.
-std::optional<PrintComparison> compared_at(const Eigen::Isometry3d& T_camera_object, const Mesh& taught,
-                                           const RgbdFrame& frame) {
+std::optional<TextureComparison> compared_at(const Eigen::Isometry3d& T_camera_object, const Mesh& taught,
+                                             const RgbdFrame& frame) {
   const ObjectModel model = make_object_model("box", taught, {});
   Detection detection;
   detection.box_px = cv::Rect2f(0.0F, 0.0F, 640.0F, 480.0F);
   detection.centre_camera = kTruth.translation().cast<float>();
   const FrameContext seen_frame = make_frame_context(frame, {}, {});
   const ObjectObservation seen = observe_object(seen_frame, detection, model, {});
-  return compare_print(seen, T_camera_object, {kTolerance_m, {}}, {});
+  return compare_with_alternatives(seen, T_camera_object, {kTolerance_m, {}}, {});
 }
 
 /// Returns the frame with the camera's response applied to each colour.
@@ -39,46 +39,46 @@ RgbdFrame through_camera(RgbdFrame frame, const std::function<double(double, int
 }
 
 void expect_told(const RgbdFrame& frame, const std::string& what) {
-  const std::optional<PrintComparison> right = compared_at(kTruth, printed_box(), frame);
+  const std::optional<TextureComparison> right = compared_at(kTruth, printed_box(), frame);
   ASSERT_TRUE(right.has_value()) << what;
   EXPECT_GT(right->margin, 2.0) << what;
   EXPECT_FALSE(right->better.has_value()) << what;
-  const std::optional<PrintComparison> turned_over = compared_at(rotated(kTruth, 180.0), printed_box(), frame);
+  const std::optional<TextureComparison> turned_over = compared_at(rotated(kTruth, 180.0), printed_box(), frame);
   ASSERT_TRUE(turned_over.has_value()) << what;
   EXPECT_LT(turned_over->margin, -2.0) << what;
   ASSERT_TRUE(turned_over->better.has_value()) << what;
   EXPECT_LT((turned_over->better->matrix() - kTruth.matrix()).norm(), 1e-3) << what;
 }
 
-TEST(PrintComparison, TellsABoxFromItselfTurnedOver) {
+TEST(TextureComparison, TellsABoxFromItselfTurnedOver) {
   expect_told(coloured_frame(printed_box(), kTruth, 1), "as it is");
 }
 
-TEST(PrintComparison, TellsThroughAnotherCamera) {
+TEST(TextureComparison, TellsThroughAnotherCamera) {
   const RgbdFrame frame = coloured_frame(printed_box(), kTruth, 1);
   expect_told(through_camera(frame, [](double value, int) { return 0.5 * value; }), "dark");
   expect_told(through_camera(frame, [](double value, int) { return 255.0 * std::pow(value / 255.0, 0.7); }), "gamma");
   expect_told(through_camera(frame, [](double value, int c) { return value * (c == 0 ? 0.8 : 1.05); }), "warm light");
 }
 
-TEST(PrintComparison, OfAPlainObjectItIsOneOfAsMany) {
+TEST(TextureComparison, OfAPlainObjectItIsOneOfAsMany) {
   Mesh plain = printed_box();
   for (cv::Vec3b& colour : plain.colours) colour = cv::Vec3b(40, 90, 160);
   const RgbdFrame frame = coloured_frame(plain, kTruth, 1);
-  const std::optional<PrintComparison> compared = compared_at(kTruth, plain, frame);
+  const std::optional<TextureComparison> compared = compared_at(kTruth, plain, frame);
   ASSERT_TRUE(compared.has_value());
   EXPECT_NEAR(compared->margin, -std::log(3.0), 0.3) << "three half turns";
 }
 
-TEST(PrintComparison, OfAModelWithoutColoursItIsOneOfAsMany) {
+TEST(TextureComparison, OfAModelWithoutColoursItIsOneOfAsMany) {
   const RgbdFrame frame = coloured_frame(printed_box(), kTruth, 1);
-  const std::optional<PrintComparison> compared = compared_at(kTruth, cereal_box(), frame);
+  const std::optional<TextureComparison> compared = compared_at(kTruth, cereal_box(), frame);
   ASSERT_TRUE(compared.has_value());
   EXPECT_DOUBLE_EQ(compared->margin, -std::log(3.0));
   EXPECT_FALSE(compared->better.has_value());
 }
 
-TEST(PrintComparison, WithoutAlternativesThereIsNone) {
+TEST(TextureComparison, WithoutAlternativesThereIsNone) {
   ModelSettings settings;
   const ObjectModel model = make_object_model("mug", mug(), settings);
   EXPECT_TRUE(model.alternatives.empty()) << "its handle tells";

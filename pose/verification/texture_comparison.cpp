@@ -1,4 +1,4 @@
-#include "pose/verification/print_comparison.hpp"
+#include "pose/verification/texture_comparison.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 namespace houghstream {
 namespace {
 
-// The numbers below are chosen by what they mean, not fitted; what the result is worth is learnt (PrintSettings).
+// The numbers below are chosen by what they mean, not fitted; what the result is worth is learnt (TextureSettings).
 constexpr int kCells = 48;     // along the longer side of the object in the image
 constexpr int kMinCells = 60;  // minimum of compared cells that is informative
 constexpr int kFine = 5;       // sides of the means that part the bands, cells
@@ -38,7 +38,7 @@ constexpr std::array<double, kBands> kCellsOfOne = {kFineCells,   kFineCells,   
                                                     kMiddleCells, kMiddleCells, kCoarseCells, kCoarseCells};
 
 /// The bands of an image, and its mean chroma.
-struct Print {
+struct TextureBands {
   std::array<Band, kBands> bands;
   Eigen::Vector2d chroma = Eigen::Vector2d::Zero();  ///< mean a* and b*, about grey
 };
@@ -71,34 +71,34 @@ cv::Mat cells_about(const cv::Mat& mask, int side) {
 }
 
 /// Makes the bands of a grid of CIE L*a*b* colours, CV_32FC3, 0 where nothing is compared.
-Print print_of(const cv::Mat& lab, const Face& face) {
+TextureBands make_texture_bands(const cv::Mat& lab, const Face& face) {
   const cv::Mat fine = box_sum(lab, kFine) / face.fine_weights;
   const cv::Mat coarse = box_sum(lab, kCoarse) / face.coarse_weights;
   const auto count = static_cast<Eigen::Index>(face.cells.size());
   cv::Vec3d mean(0.0, 0.0, 0.0);
   for (const cv::Point& cell : face.cells) mean += cv::Vec3d(lab.at<cv::Vec3f>(cell));
   mean /= static_cast<double>(count);
-  Print print;
-  for (Band& band : print.bands) band.values.resize(count);
+  TextureBands texture;
+  for (Band& band : texture.bands) band.values.resize(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const cv::Point& cell = face.cells[static_cast<std::size_t>(i)];
     const cv::Vec3f own = lab.at<cv::Vec3f>(cell);
     const cv::Vec3f near = fine.at<cv::Vec3f>(cell);
     const cv::Vec3f wide = coarse.at<cv::Vec3f>(cell);
     for (int c = 0; c < 3; ++c) {
-      print.bands[static_cast<std::size_t>(c)].values[i] = own[c] - near[c];
-      print.bands[static_cast<std::size_t>(3 + c)].values[i] = near[c] - wide[c];
-      if (c > 0) print.bands[static_cast<std::size_t>(5 + c)].values[i] = wide[c] - static_cast<float>(mean[c]);
+      texture.bands[static_cast<std::size_t>(c)].values[i] = own[c] - near[c];
+      texture.bands[static_cast<std::size_t>(3 + c)].values[i] = near[c] - wide[c];
+      if (c > 0) texture.bands[static_cast<std::size_t>(5 + c)].values[i] = wide[c] - static_cast<float>(mean[c]);
     }
   }
-  for (Band& band : print.bands) band.sum_sq = static_cast<double>(band.values.squaredNorm());
+  for (Band& band : texture.bands) band.sum_sq = static_cast<double>(band.values.squaredNorm());
   constexpr double kGrey = 128.0;
-  print.chroma = {mean[1] - kGrey, mean[2] - kGrey};
-  return print;
+  texture.chroma = {mean[1] - kGrey, mean[2] - kGrey};
+  return texture;
 }
 
 /// Returns the log likelihood ratio of the observation under the model's texture and under a uniform surface.
-double log_likelihood(const Print& model, const Print& seen) {
+double log_likelihood(const TextureBands& model, const TextureBands& seen) {
   double sum = 0.0;
   for (std::size_t i = 0; i < kBands; ++i) {
     const Band& own = model.bands[i];
@@ -170,7 +170,7 @@ Face visible_face(const ObjectObservation& seen, const Eigen::Isometry3d& T_came
 }
 
 /// Returns the observed texture of the face, read at an offset of `shift_px`.
-Print seen_print(const ObjectObservation& seen, const Face& face, const cv::Point& shift_px) {
+TextureBands observed_texture(const ObjectObservation& seen, const Face& face, const cv::Point& shift_px) {
   const cv::Mat& lab = seen.colours.lab;
   const cv::Point last(lab.cols - face.part_px.width, lab.rows - face.part_px.height);
   cv::Point first = face.part_px.tl() + shift_px - seen.colours.origin_px;
@@ -179,11 +179,11 @@ Print seen_print(const ObjectObservation& seen, const Face& face, const cv::Poin
   cv::resize(lab(cv::Rect(first, face.part_px.size())), grid, face.mask.size(), 0.0, 0.0, cv::INTER_AREA);
   grid.convertTo(grid, CV_32F);
   grid.setTo(cv::Scalar::all(0.0), face.mask == 0.0);
-  return print_of(grid, face);
+  return make_texture_bands(grid, face);
 }
 
 /// Returns the model's texture there after `motion`; nothing where much of the surface would be missing.
-std::optional<Print> model_print(const ObjectModel& model, const Face& face, const Eigen::Isometry3d& motion) {
+std::optional<TextureBands> model_texture(const ObjectModel& model, const Face& face, const Eigen::Isometry3d& motion) {
   constexpr double kMaxMissing = 0.2;
   const Eigen::Isometry3f back = motion.inverse().cast<float>();
   cv::Mat grid(face.mask.size(), CV_32FC3, cv::Scalar::all(0.0));
@@ -191,7 +191,7 @@ std::optional<Print> model_print(const ObjectModel& model, const Face& face, con
   cv::Vec3f sum(0.0F, 0.0F, 0.0F);
   for (std::size_t i = 0; i < face.cells.size(); ++i) {
     const Eigen::Vector3f point = back * face.points[i];
-    const std::optional<Eigen::Vector3f> colour = model.print.find(point, back * face.eye - point);
+    const std::optional<Eigen::Vector3f> colour = model.texture.find(point, back * face.eye - point);
     if (!colour) {
       missing.push_back(face.cells[i]);
       continue;
@@ -203,20 +203,20 @@ std::optional<Print> model_print(const ObjectModel& model, const Face& face, con
   if (static_cast<double>(missing.size()) > kMaxMissing * static_cast<double>(face.cells.size())) return std::nullopt;
   const cv::Vec3f mean = sum / static_cast<float>(face.cells.size() - missing.size());
   for (const cv::Point& cell : missing) grid.at<cv::Vec3f>(cell) = mean;
-  return print_of(grid, face);
+  return make_texture_bands(grid, face);
 }
 
 /// Returns the observed texture, read at a few offsets, since the registration of colour to depth is no better.
-std::vector<Print> seen_prints(const ObjectObservation& seen, const Face& face) {
+std::vector<TextureBands> observed_textures(const ObjectObservation& seen, const Face& face) {
   constexpr int kReach_px = 2;
-  std::vector<Print> prints;
+  std::vector<TextureBands> textures;
   for (const int dy : {0, -kReach_px, kReach_px}) {
-    for (const int dx : {0, -kReach_px, kReach_px}) prints.push_back(seen_print(seen, face, {dx, dy}));
+    for (const int dx : {0, -kReach_px, kReach_px}) textures.push_back(observed_texture(seen, face, {dx, dy}));
   }
-  return prints;
+  return textures;
 }
 
-double best_log_likelihood(const Print& model, const std::vector<Print>& seen) {
+double best_log_likelihood(const TextureBands& model, const std::vector<TextureBands>& seen) {
   double best = log_likelihood(model, seen.front());
   for (std::size_t i = 1; i < seen.size(); ++i) best = std::max(best, log_likelihood(model, seen[i]));
   return best;
@@ -296,7 +296,7 @@ std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& seen,
 /// Holds a pose that is equivalent by shape, and the model's texture at it.
 struct Alternative {
   Eigen::Isometry3d T_camera_object;
-  Print print;
+  TextureBands texture;
   double likelihood = 0.0;  ///< log
 };
 
@@ -305,48 +305,49 @@ struct Alternative {
 std::vector<Alternative> likely_alternatives(const ObjectObservation& seen, const Face& face,
                                              const Eigen::Isometry3d& T_camera_object,
                                              const std::vector<Eigen::Isometry3d>& poses,
-                                             const std::vector<Print>& seen_at) {
+                                             const std::vector<TextureBands>& seen_at) {
   constexpr std::size_t kLikeliest = 3;
   const Eigen::Isometry3d T_object_camera = T_camera_object.inverse();
   std::vector<Alternative> shown;
   for (const Eigen::Isometry3d& pose : poses) {
-    std::optional<Print> print = model_print(seen.model, face, T_object_camera * pose);
-    if (!print) continue;
-    const double likelihood = log_likelihood(*print, seen_at.front());
-    shown.push_back({pose, *std::move(print), likelihood});
+    std::optional<TextureBands> texture = model_texture(seen.model, face, T_object_camera * pose);
+    if (!texture) continue;
+    const double likelihood = log_likelihood(*texture, seen_at.front());
+    shown.push_back({pose, *std::move(texture), likelihood});
   }
   std::stable_sort(shown.begin(), shown.end(),
                    [](const Alternative& a, const Alternative& b) { return a.likelihood > b.likelihood; });
   for (std::size_t i = 0; i < std::min(kLikeliest, shown.size()); ++i)
-    shown[i].likelihood = best_log_likelihood(shown[i].print, seen_at);
+    shown[i].likelihood = best_log_likelihood(shown[i].texture, seen_at);
   return shown;
 }
 
 /// Returns the margin without information from the texture: all alternatives are equally probable.
-PrintComparison undecided(std::size_t alternatives) {
+TextureComparison undecided(std::size_t alternatives) {
   return {-std::log(static_cast<double>(alternatives)), std::nullopt};
 }
 
 }  // namespace
 
-std::optional<PrintComparison> compare_print(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
-                                             const DepthTolerance& tolerance,
-                                             const RegistrationSettings& registration) {
+std::optional<TextureComparison> compare_with_alternatives(const ObjectObservation& seen,
+                                                           const Eigen::Isometry3d& T_camera_object,
+                                                           const DepthTolerance& tolerance,
+                                                           const RegistrationSettings& registration) {
   const std::vector<Eigen::Isometry3d> alternatives = alternative_poses(seen, T_camera_object, tolerance, registration);
   if (alternatives.empty()) return std::nullopt;
-  if (seen.model.print.empty() || seen.colours.lab.empty()) return undecided(alternatives.size());
+  if (seen.model.texture.empty() || seen.colours.lab.empty()) return undecided(alternatives.size());
   const Face face = visible_face(seen, T_camera_object, tolerance);
   if (face.cells.size() < kMinCells) return undecided(alternatives.size());
-  const std::optional<Print> own = model_print(seen.model, face, Eigen::Isometry3d::Identity());
+  const std::optional<TextureBands> own = model_texture(seen.model, face, Eigen::Isometry3d::Identity());
   if (!own) return undecided(alternatives.size());
-  const std::vector<Print> seen_at = seen_prints(seen, face);
+  const std::vector<TextureBands> seen_at = observed_textures(seen, face);
   const double own_likelihood = best_log_likelihood(*own, seen_at);
   const std::vector<Alternative> shown = likely_alternatives(seen, face, T_camera_object, alternatives, seen_at);
   if (shown.empty()) return std::nullopt;
   // All other evidence supports the present pose. Another one replaces it on strong evidence only, a Bayes factor of 20
   // (Kass and Raftery 1995, "Bayes Factors").
   constexpr double kClearly = 3.0;  // its logarithm
-  PrintComparison comparison;
+  TextureComparison comparison;
   double best = own_likelihood + kClearly;
   double others = 0.0;  // sum of likelihoods over the pose's own
   for (const Alternative& other : shown) {
