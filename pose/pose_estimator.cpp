@@ -25,7 +25,7 @@ struct Estimation {
   std::vector<RotationCandidate> rotations = {};
   std::vector<PoseCandidate> candidates = {};
   std::vector<RegistrationResult> registered = {};  ///< the candidates
-  std::vector<RegistrationResult> chosen = {};      ///< the best first
+  std::vector<RegistrationResult> selected = {};    ///< the best first
   std::vector<PoseEvidence> evidence = {};          ///< evidence of the selected poses
   std::size_t published = 0;                        ///< index of the selected pose that is published, or would be
 };
@@ -86,14 +86,14 @@ void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, E
 }
 
 void choose_one(const PoseSettings& settings, Estimation& it) {
-  it.chosen = select_poses(*it.seen, it.registered, it.rotations, pose_selection_settings(settings));
-  copy_registration_evidence(it.chosen.front(), it.pose);
-  if (it.chosen.front().inliers == 0) it.pose.status = PoseStatus::kNotConverged;
+  it.selected = select_poses(*it.seen, it.registered, it.rotations, pose_selection_settings(settings));
+  copy_registration_evidence(it.selected.front(), it.pose);
+  if (it.selected.front().inliers == 0) it.pose.status = PoseStatus::kNotConverged;
 }
 
 void gather_one(const PoseSettings& settings, Estimation& it) {
   const QualitySettings& quality = class_quality_of(settings, it.pose.class_name);
-  for (const RegistrationResult& result : it.chosen) {
+  for (const RegistrationResult& result : it.selected) {
     it.evidence.push_back(gather_evidence(*it.seen, result.T_camera_object, it.detection.score, settings.verification));
     std::optional<ChromaPair> pair = chroma_pair(it.pose.class_name, it.evidence.back(), quality);
     if (pair && (!it.pose.chroma || pair->probability > it.pose.chroma->probability)) it.pose.chroma = std::move(pair);
@@ -136,9 +136,9 @@ ObjectPose judged_pose(const Estimation& it, const RegistrationResult& result, c
 /// Publishes the pose with the strongest evidence, or the status that names the reason against it.
 void decide_one(const PoseSettings& settings, Estimation& it) {
   std::optional<ObjectPose> best;
-  for (std::size_t i = 0; i < it.chosen.size(); ++i) {
+  for (std::size_t i = 0; i < it.selected.size(); ++i) {
     bring_to_camera(it.pose.camera_colours, it.evidence[i]);
-    ObjectPose judged = judged_pose(it, it.chosen[i], it.evidence[i], settings);
+    ObjectPose judged = judged_pose(it, it.selected[i], it.evidence[i], settings);
     if (best && !(judged.quality > best->quality)) continue;
     best = std::move(judged);
     it.published = i;
@@ -153,7 +153,7 @@ void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
   if (it.pose.shape_quality < kWorthTelling) return;
   const DepthTolerance tolerance{settings.verification.tolerance_m, it.seen->noise};
   const TextureSettings& learnt = class_quality_of(settings, it.pose.class_name).texture;
-  const RegistrationResult& published = it.chosen[it.published];
+  const RegistrationResult& published = it.selected[it.published];
   const std::optional<TextureComparison> texture =
       compare_with_alternatives(*it.seen, published.T_camera_object, tolerance, settings.registration);
   if (!texture) return;

@@ -64,13 +64,14 @@ class TreeGrower {
   Samples subset(const Samples& samples) {
     const auto limit = static_cast<std::size_t>(settings_.node_samples);
     if (samples.size() <= limit) return samples;
-    Samples chosen = samples;
+    Samples selected = samples;
     for (std::size_t i = 0; i < limit; ++i) {
-      std::swap(chosen[i], chosen[i + static_cast<std::size_t>(random_.below(static_cast<int>(chosen.size() - i)))]);
+      std::swap(selected[i],
+                selected[i + static_cast<std::size_t>(random_.below(static_cast<int>(selected.size() - i)))]);
     }
-    chosen.resize(limit);
-    std::sort(chosen.begin(), chosen.end());  // images in order: kinder to the cache
-    return chosen;
+    selected.resize(limit);
+    std::sort(selected.begin(), selected.end());  // images in order: kinder to the cache
+    return selected;
   }
 
   /// Drawn at random (Gall et al. 2011), but in nodes with hardly anything but background it is the labels.

@@ -53,10 +53,10 @@ constexpr std::size_t kMaxNetworkChannel = LCM_MAX_CHANNEL_NAME_LENGTH;
 std::string complete_url(const std::string& url) {
   const char* environment = std::getenv("LCM_DEFAULT_URL");
   const bool has_one = environment != nullptr && *environment != '\0';
-  const std::string chosen = !url.empty() ? url : has_one ? environment : kDefaultUrl;
-  check_lcm_url(chosen);
+  const std::string selected = !url.empty() ? url : has_one ? environment : kDefaultUrl;
+  check_lcm_url(selected);
   // If more is requested than is granted, LCM prints a warning of its own without the reason.
-  return with_receive_buffer(chosen, std::max(granted_receive_buffer(kAskedReceiveBuffer), std::int64_t{1}));
+  return with_receive_buffer(selected, std::max(granted_receive_buffer(kAskedReceiveBuffer), std::int64_t{1}));
 }
 
 bool is_log_url(const std::string& url) {

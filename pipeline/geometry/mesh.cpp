@@ -64,12 +64,12 @@ class FarthestPoints {
   }
 
   /// The first of those that are farthest once this one is chosen too.
-  std::size_t max_with(const Eigen::Vector3f& chosen) {
+  std::size_t max_with(const Eigen::Vector3f& selected) {
     Lanes farthest = Lanes::Zero();
     for (Group& group : groups_) {
-      const Lanes x = group.x - chosen.x();
-      const Lanes y = group.y - chosen.y();
-      const Lanes z = group.z - chosen.z();
+      const Lanes x = group.x - selected.x();
+      const Lanes y = group.y - selected.y();
+      const Lanes z = group.z - selected.z();
       group.distance_sq = group.distance_sq.min(x * x + (y * y + z * z));
       farthest = farthest.max(group.distance_sq);
     }
@@ -127,11 +127,11 @@ SurfacePoints sample_surface(const Mesh& mesh, int count, std::uint64_t seed) {
   const SurfacePoints candidates = random_points(mesh, kCandidatesPerPoint * static_cast<std::size_t>(count), seed);
   FarthestPoints distances(candidates.points);
   SurfacePoints out;
-  std::size_t chosen = 0;
+  std::size_t selected = 0;
   for (int n = 0; n < count; ++n) {
-    out.points.push_back(candidates.points[chosen]);
-    out.normals.push_back(candidates.normals[chosen]);
-    chosen = distances.max_with(out.points.back());
+    out.points.push_back(candidates.points[selected]);
+    out.normals.push_back(candidates.normals[selected]);
+    selected = distances.max_with(out.points.back());
   }
   return out;
 }

@@ -52,15 +52,15 @@ FrameSynchroniser::Camera& FrameSynchroniser::camera_of(const std::string& chann
 
 // There are frames.
 FrameSynchroniser::Camera& FrameSynchroniser::largest_camera() {
-  Camera* chosen = nullptr;
+  Camera* selected = nullptr;
   for (auto& [channel, camera] : cameras_) {
     if (camera.frames.empty()) continue;
-    const bool has_more = chosen == nullptr || camera.frames.size() > chosen->frames.size();
-    const bool is_older = chosen != nullptr && camera.frames.size() == chosen->frames.size() &&
-                          camera.frames.front().number < chosen->frames.front().number;
-    if (has_more || is_older) chosen = &camera;
+    const bool has_more = selected == nullptr || camera.frames.size() > selected->frames.size();
+    const bool is_older = selected != nullptr && camera.frames.size() == selected->frames.size() &&
+                          camera.frames.front().number < selected->frames.front().number;
+    if (has_more || is_older) selected = &camera;
   }
-  return *chosen;
+  return *selected;
 }
 
 void FrameSynchroniser::limit_frame_bytes() {
@@ -223,17 +223,17 @@ void FrameSynchroniser::drop_unmatchable(Camera& camera) {
 }
 
 SynchronisedMessages FrameSynchroniser::pop_pair(Camera& camera) {
-  const auto chosen = camera.waiting.begin() + static_cast<std::ptrdiff_t>(*camera.first_complete());
-  if (chosen->id == camera.frames.back().frame.id) camera.fresh = false;
-  const Kept& kept = *camera.find_frame(chosen->id);
+  const auto selected = camera.waiting.begin() + static_cast<std::ptrdiff_t>(*camera.first_complete());
+  if (selected->id == camera.frames.back().frame.id) camera.fresh = false;
+  const Kept& kept = *camera.find_frame(selected->id);
   SynchronisedMessages pair;
-  pair.id = chosen->id;
+  pair.id = selected->id;
   pair.frame = kept.frame.bytes;
   pair.frame_number = kept.number;
-  pair.detections = std::move(chosen->bytes);
-  pair.arrival = chosen->arrival;
+  pair.detections = std::move(selected->bytes);
+  pair.arrival = selected->arrival;
   camera.turn = ++turns_;
-  camera.waiting.erase(chosen);
+  camera.waiting.erase(selected);
   return pair;
 }
 

@@ -159,7 +159,7 @@ void update_from_detections(const Detections& detections, const DetectionAssocia
 /// that is doubtful; else -1.
 int choose_recheck(const DetectionAssociation& look, const FollowerSettings& settings, FollowedCamera& camera) {
   const FollowedFrame& followed_frame = look.followed_frame;
-  FollowedObject* chosen = nullptr;
+  FollowedObject* selected = nullptr;
   int place = -1;
   for (const int match : look.matches) {
     FollowedObject* object =
@@ -168,11 +168,11 @@ int choose_recheck(const DetectionAssociation& look, const FollowerSettings& set
     const float quality = followed_frame.poses[static_cast<std::size_t>(match)].pose.shape_quality;
     const double wait_s = quality < settings.doubtful_quality ? 0.0 : settings.recheck_interval_s;
     if (seconds_between(object->recheck_us, followed_frame.clock_us) < wait_s) continue;
-    if (chosen != nullptr && chosen->recheck_us <= object->recheck_us) continue;
-    chosen = object;
+    if (selected != nullptr && selected->recheck_us <= object->recheck_us) continue;
+    selected = object;
     place = match;
   }
-  if (chosen != nullptr) chosen->recheck_us = followed_frame.clock_us;
+  if (selected != nullptr) selected->recheck_us = followed_frame.clock_us;
   return place;
 }
 

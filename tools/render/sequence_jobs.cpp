@@ -16,19 +16,19 @@ using namespace world;
 
 namespace {
 
-std::vector<SequencePlan> chosen_plans(const SequencesJob& job) {
+std::vector<SequencePlan> selected_plans(const SequencesJob& job) {
   std::vector<SequencePlan> all = sequence_plans();
   if (job.names == std::vector<std::string>{"all"}) return all;
-  std::vector<SequencePlan> chosen;
+  std::vector<SequencePlan> selected;
   for (const std::string& name : job.names) {
     const auto found =
         std::find_if(all.begin(), all.end(), [&](const SequencePlan& plan) { return plan.name == name; });
     std::vector<std::string> known(all.size());
     std::transform(all.begin(), all.end(), known.begin(), [](const SequencePlan& plan) { return plan.name; });
     require(found != all.end(), "sequence \"{}\": expected all or one of {}", name, fmt::join(known, ", "));
-    chosen.push_back(*found);
+    selected.push_back(*found);
   }
-  return chosen;
+  return selected;
 }
 
 OrderedJson pose_entry(const Eigen::Isometry3d& T) {
@@ -101,7 +101,7 @@ void render_sequence(const RenderOptions& options, const SequencesJob& job, cons
 
 void render_sequences(const RenderOptions& options, const SequencesJob& job) {
   require(job.fps >= 1.0 && job.fps <= 120.0, "sequences: {} frames a second, expected 1 to 120", job.fps);
-  const std::vector<SequencePlan> plans = chosen_plans(job);
+  const std::vector<SequencePlan> plans = selected_plans(job);
   std::set<int> ids;
   for (const SequencePlan& plan : plans) {
     for (const Actor& actor : plan.actors) ids.insert(actor.object_id);

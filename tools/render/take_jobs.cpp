@@ -14,7 +14,7 @@ using namespace world;
 
 namespace {
 
-std::vector<NumberedTake> chosen_takes(const TakesJob& job) {
+std::vector<NumberedTake> selected_takes(const TakesJob& job) {
   const DatasetSplit use = job.development ? DatasetSplit::kTraining : DatasetSplit::kTest;
   const std::vector<NumberedTake> all = twelve_objects_takes(use, job.world, (job.frames - 1) / job.fps);
   const bool every_object = job.objects == std::vector<std::string>{"all"};
@@ -26,13 +26,13 @@ std::vector<NumberedTake> chosen_takes(const TakesJob& job) {
     require(every_object || std::find(names.begin(), names.end(), name) != names.end(),
             "object \"{}\": expected all or one of {}", name, fmt::join(names, ", "));
   }
-  std::vector<NumberedTake> chosen;
+  std::vector<NumberedTake> selected;
   for (const NumberedTake& take : all) {
     const bool wanted =
         every_object || std::find(job.objects.begin(), job.objects.end(), take.object) != job.objects.end();
-    if (wanted && take.take == job.take.value_or(take.take)) chosen.push_back(take);
+    if (wanted && take.take == job.take.value_or(take.take)) selected.push_back(take);
   }
-  return chosen;
+  return selected;
 }
 
 OrderedJson take_entry(const NumberedTake& take, const TakesJob& job) {
@@ -66,7 +66,7 @@ void render_take(const RenderOptions& options, const NumberedTake& numbered, int
 void render_takes(const RenderOptions& options, const TakesJob& job) {
   require(job.frames >= 2 && job.frames <= 20000, "takes: {} frames, expected 2 to 20000", job.frames);
   require(job.fps >= 1.0 && job.fps <= 120.0, "takes: {} frames a second, expected 1 to 120", job.fps);
-  const std::vector<NumberedTake> takes = chosen_takes(job);
+  const std::vector<NumberedTake> takes = selected_takes(job);
   std::vector<TaughtObject> objects;
   OrderedJson index = OrderedJson::array();
   for (const NumberedTake& take : takes) {

@@ -236,11 +236,11 @@ std::vector<ObjectClass> list_classes(const std::vector<const TrainingView*>& vi
 /// One of `every` views of each class, whose labels these are, in ascending order.
 std::vector<std::size_t> views_in_images(const std::vector<int>& labels, int every) {
   std::map<int, int> counts;
-  std::vector<std::size_t> chosen;
+  std::vector<std::size_t> selected;
   for (std::size_t v = 0; v < labels.size(); ++v) {
-    if (counts[labels[v]]++ % every == 0) chosen.push_back(v);
+    if (counts[labels[v]]++ % every == 0) selected.push_back(v);
   }
-  return chosen;
+  return selected;
 }
 
 void measure_classes(const std::vector<TrainingImage>& images, TrainingSet& set) {

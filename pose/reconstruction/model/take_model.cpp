@@ -45,7 +45,7 @@ std::vector<DepthView> views_about(const Take& take, const Eigen::AlignedBox3d& 
     view.frame.depth = keyframe.frame.depth(region);
     view.frame.camera = keyframe.frame.camera.cropped(region.x, region.y, region.width, region.height);
     view.mask = cv::Mat(region.size(), CV_8UC1, cv::Scalar(255));
-    if (take.motion == Motion::kObject && !take.chosen.like_skin) {  // the hand that turns it
+    if (take.motion == Motion::kObject && !take.selected.like_skin) {  // the hand that turns it
       cv::Mat skin;
       cv::dilate(skin_pixels(view.frame.colour), skin, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
       view.frame.depth = view.frame.depth.clone();
@@ -120,14 +120,14 @@ std::vector<int> label_parts(const TsdfVolume& grid, double lowest, int& parts) 
 }
 
 /// Returns the part on which most of the selected object's pixels lie; 0 = none.
-int chosen_part(const Take& take, const TsdfVolume& grid, const std::vector<int>& labels, int parts) {
+int selected_part(const Take& take, const TsdfVolume& grid, const std::vector<int>& labels, int parts) {
   std::vector<int> votes(static_cast<std::size_t>(parts) + 1, 0);
   const Keyframe& first = take.keyframes.front();
   const Eigen::Isometry3d T_world_camera = first.T_camera_world.inverse();
-  for (int y = 0; y < take.chosen.mask.rows; y += 2) {
-    for (int x = 0; x < take.chosen.mask.cols; x += 2) {
+  for (int y = 0; y < take.selected.mask.rows; y += 2) {
+    for (int x = 0; x < take.selected.mask.cols; x += 2) {
       const float z = first.frame.depth.at<float>(y, x);
-      if (take.chosen.mask.at<std::uint8_t>(y, x) == 0 || !(z > 0.0F)) continue;
+      if (take.selected.mask.at<std::uint8_t>(y, x) == 0 || !(z > 0.0F)) continue;
       const Eigen::Vector3d ray = first.frame.camera.backproject(x, y, 1.0);
       // The point lies a little below the surface, so that it falls into a filled voxel.
       const Eigen::Vector3d cell = (T_world_camera * (ray * (z + 0.5 * grid.voxel)) - grid.origin) / grid.voxel;
@@ -147,7 +147,7 @@ Filled fill(const Take& take, const Eigen::AlignedBox3d& box, const Reconstructi
                                       grid_settings(settings.coarse_voxel_m, settings.threads));
   int parts = 0;
   const std::vector<int> labels = label_parts(filled.grid, box.min().z(), parts);
-  const int part = chosen_part(take, filled.grid, labels, parts);
+  const int part = selected_part(take, filled.grid, labels, parts);
   if (part == 0) return filled;
   const TsdfVolume& grid = filled.grid;
   for (int k = 0; k < grid.nz; ++k) {
@@ -168,16 +168,16 @@ Filled fill(const Take& take, const Eigen::AlignedBox3d& box, const Reconstructi
 /// Returns the object's voxels in a box that holds all of it.
 Filled find_object(const Take& take, const ReconstructionSettings& settings) {
   constexpr double kWidest_m = 0.45;
-  double half =
-      std::min(take.chosen.boxed ? 1.1 * take.chosen.radius_m + 0.01 : 1.4 * take.chosen.radius_m + 0.03, kWidest_m);
+  double half = std::min(
+      take.selected.boxed ? 1.1 * take.selected.radius_m + 0.01 : 1.4 * take.selected.radius_m + 0.03, kWidest_m);
   for (;;) {
     const Eigen::AlignedBox3d box(Eigen::Vector3d(-half, -half, settings.foot_m + settings.coarse_voxel_m),
-                                  Eigen::Vector3d(half, half, 1.1 * take.chosen.height_m + 0.02));
+                                  Eigen::Vector3d(half, half, 1.1 * take.selected.height_m + 0.02));
     Filled filled = fill(take, box, settings);
     require(!filled.slices.empty(),
             "nothing is left of the object when all views are put together, expected one thing "
             "that stays together");
-    if (!filled.touches_side || half >= kWidest_m || take.chosen.boxed) return filled;
+    if (!filled.touches_side || half >= kWidest_m || take.selected.boxed) return filled;
     half = std::min(1.5 * half, kWidest_m);
   }
 }

@@ -41,7 +41,7 @@ int meant_cluster(const Clusters& clusters, const RgbdFrame& frame, const Select
 }
 
 /// Why the chosen cluster cannot be taught; empty where it can.
-std::string fault_of(const ChosenObject& object, const RgbdFrame& frame, const SelectionSettings& settings) {
+std::string fault_of(const SelectedObject& object, const RgbdFrame& frame, const SelectionSettings& settings) {
   const double widest = std::max(2.0 * object.radius_m, object.height_m);
   if (widest > settings.max_m)
     return fmt::format(
@@ -56,11 +56,11 @@ std::string fault_of(const ChosenObject& object, const RgbdFrame& frame, const S
   return {};
 }
 
-ChosenObject make_object(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes, const Clusters& clusters,
-                         int chosen) {
-  const Cluster& cluster = clusters.list[static_cast<std::size_t>(chosen)];
-  ChosenObject object;
-  object.mask = clusters.of_pixel == chosen;
+SelectedObject make_object(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes, const Clusters& clusters,
+                           int selected) {
+  const Cluster& cluster = clusters.list[static_cast<std::size_t>(selected)];
+  SelectedObject object;
+  object.mask = clusters.of_pixel == selected;
   object.box_px = cv::boundingRect(object.mask);
   constexpr double kLikeSkin = 0.15;
   object.like_skin =
@@ -91,7 +91,7 @@ bool is_level(const RgbdFrame& frame, const Plane& plane, int x, int y) {
 
 /// A cluster may be an object on a disc, a book or a box lid: a wide horizontal surface that supports something
 /// smaller.
-std::optional<Plane> carried_by(const RgbdFrame& frame, const ChosenObject& object) {
+std::optional<Plane> carried_by(const RgbdFrame& frame, const SelectedObject& object) {
   constexpr double kBin_m = 0.002;
   constexpr double kMax_m = 0.06;
   constexpr double kAbove_m = 0.012;
@@ -149,9 +149,9 @@ ObjectSelection choose_on(const RgbdFrame& frame, const Plane& plane, const Sele
   const cv::Rect whole({0, 0}, frame.depth.size());
   const Clusters clusters =
       find_clusters(frame, plane, axes, {settings.box_px.value_or(whole) & whole, meant, settings.max_distance_m});
-  const int chosen = meant_cluster(clusters, frame, settings);
-  if (chosen == 0) return {{}, nothing_there(settings)};
-  ChosenObject object = make_object(frame, plane, axes, clusters, chosen);
+  const int selected = meant_cluster(clusters, frame, settings);
+  if (selected == 0) return {{}, nothing_there(settings)};
+  SelectedObject object = make_object(frame, plane, axes, clusters, selected);
   object.boxed = settings.box_px.has_value();
   if (const std::optional<Plane> carrier = carried_by(frame, object)) {
     if (ObjectSelection carried = choose_on(frame, *carrier, settings); carried.object) return carried;
@@ -189,7 +189,7 @@ ObjectSelection select_object(const RgbdFrame& frame, const SelectionSettings& s
   return first;
 }
 
-std::string describe_selection(const ChosenObject& object) {
+std::string describe_selection(const SelectedObject& object) {
   const cv::Point middle = (object.box_px.tl() + object.box_px.br()) / 2;
   return fmt::format("meant is what stands at {},{} in the picture, {:.0f} cm across and {:.0f} cm high", middle.x,
                      middle.y, 2e2 * object.radius_m, 1e2 * object.height_m);

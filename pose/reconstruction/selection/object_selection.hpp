@@ -12,7 +12,7 @@
 namespace houghstream::reconstruction {
 
 /// Describes the selected object.
-struct ChosenObject {
+struct SelectedObject {
   Plane plane;                                                       ///< plane on which it stands
   Eigen::Isometry3d T_camera_stand = Eigen::Isometry3d::Identity();  ///< origin on the plane below its middle, z up
   double radius_m = 0.0;                                             ///< radius of its visible part about that axis
@@ -25,7 +25,7 @@ struct ChosenObject {
 
 /// The selected object, or the reason why there is none.
 struct ObjectSelection {
-  std::optional<ChosenObject> object;
+  std::optional<SelectedObject> object;
   std::string reason;  ///< empty with an object
 };
 
@@ -52,6 +52,6 @@ std::optional<cv::Rect> seen_box(const Eigen::AlignedBox3d& box, const Camera& c
 ObjectSelection select_object(const RgbdFrame& frame, const SelectionSettings& settings);
 
 /// Describes the selected object for a person: its position in the image, and its size.
-std::string describe_selection(const ChosenObject& object);
+std::string describe_selection(const SelectedObject& object);
 
 }  // namespace houghstream::reconstruction

@@ -43,7 +43,7 @@ void remove_skin(const cv::Mat& colour, cv::Mat& mask) {
 
 }  // namespace
 
-cv::Mat object_pixels(const FrameLevel& level, const ChosenObject& object, const Eigen::Isometry3d& T_camera_world) {
+cv::Mat object_pixels(const FrameLevel& level, const SelectedObject& object, const Eigen::Isometry3d& T_camera_world) {
   constexpr double kMin_m = 0.006;
   const double widest = 1.3 * object.radius_m + 0.01;
   const Eigen::Isometry3d T_world_camera = T_camera_world.inverse();
@@ -75,7 +75,7 @@ LevelPoints points_of_scene(const Keyframe& keyframe) {
   return points;
 }
 
-LevelPoints points_of_object(const Keyframe& keyframe, const KeyframeMap& map, const ChosenObject& object,
+LevelPoints points_of_object(const Keyframe& keyframe, const KeyframeMap& map, const SelectedObject& object,
                              const cv::Rect& region_px) {
   cv::Mat mask = object_pixels(keyframe.levels.levels[0], object, keyframe.T_camera_world);
   remove_seen_through(keyframe, map, mask);

@@ -10,7 +10,7 @@ namespace houghstream::reconstruction {
 
 /// Pixels that show the object, or a hand on it: CV_8UC1, 255 where the measured point lies above the table and within
 /// the chosen object's bounds. World: z up, origin at the object's foot.
-cv::Mat object_pixels(const FrameLevel& level, const ChosenObject& object, const Eigen::Isometry3d& T_camera_world);
+cv::Mat object_pixels(const FrameLevel& level, const SelectedObject& object, const Eigen::Isometry3d& T_camera_world);
 
 /// Points of all that a keyframe shows, while the camera is carried about; those of the table are marked. Camera frame.
 LevelPoints points_of_scene(const Keyframe& keyframe);
@@ -18,7 +18,7 @@ LevelPoints points_of_scene(const Keyframe& keyframe);
 /// Returns points of the object alone, while it rotates before the camera: without a hand, which violates free space of
 /// keyframes of `map`, or has the colour of skin where the object has not. `region_px` is the part of the keyframe's
 /// frame in its levels. Camera frame.
-LevelPoints points_of_object(const Keyframe& keyframe, const KeyframeMap& map, const ChosenObject& object,
+LevelPoints points_of_object(const Keyframe& keyframe, const KeyframeMap& map, const SelectedObject& object,
                              const cv::Rect& region_px);
 
 }  // namespace houghstream::reconstruction

@@ -34,7 +34,7 @@ struct LostSpan {
 
 /// A take that is over.
 struct Take {
-  ChosenObject chosen;  ///< object in the first frame
+  SelectedObject selected;  ///< object in the first frame
   Motion motion = Motion::kUnknown;
   std::vector<Keyframe> keyframes;
   std::vector<PlacedFrame> frames;

@@ -16,7 +16,7 @@ namespace {
 constexpr double kDegrees = 57.29577951308232;
 
 /// Returns the region in which the object is visible; empty where the camera is too near for that.
-cv::Rect box_of(const ChosenObject& object, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
+cv::Rect box_of(const SelectedObject& object, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
   const double half = object.radius_m * 0.8;
   const Eigen::AlignedBox3d box(Eigen::Vector3d(-half, -half, 0.0), Eigen::Vector3d(half, half, object.height_m));
   return seen_box(box, camera, T_camera_world).value_or(cv::Rect()) & cv::Rect(0, 0, camera.width, camera.height);
@@ -49,7 +49,7 @@ const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
     take_.frames.back().left_out = !is_fit_for_model(levels.quality);
     std::optional<Alignment> found;
     if (motion_ == Motion::kObject)
-      static_shading_.mark_static_intensity(object_pixels(levels.levels[0], chosen_, step_.T_last), levels);
+      static_shading_.mark_static_intensity(object_pixels(levels.levels[0], selected_, step_.T_last), levels);
     if (state_.state == TakePlacerState::kTracking) found = follower_.follow(now, levels, step_, motion_, map_);
     if (found && motion_ == Motion::kUnknown) {
       motion_ = motion_classifier_.classify(now, levels, found->T_camera_world);
@@ -82,19 +82,19 @@ void TakePlacer::choose(const RgbdFrame& frame) {
     require(state_.frames < settings_.max_frames_to_choose && !settings_.selection.box_px, "{}", choice.reason);
     return;
   }
-  chosen_ = std::move(*choice.object);
-  map_.settings().middle = {0.0, 0.0, 0.5 * chosen_.height_m};
+  selected_ = std::move(*choice.object);
+  map_.settings().middle = {0.0, 0.0, 0.5 * selected_.height_m};
   first_number_ = state_.frames - 1;
   FrameLevels levels = make_levels(frame, levels_);
-  step_.restart(chosen_.T_camera_stand);
+  step_.restart(selected_.T_camera_stand);
   state_.state = TakePlacerState::kTracking;
   round_.assign(36, false);
-  motion_classifier_ =
-      MotionClassifier(make_flow_frame(frame), levels, object_pixels(levels.levels[0], chosen_, chosen_.T_camera_stand),
-                       chosen_.T_camera_stand, settings_.map.min_corners);
+  motion_classifier_ = MotionClassifier(make_flow_frame(frame), levels,
+                                        object_pixels(levels.levels[0], selected_, selected_.T_camera_stand),
+                                        selected_.T_camera_stand, settings_.map.min_corners);
   follower_.set_last(motion_classifier_.first());
   Alignment at_start;
-  at_start.T_camera_world = chosen_.T_camera_stand;
+  at_start.T_camera_world = selected_.T_camera_stand;
   accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), at_start);
 }
 
@@ -170,13 +170,13 @@ void TakePlacer::follow_object_only() {
   const RgbdFrame& first = motion_classifier_.first().frame;
   MapSettings& map = map_.settings();
   map.plane = PlanePrior();
-  map.plane->normal = chosen_.plane.normal;
-  map.plane->offset = chosen_.plane.offset;
+  map.plane->normal = selected_.plane.normal;
+  map.plane->offset = selected_.plane.offset;
   map.min_inlier_fraction = 0.6;
   map.coarsest = 1;
   map.use_landmarks = false;
   map.sure_corners = 12;
-  const cv::Rect& box = chosen_.box_px;
+  const cv::Rect& box = selected_.box_px;
   const cv::Size more(cvRound(kAround * box.width) + 20, cvRound(kAround * box.height) + 20);
   levels_.region_px =
       cv::Rect(box.x - more.width, box.y - more.height, box.width + 2 * more.width, box.height + 2 * more.height) &
@@ -184,7 +184,7 @@ void TakePlacer::follow_object_only() {
   map_ = KeyframeMap(map);
   tie_to_first_keyframe();
   state_.seen = {};
-  step_.restart(chosen_.T_camera_stand);
+  step_.restart(selected_.T_camera_stand);
   Keyframe made;
   made.frame = first;
   made.number = first_number_;
@@ -211,12 +211,12 @@ void TakePlacer::tie_to_first_keyframe() {
 /// have rotated but stays in place.
 cv::Mat TakePlacer::landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const {
   if (motion_ != Motion::kObject) return {};
-  return object_pixels({frame.camera, {}, frame.depth, {}}, chosen_, T_camera_world);
+  return object_pixels({frame.camera, {}, frame.depth, {}}, selected_, T_camera_world);
 }
 
 /// Adds the keyframe of step_.T_last, which has no points yet.
 void TakePlacer::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
-  keyframe.points = motion_ == Motion::kObject ? points_of_object(keyframe, map_, chosen_, levels_.region_px)
+  keyframe.points = motion_ == Motion::kObject ? points_of_object(keyframe, map_, selected_, levels_.region_px)
                                                : points_of_scene(keyframe);
   const std::optional<LoopClosureError> gap = map_.add(std::move(keyframe), alignment);
   if (!gap) return;
@@ -253,10 +253,10 @@ void TakePlacer::describe() {
     return;
   }
   state_.T_camera_object = step_.T_last;
-  state_.box_px = box_of(chosen_, motion_classifier_.first().frame.camera, step_.T_last);
-  state_.message = describe_coverage(state_.seen, chosen_.T_camera_stand.inverse().translation());
+  state_.box_px = box_of(selected_, motion_classifier_.first().frame.camera, step_.T_last);
+  state_.message = describe_coverage(state_.seen, selected_.T_camera_stand.inverse().translation());
   if (state_.frames - first_number_ <= kTold)
-    state_.message = describe_selection(chosen_) + "; move the camera once around it, or turn it";
+    state_.message = describe_selection(selected_) + "; move the camera once around it, or turn it";
 }
 
 /// Frames that were lost on arrival may be relocalised in the map of the whole take.
@@ -282,7 +282,7 @@ Take TakePlacer::finish() {
   require(!map_.empty(), "{}", state_.message.empty() ? "no frame, expected some that show an object" : state_.message);
   relocalise_lost_frames();
   map_.refine(3);
-  take_.chosen = chosen_;
+  take_.selected = selected_;
   take_.motion = motion_;
   take_.keyframes = std::move(map_.keyframes());
   take_.seen = state_.seen;

@@ -71,7 +71,7 @@ class TakePlacer {
 
   TakePlacerSettings settings_;
   TakePlacerStatus state_;
-  ChosenObject chosen_;
+  SelectedObject selected_;
   KeyframeMap map_;
   LevelSettings levels_;
   Motion motion_ = Motion::kUnknown;

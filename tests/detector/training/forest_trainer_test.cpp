@@ -79,13 +79,13 @@ TEST(ForestTrainer, AnObjectWithoutDepthIsRefused) {
 
 /// Returns views of one class, under the number that a folder of its own would give it, and the background images.
 std::vector<TrainingView> only(const std::string& name) {
-  std::vector<TrainingView> chosen;
+  std::vector<TrainingView> selected;
   for (TrainingView& view : toy::training_views()) {
     if (view.class_id != 0 && view.class_name != name) continue;
     if (view.class_id != 0) view.class_id = 1;
-    chosen.push_back(std::move(view));
+    selected.push_back(std::move(view));
   }
-  return chosen;
+  return selected;
 }
 
 Forest stripes_then_rings(int threads) {

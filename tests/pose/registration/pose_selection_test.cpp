@@ -44,10 +44,11 @@ TEST(Choice, ABoxThatWasTakenForItsBackIsTurnedRound) {
 
 TEST(Choice, AHalfTurnThatPointsCannotTellApartIsChosenToo) {
   const Boxed plain(cereal_box());
-  const std::vector<RegistrationResult> chosen =
+  const std::vector<RegistrationResult> selected =
       plain.choose_all({{plain.truth, 1.0F}}, plain.truth.translation().cast<float>());
-  ASSERT_EQ(chosen.size(), 2U);
-  const Eigen::Matrix3d between = chosen[0].T_camera_object.linear().transpose() * chosen[1].T_camera_object.linear();
+  ASSERT_EQ(selected.size(), 2U);
+  const Eigen::Matrix3d between =
+      selected[0].T_camera_object.linear().transpose() * selected[1].T_camera_object.linear();
   EXPECT_GT(Eigen::AngleAxisd(between).angle(), 3.0);
 }
 

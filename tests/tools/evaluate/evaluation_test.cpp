@@ -181,7 +181,7 @@ TEST(EvaluatedFrames, EveryNthBeginsWithTheFirst) {
   std::vector<EvaluatedFrame> frames;
   frames.reserve(7);
   for (std::int64_t utime = 0; utime < 7; ++utime) frames.push_back(frame({object("mug", kLeft)}, {}, utime));
-  const auto chosen = [&](int every) {
+  const auto selected = [&](int every) {
     std::vector<std::int64_t> utimes;
     for (const EvaluatedFrame& kept : every_nth(frames, every)) {
       EXPECT_EQ(kept.objects.size(), 1U);
@@ -189,9 +189,9 @@ TEST(EvaluatedFrames, EveryNthBeginsWithTheFirst) {
     }
     return utimes;
   };
-  EXPECT_EQ(chosen(1), (std::vector<std::int64_t>{0, 1, 2, 3, 4, 5, 6}));
-  EXPECT_EQ(chosen(3), (std::vector<std::int64_t>{0, 3, 6}));
-  EXPECT_EQ(chosen(7), (std::vector<std::int64_t>{0}));
+  EXPECT_EQ(selected(1), (std::vector<std::int64_t>{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(selected(3), (std::vector<std::int64_t>{0, 3, 6}));
+  EXPECT_EQ(selected(7), (std::vector<std::int64_t>{0}));
   EXPECT_TRUE(every_nth({}, 2).empty());
 }
 

@@ -97,10 +97,10 @@ void add_results(std::vector<EvaluatedFrame>& frames, const PublishedResults& pu
 }
 
 std::vector<EvaluatedFrame> every_nth(std::vector<EvaluatedFrame> frames, int every) {
-  std::vector<EvaluatedFrame> chosen;
+  std::vector<EvaluatedFrame> selected;
   for (std::size_t i = 0; i < frames.size(); i += static_cast<std::size_t>(every))
-    chosen.push_back(std::move(frames[i]));
-  return chosen;
+    selected.push_back(std::move(frames[i]));
+  return selected;
 }
 
 std::vector<EvaluatedFrame> with_unfiltered_poses(std::vector<EvaluatedFrame> frames) {

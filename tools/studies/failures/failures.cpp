@@ -80,15 +80,15 @@ std::vector<Failure> choose_failures(const std::vector<EvaluatedFrame>& frames, 
     groups.push_back(thinned(false_positives(frames, result, rules.operating_score), rules.apart));
     groups.push_back(thinned(missed_ones(frames, result, rules), rules.apart));
   }
-  std::vector<Failure> chosen;
+  std::vector<Failure> selected;
   std::size_t max_length = 0;
   for (const auto& group : groups) max_length = std::max(max_length, group.size());
   for (std::size_t rank = 0; rank < max_length; ++rank) {
     for (const auto& group : groups) {
-      if (rank < group.size() && chosen.size() < rules.count) chosen.push_back(group[rank]);
+      if (rank < group.size() && selected.size() < rules.count) selected.push_back(group[rank]);
     }
   }
-  return chosen;
+  return selected;
 }
 
 cv::Rect surroundings(const cv::Rect2f& box, const cv::Size& frame) {

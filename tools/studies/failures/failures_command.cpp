@@ -40,12 +40,12 @@ std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& dete
     for (const ObjectClass& known : forest.classes) classes.push_back(known.name);
   }
   constexpr std::size_t kPartsOfTheWay = 6;
-  const std::vector<Failure> chosen =
+  const std::vector<Failure> selected =
       choose_failures(frames, classes,
                       {DetectionRules{}, *options.operating_score, static_cast<std::size_t>(options.count),
                        frames.size() / kPartsOfTheWay});
   std::vector<cv::Mat> tiles;
-  for (const Failure& failure : chosen) {
+  for (const Failure& failure : selected) {
     const RgbdFrame frame = scene.read_frame(failure.frame * static_cast<std::size_t>(options.every));
     tiles.push_back(draw_failure(failure, frame.colour));
   }

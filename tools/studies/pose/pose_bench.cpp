@@ -28,9 +28,9 @@ PoseRun run_maker(const DetectedScene& detected, const PoseMaker& maker) {
   return run;
 }
 
-PoseRun thin_run(const PoseRun& run, const std::vector<std::size_t>& chosen) {
+PoseRun thin_run(const PoseRun& run, const std::vector<std::size_t>& selected) {
   PoseRun out{run.scene, {}, {}};
-  for (const std::size_t i : chosen) {
+  for (const std::size_t i : selected) {
     out.frames.push_back(run.frames[i]);
     out.ms.push_back(run.ms[i]);
   }

@@ -46,18 +46,18 @@ std::string folder_name(const fs::path& scene) {
 std::vector<EvaluatedFrame> detect_in_scene(const LinemodDetector& detector, const BopScene& scene,
                                             const LinemodOptions& options) {
   const std::vector<EvaluatedFrame> all = read_ground_truth(scene, find_bop_names(scene.folder()));
-  std::vector<EvaluatedFrame> chosen = every_nth(all, static_cast<int>(options.every));
-  const std::vector<std::size_t> visited = visit_within(options.seconds, chosen.size(), [&](std::size_t i) {
-    chosen[i].detections = detector.detect(scene.read_frame(chosen[i].image));
-    log_debug("{}: frame {} of {}, {} detections", scene.folder().string(), chosen[i].image + 1, all.size(),
-              chosen[i].detections->detections.size());
+  std::vector<EvaluatedFrame> selected = every_nth(all, static_cast<int>(options.every));
+  const std::vector<std::size_t> visited = visit_within(options.seconds, selected.size(), [&](std::size_t i) {
+    selected[i].detections = detector.detect(scene.read_frame(selected[i].image));
+    log_debug("{}: frame {} of {}, {} detections", scene.folder().string(), selected[i].image + 1, all.size(),
+              selected[i].detections->detections.size());
   });
-  if (visited.size() < chosen.size())
-    fmt::print("{}: cut, {} of {} frames in {} s\n", scene.folder().string(), visited.size(), chosen.size(),
+  if (visited.size() < selected.size())
+    fmt::print("{}: cut, {} of {} frames in {} s\n", scene.folder().string(), visited.size(), selected.size(),
                options.seconds);
   std::vector<EvaluatedFrame> frames;
   frames.reserve(visited.size());
-  for (const std::size_t i : visited) frames.push_back(std::move(chosen[i]));
+  for (const std::size_t i : visited) frames.push_back(std::move(selected[i]));
   return frames;
 }
 

@@ -120,10 +120,10 @@ cv::Mat outline_image(const Mesh& mesh, const TrainingView& view) {
 void write_choices(const ShowResult& shown, const fs::path& folder) {
   for (std::size_t t = 0; t < shown.takes.size(); ++t) {
     const Take& take = shown.takes[t];
-    if (take.chosen.mask.empty()) continue;
+    if (take.selected.mask.empty()) continue;
     cv::Mat image = take.keyframes.front().frame.colour.clone();
     std::vector<std::vector<cv::Point>> outlines;
-    cv::findContours(take.chosen.mask.clone(), outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+    cv::findContours(take.selected.mask.clone(), outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
     cv::drawContours(image, outlines, -1, {0, 255, 0}, 2);
     write_png(image, folder / (t == 0 ? "chosen.png" : "chosen_2.png"));
   }
@@ -178,7 +178,7 @@ bool is_kept_entry(const fs::path& relative) {
 void write_page(const ShowResult& shown, const ModelAssessment& assessment, const fs::path& folder) {
   SessionImages images;
   for (const char* name : {"chosen.png", "chosen_2.png"}) {
-    if (fs::exists(folder / name)) images.chosen.emplace_back(name);
+    if (fs::exists(folder / name)) images.selected.emplace_back(name);
   }
   for (const auto& entry : fs::directory_iterator(folder / "outlines"))
     images.outlines.push_back("outlines/" + entry.path().filename().string());
@@ -195,7 +195,7 @@ std::string report_page(const ShowResult& shown, const ModelAssessment& assessme
   std::string page =
       fmt::format("<!doctype html><meta charset=\"utf-8\"><title>{0}</title>\n<h1>{0}: {1}</h1>\n<pre>{2}</pre>\n",
                   escape_html(shown.name), assessment.good ? "good" : "poor", escape_html(describe(shown, assessment)));
-  for (const std::string& file : images.chosen)
+  for (const std::string& file : images.selected)
     page += fmt::format("<p>Taken for the object in the first frame:</p>\n<img src=\"{}\" width=\"50%\">\n",
                         escape_html(file));
   page +=

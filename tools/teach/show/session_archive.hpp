@@ -19,7 +19,7 @@ void archive_session(const ShowResult& shown, const ModelAssessment& assessment,
 
 /// Files beside report.html that it shows.
 struct SessionImages {
-  std::vector<std::string> chosen;    ///< of each take
+  std::vector<std::string> selected;  ///< of each take
   std::vector<std::string> outlines;  ///< of some keyframes
 };
 

@@ -85,7 +85,7 @@ const char* what_moved(Motion motion) {
 std::string describe_take(const Take& take) {
   if (take.motion == Motion::kTurntable)
     return fmt::format("  {} pictures with masks; {}\n", take.keyframes.size(), what_moved(take.motion));
-  std::string text = fmt::format("  {}\n", reconstruction::describe_selection(take.chosen));
+  std::string text = fmt::format("  {}\n", reconstruction::describe_selection(take.selected));
   text += fmt::format(
       "  {} frames in {:.1f} s, {} tracked, {} keyframes, {} blurred, {} badly exposed; {}; tracked at {:.0f} Hz\n",
       take.frames.size(), second_of(take, static_cast<int>(take.frames.size()) - 1), tracked_frames(take),
@@ -159,7 +159,7 @@ std::string describe(const ShowResult& shown, const ModelAssessment& assessment)
   const Take& take = shown.takes.front();
   std::string text = fmt::format("{}: {}\n", shown.name, assessment.good ? "good" : "poor");
   for (const std::string& reason : assessment.reasons) text += "  " + reason + "\n";
-  const Eigen::Vector3d front = take.chosen.T_camera_stand.inverse().translation();
+  const Eigen::Vector3d front = take.selected.T_camera_stand.inverse().translation();
   text += fmt::format("  {}\n", reconstruction::describe_coverage(seen_by_all(shown), front));
   for (const Take& one : shown.takes) text += describe_take(one);
   text +=

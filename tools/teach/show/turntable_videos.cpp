@@ -171,7 +171,7 @@ Take take_of(const std::vector<TrainingView>& views, std::vector<MaskedKeyframe>
     reconstruction::mark_covered(views[i].T_camera_object.inverse().translation(), take.seen);
     shown.push_back({static_cast<int>(i), views[i].T_camera_object, views[i].mask});
   }
-  take.chosen.T_camera_stand = views.front().T_camera_object;
+  take.selected.T_camera_stand = views.front().T_camera_object;
   return take;
 }
 

@@ -35,21 +35,21 @@ std::vector<EvaluatedFrame> twelve_frames() {
 }
 
 TEST(Failures, TheGravestOfEachKindComeFirstAndApart) {
-  const std::vector<Failure> chosen = choose_failures(twelve_frames(), {"mug"}, {{}, 0.5F, 4, 3});
-  ASSERT_EQ(chosen.size(), 4U);
-  EXPECT_EQ(chosen[0].kind, Failure::Kind::kFalse);
-  EXPECT_EQ(chosen[0].frame, 11U);
-  EXPECT_EQ(chosen[1].kind, Failure::Kind::kMissed);
-  EXPECT_EQ(chosen[1].frame, 11U);
-  EXPECT_NEAR(chosen[1].weight, 0.85, 1e-9);
-  EXPECT_EQ(chosen[2].frame, 8U);
-  EXPECT_EQ(chosen[3].frame, 8U);
+  const std::vector<Failure> selected = choose_failures(twelve_frames(), {"mug"}, {{}, 0.5F, 4, 3});
+  ASSERT_EQ(selected.size(), 4U);
+  EXPECT_EQ(selected[0].kind, Failure::Kind::kFalse);
+  EXPECT_EQ(selected[0].frame, 11U);
+  EXPECT_EQ(selected[1].kind, Failure::Kind::kMissed);
+  EXPECT_EQ(selected[1].frame, 11U);
+  EXPECT_NEAR(selected[1].weight, 0.85, 1e-9);
+  EXPECT_EQ(selected[2].frame, 8U);
+  EXPECT_EQ(selected[3].frame, 8U);
 }
 
 TEST(Failures, BelowTheOperatingScoreNothingIsFalseAndMoreIsMissed) {
-  const std::vector<Failure> chosen = choose_failures(twelve_frames(), {"mug"}, {{}, 0.95F, 100, 1});
-  EXPECT_EQ(chosen.size(), 12U);
-  for (const Failure& failure : chosen) EXPECT_EQ(failure.kind, Failure::Kind::kMissed);
+  const std::vector<Failure> selected = choose_failures(twelve_frames(), {"mug"}, {{}, 0.95F, 100, 1});
+  EXPECT_EQ(selected.size(), 12U);
+  for (const Failure& failure : selected) EXPECT_EQ(failure.kind, Failure::Kind::kMissed);
 }
 
 TEST(Failures, HardlyVisibleObjectsAreNotMissed) {

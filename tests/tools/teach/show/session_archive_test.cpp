@@ -14,7 +14,7 @@ TEST(ReportPage, NamesAndReasonsAreText) {
   shown.takes.front().frames.resize(2);
   shown.takes.front().keyframes.resize(20);
   shown.takes.front().lost.push_back({0, 1, "<b>dark</b>"});
-  shown.takes.front().chosen.T_camera_stand.translation() = Eigen::Vector3d(0.0, 0.0, 0.8);
+  shown.takes.front().selected.T_camera_stand.translation() = Eigen::Vector3d(0.0, 0.0, 0.8);
   shown.views.emplace_back(20);
   shown.mesh = tetrahedron(0.1F);
   const ModelAssessment assessment{false, {"<i>too short</i>"}};

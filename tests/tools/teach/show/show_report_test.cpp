@@ -79,7 +79,7 @@ TEST(ModelAssessment, OfATurntableNothingIsSaidThatOnlyTrackingKnows) {
   ShowResult shown = good_turntable();
   shown.mesh = tetrahedron(0.1F);
   shown.takes.front().keyframes.resize(20);
-  shown.takes.front().chosen.T_camera_stand.translation() = Eigen::Vector3d(0.0, 0.0, 0.8);
+  shown.takes.front().selected.T_camera_stand.translation() = Eigen::Vector3d(0.0, 0.0, 0.8);
   const std::string text = describe(shown, assess_model(shown));
   EXPECT_NE(text.find("  20 pictures with masks; a turntable moved\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("tracked"), std::string::npos) << text;
