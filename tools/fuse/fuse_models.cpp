@@ -11,7 +11,7 @@
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "tools/common/progress_line.hpp"
-#include "tools/fuse/model_picture.hpp"
+#include "tools/fuse/model_image.hpp"
 
 namespace houghstream {
 namespace {

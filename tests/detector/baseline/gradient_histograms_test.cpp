@@ -48,7 +48,7 @@ TEST(Hog, TheLastBinIsTheFirstOnesNeighbour) {
   EXPECT_NEAR(bins[0], 51, 2);
 }
 
-TEST(Hog, FlatPicturesHaveEmptyHistograms) {
+TEST(Hog, FlatImagesHaveEmptyHistograms) {
   EXPECT_EQ(histogram_of(0.0F, 0.0F), std::vector<int>(9, 0));
 }
 

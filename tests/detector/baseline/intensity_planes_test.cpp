@@ -20,7 +20,7 @@ std::vector<int> at_centre(const cv::Mat& image) {
   return values;
 }
 
-TEST(IntensityFeatures, AFlatPictureHasColourAndNothingElse) {
+TEST(IntensityFeatures, AFlatImageHasColourAndNothingElse) {
   const std::vector<int> grey = at_centre(cv::Mat(15, 15, CV_8UC3, cv::Scalar(255, 255, 255)));
   EXPECT_EQ(grey[kLightness], 255);
   EXPECT_EQ(grey[kA], 128);

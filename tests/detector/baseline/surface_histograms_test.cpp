@@ -108,7 +108,7 @@ int difference(const Values& a, const Values& b) {
   return sum;
 }
 
-TEST(SurfaceHistograms, ABallFarAwayInALargerPictureIsTheSameALargerOneIsNot) {
+TEST(SurfaceHistograms, ABallFarAwayInALargerImageIsTheSameALargerOneIsNot) {
   for (const Family family : {&fpfh_planes, &pfh_planes}) {
     const Values near = at(family(ball_at(0.7, 0.05, 1.0), coarse(), 1), 42, 30);
     const Values far = at(family(ball_at(1.4, 0.05, 2.0), coarse(), 1), 42, 30);

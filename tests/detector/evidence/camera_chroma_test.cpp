@@ -128,7 +128,7 @@ TEST(CameraChroma, AKnownCastDoesNotMakeAnotherColourRight) {
   EXPECT_LT(weighed(alike(1), with_cast(plain, -30, -30), seen_with_cast(kA, kB)).front().detection.score, as_taught);
 }
 
-TEST(CameraChroma, InAPictureWithoutColoursChromaSaysNothing) {
+TEST(CameraChroma, InAnImageWithoutColoursChromaSaysNothing) {
   RgbdFrame grey = toy::training_views().front().frame;
   cv::Mat lightness;
   cv::cvtColor(grey.colour, lightness, cv::COLOR_BGR2GRAY);

@@ -33,7 +33,7 @@ TEST(TemplateMatch, TheViewItselfFitsWholly) {
   EXPECT_GT(box_iou(result.visible_box_px, cv::Rect2f(cv::boundingRect(view.mask))), 0.9F);
 }
 
-TEST(TemplateMatch, FitsWhereverInThePictureTheObjectFacesTheCamera) {
+TEST(TemplateMatch, FitsWhereverInTheImageTheObjectFacesTheCamera) {
   for (const cv::Point2d at : {cv::Point2d(30, 119.5), cv::Point2d(290, 119.5), cv::Point2d(280, 200)}) {
     RgbdFrame frame = toy::background(5);
     toy::put_tile(0, at.x, at.y, kDistance, frame);

@@ -5,7 +5,7 @@
 namespace houghstream {
 namespace {
 
-TEST(ImageBuffer, ASmallerPictureTakesTheMemoryOfALargerOne) {
+TEST(ImageBuffer, ASmallerImageTakesTheMemoryOfALargerOne) {
   ImageBuffer memory;
   cv::Mat large = memory.image({40, 30}, CV_8UC3);
   ASSERT_EQ(large.size(), cv::Size(40, 30));

@@ -27,7 +27,7 @@ bool same_tree(const Forest& a, const Forest& b) {
   return true;
 }
 
-TEST(TreeTrainer, TheBagHoldsItsShareOfThePictures) {
+TEST(TreeTrainer, TheBagHoldsItsShareOfTheImages) {
   TrainingSettings settings;
   settings.in_bag = 0.75;
   int inside = 0;
@@ -45,7 +45,7 @@ TEST(TreeTrainer, TheBagHoldsItsShareOfThePictures) {
   EXPECT_NEAR(alike_next_tree, (0.75 * 0.75 + 0.25 * 0.25) * kImages, 0.04 * kImages);  // independent
 }
 
-TEST(TreeTrainer, ATreeTellsHeldOutPicturesApart) {
+TEST(TreeTrainer, ATreeTellsHeldOutImagesApart) {
   const TrainingSet set = toy::planted_set();
   const TrainingSettings settings = quick();
   const Forest tree = grow_tree(set, {}, settings, 0);

@@ -67,7 +67,7 @@ TEST(Calibration, WithoutHeldOutSamplesTheVisibleAreaIsTheMeasure) {
   EXPECT_FLOAT_EQ(masses(set_of(5), settings, forest_of(3, 0.0F))[1], 0.5F);
 }
 
-TEST(Calibration, OnlyPicturesThatTheTreeDidNotLearnFromCount) {
+TEST(Calibration, OnlyImagesThatTheTreeDidNotLearnFromCount) {
   TrainingSettings settings;
   settings.in_bag = 0.5;
   TrainingSet set = set_of(40);

@@ -36,7 +36,7 @@ TEST(FrameFolder, PairsAreFoundUnderAnyOfTheirNamesAndOrderedByNumber) {
   EXPECT_THROW(read_frame_pair(pairs[2], other, 0), InputError);
 }
 
-TEST(FrameFolder, APictureOrDepthAloneIsAnError) {
+TEST(FrameFolder, AnImageOrDepthAloneIsAnError) {
   const fs::path no_depth = fresh_folder("frame_folder_no_depth");
   plant(no_depth, "a_color.png", "a_depth.png");
   plant(no_depth, "b_color.png", "");
@@ -48,7 +48,7 @@ TEST(FrameFolder, APictureOrDepthAloneIsAnError) {
   EXPECT_THROW(list_frame_pairs("/no/such/folder"), InputError);
 }
 
-TEST(FrameFolder, FoldersWithPicturesAreFoundAtAnyDepth) {
+TEST(FrameFolder, FoldersWithImagesAreFoundAtAnyDepth) {
   const fs::path folder = fresh_folder("frame_folder_deep");
   EXPECT_THROW(list_frame_folders(folder), InputError);
   plant(folder / "room_10", "a.png", "a_depth.png");

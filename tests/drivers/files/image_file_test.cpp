@@ -22,7 +22,7 @@ TEST(ImageFile, ImagesComeBackAsTheyWere) {
   EXPECT_EQ(cv::norm(read_depth_image(folder / "depth.png"), depth, cv::NORM_INF), 0.0);
 }
 
-TEST(ImageFile, AGreyPictureIsReadAsColourButNotAsDepth) {
+TEST(ImageFile, AGreyImageIsReadAsColourButNotAsDepth) {
   const fs::path file = fresh_folder("image_file_grey") / "grey.png";
   write_png(cv::Mat(4, 6, CV_8UC1, cv::Scalar(70)), file);
   EXPECT_EQ(read_colour_image(file).at<cv::Vec3b>(1, 1), cv::Vec3b(70, 70, 70));

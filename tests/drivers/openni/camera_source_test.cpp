@@ -56,9 +56,9 @@ TEST(CameraSource, FramesAreRegisteredNotMirroredAndCarryTheCamera) {
   cv::Mat rgb;
   cv::cvtColor(frame.colour, rgb, cv::COLOR_BGR2RGB);
   int alike = 0;
-  for (const virtual_camera::CameraImage& picture : pattern.images) {
-    alike += cv::norm(rgb, picture.colour, cv::NORM_INF) == 0 &&
-             cv::norm(depth_to_millimetres(frame.depth), picture.depth_mm, cv::NORM_INF) == 0;
+  for (const virtual_camera::CameraImage& expected : pattern.images) {
+    alike += cv::norm(rgb, expected.colour, cv::NORM_INF) == 0 &&
+             cv::norm(depth_to_millimetres(frame.depth), expected.depth_mm, cv::NORM_INF) == 0;
   }
   EXPECT_EQ(alike, 1) << "one of the pattern's pictures, colour and depth, bit by bit";
 }

@@ -38,9 +38,9 @@ int image_of(const cv::Mat& image, const virtual_camera::CameraImages& pattern) 
   double minimum = 1e9;
   int found = -1;
   for (int k = 0; k < static_cast<int>(pattern.images.size()); ++k) {
-    cv::Mat picture = pattern.images[k].depth_mm;
-    if (image.type() == CV_8UC3) cv::cvtColor(pattern.images[k].colour, picture, cv::COLOR_RGB2BGR);
-    const double difference = cv::norm(image, picture, cv::NORM_L2SQR);
+    cv::Mat original = pattern.images[k].depth_mm;
+    if (image.type() == CV_8UC3) cv::cvtColor(pattern.images[k].colour, original, cv::COLOR_RGB2BGR);
+    const double difference = cv::norm(image, original, cv::NORM_L2SQR);
     if (difference < minimum) found = k;
     minimum = std::min(minimum, difference);
   }

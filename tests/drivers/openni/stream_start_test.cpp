@@ -74,7 +74,7 @@ TEST(StreamStart, IsFoundWhereABusyMachineSawOneOfFour) {
   EXPECT_EQ(starts->colour.difference, 0.0);
 }
 
-TEST(StreamStart, IsTheOneTogetherWithTheOtherStreamWherePicturesComeAgain) {
+TEST(StreamStart, IsTheOneTogetherWithTheOtherStreamWhereImagesComeAgain) {
   constexpr int kRound = 30;
   std::vector<ImageThumbnail> live = seen(3 * kRound);
   for (std::size_t i = kRound; i < live.size(); ++i) live[i].some_pixels = live[i - kRound].some_pixels;

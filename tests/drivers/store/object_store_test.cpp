@@ -238,7 +238,7 @@ TEST(ObjectStore, BadShapeSymmetriesAreRefusedInOneLine) {
   expect_refused([](nlohmann::json& shape) { shape["nearly_round"] = 7; }, {"axis"});
 }
 
-TEST(ObjectStore, AToneIsARangeOfGreyValuesOrHoldsEveryPicture) {
+TEST(ObjectStore, AToneIsARangeOfGreyValuesOrHoldsEveryImage) {
   const fs::path folder = whole_store("store_tone");
   ObjectStore store = read_store(folder);
   EXPECT_EQ(store.tone.min_mean, 0.0F);

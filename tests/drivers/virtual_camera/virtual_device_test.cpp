@@ -21,9 +21,9 @@ struct ScriptedDevice {
     return file;
   }
 
-  const ImagesBySize pictures{{{64, 48}, make_test_pattern(kLarge)}, {{32, 24}, make_test_pattern(kSmall)}};
+  const ImagesBySize camera_images{{{64, 48}, make_test_pattern(kLarge)}, {{32, 24}, make_test_pattern(kSmall)}};
   ScriptWatch watch;
-  VirtualDevice device{watch, pictures, "SERIAL7"};
+  VirtualDevice device{watch, camera_images, "SERIAL7"};
 };
 
 /// Returns the first images of a sensor, not mirrored.
@@ -84,14 +84,15 @@ TEST(VirtualDevice, RegistersAndSynchronisesWhereTheScriptSaysSo) {
 TEST(VirtualDevice, UnregisteredDepthLiesBesideItsColour) {
   ScriptedDevice scripted("rate_hz 100\n");
   constexpr int kShift = VirtualDevice::kParallaxPx * 64 / 640;
-  const auto& pictures = scripted.pictures.at({64, 48}).images;
+  const auto& camera_images = scripted.camera_images.at({64, 48}).images;
   const auto beside = images_of(scripted.device, ONI_SENSOR_DEPTH, 1).front();
-  const cv::Mat& original = pictures[static_cast<std::size_t>(beside.frame.frameIndex) % pictures.size()].depth_mm;
+  const cv::Mat& original =
+      camera_images[static_cast<std::size_t>(beside.frame.frameIndex) % camera_images.size()].depth_mm;
   EXPECT_EQ(cv::norm(beside.image.colRange(kShift, 64), original.colRange(0, 64 - kShift), cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::countNonZero(beside.image.colRange(0, kShift)), 0);
   set_registration(scripted.device, ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR);
   const auto upon = images_of(scripted.device, ONI_SENSOR_DEPTH, 1).front();
-  const cv::Mat& same = pictures[static_cast<std::size_t>(upon.frame.frameIndex) % pictures.size()].depth_mm;
+  const cv::Mat& same = camera_images[static_cast<std::size_t>(upon.frame.frameIndex) % camera_images.size()].depth_mm;
   EXPECT_EQ(cv::norm(upon.image, same, cv::NORM_INF), 0.0);
 }
 
@@ -108,11 +109,11 @@ TEST(VirtualDevice, DropsImagesAndCountsThemAllTheSame) {
 
 TEST(VirtualDevice, UnsynchronisedColourHasItsOwnCount) {
   ScriptedDevice scripted("rate_hz 100\n");
-  const auto& pictures = scripted.pictures.at({64, 48}).images;
+  const auto& camera_images = scripted.camera_images.at({64, 48}).images;
   const auto is_ahead_by = [&](int ahead) {
     const auto image = images_of(scripted.device, ONI_SENSOR_COLOR, 1).front();
     const auto number = static_cast<std::size_t>(image.frame.frameIndex - ahead);
-    return cv::norm(image.image, pictures[number % pictures.size()].colour, cv::NORM_INF) == 0.0;
+    return cv::norm(image.image, camera_images[number % camera_images.size()].colour, cv::NORM_INF) == 0.0;
   };
   EXPECT_TRUE(is_ahead_by(7));
   scripted.device.synchronise();

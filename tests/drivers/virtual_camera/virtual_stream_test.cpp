@@ -29,16 +29,16 @@ class VirtualStreamTest : public ::testing::Test {
   }
 
   const Camera camera{64, 48, 50.0, 60.0, 31.5, 23.5};
-  const ImagesBySize pictures{{{64, 48}, make_test_pattern(camera)}};
+  const ImagesBySize camera_images{{{64, 48}, make_test_pattern(camera)}};
   const ScriptWatch script{std::filesystem::path()};
-  VirtualDevice device{script, pictures, "TEST"};
+  VirtualDevice device{script, camera_images, "TEST"};
   VirtualStream stream{device,
                        {ONI_SENSOR_DEPTH, {kLargeMode, kSmallMode}, {camera, {32, 24, 40.0, 40.0, 15.5, 11.5}}}};
   TakenImages taken{stream};
-  const cv::Mat image = pictures.at({64, 48}).images[3].depth_mm;
+  const cv::Mat image = camera_images.at({64, 48}).images[3].depth_mm;
 };
 
-TEST_F(VirtualStreamTest, PicturesAreSentWhileItRunsMirroredUnlessAskedOtherwise) {
+TEST_F(VirtualStreamTest, ImagesAreSentWhileItRunsMirroredUnlessAskedOtherwise) {
   stream.send(image, 1, 100);
   stream.start();
   stream.send(image, 2, 200);

@@ -97,7 +97,7 @@ TEST(MeshGltf, PlacesOfNodesCountAndNoMaterialIsNoColour) {
   for (const cv::Vec3b& colour : mesh.colours) EXPECT_EQ(colour, cv::Vec3b(255, 255, 255)) << "glTF's default is white";
 }
 
-TEST(MeshGltf, ATextureThatIsNoPictureIsRefused) {
+TEST(MeshGltf, ATextureThatIsNoImageIsRefused) {
   const fs::path file = write_triangle("spoilt", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})");
   std::string bytes;
   {

@@ -138,7 +138,7 @@ images_t image(std::int64_t utime, float depth) {
   return to_message(frame, WireFormat{}, utime);
 }
 
-TEST(PoseProcess, TwoCamerasOfEqualTimesGetPosesOfTheirOwnPictures) {
+TEST(PoseProcess, TwoCamerasOfEqualTimesGetPosesOfTheirOwnImages) {
   ProcessOnMemq test({channel::kPoses, "BOWL_TO_LEFT", "BOWL_TO_RIGHT", "BOWL_TO_CAMERA"});
   PoseProcessOptions options;
   options.frame_channels = "LEFT|RIGHT";

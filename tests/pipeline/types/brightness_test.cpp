@@ -12,7 +12,7 @@ cv::Mat striped(int dark, int bright) {
   return image;
 }
 
-TEST(Tone, AnyPictureIsInTheRangeOfAll) {
+TEST(Tone, AnyImageIsInTheRangeOfAll) {
   cv::Mat image = striped(0, 255);
   const cv::Mat before = image.clone();
   const AffineBrightness curve = fit_affine_brightness(image, {});
@@ -38,7 +38,7 @@ TEST(Tone, ContrastIsFlattenedToNoLessThanSixTenths) {
   EXPECT_NEAR(fit_affine_brightness(striped(0, 255), {0.0F, 255.0F, 20.0F}).gain, 0.6F, 1e-6);
 }
 
-TEST(Tone, DarkAndBrightPicturesComeIntoTheRange) {
+TEST(Tone, DarkAndBrightImagesComeIntoTheRange) {
   cv::Mat dark = striped(20, 60);
   apply_affine_brightness(fit_affine_brightness(dark, {100.0F, 130.0F, 50.0F}), dark, dark);
   EXPECT_NEAR(cv::mean(dark)[0], 100.0, 1.0);
@@ -47,7 +47,7 @@ TEST(Tone, DarkAndBrightPicturesComeIntoTheRange) {
   EXPECT_NEAR(cv::mean(bright)[2], 130.0, 1.0);
 }
 
-TEST(Tone, APictureOfOnePixelHasATone) {
+TEST(Tone, AnImageOfOnePixelHasATone) {
   cv::Mat image(1, 1, CV_8UC3, cv::Scalar(255, 0, 0));
   EXPECT_NEAR(fit_affine_brightness(image, {100.0F, 130.0F, 50.0F}).offset, 100.0F - 29.07F, 0.01F);
 }

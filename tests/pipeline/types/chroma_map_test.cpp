@@ -100,7 +100,7 @@ TEST(ChromaMap, FarFromAllThatIsExpectedItStaysFinite) {
   EXPECT_TRUE(fit_chroma_map(pairs).parameters().allFinite());
 }
 
-TEST(ChromaMap, APictureInBlackAndWhiteIsColourless) {
+TEST(ChromaMap, AnImageInBlackAndWhiteIsColourless) {
   cv::Mat image(480, 640, CV_8UC3);
   for (int y = 0; y < image.rows; ++y) image.row(y).setTo(cv::Scalar::all(y % 250));
   EXPECT_TRUE(is_colourless(image));

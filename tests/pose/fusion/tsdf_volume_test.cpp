@@ -57,7 +57,7 @@ TEST(TsdfVolume, DoesNotDependOnThreads) {
   EXPECT_EQ(one.distance, integrate_views(views, settings).distance);
 }
 
-TEST(TsdfVolume, BesideTheImagesIsFreeBesideThePictureNothingIsKnown) {
+TEST(TsdfVolume, BesideTheImagesIsFreeBesideTheImageNothingIsKnown) {
   DepthView view = make_depth_view(turntable_view(TurntableScene{test_scene::cereal_box()}, 0));
   const Eigen::AlignedBox3d box(Eigen::Vector3d(-0.2, -0.01, -0.01), Eigen::Vector3d(0.2, 0.01, 0.01));
   TsdfSettings settings;

@@ -130,7 +130,7 @@ TEST(ColourScore, ATextureIsJudgedWhereItAgreesBestWithinTwoPixels) {
   EXPECT_LT(judged(rotated(kPose, 180.0), 0.0), judged(kPose, 0.0) - 0.4F);
 }
 
-TEST(ColourScore, JudgingATextureLeavesThePictureAsItIs) {
+TEST(ColourScore, JudgingATextureLeavesTheImageAsItIs) {
   const Mesh box = printed_box();
   const ObjectModel model = make_object_model("box", box, {});
   const RgbdFrame frame = coloured_frame(box, kPose, 1);

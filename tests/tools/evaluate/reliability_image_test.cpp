@@ -13,7 +13,7 @@ int coloured_pixels(const cv::Mat& image) {
   return cv::countNonZero(channels[0] != channels[2]);
 }
 
-TEST(ReliabilityPicture, BarsAreAsHighAsWhatIsTrue) {
+TEST(ReliabilityImage, BarsAreAsHighAsWhatIsTrue) {
   const Calibration nothing = calibrate({}, 0);
   const cv::Mat empty = reliability_image(nothing, nothing);
   EXPECT_EQ(coloured_pixels(empty), 0);

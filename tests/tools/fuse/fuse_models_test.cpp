@@ -9,7 +9,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/pose/fusion/turntable_views.hpp"
 #include "tests/test_files.hpp"
-#include "tools/fuse/model_picture.hpp"
+#include "tools/fuse/model_image.hpp"
 
 namespace houghstream {
 namespace {
@@ -78,7 +78,7 @@ TEST(FuseModels, TheViewsFolderAndOtherModelsStayAsTheyAre) {
   EXPECT_THROW(check_outputs({folder / "models", folder / "file" / "pictures"}, views), InputError);
 }
 
-TEST(ModelPicture, ShowsTheModelFromAllSides) {
+TEST(ModelImage, ShowsTheModelFromAllSides) {
   Mesh mesh = test_scene::cereal_box();
   mesh.colours.assign(mesh.vertices.size(), cv::Vec3b(10, 20, 200));
   compute_normals(mesh);

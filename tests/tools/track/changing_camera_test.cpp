@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kKnown = 10;  // frames, after which a bowl that is seen in each is an object
 
-images_t picture(int frame, int width, int height) {
+images_t sized_frame(int frame, int width, int height) {
   return to_message(make_test_frame(time_of(frame), width, height), WireFormat{}, frame);
 }
 
@@ -51,7 +51,7 @@ TEST(ChangingCamera, AnObjectIsJudgedByFramesOfTheirNewSize) {
   test.start(tracking_bowls(std::nullopt));
   for (int i = 0; i < 2 * kKnown; ++i) {
     const bool before = i < kKnown;
-    send_with_bowl(test, before ? picture(i, 64, 48) : picture(i, 32, 24), before);
+    send_with_bowl(test, before ? sized_frame(i, 64, 48) : sized_frame(i, 32, 24), before);
     ASSERT_TRUE(test.wait_for(channel::kObjects, static_cast<std::size_t>(i + 1))) << i;
   }
   test.stop();
@@ -66,16 +66,16 @@ TEST(ChangingCamera, AFrameOfAnotherSizeThanTheCameraThatWasGivenIsRefusedAndThe
   ProcessOnMemq test({channel::kObjects, channel::kStatus});
   test.start(tracking_bowls(make_test_frame(0).camera));
   for (int i = 0; i < kKnown; ++i) {
-    send_with_bowl(test, without_camera(picture(i, 64, 48)), true);
+    send_with_bowl(test, without_camera(sized_frame(i, 64, 48)), true);
     ASSERT_TRUE(test.wait_for(channel::kObjects, static_cast<std::size_t>(i + 1))) << i;
   }
-  send_with_bowl(test, without_camera(picture(kKnown, 32, 24)), false);
-  send_with_bowl(test, without_camera(picture(kKnown + 1, 64, 48)), false);
+  send_with_bowl(test, without_camera(sized_frame(kKnown, 32, 24)), false);
+  send_with_bowl(test, without_camera(sized_frame(kKnown + 1, 64, 48)), false);
   ASSERT_TRUE(test.wait_for(channel::kObjects, kKnown + 1));
   test.stop();
   EXPECT_EQ(test.count(channel::kObjects), static_cast<std::size_t>(kKnown + 1));
   const WorldObjects last = world_from_message(test.last<objects_t>(channel::kObjects));
-  EXPECT_EQ(last.frame.utime, picture(kKnown + 1, 64, 48).utime);
+  EXPECT_EQ(last.frame.utime, sized_frame(kKnown + 1, 64, 48).utime);
   ASSERT_EQ(last.objects.size(), 1U);
   EXPECT_EQ(last.objects[0].track_id, 1);
   EXPECT_EQ(last.objects[0].state, TrackState::kHidden) << last.objects[0].reason;

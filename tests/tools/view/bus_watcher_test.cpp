@@ -126,7 +126,7 @@ TEST(BusWatcher, SaysWhatBecameOfTheFrames) {
   EXPECT_EQ(last.last_error, "no camera");
 }
 
-TEST(BusWatcher, APreviewIsAJpegOfThePicture) {
+TEST(BusWatcher, APreviewIsAJpegOfTheImage) {
   WatchedBus watched;
   watched.watcher.stop();  // from here on this thread receives
   image_t preview{};

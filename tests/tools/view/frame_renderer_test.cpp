@@ -166,7 +166,7 @@ TEST(FrameRenderer, WithoutModelsWhatIsFollowedIsShownToo) {
   EXPECT_GT(difference(settings, 1, 2), 0.0);
 }
 
-TEST(FrameRenderer, NoModelsOrNoPictureAtAllIsAnError) {
+TEST(FrameRenderer, NoModelsOrNoImageAtAllIsAnError) {
   FrameRendererSettings settings = to_images("none");
   FrameRenderer frame_show(settings);
   EXPECT_THROW(frame_show.finish(), InputError);

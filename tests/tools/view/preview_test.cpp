@@ -15,7 +15,7 @@ cv::Mat noise(int width, int height) {
   return image;
 }
 
-TEST(Preview, AnEasyPictureKeepsItsSize) {
+TEST(Preview, AnEasyImageKeepsItsSize) {
   const cv::Mat image(600, 1280, CV_8UC3, cv::Scalar(10, 100, 200));
   const PreviewImage preview = encode_preview(image);
   EXPECT_EQ(preview.width, 1280);
@@ -31,7 +31,7 @@ TEST(Preview, EvenNoiseFitsTheReceiveBuffer) {
   EXPECT_FALSE(decode_jpeg({preview.jpeg.data(), preview.jpeg.size()}, preview.width, preview.height).empty());
 }
 
-TEST(Preview, TheSmallestPictureIsOne) {
+TEST(Preview, TheSmallestImageIsOne) {
   const PreviewImage preview = encode_preview(noise(1, 1));
   EXPECT_EQ(preview.width, 1);
   EXPECT_EQ(preview.height, 1);

@@ -56,7 +56,7 @@ TEST(VideoFile, FitsInWhatHasAnotherSize) {
   std::filesystem::remove(file);
 }
 
-TEST(VideoFile, ALongFirstPictureLeavesTheNextOnesLegible) {
+TEST(VideoFile, ALongFirstImageLeavesTheNextOnesLegible) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "video_file_test_long.mp4";
   for (const cv::Size size : {cv::Size(32768, 140), cv::Size(2, 16936), cv::Size(1, 1)}) {
     VideoFile video(file, 10.0);

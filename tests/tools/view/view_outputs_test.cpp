@@ -22,7 +22,7 @@ int level_of(const fs::path& file) {
   return static_cast<int>(cv::imread(file.string()).at<cv::Vec3b>(0, 0)[0]);
 }
 
-TEST(ViewOutputs, SnapshotIsThePictureAskedForAndThenAllIsDone) {
+TEST(ViewOutputs, SnapshotIsTheImageAskedForAndThenAllIsDone) {
   const fs::path folder = fresh_folder("view_outputs_snapshot");
   OutputSettings settings;
   settings.snapshot = folder / "shot.png";
@@ -63,7 +63,7 @@ TEST(ViewOutputs, AVideoThatNobodyCanPlayIsRefused) {
   }
 }
 
-TEST(ViewOutputs, SnapshotOfAShortStreamIsItsLastPicture) {
+TEST(ViewOutputs, SnapshotOfAShortStreamIsItsLastImage) {
   OutputSettings settings;
   settings.snapshot = fresh_folder("view_outputs_short") / "shot.png";
   settings.snapshot_after = 100;
@@ -74,7 +74,7 @@ TEST(ViewOutputs, SnapshotOfAShortStreamIsItsLastPicture) {
   EXPECT_EQ(level_of(settings.snapshot), 20);
 }
 
-TEST(ViewOutputs, VideoAndPicturesGoOnAfterTheSnapshot) {
+TEST(ViewOutputs, VideoAndImagesGoOnAfterTheSnapshot) {
   const fs::path folder = fresh_folder("view_outputs_all");
   OutputSettings settings;
   settings.snapshot = folder / "shot.png";
@@ -89,7 +89,7 @@ TEST(ViewOutputs, VideoAndPicturesGoOnAfterTheSnapshot) {
   EXPECT_GT(fs::file_size(settings.video), 0U);
 }
 
-TEST(ViewOutputs, PicturesAndVideosThatAreThereStay) {
+TEST(ViewOutputs, ImagesAndVideosThatAreThereStay) {
   const fs::path folder = fresh_folder("view_outputs_again");
   OutputSettings settings;
   settings.video = folder / "video.mp4";

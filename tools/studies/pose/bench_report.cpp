@@ -70,8 +70,9 @@ cv::Mat draw_trial(const PoseTrial& trial, const RgbdFrame& frame, const Mesh& m
   cv::Mat image = frame.colour.clone();
   draw_outline(image, mesh, *trial.T_camera_object, frame.camera, view::class_colour(trial.class_id));
   cv::Mat tile(kHeight + 2 * kLine + 4, kWidth, CV_8UC3, cv::Scalar::all(0));
-  cv::Mat picture = tile.rowRange(0, kHeight);
-  cv::resize(image(surroundings(trial.box_px, image.size())), picture, picture.size(), 0, 0, cv::INTER_LINEAR);
+  cv::Mat surroundings_image = tile.rowRange(0, kHeight);
+  cv::resize(image(surroundings(trial.box_px, image.size())), surroundings_image, surroundings_image.size(), 0, 0,
+             cv::INTER_LINEAR);
   const std::string what =
       fmt::format("{} {:.2f}, {}, frame {}", trial.class_name, trial.score, trial.scene, trial.image);
   view::draw_text(tile, what, {4, kHeight + kLine - 2}, 0.4);

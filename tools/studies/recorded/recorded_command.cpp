@@ -8,7 +8,7 @@
 #include "tools/common/tool_main.hpp"
 #include "tools/finder/search_arguments.hpp"
 #include "tools/finder/stored_quality.hpp"
-#include "tools/fuse/model_picture.hpp"
+#include "tools/fuse/model_image.hpp"
 #include "tools/studies/commands.hpp"
 #include "tools/studies/recorded/pose_sheets.hpp"
 #include "tools/studies/recorded/real_bench.hpp"

@@ -5,7 +5,7 @@
 
 #include "drivers/files/image_file.hpp"
 #include "tools/common/tool_main.hpp"
-#include "tools/fuse/model_picture.hpp"
+#include "tools/fuse/model_image.hpp"
 #include "tools/studies/commands.hpp"
 #include "tools/studies/teach/shown_comparison.hpp"
 

@@ -20,7 +20,7 @@
 #include "pipeline/base/folder_exchange.hpp"
 #include "pipeline/base/html_text.hpp"
 #include "pose/reconstruction/model/take_model.hpp"
-#include "tools/fuse/model_picture.hpp"
+#include "tools/fuse/model_image.hpp"
 #include "tools/teach/mesh/contact_sheet.hpp"
 
 namespace houghstream::teach {

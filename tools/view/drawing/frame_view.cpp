@@ -199,28 +199,28 @@ cv::Mat draw_over_colour(const ViewedFrame& viewed, const ClassModels& models, c
     frame.colour = frame.colour.clone();
     tracks = draw_tracks(frame.colour, *stream.state.world, viewed.frame);
   }
-  cv::Mat picture = draw_overlay(frame, viewed.detections, viewed.poses, models, tracks);
-  if (!settings.box.empty()) cv::rectangle(picture, settings.box, {255, 255, 255}, 1, cv::LINE_AA);
-  if (settings.at) cv::drawMarker(picture, *settings.at, {255, 255, 255}, cv::MARKER_CROSS, 15, 1, cv::LINE_AA);
-  if (stream.state.teaching) draw_teaching(picture, *stream.state.teaching, viewed.frame);
-  return picture;
+  cv::Mat image = draw_overlay(frame, viewed.detections, viewed.poses, models, tracks);
+  if (!settings.box.empty()) cv::rectangle(image, settings.box, {255, 255, 255}, 1, cv::LINE_AA);
+  if (settings.at) cv::drawMarker(image, *settings.at, {255, 255, 255}, cv::MARKER_CROSS, 15, 1, cv::LINE_AA);
+  if (stream.state.teaching) draw_teaching(image, *stream.state.teaching, viewed.frame);
+  return image;
 }
 
 cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const FrameViewSettings& settings,
                         const StreamView& stream) {
   const ViewedFrame viewed = without_weak(all, settings.min_score);
-  cv::Mat picture = draw_over_colour(viewed, models, settings, stream);
+  cv::Mat image = draw_over_colour(viewed, models, settings, stream);
   if (settings.show_world) {
     const WorldState world = stream.state.world.value_or(WorldState{});
-    cv::hconcat(picture, draw_world_from_above(world, viewed.frame.colour.size()), picture);
+    cv::hconcat(image, draw_world_from_above(world, viewed.frame.colour.size()), image);
   } else if (settings.show_3d) {
-    cv::hconcat(picture, draw_rotated_view(viewed.frame, viewed.poses, models), picture);
+    cv::hconcat(image, draw_rotated_view(viewed.frame, viewed.poses, models), image);
   } else if (settings.show_depth) {
-    cv::hconcat(picture, colour_depth(viewed.frame.depth, settings.depth_near, settings.depth_far), picture);
+    cv::hconcat(image, colour_depth(viewed.frame.depth, settings.depth_near, settings.depth_far), image);
   }
-  cv::vconcat(picture, draw_panel(viewed, stream, settings, picture.cols), picture);
-  cv::copyMakeBorder(picture, picture, 0, picture.rows % 2, 0, picture.cols % 2, cv::BORDER_REPLICATE);
-  return picture;
+  cv::vconcat(image, draw_panel(viewed, stream, settings, image.cols), image);
+  cv::copyMakeBorder(image, image, 0, image.rows % 2, 0, image.cols % 2, cv::BORDER_REPLICATE);
+  return image;
 }
 
 }  // namespace houghstream::view

@@ -71,15 +71,15 @@ Eigen::Isometry3d rotated_camera(const cv::Mat& depth) {
 cv::Mat draw_rotated_view(const RgbdFrame& frame, const std::optional<ObjectPoses>& poses, const ClassModels& models) {
   const Eigen::Isometry3d T_rotated_camera = rotated_camera(frame.depth);
   const Eigen::Isometry3f T = T_rotated_camera.cast<float>();
-  PointImage picture(frame.camera);
+  PointImage point_image(frame.camera);
   for (int y = 0; y < frame.depth.rows; ++y) {
     for (int x = 0; x < frame.depth.cols; ++x) {
       const float z = frame.depth.at<float>(y, x);
       if (!std::isfinite(z)) continue;
-      picture.add(T * frame.camera.backproject(x, y, z).cast<float>(), frame.colour.at<cv::Vec3b>(y, x));
+      point_image.add(T * frame.camera.backproject(x, y, z).cast<float>(), frame.colour.at<cv::Vec3b>(y, x));
     }
   }
-  cv::Mat image = picture.image();
+  cv::Mat image = point_image.image();
   if (!poses) return image;
   for (ObjectPose pose : poses->poses) {
     if (pose.T_camera_object) pose.T_camera_object = T_rotated_camera * *pose.T_camera_object;

@@ -70,7 +70,7 @@ TEST(CameraColour, AStopIsTwiceTheLightAndWhatIsTooBrightIsClipped) {
   EXPECT_EQ(after.at<cv::Vec3b>(10, 10)[2], 255);
 }
 
-TEST(CameraColour, AutomaticExposureBringsPicturesCloserTogether) {
+TEST(CameraColour, AutomaticExposureBringsImagesCloserTogether) {
   ColourVariation camera;
   camera.exposure_follow = 0.5;
   const auto mean_of = [&](int level) {
@@ -149,7 +149,7 @@ TEST(CameraColour, LevelsLoseWhatIsDarkAndBrightAndSpreadTheRest) {
   EXPECT_NEAR(taken(camera, ramp).at<cv::Vec3b>(0, 0)[0], 28, 2) << "lifted blacks are grey";
 }
 
-TEST(CameraColour, ToneChangesPicturesAndNothingWithoutAShare) {
+TEST(CameraColour, ToneChangesImagesAndNothingWithoutAShare) {
   const cv::Mat before = chart();
   cv::Mat after = before.clone();
   Random random(3);

@@ -32,7 +32,7 @@ TEST(CameraRandomisation, StrengthZeroChangesNothing) {
   }
 }
 
-TEST(CameraRandomisation, TheSameSeedIsTheSameCameraAndTakesTheSamePicture) {
+TEST(CameraRandomisation, TheSameSeedIsTheSameCameraAndTakesTheSameImage) {
   const RgbdFrame room = toy::background(3);
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     cv::Mat colours[2];
@@ -141,7 +141,7 @@ bool looks_through_another(double fraction, double strength, std::uint64_t seed)
   return !same_depth || !same_colour;
 }
 
-TEST(CameraRandomisation, AnotherCameraLooksInItsShareOfThePictures) {
+TEST(CameraRandomisation, AnotherCameraLooksInItsShareOfTheImages) {
   int by_half = 0;
   int by_all = 0;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {

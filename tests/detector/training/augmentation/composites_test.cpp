@@ -132,7 +132,7 @@ TEST(Composites, WhatDoesNotFitGivesNothing) {
   EXPECT_FALSE(compose(tile_view(), 0.15, 3, plain()));
 }
 
-TEST(Composites, TheSameSeedGivesTheSamePicture) {
+TEST(Composites, TheSameSeedGivesTheSameImage) {
   const TrainingView view = tile_view();
   const auto first = compose(view, 1.2, 8, {});
   const auto again = compose(view, 1.2, 8, {});

@@ -196,7 +196,7 @@ TEST(FarNoise, AddsWhatTheLargerDistanceHasMore) {
   }
 }
 
-TEST(FarNoise, IsAsCoarseAsThePicturesOfThatDistanceEnlarged) {
+TEST(FarNoise, IsAsCoarseAsTheImagesOfThatDistanceEnlarged) {
   EXPECT_LT(contrast_of(noisy(1.2)), 0.9);
   EXPECT_LT(contrast_of(noisy(2.4)), 0.6 * contrast_of(noisy(1.2)));
 }

@@ -145,7 +145,7 @@ void expect_held(const TrainingImage& image, const PatchSettings& patch) {
   EXPECT_LT(held.height, image.features.height() + 2 * FeatureImage::kPad);
 }
 
-TEST(TrainingImages, PicturesHoldWhatTheirPatchesLookAtOnly) {
+TEST(TrainingImages, ImagesHoldWhatTheirPatchesLookAtOnly) {
   const Profile profile = open_profile("realtime");
   ImageWorkspace workspace;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {

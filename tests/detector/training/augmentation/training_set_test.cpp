@@ -127,7 +127,7 @@ TEST(TrainingSet, AnyNumberOfThreadsGivesTheSameSamples) {
   EXPECT_EQ(serial.classes[1].name, "rings");
 }
 
-TEST(TrainingSet, ViewsWithoutAPictureAreRememberedAllTheSame) {
+TEST(TrainingSet, ViewsWithoutAnImageAreRememberedAllTheSame) {
   const std::vector<TrainingView> views = toy::training_views();
   Profile profile = toy::quick_profile();
   profile.training.views_per_image = 2;
@@ -146,7 +146,7 @@ TEST(TrainingSet, ViewsWithoutAPictureAreRememberedAllTheSame) {
   EXPECT_EQ(classes.size(), 2U);
 }
 
-TEST(TrainingSet, ViewsThatAreDoneMayLetTheirPicturesGo) {
+TEST(TrainingSet, ViewsThatAreDoneMayLetTheirImagesGo) {
   std::vector<TrainingView> views = toy::training_views();
   Profile profile = toy::quick_profile();
   profile.training.views_per_image = 2;

@@ -113,7 +113,7 @@ TEST(ValidationFrames, AStrangerIsNarrowerOrWiderThanAnyObjectOrHasItsShape) {
   EXPECT_GE(square, 5);
 }
 
-TEST(ValidationFrames, AnotherCameraChangesThePictureAndNotTheTruth) {
+TEST(ValidationFrames, AnotherCameraChangesTheImageAndNotTheTruth) {
   const TilesAndBackgrounds toys;
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const ValidationFrame same = compose(toys, seed, 0.0, 0.0);

@@ -37,7 +37,7 @@ TEST(Landmarks, CornersAreFollowedIntoTheNextFrame) {
   EXPECT_TRUE(detect_flow_corners(a, nowhere).empty());
 }
 
-TEST(Landmarks, FramesThatAreMadeOnceTellWhatTheirPicturesDo) {
+TEST(Landmarks, FramesThatAreMadeOnceTellWhatTheirImagesDo) {
   const FlowFrame a = make_flow_frame(seen_from(0.4));
   const FlowFrame b = make_flow_frame(seen_from(0.43));
   const std::vector<cv::Point2f> corners = detect_flow_corners(a, {});

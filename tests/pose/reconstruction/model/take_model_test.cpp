@@ -7,7 +7,7 @@
 namespace houghstream::reconstruction {
 namespace {
 
-TEST(FuseMaskedViews, PicturesThatCutTheObjectOffDoNotCutTheModelOff) {
+TEST(FuseMaskedViews, ImagesThatCutTheObjectOffDoNotCutTheModelOff) {
   const test_scene::ShownScene scene;
   const Mesh table = test_scene::table_with(scene);
   const Mesh box = test_scene::box_of(scene);

@@ -45,7 +45,7 @@ TEST(ImportScene, BoxesBecomeASceneWithoutPosesInTheirOrder) {
   EXPECT_EQ(pack.object_id, 2);
 }
 
-TEST(ImportScene, PicturesThatAreThereAreNotMixedWithOthers) {
+TEST(ImportScene, ImagesThatAreThereAreNotMixedWithOthers) {
   const fs::path scene_folder = fresh_folder("import_mixed_out");
   const fs::path source = write_source("import_mixed");
   fs::create_directories(scene_folder / "rgb");

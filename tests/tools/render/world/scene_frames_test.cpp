@@ -42,7 +42,7 @@ TEST_F(SceneFrames, AreTheSameForAnyNumberOfThreads) {
   EXPECT_FALSE(identical(serial[0].frame.colour, serial[1].frame.colour));
 }
 
-TEST_F(SceneFrames, TruthAgreesWithThePicture) {
+TEST_F(SceneFrames, TruthAgreesWithTheImage) {
   int seen = 0;
   for (const RenderedFrame& view : render(1)) {
     check_frame(view.frame, "rendered");

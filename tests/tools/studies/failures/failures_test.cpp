@@ -59,7 +59,7 @@ TEST(Failures, HardlyVisibleObjectsAreNotMissed) {
   EXPECT_TRUE(choose_failures(frames, {"mug"}, {{}, 0.5F, 4, 1}).empty());
 }
 
-TEST(Failures, APictureHasTheBoxInItEvenAtTheFramesEdge) {
+TEST(Failures, AnImageHasTheBoxInItEvenAtTheFramesEdge) {
   const cv::Mat grey(480, 640, CV_8UC3, cv::Scalar(90, 90, 90));
   for (const cv::Rect2f& box : {cv::Rect2f(0, 0, 30, 30), cv::Rect2f(600, 450, 40, 30), cv::Rect2f(0, 0, 640, 480)}) {
     Failure missed;

@@ -29,7 +29,7 @@ ObjectPoses in_front() {
   return poses;
 }
 
-TEST(PoseSheets, AModelIsPaintedInItsColoursOverTheDarkenedPicture) {
+TEST(PoseSheets, AModelIsPaintedInItsColoursOverTheDarkenedImage) {
   const RgbdFrame frame = plain_frame();
   const cv::Mat image = paint_models(frame, in_front(), square({200, 100, 50}));
   EXPECT_EQ(image.at<cv::Vec3b>(24, 32), cv::Vec3b(200, 100, 50));

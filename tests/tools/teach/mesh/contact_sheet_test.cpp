@@ -10,7 +10,7 @@
 namespace houghstream::teach {
 namespace {
 
-TEST(ContactSheet, APictureOfAnotherWidthIsNamed) {
+TEST(ContactSheet, AnImageOfAnotherWidthIsNamed) {
   const std::filesystem::path folder = fresh_folder("contact_sheet");
   write_png(cv::Mat(10, 30, CV_8UC3, cv::Scalar(1, 2, 3)), folder / "a.png");
   write_png(cv::Mat(10, 40, CV_8UC3, cv::Scalar(1, 2, 3)), folder / "b.png");

@@ -29,7 +29,7 @@ TEST(FrameView, DepthIsWarmNearColdFarAndBlackWhereMissing) {
   EXPECT_EQ(image.at<cv::Vec3b>(0, 2), cv::Vec3b(0, 0, 0));
 }
 
-TEST(FrameView, PictureHoldsOverlayDepthAndPanelAndIsEven) {
+TEST(FrameView, ImageHoldsOverlayDepthAndPanelAndIsEven) {
   const cv::Mat with_depth = draw_frame_view(small_frame(), {}, {});
   EXPECT_EQ(with_depth.cols, 322);
   EXPECT_EQ(with_depth.rows % 2, 0);

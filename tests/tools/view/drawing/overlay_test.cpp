@@ -63,7 +63,7 @@ bool shows(const cv::Mat& image, const cv::Scalar& colour, int x, int y, int rad
   return cv::countNonZero(close) > 0;
 }
 
-TEST(Overlay, NothingFoundLeavesThePictureAsItIs) {
+TEST(Overlay, NothingFoundLeavesTheImageAsItIs) {
   const RgbdFrame frame = grey_frame();
   const cv::Mat image = draw_overlay(frame, Detections{{"TEST", 7}, {}, {}}, std::nullopt, {});
   EXPECT_EQ(cv::norm(image, frame.colour, cv::NORM_INF), 0.0);

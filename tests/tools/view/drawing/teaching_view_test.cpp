@@ -81,7 +81,7 @@ TEST(TeachingView, BoxSphereWordsAndProgressAreDrawn) {
   EXPECT_EQ(count_colour(image.row(479), kSeen), 320) << "half of the work";
 }
 
-TEST(TeachingView, OfASmallPictureNothingIsDrawnOutside) {
+TEST(TeachingView, OfASmallImageNothingIsDrawnOutside) {
   const RgbdFrame frame = make_test_frame(1000, 64, 48);
   cv::Mat image = frame.colour.clone();
   Teaching mug = half_seen();

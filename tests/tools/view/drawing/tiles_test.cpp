@@ -7,7 +7,7 @@
 namespace houghstream::view {
 namespace {
 
-TEST(Tiles, FewerThanARowMakeANarrowPicture) {
+TEST(Tiles, FewerThanARowMakeANarrowImage) {
   const std::vector<cv::Mat> two(2, cv::Mat(20, 30, CV_8UC3, cv::Scalar(255, 255, 255)));
   EXPECT_EQ(tiled(two, 4).size(), cv::Size(64, 20));
   EXPECT_EQ(tiled(two, 1).size(), cv::Size(30, 44));

@@ -79,7 +79,7 @@ TEST(LivePage, ShowsEachViewThatIsAskedFor) {
   }
 }
 
-TEST(LivePage, ARowOrAColumnOfPixelsIsAPictureOfModestSizeInEachView) {
+TEST(LivePage, ARowOrAColumnOfPixelsIsAnImageOfModestSizeInEachView) {
   for (const cv::Size size : {cv::Size(16384, 1), cv::Size(1, 16384), cv::Size(1, 1)}) {
     Looked looked;
     looked.stream.state.teaching.emplace().progress = 0.5F;

@@ -40,7 +40,7 @@ TEST(PageBoard, EachSeesTheNewestOnce) {
   EXPECT_EQ(board.updates_after(*second, kNow)->stream, "");
 }
 
-TEST(PageBoard, APictureThatIsWaitedForIsMissing) {
+TEST(PageBoard, AnImageThatIsWaitedForIsMissing) {
   PageBoard board;
   board.put_frame("a");
   EXPECT_TRUE(board.missing().empty());

@@ -105,7 +105,7 @@ TEST(PageServer, ThePageIsWholeAndLoadsNothingFromElsewhere) {
   EXPECT_EQ(served.client.Get("/nothing")->status, 404);
 }
 
-TEST(PageServer, PicturesAreThoseOfTheFrameThatIsShown) {
+TEST(PageServer, ImagesAreThoseOfTheFrameThatIsShown) {
   Served served;
   served.board.put_frame("{}");
   served.board.put_image(PageView::kColour, {'j', 'p', 'g'});

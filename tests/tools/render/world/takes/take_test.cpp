@@ -136,7 +136,7 @@ int partly_lit(const ShadedView& view, int y) {
   return count;
 }
 
-TEST(MovingCamera, WhatStandsStillIsAsAPictureOfOneMoment) {
+TEST(MovingCamera, WhatStandsStillIsAsAnImageOfOneMoment) {
   const LitWorld world = post();
   World moved = world.world;
   const ShadedView exposed = expose(world, kMovedCamera, sideways(0.0), 0.3, {0.01, 0.02});

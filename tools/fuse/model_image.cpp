@@ -1,4 +1,4 @@
-#include "tools/fuse/model_picture.hpp"
+#include "tools/fuse/model_image.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
