@@ -21,7 +21,7 @@ struct Estimation {
   const Detection& detection;
   const ObjectModel& model;
   ObjectPose& pose;  ///< published result; its status is kInvalid until it is decided
-  std::optional<ObjectObservation> seen = std::nullopt;
+  std::optional<ObjectObservation> observation = std::nullopt;
   std::vector<RotationCandidate> rotations = {};
   std::vector<PoseCandidate> candidates = {};
   std::vector<RegistrationResult> registered = {};  ///< the candidates
@@ -72,21 +72,21 @@ std::vector<Estimation> begin_estimations(const Detections& detections,
 }
 
 void look_at_region(const FrameContext& frame, const PoseSettings& settings, Estimation& it) {
-  it.seen.emplace(observe_object(frame, it.detection, it.model, settings.region));
-  if (it.seen->region.points < settings.region.min_points) it.pose.status = PoseStatus::kTooFewPoints;
+  it.observation.emplace(observe_object(frame, it.detection, it.model, settings.region));
+  if (it.observation->region.points < settings.region.min_points) it.pose.status = PoseStatus::kTooFewPoints;
 }
 
 void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, Estimation& it) {
   it.rotations = rotation_clusters(it.detection.rotations, settings.initial);
-  it.candidates = place_candidates(*it.seen, it.rotations, settings.search);
+  it.candidates = place_candidates(*it.observation, it.rotations, settings.search);
   const std::vector<PoseCandidate> warm =
-      earlier_candidates(*it.seen, it.detection.class_name, earlier, settings.warm_start);
+      earlier_candidates(*it.observation, it.detection.class_name, earlier, settings.warm_start);
   it.candidates.insert(it.candidates.end(), warm.begin(), warm.end());
   if (it.candidates.empty()) it.pose.status = PoseStatus::kNoInitialPose;
 }
 
 void choose_one(const PoseSettings& settings, Estimation& it) {
-  it.selected = select_poses(*it.seen, it.registered, it.rotations, pose_selection_settings(settings));
+  it.selected = select_poses(*it.observation, it.registered, it.rotations, pose_selection_settings(settings));
   copy_registration_evidence(it.selected.front(), it.pose);
   if (it.selected.front().inliers == 0) it.pose.status = PoseStatus::kNotConverged;
 }
@@ -94,7 +94,8 @@ void choose_one(const PoseSettings& settings, Estimation& it) {
 void gather_one(const PoseSettings& settings, Estimation& it) {
   const QualitySettings& quality = class_quality_of(settings, it.pose.class_name);
   for (const RegistrationResult& result : it.selected) {
-    it.evidence.push_back(gather_evidence(*it.seen, result.T_camera_object, it.detection.score, settings.verification));
+    it.evidence.push_back(
+        gather_evidence(*it.observation, result.T_camera_object, it.detection.score, settings.verification));
     std::optional<ChromaPair> pair = chroma_pair(it.pose.class_name, it.evidence.back(), quality);
     if (pair && (!it.pose.chroma || pair->probability > it.pose.chroma->probability)) it.pose.chroma = std::move(pair);
   }
@@ -151,21 +152,22 @@ void decide_one(const PoseSettings& settings, Estimation& it) {
 void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
   constexpr float kWorthTelling = 0.1F;  // a pose that is wrong by its shape stays wrong
   if (it.pose.shape_quality < kWorthTelling) return;
-  const DepthTolerance tolerance{settings.verification.tolerance_m, it.seen->noise};
+  const DepthTolerance tolerance{settings.verification.tolerance_m, it.observation->noise};
   const TextureSettings& learnt = class_quality_of(settings, it.pose.class_name).texture;
   const RegistrationResult& published = it.selected[it.published];
   const std::optional<TextureComparison> texture =
-      compare_with_alternatives(*it.seen, published.T_camera_object, tolerance, settings.registration);
+      compare_with_alternatives(*it.observation, published.T_camera_object, tolerance, settings.registration);
   if (!texture) return;
   PoseEvidence& published_evidence = it.evidence[it.published];
   published_evidence.texture_probability = texture_probability(texture->margin, learnt);
   ObjectPose judged = judged_pose(it, published, published_evidence, settings);
   if (texture->better) {
     const RegistrationResult other =
-        refine_pose(*it.seen, *texture->better, it.rotations, pose_selection_settings(settings));
+        refine_pose(*it.observation, *texture->better, it.rotations, pose_selection_settings(settings));
     const std::optional<TextureComparison> there =
-        compare_with_alternatives(*it.seen, other.T_camera_object, tolerance, settings.registration);
-    PoseEvidence evidence = gather_evidence(*it.seen, other.T_camera_object, it.detection.score, settings.verification);
+        compare_with_alternatives(*it.observation, other.T_camera_object, tolerance, settings.registration);
+    PoseEvidence evidence =
+        gather_evidence(*it.observation, other.T_camera_object, it.detection.score, settings.verification);
     bring_to_camera(it.pose.camera_colours, evidence);
     evidence.texture_probability = there ? texture_probability(there->margin, learnt) : 1.0F;
     ObjectPose rotated = judged_pose(it, other, evidence, settings);
@@ -256,13 +258,14 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
     });
   };
 
-  const FrameContext seen = make_frame_context(frame, settings.region, settings.noise);
-  for_each_undecided([&](Estimation& it) { look_at_region(seen, settings, it); });
+  const FrameContext context = make_frame_context(frame, settings.region, settings.noise);
+  for_each_undecided([&](Estimation& it) { look_at_region(context, settings, it); });
   clock.mark("pose.region");
   for_each_undecided([&](Estimation& it) { find_candidates(earlier, settings, it); });
   clock.mark("pose.candidates");
-  for_each_undecided(
-      [&](Estimation& it) { it.registered = register_candidates(*it.seen, it.candidates, settings.registration); });
+  for_each_undecided([&](Estimation& it) {
+    it.registered = register_candidates(*it.observation, it.candidates, settings.registration);
+  });
   clock.mark("pose.registration");
   for_each_undecided([&](Estimation& it) { choose_one(settings, it); });
   clock.mark("pose.choice");

@@ -155,14 +155,14 @@ BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, con
     const std::int16_t mm = appearance.mm[in.row * kSide + in.column];
     const bool is_hidden = mm > TemplateGrid::kNoDepth && *inside - comparison.metres_per_mm * mm - shift < -tolerance;
     if (is_hidden) continue;
-    BoundarySample seen;
+    BoundarySample sample;
     const float cell_px = in.row == out.row ? comparison.cell_width : comparison.cell_height;
-    seen.lateral_distance = OutlineCells::kApart * comparison.metres_per_px * cell_px;
-    seen.depth_change = *beyond - *inside;
-    seen.expected_depth_change =
+    sample.lateral_distance = OutlineCells::kApart * comparison.metres_per_px * cell_px;
+    sample.depth_change = *beyond - *inside;
+    sample.expected_depth_change =
         cells.gained_mm > TemplateGrid::kNoDepth ? comparison.metres_per_mm * cells.gained_mm : kNoValue;
-    seen.colour_sq = colour_distance_sq(colours.at(in.row, in.column), colours.at(out.row, out.column));
-    if (!is_foreground_step(seen, tolerance)) fit.add(seen, tolerance);
+    sample.colour_sq = colour_distance_sq(colours.at(in.row, in.column), colours.at(out.row, out.column));
+    if (!is_foreground_step(sample, tolerance)) fit.add(sample, tolerance);
   }
   return fit;
 }

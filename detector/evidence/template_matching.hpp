@@ -47,12 +47,12 @@ struct TemplateMatch {
 class BoundaryContinuation {
  public:
   /// `tolerance`: of depth, metres.
-  void add(const BoundarySample& seen, float tolerance) {
-    const float surface = houghstream::surface_continuation(seen, tolerance);
+  void add(const BoundarySample& sample, float tolerance) {
+    const float surface = houghstream::surface_continuation(sample, tolerance);
     ++count_;
     surface_ += surface;
-    colour_ += is_background_step(seen, tolerance) ? 0.0F : uniform_colour_continuation(seen);
-    both_ += surface * houghstream::textured_colour_continuation(seen);
+    colour_ += is_background_step(sample, tolerance) ? 0.0F : uniform_colour_continuation(sample);
+    both_ += surface * houghstream::textured_colour_continuation(sample);
   }
 
   float surface() const { return fraction(surface_); }  ///< straight on from within

@@ -30,33 +30,33 @@ inline float approximate_gaussian(float square) {
 
 /// Returns whether a nearer surface begins at the boundary, which then is an occluder's. `tolerance`: of depth, metres,
 /// here and below.
-inline bool is_foreground_step(const BoundarySample& seen, float tolerance) {
+inline bool is_foreground_step(const BoundarySample& sample, float tolerance) {
   constexpr float kSteepest = 2.5F;  // maximum slope of a table towards the camera: depth over lateral distance
-  return seen.depth_change < -kSteepest * seen.lateral_distance - 2.0F * tolerance;
+  return sample.depth_change < -kSteepest * sample.lateral_distance - 2.0F * tolerance;
 }
 
-inline bool is_background_step(const BoundarySample& seen, float tolerance) {
-  return seen.depth_change > 2.0F * tolerance + seen.lateral_distance;
+inline bool is_background_step(const BoundarySample& sample, float tolerance) {
+  return sample.depth_change > 2.0F * tolerance + sample.lateral_distance;
 }
 
 /// Returns the continuation of the surface, 1 where it continues straight, 0 where it does not, 0.5 where that is
 /// unknown.
-inline float surface_continuation(const BoundarySample& seen, float tolerance) {
+inline float surface_continuation(const BoundarySample& sample, float tolerance) {
   constexpr float kUnknown = 0.5F;
-  const float slack = 0.4F * seen.lateral_distance + 0.25F * tolerance;  // surfaces bend
-  const float off = seen.depth_change - seen.expected_depth_change;
+  const float slack = 0.4F * sample.lateral_distance + 0.25F * tolerance;  // surfaces bend
+  const float off = sample.depth_change - sample.expected_depth_change;
   const float straight = approximate_gaussian(off * off / (slack * slack));
   return std::isnan(off) ? kUnknown : straight;
 }
 
 /// Returns the continuation of the colour of an untextured object, 0 to 1.
-inline float uniform_colour_continuation(const BoundarySample& seen) {
-  return approximate_gaussian(seen.colour_sq / 16.0F);
+inline float uniform_colour_continuation(const BoundarySample& sample) {
+  return approximate_gaussian(sample.colour_sq / 16.0F);
 }
 
 /// Returns the continuation of the colour of an object that may be textured, 0 to 1.
-inline float textured_colour_continuation(const BoundarySample& seen) {
-  return approximate_gaussian(seen.colour_sq / 36.0F);
+inline float textured_colour_continuation(const BoundarySample& sample) {
+  return approximate_gaussian(sample.colour_sq / 36.0F);
 }
 
 }  // namespace houghstream

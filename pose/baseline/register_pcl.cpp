@@ -114,10 +114,10 @@ RegistrationResult register_points_pcl(const std::vector<Eigen::Vector3f>& point
   return result;
 }
 
-RegistrationResult register_pcl(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+RegistrationResult register_pcl(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                 const RegistrationStage& stage, const RegistrationSettings& settings) {
-  return register_points_pcl(region_points(seen.frame, seen.region, stage.points), seen.model, T_camera_object, stage,
-                             settings);
+  return register_points_pcl(region_points(observation.frame, observation.region, stage.points), observation.model,
+                             T_camera_object, stage, settings);
 }
 
 }  // namespace houghstream

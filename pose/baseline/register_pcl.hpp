@@ -17,7 +17,7 @@ RegistrationResult register_points_pcl(const std::vector<Eigen::Vector3f>& point
                                        const RegistrationSettings& settings);
 
 /// Registers the region's points, as an engine: RegistrationSettings::engine = register_pcl.
-RegistrationResult register_pcl(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+RegistrationResult register_pcl(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                 const RegistrationStage& stage, const RegistrationSettings& settings);
 
 }  // namespace houghstream

@@ -45,29 +45,29 @@ ObjectObservation see_expected(const FrameContext& frame, const ObjectModel& mod
   return observe_object(frame, expected, model, settings.region);
 }
 
-bool has_depth(const ObjectObservation& seen, const FollowerInput& input) {
-  return seen.region.points >= input.pose.region.min_points;
+bool has_depth(const ObjectObservation& observation, const FollowerInput& input) {
+  return observation.region.points >= input.pose.region.min_points;
 }
 
 /// Whether any depth is measured where the object should be, at whatever distance.
-bool is_depth_measured(const ObjectObservation& seen, const FollowerInput& input) {
-  const cv::Mat part = seen.frame.depth(seen.region.box_px);
+bool is_depth_measured(const ObjectObservation& observation, const FollowerInput& input) {
+  const cv::Mat part = observation.frame.depth(observation.region.box_px);
   return cv::countNonZero(part == part) >= input.pose.region.min_points;  // NaN differs from itself
 }
 
 /// The texture moves the pose a little, where depth and silhouette leave it free.
-RefinePose texture_refinement(const ObjectObservation& seen, const FollowerInput& input) {
+RefinePose texture_refinement(const ObjectObservation& observation, const FollowerInput& input) {
   return [&](const Eigen::Isometry3d& T_camera_object) {
     const FollowSettings& follow = input.follow;
     const HillClimb hill_climb{follow.refine_step_deg * kRadPerDeg, follow.refine_step_m, follow.refine_rounds,
                                follow.refine_points};
-    const DepthTolerance tolerance{input.pose.verification.tolerance_m, seen.noise};
-    return hill_climb_pose(seen, T_camera_object, hill_climb, tolerance).T_camera_object;
+    const DepthTolerance tolerance{input.pose.verification.tolerance_m, observation.noise};
+    return hill_climb_pose(observation, T_camera_object, hill_climb, tolerance).T_camera_object;
   };
 }
 
-JointResult register_near(const ObjectObservation& seen, const Eigen::Isometry3d& start, const ExpectedObject& expected,
-                          const FollowerInput& input) {
+JointResult register_near(const ObjectObservation& observation, const Eigen::Isometry3d& start,
+                          const ExpectedObject& expected, const FollowerInput& input) {
   const RegistrationSettings& registration = input.pose.registration;
   JointStart joint;
   joint.T_camera_object = start;
@@ -76,26 +76,28 @@ JointResult register_near(const ObjectObservation& seen, const Eigen::Isometry3d
   int iterations = 0;
   if (expected.is_lost) {
     const RegistrationResult near =
-        register_coarsely(seen, start, correspondence_distances(seen, registration).start, registration);
+        register_coarsely(observation, start, correspondence_distances(observation, registration).start, registration);
     joint.T_camera_object = near.T_camera_object;
     iterations = near.iterations;
   }
-  if (expected.refine_by_texture && has_depth(seen, input)) joint.refine_by_texture = texture_refinement(seen, input);
-  JointResult result = register_jointly(seen, joint, input.follow.joint, registration);
+  if (expected.refine_by_texture && has_depth(observation, input))
+    joint.refine_by_texture = texture_refinement(observation, input);
+  JointResult result = register_jointly(observation, joint, input.follow.joint, registration);
   result.registration.iterations += iterations;
   return result;
 }
 
 /// Judges the pose, of an object that was reported before, by points of the view and the outline of an earlier frame,
 /// where there is one and that suffices; else the model is rendered.
-void decide_followed(const ObjectObservation& seen, const ExpectedObject& expected, const FollowerInput& input,
+void decide_followed(const ObjectObservation& observation, const ExpectedObject& expected, const FollowerInput& input,
                      FollowedPose& followed) {
   const PoseSettings& settings = input.pose;
-  const DepthTolerance tolerance{settings.verification.tolerance_m, seen.noise};
+  const DepthTolerance tolerance{settings.verification.tolerance_m, observation.noise};
   const QualitySettings& quality = class_quality_of(settings, followed.pose.class_name);
   const Eigen::Isometry3d& T = followed.T_camera_object;
-  const ProjectedView look = project_view(seen.frame, seen.model, T, settings.verification.points);
-  PoseEvidence evidence{expected.score, {}, compare_texture(seen, look, tolerance), expected.texture_probability};
+  const ProjectedView look = project_view(observation.frame, observation.model, T, settings.verification.points);
+  PoseEvidence evidence{
+      expected.score, {}, compare_texture(observation, look, tolerance), expected.texture_probability};
   bring_to_camera(expected.camera_colours, evidence);
   followed.pose.camera_colours = expected.camera_colours;
   if (expected.verified) {
@@ -112,7 +114,7 @@ void decide_followed(const ObjectObservation& seen, const ExpectedObject& expect
     if (has_pose(followed.pose.status) && is_present) return;
     followed.pose.T_camera_object.reset();
   }
-  evidence.depth = verify_pose(seen.frame, seen.model.mesh, T, tolerance, &seen.colours);
+  evidence.depth = verify_pose(observation.frame, observation.model.mesh, T, tolerance, &observation.colours);
   followed.verified = evidence.depth;
   followed.pose.chroma = chroma_pair(followed.pose.class_name, evidence, quality);
   decide_status(evidence, T, true, quality, followed.pose);
@@ -151,13 +153,13 @@ FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, co
   FollowedPose followed = unposed(expected);
   ObjectPose& pose = followed.pose;
   followed.T_camera_object = start;
-  const ObjectObservation seen = see_expected(frame, model, start, settings);
-  followed.has_depth = has_depth(seen, input);
-  if (!followed.has_depth && (is_depth_measured(seen, input) || !expected.appearance.colours)) {
+  const ObjectObservation observation = see_expected(frame, model, start, settings);
+  followed.has_depth = has_depth(observation, input);
+  if (!followed.has_depth && (is_depth_measured(observation, input) || !expected.appearance.colours)) {
     pose.status = PoseStatus::kTooFewPoints;
     return followed;
   }
-  const JointResult result = register_near(seen, start, expected, input);
+  const JointResult result = register_near(observation, start, expected, input);
   const RegistrationResult& registration = result.registration;
   copy_registration_evidence(registration, pose);
   followed.silhouette = result.silhouette;
@@ -172,7 +174,7 @@ FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, co
   }
   followed.T_camera_object = registration.T_camera_object;
   if (followed.has_depth) {
-    decide_followed(seen, expected, input, followed);
+    decide_followed(observation, expected, input, followed);
   } else {
     judge_without_depth(expected, result, input, followed);
   }
@@ -183,11 +185,12 @@ FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, co
 bool is_hidden(const FrameContext& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                const FollowerInput& input) {
   const DepthTolerance tolerance{input.pose.verification.tolerance_m, frame.noise};
-  const Verification seen = verify_pose(frame.frame, model.mesh, T_camera_object, tolerance);
-  const auto rendered = static_cast<float>(seen.rendered);
-  const auto hidden = static_cast<float>(seen.occluded);
+  const Verification verification = verify_pose(frame.frame, model.mesh, T_camera_object, tolerance);
+  const auto rendered = static_cast<float>(verification.rendered);
+  const auto hidden = static_cast<float>(verification.occluded);
   return hidden > input.follow.max_occluded_fraction * rendered &&
-         static_cast<float>(seen.free_space_violations) <= input.follow.max_free_space_violation * (rendered - hidden);
+         static_cast<float>(verification.free_space_violations) <=
+             input.follow.max_free_space_violation * (rendered - hidden);
 }
 
 FollowedPose follow_object(const FrameContext& frame, const ObjectModel& model, const ExpectedObject& expected,
@@ -209,13 +212,13 @@ std::vector<FollowedPose> follow_objects(const PoseEstimator& estimator, const F
                                          const RgbdFrame& frame, const std::vector<ExpectedObject>& expected) {
   check_frame(frame, "pose estimation");
   const FollowerInput input{estimator.settings(), settings};
-  const FrameContext seen = make_frame_context(frame, input.pose.region, input.pose.noise);
+  const FrameContext context = make_frame_context(frame, input.pose.region, input.pose.noise);
   std::vector<FollowedPose> followed(expected.size());
   parallel_for(input.pose.threads, static_cast<int>(expected.size()), [&](int i) {
     const ExpectedObject& object = expected[i];
     const auto model = estimator.models().find(object.class_name);
     if (model != estimator.models().end()) {
-      followed[i] = follow_object(seen, model->second, object, input);
+      followed[i] = follow_object(context, model->second, object, input);
     } else {
       followed[i] = unposed(object);
       followed[i].pose.status = PoseStatus::kNoModel;

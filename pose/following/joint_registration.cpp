@@ -32,18 +32,18 @@ constexpr std::array<JointLevel, 4> kLevels = {{{0.25, 2, {6, 15.0, 3}, EdgeStep
 /// One registration on its way.
 class JointRegistration {
  public:
-  JointRegistration(const ObjectObservation& seen, const JointStart& start, const JointSettings& settings,
+  JointRegistration(const ObjectObservation& observation, const JointStart& start, const JointSettings& settings,
                     const RegistrationSettings& registration)
-      : seen_(seen),
-        view_{seen.frame, seen.model, seen.noise},
+      : seen_(observation),
+        view_{observation.frame, observation.model, observation.noise},
         start_(start),
         settings_(settings),
         registration_(registration),
-        end_m_(correspondence_distances(seen, registration).end),
-        sigma_m_(settings.depth_sigmas * seen.noise.sigma(seen.centre_camera.z())) {
+        end_m_(correspondence_distances(observation, registration).end),
+        sigma_m_(settings.depth_sigmas * observation.noise.sigma(observation.centre_camera.z())) {
     result_.silhouette = start.appearance.silhouette;
     result_.registration.T_camera_object = start.T_camera_object;
-    if (start.appearance.texture) brightness_ = make_brightness(seen.frame, seen.region.box_px);
+    if (start.appearance.texture) brightness_ = make_brightness(observation.frame, observation.region.box_px);
   }
 
   JointResult run() {
@@ -188,9 +188,9 @@ class JointRegistration {
 
 }  // namespace
 
-JointResult register_jointly(const ObjectObservation& seen, const JointStart& start, const JointSettings& settings,
-                             const RegistrationSettings& registration) {
-  return JointRegistration(seen, start, settings, registration).run();
+JointResult register_jointly(const ObjectObservation& observation, const JointStart& start,
+                             const JointSettings& settings, const RegistrationSettings& registration) {
+  return JointRegistration(observation, start, settings, registration).run();
 }
 
 Eigen::Matrix3d observed_rotation(const Matrix6d& information, double radius, const JointSettings& settings) {

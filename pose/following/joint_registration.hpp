@@ -78,8 +78,8 @@ struct JointResult {
 /// Registers the model from a start: at each of a few levels, from coarse to fine, lines and pairs are found and the
 /// sum of their normal equations and of the regularisation is solved twice. Depth: point to plane (build_equations);
 /// colours: region_equations; texture: texture_equations. Depth or colours suffice.
-JointResult register_jointly(const ObjectObservation& seen, const JointStart& start, const JointSettings& settings,
-                             const RegistrationSettings& registration);
+JointResult register_jointly(const ObjectObservation& observation, const JointStart& start,
+                             const JointSettings& settings, const RegistrationSettings& registration);
 
 /// Of the rotation about the model's centre, what remains when it is multiplied by how surely it was observed, beside
 /// what a step's regularisation would hold: the identity where all is known, 0 where nothing is. `radius`: the model's.

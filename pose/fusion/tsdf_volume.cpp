@@ -109,10 +109,11 @@ void fill_slice(const std::vector<DepthView>& views, const TsdfSettings& setting
   for (const DepthView& view : views) {
     for (int j = 0; j < grid.ny; ++j) {
       for (int i = 0; i < grid.nx; ++i) {
-        const Observation seen = observe(view, view.T_camera_object * grid.centre(i, j, k), truncation, settings);
+        const Observation observation =
+            observe(view, view.T_camera_object * grid.centre(i, j, k), truncation, settings);
         const std::size_t at = grid.index(i, j, k);
-        grid.distance[at] += seen.weight * seen.distance;
-        grid.weight[at] += seen.weight;
+        grid.distance[at] += observation.weight * observation.distance;
+        grid.weight[at] += observation.weight;
       }
     }
   }

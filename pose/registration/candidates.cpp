@@ -68,16 +68,16 @@ void add_rotated(std::vector<RotationCandidate>& candidates, int rotated_cluster
   }
 }
 
-PoseCandidate best_place(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+PoseCandidate best_place(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                          const SearchSettings& settings) {
-  const ShiftSearch along{settings.points, settings.reach_m, {settings.tolerance_m, seen.noise}};
+  const ShiftSearch along{settings.points, settings.reach_m, {settings.tolerance_m, observation.noise}};
   PoseCandidate best;
   for (int j = -settings.steps; j <= settings.steps; ++j) {
     for (int i = -settings.steps; i <= settings.steps; ++i) {
       Eigen::Isometry3d T = Eigen::Translation3d(i * settings.step_m, j * settings.step_m, 0.0) * T_camera_object;
-      const DepthShift found = best_depth_shift(seen.frame, seen.model, T, along);
+      const DepthShift found = best_depth_shift(observation.frame, observation.model, T, along);
       // Along the ray of where it was detected: its origin may lie anywhere.
-      T.pretranslate(found.shift_m / seen.centre_camera.z() * seen.centre_camera.cast<double>());
+      T.pretranslate(found.shift_m / observation.centre_camera.z() * observation.centre_camera.cast<double>());
       const bool first = i == -settings.steps && j == -settings.steps;
       if (first || found.score.value > best.score) best = {T, found.score.value};
     }
@@ -119,7 +119,7 @@ float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Iso
   return maximum > 0.0F ? std::min(1.0F, sum / maximum) : 0.0F;
 }
 
-std::vector<PoseCandidate> place_candidates(const ObjectObservation& seen,
+std::vector<PoseCandidate> place_candidates(const ObjectObservation& observation,
                                             const std::vector<RotationCandidate>& rotations,
                                             const SearchSettings& settings) {
   std::vector<PoseCandidate> candidates;
@@ -127,8 +127,9 @@ std::vector<PoseCandidate> place_candidates(const ObjectObservation& seen,
     Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
     T_camera_object.linear() = rotation.R_camera_object.cast<double>().normalized().toRotationMatrix();
     T_camera_object.translation() =
-        (seen.centre_camera - rotation.R_camera_object.normalized() * seen.model.vote_centre).cast<double>();
-    candidates.push_back(best_place(seen, T_camera_object, settings));
+        (observation.centre_camera - rotation.R_camera_object.normalized() * observation.model.vote_centre)
+            .cast<double>();
+    candidates.push_back(best_place(observation, T_camera_object, settings));
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const PoseCandidate& a, const PoseCandidate& b) { return a.score > b.score; });
@@ -136,14 +137,14 @@ std::vector<PoseCandidate> place_candidates(const ObjectObservation& seen,
   return candidates;
 }
 
-std::vector<PoseCandidate> earlier_candidates(const ObjectObservation& seen, const std::string& class_name,
+std::vector<PoseCandidate> earlier_candidates(const ObjectObservation& observation, const std::string& class_name,
                                               const ObjectPoses& earlier, const WarmStartSettings& settings) {
   std::vector<PoseCandidate> candidates;
-  const double age_s = seconds_between(earlier.frame.utime, seen.frame.id.utime);
+  const double age_s = seconds_between(earlier.frame.utime, observation.frame.id.utime);
   if (!(age_s > 0.0 && age_s <= settings.max_age_s)) return candidates;
   for (const ObjectPose& pose : earlier.poses) {
     if (!pose.T_camera_object || pose.class_name != class_name) continue;
-    if (distance_from_detected(seen, *pose.T_camera_object) > settings.reach_m) continue;
+    if (distance_from_detected(observation, *pose.T_camera_object) > settings.reach_m) continue;
     candidates.push_back({*pose.T_camera_object, 0.0F});
   }
   return candidates;

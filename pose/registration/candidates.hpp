@@ -88,13 +88,13 @@ struct PoseCandidate {
 
 /// Tries each rotation at places about the detected centre, moved along the line of sight onto the measured surface;
 /// gives the best place of each rotation, best first, at most SearchSettings::keep.
-std::vector<PoseCandidate> place_candidates(const ObjectObservation& seen,
+std::vector<PoseCandidate> place_candidates(const ObjectObservation& observation,
                                             const std::vector<RotationCandidate>& rotations,
                                             const SearchSettings& settings);
 
 /// Returns an earlier frame's poses of the class near the detected centre as candidates; none of a frame that is later
 /// than this one or too long before it.
-std::vector<PoseCandidate> earlier_candidates(const ObjectObservation& seen, const std::string& class_name,
+std::vector<PoseCandidate> earlier_candidates(const ObjectObservation& observation, const std::string& class_name,
                                               const ObjectPoses& earlier, const WarmStartSettings& settings);
 
 }  // namespace houghstream

@@ -57,9 +57,9 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
 
 }  // namespace
 
-CorrespondenceSums sum_correspondences(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+CorrespondenceSums sum_correspondences(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                        std::size_t count, const CorrespondenceSearch& search) {
-  const ObjectModel& model = seen.model;
+  const ObjectModel& model = observation.model;
   const ModelView& view = nearest_view(model, T_camera_object);
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   const Eigen::Vector3f centre = T * model.centre;
@@ -72,7 +72,7 @@ CorrespondenceSums sum_correspondences(const ObjectObservation& seen, const Eige
     const bool in_sight = point.z() > 0.0F && normal.dot(point) < 0.0F;  // not turned away since the view was chosen
     if (in_sight) visible.add(point, normal);
     if (visible.block.count < CorrespondenceBlock::kSize && i + 1 < used) continue;
-    find_correspondences(seen.frame, search, visible.block);
+    find_correspondences(observation.frame, search, visible.block);
     accumulate_correspondences(model, centre, search.distance_m * search.distance_m, visible, totals);
   }
   return totals;

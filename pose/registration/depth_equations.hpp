@@ -28,7 +28,7 @@ struct CorrespondenceSums {
 
 /// Finds the correspondences of the first `count` points of the view nearest to the pose, and sums them up under
 /// Tukey's weights.
-CorrespondenceSums sum_correspondences(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+CorrespondenceSums sum_correspondences(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                        std::size_t count, const CorrespondenceSearch& search);
 
 /// Builds the normal equations of E = sum w ((n.r)^2 + point_weight r^2), where r leads from a model point to its

@@ -17,13 +17,13 @@ struct Scored {
 /// The steps of the choice for one object, with what they share.
 class PoseSelector {
  public:
-  PoseSelector(const ObjectObservation& seen, const std::vector<RotationCandidate>& votes,
+  PoseSelector(const ObjectObservation& observation, const std::vector<RotationCandidate>& votes,
                const PoseSelectionSettings& settings)
-      : seen_(seen),
+      : seen_(observation),
         votes_(votes),
         settings_(settings),
-        tolerance_{settings.tolerance_m, seen.noise},
-        distances_(correspondence_distances(seen, settings.registration)) {}
+        tolerance_{settings.tolerance_m, observation.noise},
+        distances_(correspondence_distances(observation, settings.registration)) {}
 
   RegistrationResult best_of(const std::vector<RegistrationResult>& registered) const {
     RegistrationResult best;
@@ -98,42 +98,42 @@ class PoseSelector {
 };
 
 /// The last steps of a choice: turned a little to where all speaks most for it, and registered.
-RegistrationResult refine_fully(const PoseSelector& selector, const ObjectObservation& seen,
+RegistrationResult refine_fully(const PoseSelector& selector, const ObjectObservation& observation,
                                 const RegistrationResult& result, const PoseSelectionSettings& settings) {
   const RotationSearchSettings& search = settings.rotation_search;
-  return register_finely(seen, selector.best_rotation(result, search.fine_step_deg, search.step_deg, 1),
+  return register_finely(observation, selector.best_rotation(result, search.fine_step_deg, search.step_deg, 1),
                          settings.registration);
 }
 
 }  // namespace
 
-RegistrationResult refine_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+RegistrationResult refine_pose(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                const std::vector<RotationCandidate>& votes, const PoseSelectionSettings& settings) {
   RegistrationResult start;
   start.T_camera_object = T_camera_object;
-  const RegistrationResult registered = register_finely(seen, start, settings.registration);
-  return refine_fully(PoseSelector(seen, votes, settings), seen, registered, settings);
+  const RegistrationResult registered = register_finely(observation, start, settings.registration);
+  return refine_fully(PoseSelector(observation, votes, settings), observation, registered, settings);
 }
 
-std::vector<RegistrationResult> select_poses(const ObjectObservation& seen,
+std::vector<RegistrationResult> select_poses(const ObjectObservation& observation,
                                              const std::vector<RegistrationResult>& registered,
                                              const std::vector<RotationCandidate>& votes,
                                              const PoseSelectionSettings& settings) {
-  const PoseSelector selector(seen, votes, settings);
+  const PoseSelector selector(observation, votes, settings);
   const RotationSearchSettings& search = settings.rotation_search;
   const RegistrationSettings& registration = settings.registration;
   RegistrationResult best = selector.best_of(registered);
   if (best.inliers == 0) return {best};
-  const RegistrationResult settled = register_finely(seen, best, registration);
+  const RegistrationResult settled = register_finely(observation, best, registration);
   const std::vector<Scored> flips = selector.flips_of(settled);
   const RegistrationResult rotated =
       selector.best_rotation(flips.front().result, search.step_deg, 180.0, search.registered);
-  std::vector<RegistrationResult> fine = {register_finely(seen, rotated, registration)};
+  std::vector<RegistrationResult> fine = {register_finely(observation, rotated, registration)};
   for (std::size_t i = 1; i < flips.size() && fine.size() <= search.alternatives; ++i) {
     if (flips[i].score < search.min_alternative_ratio * flips.front().score) break;
-    fine.push_back(register_finely(seen, flips[i].result, registration));
+    fine.push_back(register_finely(observation, flips[i].result, registration));
   }
-  for (RegistrationResult& result : fine) result = refine_fully(selector, seen, result, settings);
+  for (RegistrationResult& result : fine) result = refine_fully(selector, observation, result, settings);
   return fine;
 }
 

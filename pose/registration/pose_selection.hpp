@@ -48,14 +48,14 @@ struct PoseSelectionSettings {
 /// little, and a last registration follows. Behind it come flips that score nearly as well, registered finely, since
 /// verification separates them better than the points of a view. The result is a single pose without inliers where no
 /// candidate ended near the detected centre. `votes` are the modes of the detection's rotations.
-std::vector<RegistrationResult> select_poses(const ObjectObservation& seen,
+std::vector<RegistrationResult> select_poses(const ObjectObservation& observation,
                                              const std::vector<RegistrationResult>& registered,
                                              const std::vector<RotationCandidate>& votes,
                                              const PoseSelectionSettings& settings);
 
 /// A pose that was found otherwise, registered finely and turned a little about its z axis to where depth, colour and
 /// votes speak most for it, as select_poses() ends.
-RegistrationResult refine_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+RegistrationResult refine_pose(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                const std::vector<RotationCandidate>& votes, const PoseSelectionSettings& settings);
 
 // The names of before, for one release.

@@ -22,9 +22,9 @@ double apply_gauss_newton_step(MotionEquations equations, const ObjectModel& mod
 
 }  // namespace
 
-RegistrationResult register_projective(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+RegistrationResult register_projective(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                        const RegistrationStage& stage, const RegistrationSettings& settings) {
-  const ObjectModel& model = seen.model;
+  const ObjectModel& model = observation.model;
   RegistrationResult result;
   result.T_camera_object = T_camera_object;
   const auto points = static_cast<std::size_t>(stage.points);
@@ -32,8 +32,8 @@ RegistrationResult register_projective(const ObjectObservation& seen, const Eige
                                  1.0 / std::max(1, stage.iterations - 1));
   double distance = stage.max_correspondence_start_m;
   for (; result.iterations < stage.iterations; ++result.iterations) {
-    const CorrespondenceSums pairs =
-        sum_correspondences(seen, result.T_camera_object, points, {static_cast<float>(distance), stage.search_steps});
+    const CorrespondenceSums pairs = sum_correspondences(observation, result.T_camera_object, points,
+                                                         {static_cast<float>(distance), stage.search_steps});
     result.converged = false;
     if (pairs.count < kMinPairs) break;
     const MotionEquations equations = build_equations(pairs, settings.point_weight);
@@ -41,8 +41,9 @@ RegistrationResult register_projective(const ObjectObservation& seen, const Eige
     if (result.converged && distance <= stage.max_correspondence_end_m * 1.01) break;
     distance = std::max(distance * shrink, stage.max_correspondence_end_m);
   }
-  const CorrespondenceSums last = sum_correspondences(
-      seen, result.T_camera_object, points, {static_cast<float>(stage.max_correspondence_end_m), stage.search_steps});
+  const CorrespondenceSums last =
+      sum_correspondences(observation, result.T_camera_object, points,
+                          {static_cast<float>(stage.max_correspondence_end_m), stage.search_steps});
   const std::size_t used = std::min(points, nearest_view(model, result.T_camera_object).points.size());
   result.inliers = last.count;
   result.inlier_fraction = static_cast<float>(last.count) / static_cast<float>(used);

@@ -4,48 +4,50 @@
 
 namespace houghstream {
 
-CorrespondenceDistances correspondence_distances(const ObjectObservation& seen, const RegistrationSettings& settings) {
-  const double end = DepthTolerance{settings.max_correspondence_end_m, seen.noise}.at(seen.centre_camera.z());
+CorrespondenceDistances correspondence_distances(const ObjectObservation& observation,
+                                                 const RegistrationSettings& settings) {
+  const double end =
+      DepthTolerance{settings.max_correspondence_end_m, observation.noise}.at(observation.centre_camera.z());
   return {std::max(end, settings.max_correspondence_start_m), end};
 }
 
-RegistrationResult register_coarsely(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+RegistrationResult register_coarsely(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                      double start_m, const RegistrationSettings& settings) {
   RegistrationStage stage;
   stage.iterations = settings.coarse_iterations;
   stage.points = settings.coarse_points;
   stage.max_correspondence_start_m = start_m;
-  stage.max_correspondence_end_m = correspondence_distances(seen, settings).end;
-  return settings.engine(seen, T_camera_object, stage, settings);
+  stage.max_correspondence_end_m = correspondence_distances(observation, settings).end;
+  return settings.engine(observation, T_camera_object, stage, settings);
 }
 
-RegistrationResult register_finely(const ObjectObservation& seen, const RegistrationResult& result,
+RegistrationResult register_finely(const ObjectObservation& observation, const RegistrationResult& result,
                                    const RegistrationSettings& settings) {
-  const double end_m = correspondence_distances(seen, settings).end;
+  const double end_m = correspondence_distances(observation, settings).end;
   RegistrationStage stage;
   stage.iterations = settings.fine_iterations;
   stage.points = settings.fine_points;
   stage.max_correspondence_start_m = end_m;
   stage.max_correspondence_end_m = end_m;
   stage.search_steps = 1;
-  RegistrationResult fine = settings.engine(seen, result.T_camera_object, stage, settings);
+  RegistrationResult fine = settings.engine(observation, result.T_camera_object, stage, settings);
   fine.iterations += result.iterations;
-  return is_near_detection(seen, fine, settings) ? fine : result;
+  return is_near_detection(observation, fine, settings) ? fine : result;
 }
 
-bool is_near_detection(const ObjectObservation& seen, const RegistrationResult& result,
+bool is_near_detection(const ObjectObservation& observation, const RegistrationResult& result,
                        const RegistrationSettings& settings) {
-  return distance_from_detected(seen, result.T_camera_object) <= settings.max_shift_m;
+  return distance_from_detected(observation, result.T_camera_object) <= settings.max_shift_m;
 }
 
-std::vector<RegistrationResult> register_candidates(const ObjectObservation& seen,
+std::vector<RegistrationResult> register_candidates(const ObjectObservation& observation,
                                                     const std::vector<PoseCandidate>& candidates,
                                                     const RegistrationSettings& settings) {
-  const double start_m = correspondence_distances(seen, settings).start;
+  const double start_m = correspondence_distances(observation, settings).start;
   std::vector<RegistrationResult> registered;
   registered.reserve(candidates.size());
   for (const PoseCandidate& candidate : candidates) {
-    registered.push_back(register_coarsely(seen, candidate.T_camera_object, start_m, settings));
+    registered.push_back(register_coarsely(observation, candidate.T_camera_object, start_m, settings));
   }
   return registered;
 }

@@ -33,14 +33,14 @@ struct RegistrationSettings;
 
 /// Registers the model of a seen object to the measured depth, from one start. Has no memory of its own; may be called
 /// from several threads at once.
-using RegistrationEngine = RegistrationResult (*)(const ObjectObservation& seen,
+using RegistrationEngine = RegistrationResult (*)(const ObjectObservation& observation,
                                                   const Eigen::Isometry3d& T_camera_object,
                                                   const RegistrationStage& stage, const RegistrationSettings& settings);
 
 /// Ours: each visible model point is paired with the nearest measured point about its pixel (projective data
 /// association, Blais & Levine 1995), and one step of Gauss-Newton lowers the distances along the model's normals
 /// (Chen & Medioni 1992) under Tukey's weights. What lies in front of the model or behind it finds no pair.
-RegistrationResult register_projective(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+RegistrationResult register_projective(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                        const RegistrationStage& stage, const RegistrationSettings& settings);
 
 /// Point-to-plane registration with Tukey's weights (Rusinkiewicz & Levoy 2001).
@@ -77,23 +77,24 @@ struct CorrespondenceDistances {
   double start = 0.0;
   double end = 0.0;
 };
-CorrespondenceDistances correspondence_distances(const ObjectObservation& seen, const RegistrationSettings& settings);
+CorrespondenceDistances correspondence_distances(const ObjectObservation& observation,
+                                                 const RegistrationSettings& settings);
 
 /// With few points, from pairs `start_m` apart on.
-RegistrationResult register_coarsely(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+RegistrationResult register_coarsely(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                      double start_m, const RegistrationSettings& settings);
 
 /// With many points from where another registration ended; that one's result where this one leads too far away. Counts
 /// the iterations of both.
-RegistrationResult register_finely(const ObjectObservation& seen, const RegistrationResult& result,
+RegistrationResult register_finely(const ObjectObservation& observation, const RegistrationResult& result,
                                    const RegistrationSettings& settings);
 
 /// The result is where the detection is.
-bool is_near_detection(const ObjectObservation& seen, const RegistrationResult& result,
+bool is_near_detection(const ObjectObservation& observation, const RegistrationResult& result,
                        const RegistrationSettings& settings);
 
 /// Every candidate registered coarsely, in their order.
-std::vector<RegistrationResult> register_candidates(const ObjectObservation& seen,
+std::vector<RegistrationResult> register_candidates(const ObjectObservation& observation,
                                                     const std::vector<PoseCandidate>& candidates,
                                                     const RegistrationSettings& settings);
 

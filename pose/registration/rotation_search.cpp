@@ -29,16 +29,16 @@ Eigen::Isometry3d rotated(const Eigen::Isometry3d& T_camera_object, const Object
 
 }  // namespace
 
-ScoredPose score_pose_jointly(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, int points,
-                              const DepthTolerance& tolerance) {
-  const ProjectedView look = project_view(seen.frame, seen.model, T_camera_object, points);
+ScoredPose score_pose_jointly(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                              int points, const DepthTolerance& tolerance) {
+  const ProjectedView look = project_view(observation.frame, observation.model, T_camera_object, points);
   const float depth = score_projected_view(look, tolerance).value;
-  return {T_camera_object, joint_score(depth, compare_colours(seen.colours, look, tolerance))};
+  return {T_camera_object, joint_score(depth, compare_colours(observation.colours, look, tolerance))};
 }
 
-ScoredPose hill_climb_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+ScoredPose hill_climb_pose(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                            const HillClimb& hill_climb, const DepthTolerance& tolerance) {
-  ScoredPose best = score_pose_jointly(seen, T_camera_object, hill_climb.points, tolerance);
+  ScoredPose best = score_pose_jointly(observation, T_camera_object, hill_climb.points, tolerance);
   constexpr int kMotions = 8;
   double size = 1.0;
   int failed = 0;  // one after the other, of this size
@@ -48,11 +48,11 @@ ScoredPose hill_climb_pose(const ObjectObservation& seen, const Eigen::Isometry3
       const double way = (motion % 2 == 0 ? 1.0 : -1.0) * size;
       Eigen::Isometry3d moved = best.T_camera_object;
       if (motion < 2) {
-        moved = rotated(moved, seen.model, way * hill_climb.step_rad);
+        moved = rotated(moved, observation.model, way * hill_climb.step_rad);
       } else {
         moved.translate(way * hill_climb.step_m * Eigen::Vector3d::Unit(motion / 2 - 1));
       }
-      const ScoredPose next = score_pose_jointly(seen, moved, hill_climb.points, tolerance);
+      const ScoredPose next = score_pose_jointly(observation, moved, hill_climb.points, tolerance);
       ++failed;
       if (!(next.score > best.score)) continue;
       best = next;
@@ -66,14 +66,15 @@ ScoredPose hill_climb_pose(const ObjectObservation& seen, const Eigen::Isometry3
   return best;
 }
 
-std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
-                                               const RotationRange& range, const DepthTolerance& tolerance) {
+std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& observation,
+                                               const Eigen::Isometry3d& T_camera_object, const RotationRange& range,
+                                               const DepthTolerance& tolerance) {
   const int steps = static_cast<int>(std::floor(range.reach_rad / range.step_rad + 1e-9));
   const bool all_round = 2.0 * range.reach_rad >= 2.0 * M_PI - 1e-9;  // then both ends are one pose
   std::vector<ScoredPose> rotations;
   for (int i = -steps; i <= steps - (all_round ? 1 : 0); ++i) {
-    const Eigen::Isometry3d rotation = rotated(T_camera_object, seen.model, i * range.step_rad);
-    rotations.push_back(score_pose_jointly(seen, rotation, range.points, tolerance));
+    const Eigen::Isometry3d rotation = rotated(T_camera_object, observation.model, i * range.step_rad);
+    rotations.push_back(score_pose_jointly(observation, rotation, range.points, tolerance));
   }
   std::vector<ScoredPose> best = local_maxima(rotations, all_round);
   std::stable_sort(best.begin(), best.end(),

@@ -15,8 +15,8 @@ struct ScoredPose {
 };
 
 /// At the first `points` points of the view nearest to the pose.
-ScoredPose score_pose_jointly(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object, int points,
-                              const DepthTolerance& tolerance);
+ScoredPose score_pose_jointly(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                              int points, const DepthTolerance& tolerance);
 
 /// Which turns are tried, and how many of them are wanted.
 struct RotationRange {
@@ -29,8 +29,9 @@ struct RotationRange {
 /// The pose turned about the object's z axis, through the middle of its surface; those turns that are better than their
 /// neighbours, best first. Views of a standing object are most easily confused that way, and of a round one only its
 /// texture tells them apart.
-std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
-                                               const RotationRange& range, const DepthTolerance& tolerance);
+std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& observation,
+                                               const Eigen::Isometry3d& T_camera_object, const RotationRange& range,
+                                               const DepthTolerance& tolerance);
 
 /// Small steps: turns about the object's z axis and shifts along its axes.
 struct HillClimb {
@@ -42,7 +43,7 @@ struct HillClimb {
 
 /// From the pose uphill by such steps: what neither depth alone nor a coarse turn settles, such as how far a printed
 /// round thing stands along its axis.
-ScoredPose hill_climb_pose(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+ScoredPose hill_climb_pose(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                            const HillClimb& hill_climb, const DepthTolerance& tolerance);
 
 }  // namespace houghstream

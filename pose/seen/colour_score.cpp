@@ -116,22 +116,22 @@ float chroma_difference(const ChromaMeans& means, const ChromaMap& camera) {
   return static_cast<float>(std::min(kMax, (means.measured - strength * expected).norm() / std::sqrt(spread_sq)));
 }
 
-std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ProjectedView& seen,
+std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ProjectedView& projected,
                                                 const DepthTolerance& tolerance) {
   constexpr int kMin = 30;
   constexpr float kNormalUnits = 100.0F;  // brings normals to the size of the other terms
-  if (seen.view.colours.empty()) return std::nullopt;
-  const auto width = static_cast<float>(tolerance.at(seen.depth));
+  if (projected.view.colours.empty()) return std::nullopt;
+  const auto width = static_cast<float>(tolerance.at(projected.depth));
   const cv::Rect part(cv::Point(), colours.lab.size());
   SummedColours sums;
   std::array<ComparedPoint, 64> points;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < seen.points.size(); ++i) {
-    const ProjectedPoint& look = seen.points[i];
+  for (std::size_t i = 0; i < projected.points.size(); ++i) {
+    const ProjectedPoint& look = projected.points[i];
     const cv::Point inside = cv::Point(look.x, look.y) - colours.origin_px;
     if (!(std::abs(look.depth_difference) <= width) || !part.contains(inside)) continue;
-    const Eigen::Vector3f normal = kNormalUnits * (seen.T.linear() * seen.view.normals[i]);
-    points[count] = {about_grey(seen.view.colours[i]),
+    const Eigen::Vector3f normal = kNormalUnits * (projected.T.linear() * projected.view.normals[i]);
+    points[count] = {about_grey(projected.view.colours[i]),
                      about_grey(colours.lab.at<cv::Vec3b>(inside)),
                      {normal.x(), normal.y(), normal.z(), 1.0F}};
     if (!colours.clipped.empty() && colours.clipped.at<std::uint8_t>(inside) != 0) {
@@ -147,15 +147,15 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
   return compare(sums);
 }
 
-std::optional<ColourComparison> compare_texture(const ObjectObservation& seen, const ProjectedView& look,
+std::optional<ColourComparison> compare_texture(const ObjectObservation& observation, const ProjectedView& look,
                                                 const DepthTolerance& tolerance) {
   constexpr double kDetails = 2.5;  // averaged over so many of the model's details, so that a little beside is near,
   constexpr double kMax = 5.0;      // or at most over so many pixels
   constexpr int kAlready = 3;       // pixels over which LabRegion's colours are averaged already
-  const LabRegion& colours = seen.colours;
+  const LabRegion& colours = observation.colours;
   if (colours.lab.empty() || !(look.depth > 0.0)) return std::nullopt;
-  const double detail_m = 2.0 * static_cast<double>(seen.model.radius) / ModelSettings{}.pixels_per_diameter;
-  const double averaged_px = std::min(kDetails * detail_m / seen.frame.camera.metres_per_px(look.depth), kMax);
+  const double detail_m = 2.0 * static_cast<double>(observation.model.radius) / ModelSettings{}.pixels_per_diameter;
+  const double averaged_px = std::min(kDetails * detail_m / observation.frame.camera.metres_per_px(look.depth), kMax);
   const int side = 2 * static_cast<int>(0.5 * averaged_px) + 1;
   const int reach = side > kAlready ? 2 : 1;
   LabRegion moved{{}, {}, colours.clipped};  // a copy of the image would be the image, and change with it

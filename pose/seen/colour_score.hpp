@@ -49,13 +49,13 @@ float chroma_difference(const ChromaMeans& means, const ChromaMap& camera);
 
 /// Compares the colours of the projected points. Returns nothing where the model has no colours or too few points
 /// agree.
-std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ProjectedView& seen,
+std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ProjectedView& projected,
                                                 const DepthTolerance& tolerance);
 
 /// Compares the colours after averaging the observed ones over slightly more than the model's, and shifting them by up
 /// to two pixels to the best agreement (less for small objects): the registration of colour to depth, and poses, are no
 /// more accurate. It is meant for the decision about a pose, not for the selection between poses, which differ by less.
-std::optional<ColourComparison> compare_texture(const ObjectObservation& seen, const ProjectedView& look,
+std::optional<ColourComparison> compare_texture(const ObjectObservation& observation, const ProjectedView& look,
                                                 const DepthTolerance& tolerance);
 
 /// Combines depth and colour: returns the square root of `depth_value` (DepthScore::value), whose noise would otherwise

@@ -9,17 +9,17 @@ namespace houghstream {
 namespace {
 
 /// Scores a shifted view; `width` is the tolerance at the object's depth.
-DepthScore score_of(const ProjectedView& seen, float shift, float width) {
+DepthScore score_of(const ProjectedView& projected, float shift, float width) {
   DepthScore score;
-  for (const ProjectedPoint& look : seen.points) {
+  for (const ProjectedPoint& look : projected.points) {
     const float ratio = (look.depth_difference - shift) / width;
     // The sum has no branches, since the case changes from point to point: NaN is not above 0 and adds nothing.
     score.inlier_fraction += std::max(0.0F, 1.0F - ratio * ratio);
     score.free_space_violation += std::min(1.0F, std::max(0.0F, ratio - 1.0F));
   }
-  score.inlier_fraction /= static_cast<float>(seen.points.size());
-  score.free_space_violation /= static_cast<float>(seen.points.size());
-  score.value = (score.inlier_fraction - score.free_space_violation) * seen.view.area;
+  score.inlier_fraction /= static_cast<float>(projected.points.size());
+  score.free_space_violation /= static_cast<float>(projected.points.size());
+  score.value = (score.inlier_fraction - score.free_space_violation) * projected.view.area;
   return score;
 }
 
@@ -62,8 +62,8 @@ ProjectedView project_view(const RgbdFrame& frame, const ObjectModel& model, con
   return result;
 }
 
-DepthScore score_projected_view(const ProjectedView& seen, const DepthTolerance& tolerance) {
-  return score_of(seen, 0.0F, static_cast<float>(tolerance.at(seen.depth)));
+DepthScore score_projected_view(const ProjectedView& projected, const DepthTolerance& tolerance) {
+  return score_of(projected, 0.0F, static_cast<float>(tolerance.at(projected.depth)));
 }
 
 DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
@@ -73,16 +73,16 @@ DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Ei
 
 DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                             const ShiftSearch& search) {
-  const ProjectedView seen = project_view(frame, model, T_camera_object, search.points);
-  const auto width = static_cast<float>(search.tolerance.at(seen.depth));
+  const ProjectedView projected = project_view(frame, model, T_camera_object, search.points);
+  const auto width = static_cast<float>(search.tolerance.at(projected.depth));
   std::vector<float> within;
-  within.reserve(seen.points.size());
-  for (const ProjectedPoint& look : seen.points) {
+  within.reserve(projected.points.size());
+  for (const ProjectedPoint& look : projected.points) {
     if (std::abs(look.depth_difference) <= search.reach_m) within.push_back(look.depth_difference);  // false for NaN
   }
   std::sort(within.begin(), within.end());
   const float shift = densest_mean(within, width);
-  return {shift, score_of(seen, shift, width)};
+  return {shift, score_of(projected, shift, width)};
 }
 
 }  // namespace houghstream

@@ -40,7 +40,7 @@ struct DepthScore {
 
 /// Scores the projected points. Points behind the measured surface (occluded), without depth, or outside the image
 /// count neither way.
-DepthScore score_projected_view(const ProjectedView& seen, const DepthTolerance& tolerance);
+DepthScore score_projected_view(const ProjectedView& projected, const DepthTolerance& tolerance);
 
 /// Scores the first `points` points of the view nearest to the pose.
 DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,

@@ -77,19 +77,20 @@ FrameContext make_frame_context(const RgbdFrame& frame, const RegionSettings& se
   return {frame, noise, fit_affine_brightness(frame.colour, settings.tone)};
 }
 
-ObjectObservation observe_object(const FrameContext& seen, const Detection& detection, const ObjectModel& model,
+ObjectObservation observe_object(const FrameContext& context, const Detection& detection, const ObjectModel& model,
                                  const RegionSettings& settings) {
-  const DepthRegion region = find_region(seen.frame, detection, model, settings);
-  ObjectObservation object{seen.frame, model};
+  const DepthRegion region = find_region(context.frame, detection, model, settings);
+  ObjectObservation object{context.frame, model};
   object.centre_camera = detection.centre_camera;
-  object.noise = seen.noise;
+  object.noise = context.noise;
   object.region = region;
-  if (region.points >= settings.min_points) object.colours = lab_region(seen.frame, region.box_px, seen.tone);
+  if (region.points >= settings.min_points) object.colours = lab_region(context.frame, region.box_px, context.tone);
   return object;
 }
 
-double distance_from_detected(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object) {
-  return (T_camera_object * seen.model.vote_centre.cast<double>() - seen.centre_camera.cast<double>()).norm();
+double distance_from_detected(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object) {
+  return (T_camera_object * observation.model.vote_centre.cast<double>() - observation.centre_camera.cast<double>())
+      .norm();
 }
 
 }  // namespace houghstream

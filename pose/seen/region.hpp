@@ -93,11 +93,11 @@ struct ObjectObservation {
   DepthRegion region = {};
   LabRegion colours = {};  ///< colours of the region's box; empty where the region has too few points
 };
-ObjectObservation observe_object(const FrameContext& seen, const Detection& detection, const ObjectModel& model,
+ObjectObservation observe_object(const FrameContext& context, const Detection& detection, const ObjectModel& model,
                                  const RegionSettings& settings);
 
 /// Metres from where the object was detected to where it is at this pose.
-double distance_from_detected(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object);
+double distance_from_detected(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object);
 
 // The names of before, for one release.
 using SeenFrame [[deprecated("is FrameContext now")]] = FrameContext;

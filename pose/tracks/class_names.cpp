@@ -121,9 +121,9 @@ void ClassNames::update(const ModelChange& change, const TrackModels& models) {
   }
 }
 
-ObjectPoses ClassNames::resolve(const FrameObservation& seen, const TrackModels& models,
+ObjectPoses ClassNames::resolve(const FrameObservation& observation, const TrackModels& models,
                                 const std::vector<Track>& tracks, double same_rotation_rad) const {
-  ObjectPoses poses = seen.poses;
+  ObjectPoses poses = observation.poses;
   poses.poses.erase(std::remove_if(poses.poses.begin(), poses.poses.end(),
                                    [&](const ObjectPose& pose) { return removed_.count(pose.class_name) > 0; }),
                     poses.poses.end());
@@ -131,7 +131,7 @@ ObjectPoses ClassNames::resolve(const FrameObservation& seen, const TrackModels&
     const auto renamed = renamed_.find(pose.class_name);
     if (renamed != renamed_.end()) pose.class_name = renamed->second;
     if (!pose.T_camera_object || models.count(pose.class_name) > 0) continue;
-    const Track* namesake = find_namesake(pose, seen.T_world_camera, models, tracks, same_rotation_rad);
+    const Track* namesake = find_namesake(pose, observation.T_world_camera, models, tracks, same_rotation_rad);
     if (namesake != nullptr) pose.class_name = namesake->class_name;
   }
   return poses;

@@ -43,7 +43,7 @@ class ClassNames {
   /// Returns the poses by the names of today, without those of classes that have left the store. A valid pose of a name
   /// that the store does not hold, which is where an object with the same number in the store stands, is of that
   /// object: its new name is about to be taken over.
-  ObjectPoses resolve(const FrameObservation& seen, const TrackModels& models, const std::vector<Track>& tracks,
+  ObjectPoses resolve(const FrameObservation& observation, const TrackModels& models, const std::vector<Track>& tracks,
                       double same_rotation_rad) const;
 
   /// Returns the detections by the names of today; nothing where they have these already.

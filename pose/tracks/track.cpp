@@ -84,14 +84,14 @@ std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen
   std::vector<PoseObservation> out;
   for (const ObjectPose& pose : poses.poses) {
     if (!pose.T_camera_object) continue;
-    PoseObservation& seen = out.emplace_back();
-    seen.frame = poses.frame;
-    seen.class_id = pose.class_id;
-    seen.class_name = pose.class_name;
-    seen.quality = static_cast<double>(pose.quality);
-    seen.measured.utime = poses.frame.utime;
-    seen.measured.T_world_object = T_world_camera * *pose.T_camera_object;
-    seen.measured.covariance = measured_pose_covariance(
+    PoseObservation& observation = out.emplace_back();
+    observation.frame = poses.frame;
+    observation.class_id = pose.class_id;
+    observation.class_name = pose.class_name;
+    observation.quality = static_cast<double>(pose.quality);
+    observation.measured.utime = poses.frame.utime;
+    observation.measured.T_world_object = T_world_camera * *pose.T_camera_object;
+    observation.measured.covariance = measured_pose_covariance(
         pose, T_world_camera, {centre_of(models, pose.class_name), radius_of(models, pose.class_name)});
   }
   return out;
@@ -110,16 +110,17 @@ VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model
   const Eigen::Vector2d pixel = frame.camera.project(centre);
   if (pixel.x() < 0.0 || pixel.y() < 0.0 || pixel.x() >= frame.camera.width || pixel.y() >= frame.camera.height)
     return {};
-  const Verification seen = verify_pose(frame, model.mesh, T_camera_object, {kToleranceM, DepthNoise{}});
-  const int judged = seen.depth_inliers + seen.free_space_violations + seen.occluded;
-  if (seen.rendered < kMinPx || judged < kMeasured * seen.rendered) return {};
+  const Verification verification = verify_pose(frame, model.mesh, T_camera_object, {kToleranceM, DepthNoise{}});
+  const int judged = verification.depth_inliers + verification.free_space_violations + verification.occluded;
+  if (verification.rendered < kMinPx || judged < kMeasured * verification.rendered) return {};
   VisibilityCheck visibility;
-  visibility.free_space_violation =
-      static_cast<double>(seen.free_space_violations) / std::max(1, seen.depth_inliers + seen.free_space_violations);
-  visibility.is_boundary_continued = seen.boundary_continuations > 0.5F * static_cast<float>(seen.boundary_samples);
+  visibility.free_space_violation = static_cast<double>(verification.free_space_violations) /
+                                    std::max(1, verification.depth_inliers + verification.free_space_violations);
+  visibility.is_boundary_continued =
+      verification.boundary_continuations > 0.5F * static_cast<float>(verification.boundary_samples);
   visibility.state = TrackState::kUnrecognised;
   if (visibility.free_space_violation > kThrough) visibility.state = TrackState::kGone;
-  if (seen.occluded > kHidden * judged) visibility.state = TrackState::kHidden;
+  if (verification.occluded > kHidden * judged) visibility.state = TrackState::kHidden;
   return visibility;
 }
 

@@ -32,13 +32,13 @@ std::optional<WorldObjects> Tracker::update(const FrameObservation& received) {
   poses.frame = frame;
   std::optional<Detections> renamed;
   if (received.detections != nullptr) renamed = names_.resolve(*received.detections);
-  FrameObservation seen{poses};
-  seen.detections = renamed ? &*renamed : received.detections;
-  seen.T_world_camera = received.T_world_camera;
-  seen.image = received.image;
-  const std::vector<PoseObservation> observed = observe_new_poses(seen, *camera);
+  FrameObservation observation{poses};
+  observation.detections = renamed ? &*renamed : received.detections;
+  observation.T_world_camera = received.T_world_camera;
+  observation.image = received.image;
+  const std::vector<PoseObservation> observed = observe_new_poses(observation, *camera);
   const std::vector<PoseObservation> unassigned = associate(observed, camera->seconds);
-  update_unobserved_tracks(seen, observed, *camera);
+  update_unobserved_tracks(observation, observed, *camera);
   for (const PoseObservation& pose : unassigned) begin_track(pose);
   confirm_tracks(frame.utime);
   forget_tracks(frame.utime);
@@ -56,8 +56,9 @@ CameraClock* Tracker::begin_frame(const FrameObservation& received) {
 }
 
 /// Returns the poses of classes that no earlier result of this frame has had.
-std::vector<PoseObservation> Tracker::observe_new_poses(const FrameObservation& seen, CameraClock& camera) const {
-  std::vector<PoseObservation> poses = observe_poses(seen.poses, seen.T_world_camera, models_);
+std::vector<PoseObservation> Tracker::observe_new_poses(const FrameObservation& observation,
+                                                        CameraClock& camera) const {
+  std::vector<PoseObservation> poses = observe_poses(observation.poses, observation.T_world_camera, models_);
   std::set<std::string>& known = camera.classes;
   poses.erase(std::remove_if(poses.begin(), poses.end(),
                              [&](const PoseObservation& pose) { return known.count(pose.class_name) > 0; }),
@@ -110,18 +111,18 @@ void Tracker::update_track(Track& track, const PoseObservation& pose, double sec
 }
 
 /// A track without a pose is missed once a frame, however many results the frame has.
-void Tracker::update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses,
+void Tracker::update_unobserved_tracks(const FrameObservation& observation, const std::vector<PoseObservation>& poses,
                                        CameraClock& camera) {
-  searched_classes_.note(seen.poses);
-  UnobservedContext context{seen, poses, models_};
+  searched_classes_.note(observation.poses);
+  UnobservedContext context{observation, poses, models_};
   context.reach_m = settings_.association.reach_m;
   context.coast_s = settings_.pose.motion.coast_s;
   std::set<std::string> missed_now;
   for (Track& track : tracks_) {
     if (!track.is_present() || track.is_observed) continue;
-    const MissedDetection missed{
-        camera.seconds, camera.results == 1,
-        camera.missed.count(track.class_name) == 0 && searched_classes_.has_searched(seen.poses, track.class_name)};
+    const MissedDetection missed{camera.seconds, camera.results == 1,
+                                 camera.missed.count(track.class_name) == 0 &&
+                                     searched_classes_.has_searched(observation.poses, track.class_name)};
     if (missed.by_recognition) missed_now.insert(track.class_name);
     if (missed.by_depth || missed.by_recognition) update_unobserved(context, missed, settings_.existence, track);
   }

@@ -176,10 +176,10 @@ class Tracker {
  private:
   // These are the steps of update() in the order of their calls.
   CameraClock* begin_frame(const FrameObservation& received);
-  std::vector<PoseObservation> observe_new_poses(const FrameObservation& seen, CameraClock& camera) const;
+  std::vector<PoseObservation> observe_new_poses(const FrameObservation& observation, CameraClock& camera) const;
   std::vector<PoseObservation> associate(const std::vector<PoseObservation>& poses, double seconds);
   void update_track(Track& track, const PoseObservation& pose, double seconds);
-  void update_unobserved_tracks(const FrameObservation& seen, const std::vector<PoseObservation>& poses,
+  void update_unobserved_tracks(const FrameObservation& observation, const std::vector<PoseObservation>& poses,
                                 CameraClock& camera);
   void begin_track(const PoseObservation& pose);
   bool make_room();

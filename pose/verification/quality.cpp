@@ -21,12 +21,13 @@ double texture_agreement(const ColourComparison& colour) {
 
 }  // namespace
 
-PoseEvidence gather_evidence(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+PoseEvidence gather_evidence(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                              float detection_score, const VerificationSettings& settings) {
-  const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
-  const ProjectedView look = project_view(seen.frame, seen.model, T_camera_object, settings.points);
-  return {detection_score, verify_pose(seen.frame, seen.model.mesh, T_camera_object, tolerance, &seen.colours),
-          compare_texture(seen, look, tolerance)};
+  const DepthTolerance tolerance{settings.tolerance_m, observation.noise};
+  const ProjectedView look = project_view(observation.frame, observation.model, T_camera_object, settings.points);
+  return {detection_score,
+          verify_pose(observation.frame, observation.model.mesh, T_camera_object, tolerance, &observation.colours),
+          compare_texture(observation, look, tolerance)};
 }
 
 void bring_to_camera(const ChromaMap& camera, PoseEvidence& evidence) {

@@ -23,7 +23,7 @@ struct PoseEvidence {
 };
 
 /// Renders the model at the pose and compares its depth and its colours with what is seen.
-PoseEvidence gather_evidence(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+PoseEvidence gather_evidence(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                              float detection_score, const VerificationSettings& settings);
 
 /// Brings the model's colours to the camera's before they are compared.

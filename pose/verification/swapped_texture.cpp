@@ -48,19 +48,19 @@ double correlation(const std::vector<LabColour>& a, const std::vector<LabColour>
 
 }  // namespace
 
-std::optional<PoseEvidence> evidence_with_swapped_texture(const ObjectObservation& seen,
+std::optional<PoseEvidence> evidence_with_swapped_texture(const ObjectObservation& observation,
                                                           const Eigen::Isometry3d& T_camera_object,
                                                           const PoseEvidence& original,
                                                           const VerificationSettings& settings) {
   constexpr double kMaxTextureCorrelation = 0.5;
-  const ProjectedView look = project_view(seen.frame, seen.model, T_camera_object, settings.points);
+  const ProjectedView look = project_view(observation.frame, observation.model, T_camera_object, settings.points);
   if (look.view.colours.empty()) return std::nullopt;
   const ModelView view = with_opposite_colours(look.view);
   if (correlation(look.view.colours, view.colours) > kMaxTextureCorrelation) return std::nullopt;
-  const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
+  const DepthTolerance tolerance{settings.tolerance_m, observation.noise};
   const ProjectedView other{view, look.T, look.depth, look.points};
   PoseEvidence evidence = original;
-  evidence.colour = compare_texture(seen, other, tolerance);
+  evidence.colour = compare_texture(observation, other, tolerance);
   if (!evidence.colour) return std::nullopt;
   return evidence;
 }

@@ -98,11 +98,11 @@ TextureBands make_texture_bands(const cv::Mat& lab, const Face& face) {
 }
 
 /// Returns the log likelihood ratio of the observation under the model's texture and under a uniform surface.
-double log_likelihood(const TextureBands& model, const TextureBands& seen) {
+double log_likelihood(const TextureBands& model, const TextureBands& observed) {
   double sum = 0.0;
   for (std::size_t i = 0; i < kBands; ++i) {
     const Band& own = model.bands[i];
-    const Band& there = seen.bands[i];
+    const Band& there = observed.bands[i];
     const auto count = static_cast<double>(there.values.size());
     const auto product = static_cast<double>(own.values.dot(there.values));
     const double gain = std::clamp(product / std::max(own.sum_sq, 1e-6), kMinGain, kMaxGain);
@@ -113,8 +113,8 @@ double log_likelihood(const TextureBands& model, const TextureBands& seen) {
   constexpr double kCast = 14.0;
   constexpr double kMax = 4.0;  // deviations
   const double strength =
-      std::clamp(model.chroma.dot(seen.chroma) / std::max(model.chroma.squaredNorm(), 1.0), 0.5, kMaxGain);
-  const double apart = std::min((seen.chroma - strength * model.chroma).norm() / kCast, kMax);
+      std::clamp(model.chroma.dot(observed.chroma) / std::max(model.chroma.squaredNorm(), 1.0), 0.5, kMaxGain);
+  const double apart = std::min((observed.chroma - strength * model.chroma).norm() / kCast, kMax);
   return kTemper * sum - 0.5 * apart * apart;
 }
 
@@ -135,11 +135,12 @@ cv::Point middle_px(const cv::Point& cell, const Face& face) {
 }
 
 /// Cells where the model is seen, its outline's left out: colours are registered to depth within a few pixels.
-Face visible_face(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+Face visible_face(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                   const DepthTolerance& tolerance) {
   Face face;
-  const RenderedRegion rendered = render_depth_region(seen.model.mesh, T_camera_object, seen.frame.camera);
-  const cv::Rect colours(seen.colours.origin_px, seen.colours.lab.size());
+  const RenderedRegion rendered =
+      render_depth_region(observation.model.mesh, T_camera_object, observation.frame.camera);
+  const cv::Rect colours(observation.colours.origin_px, observation.colours.lab.size());
   const cv::Rect part = rendered.region_px & colours;
   face.cell_px = std::max(1, (std::max(part.width, part.height) + kCells - 1) / kCells);
   face.part_px = whole_cells(part, face.cell_px);
@@ -149,9 +150,10 @@ Face visible_face(const ObjectObservation& seen, const Eigen::Isometry3d& T_came
     for (int x = 0; x < agrees.cols; ++x) {
       const cv::Point at = middle_px({x, y}, face);
       const float model = rendered.depth.at<float>(at - rendered.region_px.tl());
-      const float beyond = seen.frame.depth.at<float>(at) - model;  // NaN where nothing is rendered or measured
+      const float beyond = observation.frame.depth.at<float>(at) - model;  // NaN where nothing is rendered or measured
       const bool depth_inliers = std::abs(beyond) <= tolerance.at(model);
-      agrees.at<std::uint8_t>(y, x) = depth_inliers && !is_overexposed(seen.frame.colour.at<cv::Vec3b>(at)) ? 1 : 0;
+      agrees.at<std::uint8_t>(y, x) =
+          depth_inliers && !is_overexposed(observation.frame.colour.at<cv::Vec3b>(at)) ? 1 : 0;
     }
   }
   cv::erode(agrees, agrees, cv::Mat(), cv::Point(-1, -1), 1, cv::BORDER_CONSTANT, cv::Scalar(0));
@@ -163,17 +165,17 @@ Face visible_face(const ObjectObservation& seen, const Eigen::Isometry3d& T_came
   for (const cv::Point& cell : face.cells) {
     const cv::Point at = middle_px(cell, face);
     const double z = rendered.depth.at<float>(at - rendered.region_px.tl());
-    face.points.push_back((T_object_camera * seen.frame.camera.backproject(at.x, at.y, z)).cast<float>());
+    face.points.push_back((T_object_camera * observation.frame.camera.backproject(at.x, at.y, z)).cast<float>());
   }
   face.eye = T_object_camera.translation().cast<float>();
   return face;
 }
 
 /// Returns the observed texture of the face, read at an offset of `shift_px`.
-TextureBands observed_texture(const ObjectObservation& seen, const Face& face, const cv::Point& shift_px) {
-  const cv::Mat& lab = seen.colours.lab;
+TextureBands observed_texture(const ObjectObservation& observation, const Face& face, const cv::Point& shift_px) {
+  const cv::Mat& lab = observation.colours.lab;
   const cv::Point last(lab.cols - face.part_px.width, lab.rows - face.part_px.height);
-  cv::Point first = face.part_px.tl() + shift_px - seen.colours.origin_px;
+  cv::Point first = face.part_px.tl() + shift_px - observation.colours.origin_px;
   first = {std::clamp(first.x, 0, last.x), std::clamp(first.y, 0, last.y)};
   cv::Mat grid;
   cv::resize(lab(cv::Rect(first, face.part_px.size())), grid, face.mask.size(), 0.0, 0.0, cv::INTER_AREA);
@@ -207,18 +209,18 @@ std::optional<TextureBands> model_texture(const ObjectModel& model, const Face& 
 }
 
 /// Returns the observed texture, read at a few offsets, since the registration of colour to depth is no better.
-std::vector<TextureBands> observed_textures(const ObjectObservation& seen, const Face& face) {
+std::vector<TextureBands> observed_textures(const ObjectObservation& observation, const Face& face) {
   constexpr int kReach_px = 2;
   std::vector<TextureBands> textures;
   for (const int dy : {0, -kReach_px, kReach_px}) {
-    for (const int dx : {0, -kReach_px, kReach_px}) textures.push_back(observed_texture(seen, face, {dx, dy}));
+    for (const int dx : {0, -kReach_px, kReach_px}) textures.push_back(observed_texture(observation, face, {dx, dy}));
   }
   return textures;
 }
 
-double best_log_likelihood(const TextureBands& model, const std::vector<TextureBands>& seen) {
-  double best = log_likelihood(model, seen.front());
-  for (std::size_t i = 1; i < seen.size(); ++i) best = std::max(best, log_likelihood(model, seen[i]));
+double best_log_likelihood(const TextureBands& model, const std::vector<TextureBands>& observed) {
+  double best = log_likelihood(model, observed.front());
+  for (std::size_t i = 1; i < observed.size(); ++i) best = std::max(best, log_likelihood(model, observed[i]));
   return best;
 }
 
@@ -229,20 +231,21 @@ struct HandleCounts {
   int all = 0;
 };
 
-HandleCounts look_at_handle(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+HandleCounts look_at_handle(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                             const DepthTolerance& tolerance) {
   HandleCounts counts;
-  const cv::Rect image(cv::Point(), seen.frame.depth.size());
-  for (const Eigen::Vector3f& point : seen.model.unround_points) {
+  const cv::Rect image(cv::Point(), observation.frame.depth.size());
+  for (const Eigen::Vector3f& point : observation.model.unround_points) {
     const Eigen::Vector3d at = T_camera_object * point.cast<double>();
     ++counts.all;
     if (!(at.z() > 0.0)) continue;
-    const Eigen::Vector2d pixel = seen.frame.camera.project(at);
+    const Eigen::Vector2d pixel = observation.frame.camera.project(at);
     const cv::Point2d place(std::clamp(pixel.x(), -1.0, 1.0 * image.width),
                             std::clamp(pixel.y(), -1.0, 1.0 * image.height));
     const cv::Point nearest(cvRound(place.x), cvRound(place.y));
     if (!image.contains(nearest)) continue;
-    const double beyond = static_cast<double>(seen.frame.depth.at<float>(nearest)) - at.z();  // NaN where not measured
+    // NaN where not measured.
+    const double beyond = static_cast<double>(observation.frame.depth.at<float>(nearest)) - at.z();
     const double limit = tolerance.at(at.z());
     counts.depth_inliers += std::abs(beyond) <= limit ? 1 : 0;
     counts.free_space_violations += beyond > limit ? 1 : 0;
@@ -250,45 +253,45 @@ HandleCounts look_at_handle(const ObjectObservation& seen, const Eigen::Isometry
   return counts;
 }
 
-bool is_handle_seen(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+bool is_handle_seen(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                     const DepthTolerance& tolerance) {
   constexpr double kSome = 0.1;
-  const HandleCounts counts = look_at_handle(seen, T_camera_object, tolerance);
+  const HandleCounts counts = look_at_handle(observation, T_camera_object, tolerance);
   return counts.depth_inliers > kSome * counts.all;
 }
 
-bool may_handle_be_hidden(const ObjectObservation& seen, const Eigen::Isometry3d& T_camera_object,
+bool may_handle_be_hidden(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                           const DepthTolerance& tolerance) {
   constexpr double kFew = 0.1;
-  const HandleCounts counts = look_at_handle(seen, T_camera_object, tolerance);
+  const HandleCounts counts = look_at_handle(observation, T_camera_object, tolerance);
   return counts.free_space_violations <= kFew * counts.all && counts.depth_inliers <= kFew * counts.all;
 }
 
 /// Returns the poses that only the texture distinguishes from this one: those whose depth agrees as well, nearly
 /// equivalent ones registered.
-std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& seen,
+std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& observation,
                                                  const Eigen::Isometry3d& T_camera_object,
                                                  const DepthTolerance& tolerance,
                                                  const RegistrationSettings& registration) {
   constexpr int kPoints = 150;
   constexpr float kAsWell = 0.8F;
   const auto agreement_at = [&](const Eigen::Isometry3d& pose) {
-    return score_pose(seen.frame, seen.model, pose, kPoints, tolerance).value;
+    return score_pose(observation.frame, observation.model, pose, kPoints, tolerance).value;
   };
   const float own = agreement_at(T_camera_object);
   std::vector<Eigen::Isometry3d> poses;
-  for (const Eigen::Isometry3d& motion : seen.model.alternatives) poses.push_back(T_camera_object * motion);
-  const CorrespondenceDistances distances = correspondence_distances(seen, registration);
-  for (const Eigen::Isometry3d& motion : seen.model.near_alternatives) {
+  for (const Eigen::Isometry3d& motion : observation.model.alternatives) poses.push_back(T_camera_object * motion);
+  const CorrespondenceDistances distances = correspondence_distances(observation, registration);
+  for (const Eigen::Isometry3d& motion : observation.model.near_alternatives) {
     const RegistrationResult result =
-        register_coarsely(seen, T_camera_object * motion, 0.5 * (distances.start + distances.end), registration);
+        register_coarsely(observation, T_camera_object * motion, 0.5 * (distances.start + distances.end), registration);
     if (result.inliers > 0 && agreement_at(result.T_camera_object) >= kAsWell * own)
       poses.push_back(result.T_camera_object);
   }
-  if (is_handle_seen(seen, T_camera_object, tolerance)) return poses;
-  for (const Eigen::Isometry3d& motion : seen.model.partial_alternatives) {
+  if (is_handle_seen(observation, T_camera_object, tolerance)) return poses;
+  for (const Eigen::Isometry3d& motion : observation.model.partial_alternatives) {
     const Eigen::Isometry3d rotated = T_camera_object * motion;
-    if (may_handle_be_hidden(seen, rotated, tolerance)) poses.push_back(rotated);
+    if (may_handle_be_hidden(observation, rotated, tolerance)) poses.push_back(rotated);
   }
   return poses;
 }
@@ -302,7 +305,7 @@ struct Alternative {
 
 /// Returns the alternatives at which the model's surface agrees with the depth. Of many rotations only the likeliest
 /// are compared with small offsets.
-std::vector<Alternative> likely_alternatives(const ObjectObservation& seen, const Face& face,
+std::vector<Alternative> likely_alternatives(const ObjectObservation& observation, const Face& face,
                                              const Eigen::Isometry3d& T_camera_object,
                                              const std::vector<Eigen::Isometry3d>& poses,
                                              const std::vector<TextureBands>& seen_at) {
@@ -310,7 +313,7 @@ std::vector<Alternative> likely_alternatives(const ObjectObservation& seen, cons
   const Eigen::Isometry3d T_object_camera = T_camera_object.inverse();
   std::vector<Alternative> shown;
   for (const Eigen::Isometry3d& pose : poses) {
-    std::optional<TextureBands> texture = model_texture(seen.model, face, T_object_camera * pose);
+    std::optional<TextureBands> texture = model_texture(observation.model, face, T_object_camera * pose);
     if (!texture) continue;
     const double likelihood = log_likelihood(*texture, seen_at.front());
     shown.push_back({pose, *std::move(texture), likelihood});
@@ -329,20 +332,21 @@ TextureComparison undecided(std::size_t alternatives) {
 
 }  // namespace
 
-std::optional<TextureComparison> compare_with_alternatives(const ObjectObservation& seen,
+std::optional<TextureComparison> compare_with_alternatives(const ObjectObservation& observation,
                                                            const Eigen::Isometry3d& T_camera_object,
                                                            const DepthTolerance& tolerance,
                                                            const RegistrationSettings& registration) {
-  const std::vector<Eigen::Isometry3d> alternatives = alternative_poses(seen, T_camera_object, tolerance, registration);
+  const std::vector<Eigen::Isometry3d> alternatives =
+      alternative_poses(observation, T_camera_object, tolerance, registration);
   if (alternatives.empty()) return std::nullopt;
-  if (seen.model.texture.empty() || seen.colours.lab.empty()) return undecided(alternatives.size());
-  const Face face = visible_face(seen, T_camera_object, tolerance);
+  if (observation.model.texture.empty() || observation.colours.lab.empty()) return undecided(alternatives.size());
+  const Face face = visible_face(observation, T_camera_object, tolerance);
   if (face.cells.size() < kMinCells) return undecided(alternatives.size());
-  const std::optional<TextureBands> own = model_texture(seen.model, face, Eigen::Isometry3d::Identity());
+  const std::optional<TextureBands> own = model_texture(observation.model, face, Eigen::Isometry3d::Identity());
   if (!own) return undecided(alternatives.size());
-  const std::vector<TextureBands> seen_at = observed_textures(seen, face);
+  const std::vector<TextureBands> seen_at = observed_textures(observation, face);
   const double own_likelihood = best_log_likelihood(*own, seen_at);
-  const std::vector<Alternative> shown = likely_alternatives(seen, face, T_camera_object, alternatives, seen_at);
+  const std::vector<Alternative> shown = likely_alternatives(observation, face, T_camera_object, alternatives, seen_at);
   if (shown.empty()) return std::nullopt;
   // All other evidence supports the present pose. Another one replaces it on strong evidence only, a Bayes factor of 20
   // (Kass and Raftery 1995, "Bayes Factors").

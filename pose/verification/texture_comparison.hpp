@@ -25,7 +25,7 @@ struct TextureComparison {
 /// camera causes. Returns nothing where the pose has no alternatives. `registration` registers near ones to the depth.
 /// It follows the background-free correlation of Lewis (1995, "Fast Normalized Cross-Correlation") and the Gaussian
 /// likelihood whose maximum over gain and offset that is.
-std::optional<TextureComparison> compare_with_alternatives(const ObjectObservation& seen,
+std::optional<TextureComparison> compare_with_alternatives(const ObjectObservation& observation,
                                                            const Eigen::Isometry3d& T_camera_object,
                                                            const DepthTolerance& tolerance,
                                                            const RegistrationSettings& registration);

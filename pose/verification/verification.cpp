@@ -55,14 +55,14 @@ std::optional<BoundarySample> sample_boundary(const BoundaryView& view, const cv
   if (here < view.model(inside) - static_cast<float>(tolerance.at(view.model(inside)))) return std::nullopt;
   const std::optional<float> colour_sq = colours_apart_sq(view, inside, beyond);
   if (!colour_sq) return std::nullopt;
-  BoundarySample seen;
+  BoundarySample sample;
   const auto steps = static_cast<float>(in_px + out_px);
-  seen.lateral_distance = steps * static_cast<float>(metres_per_px);
-  seen.depth_change = view.measured(beyond) - here;
+  sample.lateral_distance = steps * static_cast<float>(metres_per_px);
+  sample.depth_change = view.measured(beyond) - here;
   const float slope = view.is_model(before) ? view.model(inside) - view.model(before) : kNoValue;
-  seen.expected_depth_change = slope * steps / static_cast<float>(2 * in_px);
-  seen.colour_sq = *colour_sq;
-  return seen;
+  sample.expected_depth_change = slope * steps / static_cast<float>(2 * in_px);
+  sample.colour_sq = *colour_sq;
+  return sample;
 }
 
 /// Takes samples to the left and right of each row's boundary, and above and below each column's.
@@ -75,10 +75,10 @@ void compare_boundary(const BoundaryView& view, const DepthTolerance& tolerance,
       const auto limit = static_cast<float>(tolerance.at(view.model(at)));
       for (const cv::Point& side : sides) {
         if (view.is_model(at + side)) continue;
-        const std::optional<BoundarySample> seen = sample_boundary(view, at, side, tolerance);
-        if (!seen || is_foreground_step(*seen, limit)) continue;
+        const std::optional<BoundarySample> sample = sample_boundary(view, at, side, tolerance);
+        if (!sample || is_foreground_step(*sample, limit)) continue;
         ++result.boundary_samples;
-        result.boundary_continuations += surface_continuation(*seen, limit) * textured_colour_continuation(*seen);
+        result.boundary_continuations += surface_continuation(*sample, limit) * textured_colour_continuation(*sample);
       }
     }
   }

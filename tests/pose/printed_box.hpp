@@ -23,13 +23,13 @@ inline Mesh printed_box() {
 /// Depth as noisy_frame gives it, and the mesh's vertex colours under a light from above the camera.
 inline RgbdFrame coloured_frame(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, std::uint64_t seed) {
   RgbdFrame frame = noisy_frame({{&mesh, T_camera_object, 1}}, seed);
-  const RenderedGeometry seen = render_geometry({{&mesh, T_camera_object, 1}}, kCamera);
+  const RenderedGeometry rendered = render_geometry({{&mesh, T_camera_object, 1}}, kCamera);
   for (int y = 0; y < frame.colour.rows; ++y) {
     for (int x = 0; x < frame.colour.cols; ++x) {
-      const int triangle = seen.triangle.at<std::int32_t>(y, x);
+      const int triangle = rendered.triangle.at<std::int32_t>(y, x);
       if (triangle < 0) continue;
       const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(triangle)];
-      const auto& bary = seen.bary.at<cv::Vec2f>(y, x);
+      const auto& bary = rendered.bary.at<cv::Vec2f>(y, x);
       const Eigen::Vector3f normal =
           T_camera_object.linear().cast<float>() *
           (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).normalized();

@@ -40,14 +40,14 @@ Eigen::Vector3d colour_of(const Mesh& mesh, std::uint32_t vertex) {
 
 /// In colours above, as shape below.
 cv::Mat draw_view(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera) {
-  const RenderedGeometry seen = render_geometry({{&mesh, T_camera_object, 1}}, camera);
+  const RenderedGeometry rendered = render_geometry({{&mesh, T_camera_object, 1}}, camera);
   cv::Mat image(2 * kSize_px, kSize_px, CV_8UC3, cv::Scalar::all(255));
   for (int y = 0; y < kSize_px; ++y) {
     for (int x = 0; x < kSize_px; ++x) {
-      const int triangle = seen.triangle.at<std::int32_t>(y, x);
+      const int triangle = rendered.triangle.at<std::int32_t>(y, x);
       if (triangle < 0) continue;
       const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(triangle)];
-      const cv::Vec2f bary = seen.bary.at<cv::Vec2f>(y, x);
+      const cv::Vec2f bary = rendered.bary.at<cv::Vec2f>(y, x);
       const Eigen::Vector3d colour = mixed(bary, colour_of(mesh, a), colour_of(mesh, b), colour_of(mesh, c));
       const Eigen::Vector3d normal =
           mixed(bary, mesh.normals[a].cast<double>(), mesh.normals[b].cast<double>(), mesh.normals[c].cast<double>());

@@ -109,21 +109,21 @@ class ResidualEvaluator {
     const bool is_static =
         !frame_.static_mask.empty() && frame_.static_mask.at<std::uint8_t>(cvRound(px.y()), cvRound(px.x())) != 0;
     if (is_static || !std::isfinite(point.intensity)) return;
-    const IntensitySample seen = interpolate_intensity(frame_.intensity, px.x(), px.y());
-    const double residual = seen.value - point.intensity;
+    const IntensitySample sample = interpolate_intensity(frame_.intensity, px.x(), px.y());
+    const double residual = sample.value - point.intensity;
     const double weight = tukey(residual / (2.0 * limits_.photometric_sigma));
     ++equations.photometric_pairs;
     equations.photometric_sq += std::min(residual * residual, 1.0);
     if (weight <= 0.0) return;
-    const float a = seen.slope_u * static_cast<float>(frame_.camera.fx) / p.z();
-    const float b = seen.slope_v * static_cast<float>(frame_.camera.fy) / p.z();
+    const float a = sample.slope_u * static_cast<float>(frame_.camera.fx) / p.z();
+    const float b = sample.slope_v * static_cast<float>(frame_.camera.fy) / p.z();
     const Eigen::Vector3f in_world = R_.transpose() * Eigen::Vector3f(a, b, -(a * p.x() + b * p.y()) / p.z());
     Vector6 row;
     row << in_world.cast<double>(), point.point.cross(in_world).cast<double>();
     // Points far from the object constrain its pose little, and their texture often repeats: wallpaper, tiles.
     const double far = point.point.norm() / kNear_m;
     // Small gradients are shading and highlights, which do not move with the surface.
-    const double slope_sq = seen.slope_u * seen.slope_u + seen.slope_v * seen.slope_v;
+    const double slope_sq = sample.slope_u * sample.slope_u + sample.slope_v * sample.slope_v;
     const double edge = slope_sq / (slope_sq + kMinSlope * kMinSlope);
     equations.add(row, residual,
                   edge * weight / (limits_.photometric_sigma * limits_.photometric_sigma * (1.0 + far * far)));

@@ -117,10 +117,10 @@ std::optional<LoopClosureError> KeyframeMap::add(Keyframe keyframe, const Alignm
 
 /// Returns the keyframes that share enough landmarks with a frame.
 std::vector<LandmarkReobservation> KeyframeMap::match_keyframes(const std::vector<int>& keyframes,
-                                                                const Landmarks& seen) const {
+                                                                const Landmarks& landmarks) const {
   std::vector<LandmarkReobservation> again;
   for (const int k : keyframes) {
-    std::optional<LandmarkMatch> match = match_landmarks(keyframes_[static_cast<std::size_t>(k)].landmarks, seen);
+    std::optional<LandmarkMatch> match = match_landmarks(keyframes_[static_cast<std::size_t>(k)].landmarks, landmarks);
     if (match && match->inliers.size() >= settings_.min_corners) again.push_back({k, std::move(*match)});
   }
   return again;
@@ -160,10 +160,10 @@ Alignment KeyframeMap::register_to_part(const MapPart& part, const FrameLevels& 
   return align_frame(part.points, levels, jumps ? T_by_corners : T_likely, holds, alignment);
 }
 
-Alignment KeyframeMap::constrain_by_landmarks(const FrameLevels& levels, const Landmarks& seen,
+Alignment KeyframeMap::constrain_by_landmarks(const FrameLevels& levels, const Landmarks& landmarks,
                                               const Alignment& alignment) const {
   std::vector<LandmarkReobservation> again;
-  if (settings_.use_landmarks) again = match_keyframes(local_.keyframes, seen);
+  if (settings_.use_landmarks) again = match_keyframes(local_.keyframes, landmarks);
   const Alignment held = register_to_part(local_, levels, again, alignment.T_camera_world, {});
   return is_good(held) ? held : alignment;
 }

@@ -80,7 +80,8 @@ class KeyframeMap {
 
   /// Refines a frame's alignment with the local map by landmarks of the surroundings, which constrain the rotation
   /// where geometry and intensity do not (an untextured round object on an untextured table).
-  Alignment constrain_by_landmarks(const FrameLevels& levels, const Landmarks& seen, const Alignment& alignment) const;
+  Alignment constrain_by_landmarks(const FrameLevels& levels, const Landmarks& landmarks,
+                                   const Alignment& alignment) const;
 
   /// Returns whether an alignment is accepted.
   bool is_good(const Alignment& alignment) const;
@@ -101,7 +102,8 @@ class KeyframeMap {
  private:
   std::vector<int> local_keyframes_for(const Eigen::Isometry3d& T_camera_world) const;
   MapPart part_of(std::vector<int> keyframes) const;
-  std::vector<LandmarkReobservation> match_keyframes(const std::vector<int>& keyframes, const Landmarks& seen) const;
+  std::vector<LandmarkReobservation> match_keyframes(const std::vector<int>& keyframes,
+                                                     const Landmarks& landmarks) const;
   Alignment register_to_part(const MapPart& part, const FrameLevels& levels,
                              const std::vector<LandmarkReobservation>& again, const Eigen::Isometry3d& T_likely,
                              const RegistrationLimits& limits) const;

@@ -38,25 +38,25 @@ const std::array<Eigen::Vector3d, kSphereDirections>& view_directions() {
   return directions;
 }
 
-void mark_covered(const Eigen::Vector3d& towards_camera, ViewCoverage& seen) {
+void mark_covered(const Eigen::Vector3d& towards_camera, ViewCoverage& coverage) {
   constexpr double kCosine = 0.6428;  // cosine of 50 degrees
   const Eigen::Vector3d unit = towards_camera.normalized();
   const auto& directions = view_directions();
-  for (std::size_t i = 0; i < directions.size(); ++i) seen[i] = seen[i] || directions[i].dot(unit) > kCosine;
+  for (std::size_t i = 0; i < directions.size(); ++i) coverage[i] = coverage[i] || directions[i].dot(unit) > kCosine;
 }
 
-int count_covered(const ViewCoverage& seen) {
-  return static_cast<int>(std::count(seen.begin(), seen.end(), true));
+int count_covered(const ViewCoverage& coverage) {
+  return static_cast<int>(std::count(coverage.begin(), coverage.end(), true));
 }
 
-std::string describe_coverage(const ViewCoverage& seen, const Eigen::Vector3d& front) {
-  std::string text = fmt::format("seen from {} of {} directions", count_covered(seen), kSphereDirections);
+std::string describe_coverage(const ViewCoverage& coverage, const Eigen::Vector3d& front) {
+  std::string text = fmt::format("seen from {} of {} directions", count_covered(coverage), kSphereDirections);
   std::vector<std::string> missing;
   const auto& directions = view_directions();
   for (const char* part : {"in front", "the right", "behind", "the left", "above", "low", "below"}) {
     bool any = false;
     for (std::size_t i = 0; i < directions.size(); ++i)
-      any = any || (seen[i] && std::string(part_of(directions[i], front)) == part);
+      any = any || (coverage[i] && std::string(part_of(directions[i], front)) == part);
     if (!any) missing.emplace_back(part);
   }
   if (missing.empty()) return text;

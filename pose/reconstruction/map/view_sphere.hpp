@@ -17,12 +17,12 @@ const std::array<Eigen::Vector3d, kSphereDirections>& view_directions();
 
 /// Marks the sides of the object that a camera in this direction (object frame, from the object's middle) sees within
 /// 50 degrees.
-void mark_covered(const Eigen::Vector3d& towards_camera, ViewCoverage& seen);
+void mark_covered(const Eigen::Vector3d& towards_camera, ViewCoverage& coverage);
 
-int count_covered(const ViewCoverage& seen);
+int count_covered(const ViewCoverage& coverage);
 
 /// Returns a text such as "seen from 40 of 60 directions; from behind and from low nothing yet". The front is where the
 /// camera began, `front` in the object frame.
-std::string describe_coverage(const ViewCoverage& seen, const Eigen::Vector3d& front);
+std::string describe_coverage(const ViewCoverage& coverage, const Eigen::Vector3d& front);
 
 }  // namespace houghstream::reconstruction

@@ -35,28 +35,28 @@ TemplateGrid square() {
 }
 
 TEST(TemplateGrid, DepthIsRelativeToTheCentreInMillimetres) {
-  const TemplateGrid seen = square();
-  EXPECT_EQ(seen.mm[cell(kRim, kRim)], -10);
-  EXPECT_EQ(seen.mm[cell(kSide - 1 - kRim, kRim)], 10);
-  EXPECT_EQ(seen.mm[cell(kSide - 1 - kRim, kSide - 1 - kRim)], TemplateGrid::kNoDepth);
-  EXPECT_EQ(seen.mm[cell(0, 0)], TemplateGrid::kBeside);
+  const TemplateGrid grid = square();
+  EXPECT_EQ(grid.mm[cell(kRim, kRim)], -10);
+  EXPECT_EQ(grid.mm[cell(kSide - 1 - kRim, kRim)], 10);
+  EXPECT_EQ(grid.mm[cell(kSide - 1 - kRim, kSide - 1 - kRim)], TemplateGrid::kNoDepth);
+  EXPECT_EQ(grid.mm[cell(0, 0)], TemplateGrid::kBeside);
 }
 
 TEST(TemplateGrid, TheRimKnowsTheNearestDepthOfTheObjectButNotBelow) {
-  const TemplateGrid seen = square();
-  EXPECT_EQ(seen.beside[cell(0, 6)], -10);
-  EXPECT_EQ(seen.beside[cell(kSide - 1, 6)], 10);
-  EXPECT_EQ(seen.beside[cell(kRim, kRim)], TemplateGrid::kBeside);  // on the object
-  EXPECT_EQ(seen.beside[cell(6, kSide - 1)], TemplateGrid::kBeside);
+  const TemplateGrid grid = square();
+  EXPECT_EQ(grid.beside[cell(0, 6)], -10);
+  EXPECT_EQ(grid.beside[cell(kSide - 1, 6)], 10);
+  EXPECT_EQ(grid.beside[cell(kRim, kRim)], TemplateGrid::kBeside);  // on the object
+  EXPECT_EQ(grid.beside[cell(6, kSide - 1)], TemplateGrid::kBeside);
 }
 
 /// Both ends of each of the square's 20 rows and columns.
 TEST(TemplateGrid, TheOutlineIsCrossedAtBothEndsOfEachLine) {
-  const TemplateGrid seen = square();
-  EXPECT_EQ(seen.outline.size(), 80U);
-  for (const OutlineCells& across : seen.outline) {
+  const TemplateGrid grid = square();
+  EXPECT_EQ(grid.outline.size(), 80U);
+  for (const OutlineCells& across : grid.outline) {
     const auto on = [&](const OutlineCells::Cell& at) {
-      return seen.mm[cell(at.column, at.row)] != TemplateGrid::kBeside;
+      return grid.mm[cell(at.column, at.row)] != TemplateGrid::kBeside;
     };
     EXPECT_TRUE(on(across.inside));
     EXPECT_FALSE(on(across.beyond));
@@ -76,10 +76,10 @@ TEST(TemplateGrid, WhatIsTooNarrowHasFewerCrossings) {
   cv::Mat mask = cv::Mat::zeros(80, 80, CV_8UC1);
   mask(cv::Rect(38, 20, 2, 40)).setTo(255);
   const cv::Rect box(20, 20, 40, 40);
-  const TemplateGrid seen = make_template_grid(view, mask, box, {0.0F, 0.0F, 1.0F});
-  EXPECT_NE(seen.outline[0].inside.row, 0);
-  EXPECT_NE(seen.outline[1].inside.row, 0);
-  EXPECT_EQ(seen.outline[2].inside.row, 0) << "the strip's two ends only";
+  const TemplateGrid grid = make_template_grid(view, mask, box, {0.0F, 0.0F, 1.0F});
+  EXPECT_NE(grid.outline[0].inside.row, 0);
+  EXPECT_NE(grid.outline[1].inside.row, 0);
+  EXPECT_EQ(grid.outline[2].inside.row, 0) << "the strip's two ends only";
 }
 
 /// The plane is 5 mm farther per pixel to the right, which is 10 mm per cell.
@@ -92,8 +92,8 @@ TEST(TemplateGrid, TheOutlineKnowsWhatASlopeGains) {
   cv::Mat mask = cv::Mat::zeros(80, 80, CV_8UC1);
   const cv::Rect box(20, 20, 40, 40);
   mask(box).setTo(255);
-  const TemplateGrid seen = make_template_grid(view, mask, box, {0.0F, 0.0F, 1.0F});
-  for (const OutlineCells& across : seen.outline) {
+  const TemplateGrid grid = make_template_grid(view, mask, box, {0.0F, 0.0F, 1.0F});
+  for (const OutlineCells& across : grid.outline) {
     const int right = across.beyond.column - across.inside.column;
     EXPECT_NEAR(across.gained_mm, 10 * right, 1);
   }
@@ -114,16 +114,16 @@ TEST(TemplateGrid, OffTheAxisReliefIsAsItLiesAcrossTheRay) {
   cv::Mat mask = cv::Mat::zeros(80, 80, CV_8UC1);
   const cv::Rect box(30, 30, 20, 20);
   mask(box).setTo(255);
-  const TemplateGrid seen = make_template_grid(view, mask, box, centre);
+  const TemplateGrid grid = make_template_grid(view, mask, box, centre);
   for (int row = kRim; row < kSide - kRim; ++row) {
-    for (int column = kRim; column < kSide - kRim; ++column) EXPECT_NEAR(seen.mm[cell(column, row)], 0, 2);
+    for (int column = kRim; column < kSide - kRim; ++column) EXPECT_NEAR(grid.mm[cell(column, row)], 0, 2);
   }
 }
 
 TEST(TemplateGrid, ColoursAreLab) {
-  const TemplateGrid seen = square();
-  EXPECT_GT(seen.lab[cell(kRim, kRim)][1], 170);                   // red
-  EXPECT_NEAR(seen.lab[cell(kSide - 1 - kRim, kRim)][1], 128, 3);  // grey
+  const TemplateGrid grid = square();
+  EXPECT_GT(grid.lab[cell(kRim, kRim)][1], 170);                   // red
+  EXPECT_NEAR(grid.lab[cell(kSide - 1 - kRim, kRim)][1], 128, 3);  // grey
 }
 
 }  // namespace

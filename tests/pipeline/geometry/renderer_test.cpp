@@ -32,20 +32,20 @@ bool same_bits(const cv::Mat& a, const cv::Mat& b) {
 
 TEST(Renderer, PlaneAtKnownDepthHasItAndItsExactExtent) {
   const Mesh mesh = square(0.1F, 1.0F);
-  const RenderedGeometry seen = render_geometry({{&mesh, Eigen::Isometry3d::Identity(), 7}}, kVga);
+  const RenderedGeometry rendered = render_geometry({{&mesh, Eigen::Isometry3d::Identity(), 7}}, kVga);
   int count = 0;
-  for (int y = 0; y < seen.depth.rows; ++y) {
-    for (int x = 0; x < seen.depth.cols; ++x) {
+  for (int y = 0; y < rendered.depth.rows; ++y) {
+    for (int x = 0; x < rendered.depth.cols; ++x) {
       // The square's edges are at 319.5 +- 52.5 = 267 and 372 exactly: one of the two borders belongs to it.
       const bool inside = x > 267 && x < 372 && y > 187 && y < 292;
       const bool border =
           (x == 267 || x == 372 || y == 187 || y == 292) && x >= 267 && x <= 372 && y >= 187 && y <= 292;
-      const bool hit = seen.id.at<std::uint16_t>(y, x) == 7;
+      const bool hit = rendered.id.at<std::uint16_t>(y, x) == 7;
       count += hit ? 1 : 0;
       ASSERT_EQ(hit, border ? hit : inside) << x << "," << y;
-      ASSERT_EQ(hit, !std::isnan(seen.depth.at<float>(y, x)));
-      ASSERT_EQ(hit, seen.triangle.at<std::int32_t>(y, x) >= 0);
-      ASSERT_NEAR(hit ? seen.depth.at<float>(y, x) : 1.0F, 1.0F, 1e-6F);
+      ASSERT_EQ(hit, !std::isnan(rendered.depth.at<float>(y, x)));
+      ASSERT_EQ(hit, rendered.triangle.at<std::int32_t>(y, x) >= 0);
+      ASSERT_NEAR(hit ? rendered.depth.at<float>(y, x) : 1.0F, 1.0F, 1e-6F);
     }
   }
   EXPECT_EQ(count, 105 * 105);
@@ -67,18 +67,18 @@ TEST(Renderer, TiltedQuadHasTheAnalyticDepth) {
 
 TEST(Renderer, BarycentricsInterpolateTextureInPerspective) {
   const Mesh mesh = quad({-0.5F, -0.5F, 0.6F}, {0.5F, -0.5F, 1.4F}, {0.5F, 0.5F, 1.4F}, {-0.5F, 0.5F, 0.6F});
-  const RenderedGeometry seen = render_geometry({{&mesh, Eigen::Isometry3d::Identity(), 1}}, kVga);
+  const RenderedGeometry rendered = render_geometry({{&mesh, Eigen::Isometry3d::Identity(), 1}}, kVga);
   int count = 0;
-  for (int y = 0; y < seen.depth.rows; y += 7) {
-    for (int x = 0; x < seen.depth.cols; x += 5) {
-      const int index = seen.triangle.at<std::int32_t>(y, x);
+  for (int y = 0; y < rendered.depth.rows; y += 7) {
+    for (int x = 0; x < rendered.depth.cols; x += 5) {
+      const int index = rendered.triangle.at<std::int32_t>(y, x);
       if (index < 0) continue;
       ++count;
-      const auto bary = seen.bary.at<cv::Vec2f>(y, x);
+      const auto bary = rendered.bary.at<cv::Vec2f>(y, x);
       const auto& t = mesh.triangles[static_cast<std::size_t>(index)];
       const Eigen::Vector2f uv =
           (1.0F - bary[0] - bary[1]) * mesh.uvs[t[0]] + bary[0] * mesh.uvs[t[1]] + bary[1] * mesh.uvs[t[2]];
-      const Eigen::Vector3d point = kVga.backproject(x, y, seen.depth.at<float>(y, x));
+      const Eigen::Vector3d point = kVga.backproject(x, y, rendered.depth.at<float>(y, x));
       ASSERT_NEAR(uv.x(), point.x() + 0.5, 1e-4);
       ASSERT_NEAR(uv.y(), point.y() + 0.5, 1e-4);
     }
@@ -128,27 +128,27 @@ TEST(Renderer, NearerSurfaceHidesTheFarther) {
   for (const bool near_first : {true, false}) {
     const std::vector<RenderItem> items = near_first ? std::vector<RenderItem>{{&near, here, 1}, {&far, here, 2}}
                                                      : std::vector<RenderItem>{{&far, here, 2}, {&near, here, 1}};
-    const RenderedGeometry seen = render_geometry(items, kVga);
-    EXPECT_EQ(seen.id.at<std::uint16_t>(240, 320), 1);
-    EXPECT_NEAR(seen.depth.at<float>(240, 320), 0.8F, 1e-6F);
-    EXPECT_EQ(seen.id.at<std::uint16_t>(240, 380), 2);
-    EXPECT_EQ(seen.id.at<std::uint16_t>(10, 10), 0);
+    const RenderedGeometry rendered = render_geometry(items, kVga);
+    EXPECT_EQ(rendered.id.at<std::uint16_t>(240, 320), 1);
+    EXPECT_NEAR(rendered.depth.at<float>(240, 320), 0.8F, 1e-6F);
+    EXPECT_EQ(rendered.id.at<std::uint16_t>(240, 380), 2);
+    EXPECT_EQ(rendered.id.at<std::uint16_t>(10, 10), 0);
   }
 }
 
 TEST(Renderer, TrianglesAcrossTheNearPlaneAreClipped) {
   // The floor is a square 1 m below the camera, standing on its corner, reaching from 11 m behind to 9 m in front.
   const Mesh floor = quad({0, 1, 9}, {10, 1, -1}, {0, 1, -11}, {-10, 1, -1});
-  const RenderedGeometry seen = render_geometry({{&floor, Eigen::Isometry3d::Identity(), 3}}, kVga);
+  const RenderedGeometry rendered = render_geometry({{&floor, Eigen::Isometry3d::Identity(), 3}}, kVga);
   int count = 0;
   for (int y = 240; y < 480; ++y) {
     for (int x = 0; x < 640; x += 3) {
       const Eigen::Vector3d point = kVga.backproject(x, y, kVga.fy / (y - kVga.cy));
       const double beyond_edge = std::abs(point.x()) + std::abs(point.z() + 1.0) - 10.0;
       if (std::abs(beyond_edge) < 0.1) continue;
-      ASSERT_EQ(seen.id.at<std::uint16_t>(y, x) == 3, beyond_edge < 0.0) << x << "," << y;
+      ASSERT_EQ(rendered.id.at<std::uint16_t>(y, x) == 3, beyond_edge < 0.0) << x << "," << y;
       if (beyond_edge > 0.0) continue;
-      ASSERT_NEAR(seen.depth.at<float>(y, x), point.z(), 1e-5 * point.z());
+      ASSERT_NEAR(rendered.depth.at<float>(y, x), point.z(), 1e-5 * point.z());
       ++count;
     }
   }

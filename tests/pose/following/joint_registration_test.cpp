@@ -17,9 +17,9 @@ JointResult registered(const ModalityScene& scene, const Eigen::Isometry3d& star
   JointStart joint;
   joint.T_camera_object = start;
   if (with_colours) joint.appearance.colours = std::make_shared<const ColourStatistics>(scene.learnt());
-  const ObjectObservation seen =
+  const ObjectObservation observation =
       observe_object({scene.frame, {}, {}}, detection_of("it", scene.object, scene.truth, 1), scene.model, {});
-  return register_jointly(seen, joint, settings, {});
+  return register_jointly(observation, joint, settings, {});
 }
 
 Eigen::Isometry3d beside(const ModalityScene& scene, const Eigen::Vector3d& shift, double angle_rad) {
@@ -70,10 +70,10 @@ TEST(JointRegistration, DepthThatIsOlderSaysNothingAlongTheMotion) {
   JointStart joint;
   joint.T_camera_object = mixed.truth;
   joint.appearance.colours = std::make_shared<const ColourStatistics>(scene.learnt());
-  const ObjectObservation seen =
+  const ObjectObservation observation =
       observe_object({mixed.frame, {}, {}}, detection_of("it", mixed.object, mixed.truth, 1), mixed.model, {});
   const auto error_m = [&] {
-    return mixed.shift_of(register_jointly(seen, joint, {}, {}).registration.T_camera_object).norm();
+    return mixed.shift_of(register_jointly(observation, joint, {}, {}).registration.T_camera_object).norm();
   };
   EXPECT_GT(error_m(), 0.6 * kShift) << "depth is surer";
   joint.depth_lag.shift_m = {2.0 * kShift, 0.0, 0.0};
@@ -88,9 +88,9 @@ TEST(JointRegistration, AFrameWithoutColoursLeavesDepth) {
     JointStart joint;
     joint.T_camera_object = beside(scene, {0.01, -0.008, 0.012}, 0.06);
     joint.appearance.colours = colours;
-    const ObjectObservation seen =
+    const ObjectObservation observation =
         observe_object({scene.frame, {}, {}}, detection_of("it", scene.object, scene.truth, 1), scene.model, {});
-    const JointResult result = register_jointly(seen, joint, {}, {});
+    const JointResult result = register_jointly(observation, joint, {}, {});
     EXPECT_LT(scene.shift_of(result.registration.T_camera_object).norm(), 0.003) << tone;
     EXPECT_EQ(result.edges, 0) << tone;
   }

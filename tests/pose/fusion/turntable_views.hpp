@@ -45,13 +45,13 @@ inline TrainingView turntable_view(const TurntableScene& scene, int index) {
   view.source = "view " + std::to_string(index);
   view.T_camera_object = turntable_pose(2.0 * M_PI * index / scene.views, scene.elevation);
   view.frame.camera = kCamera.cropped(200, 80, 260, 280);
-  const RenderedGeometry seen = render_geometry({{&scene.mesh, view.T_camera_object, 1}}, view.frame.camera);
-  view.frame.depth = seen.depth.clone();
-  view.frame.colour = cv::Mat(seen.depth.size(), CV_8UC3, cv::Scalar(10, 10, 10));
-  view.mask = seen.id > 0;
+  const RenderedGeometry rendered = render_geometry({{&scene.mesh, view.T_camera_object, 1}}, view.frame.camera);
+  view.frame.depth = rendered.depth.clone();
+  view.frame.colour = cv::Mat(rendered.depth.size(), CV_8UC3, cv::Scalar(10, 10, 10));
+  view.mask = rendered.id > 0;
   Random random = Random::for_item(1, static_cast<std::uint64_t>(index));
-  for (int y = 0; y < seen.depth.rows; ++y) {
-    for (int x = 0; x < seen.depth.cols; ++x) {
+  for (int y = 0; y < rendered.depth.rows; ++y) {
+    for (int x = 0; x < rendered.depth.cols; ++x) {
       float& z = view.frame.depth.at<float>(y, x);
       if (view.mask.at<std::uint8_t>(y, x) == 0) {
         z = scene.background ? static_cast<float>(kWall_m) : std::numeric_limits<float>::quiet_NaN();

@@ -79,15 +79,15 @@ inline Eigen::Isometry3d camera_at(double azimuth, double elevation, double dist
 
 inline RgbdFrame photograph(const Mesh& mesh, const Eigen::Isometry3d& T_camera_world, const Camera& camera,
                             std::int64_t utime) {
-  const RenderedGeometry seen = render_geometry({{&mesh, T_camera_world, 1}}, camera);
+  const RenderedGeometry rendered = render_geometry({{&mesh, T_camera_world, 1}}, camera);
   RgbdFrame frame;
   frame.id.utime = utime;
   frame.camera = camera;
-  frame.depth = seen.depth;
+  frame.depth = rendered.depth;
   frame.colour = cv::Mat(camera.height, camera.width, CV_8UC3, cv::Scalar(90, 90, 90));
   for (int y = 0; y < camera.height; ++y) {
     for (int x = 0; x < camera.width; ++x) {
-      const int triangle = seen.triangle.at<std::int32_t>(y, x);
+      const int triangle = rendered.triangle.at<std::int32_t>(y, x);
       if (triangle >= 0)
         frame.colour.at<cv::Vec3b>(y, x) = mesh.colours[mesh.triangles[static_cast<std::size_t>(triangle)][0]];
     }

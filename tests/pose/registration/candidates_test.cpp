@@ -105,11 +105,11 @@ void expect_best_placed_first(const Eigen::Vector3f& vote_centre) {
     return Eigen::Quaternionf(standing(azimuth, 30.0, 1.0).linear().cast<float>());
   };
   const Eigen::Vector3f centre = truth.cast<float>() * vote_centre + Eigen::Vector3f(0.01F, -0.01F, 0.02F);
-  ObjectObservation seen{frame, model};
-  seen.centre_camera = centre;
+  ObjectObservation observation{frame, model};
+  observation.centre_camera = centre;
   const SearchSettings settings;
   const std::vector<PoseCandidate> found = place_candidates(
-      seen, {{rotation(150.0), 3.0F}, {rotation(60.0), 1.0F}, {rotation(100.0), 1.0F}, {rotation(330.0), 1.0F}},
+      observation, {{rotation(150.0), 3.0F}, {rotation(60.0), 1.0F}, {rotation(100.0), 1.0F}, {rotation(330.0), 1.0F}},
       settings);
   ASSERT_EQ(found.size(), static_cast<std::size_t>(settings.keep));
   EXPECT_GE(found[0].score, found[1].score);
@@ -139,10 +139,10 @@ TEST(Candidates, TheOriginMayLieBesideTheLineOfSight) {
   of_model.vote_centres["box"] = offset;
   const ObjectModel model = make_object_model("box", object, of_model);
   const Eigen::Vector3f centre = box.translation().cast<float>() + Eigen::Vector3f(0.01F, -0.01F, 0.04F);
-  ObjectObservation seen{frame, model};
-  seen.centre_camera = centre;
+  ObjectObservation observation{frame, model};
+  observation.centre_camera = centre;
   const RotationCandidate rotation{Eigen::Quaternionf(truth.linear().cast<float>()), 1.0F};
-  const std::vector<PoseCandidate> found = place_candidates(seen, {rotation}, {});
+  const std::vector<PoseCandidate> found = place_candidates(observation, {rotation}, {});
   ASSERT_FALSE(found.empty());
   EXPECT_LT((found[0].T_camera_object.translation() - truth.translation()).norm(), 0.015);
 }
@@ -153,8 +153,8 @@ TEST(Candidates, OfEarlierPosesOnlyThoseOfTheClassNearInTimeAndPlaceCount) {
   frame.id.utime = 2000000;
   ObjectModel model;
   model.vote_centre = {0.5F, 0.0F, 0.0F};
-  ObjectObservation seen{frame, model};
-  seen.centre_camera = truth.cast<float>() * model.vote_centre;
+  ObjectObservation observation{frame, model};
+  observation.centre_camera = truth.cast<float>() * model.vote_centre;
   ObjectPose pose;
   pose.class_name = "box";
   pose.T_camera_object = truth;
@@ -162,7 +162,7 @@ TEST(Candidates, OfEarlierPosesOnlyThoseOfTheClassNearInTimeAndPlaceCount) {
     ObjectPoses poses;
     poses.frame.utime = utime;
     poses.poses = {earlier};
-    return earlier_candidates(seen, "box", poses, {}).size();
+    return earlier_candidates(observation, "box", poses, {}).size();
   };
   EXPECT_EQ(count(1900000, pose), 1U);
   EXPECT_EQ(count(1400000, pose), 0U);  // too long ago

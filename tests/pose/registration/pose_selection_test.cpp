@@ -20,11 +20,11 @@ struct Boxed {
 
   std::vector<RegistrationResult> choose_all(const std::vector<PoseCandidate>& candidates,
                                              const Eigen::Vector3f& centre) const {
-    ObjectObservation seen{frame, model};
-    seen.centre_camera = centre;
-    seen.region = region;
-    seen.colours = lab_region(frame, region.box_px, {});
-    return select_poses(seen, register_candidates(seen, candidates, {}), {}, {});
+    ObjectObservation observation{frame, model};
+    observation.centre_camera = centre;
+    observation.region = region;
+    observation.colours = lab_region(frame, region.box_px, {});
+    return select_poses(observation, register_candidates(observation, candidates, {}), {}, {});
   }
 
   RegistrationResult choose(const std::vector<PoseCandidate>& candidates, const Eigen::Vector3f& centre) const {

@@ -42,30 +42,31 @@ TEST(Registration, NothingToPairWithIsNotConvergedAndLeavesTheStart) {
 
 TEST(Registration, CandidatesKeepTheirOrderAndFineRegistrationThatLeavesTheDetectionIsDropped) {
   const RegistrationScene scene(cereal_box(), -0.13, standing(35.0, 30.0, 0.9));
-  const ObjectObservation seen = scene.seen();
+  const ObjectObservation observation = scene.seen();
   Eigen::Isometry3d away = scene.truth;
   away.translation().z() += 0.5;
-  const std::vector<RegistrationResult> found = register_candidates(seen, {{away, 1.0F}, {scene.truth, 0.0F}}, {});
+  const std::vector<RegistrationResult> found =
+      register_candidates(observation, {{away, 1.0F}, {scene.truth, 0.0F}}, {});
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].inliers, 0);
-  EXPECT_FALSE(is_near_detection(seen, found[0], {}));
+  EXPECT_FALSE(is_near_detection(observation, found[0], {}));
   EXPECT_LT(scene.error(found[1]), 0.003);
-  EXPECT_TRUE(is_near_detection(seen, found[1], {}));
+  EXPECT_TRUE(is_near_detection(observation, found[1], {}));
   RegistrationSettings strict;
   strict.max_shift_m = 0.0;
-  EXPECT_EQ(register_finely(seen, found[1], strict).iterations, found[1].iterations);
-  EXPECT_GT(register_finely(seen, found[1], {}).iterations, found[1].iterations);
+  EXPECT_EQ(register_finely(observation, found[1], strict).iterations, found[1].iterations);
+  EXPECT_GT(register_finely(observation, found[1], {}).iterations, found[1].iterations);
 }
 
 TEST(Registration, PairDistancesGrowWithDepthsNoise) {
   const RegistrationScene scene(mug(), -0.05, standing(35.0, 30.0, 0.9));
-  ObjectObservation seen = scene.seen();
+  ObjectObservation observation = scene.seen();
   const RegistrationSettings settings;
-  const CorrespondenceDistances near = correspondence_distances(seen, settings);
+  const CorrespondenceDistances near = correspondence_distances(observation, settings);
   EXPECT_EQ(near.start, settings.max_correspondence_start_m);
   EXPECT_GT(near.end, settings.max_correspondence_end_m);
-  seen.centre_camera.z() = 4.0F;
-  const CorrespondenceDistances far = correspondence_distances(seen, settings);
+  observation.centre_camera.z() = 4.0F;
+  const CorrespondenceDistances far = correspondence_distances(observation, settings);
   EXPECT_GT(far.end, settings.max_correspondence_start_m);
   EXPECT_EQ(far.start, far.end) << "registration never ends with wider pairs than it begins with";
 }

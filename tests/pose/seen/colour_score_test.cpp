@@ -121,9 +121,9 @@ TEST(ColourScore, ATextureIsJudgedWhereItAgreesBestWithinTwoPixels) {
     RgbdFrame frame = coloured_frame(box, kPose, 1);
     const cv::Mat move = (cv::Mat_<double>(2, 3) << 1.0, 0.0, moved_px, 0.0, 1.0, 0.0);
     cv::warpAffine(frame.colour, frame.colour, move, frame.colour.size());
-    ObjectObservation seen{frame, model};
-    seen.colours = lab_region(frame, cv::Rect(0, 0, 640, 480), {});
-    return compare_texture(seen, project_view(frame, model, T_camera_object, 400), kColourTolerance)->agreement;
+    ObjectObservation observation{frame, model};
+    observation.colours = lab_region(frame, cv::Rect(0, 0, 640, 480), {});
+    return compare_texture(observation, project_view(frame, model, T_camera_object, 400), kColourTolerance)->agreement;
   };
   EXPECT_GT(judged(kPose, 2.0), judged(kPose, 0.0) - 0.02F);
   EXPECT_LT(judged(kPose, 12.0), judged(kPose, 0.0) - 0.1F);
@@ -134,11 +134,11 @@ TEST(ColourScore, JudgingATextureLeavesTheImageAsItIs) {
   const Mesh box = printed_box();
   const ObjectModel model = make_object_model("box", box, {});
   const RgbdFrame frame = coloured_frame(box, kPose, 1);
-  ObjectObservation seen{frame, model};
-  seen.colours = lab_region(frame, cv::Rect(0, 0, 640, 480), {});
+  ObjectObservation observation{frame, model};
+  observation.colours = lab_region(frame, cv::Rect(0, 0, 640, 480), {});
   const ProjectedView look = project_view(frame, model, kPose, 400);
-  const float first = compare_texture(seen, look, kColourTolerance)->agreement;
-  EXPECT_EQ(compare_texture(seen, look, kColourTolerance)->agreement, first);
+  const float first = compare_texture(observation, look, kColourTolerance)->agreement;
+  EXPECT_EQ(compare_texture(observation, look, kColourTolerance)->agreement, first);
 }
 
 TEST(ColourScore, WithoutColoursOrMeasuredDepthThereIsNoAnswer) {

@@ -71,13 +71,13 @@ TEST(ProjectedView, AtTheTruePoseDepthIsThatOfTheModel) {
   const Mesh box = printed_box();
   const ObjectModel model = make_object_model("box", box, {});
   const RgbdFrame frame = coloured_frame(box, kStanding, 1);
-  const ProjectedView seen = project_view(frame, model, kStanding, 300);
-  ASSERT_EQ(seen.points.size(), 300U);
+  const ProjectedView projected = project_view(frame, model, kStanding, 300);
+  ASSERT_EQ(projected.points.size(), 300U);
   int near = 0;
-  for (std::size_t i = 0; i < seen.points.size(); ++i) {
-    const ProjectedPoint& look = seen.points[i];
+  for (std::size_t i = 0; i < projected.points.size(); ++i) {
+    const ProjectedPoint& look = projected.points[i];
     near += std::abs(look.depth_difference) < 0.01F ? 1 : 0;
-    const Eigen::Vector2d pixel = frame.camera.project(kStanding * seen.view.points[i].cast<double>());
+    const Eigen::Vector2d pixel = frame.camera.project(kStanding * projected.view.points[i].cast<double>());
     EXPECT_LE(std::abs(pixel.x() - look.x), 0.501);
     EXPECT_LE(std::abs(pixel.y() - look.y), 0.501);
   }

@@ -45,9 +45,9 @@ TEST(Region, ColoursAreBroughtIntoTheToneOfTheWholeFrame) {
   frame.colour(cv::Rect(200, 150, 100, 80)).setTo(cv::Scalar::all(60));
   RegionSettings settings;
   const auto lightness = [&] {
-    const ObjectObservation seen =
+    const ObjectObservation observation =
         observe_object(make_frame_context(frame, settings, DepthNoise()), patch_detection(), kModel, settings);
-    return seen.colours.lab.at<cv::Vec3b>(50, 50)[0];
+    return observation.colours.lab.at<cv::Vec3b>(50, 50)[0];
   };
   const int dark = lightness();
   settings.tone = {100.0F, 130.0F, 50.0F};

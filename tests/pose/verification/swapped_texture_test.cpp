@@ -17,9 +17,9 @@ std::optional<PoseEvidence> with_swapped_texture(const Mesh& box) {
   detection.box_px = cv::Rect2f(0.0F, 0.0F, 640.0F, 480.0F);
   detection.centre_camera = pose.translation().cast<float>();
   const FrameContext seen_frame = make_frame_context(frame, {}, {});
-  const ObjectObservation seen = observe_object(seen_frame, detection, model, {});
-  const PoseEvidence own = gather_evidence(seen, pose, 0.9F, {});
-  const std::optional<PoseEvidence> other = evidence_with_swapped_texture(seen, pose, own, {});
+  const ObjectObservation observation = observe_object(seen_frame, detection, model, {});
+  const PoseEvidence own = gather_evidence(observation, pose, 0.9F, {});
+  const std::optional<PoseEvidence> other = evidence_with_swapped_texture(observation, pose, own, {});
   if (other) {
     EXPECT_EQ(other->depth.depth_inliers, own.depth.depth_inliers) << "the surface is the same";
     EXPECT_LT(other->colour->agreement, own.colour->agreement - 0.2F);

@@ -23,8 +23,8 @@ std::optional<TextureComparison> compared_at(const Eigen::Isometry3d& T_camera_o
   detection.box_px = cv::Rect2f(0.0F, 0.0F, 640.0F, 480.0F);
   detection.centre_camera = kTruth.translation().cast<float>();
   const FrameContext seen_frame = make_frame_context(frame, {}, {});
-  const ObjectObservation seen = observe_object(seen_frame, detection, model, {});
-  return compare_with_alternatives(seen, T_camera_object, {kTolerance_m, {}}, {});
+  const ObjectObservation observation = observe_object(seen_frame, detection, model, {});
+  return compare_with_alternatives(observation, T_camera_object, {kTolerance_m, {}}, {});
 }
 
 /// Returns the frame with the camera's response applied to each colour.

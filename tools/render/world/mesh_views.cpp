@@ -220,15 +220,15 @@ TrainingView MeshViews::render(int index) const {
   const Eigen::Isometry3d T_camera_world =
       Eigen::AngleAxisd(pose.roll_rad, Eigen::Vector3d::UnitZ()) * look_at(eye, Eigen::Vector3d::Zero());
   const Camera camera = cropped_around(thing_->mesh, T_camera_world * object.T_world_object);
-  ShadedView seen = shade_view(light_world(world), camera, T_camera_world);
-  put_wall_behind(distance + random.uniform(2.0, 4.0) * radius_, random, seen);
+  ShadedView shaded = shade_view(light_world(world), camera, T_camera_world);
+  put_wall_behind(distance + random.uniform(2.0, 4.0) * radius_, random, shaded);
 
   TrainingView view;
   view.frame.camera = camera;
-  view.frame.colour = simulate_colour_camera(seen.radiance, world.photo, aspect_seed(view_seed, 4));
-  view.frame.depth = measure_depth({seen.geometry.depth, seen.cos_incidence, seen.reflectance, seen.specular}, camera,
-                                   DepthSensorSettings{}, aspect_seed(view_seed, 5));
-  view.mask = seen.geometry.id == 1;
+  view.frame.colour = simulate_colour_camera(shaded.radiance, world.photo, aspect_seed(view_seed, 4));
+  view.frame.depth = measure_depth({shaded.geometry.depth, shaded.cos_incidence, shaded.reflectance, shaded.specular},
+                                   camera, DepthSensorSettings{}, aspect_seed(view_seed, 5));
+  view.mask = shaded.geometry.id == 1;
   view.T_camera_object = T_camera_world * object.T_world_object;
   return view;
 }

@@ -57,18 +57,18 @@ class PpfRival final : public SurfaceRival {
   }
 
  private:
-  std::vector<Eigen::Isometry3d> propose(const std::string& name, const SeenSurface& seen) const override {
+  std::vector<Eigen::Isometry3d> propose(const std::string& name, const SeenSurface& surface) const override {
     constexpr std::size_t kMinPoints = 12;  // twice the unknowns
-    if (seen.cloud->size() < kMinPoints) return {};
-    const cv::Mat measured = rows_of(*seen.cloud);
+    if (surface.cloud->size() < kMinPoints) return {};
+    const cv::Mat measured = rows_of(*surface.cloud);
     std::vector<ppf::Pose3DPtr> found;
-    const cv::Mat thin = rows_of(*thinned(*seen.cloud, spacing_m(models().at(name))));
+    const cv::Mat thin = rows_of(*thinned(*surface.cloud, spacing_m(models().at(name))));
     detectors_.at(name)->match(thin, found, settings_.reference_fraction, kFineStep);
     ppf::ICP icp(settings_.icp_iterations, settings_.icp_tolerance, settings_.icp_rejection, settings_.icp_levels);
     std::vector<Eigen::Isometry3d> poses;
     for (const ppf::Pose3DPtr& pose : found) {
       const Eigen::Isometry3d start = rigid(pose->pose);
-      if (!start.matrix().allFinite() || !seen.reaches(start)) continue;
+      if (!start.matrix().allFinite() || !surface.reaches(start)) continue;
       std::vector<ppf::Pose3DPtr> refined = {pose->clone()};
       icp.registerModelToScene(rows_of(view_surface(nearest_view(models().at(name), start))), measured, refined);
       poses.push_back(rigid(refined.front()->pose));

@@ -63,15 +63,15 @@ class PrerejectiveRival final : public SurfaceRival {
  private:
   using Alignment = pcl::SampleConsensusPrerejective<pcl::PointNormal, pcl::PointNormal, pcl::FPFHSignature33>;
 
-  std::vector<Eigen::Isometry3d> propose(const std::string& name, const SeenSurface& seen) const override {
+  std::vector<Eigen::Isometry3d> propose(const std::string& name, const SeenSurface& surface) const override {
     const ObjectModel& model = models().at(name);
     const DescribedSurface& taught = described_.at(name);
-    const DescribedSurface measured = describe(thinned(*seen.cloud, spacing_m(model)), feature_radius_m(model));
+    const DescribedSurface measured = describe(thinned(*surface.cloud, spacing_m(model)), feature_radius_m(model));
     const auto minimum = static_cast<std::size_t>(std::max(settings_.samples, settings_.similar_features));
     if (taught.points->size() < minimum || measured.points->size() < minimum) return {};
     Alignment alignment;
     configure(alignment, taught, measured, 2.0 * model.radius);
-    const std::vector<Eigen::Vector3f> points = region_points(seen.frame, seen.region, settings_.icp_points);
+    const std::vector<Eigen::Vector3f> points = region_points(surface.frame, surface.region, settings_.icp_points);
     std::vector<Eigen::Isometry3d> poses;
     for (int run = 0; run < settings_.runs; ++run) {
       if (const auto start = align(alignment, static_cast<unsigned>(run + 1))) {

@@ -109,14 +109,14 @@ std::optional<Eigen::Isometry3d> SurfaceRival::estimate(const RgbdFrame& frame, 
   const DepthRegion region = find_region(frame, detection, model, pose_.region);
   if (region.points < pose_.region.min_points) return std::nullopt;
 
-  SeenSurface seen{frame, model, region};
-  seen.cloud = measured_surface(frame, region, surface_);
-  seen.centre_camera = detection.centre_camera.cast<double>();
-  seen.max_shift_m = pose_.registration.max_shift_m;
+  SeenSurface surface{frame, model, region};
+  surface.cloud = measured_surface(frame, region, surface_);
+  surface.centre_camera = detection.centre_camera.cast<double>();
+  surface.max_shift_m = pose_.registration.max_shift_m;
   std::optional<Eigen::Isometry3d> best;
   float best_score = -std::numeric_limits<float>::infinity();
-  for (const Eigen::Isometry3d& T_camera_object : propose(found->first, seen)) {
-    if (!T_camera_object.matrix().allFinite() || !seen.reaches(T_camera_object)) continue;
+  for (const Eigen::Isometry3d& T_camera_object : propose(found->first, surface)) {
+    if (!T_camera_object.matrix().allFinite() || !surface.reaches(T_camera_object)) continue;
     const DepthTolerance tolerance{pose_.verification.tolerance_m, pose_.noise};
     const float score = score_pose(frame, model, T_camera_object, kScoredPoints, tolerance).value;
     if (score <= best_score) continue;

@@ -58,7 +58,7 @@ class SurfaceRival : public BaselineEstimator {
 
  private:
   /// Returns refined poses, camera from object; empty where none was found.
-  virtual std::vector<Eigen::Isometry3d> propose(const std::string& name, const SeenSurface& seen) const = 0;
+  virtual std::vector<Eigen::Isometry3d> propose(const std::string& name, const SeenSurface& surface) const = 0;
 
   std::map<std::string, ObjectModel> models_;
   PoseSettings pose_;

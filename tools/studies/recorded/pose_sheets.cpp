@@ -36,12 +36,12 @@ cv::Mat paint_models(const RgbdFrame& frame, const ObjectPoses& poses, const vie
   for (const ObjectPose& pose : poses.poses) {
     const auto model = models.find(pose.class_name);
     if (!pose.T_camera_object || model == models.end()) continue;
-    const RenderedGeometry seen = render_geometry({{&model->second, *pose.T_camera_object, 1}}, frame.camera);
+    const RenderedGeometry rendered = render_geometry({{&model->second, *pose.T_camera_object, 1}}, frame.camera);
     for (int y = 0; y < image.rows; ++y) {
       for (int x = 0; x < image.cols; ++x) {
-        const int triangle = seen.triangle.at<std::int32_t>(y, x);
+        const int triangle = rendered.triangle.at<std::int32_t>(y, x);
         if (triangle < 0) continue;
-        image.at<cv::Vec3b>(y, x) = colour_at(model->second, triangle, seen.bary.at<cv::Vec2f>(y, x));
+        image.at<cv::Vec3b>(y, x) = colour_at(model->second, triangle, rendered.bary.at<cv::Vec2f>(y, x));
       }
     }
   }

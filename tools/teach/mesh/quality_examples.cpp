@@ -84,14 +84,16 @@ std::vector<std::optional<PoseTerms>> UnfilteredPoseFinder::terms_of(const RgbdF
     std::optional<PoseTerms>& terms = all.emplace_back();
     if (!pose.T_camera_object) continue;
     const Detection& detection = detections.detections[pose.detection_index];
-    const ObjectObservation seen = observe_object(seen_frame, detection, models_.at(pose.class_name), settings_.region);
-    const PoseEvidence own = gather_evidence(seen, *pose.T_camera_object, detection.score, settings_.verification);
+    const ObjectObservation observation =
+        observe_object(seen_frame, detection, models_.at(pose.class_name), settings_.region);
+    const PoseEvidence own =
+        gather_evidence(observation, *pose.T_camera_object, detection.score, settings_.verification);
     const std::optional<PoseEvidence> other =
-        evidence_with_swapped_texture(seen, *pose.T_camera_object, own, settings_.verification);
+        evidence_with_swapped_texture(observation, *pose.T_camera_object, own, settings_.verification);
     terms = PoseTerms{quality_terms(own, settings_.quality), std::nullopt, std::nullopt};
-    const DepthTolerance tolerance{settings_.verification.tolerance_m, seen.noise};
+    const DepthTolerance tolerance{settings_.verification.tolerance_m, observation.noise};
     const std::optional<TextureComparison> texture =
-        compare_with_alternatives(seen, *pose.T_camera_object, tolerance, settings_.registration);
+        compare_with_alternatives(observation, *pose.T_camera_object, tolerance, settings_.registration);
     if (texture) terms->texture_margin = texture->margin;
     if (other) terms->with_swapped_texture = quality_terms(*other, settings_.quality);
     if (shape_quality(terms->own, settings_.quality) != pose.shape_quality) {

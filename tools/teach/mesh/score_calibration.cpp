@@ -166,12 +166,12 @@ quality::FoundPoses find_poses(const GroupCalibration& calibration, const qualit
     const std::vector<std::size_t> searched = frames_of(half, calibration);
     parallel_for_workers(threads, static_cast<int>(searched.size()), [&](int worker, int i) {
       const std::size_t index = searched[static_cast<std::size_t>(i)];
-      const world::RenderedFrame& seen = calibration.frames[index];
+      const world::RenderedFrame& rendered = calibration.frames[index];
       EvaluatedFrame& frame = found.frames[index];
-      for (const GroundTruthObject& object : seen.objects)
+      for (const GroundTruthObject& object : rendered.objects)
         frame.objects.push_back({names.at(object.object_id), object, std::nullopt});
-      frame.detections = detector.detect(seen.frame, workspaces[worker]);
-      found.terms[index] = finder.find_in(seen.frame, frame);
+      frame.detections = detector.detect(rendered.frame, workspaces[worker]);
+      found.terms[index] = finder.find_in(rendered.frame, frame);
       progress.add(1.0);
     });
     groups = std::move(detector).take_groups();

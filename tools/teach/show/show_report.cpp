@@ -110,11 +110,11 @@ int tracked_frames(const Take& take) {
 }
 
 reconstruction::ViewCoverage seen_by_all(const ShowResult& shown) {
-  reconstruction::ViewCoverage seen{};
+  reconstruction::ViewCoverage coverage{};
   for (const Take& take : shown.takes) {
-    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] || take.seen[i];
+    for (std::size_t i = 0; i < coverage.size(); ++i) coverage[i] = coverage[i] || take.seen[i];
   }
-  return seen;
+  return coverage;
 }
 
 double degrees_of(const reconstruction::LoopClosureError& gap) {

@@ -40,12 +40,12 @@ TEST(PoseGraph, SpreadsTheGapOfALoop) {
 }
 
 TEST(SphereOfDirections, FillsAndSaysWhatIsMissing) {
-  ViewCoverage seen{};
-  mark_covered({1.0, 0.0, 0.7}, seen);
-  const int once = count_covered(seen);
+  ViewCoverage coverage{};
+  mark_covered({1.0, 0.0, 0.7}, coverage);
+  const int once = count_covered(coverage);
   EXPECT_GT(once, 5);
   EXPECT_LT(once, 20);
-  const std::string text = describe_coverage(seen, {1.0, 0.0, 0.7});
+  const std::string text = describe_coverage(coverage, {1.0, 0.0, 0.7});
   EXPECT_NE(text.find("of 60 directions; from"), std::string::npos);
   EXPECT_NE(text.find("behind"), std::string::npos);
   EXPECT_EQ(text.find("in front"), std::string::npos);

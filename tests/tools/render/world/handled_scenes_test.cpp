@@ -128,17 +128,17 @@ TEST(HandledScenes, TrueBoxesAndPosesAreThoseOfTheMeasuredDepth) {
   for (const char* name : handled_scenes()) {
     SCOPED_TRACE(name);
     const Scene& scene = handled_scene(name);
-    const RenderedFrame seen = render_scene_frame(scene, light_world(scene.world), 2, 5);
-    EXPECT_GE(seen.objects.size(), 6U);
-    for (std::size_t i = 0; i < seen.objects.size(); ++i) {
-      const GroundTruthObject& object = seen.objects[i];
+    const RenderedFrame rendered = render_scene_frame(scene, light_world(scene.world), 2, 5);
+    EXPECT_GE(rendered.objects.size(), 6U);
+    for (std::size_t i = 0; i < rendered.objects.size(); ++i) {
+      const GroundTruthObject& object = rendered.objects[i];
       const cv::Mat model = render_depth(make_taught_object(object.object_id).thing->mesh, object.T_camera_object,
-                                         seen.frame.camera, cv::Rect(0, 0, 640, 480));
+                                         rendered.frame.camera, cv::Rect(0, 0, 640, 480));
       std::vector<float> differences;
       for (int y = 0; y < 480; ++y) {
         for (int x = 0; x < 640; ++x) {
-          const float difference = seen.frame.depth.at<float>(y, x) - model.at<float>(y, x);
-          if (seen.visible_masks[i].at<std::uint8_t>(y, x) != 0 && !std::isnan(difference))
+          const float difference = rendered.frame.depth.at<float>(y, x) - model.at<float>(y, x);
+          if (rendered.visible_masks[i].at<std::uint8_t>(y, x) != 0 && !std::isnan(difference))
             differences.push_back(difference);
         }
       }
