@@ -38,7 +38,7 @@ void fields(const DetectionSettings& /*settings*/, const Visit& visit) {
 constexpr const char* kPaperProfile = "paper";
 constexpr const char* kRealtimeProfile = "realtime";
 
-/// The profiles that the product trains and searches by, see training/profiles.hpp.
+/// Returns the profiles that the product trains and searches by, see training/profiles.hpp.
 std::vector<std::string> profile_names();
 
 /// Returns the settings with which forests of a profile are searched. Throws InputError that lists the names for an

@@ -41,7 +41,7 @@ struct Detector::State {
   State(std::vector<Forest> given, const DetectionSettings& how)
       : groups(std::move(given)), indices(groups.begin(), groups.end()), settings(how) {}
 
-  /// The search of each group.
+  /// Returns the search of each group.
   std::vector<SearchContext> searches(const std::vector<ChromaPair>& camera_colours) const {
     std::vector<SearchContext> all;
     all.reserve(indices.size());

@@ -41,7 +41,7 @@ class Detector {
   /// Searches a single frame, with a workspace that it makes for this call.
   Detections detect(const RgbdFrame& frame) const;
 
-  /// The groups' forests, in the order in which they were given.
+  /// Returns the groups' forests, in the order in which they were given.
   const std::vector<Forest>& groups() const;
   /// The groups, for another detector; this one is not to be used any more.
   std::vector<Forest> take_groups() &&;

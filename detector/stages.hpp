@@ -23,8 +23,8 @@ namespace houghstream {
 struct SearchContext {
   const ForestIndex& index;
   const DetectionSettings& settings;
-  /// Into Forest::views: not compared with the frame. An image composed for training must not be recognised by the
-  /// very views that it shows.
+  /// Indices into Forest::views of templates that are not compared with the frame. An image composed for training must
+  /// not be recognised by the very views that it shows.
   std::vector<std::uint32_t> excluded_views = {};
   /// Objects that were seen by the frame's camera before: what its colours are learnt from, beside those of the frame.
   std::vector<ChromaPair> remembered_colours = {};

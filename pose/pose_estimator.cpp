@@ -46,7 +46,7 @@ ObjectPoses undecided_poses(const Detections& detections) {
   return poses;
 }
 
-/// Why no pose is looked for, or kInvalid.
+/// Returns the reason why no pose is estimated, or kInvalid.
 PoseStatus reason_to_pass_over(const Detection& detection, bool has_model, const PoseSettings& settings) {
   const Eigen::Vector3f& centre_camera = detection.centre_camera;
   if (!has_model) return PoseStatus::kNoModel;
@@ -176,7 +176,7 @@ void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
   it.pose = std::move(judged);
 }
 
-/// Of two poses of a class in one place, as of two detections of one object, the less probable one is withheld.
+/// Withholds the less probable of two poses of a class in one place, as of two detections of one object.
 void withhold_duplicates(const PoseEstimator& estimator, std::vector<ObjectPose>& poses) {
   constexpr double kDistanceRatio = 0.5;
   for (ObjectPose& pose : poses) {

@@ -10,8 +10,8 @@ namespace {
 /// Left, top, right and bottom of a box, frame pixels; 0 is the left edge of the first pixel.
 using Sides = std::array<float, 4>;
 
-/// Where the supporting patches lie. Patches that support the object weakly lie beside it; the median supporter says
-/// what is weak here.
+/// Returns the sides of the box about the supporting patches. Patches that support the object weakly lie beside it; the
+/// median supporter defines what is weak here.
 Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches, BoxWorkspace& workspace) {
   std::vector<float>& weights = workspace.weights;
   std::array<std::vector<float>, 4>& values = workspace.sides;
@@ -38,7 +38,7 @@ Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches, B
   return sides;
 }
 
-/// Where the remembered training views have their sides: weighted medians.
+/// Returns the sides that the view templates have: weighted medians.
 Sides template_sides(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera,
                      BoxWorkspace& workspace) {
   const Eigen::Vector3d centre = hypothesis.centre_camera.cast<double>();
@@ -63,7 +63,8 @@ Sides template_sides(const Forest& forest, const Hypothesis& hypothesis, const C
 cv::Rect2f backproject_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
                            const Camera& camera, BoxWorkspace& workspace) {
   if (hypothesis.patches.empty() || hypothesis.views.empty()) return {};
-  constexpr float kHidden = 0.3F;  // of the object's width or height: from here on a side is taken to be hidden
+  // Fraction of the object's width or height, from which on a side is taken to be hidden.
+  constexpr float kHidden = 0.3F;
   const Sides seen = supporting_sides(hypothesis, patches, workspace);
   const Sides whole = template_sides(forest, hypothesis, camera, workspace);
   Sides sides{};

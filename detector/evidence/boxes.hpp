@@ -12,7 +12,7 @@ namespace houghstream {
 /// Workspace of backproject_box(), used again from box to box.
 struct BoxWorkspace {
   std::vector<float> weights;
-  std::array<std::vector<float>, 4> sides;               ///< of the supporting patches
+  std::array<std::vector<float>, 4> sides;               ///< sides of the supporting patches
   std::vector<std::pair<float, float>> template_values;  ///< a side of the view templates, and their weights
 };
 

@@ -13,17 +13,17 @@ namespace {
 /// The candidates of each group.
 using GroupCandidates = std::vector<std::vector<ScoredHypothesis>>;
 
-/// How the camera renders the colours of each class of each group.
+/// The camera's rendering of the colours of each class of each group.
 using GroupCameras = std::vector<std::vector<ChromaMap>>;
 
 /// A candidate that says something of the camera's colours.
 struct Witness {
   const ScoredHypothesis* candidate = nullptr;
   const ObjectClass* object = nullptr;
-  float probability = 0.0F;  ///< that it is an object of its class, whatever the camera's colours
+  float probability = 0.0F;  ///< probability that it is an object of its class, whatever the camera's colours
 };
 
-/// Of a candidate that has a view.
+/// Returns the class index of a candidate that has a view.
 std::size_t class_index_of(const Forest& forest, const ScoredHypothesis& candidate) {
   return forest.views[candidate.evidence.view].class_index;
 }
@@ -49,7 +49,7 @@ void add_witnesses(const Forest& forest, const std::vector<ScoredHypothesis>& ca
   }
 }
 
-/// Of each class the likeliest; of maxima that lie within one object the likeliest alone.
+/// Returns the likeliest candidate of each class, and of maxima that lie within one object the likeliest alone.
 std::vector<Witness> find_likeliest(const std::vector<GroupHypotheses>& groups, const GroupCandidates& candidates) {
   constexpr std::size_t kMaxPerClass = 3;
   WitnessesByClass by_class;
@@ -72,8 +72,8 @@ std::vector<Witness> find_likeliest(const std::vector<GroupHypotheses>& groups, 
   return likeliest;
 }
 
-/// In one place stands one object, whichever class it is of, or none of them: the odds of all that are taken to stand
-/// there share what is certain.
+/// Divides certainty among the witnesses of one place: only one object stands there, of whichever class, or none, so
+/// that the odds of all of them share it.
 void share_places(std::vector<Witness>& witnesses) {
   std::vector<float> odds;
   odds.reserve(witnesses.size());
@@ -100,7 +100,7 @@ ChromaPair to_pair(const Witness& witness) {
   return pair;
 }
 
-/// For each class how the camera renders its colours, learnt of the pairs of the others.
+/// Learns for each class how the camera renders its colours, from the pairs of the others.
 GroupCameras learn_cameras(const std::vector<GroupHypotheses>& groups, const std::vector<ChromaPair>& pairs) {
   GroupCameras cameras;
   for (const GroupHypotheses& searched : groups) {
@@ -111,7 +111,7 @@ GroupCameras learn_cameras(const std::vector<GroupHypotheses>& groups, const std
   return cameras;
 }
 
-/// The pairs that are remembered, and those of the frame's candidates.
+/// Returns the pairs of earlier frames and those of the frame's candidates.
 std::vector<ChromaPair> all_pairs(const std::vector<GroupHypotheses>& groups, std::vector<ChromaPair> pairs,
                                   const GroupCandidates& candidates) {
   std::vector<Witness> witnesses = find_likeliest(groups, candidates);
@@ -120,7 +120,7 @@ std::vector<ChromaPair> all_pairs(const std::vector<GroupHypotheses>& groups, st
   return pairs;
 }
 
-/// Whether views have to be looked for anew in these colours: more than the best of them may be another one.
+/// Returns whether views must be searched again in these colours, since more than the best of them may differ.
 bool are_far(const std::vector<ChromaMap>& cameras, const std::vector<ChromaMap>& before) {
   constexpr double kFar = 12.0;  // CIE a*b*, of a colour of medium strength; chosen: about what light changes by itself
   constexpr double kLightness = 60.0;
@@ -133,7 +133,8 @@ bool are_far(const std::vector<ChromaMap>& cameras, const std::vector<ChromaMap>
   return false;
 }
 
-/// The groups' frames in the colours of their cameras; views have to be looked for anew where one of them is far.
+/// Brings the groups' frames into the colours of their cameras. Returns whether views must be searched again, where a
+/// camera is far from them.
 bool bring_into_cameras(GroupCameras cameras, std::vector<LabFrame>& frames) {
   bool is_far = false;
   for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -19,13 +19,13 @@ struct GroupHypotheses {
 std::vector<ScoredHypothesis> score_groups(const std::vector<GroupHypotheses>& groups, int threads,
                                            ScoringWorkspace& workspace);
 
-/// score_groups(), with the view templates brought to the colours of the camera (ChromaMap), so that a cast,
-/// which all objects of a frame share, of whichever group, speaks against none of them. How the camera renders colours
-/// is learnt of what earlier frames told (`colours`) and of the likely candidates of the frame together, for each class
-/// without itself: what an object is judged by may not be learnt of itself. Where the camera turns out to be far from
-/// what was remembered of it, or from what was taught if nothing was, everything is weighed again. Where no other class
-/// is known or likely, scores are as taught; in an image without colours chroma speaks neither for a candidate nor
-/// against it. The same for any number of threads.
+/// Scores as score_groups() does, with the view templates brought to the colours of the camera (ChromaMap), so that a
+/// cast, which all objects of a frame share, of whichever group, speaks against none of them. How the camera renders
+/// colours is learnt of what earlier frames told (`colours`) and of the likely candidates of the frame together, for
+/// each class without itself, since an object may not be judged by what it taught. Where the camera turns out to be far
+/// from what was remembered of it, or from what was taught if nothing was, all candidates are scored again. Where no
+/// other class is known or likely, scores are as taught; in an image without colours chroma speaks neither for a
+/// candidate nor against it. The result is the same for any number of threads.
 std::vector<ScoredHypothesis> weigh_in_camera_colours(const std::vector<GroupHypotheses>& groups,
                                                       const std::vector<ChromaPair>& colours, int threads,
                                                       ScoringWorkspace& workspace);

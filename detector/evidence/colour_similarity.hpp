@@ -32,7 +32,8 @@ class ColourSimilarity {
     }
   }
 
-  /// -1 to 1; near 0 for plain surfaces, whose differences are noise, and 0 for fewer than a dozen pairs.
+  /// Returns the correlation, -1 to 1; near 0 for plain surfaces, whose differences are noise, and 0 for fewer than a
+  /// dozen pairs.
   float correlation() const;
 
   /// Returns the logarithm of observed over expected contrast, -2 to 2; 0 for fewer than twelve pairs. Dim, hazy and

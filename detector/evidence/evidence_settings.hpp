@@ -26,7 +26,7 @@ void fields(const EvidenceSettings& /*settings*/, const Visit& visit) {
   visit(number("max_rotations", &S::max_rotations, 0, 1000000));
 }
 
-/// Which of two overlapping detections stays (non-maximum suppression).
+/// Settings that decide which of two overlapping detections stays (non-maximum suppression).
 struct SuppressionSettings {
   float max_overlap = 0.5F;  ///< a weaker box of another object may overlap a stronger one by this IoU
   /// ... if that one is more likely than not and so many times as likely; of its own class always.

@@ -8,7 +8,8 @@
 namespace houghstream {
 namespace {
 
-constexpr std::size_t kMaxAttitudes = 3;  // that are refined, however many a class was taught in
+// Maximum number of attitudes that are refined, however many a class was taught in.
+constexpr std::size_t kMaxAttitudes = 3;
 
 /// Templates that are compared of a class that was taught in one attitude: the first that most votes remember.
 constexpr std::size_t kTemplates = 8;
@@ -145,7 +146,7 @@ void HypothesisScorer::add_best_match(const Hypothesis& hypothesis, float spread
     evidence = refined;
     workspace_.visited.swap(workspace_.best_visited);
   }
-  // Of the refinements only that which led to the best match supports rotations.
+  // Only the refinement that led to the best match supports rotations.
   compared.insert(compared.end(), workspace_.best_visited.begin(), workspace_.best_visited.end());
 }
 

@@ -26,15 +26,16 @@ struct ScoringInput {
   const LabFrame& frame;
   const PatchGrid& patches;
   const EvidenceSettings& settings;
-  const std::vector<std::uint32_t>& excluded_views;  ///< into Forest::views: not compared with the frame
+  /// Indices into Forest::views of templates that are not compared with the frame.
+  const std::vector<std::uint32_t>& excluded_views;
 };
 
 /// Workspace of score_hypotheses(), used again from frame to frame.
 struct ScoringWorkspace {
   struct Worker {
     std::vector<PlacedTemplate> compared;      ///< templates of a hypothesis, compared with the frame
-    std::vector<PlacedTemplate> visited;       ///< the same, compared while a template was refined
-    std::vector<PlacedTemplate> best_visited;  ///< the same of the refinement that led to the best
+    std::vector<PlacedTemplate> visited;       ///< templates that were compared while one was refined
+    std::vector<PlacedTemplate> best_visited;  ///< templates of the refinement that led to the best match
     std::vector<std::pair<std::uint32_t, float>> weighted_views;  ///< views with the weight of their rotation
     BoxWorkspace box;
   };

@@ -21,8 +21,8 @@ Vector to_vector(const ScoreTerms& terms) {
 ScoreTerms score_terms(const Evidence& evidence) {
   const TemplateMatch& fit = evidence.fit;
   const float foreign = std::min(fit.mean_chroma_distance, 1.0F);
-  constexpr float kNearest = 0.1F;  // metres, as far as a logarithm means something
-  constexpr float kMin = 1e-4F;     // the same of shares
+  constexpr float kNearest = 0.1F;  // metres, the smallest distance whose logarithm means something
+  constexpr float kMin = 1e-4F;     // smallest fraction whose logarithm means something
   constexpr float kUsualRadius_px = 40.0F;
   const float log_vote_mass = std::log(std::max(evidence.relative_vote_mass, kMin));
   const float log_visible = std::log(1.02F - fit.occluded_fraction);

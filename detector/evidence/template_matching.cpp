@@ -15,17 +15,18 @@ namespace {
 constexpr int kSide = TemplateGrid::kSide;
 
 struct Cell {
-  std::uint16_t index = 0;  // in the depth template
+  std::uint16_t index = 0;  // index into the depth template
   std::uint8_t row = 0;
   std::uint8_t column = 0;
 };
 
-/// The cells of a template placed in the frame, and how much farther than remembered the frame's surface is there. Only
-/// cells within the frame, row by row.
+/// The cells of a template placed in the frame, and how much farther than in the template the frame's surface is there.
+/// Only cells within the frame, row by row.
 struct Comparison {
   std::size_t object_cells = 0;
-  std::array<Cell, kSide * kSide> cells;    // the first object_cells: those on the object
-  std::array<float, kSide * kSide> excess;  // at these, metres; NaN where depth is not measured or not remembered
+  std::array<Cell, kSide * kSide> cells;  // the first object_cells: those on the object
+  // Excess at these cells, metres; NaN where depth is unknown in the frame or in the template.
+  std::array<float, kSide * kSide> excess;
   std::size_t beside_cells = 0;
   std::array<float, kSide * kSide> excess_beside;  // the first beside_cells: beside the outline
   std::array<int, kSide> column_px{};              // frame pixels that the cells' centres lie in
@@ -33,11 +34,11 @@ struct Comparison {
   std::array<float, kSide>
       row_depth{};  // depth that the depth template is counted from, in a row at the centre's column...
   std::array<float, kSide> column_depth{};  // ...and more in a column
-  float left = 0.0F;                        // of the first cell, frame pixels
+  float left = 0.0F;                        // left side of the first cell, frame pixels
   float top = 0.0F;
   float cell_width = 0.0F;
   float cell_height = 0.0F;
-  cv::Point2f centre_px;  // of the view, as cell_centre()
+  cv::Point2f centre_px;  // centre of the view, as cell_centre()
   float metres_per_px = 0.0F;
   float metres_per_mm = 0.0F;  // of the view
 
@@ -68,7 +69,7 @@ struct Tally {
   int free_space_violations = 0;
   int no_depth = 0;
   float depth_residual = 0.0F;  // sum over the visible ones
-  Lines rows = 0;               // with cells that are visible or unknown
+  Lines rows = 0;               // rows with cells that are visible or unknown
   Lines columns = 0;
   std::size_t unoccluded = 0;                        // number of cells that are visible or unknown
   std::array<Cell, kSide * kSide> unoccluded_cells;  // the first `unoccluded` of them
@@ -313,11 +314,12 @@ ColourSimilarity compare_colours(const Tally& tally, const TemplateGrid& appeara
   return similarity;
 }
 
-/// The same with the template's colours as the camera would measure them in the light of the frame.
+/// Compares the colours as compare_colours() does, with the template's colours as the camera would measure them in the
+/// light of the frame.
 ColourSimilarity compare_camera_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours,
                                         const ChromaMap& camera) {
   constexpr double kGrey = 128.0;
-  constexpr double kLightness = 100.0 / 255.0;  // of 8-bit L*
+  constexpr double kLightness = 100.0 / 255.0;  // factor from 8-bit L* to L*
   ColourSimilarity similarity;
   for (std::size_t i = 0; i < tally.unoccluded; ++i) {
     const Cell cell = tally.unoccluded_cells[i];

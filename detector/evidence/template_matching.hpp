@@ -17,18 +17,19 @@ struct LabFrame {
   const RgbdFrame& frame;
   LabLevels lab;       ///< see make_smoothed_lab
   float scale = 1.0F;  ///< size of the first level over the frame's
-  /// How the camera renders the colours of each class, by its index: views are brought to these colours before they are
-  /// compared. Empty = as they were taught.
+  /// The camera's rendering of the colours of each class, by its index: views are brought to these colours before they
+  /// are compared. Empty: as they were taught.
   std::vector<ChromaMap> cameras = {};
 };
 
-/// How a view template at a hypothesis' centre matches the frame. The first four are fractions of the template's
+/// Match of a view template at a hypothesis' centre with the frame. The first four are fractions of the template's
 /// surface and sum to 1.
 struct TemplateMatch {
-  float visible_fraction = 0.0F;      ///< depth is that of the template
-  float occluded_fraction = 0.0F;     ///< a nearer surface occludes it
-  float free_space_violation = 0.0F;  ///< a farther surface is measured there: the object cannot be there
-  float no_depth_fraction = 0.0F;     ///< no depth is measured
+  float visible_fraction = 0.0F;   ///< fraction whose depth is that of the template
+  float occluded_fraction = 0.0F;  ///< fraction that a nearer surface occludes
+  /// Fraction behind which a farther surface is measured: the object cannot be there.
+  float free_space_violation = 0.0F;
+  float no_depth_fraction = 0.0F;     ///< fraction without measured depth
   float depth_residual = 0.0F;        ///< mean error of the visible depth over the tolerance, 0 to 1
   float rim_continuation = 0.0F;      ///< fraction of the rim beside the outline to which the surface continues
   float colour_correlation = 0.0F;    ///< correlation of the visible or unknown colours with the template's, -1 to 1
@@ -46,7 +47,7 @@ struct TemplateMatch {
 /// there can. (Alexe, Deselaers and Ferrari 2010 tell objects by the contrast of a window with its surroundings.)
 class BoundaryContinuation {
  public:
-  /// `tolerance`: of depth, metres.
+  /// Adds a sample of the boundary. `tolerance` is that of depth, metres.
   void add(const BoundarySample& sample, float tolerance) {
     const float surface = houghstream::surface_continuation(sample, tolerance);
     ++count_;
@@ -55,9 +56,10 @@ class BoundaryContinuation {
     both_ += surface * houghstream::textured_colour_continuation(sample);
   }
 
-  float surface() const { return fraction(surface_); }  ///< straight on from within
-  float colour() const { return fraction(colour_); }    ///< the same colour, with no step back in depth
-  float joint() const { return fraction(both_); }       ///< the surface, in the same colour
+  float surface() const { return fraction(surface_); }  ///< fraction across which the surface continues straight
+  /// Fraction across which the colour continues, with no step back in depth.
+  float colour() const { return fraction(colour_); }
+  float joint() const { return fraction(both_); }  ///< fraction across which the surface continues in the same colour
 
  private:
   float fraction(float sum) const { return count_ > 0 ? sum / static_cast<float>(count_) : 0.0F; }

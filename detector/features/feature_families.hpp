@@ -48,7 +48,8 @@ constexpr std::array<FamilyName, 8> kFamilyNames = {{{kIntensity, "intensity"},
                                                      {kPointHistogram, "pfh"},
                                                      {kFastHistogram, "fpfh"}}};
 
-/// "intensity,depth_hog" -> bits. Throws InputError that lists the names for an unknown one, and for none.
+/// Parses names such as "intensity,depth_hog" into bits. Throws InputError that lists the names for an unknown one, and
+/// for none.
 std::uint32_t parse_families(const std::string& names);
 
 /// Bits -> "intensity,depth_hog".
@@ -73,7 +74,7 @@ enum class PlaneKind : std::uint8_t {
   kHistogram,     ///< one of the many that together tell how the surface around a point is shaped
 };
 
-/// Which plane is which in a FeatureImage.
+/// Layout of the planes in a FeatureImage.
 class FeatureLayout {
  public:
   FeatureLayout() : FeatureLayout(FeatureSettings{}) {}
@@ -88,7 +89,7 @@ class FeatureLayout {
   /// Bytes from pixel to pixel: planes rounded up to half a cache line.
   int pixel_stride() const { return (planes_ + 31) / 32 * 32; }
   const std::vector<FeatureBlock>& blocks() const { return blocks_; }
-  /// The block of a family; throws InputError where the layout lacks it.
+  /// Returns the block of a family. Throws InputError where the layout lacks it.
   const FeatureBlock& block(FeatureFamily family) const;
   PlaneKind kind(int plane) const { return kinds_[static_cast<std::size_t>(plane)]; }
 

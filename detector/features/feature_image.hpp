@@ -25,7 +25,8 @@ class FeatureImage {
   static constexpr int kSpare = 4;  ///< bytes behind the last pixel: it may be read as a 32-bit word
 
   FeatureImage() = default;
-  /// `pixel_stride`: room per pixel, bytes; FeatureLayout says which are used.
+  /// Makes an image of undefined content. `pixel_stride` is the room per pixel, bytes; FeatureLayout says which of them
+  /// are used.
   FeatureImage(int width, int height, int pixel_stride) { reset(width, height, pixel_stride); }
   /// Resizes the image and reuses its memory: its previous content stays, at other pixels where the size differs.
   void reset(int width, int height, int pixel_stride);
@@ -35,10 +36,10 @@ class FeatureImage {
   int pixel_stride() const { return pixel_stride_; }
   int row_stride() const { return held_.width * pixel_stride_; }
 
-  /// The pixels that there are: the image and its border, or what cut_out() has kept.
+  /// Returns the pixels that there are: the image and its border, or what cut_out() has kept.
   const cv::Rect& held() const { return held_; }
 
-  /// The values of pixel (x,y), which must be one of held().
+  /// Returns the values of pixel (x,y), which must be one of held().
   const std::uint8_t* at(int x, int y) const { return data_.data() + offset(x, y); }
   std::uint8_t* at(int x, int y) { return data_.data() + offset(x, y); }
 
@@ -46,10 +47,10 @@ class FeatureImage {
 
   /// Fills the border from the nearest inner pixels.
   void replicate_border() { replicate_border({0, 0, width_, height_}); }
-  /// The border beside a part of the image; nothing where the part lies inside.
+  /// Replicates the border beside a part of the image; does nothing where the part lies inside.
   void replicate_border(cv::Rect part);
 
-  /// Only these of the pixels, under the same x and y, for those who look nowhere else.
+  /// Returns a copy that holds these pixels alone, under the same x and y.
   FeatureImage cut_out(cv::Rect kept) const;
 
  private:

@@ -24,13 +24,13 @@ constexpr int kMaxScales = 5;
 struct FeatureSettings {
   std::uint32_t families = 15;  ///< see FeatureFamily; default: the paper's final features (Section 4, end)
   ScaleHandling handling = ScaleHandling::kDepthNormalised;
-  std::array<float, kMaxScales> scales{};  ///< of a scale space: sizes of the image searched, 0 = unused
+  std::array<float, kMaxScales> scales{};  ///< sizes of the image in a scale space, 0 = unused
   float image_scale = 0.5F;                ///< working size over frame size for near surfaces (paper, Section 5.1.1)
   float far_distance = 1.2F;       ///< surfaces beyond are looked at in twice that size, metres: see feature_levels
   float max_distance = 2.8F;       ///< surfaces beyond belong to no object that was taught, metres
   int depth_sobel_px = 7;          ///< kernel of the depth derivatives, working pixels (paper, Section 4.3)
   int min_max_px = 5;              ///< neighbourhood of minimum and maximum, working pixels (paper, Section 3)
-  float fill_distance_px = 24.0F;  ///< how far from measured depth a pixel may borrow it, working pixels
+  float fill_distance_px = 24.0F;  ///< distance over which a pixel may borrow measured depth, working pixels
   /// ... or metres on the surface that it borrows from, if those are more pixels, see HoleReach. 0: the nearest pixel
   /// lends, whatever its depth. A scale space takes it for 0.
   float fill_distance = 0.06F;
@@ -50,7 +50,8 @@ void fields(const FeatureSettings& /*settings*/, const Visit& visit) {
   visit(group("tone", &S::tone));
 }
 
-/// As pipeline/base/check_settings.hpp says, and families, handling, scales and kernels are such as there are.
+/// Checks the settings as pipeline/base/check_settings.hpp says. Throws InputError also where families, handling,
+/// scales or kernels do not exist.
 void check_settings(const FeatureSettings& settings, const std::string& source);
 
 }  // namespace houghstream

@@ -7,18 +7,18 @@
 
 namespace houghstream {
 
-/// The parts of a FeatureImage that somebody will look at, in tiles of kSide pixels.
+/// The parts of a FeatureImage that are read, in tiles of kSide pixels.
 class FeatureTiles {
  public:
   static constexpr int kSide = 32;  ///< pixels
 
   FeatureTiles() = default;
 
-  /// No tile of an image of this size is wanted. Keeps its memory.
+  /// Marks no tile of an image of this size as wanted. Keeps its memory.
   void clear(cv::Size image);
-  /// All are.
+  /// Marks all tiles of an image of this size as wanted.
   void want_all(cv::Size image);
-  /// A patch at (x,y), inside the image, will look `reach` pixels far.
+  /// Marks the tiles that a patch at (x,y), inside the image, reads within `reach` pixels.
   void add_patch(int x, int y, int reach) {
     const int right = std::min(x + reach, image_.width - 1) / kSide;
     const int bottom = std::min(y + reach, image_.height - 1) / kSide;
@@ -30,8 +30,8 @@ class FeatureTiles {
   }
 
   cv::Size image() const { return image_; }
-  int rows() const { return rows_; }  ///< of tiles
-  /// Wanted pixels of a row of tiles, at most `max_length` (a multiple of kSide) side by side, appended to `parts`.
+  int rows() const { return rows_; }  ///< number of rows of tiles
+  /// Appends the wanted pixels of a row of tiles, at most `max_length` (a multiple of kSide) side by side, to `parts`.
   void list_parts(int row, int max_length, std::vector<cv::Rect>& parts) const;
 
  private:

@@ -40,7 +40,7 @@ void convert_row(const cv::Mat& colour, int row, int margin, FeatureWorkspace& w
   cv::split(lab, places.data());
 }
 
-/// The planes of each block that tiles do not work out, before minimum and maximum.
+/// Returns the planes of each block that tiles do not compute, before minimum and maximum.
 std::vector<std::vector<cv::Mat>> surface_blocks(const FeatureLayout& layout, const ExtraPlanes* extra) {
   std::vector<std::vector<cv::Mat>> planes(layout.blocks().size());
   for (std::size_t b = 0; b < planes.size(); ++b) {

@@ -20,12 +20,12 @@ namespace houghstream {
 /// frame's size. The product has none.
 using ExtraPlanes = std::map<FeatureFamily, std::vector<cv::Mat>>;
 
-/// Whose planes are computed, and where.
+/// Input of the computation of planes.
 struct FeatureInput {
   const WorkingFrame& frame;
   const FeatureSettings& settings;
-  const FeatureTiles& tiles;           ///< of the frame's size: the wanted ones
-  const ExtraPlanes* extra = nullptr;  ///< of each surface family among the settings'
+  const FeatureTiles& tiles;           ///< wanted tiles of the frame's size
+  const ExtraPlanes* extra = nullptr;  ///< planes of each surface family in the settings
 };
 
 /// Workspace of compute_features(), reused from image to image.
@@ -35,18 +35,18 @@ struct FeatureWorkspace {
     TileFeatures part;
   };
   std::vector<cv::Rect> parts;
-  std::vector<cv::Range> columns;  ///< by row of tiles: from the first wanted one to the last
+  std::vector<cv::Range> columns;  ///< columns from the first wanted tile to the last, by row of tiles
   std::array<ImageBuffer, 3> lab_buffers;
   std::array<cv::Mat, 3> lab;
-  int sobel_px = 0;  ///< of the kernels
+  int sobel_px = 0;  ///< size of the kernels
   SobelKernels kernels;
   PerWorker<Worker> workers;
 };
 
-/// All planes of a working frame in the order of FeatureLayout(settings) (paper, Section 3), in the wanted tiles and in
-/// the border beside them. Where depth is missing beyond repair the depth planes are neutral: no slope, no curvature,
-/// empty histograms. What else is in `image`, which keeps its memory, is undefined: left over from earlier frames.
-/// Throws InputError for a surface family that FeatureInput::extra lacks.
+/// Computes all planes of a working frame in the order of FeatureLayout(settings) (paper, Section 3), in the wanted
+/// tiles and in the border beside them. Where depth is missing beyond repair the depth planes are neutral: no slope, no
+/// curvature, empty histograms. The rest of `image`, which keeps its memory, is undefined: left over from earlier
+/// frames. Throws InputError for a surface family that FeatureInput::extra lacks.
 void compute_features(const FeatureInput& input, int threads, FeatureWorkspace& workspace, FeatureImage& image);
 
 /// Computes the features in all tiles.

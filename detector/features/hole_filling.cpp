@@ -15,7 +15,7 @@ namespace {
 constexpr int kBorder = 2;  // pixels around the distances, so that no neighbour needs a check
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// In 1/65536 pixel.
+// Lengths of the steps, 1/65536 pixel.
 constexpr int kStraight = 65536;
 constexpr int kDiagonal = 91750;
 constexpr int kKnight = 143976;  // one step straight and one diagonal

@@ -8,7 +8,7 @@
 
 namespace houghstream {
 
-/// Memory that begins with a cache line, so that aligned pixels and vectors lie in one line each.
+/// Allocator of memory that begins with a cache line, so that aligned pixels and vectors lie in one line each.
 template <typename T>
 struct LineAllocator {
   using value_type = T;
@@ -41,7 +41,7 @@ class ImageBuffer {
   LineBytes bytes_;
 };
 
-/// Before an image is written anew: what somebody else looks at as well gets a place of its own.
+/// Gives an image memory of its own before it is written, where somebody else shares its pixels.
 inline void forget_shared(cv::Mat& image) {
   if (image.u == nullptr || image.u->refcount > 1) image.release();
 }

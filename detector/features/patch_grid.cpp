@@ -23,7 +23,7 @@ void for_places(cv::Size size, int stride, const Visit& visit) {
   }
 }
 
-constexpr int kThinnings = 8;  // at most: then patches stand 16 times as far apart
+constexpr int kThinnings = 8;  // maximum number of thinnings: then patches stand 16 times as far apart
 
 /// Returns how often a grid may be thinned out before this place is dropped. The remaining places alternate between a
 /// chess board's black fields and rows and columns.
@@ -67,7 +67,7 @@ void reserve_places(cv::Size size, int stride, PatchGrid& grid) {
   grid.cell_px.reserve(count);
 }
 
-/// Where a patch stands and the side of the part of the image that it stands for, working pixels.
+/// Place of a patch, with the side of the part of the image that it stands for, working pixels.
 struct Place {
   int x;
   int y;

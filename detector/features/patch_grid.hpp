@@ -19,14 +19,14 @@ struct PatchRun {
 
 /// The patches of a frame, level by level.
 struct PatchGrid {
-  std::vector<std::uint8_t> level;  ///< FeatureLevel whose FeatureImage the patch is looked at in
+  std::vector<std::uint8_t> level;  ///< FeatureLevel whose FeatureImage the patch reads
   std::vector<std::int16_t> x;      ///< working pixels of its level
   std::vector<std::int16_t> y;
   std::vector<std::int32_t> scale;            ///< patch_scale
   std::vector<Eigen::Vector3f> point_camera;  ///< the surface point seen at the centre, metres
   std::vector<cv::Rect2f> cell_px;            ///< the part of the frame that the patch stands for, frame pixels
-  std::vector<float> area;                    ///< the same on the surface, facing the camera, square metres
-  std::vector<FeatureTiles> tiles;            ///< by level: where its patches look; filled by place_patches only
+  std::vector<float> area;                    ///< area of that part on the surface, facing the camera, square metres
+  std::vector<FeatureTiles> tiles;  ///< tiles that the patches of each level read; filled by place_patches only
 
   std::size_t size() const { return x.size(); }
   void clear();  ///< keeps the memory
@@ -45,15 +45,15 @@ struct PatchLayout {
 void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint8_t level_index,
                  const PatchLayout& layout, PatchGrid& grid);
 
-/// The patches of all levels of a frame, and the tiles that they look at. What `grid` held is overwritten and its
-/// memory used again.
+/// Places the patches of all levels of a frame, and marks the tiles that they read. What `grid` held is overwritten and
+/// its memory used again.
 void place_patches(const WorkingImages& images, const PatchLayout& layout, PatchGrid& grid);
 
-/// For a level of a scale space: a patch every `stride` pixels, whatever its depth; without points and areas.
+/// Adds a patch every `stride` pixels, whatever its depth, without points and areas: for a level of a scale space.
 void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level, const PatchSettings& patch,
                             int stride, PatchGrid& grid);
 
-/// The grid in runs small enough for their pixels to stay in the cache from tree to tree.
+/// Divides the grid into runs small enough for their pixels to stay in the cache from tree to tree.
 void list_runs(const PatchGrid& patches, std::vector<PatchRun>& runs);
 
 }  // namespace houghstream

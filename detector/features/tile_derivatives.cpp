@@ -15,7 +15,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int kVector = TilePlane<float>::kVector;
 
-/// Half of a derivative's size, rounded to even, as a byte.
+/// Returns half of a derivative's size, rounded to even, as a byte.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void store_half(D d, V derivative, std::uint8_t* to) {
   const hn::Rebind<std::uint8_t, D> bytes;
@@ -87,7 +87,7 @@ void lightness(const TilePlane<std::uint8_t>& plane, LightnessDerivatives& out) 
   lightness_gradients(plane, out);
 }
 
-/// Sum of a kernel's products, from its first one to its last.
+/// Returns the sum of a kernel's products, from its first one to its last.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V filtered(D d, const float* first, std::ptrdiff_t step, const float* kernel, int size) {
   auto sum = hn::Mul(hn::LoadU(d, first), hn::Set(d, kernel[0]));
@@ -95,7 +95,7 @@ HWY_INLINE V filtered(D d, const float* first, std::ptrdiff_t step, const float*
   return sum;
 }
 
-/// Within the limits, and 0 for NaN.
+/// Clamps to the limits; NaN becomes 0.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V limited(D d, V value, float limit) {
   const auto inside = hn::Min(hn::Max(value, hn::Set(d, -limit)), hn::Set(d, limit));

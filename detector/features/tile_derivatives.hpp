@@ -14,7 +14,8 @@ struct LightnessDerivatives {
   TilePlane<float> dy;
 };
 
-/// Everything on all pixels of `out`, margins included; they are smaller than that of `lightness` by at least 1.
+/// Computes the derivatives on all pixels of `out`, margins included; its margins are smaller than that of `lightness`
+/// by at least 1.
 void differentiate_lightness(const TilePlane<std::uint8_t>& lightness, LightnessDerivatives& out);
 
 /// Kernels of Sobel derivatives, from order 0, the smoothing across, to order 2; all of one odd size and of unit gain.
@@ -34,8 +35,8 @@ struct DepthDerivatives {
   TilePlane<float> dy;
 };
 
-/// Everything on all pixels of `out`, margins included; they are smaller than that of `depth` by at least half a
-/// kernel.
+/// Computes the derivatives on all pixels of `out`, margins included; its margins are smaller than that of `depth` by
+/// at least half a kernel.
 void differentiate_depth(const TilePlane<float>& depth, const SobelKernels& kernels, float focal_px,
                          DepthDerivatives& out);
 

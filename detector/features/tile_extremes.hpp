@@ -13,13 +13,14 @@ struct Neighbourhood {
   int after() const { return side - 1 - side / 2; }
 };
 
-/// Which planes of the rows get the largest and the smallest value.
+/// Planes of the rows that get the largest and the smallest value.
 struct ExtremePlanes {
   int largest = 0;
   int smallest = 0;
 };
 
-/// Largest and smallest value around each pixel of a part, which has a margin of at least `around.before()` pixels.
+/// Computes the largest and the smallest value around each pixel of a part, which has a margin of at least
+/// `around.before()` pixels.
 void byte_extremes(const TilePlane<std::uint8_t>& plane, Neighbourhood around, ExtremePlanes planes, TileRows& rows);
 
 /// Quantisation of depth steps to bytes.

@@ -19,15 +19,15 @@ struct TileSources {
   const FeatureSettings& settings;
   const FeatureLayout& layout;
   const std::array<cv::Mat, 3>& lab;              ///< CV_8UC1 each; right where the part and lab_margin() around it are
-  const SobelKernels& kernels;                    ///< of the depth derivatives
-  const std::vector<std::vector<cv::Mat>>& base;  ///< by block, of those computed beforehand: CV_8UC1 planes
+  const SobelKernels& kernels;                    ///< kernels of the depth derivatives
+  const std::vector<std::vector<cv::Mat>>& base;  ///< planes that were computed beforehand, by block: CV_8UC1 planes
 };
 
 /// Works out all planes of a part, of the size of a few tiles, so that they stay in the cache. To be kept from part to
 /// part for its memory.
 class TileFeatures {
  public:
-  /// The planes of `part`, at most kMaxPart pixels wide, in rows().
+  /// Computes the planes of `part`, at most kMaxPart pixels wide, into rows().
   void compute(const TileSources& sources, cv::Rect part);
   const TileRows& rows() const { return rows_; }
 
@@ -38,11 +38,11 @@ class TileFeatures {
   void add_histograms(const TilePlane<float>& dx, const TilePlane<float>& dy, float gain, int first, int count);
   void add_base(const std::vector<cv::Mat>& base, const FeatureBlock& block);
   void derive_depth_of(const TileSources& sources);
-  /// Extremes of a base plane, the `index`-th of a block that begins at `first` and holds `count`.
+  /// Adds the extremes of a base plane, the `index`-th of a block that begins at `first` and holds `count`.
   void add_extremes(const TilePlane<std::uint8_t>& plane, int first, int index, int count);
 
   cv::Rect part_;
-  cv::Rect image_;  // as seen from the part's first pixel
+  cv::Rect image_;  // image relative to the part's first pixel
   Neighbourhood around_;
   TilePlane<std::uint8_t> plane_;
   TilePlane<float> metres_;
@@ -55,17 +55,17 @@ class TileFeatures {
 
 // Gains of gradient histograms, which map gradients to 0..255: times the largest gradient they stay below 2000, so that
 // sums fit into 16 bits.
-constexpr float kIntensityGain = 8.0F;  ///< of gradients of the lightness per pixel
-constexpr float kDepthGain = 160.0F;    ///< of metres per metre
+constexpr float kIntensityGain = 8.0F;  ///< gain of gradients of the lightness per pixel
+constexpr float kDepthGain = 160.0F;    ///< gain of depth gradients, metres per metre
 
-/// The steps in which depth is told, see PlaneKind.
+/// Quantisation steps of depth, see PlaneKind.
 struct DepthSteps {
   float metres = 0.0F;
   StepBytes bytes = StepBytes::kWrapped;
 };
 DepthSteps depth_steps(const WorkingFrame& frame, const FeatureSettings& settings);
 
-/// Margin around a part that its intensity planes need, pixels.
+/// Returns the margin around a part that its intensity planes need, pixels.
 int lab_margin(const FeatureSettings& settings);
 
 }  // namespace houghstream

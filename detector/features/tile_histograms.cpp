@@ -14,8 +14,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr int kVector = TilePlane<float>::kVector;
 constexpr int kBinCount = HistogramSteps::kBins;
 
-/// Orientations of gradients in [0, 9) bins, unsigned; a polynomial arctangent (error below 0.3 degrees), so that the
-/// result does not depend on the machine's mathematics library.
+/// Computes the orientations of gradients in [0, 9) bins, unsigned, by a polynomial arctangent (error below 0.3
+/// degrees), so that the result does not depend on the machine's mathematics library.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V orientation_bins(D d, V dx, V dy) {
   const auto zero = hn::Zero(d);
@@ -34,7 +34,7 @@ HWY_INLINE V orientation_bins(D d, V dx, V dy) {
   return hn::IfThenZeroElse(hn::Ge(bin, hn::Set(d, static_cast<float>(kBinCount))), bin);
 }
 
-/// Which bin each gradient of a row lies in and how many steps go there and to the next one.
+/// Bin of each gradient of a row, with the steps that go there and to the next one.
 struct RowShares {
   std::uint16_t low_bin[kWidestRow];
   std::uint16_t low[kWidestRow];
@@ -91,7 +91,7 @@ void fraction(const TilePlane<float>& dx, const TilePlane<float>& dy, float gain
   }
 }
 
-/// Five values side by side, or one above the other.
+/// Returns five values side by side, or one above the other.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V weighted(D d, const std::uint16_t* middle, std::ptrdiff_t step) {
   const auto near = hn::Add(hn::LoadU(d, middle - step), hn::LoadU(d, middle + step));

@@ -21,7 +21,7 @@ struct HistogramSteps {
 /// Shares of each pixel's gradient in the bins, in steps.
 using BinPlanes = std::array<TilePlane<std::uint16_t>, HistogramSteps::kBins>;
 
-/// All of the gradients' pixels, margins included; `bins` have their size.
+/// Bins all of the gradients' pixels, margins included; `bins` have their size.
 void bin_gradients(const TilePlane<float>& dx, const TilePlane<float>& dy, float gain, BinPlanes& bins);
 
 /// Sums one bin over the window around every pixel of `bytes`, whose margin is smaller than that of `bin` by 2.

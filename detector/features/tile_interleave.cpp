@@ -29,7 +29,7 @@ HWY_INLINE void transpose_bytes(D d, hn::Vec<D> (&rows)[kTurnSide]) {
   }
 }
 
-/// Bytes of kTurnSide planes side by side, then of the kTurnSide planes that follow, ...
+/// Interleaves the bytes of kTurnSide planes, then those of the kTurnSide planes that follow, ...
 template <std::size_t kSize>
 HWY_INLINE hn::Vec<hn::FixedTag<std::uint8_t, kSize>> load_blocks(const std::uint8_t* planes, int plane_stride) {
   const hn::FixedTag<std::uint8_t, kSize> d;
@@ -41,8 +41,8 @@ HWY_INLINE hn::Vec<hn::FixedTag<std::uint8_t, kSize>> load_blocks(const std::uin
   }
 }
 
-/// kSize planes of kTurnSide pixels: kTurnSide planes to a block, all blocks at once. Whole cache lines go past the
-/// cache, into which they would first have to be read.
+/// Transposes kSize planes of kTurnSide pixels: kTurnSide planes to a block, all blocks at once. Whole cache lines go
+/// past the cache, into which they would first have to be read.
 template <std::size_t kSize>
 HWY_INLINE void transpose_block(const std::uint8_t* planes, int plane_stride, std::uint8_t* pixels, int pixel_stride) {
   constexpr std::size_t kLine = 64;

@@ -10,9 +10,10 @@
 
 namespace houghstream {
 
-constexpr int kMaxPart = 128;                                      ///< pixels side by side, at most
-constexpr int kWidestMargin = 40;                                  ///< around a part, at most
-constexpr int kWidestRow = kMaxPart + 2 * kWidestMargin + 2 * 64;  ///< with room for vectors past its end
+constexpr int kMaxPart = 128;      ///< pixels side by side, at most
+constexpr int kWidestMargin = 40;  ///< around a part, at most
+/// Pixels of the widest row, with room for vectors past its end.
+constexpr int kWidestRow = kMaxPart + 2 * kWidestMargin + 2 * 64;
 
 /// Values of a part of an image, and of some pixels around it. Rows may be read and written a vector past their end.
 template <typename T>
@@ -35,7 +36,7 @@ class TilePlane {
   int margin() const { return margin_; }
   int stride() const { return stride_; }  ///< values
 
-  /// Row y of the part, from -margin on; its values are valid from -margin on too.
+  /// Returns row y of the part, from -margin on; its values are valid from -margin on too.
   const T* row(int y) const { return data_.data() + (y + margin_) * stride_ + margin_; }
   T* row(int y) { return data_.data() + (y + margin_) * stride_ + margin_; }
 

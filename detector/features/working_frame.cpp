@@ -13,7 +13,7 @@
 namespace houghstream {
 namespace {
 
-/// Mean of those depths of the block that belong to its nearest surface.
+/// Returns the mean of those depths of the block that belong to its nearest surface.
 float nearest_surface(const cv::Mat& depth, int x0, int x1, int y0, int y1) {
   float nearest = std::numeric_limits<float>::infinity();
   for (int y = y0; y < y1; ++y) {
@@ -79,7 +79,8 @@ void shrink_depth(const cv::Mat& depth, cv::Size size, cv::Mat& out) {
   }
 }
 
-/// Between the pixels of one surface the depth is interpolated, between two surfaces it is that of the nearest pixel.
+/// Enlarges depth: it is interpolated between the pixels of one surface, and that of the nearest pixel between two
+/// surfaces.
 void enlarge_depth(const cv::Mat& depth, cv::Size size, cv::Mat& out) {
   cv::resize(depth, out, size, 0, 0, cv::INTER_LINEAR);
   for (int y = 0; y < size.height; ++y) {
@@ -96,7 +97,7 @@ HoleReach hole_reach(const FeatureSettings& settings, const Camera& camera) {
   return {settings.fill_distance_px, settings.fill_distance * static_cast<float>(camera.fx)};
 }
 
-/// Into `out`, whose memory is used again where nobody shares it.
+/// Resizes a frame into `out`, whose memory is used again where nobody shares it.
 void resize_into(const RgbdFrame& frame, float scale, const FeatureSettings& settings, HoleWorkspace& holes,
                  WorkingFrame& out) {
   forget_shared(out.colour);
@@ -118,7 +119,8 @@ void resize_into(const RgbdFrame& frame, float scale, const FeatureSettings& set
   fill_holes(out.filled_depth, hole_reach(settings, out.camera), holes);
 }
 
-/// The colours that the frame lends stay its own: what becomes of them is put into `memory`.
+/// Brings the frame's brightness to a tone. The colours that the frame lends stay as they are: the changed ones go to
+/// `memory`.
 void bring_into(const AffineBrightness& tone, const RgbdFrame& frame, cv::Mat& memory, cv::Mat& colour) {
   if (!tone.changes()) return;
   if (colour.data != frame.colour.data) return apply_affine_brightness(tone, colour, colour);

@@ -24,13 +24,13 @@ template <typename T>
 using PerWalker = std::array<T, kMax + hn::MaxLanes(Int())>;
 struct Walkers {
   PerWalker<std::int32_t> at;      // PackedNode
-  PerWalker<std::int32_t> who;     // of the patches that set out
+  PerWalker<std::int32_t> who;     // index of the patch
   PerWalker<std::int32_t> centre;  // byte offset of the patch's pixel
   PerWalker<std::int32_t> scale;
   PerWalker<PackedNode> nodes;
-  PerWalker<std::int32_t> test;  // of the nodes
+  PerWalker<std::int32_t> test;  // tests of the nodes
   PerWalker<std::int32_t> way;
-  PerWalker<std::int32_t> first;  // byte offsets of what is looked at
+  PerWalker<std::int32_t> first;  // byte offset of the test's first pixel
   PerWalker<std::int32_t> second;
   PerWalker<std::uint8_t> first_values;
   PerWalker<std::uint8_t> second_values;
@@ -102,7 +102,7 @@ void compact(Walkers& w, std::int32_t* leaves) {
       continue;
     }
     retire(arrived, who, way, leaves);
-    const auto stays = hn::AndNot(arrived, present);  // what is stored behind them has been read
+    const auto stays = hn::AndNot(arrived, present);  // a store overwrites only lanes that have been read
     hn::StoreU(hn::Compress(test, stays), d, w.test.data() + left);
     hn::StoreU(hn::Compress(way, stays), d, w.way.data() + left);
     hn::StoreU(hn::Compress(who, stays), d, w.who.data() + left);
@@ -113,7 +113,7 @@ void compact(Walkers& w, std::int32_t* leaves) {
   w.count = left;
 }
 
-/// Which pixels the nodes ask for; as patch_offset.
+/// Computes which pixels the nodes ask for, as patch_offset does.
 void find_pixels(const FeatureImage& image, Walkers& w) {
   const Int d;
   const Ints row_stride = hn::Set(d, image.row_stride());
@@ -122,7 +122,7 @@ void find_pixels(const FeatureImage& image, Walkers& w) {
   for (std::size_t i = 0; i < w.count; i += hn::Lanes(d)) {
     const Ints test = hn::LoadU(d, w.test.data() + i);
     const Ints scale = hn::LoadU(d, w.scale.data() + i);
-    const auto to_px = [&](Ints high) {  // of the step in the highest bits
+    const auto to_px = [&](Ints high) {  // pixels of the step in the highest bits
       return hn::ShiftRight<8>(hn::Add(hn::Mul(hn::ShiftRight<32 - packed::kStepBits>(high), scale), half));
     };
     const Ints x1 = to_px(hn::ShiftLeft<27>(test));

@@ -19,11 +19,11 @@ struct PatchBatch {
 
 struct TreeRange {
   std::size_t first = 0;
-  std::size_t last = 0;  ///< not among them
+  std::size_t last = 0;  ///< end of the patches, exclusive
 };
 
-/// Leaf of each patch, tree by tree, many patches a step. Returns false, having done nothing, where nothing is packed
-/// or the image is too large for 32-bit offsets. The leaves are those of find_leaf.
+/// Finds the leaf of each patch, tree by tree, many patches a step. Returns false, having done nothing, where nothing
+/// is packed or the image is too large for 32-bit offsets. The leaves are those of find_leaf.
 bool traverse_batched(const PackedTrees& packed, TreeRange trees, const PatchBatch& patches, std::int32_t* leaves);
 
 }  // namespace houghstream

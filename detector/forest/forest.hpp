@@ -27,7 +27,8 @@ struct TreeNode {
   std::int32_t right = 0;
 };
 
-/// Where a patch of this leaf saw the object's centre, in the frame of its own viewing ray (see ray_rotation), metres.
+/// Vote of a leaf: the object's centre as one of its patches saw it, in the frame of the patch's viewing ray (see
+/// ray_rotation), metres.
 struct LeafVote {
   Eigen::Vector3f offset;
   float weight = 0.0F;  ///< share of the leaf's probability for the class; a class's votes sum to 1
@@ -41,17 +42,17 @@ struct LeafView {
 
 /// Statistics of one class in a leaf.
 struct LeafClass {
-  std::uint32_t first_vote = 0;   ///< into Forest::votes
-  std::uint32_t first_view = 0;   ///< into Forest::leaf_views
+  std::uint32_t first_vote = 0;   ///< index into Forest::votes
+  std::uint32_t first_view = 0;   ///< index into Forest::leaf_views
   float probability = 0.0F;       ///< p(class | leaf)
-  std::uint16_t class_index = 0;  ///< into Forest::classes
+  std::uint16_t class_index = 0;  ///< index into Forest::classes
   std::uint8_t vote_count = 0;
   std::uint8_t view_count = 0;
 };
 
 /// A taught object.
 struct ObjectClass {
-  int class_id = 0;  ///< from 1
+  int class_id = 0;  ///< class id, from 1
   std::string name;
   float radius = 0.0F;             ///< farthest seen surface point from the centre, metres
   float nominal_vote_mass = 1.0F;  ///< vote mass of a wholly visible object, square metres
@@ -70,7 +71,7 @@ struct ViewTemplate {
 
 /// A trained forest as its file holds it: flat arrays, trees one after another. A ForestIndex is what searches it.
 struct Forest {
-  std::string profile;  ///< that it was trained by, see training/profiles.hpp
+  std::string profile;  ///< profile that it was trained by, see training/profiles.hpp
   FeatureSettings features;
   PatchSettings patch;
   Scoring scoring = Scoring::kEvidence;
@@ -87,7 +88,7 @@ struct Forest {
   std::vector<LeafView> leaf_views;
 };
 
-/// Smallest rotation from the optical axis to a ray: R * (0,0,1) is parallel to the ray.
+/// Returns the smallest rotation from the optical axis to a ray: R * (0,0,1) is parallel to the ray.
 Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray);
 
 /// Walks one patch down one tree: the reference that find_leaves (traversal.hpp) is held against.

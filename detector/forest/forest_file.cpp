@@ -29,7 +29,8 @@ void archive_class(Archive& archive, ClassType& object) {
   for (const auto term : kScoreTermList) archive(object.score_model.weights.*term);
 }
 
-/// One list of members for writing and reading, so that the two cannot drift apart; for classes the one above.
+/// Visits all members for writing and reading alike, so that the two cannot drift apart; the one above does so for
+/// classes.
 template <typename Archive, typename ForestType>
 void archive_members(Archive& archive, ForestType& forest) {
   archive(forest.profile);
@@ -74,7 +75,7 @@ std::uint32_t checksum(const std::string& bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
 }
 
-/// A checksum says that the file is what was written; this says that what was written makes sense.
+/// Checks that the content makes sense. The checksum only says that the file is what was written.
 void check_indices(const Forest& forest, const std::string& source) {
   const auto nodes = static_cast<std::int64_t>(forest.nodes.size());
   const auto leaves = static_cast<std::int64_t>(forest.leaves.size()) - 1;
@@ -114,7 +115,7 @@ void check_leaves(const Forest& forest, const std::string& source) {
   for (std::size_t l = 1; l < forest.leaves.size(); ++l) {
     require(forest.leaves[l - 1] <= forest.leaves[l], "{}: leaf {} ends before it begins", source, l - 1);
   }
-  std::vector<std::size_t> last_leaf(forest.classes.size(), 0);  // that knew a class, counted from 1
+  std::vector<std::size_t> last_leaf(forest.classes.size(), 0);  // last leaf that knew a class, counted from 1
   for (std::size_t l = 1; l < forest.leaves.size(); ++l) {       // within the list: the last one ends where it does
     for (std::uint32_t e = forest.leaves[l - 1]; e < forest.leaves[l]; ++e) {
       const std::uint32_t known = forest.leaf_classes[e].class_index;
@@ -189,7 +190,7 @@ void save_forest(const Forest& forest, const std::filesystem::path& file) {
   whole.commit();
 }
 
-/// Read at once: a forest of many objects has hundreds of megabytes.
+/// Reads the rest at once, since a forest of many objects has hundreds of megabytes.
 static std::string rest_of(std::ifstream& in) {
   const std::istream::pos_type begin = in.tellg();
   const std::istream::pos_type end = in.seekg(0, std::ios::end).tellg();

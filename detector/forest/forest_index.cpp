@@ -20,7 +20,7 @@ std::vector<LeafSummary> make_leaf_heads(const Forest& forest) {
   return heads;
 }
 
-/// By the angle between the views' R_ray_object.
+/// Finds the neighbours by the angle between the views' R_ray_object.
 std::vector<ViewNeighbours> find_view_neighbours(const Forest& forest) {
   std::vector<std::vector<std::uint32_t>> by_class(forest.classes.size());
   for (std::uint32_t view = 0; view < forest.views.size(); ++view)

@@ -12,7 +12,7 @@ namespace houghstream {
 /// Values that detection reads of each leaf, side by side, so that a leaf costs one cache miss instead of two.
 struct LeafSummary {
   float max_posterior = 0.0F;     ///< the largest p(class | leaf)
-  std::uint32_t first_class = 0;  ///< as Forest::leaves
+  std::uint32_t first_class = 0;  ///< index as in Forest::leaves
 };
 
 /// The views of the same class that look at it from nearest by, nearest first; itself where there are no more.

@@ -9,7 +9,7 @@ namespace houghstream {
 /// First order in the distance from the centre, which is accurate over the extent of an object.
 struct OffAxisSlope {
   float right = 0.0F;  ///< metres of depth per metre to the right of the centre, at its depth
-  float down = 0.0F;   ///< the same downwards
+  float down = 0.0F;   ///< metres of depth per metre downwards
 };
 
 /// Returns the slope of a template with this centre, camera frame, metres, z > 0.

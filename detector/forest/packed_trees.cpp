@@ -24,7 +24,7 @@ std::int32_t pack_way(std::size_t left, int limit) {
   return static_cast<std::int32_t>(bits);
 }
 
-/// A pixel that is looked at alone is looked at twice: a second one would have to come into the cache for nothing.
+/// Packs a node. A test of one pixel reads it twice, since a second pixel would come into the cache for nothing.
 PackedNode pack_node(const PixelTest& test, std::size_t left) {
   const bool alone = test.kind == PixelTest::kSinglePixel;
   std::uint32_t bits = step_bits(test.dx1, 0) | step_bits(test.dy1, 1);
@@ -35,7 +35,7 @@ PackedNode pack_node(const PixelTest& test, std::size_t left) {
   return {bits, pack_way(left, std::clamp(test.threshold - 1, -kMaxLimit - 1, kMaxLimit))};
 }
 
-/// One tree, breadth first, behind the others. False where it does not fit.
+/// Appends one tree, breadth first. Returns false where it does not fit.
 bool append_packed(const Forest& forest, std::int32_t root, PackedTrees& trees) {
   const std::size_t maximum = std::min(kMaxNodes, forest.roots.size() + 2 * forest.nodes.size());
   std::vector<std::int32_t> sources = {root};

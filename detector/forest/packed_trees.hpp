@@ -17,18 +17,18 @@ struct PackedNode {
 /// The trees once more, packed for traverse_batched: eight bytes for each node and leaf; the right child follows the
 /// left one.
 struct PackedTrees {
-  std::vector<PackedNode> nodes;    ///< and leaves; empty = see pack_trees
+  std::vector<PackedNode> nodes;    ///< nodes and leaves; empty: see pack_trees
   std::vector<std::int32_t> roots;  ///< per tree, into nodes
 };
 
 /// Layout of a PackedNode, from the lowest bits on.
 namespace packed {
-constexpr int kStepBits = 5;  ///< of dx1, dy1, dx2 and dy2 each, with sign
+constexpr int kStepBits = 5;  ///< bits of dx1, dy1, dx2 and dy2 each, with sign
 constexpr int kPlaneShift = 20;
 constexpr std::uint32_t kSinglePixel = 1U << 28;
 constexpr std::uint32_t kWraps = 1U << 29;
 constexpr std::uint32_t kLeaf = 1U << 30;  ///< nothing else: the way is the leaf's number
-constexpr int kLimitShift = 23;            ///< of the way: below lies the left child, above it the limit, with sign
+constexpr int kLimitShift = 23;  ///< shift within the way: below lies the left child, above it the limit, with sign
 }  // namespace packed
 
 /// Packs the forest's roots and nodes. Empty where the trees do not fit: patches with a radius above 15 steps, more
@@ -39,7 +39,7 @@ PackedTrees pack_trees(const Forest& forest);
 /// walk, whose instruction set has gathers: dozens of plain loads overlap where a cache misses, but few gathers do.
 void fetch_nodes(const PackedNode* nodes, const std::int32_t* at, std::size_t count, PackedNode* fetched);
 struct PixelPairs {
-  const std::int32_t* first = nullptr;  ///< where pixels lie behind the origin, bytes
+  const std::int32_t* first = nullptr;  ///< offsets of pixels from the origin, bytes
   const std::int32_t* second = nullptr;
   std::uint8_t* first_values = nullptr;
   std::uint8_t* second_values = nullptr;

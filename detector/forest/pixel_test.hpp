@@ -33,7 +33,7 @@ inline std::ptrdiff_t patch_offset(const PatchView& patch, int dx, int dy) {
   return static_cast<std::ptrdiff_t>(y_px) * patch.row_stride + x_px * patch.pixel_stride;
 }
 
-/// p1 - p2 (the other place where patches are looked at is SplitSearch).
+/// Returns p1 - p2. SplitSearch is the other place that reads patches.
 inline int test_value(const PixelTest& test, const PatchView& patch) {
   const auto offset = [&](std::int8_t dx, std::int8_t dy) { return patch_offset(patch, dx, dy) + test.plane; };
   const int second_mask = (test.kind >> 7) - 1;

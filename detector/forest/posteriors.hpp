@@ -12,21 +12,23 @@ namespace houghstream {
 
 /// Patches of one run that vote for one class, in the grid's order.
 struct SupportingPatches {
-  std::vector<std::uint32_t> patches;  ///< into the PatchGrid
-  std::vector<std::uint32_t> ends;     ///< for each, where its entries end; they begin where those before it end
-  std::vector<std::uint32_t> entries;  ///< into Forest::leaf_classes: what its leaves know of the class, tree by tree
+  std::vector<std::uint32_t> patches;  ///< indices into the PatchGrid
+  std::vector<std::uint32_t> ends;     ///< end of each patch's entries; they begin where those before it end
+  /// Indices into Forest::leaf_classes: what a patch's leaves know of the class, tree by tree.
+  std::vector<std::uint32_t> entries;
 };
 
-/// Which patches vote for which class: those whose posterior p(class | patch), the mean over the trees of
-/// p(class | leaf), is large enough (Gall et al. 2011). Most vote for none.
+/// Patches that vote for each class: those whose posterior p(class | patch), the mean over the trees of p(class |
+/// leaf), is large enough (Gall et al. 2011). Most vote for none.
 class PatchPosteriors {
  public:
   PatchPosteriors() = default;
-  /// A patch votes for a class from a posterior of `min_fraction` on. The index must outlive this.
+  /// Makes posteriors with which a patch votes for a class from a posterior of `min_fraction` on. The index must
+  /// outlive this.
   PatchPosteriors(const ForestIndex& index, std::size_t runs, float min_fraction) {
     reset(index, runs, min_fraction, 1);
   }
-  /// As if made anew, for so many workers, but the memory is used again.
+  /// Resets to the state of a new object, for so many workers, and keeps the memory.
   void reset(const ForestIndex& index, std::size_t runs, float min_fraction, int threads);
 
   /// Notes who votes among the patches of a run. Different workers may note different runs at the same time.
@@ -56,7 +58,7 @@ class PatchPosteriors {
   const ForestIndex* index_ = nullptr;
   float min_fraction_ = 0.0F;
   std::vector<SupportingPatches> supporters_;  // [run * classes + class]; more where another forest had more classes
-  std::size_t used_ = 0;                       // of the supporters
+  std::size_t used_ = 0;                       // number of supporters in use
   PerWorker<Worker> workers_;
 };
 

@@ -8,8 +8,8 @@ namespace houghstream {
 /// Of all products of two measures the ones listed here reduced the loss most on the development worlds.
 struct ScoreTerms {
   float constant = 0.0F;
-  float log_vote_mass = 0.0F;         ///< logarithm of the vote mass over the expected one
-  float log_visible = 0.0F;           ///< logarithm of what is not hidden: half an object has half the mass
+  float log_vote_mass = 0.0F;  ///< logarithm of the vote mass over the expected one
+  float log_visible = 0.0F;    ///< logarithm of the fraction that is not occluded: half an object has half the mass
   float free_space_violation = 0.0F;  ///< share of the view's surface behind which something is measured
   float no_depth = 0.0F;              ///< share without depth
   float rim_continuation = 0.0F;      ///< share of the rim beyond which the surface goes on
@@ -21,7 +21,7 @@ struct ScoreTerms {
   ///< distributed differently there, and near surfaces lose their depth more often than far ones.
   float no_depth_log_vote_mass = 0.0F;
   float no_depth_colour_correlation = 0.0F;
-  float no_depth_distance = 0.0F;                ///< with the distance's logarithm
+  float no_depth_distance = 0.0F;                ///< product with the distance's logarithm
   float colour_correlation_hue_mismatch = 0.0F;  ///< print of other colours may be as like as can be
   float alternative_scale_gain = 0.0F;           ///< gain of another size, see alternative_scale_gain
   float log_certainty = 0.0F;  ///< logarithm: as many votes of patches that are less sure come from elsewhere Products,

@@ -7,7 +7,7 @@
 namespace houghstream {
 namespace {
 
-/// Leaves of patches of one level in some of the trees.
+/// Finds the leaves of patches of one level in some of the trees.
 void traverse_trees(const ForestIndex& index, const PatchBatch& walking, TreeRange trees, std::int32_t* leaves) {
   if (traverse_batched(index.packed(), trees, walking, leaves)) return;
   for (std::size_t tree = trees.first; tree < trees.last; ++tree, leaves += walking.count) {
@@ -38,7 +38,7 @@ void reject_patches(const ForestIndex& index, const EarlyRejection& early_reject
   }
 }
 
-/// The patches that are left, side by side.
+/// Returns the patches that are left, side by side.
 PatchBatch gather_accepted(const FeatureImage& image, const PatchGrid& patches, LeafWorkspace::Worker& workspace) {
   workspace.x.clear();
   workspace.y.clear();
@@ -57,7 +57,7 @@ PatchBatch gather_accepted(const FeatureImage& image, const PatchGrid& patches, 
   return left;
 }
 
-/// Leaves of one run.
+/// Finds the leaves of one run.
 void traverse_run(const LeafInput& input, const PatchRun& run, LeafWorkspace::Worker& workspace) {
   const ForestIndex& index = input.index;
   const PatchGrid& patches = input.patches;

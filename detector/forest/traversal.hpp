@@ -11,17 +11,17 @@
 
 namespace houghstream {
 
-/// After how many trees a patch may be given up, and when, see LeafSettings.
+/// Number of trees after which a patch may be rejected, and the condition, see LeafSettings.
 struct EarlyRejection {
   int trees = 0;                    ///< 0 = no patch is given up
   float min_mean_posterior = 0.0F;  ///< mean of LeafSummary::max_posterior that must be reached
 
   bool is_enabled(const Forest& forest) const { return trees > 0 && trees < static_cast<int>(forest.roots.size()); }
-  /// `sum`: of the certainties, added in the trees' order.
+  /// Returns whether the patch continues. `sum` is that of the certainties, added in the trees' order.
   bool is_accepted(float sum) const { return sum >= min_mean_posterior * static_cast<float>(trees); }
 };
 
-/// Which patches walk down which trees.
+/// Patches and the trees that they walk down.
 struct LeafInput {
   const ForestIndex& index;
   const std::vector<FeatureImage>& features;  ///< one image for each level
@@ -34,9 +34,9 @@ struct LeafInput {
 struct RunLeaves {
   std::size_t run = 0;
   std::size_t count = 0;                   ///< patches
-  const std::uint32_t* patches = nullptr;  ///< into the PatchGrid, in its order
+  const std::uint32_t* patches = nullptr;  ///< indices into the PatchGrid, in its order
   const std::int32_t* leaves = nullptr;    ///< tree by tree: leaves[tree * count + i] is that of patches[i]
-  int worker = 0;                          ///< that visits the run, see parallel_for_workers
+  int worker = 0;                          ///< worker that visits the run, see parallel_for_workers
 };
 
 using LeafVisitor = std::function<void(const RunLeaves&)>;
@@ -45,9 +45,9 @@ using LeafVisitor = std::function<void(const RunLeaves&)>;
 struct LeafWorkspace {
   struct Worker {
     std::vector<std::int32_t> leaves;    ///< tree by tree, of the patches that are left
-    std::vector<std::uint32_t> patches;  ///< those left, into the grid
-    std::vector<float> sums;             ///< of the leaves' certainties
-    std::vector<std::int16_t> x;         ///< of those left
+    std::vector<std::uint32_t> patches;  ///< indices of the patches that are left, into the grid
+    std::vector<float> sums;             ///< sums of the leaves' certainties
+    std::vector<std::int16_t> x;         ///< coordinates of those that are left
     std::vector<std::int16_t> y;
     std::vector<std::int32_t> scale;
   };
@@ -55,8 +55,8 @@ struct LeafWorkspace {
   PerWorker<Worker> workers;
 };
 
-/// Leaf of every patch in every tree, but for patches that are given up. Patches are walked many at once, and runs are
-/// visited at the same time; the leaves are those of find_leaf.
+/// Finds the leaf of every patch in every tree, except of rejected patches. Patches are walked many at once, and runs
+/// are visited at the same time; the leaves are those of find_leaf.
 void find_leaves(const LeafInput& input, int threads, LeafWorkspace& workspace, const LeafVisitor& visit);
 
 }  // namespace houghstream

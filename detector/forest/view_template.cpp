@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kSide = TemplateGrid::kSide;
 
-/// The cells beside the outline, each with the depth of the nearest cell of the object. Not below the object's upper
-/// part: what it stands on may touch it there.
+/// Marks the cells beside the outline, each with the depth of the nearest cell of the object. Cells below the object's
+/// upper part stay free, since what it stands on may touch it there.
 void mark_rim(TemplateGrid& appearance) {
   constexpr int kUpper = TemplateGrid::kRim + (TemplateGrid::kBoxSide * 3) / 5;
   appearance.beside.fill(TemplateGrid::kBeside);
@@ -46,7 +46,7 @@ struct Line {
     const auto position = static_cast<std::uint8_t>(number);
     return is_row ? OutlineCells::Cell{position, along} : OutlineCells::Cell{along, position};
   }
-  /// As TemplateGrid::mm; beside the object where there is no such cell.
+  /// Returns TemplateGrid::mm of a cell, or kBeside where there is no such cell.
   std::int16_t mm(const TemplateGrid& appearance, int i) const {
     if (i < 0 || i >= kSide) return TemplateGrid::kBeside;
     return appearance.mm[static_cast<std::size_t>(is_row ? number * kSide + i : i * kSide + number)];

@@ -31,10 +31,10 @@ struct TemplateGrid {
   static constexpr std::int16_t kNoDepth = -32767;  ///< it does, but no depth was measured
   using Cells = std::array<std::int16_t, kSide * kSide>;
   Cells mm{};      ///< row by row; as it lies across the ray to the centre, see OffAxisSlope
-  Cells beside{};  ///< beside the outline: depth of the nearest cell of the object; elsewhere kBeside
+  Cells beside{};  ///< depth of the nearest cell of the object in cells beside the outline; elsewhere kBeside
   std::array<std::array<std::uint8_t, 3>, kSide * kSide> lab{};  ///< colour, 8-bit CIE L*a*b*; of the object only
-  /// At both ends of each row and column. Where those are fewer, one from row 0 ends them: the rim never shows the
-  /// object.
+  /// Crossings of the outline at both ends of each row and column. Where those are fewer, one from row 0 ends them: the
+  /// rim never shows the object.
   std::array<OutlineCells, 4 * kBoxSide> outline{};
 };
 

@@ -8,7 +8,7 @@
 namespace houghstream {
 namespace {
 
-/// The last element is of the votes outside the image.
+/// Sums the votes by cell; the last element is that of the votes outside the image.
 void sum_by_cell(const CastVotes& cast, const CellGrid& grid, std::vector<CellSum>& sums) {
   sums.assign(grid.outside() + 1, CellSum{});
   CellSum* const by_cell = sums.data();
@@ -36,7 +36,7 @@ void lay_out(const std::vector<CellSum>& sums, std::vector<std::uint32_t>& next,
   space.voter.resize(count);
 }
 
-/// Counting sort: stable, so the order does not depend on anything but the votes.
+/// Sorts the votes by cell. The counting sort is stable, so that the order depends on nothing but the votes.
 void sort_by_cell(const CastVotes& cast, std::vector<std::uint32_t>& next, HoughSpace& space) {
   std::uint32_t* const free = next.data();
   Vote* const votes = space.votes.data();
@@ -58,7 +58,7 @@ void sort_by_cell(const CastVotes& cast, std::vector<std::uint32_t>& next, Hough
         Eigen::Map<const Eigen::Array4f>(vote->centre_camera.data());
     voters[place] = *voter++;
   }
-  space.votes.resize(space.first_vote.back() + kSpareVotes);  // without those outside
+  space.votes.resize(space.first_vote.back() + kSpareVotes);  // leaves out the votes outside
   space.voter.resize(space.first_vote.back());
 }
 

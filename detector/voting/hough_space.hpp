@@ -11,7 +11,7 @@
 
 namespace houghstream {
 
-constexpr float kVoteReach = 2.5F;  ///< of vote_kernel, in sigmas
+constexpr float kVoteReach = 2.5F;  ///< reach of vote_kernel, in sigmas
 
 /// Returns the weight of a vote at this distance from a maximum: (1 - d^2 / reach^2)^2 with a reach of 2.5 sigma. It
 /// approximates a Gaussian, needs no exponential and is zero beyond the reach.
@@ -29,21 +29,21 @@ struct Vote {
 
 /// A patch and one of its leaves that knows the class.
 struct Voter {
-  std::uint32_t patch = 0;       ///< into the PatchGrid
-  std::uint32_t leaf_class = 0;  ///< into Forest::leaf_classes
+  std::uint32_t patch = 0;       ///< index into the PatchGrid
+  std::uint32_t leaf_class = 0;  ///< index into Forest::leaf_classes
 };
 
-constexpr std::size_t kSpareVotes = 7;  ///< behind the last, so that eight can be read anywhere
+constexpr std::size_t kSpareVotes = 7;  ///< votes behind the last, so that eight can be read anywhere
 
 /// The Hough space of one class: its votes in 3-D, sorted by the image cell in which their centre is seen.
 struct HoughSpace {
   int width = 0;  ///< cells
   int height = 0;
-  int cell_px = 0;                        ///< working pixels per cell
-  std::vector<Vote> votes;                ///< by cell, row by row; within a cell in order of patch and tree; then
-                                          ///< kSpareVotes that do not count
+  int cell_px = 0;  ///< working pixels per cell
+  /// Votes by cell, row by row; within a cell in order of patch and tree; then kSpareVotes that do not count.
+  std::vector<Vote> votes;
   std::vector<std::uint32_t> voter;       ///< per vote, into `voters`: who cast it
-  std::vector<Voter> voters;              ///< by patch, tree by tree; some may have cast no vote into the image
+  std::vector<Voter> voters;              ///< voters by patch, tree by tree; some may have cast no vote into the image
   std::vector<std::uint32_t> first_vote;  ///< per cell, and one more
   std::vector<float> image;               ///< sum of weights per cell, smoothed; independent of distance, since both
                                           ///< a patch's footprint and the spread of its votes shrink with it
@@ -54,7 +54,7 @@ struct VotingInput {
   const Forest& forest;
   const PatchGrid& patches;
   const PatchPosteriors& posteriors;
-  const Camera& camera;  ///< in whose pixels Hough spaces are laid out: that of the level for near surfaces
+  const Camera& camera;  ///< camera in whose pixels Hough spaces are laid out: that of the level for near surfaces
   const VotingSettings& settings;
 };
 
@@ -62,7 +62,7 @@ struct VotingInput {
 struct CastVotes {
   static constexpr std::size_t kSlack = 4;  ///< elements behind the last that are written but not meant
 
-  std::size_t count = 0;  ///< of the vectors' elements, which may be more
+  std::size_t count = 0;  ///< number of elements that count; the vectors may hold more
   std::vector<Vote> votes;
   std::vector<std::uint32_t> cells;   ///< CellGrid::outside() of votes not seen in the image or nearer than 10 cm
   std::vector<std::uint32_t> voters;  ///< index of who cast it
@@ -93,7 +93,7 @@ struct CellGrid {
 
   int width = 0;  ///< cells
   int height = 0;
-  float fx = 0.0F;  ///< of the camera, in cells; a cell's centre is at a half
+  float fx = 0.0F;  ///< focal length in cells; a cell's centre is at a half
   float fy = 0.0F;
   float cx = 0.0F;
   float cy = 0.0F;

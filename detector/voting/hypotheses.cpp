@@ -22,7 +22,7 @@ int sum_by_voter(const VotingInput& input, const Eigen::Vector3f& centre, Voting
   for (const VoteRange& range : workspace.ranges) {
     supports.resize(std::max<std::size_t>(supports.size(), range.end - range.begin + 1));
     std::size_t found = 0;
-    for (std::uint32_t v = range.begin; v < range.end; ++v) {  // without a branch that nobody can predict
+    for (std::uint32_t v = range.begin; v < range.end; ++v) {  // avoids a branch that cannot be predicted
       const Vote& vote = space.votes[v];
       const float k = vote_kernel((vote.centre_camera - centre).squaredNorm(), vote_sigma);
       supports[found] = {v, k * vote.weight};
@@ -62,7 +62,7 @@ void sum_by_view(const Forest& forest, const SparseSums::Weights& by_voter, Voti
   });
 }
 
-/// A maximum with its mass, which is what is seen of the object: the weight times the area of the patches.
+/// Returns a maximum with its mass, which is the visible part of the object: the weight times the area of the patches.
 Hypothesis score_maximum(const VotingInput& input, const Eigen::Vector3f& centre, VotingWorkspace::Worker& workspace,
                          SparseSums::Weights& by_voter) {
   Hypothesis hypothesis;
@@ -89,7 +89,7 @@ void add_support(const Forest& forest, const SparseSums::Weights& by_voter, Voti
   sum_by_view(forest, by_voter, workspace, hypothesis.views);
 }
 
-/// The classes, those with the most to do first, so that no thread starts with one when the others have ended.
+/// Returns the classes, those with the most work first, so that no thread starts one when the others have ended.
 std::vector<std::size_t> by_work(std::size_t classes, const PatchPosteriors& posteriors) {
   std::vector<std::size_t> work(classes, 0);
   std::vector<std::size_t> order(classes);

@@ -11,7 +11,7 @@ namespace houghstream {
 
 /// A maximum of the 3-D vote density of one class, with everything that supports it.
 struct Hypothesis {
-  std::size_t class_index = 0;                              ///< into Forest::classes
+  std::size_t class_index = 0;                              ///< index into Forest::classes
   Eigen::Vector3f centre_camera = Eigen::Vector3f::Zero();  ///< metres
   float vote_mass = 0.0F;  ///< votes' weight times the area of their patches, square metres: what is seen of the object
   float weight = 0.0F;     ///< votes' weight
@@ -46,10 +46,10 @@ struct VotingWorkspace {
     CastWorkspace casting;
     MaximaWorkspace maxima;
     std::vector<VoteRange> ranges;
-    SparseSums::Weights supports;  ///< of a range's votes
+    SparseSums::Weights supports;  ///< supports of a range's votes
     SparseSums voter_sums;
     SparseSums view_sums;
-    std::vector<SparseSums::Weights> by_voter;  ///< of each maximum
+    std::vector<SparseSums::Weights> by_voter;  ///< weights by voter of each maximum
     SparseSums::Weights by_patch;
   };
   PerWorker<Worker> workers;

@@ -23,7 +23,7 @@ bool is_maximum(const HoughSpace& space, int x, int y) {
   return true;
 }
 
-/// Local maxima of the Hough image, strongest first.
+/// Lists the local maxima of the Hough image, strongest first.
 void list_maxima(const HoughSpace& space, float min_relative_peak, int limit, std::vector<HoughCell>& maxima) {
   const float largest = *std::max_element(space.image.begin(), space.image.end());
   const float minimum = std::max(1e-4F, min_relative_peak * largest);
@@ -39,7 +39,7 @@ void list_maxima(const HoughSpace& space, float min_relative_peak, int limit, st
   if (maxima.size() > static_cast<std::size_t>(limit)) maxima.resize(static_cast<std::size_t>(limit));
 }
 
-/// Weighted median depth of the votes of a cell's neighbourhood: the start of the mean shift.
+/// Returns the weighted median depth of the votes of a cell's neighbourhood: the start of the mean shift.
 float start_depth(const HoughSpace& space, const HoughCell& cell, MaximaWorkspace& workspace) {
   ranges_near(space, cell.x, cell.y, 1, workspace.ranges);
   workspace.depths.clear();

@@ -23,11 +23,11 @@ struct HoughCell {
 struct MaximaWorkspace {
   std::vector<HoughCell> cells;
   std::vector<VoteRange> ranges;
-  std::vector<std::pair<float, float>> depths;  ///< and weights
+  std::vector<std::pair<float, float>> depths;  ///< depths and their weights
 };
 
-/// Maxima of the Hough image, at most `limit`, each moved to the nearest maximum of the votes in 3-D, those that meet
-/// merged: camera frame, metres, the image's highest first.
+/// Returns at most `limit` maxima of the Hough image, each moved to the nearest maximum of the votes in 3-D, with those
+/// that meet merged: camera frame, metres, the image's highest first.
 std::vector<Eigen::Vector3f> find_maxima(const HoughSpace& space, const Camera& camera, const VotingSettings& settings,
                                          int limit, MaximaWorkspace& workspace);
 

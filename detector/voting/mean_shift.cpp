@@ -41,7 +41,7 @@ HWY_INLINE void add_votes(const float* votes, std::size_t count, const Sums& cen
   sums.total = hn::Add(sums.total, k);
 }
 
-/// `lanes` gets the partial sums of x, y, z and the support.
+/// Writes the partial sums of x, y, z and the support into `lanes`.
 void sum_lanes(const Vote* votes, const std::vector<VoteRange>& ranges, const Eigen::Vector3f& centre, float reach_sq,
                SumLanes& lanes) {
   const Float d;
@@ -76,7 +76,7 @@ namespace {
 
 HWY_EXPORT(sum_lanes);
 
-/// Pairs, pairs of pairs, and so on.
+/// Sums pairs, then pairs of pairs, and so on.
 float sum_of(const std::array<float, kSumLanes>& l) {
   return ((l[0] + l[1]) + (l[2] + l[3])) + ((l[4] + l[5]) + (l[6] + l[7]));
 }

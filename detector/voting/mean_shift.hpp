@@ -8,13 +8,13 @@
 
 namespace houghstream {
 
-/// From `begin` on, up to but not including `end`; into HoughSpace::votes.
+/// Range of HoughSpace::votes from `begin` on, up to but not including `end`.
 struct VoteRange {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
 };
 
-/// The votes seen within `radius_cells` of a cell, row by row. `ranges` is overwritten.
+/// Lists the votes within `radius_cells` of a cell, row by row. `ranges` is overwritten.
 void ranges_near(const HoughSpace& space, int cell_x, int cell_y, int radius_cells, std::vector<VoteRange>& ranges);
 
 /// Lists the ranges of all votes within reach of a centre (camera frame, metres), and of some beyond it.
@@ -31,9 +31,9 @@ struct VoteSupport {
   float total = 0.0F;
 };
 
-/// Support of `centre` by the votes in the ranges. Many votes are looked at at once, in an order that is the same on
-/// every machine: vote v of a range adds to partial sum v % kSumLanes of each coordinate, and these are added in pairs,
-/// pairs of pairs, and so on.
+/// Returns the support of `centre` by the votes in the ranges. Many votes are summed at once, in an order that is the
+/// same on every machine: vote v of a range adds to partial sum v % kSumLanes of each coordinate, and these are added
+/// in pairs, pairs of pairs, and so on.
 VoteSupport sum_support(const HoughSpace& space, const std::vector<VoteRange>& ranges, const Eigen::Vector3f& centre,
                         float vote_sigma);
 

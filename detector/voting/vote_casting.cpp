@@ -20,7 +20,7 @@ using Int = hn::Rebind<std::int32_t, Float>;
 
 static_assert(sizeof(LeafVote) == 4 * sizeof(float) && sizeof(Vote) == 4 * sizeof(float));
 
-/// From the frame of a patch's ray to that of the camera: a rotation and the patch's point.
+/// Transform from the frame of a patch's ray to that of the camera: a rotation and the patch's point.
 struct VoteTransform {
   struct Row {
     Floats x, y, z, origin;
@@ -43,7 +43,7 @@ HWY_INLINE Floats transformed(const VoteTransform::Row& to, Floats x, Floats y, 
   return hn::Add(to.origin, hn::Add(hn::Mul(to.x, x), hn::Add(hn::Mul(to.y, y), hn::Mul(to.z, z))));
 }
 
-/// The cells in which centres are seen.
+/// Returns the cells in which centres are seen.
 HWY_INLINE hn::Vec<Int> cells_of(Floats x, Floats y, Floats z, const CellGrid& grid) {
   const Float d;
   const Int di;
@@ -61,7 +61,7 @@ HWY_INLINE hn::Vec<Int> cells_of(Floats x, Floats y, Floats z, const CellGrid& g
 /// Values that the votes of one voter share.
 struct VoteBatch {
   float probability;  // p(class | leaf)
-  float fraction;     // of one tree
+  float fraction;     // fraction of one tree
   std::uint32_t voter;
   const CellGrid& grid;
 };

@@ -6,10 +6,11 @@ namespace houghstream {
 
 /// Settings of the voting and of the search for its maxima.
 struct VotingSettings {
-  float min_mass_fraction = 0.02F;  ///< of a class's expected mass, for a maximum to be looked at
-  int maxima_per_class = 64;        ///< highest of the Hough image that are looked at in 3-D, see per_class_budget
-  int candidates_per_class = 20;    ///< heaviest of these that are compared with view templates, see per_class_budget
-  float min_relative_peak = 0.05F;  ///< of the Hough image's highest value, for a maximum to be looked at
+  float min_mass_fraction = 0.02F;  ///< fraction of a class's expected mass below which a maximum is ignored
+  int maxima_per_class = 64;        ///< highest maxima of the Hough image that are refined in 3-D, see per_class_budget
+  /// Heaviest of these maxima that are compared with view templates, see per_class_budget.
+  int candidates_per_class = 20;
+  float min_relative_peak = 0.05F;  ///< fraction of the Hough image's highest value below which a maximum is ignored
   float hough_sigma_px = 3.0F;      ///< smoothing of the Hough image, working pixels
   float vote_sigma = 0.016F;        ///< bandwidth of the 3-D maximum, metres
 };

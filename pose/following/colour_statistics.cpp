@@ -17,7 +17,8 @@ void move_histogram(const std::vector<std::size_t>& bins, float rate, std::vecto
 ColourStatistics::ColourStatistics() : on_(kColourBins, 0.0F), beside_(kColourBins, 0.0F), ratio_(kColourBins, 0.5F) {}
 
 void ColourStatistics::learn(const std::vector<cv::Vec3b>& on, const std::vector<cv::Vec3b>& beside, double rate) {
-  constexpr float kRare = 1e-4F;  // of the pixels: so few tell little, and keep the ratio off 0 and 1
+  // Fraction of the pixels that is too small to tell anything; it keeps the ratio off 0 and 1.
+  constexpr float kRare = 1e-4F;
   const auto bins_of = [](const std::vector<cv::Vec3b>& colours) {
     std::vector<std::size_t> bins;
     bins.reserve(colours.size());

@@ -5,17 +5,17 @@
 
 namespace houghstream {
 
-/// How often each colour is on an object and beside it, learnt from frame to frame (Prisacariu and Reid 2012, "PWP3D";
-/// histograms of 16 values a channel as Stoiber et al. 2022 have them).
+/// Colour histograms of an object and of what lies beside it, learnt from frame to frame (Prisacariu and Reid 2012,
+/// "PWP3D"; histograms of 16 values a channel as Stoiber et al. 2022 have them).
 class ColourStatistics {
  public:
   ColourStatistics();
 
-  /// Probability that a pixel of this colour (BGR) is on the object where both are as likely before, in (0, 1). Of a
-  /// colour of which nothing is known it is a half.
+  /// Returns the probability, in (0, 1), that a pixel of this colour (BGR) is on the object, where both sides are
+  /// equally likely a priori; 0.5 for a colour that was never observed.
   float foreground(const cv::Vec3b& bgr) const { return ratio_[bin_of(bgr)]; }
 
-  /// Nothing has been learnt yet.
+  /// Returns whether no pixels have been learnt yet.
   bool empty() const { return empty_; }
 
   /// Takes a frame's pixels on the object and beside it: each histogram moves by `rate` towards theirs, the first one
@@ -23,7 +23,7 @@ class ColourStatistics {
   void learn(const std::vector<cv::Vec3b>& on, const std::vector<cv::Vec3b>& beside, double rate);
 
  private:
-  static constexpr int kBits = 4;  // of a channel
+  static constexpr int kBits = 4;  // bits of a channel that choose its bin
   static std::size_t bin_of(const cv::Vec3b& bgr) {
     constexpr int kDrop = 8 - kBits;
     return (static_cast<std::size_t>(bgr[0] >> kDrop) << (2 * kBits)) |

@@ -22,7 +22,7 @@ Eigen::Vector3d middle_of(const ObjectModel& model, const Eigen::Isometry3d& T_c
   return T_camera_object * model.centre.cast<double>();
 }
 
-/// The box about the points that should be seen; empty where none is.
+/// Returns the box about the points that should be visible; it is empty where none is.
 cv::Rect2f expected_box(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object) {
   constexpr int kPoints = 150;
   const ProjectedView look = project_view(frame, model, T_camera_object, kPoints);
@@ -49,10 +49,11 @@ bool has_depth(const ObjectObservation& observation, const FollowerInput& input)
   return observation.region.points >= input.pose.region.min_points;
 }
 
-/// Whether any depth is measured where the object should be, at whatever distance.
+/// Returns whether any depth is measured where the object should be, at whatever distance.
 bool is_depth_measured(const ObjectObservation& observation, const FollowerInput& input) {
   const cv::Mat part = observation.frame.depth(observation.region.box_px);
-  return cv::countNonZero(part == part) >= input.pose.region.min_points;  // NaN differs from itself
+  // Counts measured pixels: NaN differs from itself.
+  return cv::countNonZero(part == part) >= input.pose.region.min_points;
 }
 
 /// The texture moves the pose a little, where depth and silhouette leave it free.
@@ -107,7 +108,7 @@ void decide_followed(const ObjectObservation& observation, const ExpectedObject&
     followed.verified = expected.verified;
     followed.pose.chroma = chroma_pair(followed.pose.class_name, evidence, quality);
     decide_status(evidence, T, true, quality, followed.pose);
-    // An outline of before says nothing for what the camera sees through by now.
+    // The outline of an earlier frame cannot show where the camera sees through the object in this one.
     const auto judged = static_cast<float>(evidence.depth.depth_inliers + evidence.depth.free_space_violations);
     const bool is_present =
         static_cast<float>(evidence.depth.free_space_violations) <= input.follow.max_free_space_violation * judged;
@@ -136,7 +137,7 @@ void judge_without_depth(const ExpectedObject& expected, const JointResult& resu
   pose.T_camera_object = followed.T_camera_object;
 }
 
-/// Of an object of which nothing is known yet in this frame.
+/// Returns the result for an object that has not been measured in this frame yet.
 FollowedPose unposed(const ExpectedObject& expected) {
   FollowedPose followed;
   followed.pose.class_id = expected.class_id;
@@ -181,7 +182,7 @@ FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, co
   return followed;
 }
 
-/// Whether something stands before the object, and what can be seen of it is not seen through.
+/// Returns whether something occludes the object, and the rest of it shows no free-space violation.
 bool is_hidden(const FrameContext& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                const FollowerInput& input) {
   const DepthTolerance tolerance{input.pose.verification.tolerance_m, frame.noise};

@@ -13,22 +13,25 @@
 
 namespace houghstream {
 
-/// How an object is found again in the next frame from where it is expected, without a detection. Between two frames it
-/// moves by little: few points and steps of registration do.
+/// Settings by which an object is found again in the next frame from its predicted pose, without a detection. It moves
+/// little between two frames, so that few points and few steps of registration suffice.
 struct FollowSettings {
   JointSettings joint;
-  double max_jump_m = 0.04;  ///< of the middle, from where it was expected: what ended farther away is something else
+  /// Distance of the middle from its predicted place, beyond which the result is another object.
+  double max_jump_m = 0.04;
 
-  int min_edges = 40;  ///< lines of the silhouette by which a pose is measured where there is no depth
+  int min_edges = 40;  ///< number of silhouette lines that measure a pose where there is no depth
 
-  // The texture turns a round thing back, which depth alone lets drift.
+  // The texture corrects the rotation of a round object, which depth alone lets drift.
   double refine_step_deg = 2.0;
   double refine_step_m = 0.002;
   int refine_rounds = 4;
   int refine_points = 250;
 
-  float max_occluded_fraction = 0.5F;     ///< of the rendered pixels, behind something: it is hidden rather than gone
-  float max_free_space_violation = 0.3F;  ///< of the others, seen through: it is gone even so
+  /// Fraction of the rendered pixels behind a nearer surface: above it the object is hidden, not gone.
+  float max_occluded_fraction = 0.5F;
+  /// Fraction of the others that shows free space: above it the object is gone even so.
+  float max_free_space_violation = 0.3F;
 };
 
 template <typename Visit>
@@ -45,32 +48,35 @@ void fields(const FollowSettings& /*settings*/, const Visit& visit) {
   visit(number("max_free_space_violation", &S::max_free_space_violation, 0, 1));
 }
 
-/// An object that was posed before, and where it may be in a frame.
+/// An object that had a pose in an earlier frame, with its predicted poses in this one.
 struct ExpectedObject {
   int class_id = 0;
   std::string class_name;
-  float score = 0.0F;                            ///< of the detections that it was found by
+  float score = 0.0F;                            ///< score of the detections that found it
   std::vector<Eigen::Isometry3d> initial_poses;  ///< T_camera_object, the likeliest first; at least one
-  bool refine_by_texture = false;                ///< its texture may move it a little too, at some cost
-  bool is_lost = false;                          ///< it is looked for as far away as a detection's pose is
-  bool check_occlusion = true;           ///< whether it is hidden where it is expected first: that renders it once more
-  std::optional<Verification> verified;  ///< of an earlier frame: its outline is taken for this one's
-  float texture_probability = 1.0F;  ///< PoseEvidence::texture_probability of the detection's pose that it goes on from
-  ChromaMap camera_colours = {};     ///< by which its colours are judged
-  float shape_quality = 0.0F;        ///< of its last pose for which depth spoke
-  FollowedAppearance appearance;     ///< learnt in earlier frames
-  DepthLag depth_lag;                ///< as JointStart has it
+  bool refine_by_texture = false;                ///< whether its texture may move the pose a little too, at some cost
+  bool is_lost = false;                          ///< whether it is searched for within the reach of a detection's pose
+  /// Tests for occlusion at the first predicted pose, which costs one more rendering.
+  bool check_occlusion = true;
+  std::optional<Verification> verified;  ///< result of an earlier frame, whose outline serves for this one
+  float texture_probability = 1.0F;  ///< PoseEvidence::texture_probability of the detection's pose that it continues
+  ChromaMap camera_colours = {};     ///< map from taught to measured colours, by which its colours are judged
+  float shape_quality = 0.0F;        ///< shape quality of its last pose that was judged by depth
+  FollowedAppearance appearance;     ///< appearance that earlier frames have taught
+  DepthLag depth_lag;                ///< lag between depth and colours, as in JointStart
 };
 
-/// What came of it.
+/// Result of following one object in one frame.
 struct FollowedPose {
-  ObjectPose pose;  ///< without a detection; its status says why where there is none, its residual is NaN then
-  Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< where the best attempt ended, withheld or not
-  std::optional<Verification> verified;                               ///< of the last rendering
-  bool has_depth = false;                                             ///< that it was judged by
-  bool is_refined = false;                       ///< its texture has moved it (ExpectedObject::refine_by_texture)
-  Matrix6d information = Matrix6d::Zero();       ///< JointResult::information of that attempt
-  std::shared_ptr<const Silhouette> silhouette;  ///< that it used last, or nothing
+  /// Pose without a detection; its status names the reason where there is none, its residual is NaN then.
+  ObjectPose pose;
+  /// Place where the best attempt ended, withheld or not.
+  Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
+  std::optional<Verification> verified;     ///< verification by the last rendering
+  bool has_depth = false;                   ///< whether it was judged by depth
+  bool is_refined = false;                  ///< whether its texture has moved it (ExpectedObject::refine_by_texture)
+  Matrix6d information = Matrix6d::Zero();  ///< JointResult::information of that attempt
+  std::shared_ptr<const Silhouette> silhouette;  ///< silhouette that it used last, or null
 };
 
 /// Finds objects that were posed in earlier frames in this one, in their order, without detections, on

@@ -10,16 +10,16 @@
 namespace houghstream {
 namespace {
 
-constexpr int kUpdates = 2;    // with the same lines
-constexpr int kMinPairs = 12;  // of depth: fewer are chance
+constexpr int kUpdates = 2;    // steps with the same lines
+constexpr int kMinPairs = 12;  // pairs of depth; fewer agree by chance
 
-/// Where a frame is looked at how coarsely.
+/// One level of the coarse-to-fine registration.
 struct JointLevel {
   double points = 1.0;  // fraction of JointSettings::points
   int search_steps = 2;
   RegionScale scale;
   EdgeStep step = EdgeStep::kAlongGradient;
-  std::size_t texture = 0;  // of BrightnessImage::levels
+  std::size_t texture = 0;  // index into BrightnessImage::levels
 };
 
 /// Scales and deviations are those of M3T's defaults (Stoiber et al. 2023), but for the finest deviation, there 1.5:
@@ -29,7 +29,7 @@ constexpr std::array<JointLevel, 4> kLevels = {{{0.25, 2, {6, 15.0, 3}, EdgeStep
                                                 {0.7, 1, {2, 3.5, 1}, EdgeStep::kAlongGradient, 0},
                                                 {1.0, 1, {1, 2.0, 1}, EdgeStep::kAlongGradient, 0}}};
 
-/// One registration on its way.
+/// State of one registration from its first level to its last.
 class JointRegistration {
  public:
   JointRegistration(const ObjectObservation& observation, const JointStart& start, const JointSettings& settings,
@@ -82,7 +82,7 @@ class JointRegistration {
     }
   }
 
-  /// The motion of one deviation of the lag, as MotionEquations have it.
+  /// Returns the motion of one deviation of the lag, as MotionEquations have it.
   Vector6d lag_motion() {
     const Eigen::Vector3d arm = pose().linear() * seen_.model.centre.cast<double>();
     Vector6d motion;
@@ -91,7 +91,7 @@ class JointRegistration {
     return motion;
   }
 
-  /// Where the object was when depth was measured, by the lag's estimate.
+  /// Returns the object's pose at the time of the depth measurement, by the estimated lag.
   Eigen::Isometry3d depth_pose() {
     Eigen::Isometry3d T = pose();
     move_by_step(lag_.deviations * lag_motion(), seen_.model, T);
@@ -113,13 +113,13 @@ class JointRegistration {
     all.gradient += weight * part.gradient;
   }
 
-  /// False where there is too little depth.
+  /// Adds the equations of depth. Returns false where there is too little depth.
   bool add_depth(const JointLevel& level, double distance_m, MotionEquations& all) {
     const auto points = static_cast<std::size_t>(std::lround(level.points * settings_.points));
     const CorrespondenceSums pairs =
         sum_correspondences(seen_, depth_pose(), points, {static_cast<float>(distance_m), level.search_steps});
     if (pairs.count < kMinPairs) return false;
-    // So many pairs stand for all that the finest level would have had.
+    // A level with fewer pairs weighs as much as the finest one.
     const double weight = 1.0 / (level.points * sigma_m_ * sigma_m_);
     MotionEquations depth;
     MotionEquations across;
@@ -166,10 +166,11 @@ class JointRegistration {
     out.residual = static_cast<float>(std::sqrt(last.squares / last.count));  // 0/0 is NaN
   }
 
-  /// How far the object had moved when depth was measured, in deviations of the lag, and its normal equation.
+  /// Displacement of the object at the time of the depth measurement, in deviations of the lag, with its normal
+  /// equation.
   struct Lag {
     double deviations = 0.0;
-    Vector6d mixed = Vector6d::Zero();  // with the motion
+    Vector6d mixed = Vector6d::Zero();  // products with the motion
     double hessian = 0.0;
     double gradient = 0.0;
   };
@@ -180,7 +181,7 @@ class JointRegistration {
   const JointSettings& settings_;
   const RegistrationSettings& registration_;
   const double end_m_;
-  const double sigma_m_;  // of a pair of depth
+  const double sigma_m_;  // standard deviation of a pair of depth
   BrightnessImage brightness_;
   Lag lag_;
   JointResult result_;
@@ -195,7 +196,8 @@ JointResult register_jointly(const ObjectObservation& observation, const JointSt
 
 Eigen::Matrix3d observed_rotation(const Matrix6d& information, double radius, const JointSettings& settings) {
   const Matrix6d full = information.selfadjointView<Eigen::Lower>();
-  // A shift may make up for a rotation: what is left of the rotation's information when the shift is free as well.
+  // A shift may compensate a rotation: this is the information on the rotation that is left when the shift is free as
+  // well.
   constexpr double kAlmostNone = 1.0;  // 1/m^2
   const Eigen::Matrix3d shift = full.bottomRightCorner<3, 3>() + kAlmostNone * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d mixed = full.topRightCorner<3, 3>();

@@ -12,15 +12,15 @@
 
 namespace houghstream {
 
-/// How what is followed is registered to depth and colours at once.
+/// Settings of the registration of a followed object to depth and colours at once.
 struct JointSettings {
-  int points = 400;           ///< of the model's view, at the finest level
-  double start_m = 0.03;      ///< pairs of depth farther apart have no weight, at the coarsest level
-  double depth_sigmas = 1.4;  ///< standard deviation that a pair of depth is given, over its noise
-  // Regularisation after Tikhonov (Stoiber et al. 2022, "Iterative Corresponding Geometry", equation 21): what nothing
-  // observes stays as it was.
+  int points = 400;           ///< points of the model's view, at the finest level
+  double start_m = 0.03;      ///< distance from which a pair of depth has no weight, at the coarsest level
+  double depth_sigmas = 1.4;  ///< standard deviation of a pair of depth, over the noise of depth
+  // Regularisation after Tikhonov (Stoiber et al. 2022, "Iterative Corresponding Geometry", equation 21): a direction
+  // that no measurement observes keeps its value.
   double tikhonov_rad = 0.015;  ///< standard deviation of a step's rotation
-  double tikhonov_m = 0.006;    ///< and of its shift
+  double tikhonov_m = 0.006;    ///< standard deviation of a step's shift
   RegionModalitySettings region;
   TextureModalitySettings texture;
 };
@@ -37,14 +37,14 @@ void fields(const JointSettings& /*settings*/, const Visit& visit) {
   visit(group("texture", &S::texture));
 }
 
-/// What is known of a followed object's appearance.
+/// Appearance of a followed object, as earlier frames showed it.
 struct FollowedAppearance {
-  std::shared_ptr<const ColourStatistics> colours;  ///< nothing: none have been learnt, depth alone is measured
-  std::shared_ptr<const Silhouette> silhouette;     ///< of an earlier frame, or nothing
-  std::shared_ptr<const TextureKeyframe> texture;   ///< of an earlier frame, or nothing
+  std::shared_ptr<const ColourStatistics> colours;  ///< null: no colours were learnt, only depth is measured
+  std::shared_ptr<const Silhouette> silhouette;     ///< that of an earlier frame, or null
+  std::shared_ptr<const TextureKeyframe> texture;   ///< that of an earlier frame, or null
 };
 
-/// Moves a pose to where something else than depth and silhouette speaks for it.
+/// Moves a pose by a cue other than depth and silhouette.
 using RefinePose = std::function<Eigen::Isometry3d(const Eigen::Isometry3d& T_camera_object)>;
 
 /// One standard deviation of the object's motion between a frame's depth and its colours, which a camera takes apart in
@@ -54,25 +54,26 @@ struct DepthLag {
   Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
 };
 
-/// From where on an object is registered.
+/// Start of a joint registration.
 struct JointStart {
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
   FollowedAppearance appearance;
-  /// After the coarser half of the levels; may be empty. From there on the texture of an earlier frame says nothing.
+  /// Refines the pose by texture after the coarser half of the levels; may be empty. The later levels ignore the
+  /// texture of an earlier frame.
   RefinePose refine_by_texture;
-  DepthLag depth_lag;  ///< along it, colours say where the object is, and depth as far as it is short
+  DepthLag depth_lag;  ///< direction along which colours place the object, and depth alone falls short
 };
 
-/// Where joint registration ended.
+/// Result of a joint registration.
 struct JointResult {
-  RegistrationResult registration;  ///< its evidence is that of depth
-  /// Of the motion of MotionEquations, in the inverse square of metres: what depth across surfaces, edges of colour and
-  /// texture say. A direction that none of them observes has none.
+  RegistrationResult registration;  ///< pose, with the evidence of depth alone
+  /// Information on the motion of MotionEquations, in the inverse square of metres, from depth across surfaces, edges
+  /// of colour and texture. A direction that none of them observes has none.
   Matrix6d information = Matrix6d::Zero();
-  std::shared_ptr<const Silhouette> silhouette;  ///< that it used last, or nothing
-  int edges = 0;                                 ///< lines with an edge, at the finest level
-  int blank = 0;                                 ///< lines without one
-  int covered = 0;                               ///< points of the silhouette behind nearer depth
+  std::shared_ptr<const Silhouette> silhouette;  ///< silhouette that it used last, or null
+  int edges = 0;                                 ///< number of lines with an edge, at the finest level
+  int blank = 0;                                 ///< number of lines without one
+  int covered = 0;                               ///< number of silhouette points behind nearer depth
 };
 
 /// Registers the model from a start: at each of a few levels, from coarse to fine, lines and pairs are found and the
@@ -81,8 +82,9 @@ struct JointResult {
 JointResult register_jointly(const ObjectObservation& observation, const JointStart& start,
                              const JointSettings& settings, const RegistrationSettings& registration);
 
-/// Of the rotation about the model's centre, what remains when it is multiplied by how surely it was observed, beside
-/// what a step's regularisation would hold: the identity where all is known, 0 where nothing is. `radius`: the model's.
+/// Returns the part of a rotation about the model's centre that was observed, as a factor: its information over the sum
+/// of that and of a step's regularisation. The factor is the identity where all of the rotation is known and 0 where
+/// nothing is. `radius` is the model's.
 Eigen::Matrix3d observed_rotation(const Matrix6d& information, double radius, const JointSettings& settings);
 
 }  // namespace houghstream

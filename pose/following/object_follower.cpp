@@ -13,8 +13,8 @@
 namespace houghstream {
 namespace {
 
-constexpr std::int64_t kJumpUs = 10'000'000;        // to a later frame: a camera may be away for a moment
-constexpr std::int64_t kMaxIntervalUs = 1'000'000;  // between frames of which one follows the other
+constexpr std::int64_t kJumpUs = 10'000'000;        // interval to a later frame; a camera may be away for a moment
+constexpr std::int64_t kMaxIntervalUs = 1'000'000;  // interval between frames of which one follows the other
 
 float probability(double odds) {
   return static_cast<float>(logistic(odds));
@@ -32,8 +32,8 @@ ExpectedObject expected_at(const Eigen::Isometry3d& T_camera_object, const Follo
   return expected;
 }
 
-/// Whether newer frames have overtaken this one on its way. Where the one before it seemed so too, and was older, it is
-/// the clock that was set back.
+/// Returns whether newer frames have overtaken this one on its way. Where the frame before it seemed overtaken too, and
+/// was older, the clock was set back.
 bool is_overtaken(std::int64_t utime, FollowedCamera& camera) {
   if (camera.recent_frames.empty()) return false;
   const double passed_s = seconds_between(camera.recent_frames.back().utime, utime);
@@ -48,7 +48,7 @@ std::int64_t clock_of(std::int64_t utime, const FollowedCamera& camera) {
   return shifted(utime, camera.ahead_us);
 }
 
-/// Where utimes jump, the camera's clock advances as it did from the frame before to the last one.
+/// Advances the camera's clock by the interval of the frame before where utimes jump.
 void follow_clock(std::int64_t utime, FollowedCamera& camera) {
   if (camera.recent_frames.empty()) return;
   const FollowedFrame& last = camera.recent_frames.back();
@@ -72,7 +72,7 @@ std::uint64_t depth_digest(const cv::Mat& depth) {
   return digest;
 }
 
-/// Notes since when the camera has sent the depth of this frame.
+/// Notes when the depth of this frame came first.
 void note_depth(const RgbdFrame& frame, std::int64_t clock_us, FollowedCamera& camera) {
   const std::uint64_t digest = depth_digest(frame.depth);
   const bool is_repeated = !camera.recent_frames.empty() && digest == camera.depth_digest;
@@ -87,24 +87,25 @@ DepthLag depth_lag(double seconds, const SmoothedVelocity& velocity) {
   return lag;
 }
 
-/// A frame's detections beside what was followed in it.
+/// A frame's detections, associated with the objects that were followed in it.
 struct DetectionAssociation {
   FollowedFrame followed_frame;
-  std::vector<int> matches;  ///< each detection's followed object: its place in `followed_frame`, or -1
-  int recheck = -1;          ///< the place in `followed_frame` of what is looked for as if it were not followed
+  std::vector<int> matches;  ///< index into `followed_frame` of each detection's object, or -1
+  /// Index into `followed_frame` of the object that is estimated again as if it were not followed, or -1.
+  int recheck = -1;
 
   bool needs_estimate(std::size_t detection) const { return matches[detection] < 0 || matches[detection] == recheck; }
 };
 
-/// The object of a number; null where it is not followed any more.
+/// Returns the object of a number, or null where it is not followed any more.
 FollowedObject* find_followed(std::int64_t number, FollowedCamera& camera) {
   const auto found = std::find_if(camera.objects.begin(), camera.objects.end(),
                                   [&](const FollowedObject& one) { return one.number == number; });
   return found == camera.objects.end() ? nullptr : &*found;
 }
 
-/// Each detection's place in `followed_frame`, or -1. The nearest ones first, each pose of one detection; withheld ones
-/// are nobody's.
+/// Returns each detection's index into `followed_frame`, or -1. The nearest pairs come first and each pose belongs to
+/// one detection; withheld poses belong to none.
 std::vector<int> match_detections(const PoseEstimator& estimator, const Detections& detections,
                                   const FollowedFrame& followed_frame, double reach_m) {
   struct Pair {
@@ -134,7 +135,7 @@ std::vector<int> match_detections(const PoseEstimator& estimator, const Detectio
   return matches;
 }
 
-/// What the look says of those that were there: found, with this score, or not found though in full view.
+/// Updates the scores of the objects that were followed: each is found with a score, or is missed though in full view.
 void update_from_detections(const Detections& detections, const DetectionAssociation& look,
                             const FollowerSettings& settings, FollowedCamera& camera) {
   constexpr float kFullView = 0.7F;  // visible fraction
@@ -155,8 +156,8 @@ void update_from_detections(const Detections& detections, const DetectionAssocia
   }
 }
 
-/// The place in `followed_frame` of the detected object whose last doubt lies farthest back, if it is time, or of one
-/// that is doubtful; else -1.
+/// Returns the index into `followed_frame` of the detected object whose last recheck lies farthest back, if one is due
+/// or its pose is doubtful; else -1.
 int choose_recheck(const DetectionAssociation& look, const FollowerSettings& settings, FollowedCamera& camera) {
   const FollowedFrame& followed_frame = look.followed_frame;
   FollowedObject* selected = nullptr;
@@ -176,7 +177,7 @@ int choose_recheck(const DetectionAssociation& look, const FollowerSettings& set
   return place;
 }
 
-/// Withholds the pose of a detection where an object of its class was followed already: it has one.
+/// Withholds the pose of a detection where an object of its class was followed already, which has a pose.
 void withhold_where_followed(const PoseEstimator& estimator, const FollowedFrame& followed_frame, double ratio,
                              ObjectPose& pose) {
   const PlacedObject here{pose.class_name, *pose.T_camera_object};
@@ -189,8 +190,8 @@ void withhold_where_followed(const PoseEstimator& estimator, const FollowedFrame
   }
 }
 
-/// What was followed in the frame of the detections, and which of them are of that. Notes in the camera's objects what
-/// the look says of them: found, with this score, or not found though in full view; and which one is doubted.
+/// Associates the detections of a frame with the objects that were followed in it. Updates their scores
+/// (update_from_detections), and notes the one that is rechecked.
 DetectionAssociation associate_detections(const PoseEstimator& estimator, const Detections& detections,
                                           const FollowerSettings& settings, FollowedCamera& camera) {
   DetectionAssociation look{{}, std::vector<int>(detections.detections.size(), -1), -1};
@@ -204,26 +205,26 @@ DetectionAssociation associate_detections(const PoseEstimator& estimator, const 
   return look;
 }
 
-/// What its texture said of a detection's pose: following looks at it no more.
+/// Returns the texture's verdict on a detection's pose, which following does not examine again.
 float texture_probability_of(const ObjectPose& pose) {
   return pose.shape_quality > 0.0F ? pose.quality / pose.shape_quality : 1.0F;
 }
 
-/// Where the pose of a detection is better than the followed one of that frame, the object goes on from it: what is
-/// between the two stays the same in the object's own frame.
+/// Continues an object from a detection's pose where that is better than the followed one of its frame: the motion
+/// between the two frames stays the same in the object's own frame.
 void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, const FollowerSettings& settings,
                        FollowedObject& object) {
-  constexpr double kMargin = 1e-6;  // of two poses of one object small differences count
-  // By its shape alone, or with its texture, at which following does not look.
+  constexpr double kMargin = 1e-6;  // small differences between two poses of one object count
+  // Quality is compared by shape alone, or with texture, which following does not examine.
   const double by_shape = logit(pose.shape_quality, kMargin) - logit(followed.pose.shape_quality, kMargin);
   const double by_all = logit(pose.quality, kMargin) - logit(followed.pose.quality, kMargin);
   if (std::max(by_shape, by_all) < settings.better_log_odds) return;
   object.T_camera_object = object.T_camera_object * followed.T_camera_object.inverse() * *pose.T_camera_object;
   object.texture_probability = texture_probability_of(pose);
-  object.appearance.texture.reset();  // was where the pose was wrong
+  object.appearance.texture.reset();  // the keyframe was made at the wrong pose
 }
 
-/// What the object's colours are judged by.
+/// Returns the map by which the object's colours are judged.
 ChromaMap colours_for(const FollowedObject& object, const PoseEstimator& estimator, const FollowedCamera& camera) {
   if (!estimator.settings().learn_camera_colours) return {};
   if (camera.is_colourless) return colourless_camera();
@@ -243,7 +244,7 @@ CameraChroma ObjectFollower::camera_colours(const std::string& channel) {
 }
 
 std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator, const RgbdFrame& frame) {
-  constexpr std::size_t kRecentFrames = 32;  // frames; a detector's answer takes a few
+  constexpr std::size_t kRecentFrames = 32;  // number of frames; a detector's answer comes a few frames late
   const std::lock_guard<std::mutex> lock(mutex_);
   StageClock clock;
   FollowedCamera& camera = cameras_[frame.id.channel];
@@ -271,7 +272,7 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
   return result;
 }
 
-/// Each from where it is expected at constant speed; those that are not found there once more.
+/// Follows each object from its pose at constant velocity, and tries those that are not found there once more.
 std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                                      FollowedCamera& camera) const {
   constexpr double kMaxLength = 0.25;   // seconds; no speed says anything about a later frame
@@ -297,7 +298,7 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
   return poses;
 }
 
-/// Those without a valid pose from where they were last, and from where the camera's motion has brought them.
+/// Retries objects without a valid pose from their last place, and from where the camera's motion has brought them.
 void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
                                 std::vector<FollowedPose>& poses) const {
   std::vector<Eigen::Isometry3d> motions;
@@ -319,7 +320,7 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
     again.camera_colours = colours_for(object, estimator, camera);
     const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(object.T_camera_object, motions);
     if (carried) again.initial_poses.insert(again.initial_poses.begin(), *carried);
-    // What stands was expected there the first time too, and it has been told whether it is hidden there.
+    // An object that stands was expected there the first time too, which has tested its occlusion.
     again.check_occlusion = carried || !object.velocity.is_zero();
     expected.push_back(std::move(again));
   }
@@ -337,7 +338,8 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
   }
 }
 
-/// Goes on from the result; without evidence it stays where it was, or where the camera's motion has brought it.
+/// Continues from the result; without evidence the object stays where it was, or where the camera's motion has brought
+/// it.
 void ObjectFollower::note_result(const PoseEstimator& estimator, const FollowedPose& result, std::int64_t clock_us,
                                  FollowedObject& object) const {
   const bool valid = has_pose(result.pose.status);
@@ -359,8 +361,8 @@ void ObjectFollower::note_result(const PoseEstimator& estimator, const FollowedP
   if (result.silhouette) object.appearance.silhouette = result.silhouette;
 }
 
-/// From where the object is in this frame. Its texture is kept from one frame to the next that was refined: in between
-/// it does not drift.
+/// Learns colours and texture at the object's pose. Texture is kept from one refined frame to the next, so that it does
+/// not drift in between.
 void ObjectFollower::learn_appearance(const PoseEstimator& estimator, const RgbdFrame& frame, bool is_refined,
                                       FollowedObject& object) const {
   const JointSettings& settings = settings_.follow.joint;
@@ -388,7 +390,7 @@ bool ObjectFollower::is_lost(const FollowedObject& object, const FollowedPose& r
          seconds_between(object.valid_us, clock_us) > max_length;
 }
 
-/// What is lost, and the weaker of two that have become one.
+/// Removes lost objects, and the weaker of two that have become one.
 void ObjectFollower::remove_lost(const PoseEstimator& estimator, FollowedCamera& camera,
                                  FollowedFrame& followed_frame) const {
   std::vector<bool> lost(camera.objects.size());
@@ -452,8 +454,8 @@ ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, c
   return result;
 }
 
-/// Takes the place of one of its class that is withheld, or of one of another class that is less sure; is known where
-/// one of its class is followed there.
+/// Adds an object in place of a withheld one of its class, or of a less certain one of another class. Where one of its
+/// class is followed there, it is known already.
 void ObjectFollower::add_object(const PoseEstimator& estimator, const RgbdFrame& frame, const ObjectPose& pose,
                                 FollowedCamera& camera) {
   FollowedObject found;
@@ -478,13 +480,13 @@ void ObjectFollower::add_object(const PoseEstimator& estimator, const RgbdFrame&
         estimator.is_duplicate(here, {object.class_name, object.T_camera_object}, settings_.duplicate_distance_ratio);
     const bool is_valid = object.valid_us == object.clock_us;
     if (is_here && is_valid && object.class_name == found.class_name) return;
-    if (!is_here || is_valid) others.push_back(object);  // of two valid ones follow() gives the weaker one up
+    if (!is_here || is_valid) others.push_back(object);  // follow() removes the weaker of two valid ones
   }
   camera.objects = std::move(others);
   camera.objects.push_back(std::move(found));
 }
 
-/// Moves what was found in an earlier frame as the camera has moved since, as far as that can be told.
+/// Moves an object that was found in an earlier frame as the camera has moved since, as far as that is known.
 void ObjectFollower::propagate_to_latest(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found) {
   const auto then = std::find_if(camera.recent_frames.rbegin(), camera.recent_frames.rend(),
                                  [&](const FollowedFrame& one) { return one.utime == utime; });

@@ -7,17 +7,19 @@
 namespace houghstream {
 namespace {
 
-constexpr int kFunctionSegments = 8;  // of the smoothed step functions; beyond these a pixel's side is certain
+constexpr int kFunctionSegments = 8;  // segments of the smoothed step functions; beyond these a pixel's side is certain
 constexpr int kLineSegments = kEdgePositions + kFunctionSegments - 1;
-constexpr float kAmplitude = 0.43F;  // of the steps, and their slope: a noisy pixel is on the other side so often
+// Amplitude of the steps, with their slope: the probability that a noisy pixel is on the other side.
+constexpr float kAmplitude = 0.43F;
 constexpr float kSlope = 0.5F;
-constexpr float kMinVariance = 0.5F;  // of an edge between two sides that are told apart without doubt, segments^2
+constexpr float kMinVariance = 0.5F;  // variance of an edge between two sides that differ without doubt, segments^2
 constexpr int kMinClear = 3;          // segments to each side of an edge without another one
 constexpr float kFirst = -0.5F * (kEdgePositions - 1);
 
 using SegmentValues = std::array<float, kLineSegments>;
 
-/// Probability that a pixel is on the model, by its segments outwards from the edge: h_f of SRT3D, equation 6.
+/// Returns the probability that a pixel is on the model, by its segments outwards from the edge: h_f of SRT3D, equation
+/// 6.
 std::array<float, kFunctionSegments> step_function() {
   std::array<float, kFunctionSegments> values{};
   for (int j = 0; j < kFunctionSegments; ++j) {
@@ -31,7 +33,7 @@ std::array<float, kFunctionSegments> step_function() {
 struct ProjectedPoint {
   const SilhouettePoint& at;
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();
-  Eigen::Vector2f normal = Eigen::Vector2f::Zero();  // unit, out of the model
+  Eigen::Vector2f normal = Eigen::Vector2f::Zero();  // unit vector out of the model
   float z = 0.0F;                                    // metres
 };
 
@@ -58,8 +60,8 @@ cv::Point nearest_pixel(const Eigen::Vector2f& pixel) {
   return {static_cast<int>(pixel.x() + 0.5F), static_cast<int>(pixel.y() + 0.5F)};
 }
 
-/// Whether what is measured beside the point, from `first_px` to `last_px` along the normal, is nearer than the model
-/// can be.
+/// Returns whether depth beside the point, from `first_px` to `last_px` along the normal, is nearer than the model can
+/// be.
 bool is_covered(const RegionView& view, const ProjectedPoint& point, const cv::Range& along_px, double occlusion_m) {
   const double margin = occlusion_m + 3.0 * view.noise.sigma(point.z);
   const auto limit = static_cast<float>(point.z - point.at.nearer_m - margin);
@@ -70,7 +72,7 @@ bool is_covered(const RegionView& view, const ProjectedPoint& point, const cv::R
   return false;
 }
 
-/// Products of the pixels' probabilities over each segment, those of both sides normalised: outwards.
+/// Products of the pixels' probabilities over each segment, outwards; those of both sides are normalised.
 struct SegmentProbabilities {
   SegmentValues on{};
   SegmentValues beside{};
@@ -80,8 +82,8 @@ struct SegmentProbabilities {
 /// The middle of the line's middle segment, and how far it leads to each side.
 struct LineOfPixels {
   Eigen::Vector2f middle = Eigen::Vector2f::Zero();
-  Eigen::Vector2f step = Eigen::Vector2f::Zero();  // to the next pixel along the axis that is nearer to the normal
-  float offset_px = 0.0F;                          // from the point to the middle, steps
+  Eigen::Vector2f step = Eigen::Vector2f::Zero();  // step to the next pixel along the axis that is nearer to the normal
+  float offset_px = 0.0F;                          // offset from the point to the middle, steps
 };
 
 /// Segments begin and end between pixels of the axis that is nearer to the normal.
@@ -126,10 +128,11 @@ std::optional<SegmentProbabilities> segment_probabilities(const RgbdFrame& frame
   return out;
 }
 
-/// SRT3D, equation 9: the product over the segments about each position of what both sides explain of them. False where
-/// the posterior has no edge: it rises to an end of the line, or says nothing.
+/// Computes the posterior of the edge, SRT3D, equation 9: the product over the segments about each position of what
+/// both sides explain of them. Returns false where the posterior has no edge: it rises to an end of the line, or is
+/// flat.
 bool find_edge(const SegmentProbabilities& segments, RegionLine& line) {
-  constexpr float kMaxVariance = 8.0F;  // of an even posterior it is 11.9
+  constexpr float kMaxVariance = 8.0F;  // variance of a flat posterior is 11.9
   static const std::array<float, kFunctionSegments> step = step_function();
   float sum = 0.0F;
   for (std::size_t i = 0; i < kEdgePositions; ++i) {
@@ -157,7 +160,8 @@ bool find_edge(const SegmentProbabilities& segments, RegionLine& line) {
   return true;
 }
 
-/// Derivative of the logarithm of the posterior at a position between two of its values; zero beyond them.
+/// Returns the derivative of the logarithm of the posterior at a position between two of its values; it is zero beyond
+/// them.
 float gradient_at(const RegionLine& line, float position) {
   constexpr float kFloor = 1e-12F;
   const float place = position - line.first;
@@ -166,11 +170,11 @@ float gradient_at(const RegionLine& line, float position) {
   return std::log((line.posterior[below + 1] + kFloor) / (line.posterior[below] + kFloor));
 }
 
-constexpr double kContrastGain = 4.0;  // sides of which one has 1.7 times the other's brightness are plainly apart
+constexpr double kContrastGain = 4.0;  // sides of which one has 1.7 times the other's brightness differ plainly
 
-/// What edges of one object have in common: an unknown displacement outwards, and one towards the darker side. Both are
-/// estimated with the motion and marginalised out of its equations (Schur complement), so that an outline that is too
-/// large all round says nothing of the distance.
+/// Errors that all edges of one object share: an unknown displacement outwards, and one towards the darker side. Both
+/// are estimated with the motion and marginalised out of its equations (Schur complement), so that an outline that is
+/// too large all round says nothing of the distance.
 class CommonError {
  public:
   explicit CommonError(double sigma_px) : is_known_(sigma_px == 0.0) {
@@ -283,7 +287,7 @@ void learn_colours(const RegionView& view, const Silhouette& silhouette, const E
   constexpr int kGap_px = 3;
   constexpr int kReach_px = 20;
   constexpr int kBeside_px = 4;
-  constexpr std::size_t kEvery = 2;  // of the points: their pixels suffice
+  constexpr std::size_t kEvery = 2;  // every second point: its pixels suffice
   std::vector<cv::Vec3b> on;
   std::vector<cv::Vec3b> beside;
   const Eigen::Isometry3f T = T_camera_object.cast<float>();

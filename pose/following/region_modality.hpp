@@ -18,9 +18,9 @@ namespace houghstream {
 /// are those of Stoiber et al. (2022, "SRT3D: A Sparse Region-Based 3D Object Tracking Approach for the Real World";
 /// 2022, "Iterative Corresponding Geometry").
 struct RegionModalitySettings {
-  int lines = 100;             ///< across the silhouette, at most; 0: colours play no part
-  double colour_rate = 0.2;    ///< by which a frame moves the histograms
-  double occlusion_m = 0.015;  ///< a line is covered where depth is nearer than the model by so much and 3 sigma
+  int lines = 100;             ///< maximum number of lines across the silhouette; 0: colours play no part
+  double colour_rate = 0.2;    ///< fraction by which a frame moves the histograms
+  double occlusion_m = 0.015;  ///< depth nearer than the model by so much and 3 sigma covers a line
   /// Standard deviation by which all edges of an object err outwards alike, and by which those err towards the darker
   /// side alike: a lens and a tone curve move edges of light, and mixed pixels look like the side of more colours.
   double common_error_px = 3.0;
@@ -35,38 +35,39 @@ void fields(const RegionModalitySettings& /*settings*/, const Visit& visit) {
   visit(number("common_error_px", &S::common_error_px, 0, 100, "pixels"));
 }
 
-/// How coarsely a frame is looked at: pixels along a line that make one segment, and the standard deviation that a
-/// line's edge is given, pixels.
+/// Scale of a region step: pixels along a line that make one segment, and the standard deviation of a line's edge,
+/// pixels.
 struct RegionScale {
   int segment_px = 1;
   double sigma_px = 1.5;
-  int every = 1;  ///< of the silhouette's points; each line stands for as many
+  int every = 1;  ///< every so many points of the silhouette make a line, which weighs as many
 };
 
-/// Segments of a line over which the posterior of its edge is computed.
+/// Number of segments of a line over which the posterior of its edge is computed.
 constexpr int kEdgePositions = 12;
 
 /// A line across the silhouette, and where the frame has its edge.
 struct RegionLine {
   const SilhouettePoint* at = nullptr;
-  Eigen::Vector2f centre_px = Eigen::Vector2f::Zero();  ///< of the point when the line was drawn
-  Eigen::Vector2f normal = Eigen::Vector2f::Zero();     ///< unit, out of the model
-  float segments_per_px = 1.0F;                         ///< along the normal
+  Eigen::Vector2f centre_px = Eigen::Vector2f::Zero();  ///< place of the point when the line was drawn
+  Eigen::Vector2f normal = Eigen::Vector2f::Zero();     ///< unit vector out of the model
+  float segments_per_px = 1.0F;                         ///< segments per pixel along the normal
   float first = 0.0F;     ///< position of the first of `posterior`, segments outwards from the point
-  float mean = 0.0F;      ///< of the edge's position, segments outwards from the point
-  float variance = 1.0F;  ///< of it
+  float mean = 0.0F;      ///< mean of the edge's position, segments outwards from the point
+  float variance = 1.0F;  ///< variance of that position, segments^2
   float contrast = 0.0F;  ///< brightness of the side of the model beside the other one, -1 to 1
-  std::array<float, kEdgePositions> posterior{};  ///< at one segment after the other; their sum is 1
+  /// Probabilities of the edge's position, one segment after the other; their sum is 1.
+  std::array<float, kEdgePositions> posterior{};
 };
 
-/// What became of the points of a silhouette in a frame.
+/// Lines across a silhouette in a frame, with the number of points that gave none.
 struct RegionLines {
-  std::vector<RegionLine> lines;  ///< that have an edge
-  int covered = 0;                ///< points behind nearer depth
-  int blank = 0;                  ///< lines in whose colours there is no edge
+  std::vector<RegionLine> lines;  ///< lines that have an edge
+  int covered = 0;                ///< number of points behind nearer depth
+  int blank = 0;                  ///< number of lines whose colours have no edge
 };
 
-/// What lines are drawn in.
+/// Inputs in which lines are drawn.
 struct RegionView {
   const RgbdFrame& frame;
   const ObjectModel& model;
@@ -86,12 +87,12 @@ RegionLines find_region_lines(const RegionView& view, const Silhouette& silhouet
                               const Eigen::Isometry3d& T_camera_object, const RegionScale& scale,
                               const RegionModalitySettings& settings);
 
-/// From where on a line's edge draws: the mean of its posterior brings in what is far off, its gradient at the pose is
+/// Place from which a line's edge attracts the pose: the mean of its posterior reaches far, its gradient at the pose is
 /// more exact.
 enum class EdgeStep { kToMean, kAlongGradient };
 
-/// Normal equations of the motion that brings the silhouette of a pose to the edges, as build_equations() has them, in
-/// the inverse square of metres: the hessian is the information of the edges.
+/// Returns the normal equations of the motion that brings the silhouette of a pose to the edges, as build_equations()
+/// has them, in the inverse square of metres: the hessian is the information of the edges.
 MotionEquations region_equations(const RegionView& view, const std::vector<RegionLine>& lines,
                                  const Eigen::Isometry3d& T_camera_object, const RegionScale& scale, EdgeStep step,
                                  const RegionModalitySettings& settings);
@@ -100,7 +101,7 @@ MotionEquations region_equations(const RegionView& view, const std::vector<Regio
 void learn_colours(const RegionView& view, const Silhouette& silhouette, const Eigen::Isometry3d& T_camera_object,
                    const RegionModalitySettings& settings, ColourStatistics& colours);
 
-/// The part of the image about the silhouette at the pose, a little enlarged; may be empty.
+/// Returns the part of the image about the silhouette at the pose, a little enlarged; it may be empty.
 cv::Rect silhouette_box(const RegionView& view, const Silhouette& silhouette, const Eigen::Isometry3d& T_camera_object);
 
 }  // namespace houghstream

@@ -9,7 +9,7 @@
 namespace houghstream {
 namespace {
 
-constexpr int kDiameter_px = 200;  // of the sphere that holds the model, in the image that the outline is taken from
+constexpr int kDiameter_px = 200;  // diameter of the sphere that holds the model, in the image that gives the outline
 
 Eigen::Vector3d eye_of(const ObjectModel& model, const Eigen::Isometry3d& T_camera_object) {
   return T_camera_object.inverse().translation() - model.centre.cast<double>();
@@ -53,7 +53,8 @@ int count_alike(const OutlineView& view, const Eigen::Vector2d& from, const Eige
   return count;
 }
 
-/// Direction out of the model at a place of a closed chain of the model's outermost pixels; zero where there is none.
+/// Returns the direction out of the model at a place of a closed chain of the model's outermost pixels; zero where
+/// there is none.
 Eigen::Vector2d outward_at(const OutlineView& view, const std::vector<cv::Point>& chain, std::size_t i) {
   constexpr std::size_t kReach = 4;
   const std::size_t count = chain.size();

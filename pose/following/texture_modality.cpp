@@ -9,12 +9,12 @@ namespace houghstream {
 namespace {
 
 constexpr float kMinFacing = 0.35F;                                  // cosine between normal and line of sight
-constexpr std::array<int, BrightnessImage::kLevels> kStep = {1, 3};  // pixels to each side, of a gradient
+constexpr std::array<int, BrightnessImage::kLevels> kStep = {1, 3};  // pixels to each side of a gradient
 
 /// Brightness and its derivatives at a place.
 struct BrightnessSample {
   float value = 0.0F;
-  Eigen::Vector2f gradient = Eigen::Vector2f::Zero();  // a pixel
+  Eigen::Vector2f gradient = Eigen::Vector2f::Zero();  // brightness per pixel
 };
 
 float bilinear(const cv::Mat& image, float x, float y) {
@@ -27,7 +27,7 @@ float bilinear(const cv::Mat& image, float x, float y) {
   return (1.0F - dy) * ((1.0F - dx) * row[0] + dx * row[1]) + dy * ((1.0F - dx) * next[0] + dx * next[1]);
 }
 
-/// Nothing at the part's border.
+/// Returns nothing at the part's border.
 std::optional<BrightnessSample> sample_brightness(const BrightnessImage& image, const Eigen::Vector2f& pixel,
                                                   std::size_t level) {
   const cv::Mat& values = image.levels[level];
@@ -64,11 +64,11 @@ std::optional<SurfacePoint> find_surface_point(const RegionView& view, const Eig
   if (x < 0 || y < 0 || x >= view.frame.depth.cols || y >= view.frame.depth.rows) return std::nullopt;
   const float beyond = view.frame.depth.at<float>(y, x) - out.point.z();
   const double tolerance = DepthTolerance{kTolerance_m, view.noise}.at(out.point.z());
-  if (std::abs(beyond) > tolerance) return std::nullopt;  // where nothing is measured it may well be there
+  if (std::abs(beyond) > tolerance) return std::nullopt;  // an unmeasured point may be visible
   return out;
 }
 
-/// A point that is compared.
+/// A point of the keyframe with its difference in the frame.
 struct Compared {
   Eigen::Matrix<double, 6, 1> row;
   float residual = 0.0F;  // brightness of the keyframe less that of the frame
@@ -86,7 +86,7 @@ float median_residual(const std::vector<Compared>& compared) {
 }  // namespace
 
 BrightnessImage make_brightness(const RgbdFrame& frame, const cv::Rect& part_px) {
-  constexpr int kFine = 3;  // pixels that are averaged
+  constexpr int kFine = 3;  // number of pixels that are averaged
   constexpr int kBlurred = 7;
   BrightnessImage image;
   image.origin_px = part_px.tl();

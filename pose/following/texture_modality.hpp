@@ -14,10 +14,10 @@ namespace houghstream {
 /// Texture modality: an object's surface keeps the brightness that it had in an earlier frame. Direct alignment as
 /// Engel, Koltun and Cremers (2018, "Direct Sparse Odometry") have it, of points of the surface instead of a scene.
 struct TextureModalitySettings {
-  int points = 250;            ///< of a keyframe, at most; 0: texture plays no part
-  double sigma = 12.0;         ///< standard deviation that a point's brightness is given, of 255
-  double min_gradient = 4.0;   ///< of the brightness in the keyframe, a pixel: on less there is nothing to align
-  double max_residual = 40.0;  ///< beyond which a point has no weight: a highlight, a shadow's edge
+  int points = 250;            ///< maximum number of points of a keyframe; 0: texture plays no part
+  double sigma = 12.0;         ///< standard deviation of a point's brightness, of 255
+  double min_gradient = 4.0;   ///< brightness per pixel in the keyframe; a smaller gradient aligns nothing
+  double max_residual = 40.0;  ///< difference beyond which a point has no weight: a highlight, a shadow's edge
 };
 
 template <typename Visit>
@@ -36,10 +36,10 @@ struct BrightnessImage {
   cv::Point origin_px;                  ///< the first pixel in the frame
 };
 
-/// Of the part of the frame, which must lie inside the image.
+/// Returns the brightness of a part of the frame, which must lie inside the image.
 BrightnessImage make_brightness(const RgbdFrame& frame, const cv::Rect& part_px);
 
-/// Points of an object's surface and how bright they were.
+/// Points of an object's surface with their brightness.
 struct TextureKeyframe {
   struct Point {
     Eigen::Vector3f point = Eigen::Vector3f::Zero();           ///< object frame, metres
@@ -49,14 +49,14 @@ struct TextureKeyframe {
   std::vector<Point> points;
 };
 
-/// Of the points of the nearest view where depth agrees with the pose, those on which the brightness changes.
+/// Makes a keyframe of those points of the nearest view where depth agrees with the pose and the brightness changes.
 TextureKeyframe make_texture_keyframe(const RegionView& view, const BrightnessImage& image,
                                       const Eigen::Isometry3d& T_camera_object,
                                       const TextureModalitySettings& settings);
 
-/// Normal equations of the motion that gives the points the brightness of the keyframe but for an offset that all have
-/// in common, as region_equations() has them. Points behind nearer depth, turned away or outside the part say nothing;
-/// there is no information where fewer than a handful are left.
+/// Returns the normal equations of the motion that gives the points the brightness of the keyframe but for an offset
+/// that all have in common, as region_equations() has them. Points behind nearer depth, turned away or outside the part
+/// have no weight; there is no information where fewer than a handful are left.
 MotionEquations texture_equations(const RegionView& view, const BrightnessImage& image, const TextureKeyframe& keyframe,
                                   const Eigen::Isometry3d& T_camera_object, std::size_t level,
                                   const TextureModalitySettings& settings);

@@ -15,7 +15,7 @@
 namespace houghstream {
 namespace {
 
-/// Forests of one of the toy's objects each.
+/// Returns a forest of one of the toy's objects.
 const Forest& stripes() {
   static const Forest forest = training::remove_object(toy::forest(), "rings");
   return forest;
@@ -29,7 +29,7 @@ const Forest& rings() {
 DetectionSettings settings_without_colours() {
   DetectionSettings settings;
   settings.evidence.threshold = 0.3F;
-  settings.evidence.learn_camera_colours = false;  // of each other
+  settings.evidence.learn_camera_colours = false;  // groups do not learn colours of each other
   return settings;
 }
 
@@ -40,7 +40,7 @@ RgbdFrame both_tiles() {
   return frame;
 }
 
-/// Those of one class.
+/// Returns the detections of one class.
 Detections of_class(const Detections& all, const std::string& name) {
   Detections some;
   for (const Detection& detection : all.detections) {

@@ -13,7 +13,7 @@
 namespace houghstream {
 namespace {
 
-/// Letters to change, add or take away (Levenshtein 1966).
+/// Returns the number of letters to change, add or remove (Levenshtein 1966).
 std::size_t edits_between(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -28,7 +28,7 @@ std::size_t edits_between(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-/// The one of `words` that looks most like `word`; empty where there are none.
+/// Returns the one of `words` that is nearest to `word`; empty where there are none.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& words) {
   const auto nearest = std::min_element(words.begin(), words.end(), [&](const std::string& a, const std::string& b) {
     return edits_between(a, word) < edits_between(b, word);
@@ -36,7 +36,8 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   return nearest == words.end() ? "" : *nearest;
 }
 
-/// The one of `words` that `word` is likely a slip of: less than half of its letters are others. Empty without one.
+/// Returns the one of `words` that `word` is likely a misspelling of: less than half of its letters differ. Empty
+/// without one.
 std::string suggest_word(const std::string& word, const std::vector<std::string>& words) {
   const std::string nearest = nearest_word(word, words);
   return 2 * edits_between(nearest, word) < word.size() ? nearest : "";
@@ -53,7 +54,7 @@ std::vector<std::string> left_over(const CLI::App& command) {
   return words;
 }
 
-/// The first command that has words left over, else the last one that is given.
+/// Returns the first command that has words left over, else the last one that is given.
 const CLI::App& faulty_command(const CLI::App& app) {
   const CLI::App* command = &app;
   while (left_over(*command).empty() && !command->get_subcommands().empty())
@@ -61,7 +62,7 @@ const CLI::App& faulty_command(const CLI::App& app) {
   return *command;
 }
 
-/// As a person types it: "hs-log export".
+/// Returns the command as a person types it: "hs-log export".
 std::string title_of(const CLI::App& command) {
   std::string title = command.get_name();
   for (const CLI::App* parent = command.get_parent(); parent != nullptr; parent = parent->get_parent())
@@ -104,7 +105,8 @@ std::string config_file(const CLI::App& app) {
   return app.get_config_ptr()->results().back();
 }
 
-/// CLI11's own words name the key first where it is an option that no file may set, else last.
+/// Returns the fault of a key. CLI11's own message names the key first where it is an option that no file may set, else
+/// last.
 std::string fault_of_key(const CLI::App& app, const std::string& words) {
   const std::size_t colon = words.find(": This option");
   const std::string key = colon == std::string::npos ? words.substr(words.find("parse ") + 6) : words.substr(0, colon);
@@ -122,7 +124,8 @@ bool is_about_config(const CLI::App& app, const std::string& words) {
   return std::find(typed.begin(), typed.end(), option) == typed.end();
 }
 
-/// CLI11's words about an option begin with its name, but where it is a flag that is neither true nor false.
+/// Returns the fault of an option. CLI11's message about an option begins with its name, except where it is a flag that
+/// is neither true nor false.
 std::string fault_of_option(const std::string& words, const CLI::ParseError& error) {
   if (is_of(error, CLI::ExitCodes::ExcludesError)) {
     const std::string between = " excludes ";

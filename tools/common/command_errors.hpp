@@ -9,8 +9,8 @@ class ParseError;
 
 namespace houghstream {
 
-/// The line for what is wrong with the words of a command line, or with its configuration file: the program and its
-/// command, the option or the word, and what was expected.
+/// Returns the line that reports an error of a command line, or of its configuration file: the program and its command,
+/// the option or the word, and what was expected.
 std::string fault_line(const CLI::App& app, const CLI::ParseError& error);
 
 /// Describes an error of a line of the configuration file.

@@ -34,12 +34,12 @@ class KeyValueConfig : public CLI::ConfigBase {
   }
 };
 
-/// A word in a line about it.
+/// Returns a word as an error line shows it.
 std::string said(const std::string& word) {
   return word.empty() ? "nothing" : word;
 }
 
-/// Value of an option when it has one.
+/// Returns the value of an option when it has one.
 template <typename T>
 struct Held {
   using Type = T;
@@ -50,8 +50,8 @@ struct Held<std::optional<T>> {
   using Type = T;
 };
 
-/// Why `word` is no number that an option of this type can have; empty where it is one. No option can have NaN, with
-/// which no comparison holds, or infinity.
+/// Returns why `word` is no number that an option of this type can have; empty where it is one. No option can have NaN,
+/// with which no comparison holds, or infinity.
 template <typename T>
 std::string fault_of_number(const std::string& word) {
   T value{};
@@ -250,7 +250,7 @@ std::string CommandLine::config_template() const {
 
 CommandLine CommandLine::add_subcommand(const std::string& name, const std::string& words) {
   CLI::App* job = app_->add_subcommand(name, words);
-  job->footer(std::string());       // not that of the whole line
+  job->footer(std::string());       // a command has no footer of the whole line
   return CommandLine({app_, job});  // lives as long as the whole line
 }
 
@@ -276,7 +276,7 @@ void CommandLine::set_version(const std::string& version) {
 }
 
 std::optional<int> CommandLine::parse(const std::vector<std::string>& words) {
-  constexpr int kUsageError = 2;  // as of bash's builtins and of argparse
+  constexpr int kUsageError = 2;  // exit status as of bash's builtins and of argparse
   try {
     app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the last one first
     return std::nullopt;
@@ -285,7 +285,7 @@ std::optional<int> CommandLine::parse(const std::vector<std::string>& words) {
   } catch (const CLI::ParseError& error) {
     std::cerr << fault_line(*app_, error) << "\n";
     return kUsageError;
-  } catch (const InputError& error) {  // of a line of the configuration file
+  } catch (const InputError& error) {  // error in a line of the configuration file
     std::cerr << config_fault_line(*app_, error.what()) << "\n";
     return kUsageError;
   }

@@ -20,14 +20,14 @@ namespace houghstream {
 class CommandOption {
  public:
   explicit CommandOption(CLI::Option* option) : option_(option) {}
-  CommandOption& required();                             ///< nor may its value be empty
+  CommandOption& required();                             ///< it must be given, and its value not be empty
   CommandOption& capture_default_str();                  ///< help shows the value from before
   CommandOption& default_str(const std::string& words);  ///< help shows this instead
   CommandOption& description(const std::string& words);  ///< instead of the one that it was added with
-  CommandOption& delimiter(char between);                ///< of several values in one word
+  CommandOption& delimiter(char between);                ///< separates several values in one word
   CommandOption& range(int low, int high);               ///< both are allowed
   CommandOption& range(double low, double high);         ///< both are allowed
-  CommandOption& range(const NumberRange& of_setting);   ///< that of the setting that the option changes
+  CommandOption& range(const NumberRange& of_setting);   ///< range of the setting that the option changes
   CommandOption& positive();                             ///< above 0
   CommandOption& non_negative();                         ///< 0 or above
   CommandOption& one_of(const std::vector<int>& values);
@@ -43,32 +43,34 @@ class CommandOption {
 /// four seconds longer to compile.
 class CommandLine {
  public:
-  /// `words` say in help what the executable `name` does.
+  /// Makes a command line. `words` say in help what the executable `name` does.
   CommandLine(const std::string& words, const std::string& name);
 
-  /// `names` as in CLI11: "-s,--start", or "log" for what is named by its place. The types are listed in
-  /// command_line.cpp; an optional stays empty where the option is not given. Numbers are finite ones.
+  /// Adds an option. `names` are as in CLI11: "-s,--start", or "log" for an argument that is named by its place. The
+  /// types are listed in command_line.cpp; an optional stays empty where the option is not given. Numbers are finite
+  /// ones.
   template <typename T>
   CommandOption add_option(const std::string& names, T& value, const std::string& words = "");
   CommandOption add_flag(const std::string& names, bool& value, const std::string& words);
   /// Adds the option to this command and its subcommands so far, before or behind their names.
   void add_common_flag(const std::string& names, bool& value, const std::string& words);
-  /// `clears` becomes false where the flag is given.
+  /// Adds a flag; `clears` becomes false where it is given.
   CommandOption add_clearing_flag(const std::string& names, bool& clears, const std::string& words);
   CommandOption get_option(const std::string& name);
 
-  /// `--config FILE`: the long names of all options as keys of a TOML file, `key = value`; what stands on the command
-  /// line goes before. A key that is no option is refused with the nearest that is; a fault names the file.
+  /// Adds `--config FILE`: a TOML file with the long names of all options as keys, `key = value`; the command line
+  /// takes precedence. A key that is no option is refused with the nearest that is; a fault names the file.
   void add_config_file();
-  /// Such a file with every option, its default and what it does; what has no default stands behind a '#'.
+  /// Returns such a file with every option, its default and what it does; an option without a default stands behind a
+  /// '#'.
   std::string config_template() const;
 
-  /// Options behind the subcommand that are not its own may be those of this command: -v.
+  /// Lets options behind the subcommand that are not its own be those of this command: -v.
   CommandLine add_subcommand(const std::string& name, const std::string& words);
-  void require_subcommand();  ///< exactly one
-  bool given() const;         ///< this subcommand was asked for
+  void require_subcommand();  ///< requires exactly one subcommand
+  bool given() const;         ///< whether this subcommand was given
 
-  /// One of the commands that stand at the end of help as a person types them; a subcommand has its own.
+  /// Adds a command to the end of help, as a person types it; a subcommand has its own.
   void add_example(const std::string& command);
 
   std::string name() const;

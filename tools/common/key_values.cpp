@@ -12,7 +12,7 @@ bool is_quoted(const std::string& words) {
   return !words.empty() && (words.front() == '"' || words.front() == '\'');
 }
 
-/// The text in the quotes that `words` begin with. Behind them only a comment may follow.
+/// Returns the text in the quotes that `words` begin with. Behind them only a comment may follow.
 std::string quoted_text(const std::string& words, int line) {
   const std::size_t end = words.find(words.front(), 1);
   require(end != std::string::npos, "line {}: {} has no end, expected a second {}", line, words, words.front());
@@ -39,7 +39,7 @@ KeyValue parse_line(const std::string& words, int line) {
 
 std::vector<KeyValue> read_key_values(std::istream& in) {
   std::vector<KeyValue> all;
-  std::map<std::string, int> lines;  // by key
+  std::map<std::string, int> lines;  // line by key
   int line = 0;
   for (std::string text; std::getline(in, text);) {
     ++line;

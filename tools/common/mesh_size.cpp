@@ -9,7 +9,7 @@ namespace houghstream {
 namespace {
 
 constexpr double kMin_m = 0.01;
-constexpr double kMax_m = 1.5;  // what the camera's range of 0.3 to 2.6 m shows whole
+constexpr double kMax_m = 1.5;  // size that the camera's range of 0.3 to 2.6 m shows whole
 
 struct Unit {
   const char* name;

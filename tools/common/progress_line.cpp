@@ -15,8 +15,8 @@ namespace houghstream {
 namespace {
 
 constexpr double kSilent_s = 2.0;
-constexpr double kOften_s = 0.5;    // on a terminal
-constexpr double kSeldom_s = 10.0;  // elsewhere
+constexpr double kOften_s = 0.5;    // interval on a terminal
+constexpr double kSeldom_s = 10.0;  // interval elsewhere
 
 std::string in_words(double seconds) {
   const long long whole = std::llround(seconds);
@@ -73,7 +73,7 @@ void ProgressLine::say(double done) {
   due_ = now + (output_.is_terminal ? kOften_s : kSeldom_s);
   const std::string words = progress_words(title_, done, whole_, now);
   if (!output_.is_terminal) return output_.write(words + "\n");
-  // As long as what it is written over; what others say next begins where it does.
+  // The line is as long as the one that it overwrites; further output begins where it does.
   length_ = std::max(words.size(), length_);
   output_.write(words + std::string(length_ - words.size(), ' ') + "\r");
 }

@@ -4,7 +4,7 @@
 
 namespace houghstream {
 
-/// To so many decimals, for figures in reports; NaN and infinity stay what they are.
+/// Rounds to so many decimals, for figures in reports; NaN and infinity stay what they are.
 inline double rounded(double value, int decimals) {
   const double unit = std::pow(10.0, decimals);
   return std::round(value * unit) / unit;

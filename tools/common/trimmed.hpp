@@ -4,7 +4,7 @@
 
 namespace houghstream {
 
-/// A line's text without the blanks about it.
+/// Returns a line's text without the blanks about it.
 inline std::string trimmed(const std::string& text) {
   constexpr const char* kBlank = " \t\r";
   const std::size_t first = text.find_first_not_of(kBlank);

@@ -17,15 +17,16 @@ struct BopEstimate {
   int object_id = 0;
   double score = 0.0;
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres
-  double time_s = -1.0;  ///< for the whole image, the same in all its lines; -1 where it is unknown
+  double time_s = -1.0;  ///< time for the whole image, the same in all its lines; -1 where it is unknown
 };
 
-/// hs-evaluate writes it beside its report. bop_toolkit wants it renamed to METHOD_DATASET-SPLIT.csv.
+/// Name of the file that hs-evaluate writes beside its report. bop_toolkit wants it renamed to
+/// METHOD_DATASET-SPLIT.csv.
 inline constexpr const char* kBopResultsFile = "bop_results.csv";
 
-/// All poses that were published, in the order of the frames; the scene's id is scene_number(). A class of which
-/// `names` (of the scene, by object id) and its truth know no id is left out with a warning. The time is the sum of the
-/// stages that the poses carry.
+/// Returns all poses that were published, in the order of the frames; the scene's id is scene_number(). A class of
+/// which `names` (of the scene, by object id) and its truth know no id is left out with a warning. The time is the sum
+/// of the stages that the poses carry.
 std::vector<BopEstimate> bop_estimates(const std::vector<EvaluatedFrame>& frames,
                                        const std::map<int, std::string>& names);
 

@@ -56,7 +56,7 @@ std::vector<EvaluatedFrame> targeted_frames(std::vector<EvaluatedFrame> frames, 
                                             const std::filesystem::path& source) {
   if (frames.empty()) return frames;
   const std::string scene = frames.front().scene;
-  std::map<int, CountsByObject> asked;  // by image
+  std::map<int, CountsByObject> asked;  // counts by image
   for (const BopTarget& target : targets) {
     if (target.scene_id == scene_number(scene)) asked[target.image_id][target.object_id] = target.count;
   }

@@ -15,8 +15,8 @@ struct BopTarget {
   int count = 0;
 };
 
-/// test_targets_bop19.json: [{"scene_id", "im_id", "obj_id", "inst_count"}, ...]. Throws InputError where it does not
-/// hold that, asks for the same twice, or for nothing.
+/// Reads test_targets_bop19.json: [{"scene_id", "im_id", "obj_id", "inst_count"}, ...]. Throws InputError where it does
+/// not hold that, asks for the same twice, or for nothing.
 std::vector<BopTarget> read_bop_targets(const std::filesystem::path& file);
 
 /// Returns a scene's frames that have targets, with the target objects marked: where an image holds more instances than

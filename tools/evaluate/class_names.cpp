@@ -10,7 +10,7 @@
 namespace houghstream {
 namespace {
 
-/// Enough to see which names they are: a dataset may hold hundreds.
+/// Lists enough names to show which they are: a dataset may hold hundreds.
 std::string listed(const std::set<std::string>& names) {
   constexpr std::size_t kShown = 20;
   const std::vector<std::string> shown(names.begin(), std::next(names.begin(), std::min(kShown, names.size())));

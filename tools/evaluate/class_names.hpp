@@ -11,7 +11,7 @@
 
 namespace houghstream {
 
-/// One of those that are compared: what it is called by people, and the names it knows.
+/// One side of a comparison: its title for people, and the names it knows.
 struct NamedSide {
   std::string what;  ///< for instance "the forest out/forest"
   std::set<std::string> names;

@@ -30,7 +30,7 @@ struct EvaluateOptions {
   std::string channel = ".*";
   ObjectArguments known;
   std::optional<float> operating_score;
-  PoseSettings pose;  // by which poses are published
+  PoseSettings pose;  // settings by which poses are published
   std::string latency;
   std::string out;
   std::vector<std::string> classes;
@@ -57,7 +57,7 @@ std::vector<OpenScene> open_scenes(const EvaluateOptions& options) {
   return scenes;
 }
 
-/// The frames that are asked for.
+/// Keeps the frames that the options select.
 void choose_frames(const EvaluateOptions& options, std::vector<OpenScene>& scenes) {
   std::vector<BopTarget> targets;
   if (!options.targets.empty()) targets = read_bop_targets(options.targets);
@@ -73,7 +73,7 @@ NamedSide ground_truth_side(const EvaluateOptions& options, const std::vector<Op
   return side;
 }
 
-/// Whose names are measured: those that were asked for, else the forest's, else the truth's.
+/// Returns the side whose names are measured: those that were asked for, else the forest's, else the truth's.
 NamedSide listed_side(const EvaluateOptions& options, const std::vector<Forest>& groups, const NamedSide& truth) {
   if (!options.classes.empty()) return {"--classes", {options.classes.begin(), options.classes.end()}};
   if (groups.empty()) return truth;
@@ -84,8 +84,8 @@ NamedSide listed_side(const EvaluateOptions& options, const std::vector<Forest>&
   return side;
 }
 
-/// The classes to measure, in the order in which they were asked for, else by name. Throws InputError where they are no
-/// class of the truth or of the models; a scene without objects is there to count false detections.
+/// Returns the classes to measure, in the order in which they were asked for, else by name. Throws InputError where
+/// they are no class of the truth or of the models; a scene without objects is there to count false detections.
 std::vector<std::string> listed_classes(const EvaluateOptions& options, const std::vector<Forest>& groups,
                                         const NamedSide& truth, const std::map<std::string, Mesh>& meshes) {
   const NamedSide listed = listed_side(options, groups, truth);
@@ -139,7 +139,7 @@ void write_files(const EvaluateOptions& options, const SceneFigures& figures, co
   write_bop_results(estimates, std::filesystem::path(options.out) / kBopResultsFile);
 }
 
-/// The report does not go among what it is made of, and has a place: known before anything is searched.
+/// Checks before any search that the report has a place, which is not among its inputs.
 void check_place(const EvaluateOptions& options) {
   if (options.out.empty()) return;
   require_writable_folder(options.out);
@@ -223,7 +223,8 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
 
 }  // namespace
 
-/// A store's forest and models, where one is named, and what hs-detect publishes unless told otherwise.
+/// Returns the options with a store's forest and models, where one is named, and with what hs-detect publishes unless
+/// told otherwise.
 static EvaluateOptions with_store(EvaluateOptions options) {
   options.rules.operating_score = options.operating_score.value_or(EvidenceSettings{}.threshold);
   options.pose = pose_settings_of(options.pose, resolve_store(options.known), options.min_quality);

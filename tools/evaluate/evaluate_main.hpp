@@ -13,10 +13,11 @@ struct EvaluateSearch {
   /// Returns the settings with which a forest is searched.
   std::function<DetectionSettings(const Forest&)> settings = [](const Forest& it) { return detection_settings(it); };
   MakeSearch make = detector_search;
-  std::function<void(CommandLine& app)> add_options = [](CommandLine&) {};  ///< its own, beside those of all searches
+  /// Adds its own options, beside those of all searches.
+  std::function<void(CommandLine& app)> add_options = [](CommandLine&) {};
 };
 
-/// hs-evaluate, and under another name, with a search of its own, hs-study evaluate.
+/// Runs hs-evaluate, and under another name, with a search of its own, hs-study evaluate.
 int evaluate_main(int argc, char** argv, const std::string& name, const EvaluateSearch& search = {});
 
 }  // namespace houghstream

@@ -28,7 +28,7 @@ std::set<std::string> detected_classes(const std::vector<EvaluatedFrame>& frames
   return names;
 }
 
-/// Poses carry the stages of the detections too; the frame's later message has them all.
+/// A pose carries the stages of the detections too; the frame's later message has them all.
 std::map<std::string, double> stage_medians(const std::vector<EvaluatedFrame>& frames) {
   std::map<std::string, std::vector<double>> times_ms;
   for (const EvaluatedFrame& frame : frames) {
@@ -43,8 +43,8 @@ std::map<std::string, double> stage_medians(const std::vector<EvaluatedFrame>& f
   return medians;
 }
 
-/// A frame that hs-pose passed over counts as the skipped frames do: its detections have no poses, or are left out. So
-/// are candidates that no pose has confirmed.
+/// Returns the poses that count. A frame that hs-pose passed over counts as the skipped frames do: its detections have
+/// no poses, or are left out. So are candidates that no pose has confirmed.
 std::vector<JudgedPose> counted_poses(std::vector<JudgedPose> judged, const std::vector<EvaluatedFrame>& frames,
                                       const EvaluationRules& rules) {
   const auto left_out = [&](const JudgedPose& pose) {
@@ -54,7 +54,7 @@ std::vector<JudgedPose> counted_poses(std::vector<JudgedPose> judged, const std:
   return judged;
 }
 
-/// Calibration of the quality, and the number of published poses that are correct.
+/// Computes the calibration of the quality, and the number of published poses that are correct.
 void score_qualities(const std::vector<EvaluatedFrame>& frames, const std::map<std::string, PoseModel>& models,
                      Evaluation& out) {
   const std::vector<EvaluatedFrame> all = with_unfiltered_poses(frames);
@@ -80,7 +80,7 @@ void score_qualities(const std::vector<EvaluatedFrame>& frames, const std::map<s
 
 void evaluate_poses(const std::vector<EvaluatedFrame>& frames, const std::map<std::string, PoseModel>& models,
                     const EvaluationRules& rules, Evaluation& out) {
-  if (out.frames_with_poses == 0) return;  // nobody looked for any
+  if (out.frames_with_poses == 0) return;  // no poses were estimated
   const double min_visible = rules.pose_min_visible;
   for (const ClassResult& result : out.classes) {
     const auto model = models.find(result.class_name);

@@ -16,7 +16,7 @@ struct EvaluationRules {
   double pose_min_visible = 0.5;  ///< poses of less visible objects do not enter the recall
   /// Precision, recall and false detections count detections from this score on, and candidates that have a pose.
   float operating_score = 0.0F;
-  /// Leave skipped frames out instead of counting their objects, and the poses of what was found there, as missed.
+  /// Leaves skipped frames out; else their objects, and the poses of what was found there, count as missed.
   bool processed_only = false;
   /// Curves and AUC know detections from this score on; nothing where others decided.
   std::optional<float> ranked_from;
@@ -32,27 +32,27 @@ struct OperatingPoint {
 /// The poses that were published of listed classes with a model, but those of ignored detections.
 struct PublishedPoses {
   int count = 0;
-  int correct = 0;              ///< of true detections, by is_correct()
-  int correct_up_to_shape = 0;  ///< of true detections, ADD-S below 10 % of the diameter
+  int correct = 0;              ///< number of poses of true detections that are correct, by is_correct()
+  int correct_up_to_shape = 0;  ///< number of poses of true detections with ADD-S below 10 % of the diameter
 };
 
 /// The figures of one scene, or of several ones together. NaN where there is nothing to measure.
 struct Evaluation {
-  int frames = 0;            ///< of the scenes
-  int frames_processed = 0;  ///< with detections
+  int frames = 0;            ///< number of frames of the scenes
+  int frames_processed = 0;  ///< number of frames with detections
   int frames_with_poses = 0;
-  std::vector<ClassResult> classes;  ///< as listed
+  std::vector<ClassResult> classes;  ///< results in the order of the list
   std::map<std::string, OperatingPoint> operating;
   int false_detections = 0;  ///< reported, of all classes, listed or not
-  /// Of the scores of all detections of listed classes that there are, however low, but ignored ones; its recall is
+  /// Calibration of the scores of all detections of listed classes, however low, except ignored ones; its recall is
   /// over all required objects. Below the threshold with which they were found nothing is known.
   Calibration detection_calibration;
   /// Calibration of the quality of these detections' poses (pose_predictions()), with the rejected ones where they are
   /// known; its recall is over all correct poses.
   Calibration pose_calibration;
-  Calibration pose_calibration_up_to_shape;  ///< the same of ADD-S
+  Calibration pose_calibration_up_to_shape;  ///< calibration by ADD-S
   std::optional<PublishedPoses> published;   ///< nothing unless a listed class has a model to judge poses with
-  std::vector<JudgedPose> poses;             ///< of true detections of listed classes that have a model
+  std::vector<JudgedPose> poses;             ///< poses of true detections of listed classes that have a model
   std::map<std::string, double> strict_recall;
   std::map<std::string, double> add_s_recall;
   std::map<std::string, double> add_or_add_s_recall;
@@ -61,14 +61,14 @@ struct Evaluation {
   std::map<std::string, double> stage_ms;                           ///< median by stage
 };
 
-/// The frames that count under the rules.
+/// Returns the frames that count under the rules.
 std::vector<EvaluatedFrame> counted_frames(const std::vector<EvaluatedFrame>& frames, const EvaluationRules& rules);
 
 /// Compares results with the truth for the listed classes; `models` by class name, may lack some.
 Evaluation evaluate(const std::vector<EvaluatedFrame>& frames, const std::vector<std::string>& class_names,
                     const std::map<std::string, PoseModel>& models, const EvaluationRules& rules);
 
-/// Mean over the finite values; NaN without any.
+/// Returns the mean over the finite values; NaN without any.
 double mean_of(const std::map<std::string, double>& values);
 
 }  // namespace houghstream

@@ -18,7 +18,7 @@ PoseEstimator make_estimator(const std::map<std::string, Mesh>& models, PoseSett
   return {models, std::move(settings)};
 }
 
-/// `settings`, but that all is found which would be sent.
+/// Returns `settings` with thresholds that find all that would be published.
 DetectionSettings finding_all(DetectionSettings settings, const PublishingRules& rules) {
   float& threshold = settings.evidence.threshold;
   threshold = std::min({threshold, rules.score, rules.candidates_from});
@@ -41,7 +41,7 @@ Detections sent_of(Detections found, const PublishingRules& rules, int max_candi
   return found;
 }
 
-/// Says of the detections behind those that were published that they were not.
+/// Marks the detections behind the published ones as unpublished.
 void add_unpublished(const Detections& all, ObjectPoses& published) {
   for (std::size_t i = published.poses.size(); i < all.detections.size(); ++i) {
     ObjectPose& pose = published.poses.emplace_back();
@@ -65,7 +65,7 @@ struct InProcess::State {
   float ranked_from = 0.0F;
   int max_candidates = 0;
   FrameSearch search;
-  FrameSearch publishing;  ///< where `search` finds more than is sent
+  FrameSearch publishing;  ///< search that publishes, where `search` finds more than is published
   bool has_models;
   PoseEstimator estimator;
   PoseEstimator unfiltered;
@@ -79,7 +79,7 @@ struct InProcess::State {
     return all;
   }
 
-  /// The published poses, and those of the detections that have none of these.
+  /// Returns the published poses, and those of the detections that have none of these.
   ObjectPoses estimate_all(const RgbdFrame& frame, const Detections& all, const ObjectPoses& published) const {
     Detections open{all.frame, {}, {}};
     std::vector<std::size_t> places;

@@ -20,26 +20,26 @@ using FrameSearch = std::function<Detections(const RgbdFrame&)>;
 /// Makes a search of the forests of a store's groups: detector_search, or what a study puts in its place.
 using MakeSearch = std::function<FrameSearch(std::vector<Forest> groups, const DetectionSettings& settings)>;
 
-/// A search by Detector.
+/// Returns a search by Detector.
 FrameSearch detector_search(std::vector<Forest> groups, const DetectionSettings& settings);
 
 /// Rules of publication.
 struct PublishingRules {
-  float score = 0.0F;            ///< least of a detection that is reported by itself
+  float score = 0.0F;            ///< lowest score of a detection that is reported by itself
   float candidates_from = 1.0F;  ///< see EvidenceSettings
-  PoseSettings pose = {};        ///< from which score on poses are looked for, and from which quality on published
+  PoseSettings pose = {};        ///< score from which poses are estimated, and quality from which they are published
 };
 
 /// Detects, and estimates poses where there are models, without LCM.
 class InProcess {
  public:
-  /// `settings` may find detections of lower score than those that would be published, to rank and judge them too.
-  /// Models by class name.
+  /// Makes a search and an estimation. `settings` may find detections of lower score than those that would be
+  /// published, to rank and judge them too. Models are by class name.
   InProcess(std::vector<Forest> groups, const DetectionSettings& settings, const MakeSearch& make_search,
             const std::map<std::string, Mesh>& models, const PublishingRules& rules);
   ~InProcess();
 
-  /// The least score of the detections that run() lists.
+  /// Returns the least score of the detections that run() lists.
   float ranked_from() const;
 
   /// Fills in the results of these frames of the scene: all detections, without their rotations, and whether each would

@@ -10,10 +10,10 @@
 namespace houghstream {
 namespace {
 
-constexpr int kSide = 400;   // of a diagram
+constexpr int kSide = 400;   // side of a diagram
 constexpr int kCounts = 90;  // height of the bars below it
-constexpr int kGap = 28;     // between them, for the numbers
-constexpr int kMargin = 64;  // left of it, for the numbers, and above
+constexpr int kGap = 28;     // gap between them, for the numbers
+constexpr int kMargin = 64;  // margin left of it, for the numbers, and above
 constexpr int kWidth = kMargin + kSide + 32;
 constexpr int kHeight = kMargin + kSide + kGap + kCounts + 60;
 
@@ -61,7 +61,7 @@ class Panel {
     }
   }
 
-  /// The true fraction, a dot at the mean of what was stated, and how far it is off.
+  /// Draws the true fraction, a dot at the mean prediction, and their difference.
   void draw_bin(const ReliabilityBin& bin) {
     if (bin.count == 0) return;
     const cv::Point gap(2, 0);
@@ -71,7 +71,7 @@ class Panel {
     cv::circle(image_, mean, 4, kGapColour, cv::FILLED, cv::LINE_AA);
   }
 
-  /// Bars as high as the logarithm of the bin's count, so that a few are seen beside many.
+  /// Draws bars as high as the logarithm of the bin's count, so that a few are visible beside many.
   void draw_counts() {
     int maximum = 1;
     for (const ReliabilityBin& bin : calibration_.bins) maximum = std::max(maximum, bin.count);

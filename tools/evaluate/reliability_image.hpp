@@ -6,8 +6,8 @@
 
 namespace houghstream {
 
-/// Two reliability diagrams side by side, CV_8UC3: what is true over what was stated, with the number of statements of
-/// each bin below. On the diagonal what is stated holds.
+/// Draws two reliability diagrams side by side, CV_8UC3: the true fraction over the prediction, with the number of
+/// predictions of each bin below. On the diagonal predictions hold.
 cv::Mat reliability_image(const Calibration& score, const Calibration& quality);
 
 }  // namespace houghstream

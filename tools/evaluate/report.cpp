@@ -87,7 +87,8 @@ OrderedJson calibration_json(const Calibration& calibration) {
                             {"true_fraction", number(bin.true_fraction)}});
   }
   for (const ProposedThreshold& proposed : calibration.proposed) {
-    // In full: a rounded score would leave out the very one that it is, or let in others.
+    // The score is written in full: a rounded one would leave out the very detection that it comes from, or let in
+    // others.
     json["proposed"].push_back({{"precision", proposed.precision},
                                 {"score", proposed.score ? OrderedJson(*proposed.score) : OrderedJson(nullptr)},
                                 {"recall", number(proposed.recall)}});
@@ -159,7 +160,7 @@ OrderedJson summary_json(const Evaluation& evaluation, const EvaluationRules& ru
   json["operating"] = operating_json(evaluation);
   json["detection_calibration"] = calibration_json(evaluation.detection_calibration);
   json["false_detections"] = evaluation.false_detections;
-  // Only a frame that was looked at can have a false detection.
+  // Only a processed frame can have a false detection.
   json["false_per_frame"] = ratio(evaluation.false_detections, evaluation.frames_processed);
   json["frames_counted"] = counted;
   json["mssd_recall"] = recall_json(evaluation.strict_recall);

@@ -15,17 +15,17 @@
 
 namespace houghstream {
 
-/// A scene with its truth, and beside it the results.
+/// A scene with its ground truth and the results.
 struct OpenScene {
   BopScene scene;
-  std::map<int, std::string> names;  ///< of its objects, by id
+  std::map<int, std::string> names;  ///< names of its objects, by id
   std::vector<EvaluatedFrame> frames;
 };
 
 /// Models for pose errors, by class name.
 struct ScoredModels {
   std::map<std::string, PoseModel> scored;
-  std::map<std::string, BopModel> bop;  ///< of listed classes only
+  std::map<std::string, BopModel> bop;  ///< models of listed classes only
 };
 
 /// Makes the models of a folder's `meshes` (load_class_models()); empty where there are none. Throws InputError as

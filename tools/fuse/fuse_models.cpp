@@ -26,7 +26,7 @@ void report(const std::string& name, const fusion::FusedModel& model, std::size_
 }  // namespace
 
 std::vector<ObjectViews> group_views(std::vector<TrainingView> views) {
-  std::map<int, std::vector<ObjectViews>> frames_of_class;  // each with the views of one frame
+  std::map<int, std::vector<ObjectViews>> frames_of_class;  // frames of each class, each with the views of one frame
   for (TrainingView& view : views) {
     if (view.class_id == 0) continue;
     std::vector<ObjectViews>& frames = frames_of_class[view.class_id];

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kSize_px = 320;
 
-/// Camera that looks at `centre` from `azimuth` and `elevation` (radians).
+/// Returns the camera that looks at `centre` from `azimuth` and `elevation` (radians).
 Eigen::Isometry3d looking_at(const Eigen::Vector3d& centre, double azimuth, double elevation, double distance) {
   const Eigen::Vector3d forward(-std::cos(elevation) * std::cos(azimuth), -std::cos(elevation) * std::sin(azimuth),
                                 -std::sin(elevation));
@@ -38,7 +38,7 @@ Eigen::Vector3d colour_of(const Mesh& mesh, std::uint32_t vertex) {
   return {static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])};
 }
 
-/// In colours above, as shape below.
+/// Draws a view in colours above, as shape below.
 cv::Mat draw_view(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera) {
   const RenderedGeometry rendered = render_geometry({{&mesh, T_camera_object, 1}}, camera);
   cv::Mat image(2 * kSize_px, kSize_px, CV_8UC3, cv::Scalar::all(255));
@@ -51,7 +51,8 @@ cv::Mat draw_view(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, co
       const Eigen::Vector3d colour = mixed(bary, colour_of(mesh, a), colour_of(mesh, b), colour_of(mesh, c));
       const Eigen::Vector3d normal =
           mixed(bary, mesh.normals[a].cast<double>(), mesh.normals[b].cast<double>(), mesh.normals[c].cast<double>());
-      // Light from above the camera's left shoulder; what faces away from it is dark, so turned triangles show.
+      // Light comes from above the camera's left shoulder; a surface that faces away from it is dark, so turned
+      // triangles show.
       const Eigen::Vector3d light = Eigen::Vector3d(-0.3, -0.4, -1.0).normalized();
       const double lit = std::max(0.0, (T_camera_object.linear() * normal).normalized().dot(light));
       image.at<cv::Vec3b>(y, x) =
@@ -74,7 +75,7 @@ cv::Mat draw_model(const Mesh& mesh) {
   const Camera camera{kSize_px, kSize_px, focal, focal, middle, middle};
   constexpr double kSide = 25.0 * M_PI / 180.0;
   std::vector<cv::Mat> views;
-  views.reserve(6);  // from four sides, above and below
+  views.reserve(6);  // views from four sides, above and below
   for (int k = 0; k < 4; ++k) {
     views.push_back(draw_view(mesh, looking_at(centre, k * M_PI_2 - M_PI_2, kSide, distance), camera));
   }

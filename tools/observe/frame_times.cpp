@@ -64,7 +64,7 @@ void FrameTimes::note_objects(const FrameId& frame, Time time) {
 }
 
 void FrameTimes::note_status(const status_t& status) {
-  constexpr std::size_t kMax = 64;  // a sender of rubbish may make them up without end
+  constexpr std::size_t kMax = 64;  // limit, since a faulty sender may invent names without end
   const std::pair<std::string, std::int32_t> key(status.process, status.pid);
   if (processes_.size() < kMax || processes_.count(key) > 0) processes_[key] = status;
 }
@@ -99,7 +99,7 @@ std::string FrameTimes::csv() const {
 std::vector<double> FrameTimes::latencies_ms(std::optional<Time> Row::*from, std::optional<Time> Row::*to) const {
   std::vector<double> latencies;
   for (const auto& [id, row] : rows_) {
-    // Poses of what is followed come before the detections.
+    // Poses of followed objects come before the detections.
     if (row.*from && row.*to && *(row.*from) <= *(row.*to))
       latencies.push_back(seconds(*(row.*to) - *(row.*from)) * 1e3);
   }

@@ -14,13 +14,13 @@
 
 namespace houghstream {
 
-/// When each camera's frames, their detections, their poses and the world's objects after them arrived, on one clock,
-/// and what the processes said last.
+/// Arrival times of each camera's frames, their detections, their poses and the world's objects after them, on one
+/// clock, with the last status of each process.
 class FrameTimes {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// The first arrival counts: where several detectors work on a camera's frames, the first one's.
+  /// Notes an arrival. The first one counts: where several detectors work on a camera's frames, that of the first one.
   void note_frame(const FrameId& frame, Time time);
   void note_detections(const FrameId& frame, Time time);
   void note_poses(const FrameId& frame, Time time);
@@ -29,12 +29,12 @@ class FrameTimes {
 
   std::size_t frames() const;
 
-  /// One row for each frame in the order of utimes: utime, channel, t_frame, t_detections, t_poses, t_objects;
+  /// Returns one row for each frame in the order of utimes: utime, channel, t_frame, t_detections, t_poses, t_objects;
   /// seconds since the first arrival, empty where it has not come.
   std::string csv() const;
 
-  /// `sent`: how many frames were published, where it is known. `start_utime`: the csv's zero, microseconds since the
-  /// epoch. Counts, rate, latency percentiles in milliseconds
+  /// Returns the figures of a run. `sent` is the number of published frames, where it is known. `start_utime` is the
+  /// csv's zero, microseconds since the epoch. The summary holds counts, rate, latency percentiles in milliseconds
   /// (detect: frame to detections; pose: detections to poses; total: frame to poses; apart from these: frame to
   /// objects, where hs-track is there), the last status of each process (by name, with the process id where several
   /// have one name), and the account sent = detected + skipped + refused + lost of the process that detects; null
@@ -55,11 +55,11 @@ class FrameTimes {
   std::optional<Time> start() const;
   nlohmann::json account(std::int64_t sent) const;
 
-  /// The last status of each process, by what the summary calls it.
+  /// Returns the last status of each process, by its name in the summary.
   std::map<std::string, status_t> named_processes() const;
 
   std::map<FrameId, Row> rows_;
-  std::map<std::pair<std::string, std::int32_t>, status_t> processes_;  // by name and process id
+  std::map<std::pair<std::string, std::int32_t>, status_t> processes_;  // status by name and process id
 };
 
 }  // namespace houghstream

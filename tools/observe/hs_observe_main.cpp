@@ -21,7 +21,7 @@ struct ObserveOptions {
   std::string out;
   std::string csv;
   double duration_s = 1e9;
-  double quiet_s = 2.5;  // longer than the status period, so that the last word of each process is in
+  double quiet_s = 2.5;  // timeout longer than the status period, so that the last word of each process is in
   std::optional<std::int64_t> expect;
 };
 

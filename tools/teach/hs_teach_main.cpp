@@ -77,7 +77,7 @@ CommandLine add_mesh(CommandLine& app, TeachOptions& options, Lists& lists) {
   return mesh;
 }
 
-/// What hs-teach merge is given.
+/// Arguments of hs-teach merge.
 struct MergeArguments {
   std::vector<std::string> stores;
   std::string out;

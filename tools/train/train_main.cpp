@@ -103,7 +103,7 @@ Profile overridden(const TrainProgram& program, const Overrides& overrides) {
   return profile;
 }
 
-/// The profile by which a forest was trained; only seed and threads can be chosen.
+/// Returns the profile by which a forest was trained; only seed and threads can be chosen.
 Profile profile_for(const Forest& forest, const TrainProgram& program, const Overrides& overrides) {
   Profile profile = program.profile_of(forest);
   profile.training.seed = overrides.seed;

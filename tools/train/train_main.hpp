@@ -21,10 +21,11 @@ struct TrainProgram {
   std::function<void(Profile&, float)> set_image_scale = [](Profile& profile, float image_scale) {
     profile.features.image_scale = image_scale;
   };
-  std::function<void(Profile&, const std::string&)> set_scale_handling;  ///< none where it has one handling only
+  /// Handler of --scale; none where it has one handling only.
+  std::function<void(Profile&, const std::string&)> set_scale_handling;
 };
 
-/// hs-train, and hs-study train, which trains by detector/baseline too.
+/// Runs hs-train, and hs-study train, which trains by detector/baseline too.
 int train_main(int argc, char** argv, const TrainProgram& program = {});
 
 }  // namespace houghstream

@@ -30,7 +30,7 @@ void append(std::vector<TrainingView> from, std::vector<TrainingView>& to) {
   std::move(from.begin(), from.end(), std::back_inserter(to));
 }
 
-/// New names by old ones. Throws InputError where one has no effect.
+/// Returns new names by old ones. Throws InputError where one has no effect.
 std::map<std::string, std::string> parse_renames(const std::vector<std::string>& renames,
                                                  const std::set<std::string>& there) {
   std::map<std::string, std::string> new_names;
@@ -66,7 +66,7 @@ void rename_classes(const std::vector<std::string>& renames, std::vector<Trainin
 }  // namespace
 
 std::vector<TrainingView> read_training_sources(const TrainingSources& sources, int threads) {
-  if (sources.camera) parse_camera(*sources.camera);  // also where no source needs it
+  if (sources.camera) parse_camera(*sources.camera);  // checks it also where no source needs it
   std::vector<TrainingView> all;
   std::vector<TrainingView> turntable;
   for (const std::string& source : sources.views) {

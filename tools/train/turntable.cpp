@@ -40,7 +40,7 @@ std::vector<Sample> take_sample(const std::vector<TurntableView>& views) {
   return samples;
 }
 
-/// Camera axes of an upright object frame seen from `elevation` above the horizon (radians).
+/// Returns the camera axes of an upright object frame seen from `elevation` above the horizon (radians).
 Eigen::Matrix3d upright_rotation(double elevation) {
   const double s = std::sin(elevation);
   const double c = std::cos(elevation);
@@ -65,8 +65,8 @@ Features object_features(const Sample& sample, const Turntable& table) {
   return features;
 }
 
-/// Squared distances from each point of `from` to the nearest of `to`, the nearer 70 % only: the rest of one view's
-/// surface is hidden in the other.
+/// Sums the squared distances from each point of `from` to the nearest of `to`, of the nearer 70 % only: the rest of
+/// one view's surface is hidden in the other.
 double trimmed_distance_sq(const Features& from, const Features& to) {
   std::vector<float> nearest_sq;
   nearest_sq.reserve(from.size());
@@ -96,7 +96,7 @@ double mean_residual_sq(const std::vector<Sample>& samples, const Turntable& tab
   return sum / static_cast<double>(2 * features.size());
 }
 
-/// The middle of what is seen, half a width behind its near side.
+/// Returns the middle of the visible surface, half a width behind its near side.
 Eigen::Vector3d rough_centre(const std::vector<Sample>& samples) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Sample& sample : samples) {
@@ -111,7 +111,7 @@ Eigen::Vector3d rough_centre(const std::vector<Sample>& samples) {
   return sum / static_cast<double>(samples.size());
 }
 
-/// Axis shifted by x[0], x[1] metres across itself, from an elevation of x[2] radians.
+/// Returns the axis shifted by x[0], x[1] metres across itself, from an elevation of x[2] radians.
 Turntable table_from(const double* x, const Eigen::Vector3d& centre, double direction) {
   Turntable table;
   table.direction = direction;
@@ -140,7 +140,7 @@ class TurntableResidual : public cv::MinProblemSolver::Function {
   double direction_;
 };
 
-/// Downhill simplex (Nelder & Mead 1965) from a usual elevation.
+/// Fits the table by the downhill simplex (Nelder & Mead 1965) from a usual elevation.
 std::pair<double, Turntable> fit_table(const std::vector<Sample>& samples, double direction) {
   const Eigen::Vector3d centre = rough_centre(samples);
   constexpr double kFirstElevation = 0.5;

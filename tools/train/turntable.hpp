@@ -19,7 +19,7 @@ struct Turntable {
   Eigen::Isometry3d T_camera_axis = Eigen::Isometry3d::Identity();
   double direction = 1.0;  ///< +1 where yaw turns the object counter-clockwise seen from above, else -1
 
-  /// T_camera_object when the table stands at `yaw`.
+  /// Returns T_camera_object when the table stands at `yaw`.
   Eigen::Isometry3d pose_at(double yaw) const;
 };
 

@@ -29,7 +29,7 @@ struct Instance {
   std::string class_name;
 };
 
-/// "can_1" or "can_1=can".
+/// Parses "can_1" or "can_1=can".
 std::pair<std::string, std::string> parse_selected(const std::string& text) {
   const std::size_t sign = text.find('=');
   if (sign == std::string::npos) return {text, ""};
@@ -76,7 +76,8 @@ struct ViewName {
   double yaw = 0.0;  ///< radians
 };
 
-/// The dataset states no yaw: a video is taken as one full turn, evenly spread over its frame numbers.
+/// Sets yaws, which the dataset does not state: a video is taken as one full turn, evenly spread over its frame
+/// numbers.
 void set_yaws(std::vector<ViewName>& names) {
   std::map<int, std::pair<int, int>> range;  // first and last frame number by video
   for (const ViewName& name : names) {
@@ -142,7 +143,7 @@ TrainingView read_view(const Instance& instance, const ViewName& name, const Cam
   return view;
 }
 
-/// Poses for the views of one video.
+/// Computes poses for the views of one video.
 void set_poses(const std::vector<ViewName>& names, std::vector<TrainingView>& views) {
   std::vector<TurntableView> turn;
   for (std::size_t i = 0; i < views.size(); ++i) {

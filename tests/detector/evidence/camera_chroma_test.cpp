@@ -48,7 +48,7 @@ std::vector<Hypothesis> one_of_each_class(const Forest& forest) {
   return hypotheses;
 }
 
-/// What is found there by groups of classes.
+/// Returns the hypotheses that groups of classes find.
 std::vector<ScoredHypothesis> weighed(const std::vector<Forest>& forests, const RgbdFrame& frame,
                                       const std::vector<ChromaPair>& reference = {}) {
   const LabFrame in_lab = toy::lab_frame(frame, frame.colour, 1.0F);

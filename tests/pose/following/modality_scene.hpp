@@ -7,7 +7,7 @@
 
 namespace houghstream::test_scene {
 
-/// A closed cylinder about the z axis: depth and outline are the same however it is turned.
+/// Makes a closed cylinder about the z axis: its depth and outline are the same however it is turned.
 inline Mesh round_can() {
   Mesh mesh;
   constexpr int kSides = 64;
@@ -52,7 +52,7 @@ struct ModalityScene {
     }
   }
 
-  /// With images of its own, to be changed.
+  /// Returns a scene with images of its own, which may be changed.
   ModalityScene copy() const {
     ModalityScene other = *this;
     other.frame.colour = frame.colour.clone();

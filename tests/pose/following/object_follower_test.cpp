@@ -14,7 +14,7 @@ using namespace test_scene;
 
 constexpr std::int64_t kPeriod = 16667;  // microseconds: 60 Hz
 
-/// A table with things on it before a camera, frame by frame.
+/// Frames of a camera before a table with objects on it.
 class Film {
  public:
   struct Thing {
@@ -25,7 +25,7 @@ class Film {
 
   std::vector<Thing> things;
   Eigen::Isometry3d T_camera_table = standing(0.0, 30.0, 1.0);
-  std::vector<Mesh> screens;  // before the camera, in its frame
+  std::vector<Mesh> screens;  // meshes before the camera, in its frame
   std::int64_t utime = 1000;
 
   Film& with(const std::string& name, Mesh mesh, double x, double foot) {
@@ -77,7 +77,7 @@ int valid_ones(const ObjectPoses& poses) {
   }));
 }
 
-/// A follower that has found what stands there.
+/// A follower that has found the objects of a film.
 class Following {
  public:
   explicit Following(Film start, FollowerSettings settings = {}) : film(std::move(start)), follower(settings) {
@@ -113,8 +113,8 @@ TEST(ObjectFollower, AWalkingCamerasObjectsAreKeptWithoutDetections) {
   }
 }
 
-/// How far the box's poses are from its true place in metres, on average, where it is carried sideways by 6 mm a frame
-/// and every depth comes with two frames: in those to which it does not belong.
+/// Returns the mean distance, metres, of the box's poses from its true place while it is carried sideways by 6 mm a
+/// frame and every depth comes with two frames, over those frames to which the depth does not belong.
 double error_with_repeated_depth() {
   constexpr int kFrames = 20;
   FollowerSettings settings;
@@ -403,7 +403,7 @@ TEST(ObjectFollower, LooksGoOnAfterAClockWasSetBackWhileOneWasOnItsWay) {
   it.film.utime -= kHour;
   it.next();
   it.follower.process_detections(estimator(), before, it.film.detected(before.id));
-  for (int i = 0; i < 70; ++i) {  // the detector sees nothing
+  for (int i = 0; i < 70; ++i) {  // the detector finds nothing
     const RgbdFrame frame = it.film.next();
     it.follower.follow(estimator(), frame);
     it.follower.process_detections(estimator(), frame, {frame.id, {}, {}});
@@ -451,8 +451,8 @@ TEST(ObjectFollower, WhatIsTakenAwayIsNotFollowedByColoursWhereDepthIsMeasured) 
   for (int i = 0; i < 5; ++i) EXPECT_EQ(valid_ones(it.next()), 0) << i;
 }
 
-/// How far the mug turns off about its axis, radians at most, while it stands: it was turned until a finger hid its
-/// handle.
+/// Returns by how much, radians at most, the mug turns off about its axis while it stands: it was turned until a finger
+/// hid its handle.
 double turn_behind_a_finger(const FollowerSettings& settings) {
   Film film = Film().with("mug", mug(), 0.0, 0.05);
   film.things[0].T_table_object.rotate(Eigen::AngleAxisd(-1.9, Eigen::Vector3d::UnitZ()));
@@ -480,7 +480,7 @@ double turn_behind_a_finger(const FollowerSettings& settings) {
 TEST(ObjectFollower, ATurnDoesNotGoOnByItselfWhereNothingObservesIt) {
   EXPECT_LT(turn_behind_a_finger({}), 0.7);
   FollowerSettings free;
-  free.follow.joint.tikhonov_rad = 1e6;  // every turn is predicted, and none is held
+  free.follow.joint.tikhonov_rad = 1e6;  // every rotation is predicted, and none is held
   EXPECT_GT(turn_behind_a_finger(free), 0.8);
 }
 

@@ -44,7 +44,8 @@ TEST(RegionModality, DrawsAPoseInFromTheSide) {
   EXPECT_LT(scene.shift_of(fine).head<2>().norm(), 0.0015);
 }
 
-/// How far one step of all lines moves the object away from the camera, metres, and what they know of that.
+/// Displacement of the object away from the camera after one step of all lines, metres, with the information of the
+/// lines on it.
 struct StepAway {
   double step_m = 0.0;
   double information = 0.0;

@@ -21,7 +21,7 @@ const ObjectModel& model_of_mug() {
   return model;
 }
 
-/// Whether the model covers a pixel.
+/// Returns whether the model covers a pixel.
 bool is_covered_at(const cv::Mat& depth, const Eigen::Vector2f& pixel) {
   const auto x = static_cast<int>(std::lround(pixel.x()));
   const auto y = static_cast<int>(std::lround(pixel.y()));

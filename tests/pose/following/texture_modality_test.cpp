@@ -9,7 +9,7 @@ namespace {
 
 using namespace test_scene;
 
-/// The can, its surface painted with waves of brightness that turn with it.
+/// Renders the can with waves of brightness on its surface that turn with it.
 RgbdFrame painted_frame(const ModalityScene& scene, const Eigen::Isometry3d& pose, double brighter) {
   RgbdFrame frame = noisy_frame({{&scene.object, pose, 1}}, 3);
   const RenderedGeometry rendered = render_geometry({{&scene.object, pose, 1}}, kCamera);
@@ -40,7 +40,7 @@ TEST(TextureModality, ARoundThingsTurnIsSeenByItsTexture) {
   ASSERT_GE(keyframe.points.size(), 100U);
   Eigen::Isometry3d truth = scene.truth;
   truth.rotate(Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitZ()));
-  const RgbdFrame frame = painted_frame(scene, truth, 15.0);  // and the light is another one
+  const RgbdFrame frame = painted_frame(scene, truth, 15.0);  // the light has changed
   const BrightnessImage image = make_brightness(frame, kAbout);
   Eigen::Isometry3d pose = scene.truth;
   for (int i = 0; i < 6; ++i) {

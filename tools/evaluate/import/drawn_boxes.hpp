@@ -16,7 +16,7 @@ struct DrawnBox {
 };
 
 struct DrawnFrame {
-  std::string name;  ///< of NAME_color.png and NAME_depth.png
+  std::string name;  ///< name of NAME_color.png and NAME_depth.png
   std::vector<DrawnBox> boxes;
 };
 
@@ -26,11 +26,12 @@ struct DrawnBoxes {
   std::vector<DrawnFrame> frames;
 };
 
-/// {"image_size": [w,h], "camera": {fx,fy,cx,cy}, "frames": [{"frame": NAME, "objects": [{"object": NAME, "bbox_xyxy":
-/// [x0,y0,x1,y1]}]}]}; pixels. Throws InputError, also for a box outside the image and where there are no frames.
+/// Reads {"image_size": [w,h], "camera": {fx,fy,cx,cy}, "frames": [{"frame": NAME, "objects": [{"object": NAME,
+/// "bbox_xyxy": [x0,y0,x1,y1]}]}]}; pixels. Throws InputError, also for a box outside the image and where there are no
+/// frames.
 DrawnBoxes read_drawn_boxes(const std::filesystem::path& file);
 
-/// The list "frames" of such a file. Throws InputError, naming `source`.
+/// Reads the list "frames" of such a file. Throws InputError, naming `source`.
 std::vector<DrawnFrame> parse_drawn_frames(const nlohmann::json& frames, const Camera& camera,
                                            const std::string& source);
 

@@ -37,14 +37,14 @@ GroundTruthObject boxed_object(int object_id, const cv::Rect& box_px) {
   return object;
 }
 
-/// Frames of another scene would be taken for this one's.
+/// Refuses a folder with frames of another scene, which would be taken for this one's.
 void require_free(const fs::path& scene_folder, const fs::path& source) {
   require_other_file(scene_folder, source);
   require(!has_images(scene_folder), "{}: holds pictures already, expected a new folder or one without",
           scene_folder.string());
 }
 
-/// The scene of frames whose images are called NAME`colour_ending` and NAME_depth.png.
+/// Writes the scene of frames whose images are called NAME`colour_ending` and NAME_depth.png.
 int write_scene(const DrawnBoxes& drawn, const fs::path& source, const std::string& colour_ending,
                 const fs::path& scene_folder) {
   std::set<std::string> objects_seen;
@@ -66,7 +66,7 @@ int write_scene(const DrawnBoxes& drawn, const fs::path& source, const std::stri
   return static_cast<int>(drawn.frames.size());
 }
 
-/// A word of a command line of the shell, whatever it holds.
+/// Returns a word of a command line of the shell, whatever it holds.
 std::string quoted(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);

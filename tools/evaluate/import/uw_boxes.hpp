@@ -2,7 +2,7 @@
 
 namespace houghstream {
 
-/// uw_boxes.py, which Python runs; it lies in the program, which needs no file of it when it runs.
+/// Text of uw_boxes.py, which Python runs; the program holds it, so that it needs no file when it runs.
 extern const char* const kUwBoxesScript;
 
 }  // namespace houghstream

@@ -21,7 +21,7 @@ std::vector<const GroundTruthObject*> targets_of(const EvaluatedFrame& frame, co
   return targets;
 }
 
-/// Strongest first, as many as are asked for.
+/// Returns the strongest poses first, as many as there are targets.
 std::vector<const ObjectPose*> strongest_poses(const EvaluatedFrame& frame, const std::string& class_name,
                                                std::size_t maximum) {
   std::vector<const ObjectPose*> poses;
@@ -35,7 +35,7 @@ std::vector<const ObjectPose*> strongest_poses(const EvaluatedFrame& frame, cons
   return poses;
 }
 
-/// The classes that have targets in a frame, with the errors of their poses.
+/// Returns the classes that have targets in a frame, with the errors of their poses.
 std::map<std::string, FrameErrors> measure_frame(const EvaluatedFrame& frame, const BopScene& scene,
                                                  const std::map<std::string, BopModel>& models) {
   std::map<std::string, FrameErrors> measured;
@@ -57,7 +57,7 @@ std::map<std::string, FrameErrors> measure_frame(const EvaluatedFrame& frame, co
 
 using ErrorOf = std::function<double(const BopErrors&)>;
 
-/// Targets of a frame that are given a right pose.
+/// Returns the number of targets of a frame that have a correct pose.
 int count_correct(const FrameErrors& frame, const ErrorOf& error_of, double threshold) {
   std::vector<bool> taken(static_cast<std::size_t>(frame.targets), false);
   int correct = 0;
@@ -77,7 +77,7 @@ int count_correct(const FrameErrors& frame, const ErrorOf& error_of, double thre
   return correct;
 }
 
-/// Mean over the ten thresholds `step` to 10 `step`.
+/// Returns the mean over the ten thresholds `step` to 10 `step`.
 double mean_recall(const std::vector<FrameErrors>& frames, int targets, double step, const ErrorOf& error_of) {
   int correct = 0;
   for (std::size_t i = 1; i <= kBopSteps; ++i) {

@@ -12,7 +12,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Vertices = std::vector<Eigen::Vector3f>;
 
-/// Empty where a vertex does not lie in front of the camera.
+/// Projects vertices; returns none where a vertex does not lie in front of the camera.
 std::vector<Eigen::Vector2d> projected(const Vertices& vertices, const Eigen::Isometry3d& T, const Camera& camera) {
   std::vector<Eigen::Vector2d> out;
   out.reserve(vertices.size());
@@ -24,7 +24,7 @@ std::vector<Eigen::Vector2d> projected(const Vertices& vertices, const Eigen::Is
   return out;
 }
 
-/// Largest squared distance between the projections, or something from `enough` on.
+/// Returns the largest squared distance between the projections, or any from `enough` on.
 double max_sq(const std::vector<Eigen::Vector2d>& estimated, const Vertices& vertices, const Eigen::Isometry3d& T,
               const Camera& camera, double enough) {
   double farthest = 0.0;
@@ -36,7 +36,8 @@ double max_sq(const std::vector<Eigen::Vector2d>& estimated, const Vertices& ver
   return farthest;
 }
 
-/// The part of the image in which the object can be seen in either pose: all of it where the object is too near to say.
+/// Returns the part of the image in which the object can be seen in either pose: all of it where the object is too near
+/// to say.
 cv::Rect seen_region(const Vertices& vertices, const Eigen::Isometry3d& T_estimated,
                      const Eigen::Isometry3d& T_ground_truth, const Camera& camera) {
   const cv::Rect image(0, 0, camera.width, camera.height);
@@ -56,7 +57,7 @@ cv::Rect seen_region(const Vertices& vertices, const Eigen::Isometry3d& T_estima
 struct PixelCounts {
   int in_either = 0;
   int in_both = 0;
-  std::array<int, kBopSteps> apart = {};  ///< by tau, of those in both
+  std::array<int, kBopSteps> apart = {};  ///< pixels apart by tau, of those in both
 };
 
 /// Adds one pixel; distances along its ray, metres, NaN where there is none.
@@ -64,7 +65,7 @@ void count_pixel(double estimated, double truth, double measured, double diamete
   constexpr double kDelta = 0.015;
   const auto visible = [&](double model) { return std::isfinite(model) && !(model - measured > kDelta); };
   const bool ground_truth_visible = visible(truth);
-  // Where the true object is seen, an estimate behind it is not hidden but wrong.
+  // An estimate behind the visible true object is not hidden but wrong.
   const bool estimate_visible = visible(estimated) || (ground_truth_visible && std::isfinite(estimated));
   counts.in_either += ground_truth_visible || estimate_visible ? 1 : 0;
   if (!ground_truth_visible || !estimate_visible) return;

@@ -36,7 +36,7 @@ double expected_error(const std::vector<ReliabilityBin>& bins, int count) {
   return count > 0 ? sum / count : kNaN;
 }
 
-/// `ranked`: highest first. Equals cannot be told apart by a threshold.
+/// Proposes a threshold. `ranked` is sorted, highest first. A threshold cannot divide equals.
 ProposedThreshold propose(double precision, const std::vector<Prediction>& ranked, int could_be_true) {
   ProposedThreshold out{precision, std::nullopt, kNaN};
   int true_count = 0;

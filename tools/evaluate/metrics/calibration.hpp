@@ -5,13 +5,13 @@
 
 namespace houghstream {
 
-/// A probability that was stated, a score or a quality, and whether it came true.
+/// A predicted probability, a score or a quality, and whether it came true.
 struct Prediction {
   double confidence = 0.0;
   bool is_true = false;
 };
 
-/// Statements of about the same probability.
+/// Predictions of about the same probability.
 struct ReliabilityBin {
   double from = 0.0;
   double to = 0.0;  ///< excluded, but 1 in the last one
@@ -20,24 +20,25 @@ struct ReliabilityBin {
   double true_fraction = 0.0;  ///< NaN where it is empty
 };
 
-/// From where on a wanted precision is kept.
+/// Threshold from which on a wanted precision is kept.
 struct ProposedThreshold {
   double precision = 0.0;
-  std::optional<double> score;  ///< the smallest stated one from which on that share or more is true; nothing: none is
-  double recall = 0.0;          ///< what is true from there on, over all that could be; NaN without a score
+  /// Smallest prediction from which on that fraction or more is true; nothing: there is none.
+  std::optional<double> score;
+  double recall = 0.0;  ///< true predictions from there on, over all that could be; NaN without a score
 };
 
 /// Calibration of predicted probabilities (Guo et al., "On Calibration of Modern Neural Networks", ICML 2017).
 struct Calibration {
   int count = 0;
   /// Expected calibration error: the bins' differences between mean score and true fraction, each weighted by its
-  /// count; NaN without statements.
+  /// count; NaN without predictions.
   double ece = 0.0;
   std::vector<ReliabilityBin> bins;         ///< ten of equal width
   std::vector<ProposedThreshold> proposed;  ///< for precisions of 0.90, 0.95, 0.98 and 0.99
 };
 
-/// `could_be_true`: what a recall of 1 is.
+/// Computes the calibration. `could_be_true` is the number that a recall of 1 means.
 Calibration calibrate(const std::vector<Prediction>& statements, int could_be_true);
 
 }  // namespace houghstream

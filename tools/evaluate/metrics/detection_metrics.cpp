@@ -15,7 +15,7 @@ bool is_required(const NamedObject& object, const DetectionRules& rules) {
   return is_target && !object.truth.box_visible_px.empty();
 }
 
-/// A detection of the class that no verdict is given of yet.
+/// Returns a detection of the class that has no verdict yet.
 MatchedDetection unjudged(const EvaluatedFrame& frame, std::size_t f, std::size_t index) {
   const Detection& detection = frame.detections->detections[index];
   const ObjectPose* pose = frame.poses ? find_pose(*frame.poses, index) : nullptr;
@@ -28,7 +28,7 @@ MatchedDetection unjudged(const EvaluatedFrame& frame, std::size_t f, std::size_
   return unjudged;
 }
 
-/// The class's detections over all frames, strongest first.
+/// Returns the class's detections over all frames, strongest first.
 std::vector<MatchedDetection> ranked_detections(const std::vector<EvaluatedFrame>& frames,
                                                 const std::string& class_name, int max_per_class) {
   const auto stronger = [](const MatchedDetection& a, const MatchedDetection& b) { return a.score > b.score; };

@@ -19,13 +19,13 @@ enum class MatchOutcome { kTruePositive, kFalsePositive, kIgnored };
 
 /// One detection of one class, judged.
 struct MatchedDetection {
-  std::size_t frame = 0;  ///< in the evaluated frames
-  std::size_t index = 0;  ///< in the frame's detections
+  std::size_t frame = 0;  ///< index into the evaluated frames
+  std::size_t index = 0;  ///< index into the frame's detections
   float score = 0.0F;
   MatchOutcome outcome = MatchOutcome::kFalsePositive;
-  std::size_t object = 0;     ///< in the frame's objects; only meaningful where true
+  std::size_t object = 0;     ///< index into the frame's objects; only meaningful where true
   bool is_candidate = false;  ///< not Detection::reported, or refuted by its pose
-  bool has_pose = false;      ///< a published one
+  bool has_pose = false;      ///< whether its pose was published
 };
 
 /// Judges all detections of a class, strongest first over all frames (ties by frame, then index). A detection is true
@@ -34,7 +34,7 @@ struct MatchedDetection {
 std::vector<MatchedDetection> match_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                                                const DetectionRules& rules);
 
-/// Objects of the class that are visible enough to be required, or targets.
+/// Counts the objects of the class that are visible enough to be required, or targets.
 int count_required(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                    const DetectionRules& rules);
 
@@ -44,13 +44,13 @@ struct CurvePoint {
   double recall = 0.0;
 };
 
-/// One point per detection that counts. Of a class that stands nowhere all are false: precision and recall are 0, so
-/// that they count where several scenes are pooled.
+/// Returns one point per detection that counts. All detections of an absent class are false: precision and recall are
+/// 0, so that they count where several scenes are pooled.
 std::vector<CurvePoint> precision_recall_curve(const std::vector<MatchedDetection>& judged, int required);
 
-/// Area under the precision/recall curve, un-interpolated: the sum of the precision at each true positive over the
-/// number of required objects, so that missed recall counts 0 (average precision as in Buckley & Voorhees 2000).
-/// `required` > 0.
+/// Returns the area under the precision/recall curve, un-interpolated: the sum of the precision at each true positive
+/// over the number of required objects, so that missed recall counts 0 (average precision as in Buckley & Voorhees
+/// 2000). `required` > 0.
 double average_precision(const std::vector<MatchedDetection>& judged, int required);
 
 /// Detection result of one class.
@@ -67,20 +67,20 @@ ClassResult evaluate_class(const std::vector<EvaluatedFrame>& frames, const std:
 /// Returns the scores of all detections that are true or false positives, as predictions.
 std::vector<Prediction> score_predictions(const std::vector<ClassResult>& classes);
 
-/// Mean AUC over the classes that appear, each counting once; NaN where none appears.
+/// Returns the mean AUC over the classes that appear, each counting once; NaN where none appears.
 double mean_auc(const std::vector<ClassResult>& classes);
 
-/// Mean AUC weighted by the number of required objects; NaN where none appears.
+/// Returns the mean AUC weighted by the number of required objects; NaN where none appears.
 double weighted_auc(const std::vector<ClassResult>& classes);
 
 /// Detections of a class at a score, matched with the ground truth.
 struct ReportedCount {
-  int detections = 0;  ///< by their score
-  int confirmed = 0;   ///< candidates by their pose
+  int detections = 0;  ///< number of detections by their score
+  int confirmed = 0;   ///< number of candidates by their pose
   int all() const { return detections + confirmed; }
 };
 
-/// Detections of verdict `outcome` with at least `min_score`, and candidates with a pose whatever their score.
+/// Counts detections of verdict `outcome` with at least `min_score`, and candidates with a pose whatever their score.
 ReportedCount count_reported(const ClassResult& result, MatchOutcome outcome, float min_score);
 
 }  // namespace houghstream

@@ -11,7 +11,7 @@
 namespace houghstream {
 namespace {
 
-/// Detectors of the same object would count each thing twice.
+/// Refuses detectors of the same object, which would count each thing twice.
 void check_classes(const FrameResults& results, const std::string& where) {
   std::set<std::string> earlier;
   for (const FrameResult& result : results.results()) {
@@ -31,7 +31,7 @@ void check_poses(const FrameResults& results, const std::string& where) {
        poses.poses.empty() ? "" : poses.poses.front().class_name, results.results().size());
 }
 
-/// Published results by the frames' times; all are of one camera.
+/// Returns published results by the frames' times; all are of one camera.
 std::map<std::int64_t, FrameResults> by_utime(const PublishedResults& published) {
   std::map<std::int64_t, FrameResults> results;
   for (const Detections& detections : published.detections) results[detections.frame.utime].add(detections);
@@ -71,7 +71,7 @@ std::vector<EvaluatedFrame> read_ground_truth(const BopScene& scene, const std::
 }
 
 void stamp_at_rate(double rate_hz, std::vector<EvaluatedFrame>& frames) {
-  if (rate_hz == kDatasetRateHz) return;  // these are stamped so
+  if (rate_hz == kDatasetRateHz) return;  // such frames are stamped at this rate
   for (std::size_t i = 0; i < frames.size(); ++i)
     frames[i].utime = dataset_utime(0) + std::llround(static_cast<double>(i) * 1e6 / rate_hz);
 }
@@ -91,7 +91,7 @@ void add_results(std::vector<EvaluatedFrame>& frames, const PublishedResults& pu
     } else if (!results.unmatched().empty()) {
       frame->second->poses = results.unmatched().front();
     } else if (results.followed()) {
-      frame->second->poses = results.followed();  // no detector looked
+      frame->second->poses = results.followed();  // no detector ran
     }
   }
 }

@@ -13,7 +13,7 @@
 
 namespace houghstream {
 
-/// A true object with the name by which results are compared: ids differ between a scene and a forest.
+/// A ground-truth object with the name by which results are compared: ids differ between a scene and a forest.
 struct NamedObject {
   std::string class_name;
   GroundTruthObject truth;
@@ -27,22 +27,23 @@ struct EvaluatedFrame {
   std::string scene;  ///< the name of its folder
   std::int64_t utime = 0;
   std::size_t image = 0;  ///< position in the scene's images
-  int image_id = 0;       ///< BOP's, in the scene
+  int image_id = 0;       ///< BOP's image id, in the scene
   std::vector<NamedObject> objects;
-  std::optional<Detections> detections;  ///< all detectors'; nothing where the frame was skipped or lost
+  std::optional<Detections> detections;  ///< detections of all detectors; nothing where the frame was skipped or lost
   std::optional<ObjectPoses> poses;      ///< likewise
-  /// With those that were not published since they are of low quality or of detections of low score; nothing unless
+  /// All poses, with those that were not published because of low quality or of detections of low score; nothing unless
   /// they were estimated in this process.
   std::optional<ObjectPoses> unfiltered_poses;
 };
 
-/// The name of the scene's folder, by which scenes are told apart.
+/// Returns the name of the scene's folder, by which scenes are told apart.
 std::string scene_name(const BopScene& scene);
 
-/// BOP's scene_id: the number that the folder is named by, 0 for another name.
+/// Returns BOP's scene_id: the number that the folder is named by, 0 for another name.
 int scene_number(const std::string& scene_name);
 
-/// The truth of a scene, frame by frame, with the utimes of its frames. Objects without a name are "object_N".
+/// Reads the ground truth of a scene, frame by frame, with the utimes of its frames. Objects without a name are
+/// "object_N".
 std::vector<EvaluatedFrame> read_ground_truth(const BopScene& scene, const std::map<int, std::string>& names);
 
 /// Gives the frames of a scene, all of them in their order, the utimes that hs-capture --rate stamps them with.
@@ -56,10 +57,10 @@ void add_results(std::vector<EvaluatedFrame>& frames, const PublishedResults& pu
 /// Frames 0, N, 2N ...
 std::vector<EvaluatedFrame> every_nth(std::vector<EvaluatedFrame> frames, int every);
 
-/// The frames as if nothing had been withheld, where that is known.
+/// Returns the frames as if no pose had been withheld, where that is known.
 std::vector<EvaluatedFrame> with_unfiltered_poses(std::vector<EvaluatedFrame> frames);
 
-/// Only the frames that have detections.
+/// Returns only the frames that have detections.
 std::vector<EvaluatedFrame> processed_frames(const std::vector<EvaluatedFrame>& frames);
 
 }  // namespace houghstream

@@ -27,7 +27,7 @@ PublishedResults read_result_log(const std::filesystem::path& log_file, const st
   const ChannelPattern cameras(frame_channels);
   PublishedResults results;
   LogReader log(log_file);
-  std::optional<pose_probabilities_t> probabilities;  // the last ones: those of poses come just before them
+  std::optional<pose_probabilities_t> probabilities;  // last ones of the log; those of poses come just before them
   while (const auto event = log.next()) {
     const ByteView bytes{event->data.data(), event->data.size()};
     if (event->channel == channel::kDetections) {

@@ -9,7 +9,7 @@
 namespace houghstream {
 namespace {
 
-/// Empty where no stage has the prefix.
+/// Returns the sum of stages; empty where no stage has the prefix.
 std::string milliseconds(const std::vector<StageTime>& stages, const std::string& prefix) {
   std::int64_t sum_us = 0;
   bool any = false;

@@ -7,11 +7,11 @@
 
 namespace houghstream {
 
-/// hs-evaluate writes it beside its report.
+/// Name of the file that hs-evaluate writes beside its report.
 inline constexpr const char* kSearchTimesFile = "frames.csv";
 
-/// scene,image_id,detect_ms,pose_ms,detections,poses of each frame with detections: the sums of the stages whose names
-/// begin with "detect." and "pose.", empty where there are none. Throws InputError where it cannot be written.
+/// Writes scene,image_id,detect_ms,pose_ms,detections,poses of each frame with detections: the sums of the stages whose
+/// names begin with "detect." and "pose.", empty where there are none. Throws InputError where it cannot be written.
 void write_search_times(const std::vector<EvaluatedFrame>& frames, const std::filesystem::path& file);
 
 }  // namespace houghstream

@@ -29,7 +29,7 @@ struct MergedObject {
   StoredObject object;
   const StoreContents* from = nullptr;
 
-  /// The id that it was taught with, whatever merges made of it.
+  /// Returns the id that it was taught with, whatever merges made of it.
   int taught_id() const { return object.taught_id != 0 ? object.taught_id : object.id; }
   const Mesh& mesh() const { return from->meshes.at(object.name); }
 };
@@ -53,13 +53,14 @@ bool is_same_mesh(const Mesh& a, const Mesh& b) {
          have_same_pixels(a.texture, b.texture);
 }
 
-/// null where the store does not say it.
+/// Returns a setting of a store; null where the store does not state it.
 OrderedJson setting_of(const StoreContents& contents, const char* key) {
   const OrderedJson& settings = contents.list.settings;
   return settings.is_object() && settings.contains(key) ? settings.at(key) : OrderedJson();
 }
 
-/// What was taught with other settings does not share a frame's features, or is another teaching than it says.
+/// Refuses a store that was taught with other settings: it does not share a frame's features, or is another teaching
+/// than it says.
 void require_fitting(const StoreContents& first, const StoreContents& other) {
   for (const char* key : {"profile", "seed"}) {
     const OrderedJson expected = setting_of(first, key);
@@ -87,7 +88,7 @@ void require_different(const std::vector<MergedObject>& objects) {
   }
 }
 
-/// Of objects that were taught with one id the first by name keeps it.
+/// Gives ids to merged objects. The first by name keeps the id of several that were taught with one.
 void give_merged_ids(std::vector<MergedObject>& objects) {
   std::sort(objects.begin(), objects.end(), [](const MergedObject& a, const MergedObject& b) {
     return std::make_tuple(a.taught_id(), a.object.name) < std::make_tuple(b.taught_id(), b.object.name);
@@ -112,7 +113,7 @@ void give_merged_ids(std::vector<MergedObject>& objects) {
             [](const MergedObject& a, const MergedObject& b) { return a.object.id < b.object.id; });
 }
 
-/// The images of an object's views, under the title of its id.
+/// Copies the images of an object's views, under the title of its id.
 void copy_views(const MergedObject& merged, const StoredObject& before, const Eigen::Vector3d& size_m,
                 const ObjectStore& made) {
   cv::Mat image = read_colour_image(merged.from->list.view_image(before.id));
@@ -128,7 +129,7 @@ std::vector<MergedObject> objects_of(const std::vector<StoreContents>& stores) {
   return objects;
 }
 
-/// What all of them have in common.
+/// Returns the settings that all of them have in common.
 OrderedJson settings_of(const std::vector<MergedObject>& objects, const StoreContents& first) {
   OrderedJson settings = OrderedJson::object();
   const std::string& attitudes = objects.front().object.attitudes;
@@ -141,13 +142,14 @@ OrderedJson settings_of(const std::vector<MergedObject>& objects, const StoreCon
   return settings;
 }
 
-/// What models_info.json of a store says of its objects, by id.
+/// Entries of a store's models_info.json, by object id.
 struct ModelEntries {
   std::map<int, OrderedJson> entries;
   std::map<int, Eigen::Vector3d> sizes_m;
 };
 
-/// The objects join the list and the models, their views the folder. A group is called by an id of one of its objects.
+/// Adds the objects to the list and the models, their views to the folder. A group is called by an id of one of its
+/// objects.
 std::vector<StoreModel> add_objects(const std::vector<MergedObject>& objects, ObjectStore& made) {
   std::vector<StoreModel> models;
   std::map<std::pair<const StoreContents*, int>, int> groups;

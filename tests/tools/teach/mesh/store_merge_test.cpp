@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using FileContents = std::map<std::string, std::string>;
 
-/// What is learnt is worth nothing, but it is learnt as ever.
+/// Teaches quickly: the result is worth nothing, but it is learnt as ever.
 TeachOptions quick_teaching(const fs::path& folder, const std::string& mesh, const std::string& store) {
   TeachOptions options;
   options.meshes.sources = {(folder / mesh).string()};
@@ -36,7 +36,7 @@ TeachOptions quick_teaching(const fs::path& folder, const std::string& mesh, con
   return options;
 }
 
-/// Stores of one object each, taught once in a process: "a" of a bracket and "b" of a longer one, whose texture its
+/// Teaches stores of one object each, once in a process: "a" of a bracket and "b" of a longer one, whose texture its
 /// mesh names by its id, and "c" of a grey part. All of them were taught with the id 1.
 const fs::path& taught_apart() {
   static const fs::path folder = [] {
@@ -58,7 +58,7 @@ const fs::path& taught_apart() {
   return folder;
 }
 
-/// A copy of these stores, which a test may change.
+/// Copies these stores, so that a test may change them.
 fs::path copied_stores(const std::string& name) {
   fs::path folder = fresh_folder(name);
   for (const char* store : {"a", "b", "c"})
@@ -66,14 +66,14 @@ fs::path copied_stores(const std::string& name) {
   return folder;
 }
 
-/// The files of a store by their paths in it, byte for byte.
+/// Reads the files of a store by their paths in it, byte for byte.
 FileContents files_in(const fs::path& store) {
   FileContents files;
   for (const auto& [path, bytes] : store::files_of(store)) files[fs::relative(path, store).string()] = bytes;
   return files;
 }
 
-/// The names of the groups' objects, and the bytes of their forests.
+/// Returns the names of the groups' objects, and the bytes of their forests.
 std::map<std::string, std::string> forests_in(const fs::path& folder) {
   const store::ObjectStore list = store::read_store(folder);
   std::map<std::string, std::string> forests;
@@ -147,7 +147,7 @@ TEST(StoreMerge, GroupsAreSearchedTogether) {
   EXPECT_NO_THROW(finder.find(frame));
 }
 
-/// The error of a merge of a changed copy of "b" to "a"; nothing may be written.
+/// Returns the error of a merge of a changed copy of "b" to "a"; nothing may be written.
 std::string error_after(const std::string& name, const std::function<void(const fs::path& folder)>& change) {
   const fs::path in = copied_stores("merge_bad_" + name);
   change(in);
@@ -219,7 +219,7 @@ TEST(StoreMerge, AStoreThatIsThereIsOnlyReplacedWhereThatIsAskedFor) {
   EXPECT_EQ(store::read_store(in / "a").objects.size(), 2U) << "one of the parts, too";
 }
 
-/// Grouped store "all" of the three objects.
+/// Makes the grouped store "all" of the three objects.
 fs::path merged_copy(const std::string& name) {
   const fs::path in = copied_stores(name);
   merge_stores({in / "a", in / "b", in / "c"}, in / "all", false);
