@@ -56,9 +56,10 @@ class ScaleSpaceScales : public training::Scales {
     return baseline::extra_planes(frame, settings, 1);
   }
 
-  /// About where it was taught, since sizes between those that are searched must be known too.
+  /// Returns distances about that at which it was taught, since sizes between those that are searched must be known
+  /// too.
   DistanceRange distances(double taught, const DistanceRange&) const override {
-    constexpr double kHalfStep = 1.25;  // of the scales searched
+    constexpr double kHalfStep = 1.25;  // half a step of the searched scales
     return {taught / kHalfStep, taught * kHalfStep};
   }
 
@@ -66,7 +67,7 @@ class ScaleSpaceScales : public training::Scales {
 
   bool needs_measured_depth() const override { return false; }
 
-  /// Where features look at the depth that the enlarged images show, see add_far_noise.
+  /// Changes depth as the enlarged images show it where features read it, see add_far_noise.
   void vary_depth(double distance, const FeatureSettings& settings, cv::Mat& depth, Random& random) const override {
     if (settings.families == kIntensity) return;
     const double farthest = *std::max_element(settings.scales.begin(), settings.scales.end());
@@ -77,7 +78,7 @@ class ScaleSpaceScales : public training::Scales {
     return limited_scale(patch, patch.unit);
   }
 
-  /// From pixel to pixel, as if 1 m away.
+  /// Returns the offset from pixel to pixel, as if 1 m away.
   Eigen::Vector3f centre_offset(const TrainingView& view, const ShownPoint& point) const override {
     const Camera& camera = view.frame.camera;
     const Eigen::Vector2d centre_px = camera.project(view.T_camera_object.translation());

@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::array<float, kMaxScales> kFiveScales = {0.33F, 0.66F, 1.0F, 1.66F, 2.33F};  // Section 4
 
-/// Prior probability of each of so many objects and the background: the released detector of the paper's authors lets a
-/// patch vote for an object from this posterior on (its threshold_hierarchy is 1).
+/// Returns the prior probability of each of so many objects and the background: the released detector of the paper's
+/// authors lets a patch vote for an object from this posterior on (its threshold_hierarchy is 1).
 float even_fraction(std::size_t objects) {
   return 1.0F / static_cast<float>(objects + 1);
 }
@@ -68,7 +68,7 @@ DetectionSettings detection_settings_of(const Forest& forest) {
   Profile profile = make_profile(forest.profile, forest.classes.size());
   profile.features.image_scale = forest.features.image_scale;
   const bool normalised = forest.features.handling == ScaleHandling::kDepthNormalised;
-  set_scale_handling(profile, normalised ? "normalised" : "five");  // how many scales makes no difference here
+  set_scale_handling(profile, normalised ? "normalised" : "five");  // any number of scales serves here
   return profile.detection;
 }
 

@@ -18,7 +18,7 @@ cv::Mat largest_over_sizes(const SearchContext& search, int class_index, const R
   return largest;
 }
 
-/// Vote mass around each cell, as if summed by a kernel as wide as vote_sigma at the votes' own distance.
+/// Sums the vote mass around each cell, as if by a kernel as wide as vote_sigma at the votes' own distance.
 cv::Mat masses_by_cell(const HoughSpace& space, const VotingInput& input) {
   const VotingSettings& settings = input.settings;
   cv::Mat masses = cv::Mat::zeros(space.height, space.width, CV_32FC1);
@@ -38,7 +38,7 @@ cv::Mat masses_by_cell(const HoughSpace& space, const VotingInput& input) {
   return masses;
 }
 
-/// The last row and column of cells may reach over the frame's border.
+/// Returns the image at the frame's size; the last row and column of cells may reach over its border.
 cv::Mat at_frame_size(const cv::Mat& cells, int cell_px, const Camera& working_camera, cv::Size frame_size) {
   const auto enlarged = [&](int count, int working, int frame) {
     return static_cast<int>(std::ceil(static_cast<double>(count) * cell_px * frame / working));

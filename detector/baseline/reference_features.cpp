@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kBins = HistogramSteps::kBins;
 
-/// Orientation of a gradient in [0, 9) bins, unsigned; a polynomial arctangent (error below 0.3 degrees) so that the
-/// result does not depend on the machine's mathematics library.
+/// Returns the orientation of a gradient in [0, 9) bins, unsigned, by a polynomial arctangent (error below 0.3
+/// degrees), so that the result does not depend on the machine's mathematics library.
 float orientation_bin(float dx, float dy) {
   const float ax = std::fabs(dx);
   const float ay = std::fabs(dy);
@@ -30,7 +30,7 @@ float orientation_bin(float dx, float dy) {
   return bin >= static_cast<float>(kBins) ? 0.0F : bin;
 }
 
-/// Steps of each bin, see HistogramSteps.
+/// Returns the steps of each bin, see HistogramSteps.
 std::vector<cv::Mat> shared_gradients(const cv::Mat& dx, const cv::Mat& dy, float gain) {
   std::vector<cv::Mat> planes(kBins);
   for (cv::Mat& plane : planes) plane = cv::Mat::zeros(dx.size(), CV_16UC1);
@@ -53,7 +53,7 @@ std::vector<cv::Mat> shared_gradients(const cv::Mat& dx, const cv::Mat& dy, floa
   return planes;
 }
 
-/// The window's sum along one axis; what lies outside is like the nearest pixel inside.
+/// Returns the window's sum along one axis; what lies outside is like the nearest pixel inside.
 cv::Mat summed(const cv::Mat& plane, cv::Point axis) {
   cv::Mat out(plane.size(), CV_16UC1);
   for (int y = 0; y < plane.rows; ++y) {
@@ -81,7 +81,7 @@ cv::Mat absolute_derivative(const cv::Mat& lightness, int dx, int dy, double gai
   return out;
 }
 
-/// Sums of products with the kernel along one axis, from the first one to the last, in this order.
+/// Returns sums of products with the kernel along one axis, from the first one to the last, in this order.
 cv::Mat filtered(const cv::Mat& image, const std::vector<float>& kernel, cv::Point axis) {
   cv::Mat out(image.size(), CV_32FC1);
   const int half = static_cast<int>(kernel.size()) / 2;
@@ -139,7 +139,7 @@ cv::Mat as_bytes(const cv::Mat& steps, StepBytes bytes) {
   return out;
 }
 
-/// The planes of a block before minimum and maximum, one per thing it measures.
+/// Returns the planes of a block before minimum and maximum, one per thing it measures.
 std::vector<cv::Mat> base_planes(const FeatureBlock& block, const WorkingFrame& frame,
                                  const FeatureSettings& settings) {
   switch (block.family) {

@@ -9,10 +9,10 @@
 
 namespace houghstream::baseline {
 
-/// The planes of compute_features, one after another, each for the whole frame: the reference that it is held against.
+/// Computes the planes of compute_features, one after another, each for the whole frame, as its reference.
 FeatureImage reference_features(const WorkingFrame& frame, const FeatureSettings& settings);
 
-/// The 16 intensity planes before minimum and maximum, CV_8UC1 each.
+/// Returns the 16 intensity planes before minimum and maximum, CV_8UC1 each.
 std::vector<cv::Mat> intensity_planes(const cv::Mat& colour_bgr);
 
 /// Planes of the families that need derivatives of the depth; empty where settings.families lacks one.
@@ -22,8 +22,8 @@ struct DepthPlanes {
 };
 DepthPlanes depth_planes(const WorkingFrame& frame, const FeatureSettings& settings);
 
-/// Histogram of oriented gradients per pixel, see HistogramSteps. `gain` maps to 0..255; times the largest gradient it
-/// stays below 2000, so that the sums fit into 16 bits.
+/// Computes a histogram of oriented gradients per pixel, see HistogramSteps. `gain` maps to 0..255; times the largest
+/// gradient it stays below 2000, so that the sums fit into 16 bits.
 std::vector<cv::Mat> gradient_histograms(const cv::Mat& dx, const cv::Mat& dy, float gain);
 
 }  // namespace houghstream::baseline

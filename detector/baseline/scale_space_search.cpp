@@ -16,9 +16,9 @@ namespace {
 
 /// One size of the frame, classified.
 struct SeenLevel {
-  PatchGrid grid;  // without points and areas, which need depth
+  PatchGrid grid;  // grid without points and areas, which need depth
   PatchPosteriors posteriors;
-  Camera camera;               // of the level's image
+  Camera camera;               // camera of the level's image
   float px_per_offset = 0.0F;  // level pixels per unit of a leaf's offset, see ScaleHandling::kScaleSpace
   float size_ratio = 1.0F;
   int size = 0;  // its number
@@ -77,7 +77,7 @@ void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, 
       });
 }
 
-/// Vote mass per pixel over the class's expected mass.
+/// Returns the vote mass per pixel over the class's expected mass.
 cv::Mat hough_image(const SearchContext& search, int class_index, const SeenLevel& seen) {
   const Forest& forest = search.forest();
   const DetectionSettings& settings = search.settings;
@@ -92,7 +92,7 @@ cv::Mat hough_image(const SearchContext& search, int class_index, const SeenLeve
   return image * (kernel_sum * patch_side * patch_side / expected);
 }
 
-/// Local maxima, strongest first.
+/// Returns local maxima, strongest first.
 std::vector<cv::Point> maxima_of(const cv::Mat& image, int reach_px, float minimum, std::size_t limit) {
   cv::Mat around;
   cv::dilate(image, around, cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * reach_px + 1, 2 * reach_px + 1)));
@@ -109,7 +109,7 @@ std::vector<cv::Point> maxima_of(const cv::Mat& image, int reach_px, float minim
   return maxima;
 }
 
-/// Which maximum the votes at a pixel support: its number, or kNobody. The stronger of two that are near.
+/// Number of the maximum that the votes at a pixel support, or kNobody. The stronger of two near ones counts.
 constexpr std::int16_t kNobody = -1;
 cv::Mat supported_maximum(const std::vector<cv::Point>& maxima, cv::Size size, float reach_px) {
   cv::Mat number(size, CV_16SC1, cv::Scalar(kNobody));
@@ -119,7 +119,7 @@ cv::Mat supported_maximum(const std::vector<cv::Point>& maxima, cv::Size size, f
   return number;
 }
 
-/// The patches, and the views that they remember, whose votes meet at each maximum.
+/// Gathers the patches, and the views that they support, whose votes meet at each maximum.
 std::vector<Hypothesis> gather_supporters(const SearchContext& search, int class_index, const SeenLevel& seen,
                                           const std::vector<cv::Point>& maxima) {
   const Forest& forest = search.forest();
@@ -167,7 +167,7 @@ ScoredHypothesis make_candidate(const ObjectClass& object, const Hypothesis& hyp
   return candidate;
 }
 
-/// All maxima of one class in one size.
+/// Returns all maxima of one class in one size.
 std::vector<ScalePeak> level_peaks(const SearchContext& search, int class_index, const SeenLevel& seen,
                                    const Camera& camera) {
   const ObjectClass& object = search.forest().classes[static_cast<std::size_t>(class_index)];

@@ -7,13 +7,13 @@
 
 namespace houghstream::baseline {
 
-/// The sizes of FeatureSettings::scales, each of which looks at everything.
+/// Returns the sizes of FeatureSettings::scales, each of which searches the whole image.
 std::vector<FeatureLevel> scale_space_levels(const FeatureSettings& settings);
 
-/// The frame at such a size. Nothing is known of depth, so that a hole borrows that of the nearest pixel.
+/// Returns the frame at such a size. Nothing is known of depth, so that a hole borrows that of the nearest pixel.
 WorkingFrame scale_space_frame(const RgbdFrame& frame, const FeatureLevel& level, const FeatureSettings& settings);
 
-/// The search of the original Hough Forest (Gall et al. 2011, Section 3.3): the frame is looked at in every size of
+/// Searches as the original Hough Forest does (Gall et al. 2011, Section 3.3): the frame is searched in every size of
 /// FeatureSettings::scales, each pixel votes in the image for the centres it knows, and each size has a Hough image of
 /// its own; candidates are the maxima over place and size, see maxima_over_sizes. Boxes by back-projection of all
 /// supporting patches. A candidate's centre has no depth: centre_camera is NaN. Same result for any number of threads.
@@ -21,8 +21,8 @@ WorkingFrame scale_space_frame(const RgbdFrame& frame, const FeatureLevel& level
 std::vector<ScoredHypothesis> search_scale_space(const SearchContext& search, Way way, const RgbdFrame& frame,
                                                  StageClock& clock);
 
-/// The Hough images of one class before maxima are taken, one per size, CV_32FC1: vote mass as a share of what a wholly
-/// visible object is expected to have.
+/// Returns the Hough images of one class before maxima are taken, one per size, CV_32FC1: vote mass as a fraction of
+/// the expected one of a wholly visible object.
 std::vector<cv::Mat> scale_space_hough_images(const SearchContext& search, int class_index, const RgbdFrame& frame);
 
 /// A maximum of the Hough image of one class in one size of the frame.
@@ -30,12 +30,12 @@ struct ScalePeak {
   ScoredHypothesis candidate;
   cv::Point2f at_px;      ///< frame pixels
   float reach_px = 0.0F;  ///< it is the highest of its size at most so far away along either axis, frame pixels
-  int size = 0;           ///< which of the sizes, counted in the order of FeatureSettings::scales
+  int size = 0;           ///< index of the size in FeatureSettings::scales
 };
 
-/// The voting space has a third axis, the size (paper, Section 2: maxima over place, class and scale; Gall et al. 2011,
-/// Section 3.3): a maximum of one size that a higher one of the next size stands beside is a slope of that one. Of a
-/// class's equal neighbours the first counts. What is left keeps its order.
+/// Returns the maxima over all sizes. The voting space has a third axis, the size (paper, Section 2: maxima over place,
+/// class and scale; Gall et al. 2011, Section 3.3): a maximum of one size that a higher one of the next size stands
+/// beside is a slope of that one. Of a class's equal neighbours the first counts. What is left keeps its order.
 std::vector<ScoredHypothesis> maxima_over_sizes(const std::vector<ScalePeak>& peaks);
 
 }  // namespace houghstream::baseline

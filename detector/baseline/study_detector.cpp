@@ -8,7 +8,7 @@
 namespace houghstream::baseline {
 namespace {
 
-/// The stages of Detector::detect up to the evidence, two of them in the way that is asked for.
+/// Runs the stages of Detector::detect up to the evidence, two of them in the way that is asked for.
 std::vector<ScoredHypothesis> search_normalised(const SearchContext& search, Way way, const RgbdFrame& frame,
                                                 DetectorWorkspace& workspace, StageClock& clock) {
   const DetectionSettings& settings = search.settings;

@@ -14,7 +14,7 @@ class StudyDetector {
   StudyDetector(const StudyDetector&) = delete;
   StudyDetector& operator=(const StudyDetector&) = delete;
 
-  /// As Detector::detect; of a forest of a scale space without the stage "detect.evidence".
+  /// Detects as Detector::detect does; a forest of a scale space has no stage "detect.evidence".
   Detections detect(const RgbdFrame& frame, DetectorWorkspace& workspace) const;
   Detections detect(const RgbdFrame& frame) const;
 

@@ -14,7 +14,8 @@ namespace {
 
 constexpr int kNeutral = 128;
 
-/// Laying vectors flat is linear, so it is done to their covariance: what is left is a 2x2 matrix in the plane.
+/// Returns the curvature. Projecting vectors onto the plane is linear, so it is done to their covariance, which leaves
+/// a 2x2 matrix in the plane.
 Curvature curvature_of(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d u = normal.unitOrthogonal();
   const Eigen::Vector3d v = normal.cross(u);

@@ -14,12 +14,12 @@ struct CurvatureLayout {
   static constexpr int kNormalNeighbours = 100;
   static constexpr int kNeighbours = 225;
   static constexpr int kMax = 0;        ///< spread of the normals along the principal direction
-  static constexpr int kMin = 1;        ///< and across it
+  static constexpr int kMin = 1;        ///< curvature across it
   static constexpr int kDirection = 2;  ///< two planes: cosine and sine of twice the principal direction's angle
   static constexpr int kRatio = 4;      ///< minimum over maximum
   static constexpr int kPlanes = 5;
 
-  static constexpr float kFullSpread = 0.7F;  ///< at 255; that of normals all around a half circle
+  static constexpr float kFullSpread = 0.7F;  ///< spread at 255: that of normals all around a half circle
 };
 
 /// Curvature at one pixel, as PCL's PrincipalCurvaturesEstimation has it: of the normals around, laid flat onto the
@@ -30,12 +30,12 @@ struct Curvature {
   cv::Vec3f direction{0.0F, 0.0F, 0.0F};  ///< unit vector of the larger one, camera frame; its sign means nothing
 };
 
-/// kPlanes planes CV_8UC1. Spread is the root of the eigenvalue, so that it grows as curvature does. An angle in the
-/// image is known up to half a turn, so its double is kept: 128 + 127 cos and sin, drawn towards 128 as far as
+/// Computes kPlanes planes CV_8UC1. Spread is the root of the eigenvalue, so that it grows as curvature does. An angle
+/// in the image is known up to half a turn, so its double is kept: 128 + 127 cos and sin, drawn towards 128 as far as
 /// the two curvatures are alike and no direction is the principal one. Where there is no normal: 0, direction 128.
 std::vector<cv::Mat> curvature_planes(const WorkingFrame& frame, int threads);
 
-/// The curvatures of a row of normals; NaN where there is no normal.
+/// Returns the curvatures of a row of normals; NaN where there is no normal.
 std::vector<Curvature> row_curvatures(const SurfaceVectors& normals, int y, int radius_px);
 
 }  // namespace houghstream::baseline

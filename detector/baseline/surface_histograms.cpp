@@ -14,7 +14,7 @@ namespace houghstream::baseline {
 
 namespace {
 
-/// visit(index of the point, its neighbours) for every point that has any.
+/// Calls visit(index of the point, its neighbours) for every point that has any.
 template <typename Visit>
 void visit_row(const HistogramCloud& cloud, int y, const Visit& visit) {
   for (int x = 0; x < cloud.size.width; ++x) {

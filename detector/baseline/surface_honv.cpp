@@ -16,7 +16,7 @@ constexpr int kFull = 255;  // vote of one normal; a window of them must fit 16 
 constexpr auto kPlanes = static_cast<std::size_t>(HonvLayout::kPlanes);
 using Votes = std::array<float, kPlanes>;
 
-/// Weights of a unit normal for each azimuth bin, which sum to 1.
+/// Returns the weights of a unit normal for each azimuth bin, which sum to 1.
 std::array<float, HonvLayout::kAzimuths> azimuth_shares(const cv::Vec3f& normal, float zenith_bin) {
   const float angle = std::atan2(normal[1], normal[0]) / (2.0F * kPi);
   const float bin = (angle < 0.0F ? angle + 1.0F : angle) * static_cast<float>(HonvLayout::kAzimuths);
@@ -33,7 +33,7 @@ std::array<float, HonvLayout::kAzimuths> azimuth_shares(const cv::Vec3f& normal,
 Votes votes_of(const cv::Vec3f& normal) {
   const float across = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1]);
   const float zenith = std::atan2(across, -normal[2]);
-  // In bins from the middle of the first: -0.5 on the axis.
+  // The zenith counts in bins from the middle of the first: -0.5 on the axis.
   const float bin = zenith / (0.5F * kPi) * static_cast<float>(HonvLayout::kZeniths) - 0.5F;
   const auto azimuths = azimuth_shares(normal, bin);
   const float limited = std::clamp(bin, 0.0F, static_cast<float>(HonvLayout::kZeniths - 1));
@@ -48,7 +48,7 @@ Votes votes_of(const cv::Vec3f& normal) {
   return votes;
 }
 
-/// The votes of every normal, CV_16UC1 per bin; 0 where there is none. Integers: their sums are exact.
+/// Returns the votes of every normal, CV_16UC1 per bin; 0 where there is none. Integers: their sums are exact.
 std::vector<cv::Mat> vote_planes(const cv::Mat& normals, int threads) {
   std::vector<cv::Mat> planes(kPlanes);
   for (cv::Mat& plane : planes) plane = cv::Mat::zeros(normals.size(), CV_16UC1);
@@ -67,7 +67,7 @@ std::vector<cv::Mat> vote_planes(const cv::Mat& normals, int threads) {
 
 using RowVotes = std::array<std::vector<std::uint16_t>, kPlanes + 1>;  // the last one counts the normals
 
-/// Sums of the votes around the pixels of row y, from normals of the same surface only.
+/// Sums the votes around the pixels of row y, from normals of the same surface only.
 RowVotes sum_votes(const std::vector<cv::Mat>& votes, const SurfaceVectors& normals, int y, int radius_px) {
   const cv::Size size = normals.depth.size();
   const auto width = static_cast<std::size_t>(size.width);

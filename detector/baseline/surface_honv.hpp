@@ -17,9 +17,9 @@ struct HonvLayout {
   static constexpr int plane(int azimuth, int zenith) { return zenith * kAzimuths + azimuth; }
 };
 
-/// kPlanes planes CV_8UC1: the share of each bin among the normals around a pixel, 255 for all of them. A normal is
-/// divided linearly between the nearest bins of both angles; between 15 and 0 degrees from the axis its azimuth fades
-/// to all four alike, since a surface seen face on has none. 0 in all planes where there is no normal.
+/// Computes kPlanes planes CV_8UC1: the fraction of each bin among the normals around a pixel, 255 for all of them. A
+/// normal is divided linearly between the nearest bins of both angles; between 15 and 0 degrees from the axis its
+/// azimuth fades to all four alike, since a surface seen face on has none. 0 in all planes where there is no normal.
 std::vector<cv::Mat> honv_planes(const WorkingFrame& frame, int threads);
 
 }  // namespace houghstream::baseline

@@ -13,7 +13,7 @@ namespace houghstream::baseline {
 
 namespace {
 
-/// About `count` places spread evenly over the unit disk.
+/// Returns about `count` places spread evenly over the unit disk.
 std::vector<cv::Point2f> disk(int count) {
   const double pitch = std::sqrt(M_PI / count);
   const int reach = static_cast<int>(1.0 / pitch);
@@ -27,7 +27,7 @@ std::vector<cv::Point2f> disk(int count) {
   return places;
 }
 
-/// The points of the cloud that these places fall on, nearest first.
+/// Returns the points of the cloud that these places fall on, nearest first.
 std::vector<cv::Point> shifts_of(const std::vector<cv::Point2f>& places, float reach) {
   std::vector<cv::Point> shifts;
   shifts.reserve(places.size());
@@ -38,7 +38,7 @@ std::vector<cv::Point> shifts_of(const std::vector<cv::Point2f>& places, float r
   return shifts;
 }
 
-/// Metres: of the disk that so many points of the cloud in which neighbours are counted cover.
+/// Returns the radius, metres, of the disk that so many points of the cloud in which neighbours are counted cover.
 float support_radius(const PointHistogramSettings& settings, int neighbours) {
   return settings.spacing * std::sqrt(static_cast<float>(neighbours) / static_cast<float>(M_PI));
 }
@@ -83,7 +83,7 @@ HistogramCloud empty_cloud(cv::Size pixels, const PointHistogramSettings& settin
   cloud.reaches.resize(count, 0.0F);
   const std::vector<cv::Point2f> places = disk(settings.given);
   const int steps = static_cast<int>(HistogramCloud::kMaxDistance / HistogramCloud::kReachStep);
-  for (int i = 0; i <= steps; ++i) {  // where surfaces are far away, the points beside still are neighbours
+  for (int i = 0; i <= steps; ++i) {  // the points beside are still neighbours where surfaces are far away
     const float reach = std::max(1.0F, static_cast<float>(i) * HistogramCloud::kReachStep);
     cloud.shifts.push_back(shifts_of(places, reach));
   }

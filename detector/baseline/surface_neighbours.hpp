@@ -15,11 +15,11 @@ namespace houghstream::baseline {
 struct HistogramCloud {
   cv::Size size;  ///< points
   int step_px = 1;
-  std::vector<float> reaches;             ///< how far neighbours lie in the image, points
+  std::vector<float> reaches;             ///< reaches of neighbours in the image, points
   float limit = 0.0F;                     ///< see same_surface_limit
   pcl::PointCloud<pcl::PointXYZ> points;  ///< NaN where there is no surface
   pcl::PointCloud<pcl::Normal> normals;
-  std::vector<std::vector<cv::Point>> shifts;  ///< to the neighbours, for each reach in steps of kReachStep
+  std::vector<std::vector<cv::Point>> shifts;  ///< shifts to the neighbours, for each reach in steps of kReachStep
 
   static constexpr float kReachStep = 0.25F;
   static constexpr float kMaxDistance = 16.0F;  ///< reach; of what is nearer than that the support is cut off

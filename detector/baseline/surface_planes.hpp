@@ -7,7 +7,7 @@
 
 namespace houghstream::baseline {
 
-/// The planes of a surface family before minimum and maximum, CV_8UC1; none of the other families.
+/// Returns the planes of a surface family before minimum and maximum, CV_8UC1; none of the other families.
 std::vector<cv::Mat> surface_planes(FeatureFamily family, const WorkingFrame& frame, int threads);
 
 /// Returns the planes of all surface families among the settings', for compute_features.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSteepest = 1.5;  // metres of depth per metre across
 
-/// NaN for NaN.
+/// Returns at least the noise; NaN for NaN.
 float at_least_noise(double metres) {
   constexpr float kMin = 0.02F;
   const auto limit = static_cast<float>(metres);

@@ -14,7 +14,8 @@ namespace houghstream::baseline {
 /// itself says who is near: the neighbours of a pixel are those in a square window of about k pixels that lie on its
 /// own side of any depth step. No search is needed, and on a surface that faces the camera the two are the same.
 
-/// Half the width, in pixels and without the middle, of the odd square window whose size is nearest to `neighbours`.
+/// Returns half the width, in pixels and without the middle, of the odd square window whose size is nearest to
+/// `neighbours`.
 int surface_window_radius(int neighbours);
 
 /// Metres by which a neighbour's depth may differ from the middle's, `depth`, to be on the same surface: up to a slope
@@ -34,10 +35,10 @@ struct SurfaceVectors {
 
 struct WindowMoments {
   int count = 0;  ///< neighbours on the same surface, the pixel itself included; 0 where it has no vector
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of their vectors, divided by count
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< covariance of their vectors, divided by count
 };
 
-/// For every pixel of row y, the moments of the vectors around it.
+/// Returns for every pixel of row y the moments of the vectors around it.
 std::vector<WindowMoments> row_moments(const SurfaceVectors& vectors, int y, int radius_px);
 
 /// The pixels from first_x up to but without last_x of a row have a neighbour at (x + dx, y_neighbour).

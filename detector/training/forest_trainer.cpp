@@ -58,7 +58,7 @@ void append_tree(const Forest& tree, Forest& forest) {
   forest.leaf_views.insert(forest.leaf_views.end(), tree.leaf_views.begin(), tree.leaf_views.end());
 }
 
-/// Where nothing is to be composed, the score keeps the weights that are assumed before.
+/// Returns whether scores are learnt; where nothing is composed, the score keeps its prior weights.
 bool learns_scores(const TrainingSettings& settings) {
   return settings.scoring == Scoring::kEvidence && settings.validation_frames > 0;
 }
@@ -91,7 +91,7 @@ TrainingSplit split_views(const std::vector<TrainingView>& views, const Training
   return training_split;
 }
 
-/// `old`: forest whose trees go on growing, or nullptr.
+/// Grows the trees. `old` is a forest whose trees continue to grow, or nullptr.
 std::vector<Forest> grow_trees(const TrainingSet& set, const Profile& profile, const Forest* old,
                                const Progress& progress) {
   const TrainingSettings& settings = profile.training;
@@ -139,7 +139,7 @@ class Counted {
   int asked_ = 0;
 };
 
-/// The objects' views are the last of the forest's.
+/// Learns the scores of objects whose views are the last of the forest's.
 void learn_scores(const TrainingSplit& training_split, const Profile& profile, const Scales& scales,
                   const Progress& progress, Forest& forest) {
   std::set<int> class_ids;
@@ -158,7 +158,7 @@ void learn_scores(const TrainingSplit& training_split, const Profile& profile, c
                        training_split.for_score.size()));
 }
 
-/// The set of what trees learn from. Views that the score will not ask for are let go as soon as they are in it.
+/// Makes the set that trees learn from. Views that the score does not need are freed as soon as they are in it.
 TrainingSet make_set(const TrainingSplit& training_split, const Profile& profile, const Scales& scales,
                      std::vector<TrainingView>& views) {
   const bool keep = learns_scores(profile.training);

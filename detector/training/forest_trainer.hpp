@@ -26,7 +26,7 @@ Forest train_forest(std::vector<TrainingView> views, const Profile& profile, con
 Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Profile& profile, const Progress& progress,
                    const Scales& scales = depth_normalised_scales());
 
-/// The profile by which a forest was trained, as add_objects wants it; seed and threads are the profile's.
+/// Returns the profile by which a forest was trained, as add_objects wants it; seed and threads are the profile's.
 Profile profile_of(const Forest& forest);
 /// Trains the forest where the profile of its name is `named`.
 Profile profile_of(const Forest& forest, Profile named);

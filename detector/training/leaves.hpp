@@ -14,7 +14,7 @@ struct LeafSource {
   const TrainingSet& set;
   const TrainingSettings& settings;
   const std::vector<float>& label_weights;
-  float bag_weight;  ///< of all the tree learns from, in units of label_weights
+  float bag_weight;  ///< weight of all samples of the tree, in units of label_weights
 };
 
 /// Appends one leaf made of these samples to the forest's leaf arrays and returns its number. `forest.leaves` must
@@ -23,12 +23,13 @@ std::int32_t add_leaf(const LeafSource& source, const std::vector<std::uint32_t>
 
 /// Change of a leaf's weight when objects are added.
 struct LeafMixture {
-  float added = 0.0F;       ///< of the new objects' leaf
-  float known = 1.0F;       ///< of what the known leaf holds of objects
-  float background = 1.0F;  ///< of what it holds of the background
+  float added = 0.0F;       ///< weight of the new objects' leaf
+  float known = 1.0F;       ///< weight of the known leaf's objects
+  float background = 1.0F;  ///< weight of the known leaf's background
 };
 
-/// Each object weighs the same, and the background as TrainingSettings::max_background_weight says.
+/// Computes the mixture in which each object weighs the same, and the background as
+/// TrainingSettings::max_background_weight says.
 LeafMixture compute_mixture(float known_classes, float added_classes, float max_background_weight);
 
 /// A leaf of a forest to which objects are being added.

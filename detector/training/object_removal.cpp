@@ -20,7 +20,7 @@ std::size_t class_index_of(const Forest& forest, const std::string& name) {
 
 /// Ratio between the objects' weight in a tree's leaves and that of one object: equal for all objects.
 struct Shares {
-  float object = 0.0F;      ///< of all that a tree learnt from
+  float object = 0.0F;      ///< fraction of all that a tree learnt from
   float background = 0.0F;  ///< over the object's
 };
 
@@ -62,9 +62,9 @@ void keep_entry(const Forest& from, const LeafClass& known, const std::vector<st
 /// Change of the leaves.
 struct Removal {
   std::size_t object = 0;                   ///< index of its class
-  float of_background = 1.0F;               ///< what the background weighs, over what it weighed
-  float whole = 1.0F;                       ///< what all that remains weighs in a tree, over all that there was
-  std::vector<std::uint32_t> view_numbers;  ///< by old number
+  float of_background = 1.0F;               ///< weight of the background, over its weight before
+  float whole = 1.0F;                       ///< weight of all that remains in a tree, over that of all before
+  std::vector<std::uint32_t> view_numbers;  ///< new numbers by old number
 };
 
 /// Appends a leaf without the object.

@@ -25,8 +25,8 @@ struct Profile {
 /// realtime  the default: half the image size (full size for what is far), at most every other pixel and patches
 ///           at most 22 mm apart, and what the first trees take for background is not shown to the others.
 ///
-/// They share what goes beyond the paper: 3-D votes, occluders in training, evidence, calibrated scores. The original
-/// is baseline::gall_profile. Throws InputError that lists the names for an unknown name.
+/// Makes a profile. All share what goes beyond the paper: 3-D votes, occluders in training, evidence, calibrated
+/// scores. The original is baseline::gall_profile. Throws InputError that lists the names for an unknown name.
 Profile make_profile(const std::string& name);
 
 }  // namespace houghstream

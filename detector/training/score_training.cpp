@@ -20,11 +20,13 @@ namespace {
 constexpr float kMinIou = 0.5F;
 constexpr double kMinVisible = 0.1;
 
-/// As many objects as make most of an image without hiding each other, and nearly twice as many that look like them.
+/// Composes as many objects as make most of an image without hiding each other, and nearly twice as many that look like
+/// them.
 constexpr ComposedThings kThings = {6, 5, 0};
 constexpr ComposedThings kHardNegativeObjects = {6, 5, 5};
 
-/// Strongest first; one that overlaps a stronger one of its class would not be reported, so it is no example.
+/// Labels the hypotheses, strongest first; one that overlaps a stronger one of its class would not be reported, so it
+/// is no example.
 ScoreExamples label_hypotheses(const std::vector<ScoredHypothesis>& candidates, const ValidationFrame& truth) {
   ScoreExamples examples;
   std::vector<const Detection*> kept;
@@ -48,10 +50,10 @@ ScoreExamples label_hypotheses(const std::vector<ScoredHypothesis>& candidates, 
   return examples;
 }
 
-/// A room with objects, in which near surfaces may have lost their depth.
+/// Composes a background with objects, in which near surfaces may have lost their depth.
 ValidationFrame compose(const std::vector<const TrainingView*>& objects, const RgbdFrame& background,
                         const ComposedThings& things, const TrainingSettings& settings, Random& random) {
-  constexpr double kMin = 0.05;  // of the depth is kept
+  constexpr double kMin = 0.05;  // fraction of the depth that is kept
   constexpr double kMax = 0.6;
   ValidationFrame composed = make_validation_frame(objects, background, things, settings, random);
   if (random.uniform() >= settings.near_dropout_fraction) return composed;
@@ -61,7 +63,7 @@ ValidationFrame compose(const std::vector<const TrainingView*>& objects, const R
   return composed;
 }
 
-/// As many as the settings say, numbered from `first` on. What is referred to must outlive it.
+/// Returns as many frames as the settings say, numbered from `first` on. What is referred to must outlive it.
 ValidationSource frames_from(int first, const ComposedThings& things, const std::vector<const TrainingView*>& objects,
                              const std::vector<const TrainingView*>& backgrounds, const TrainingSettings& settings) {
   return {settings.validation_frames, [first, things, &objects, &backgrounds, &settings](int index) {
@@ -124,7 +126,7 @@ ValidationSource compose_hard_negative_frames(const std::vector<const TrainingVi
                                               const TrainingSettings& settings) {
   ValidationSource source =
       frames_from(settings.validation_frames, kHardNegativeObjects, objects, backgrounds, settings);
-  source.count = (source.count + 1) / 2;  // for two numbers of each object
+  source.count = (source.count + 1) / 2;  // half of them, for two numbers of each object
   return source;
 }
 

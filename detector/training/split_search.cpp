@@ -108,8 +108,8 @@ void SplitSearch::load_pixels(const PatchView& patch, const PatchView& next) {
   }
 }
 
-/// Sample by sample; in blocks, so that the values, which are read test by test, are not written one cache line each.
-/// The values are those of test_value.
+/// Evaluates the tests sample by sample, in blocks, so that the values, which are read test by test, are not written
+/// one cache line each. The values are those of test_value.
 void SplitSearch::evaluate_tests(std::size_t test_count, const std::vector<std::uint32_t>& samples) {
   constexpr std::size_t kBlock = 32;
   const std::size_t count = samples.size();
@@ -139,8 +139,8 @@ void SplitSearch::evaluate_tests(std::size_t test_count, const std::vector<std::
   }
 }
 
-/// Reduction of the Gini impurity up to a constant (Breiman et al. 1984); it orders tests as the entropy does and needs
-/// no logarithms.
+/// Returns the reduction of the Gini impurity up to a constant (Breiman et al. 1984); it orders tests as the entropy
+/// does and needs no logarithms.
 float SplitSearch::class_gain() const {
   float left_sum = 0.0F;
   float right_sum = 0.0F;
@@ -157,7 +157,7 @@ float SplitSearch::class_gain() const {
   return (left_sum > 0.0F ? left_sq / left_sum : 0.0F) + (right_sum > 0.0F ? right_sq / right_sum : 0.0F);
 }
 
-/// Reduction of the offsets' variance up to a constant, per class, background left out.
+/// Returns the reduction of the offsets' variance up to a constant, per class, background left out.
 float SplitSearch::offset_gain() const {
   const auto term = [](float w, float x, float y, float z) { return w > 0.0F ? (x * x + y * y + z * z) / w : 0.0F; };
   float gain = 0.0F;
@@ -230,7 +230,8 @@ std::optional<SplitSearch::Split> SplitSearch::search_thresholds(std::size_t t, 
   return best;
 }
 
-/// The best threshold of each of the first `test_count` tests, on `samples`; tests that split nothing are left out.
+/// Returns the best threshold of each of the first `test_count` tests, on `samples`; tests that split nothing are left
+/// out.
 std::vector<SplitSearch::Judged> SplitSearch::judge_tests(std::size_t test_count,
                                                           const std::vector<std::uint32_t>& samples,
                                                           Objective objective, int min_side) {
@@ -247,7 +248,7 @@ std::vector<SplitSearch::Judged> SplitSearch::judge_tests(std::size_t test_count
   return judged;
 }
 
-/// Every k-th sample, so that about `count` are left.
+/// Returns every k-th sample, so that about `count` are left.
 static std::vector<std::uint32_t> thinned(const std::vector<std::uint32_t>& samples, std::size_t count) {
   std::vector<std::uint32_t> out;
   for (std::size_t i = 0; i < count; ++i) out.push_back(samples[i * samples.size() / count]);

@@ -23,7 +23,7 @@ class SplitSearch {
   SplitSearch(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings,
               std::vector<float> label_weights, bool allow_single_pixel_intensity);
 
-  /// The best test for these samples, or nothing where none leaves at least kMinSide samples on both sides.
+  /// Returns the best test for these samples, or nothing where none leaves at least kMinSide samples on both sides.
   std::optional<PixelTest> best_test(const std::vector<std::uint32_t>& samples, Objective objective, Random& random);
 
   static constexpr int kMinSide = 10;
@@ -56,25 +56,25 @@ class SplitSearch {
     std::uint32_t test = 0;
     int threshold = 0;
   };
-  /// Where tests of the node at hand may look.
+  /// Place that tests of the current node may read.
   struct Place {
     std::int8_t dx = 0;
     std::int8_t dy = 0;
   };
   struct PlacePair {
-    std::uint8_t first = 0;  // into places_
+    std::uint8_t first = 0;  // index into places_
     std::uint8_t second = 0;
   };
   /// A PixelTest as evaluate_tests wants it.
   struct Prepared {
-    std::uint16_t first = 0;  // into pixels_
+    std::uint16_t first = 0;  // index into pixels_
     std::uint16_t second = 0;
     std::uint16_t shift = 0;
-    std::uint16_t mask = 0;  // of the second pixel
+    std::uint16_t mask = 0;  // mask of the second pixel
   };
 
   using Planes = std::vector<std::uint8_t>;
-  /// Among which planes a node's tests choose: the point histograms or all others, where there are both.
+  /// Draws the planes of a node's tests: the point histograms or all others, where there are both.
   const Planes& draw_planes(Random& random) const;
   void draw_tests(std::size_t test_count, Random& random);
   /// Returns the fraction of the tests on a plane of this kind that read a single pixel, see TrainingSettings.
@@ -89,7 +89,7 @@ class SplitSearch {
   bool fill_bins(std::size_t t, Objective objective, int& first, int& range);
   std::vector<Judged> judge_tests(std::size_t test_count, const std::vector<std::uint32_t>& samples,
                                   Objective objective, int min_side);
-  /// Best threshold of test t that leaves at least `min_side` samples on both sides.
+  /// Returns the best threshold of test t that leaves at least `min_side` samples on both sides.
   std::optional<Split> search_thresholds(std::size_t t, Objective objective, int min_side);
   float class_gain() const;
   float offset_gain() const;
@@ -100,12 +100,12 @@ class SplitSearch {
   std::vector<float> label_weights_;
   Planes histograms_;
   Planes others_;
-  bool allow_single_pixel_intensity_;  // whether a single pixel's lightness and colour may decide
+  bool allow_single_pixel_intensity_;  // true where a single pixel's lightness and colour may decide
   std::vector<PixelTest> tests_;
   std::vector<Prepared> prepared_;
   std::vector<PlacePair> drawn_;  // per test
   std::array<Place, kPlaces> places_{};
-  std::vector<std::uint8_t> pixels_;  // of one patch, place by place
+  std::vector<std::uint8_t> pixels_;  // pixels of one patch, place by place
   std::vector<std::int16_t> values_;  // tests x samples
   std::vector<std::int16_t> block_;   // some samples x tests
   std::vector<Item> items_;           // per sample

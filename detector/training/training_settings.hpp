@@ -14,18 +14,19 @@ struct TrainingSettings : AugmentationSettings {
   int max_depth = 25;         ///< levels
   int min_samples = 20;       ///< a node with fewer becomes a leaf
   int tests_per_node = 2000;  ///< random pixel tests tried; where fewer samples choose, as many as these, or 64
-  /// Of the nodes are split so that offsets agree, the others so that labels do; Gall et al. 2011 draw one or the other
-  /// alike. It is always offsets where there is one label only, and labels where nearly all is background.
+  /// Fraction of the nodes that are split so that offsets agree; the others are split so that labels do (Gall et al.
+  /// 2011 draw one or the other alike). It is always offsets where there is one label only, and labels where nearly all
+  /// is background.
   double offset_fraction = 0.5;
-  double single_pixel_fraction = 0.3;  ///< of the tests look at one pixel alone, see PixelTest::kSinglePixel
-  /// At least so many of the tests on depth and on the surface, point histograms aside: these are the same in any
+  double single_pixel_fraction = 0.3;  ///< fraction of the tests that read one pixel alone, see PixelTest::kSinglePixel
+  /// Smallest fraction of the tests on depth and on the surface, point histograms aside: these are the same in any
   /// light, without a comparison.
   double shape_single_pixel_fraction = 0.0;
   /// Fraction of the nodes that test point feature histograms only; the others never do. Background images contain
   /// nothing with the shape of an object, so point histograms would win nearly every node and the forest would not
   /// learn the object's colours.
   double histogram_fraction = 0.3;
-  int node_samples = 1500;  ///< at most so many samples choose a node's test; all are then split by it
+  int node_samples = 1500;  ///< maximum number of samples that choose a node's test; all are then split by it
   /// The background weighs as much as all objects together, but at most as so many: what a patch is worth to an object
   /// does not depend on how many others were taught.
   float max_background_weight = 4.0F;

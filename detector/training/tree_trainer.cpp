@@ -25,7 +25,7 @@ class TreeGrower {
     search_.emplace(set, patch, settings, label_weights_, allow_single_pixel_intensity);
   }
 
-  /// The old tree with the new samples in it: they follow its tests and go on growing where they end.
+  /// Grows the old tree with the new samples: they follow its tests and continue to grow where they end.
   Forest grow_onto(const Forest& old, int tree) {
     forest_.leaves.push_back(0);
     forest_.roots.push_back(follow(old, old.roots[static_cast<std::size_t>(tree)], bag_, 0));
@@ -47,7 +47,7 @@ class TreeGrower {
     return bag;
   }
 
-  /// Every object weighs the same, see TrainingSettings::max_background_weight.
+  /// Returns weights by which every object weighs the same, see TrainingSettings::max_background_weight.
   std::vector<float> weigh_labels() const {
     std::vector<float> counts(set_.classes.size() + 1, 0.0F);
     for (const std::uint32_t s : bag_) counts[set_.samples[s].label] += 1.0F;
@@ -74,7 +74,8 @@ class TreeGrower {
     return selected;
   }
 
-  /// Drawn at random (Gall et al. 2011), but in nodes with hardly anything but background it is the labels.
+  /// Draws the objective at random (Gall et al. 2011), but chooses the labels in nodes with hardly anything but
+  /// background.
   Objective choose_objective(const Samples& samples) {
     std::size_t background = 0;
     bool several_labels = false;
@@ -154,7 +155,7 @@ class TreeGrower {
   Random random_;
   Samples bag_;
   std::vector<float> label_weights_;
-  std::optional<ExistingLeaf> known_;  // that the samples have reached
+  std::optional<ExistingLeaf> known_;  // leaf that the samples have reached
   std::size_t known_samples_ = 1;
   std::optional<SplitSearch> search_;
   Forest forest_;

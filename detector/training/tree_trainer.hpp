@@ -13,8 +13,8 @@ bool in_bag(const TrainingSettings& settings, int tree, std::int32_t image);
 /// Grows tree number `tree` alone: a forest of one. Depends on the seed and the tree's number only.
 Forest grow_tree(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings, int tree);
 
-/// Tree number `tree` of `old`, alone, that has learnt the set's classes beside those it knew. set.first_class and
-/// set.first_view must be the numbers of old's classes and views.
+/// Returns tree number `tree` of `old`, alone, that has learnt the set's classes beside those it knew. set.first_class
+/// and set.first_view must be the numbers of old's classes and views.
 Forest regrow_tree(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings, int tree,
                    const Forest& old);
 

@@ -9,7 +9,7 @@
 namespace houghstream::training {
 namespace {
 
-/// Weight that a leaf's votes give to the true centre.
+/// Returns the weight that a leaf's votes give to the true centre.
 float support_at_ground_truth(const Forest& forest, std::int32_t leaf, const TrainingSample& sample,
                               std::size_t class_index, float vote_sigma) {
   float support = 0.0F;
@@ -30,7 +30,7 @@ struct Tally {
   double count = 0.0;
 };
 
-/// Support of one tree per class, over the samples it did not learn from.
+/// Returns the support of one tree per class, over the samples it did not learn from.
 std::vector<Tally> out_of_bag_support(const TrainingSet& set, const TrainingSettings& settings, float vote_sigma,
                                       const Forest& forest, int tree) {
   std::vector<Tally> tallies(set.classes.size());
@@ -45,7 +45,7 @@ std::vector<Tally> out_of_bag_support(const TrainingSet& set, const TrainingSett
   return tallies;
 }
 
-/// By class id: the probability that a leaf gives to the class, mean over the class's own patches.
+/// Returns by class id the probability that a leaf gives to the class, mean over the class's own patches.
 std::map<int, double> mean_probabilities(const Forest& forest) {
   struct Sum {
     double patches = 0.0;
@@ -83,7 +83,7 @@ void estimate_nominal_vote_mass(const TrainingSet& set, const TrainingSettings& 
       sum.support += tallies[c].support;
       sum.count += tallies[c].count;
     }
-    // Where nothing was left out, or nothing found its centre, the visible area alone is the measure.
+    // The visible area alone is the measure where nothing was left out, or nothing found its centre.
     const double mean_support = sum.support > 0.0 ? sum.support / sum.count : 1.0;
     forest.classes[set.first_class + c].nominal_vote_mass = static_cast<float>(set.visible_areas[c] * mean_support);
   }

@@ -12,8 +12,9 @@ namespace houghstream::training {
 void estimate_nominal_vote_mass(const TrainingSet& set, const TrainingSettings& settings, float vote_sigma,
                                 Forest& forest);
 
-/// Expected masses of the objects that both forests know, where others were added or removed: what their votes bring
-/// together has changed as their probabilities in the leaves have, mean over the patches that the leaves were made of.
+/// Rescales the expected masses of the objects that both forests know, where others were added or removed: what their
+/// votes bring together has changed as their probabilities in the leaves have, mean over the patches that the leaves
+/// were made of.
 void rescale_nominal_vote_mass(const Forest& before, Forest& after);
 
 }  // namespace houghstream::training

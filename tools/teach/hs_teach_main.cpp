@@ -46,7 +46,7 @@ void add_calibration_options(CommandLine& command, TeachOptions& options) {
       .capture_default_str();
 }
 
-/// Treatment of an existing store; without either option it is refused.
+/// Adds the options that treat an existing store; without either one it is refused.
 void add_store_flags(CommandLine& command, bool& add, bool& replace) {
   const CommandOption adding = command.add_flag("--add", add, "what is taught joins the objects of the store");
   command.add_flag("--replace", replace, "a new store takes the place of the one that is there, when all is done")

@@ -8,26 +8,29 @@ namespace houghstream::training {
 
 /// Settings of the augmentation of training images.
 struct AugmentationSettings {
-  int patches_per_view = 250;        ///< of a training view
-  int patches_per_background = 250;  ///< of a background frame
+  int patches_per_view = 250;        ///< patches of a training view
+  int patches_per_background = 250;  ///< patches of a background frame
   int composites_per_view = 3;       ///< images made of one view: other background, distance and light
   int views_per_image = 1;         ///< trees see one of so many views; the others are only remembered, for the evidence
   int negative_pool = 10;          ///< background patches looked through for each one drawn blindly, see hard_negatives
   float min_distance = 0.3F;       ///< nearest distance taught, metres
   float max_distance = 2.6F;       ///< farthest distance taught, metres
-  double occluded_fraction = 0.5;  ///< of the composites in which something stands in front of the object
-  double dehazed_fraction = 0.5;   ///< of the composites in which haze is taken from the object, see remove_haze
-  /// Of those that trees learn from, in which the object is sharpened, see apply_unsharp_mask.
+  double occluded_fraction = 0.5;  ///< fraction of the composites in which something stands in front of the object
+  /// Fraction of the composites in which haze is removed from the object, see remove_haze.
+  double dehazed_fraction = 0.5;
+  /// Fraction of the composites that trees learn from, in which the object is sharpened, see apply_unsharp_mask.
   double sharpened_fraction = 0.5;
-  double lighting_variation = 1.0;     ///< strength of the changes of exposure, colour cast and haze, 0 = none
-  double tone_jitter_fraction = 0.0;   ///< of the images that trees learn from: coded values change, see jitter_tone
-  double near_dropout_fraction = 0.5;  ///< of the composed frames that scores learn from, in which what is near has
-                                       ///< lost most of its depth, see drop_near_depth
-  double depth_error = 1.0;            ///< in all of those: strength of the errors of depth, see sensor_errors.hpp
-  /// In all of those: strength of the changes of objects' colours, see perturb_appearance.
+  double lighting_variation = 1.0;  ///< strength of the changes of exposure, colour cast and haze, 0 = none
+  /// Fraction of the images that trees learn from, whose coded values change, see jitter_tone.
+  double tone_jitter_fraction = 0.0;
+  /// Fraction of the composed frames that scores learn from, in which near surfaces have lost most of their depth, see
+  /// drop_near_depth.
+  double near_dropout_fraction = 0.5;
+  double depth_error = 1.0;  ///< strength of the errors of depth in all of those, see sensor_errors.hpp
+  /// Strength of the changes of objects' colours in all of those, see perturb_appearance.
   double surface_variation = 1.0;
-  double camera_fraction = 0.7;       ///< of those, in which another camera looks, see camera_randomisation.hpp
-  double camera_randomisation = 1.0;  ///< how widely these cameras vary
+  double camera_fraction = 0.7;       ///< fraction of those that another camera sees, see camera_randomisation.hpp
+  double camera_randomisation = 1.0;  ///< variation of these cameras
   std::uint64_t seed = 1;
   int threads = 2;
 };

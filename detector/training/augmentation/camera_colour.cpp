@@ -10,7 +10,7 @@
 namespace houghstream::training {
 namespace {
 
-constexpr int kLevels = 16384;  // of linear light
+constexpr int kLevels = 16384;  // levels of linear light
 
 double linear_of(double coded) {  // IEC 61966-2-1, 0 to 1
   return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
@@ -42,10 +42,11 @@ const std::vector<float>& coded_table() {
   return kTable;
 }
 
-/// Nearly normal numbers for the three channels of a pixel, deviation 1: each the sum of four uniforms of five bits.
+/// Draws nearly normal numbers for the three channels of a pixel, deviation 1: each the sum of four uniforms of five
+/// bits.
 std::array<float, 3> normals(Random& random) {
   constexpr float kMean = 62.0F;
-  constexpr float kDeviation = 18.466F;  // of the sum: sqrt(4 * (32^2 - 1) / 12)
+  constexpr float kDeviation = 18.466F;  // deviation of the sum: sqrt(4 * (32^2 - 1) / 12)
   std::uint64_t bits = random.bits();
   std::array<float, 3> out{};
   for (float& number : out) {
@@ -72,7 +73,7 @@ void blur(const ColourVariation& camera, cv::Mat& colour) {
   cv::filter2D(colour, colour, -1, kernel, {-1, -1}, 0.0, cv::BORDER_REPLICATE);
 }
 
-/// Gain of the automatic exposure, times its error.
+/// Returns the gain of the automatic exposure, times its error.
 double exposure(const ColourVariation& camera, const cv::Mat& colour) {
   constexpr double kMiddleGrey = 110.0;
   constexpr double kMaxStops = 1.0;
@@ -82,7 +83,7 @@ double exposure(const ColourVariation& camera, const cv::Mat& colour) {
   return std::exp2(camera.exposure_stops + camera.exposure_follow * std::clamp(followed, -kMaxStops, kMaxStops));
 }
 
-/// Light that the sensor counts, white-balanced and clipped: CV_16UC3, 0 to kLevels - 1.
+/// Returns the light that the sensor counts, white-balanced and clipped: CV_16UC3, 0 to kLevels - 1.
 cv::Mat sensed(const ColourVariation& camera, const cv::Mat& colour, Random& random) {
   const double gain = exposure(camera, colour);
   std::array<std::array<float, 256>, 3> light{};
@@ -142,9 +143,9 @@ void demosaic(const ColourVariation& camera, cv::Mat& raw) {
   cv::demosaicing(mosaic, raw, camera.edge_aware ? kAlongEdges[kind] : kPlain[kind]);
 }
 
-/// Linear light to coded bytes.
+/// Converts linear light to coded bytes.
 cv::Mat toned(const ColourVariation& camera, const cv::Mat& raw) {
-  constexpr int kSteps = 1024;  // of coded values, between which the curve is straight
+  constexpr int kSteps = 1024;  // steps of coded values, between which the curve is straight
   std::array<float, kSteps + 2> curve{};
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const double value = std::pow(std::min(1.0, static_cast<double>(i) / kSteps), camera.gamma);
@@ -169,7 +170,7 @@ cv::Mat toned(const ColourVariation& camera, const cv::Mat& raw) {
   return out;
 }
 
-/// Saturation about each colour's grey (ITU-R BT.601), and all hues turned about the grey axis.
+/// Changes saturation about each colour's grey (ITU-R BT.601), and turns all hues about the grey axis.
 void render_colours(const ColourVariation& camera, cv::Mat& colour) {
   if (camera.saturation == 1.0 && camera.hue_rotation == 0.0) return;
   const double cosine = std::cos(camera.hue_rotation);
@@ -189,7 +190,7 @@ void sharpen(const ColourVariation& camera, cv::Mat& colour) {
   cv::addWeighted(colour, 1.0 + camera.sharpening, soft, -camera.sharpening, 0.0, colour);
 }
 
-/// Two neighbours keep their brightness and share what they differ from it.
+/// Halves the chroma: two neighbours keep their brightness and share their difference from it.
 void halve_chroma(cv::Mat& colour) {
   for (int y = 0; y < colour.rows; ++y) {
     auto* row = colour.ptr<cv::Vec3b>(y);

@@ -13,7 +13,7 @@ namespace {
 constexpr float kFar = 1e6F;        // stands for none where the nearest is sought
 constexpr double kEdgeStep = 0.03;  // a depth edge, relative to depth
 
-/// Nearly normal, deviation 1: the sum of four uniforms of 16 bits.
+/// Draws a nearly normal number, deviation 1: the sum of four uniforms of 16 bits.
 float quick_normal(Random& random) {
   const std::uint64_t bits = random.bits();
   const auto sum =
@@ -21,7 +21,7 @@ float quick_normal(Random& random) {
   return (sum - 131070.0F) * (1.0F / 37837.2F);  // its mean; its deviation, 65536 / sqrt(3)
 }
 
-/// Noise that neighbours share, deviation 1: cameras match windows, not pixels.
+/// Makes noise that neighbours share, deviation 1: cameras match windows, not pixels.
 cv::Mat window_noise(cv::Size size, Random& random) {
   cv::Mat noise(size, CV_32FC1);
   for (int y = 0; y < size.height; ++y) {
@@ -32,12 +32,12 @@ cv::Mat window_noise(cv::Size size, Random& random) {
   return noise;
 }
 
-/// Where depth is known: CV_8UC1.
+/// Returns the mask of known depth: CV_8UC1.
 cv::Mat known(const cv::Mat& depth) {
   return depth == depth;
 }
 
-/// The nearest known depth within so many pixels; kFar where there is none.
+/// Returns the nearest known depth within so many pixels; kFar where there is none.
 cv::Mat nearest_around(const cv::Mat& depth, int right_px, int down_px) {
   cv::Mat nearest = depth.clone();
   cv::patchNaNs(nearest, kFar);
@@ -52,7 +52,7 @@ cv::Mat max_around(const cv::Mat& depth) {
   return farthest;
 }
 
-/// Where a surface ends before another one; the depths of both.
+/// Pixels where a surface ends before another one, with the depths of both.
 struct Edges {
   cv::Mat nearest;   ///< CV_32FC1
   cv::Mat farthest;  ///< CV_32FC1
@@ -115,7 +115,7 @@ struct Surfaces {
   cv::Mat reflectance;  ///< CV_32FC1: about that of linear light
 };
 
-/// From depth as it was given, over some pixels: recorded depth is noisy.
+/// Computes slants from depth as it was given, over some pixels: recorded depth is noisy.
 cv::Mat slants(const cv::Mat& depth, double focal_px) {
   constexpr int kReach = 2;
   cv::Mat out(depth.size(), CV_32FC1, cv::Scalar(0));
@@ -152,7 +152,7 @@ Surfaces find_surfaces(const cv::Mat& depth, const cv::Mat& colour, double focal
   return surfaces;
 }
 
-/// Growth of the axial noise on surfaces seen at more than 60 degrees (Nguyen et al.).
+/// Returns the growth of the axial noise on surfaces seen at more than 60 degrees (Nguyen et al.).
 float oblique_noise(float slant_sq, float z) {
   constexpr float kMaxSlant = 4.0F;  // the term grows without bound
   const float angle = std::atan(std::min(kMaxSlant, std::sqrt(slant_sq)));
@@ -197,7 +197,7 @@ void add_time_of_flight_noise(const DepthVariation& camera, const Surfaces& surf
   const auto phase = static_cast<float>(camera.wiggle_phase);
   const auto dark_bias = static_cast<float>(camera.dark_bias);
   constexpr float kMaxSigma = 0.03F;  // more is not reported
-  constexpr float kGrey = 0.3F;       // from here on nothing is too dark
+  constexpr float kGrey = 0.3F;       // grey from which on nothing is too dark
   for (int y = 0; y < depth.rows; ++y) {
     auto* row = depth.ptr<float>(y);
     const auto* slant_sq = surfaces.slant_sq.ptr<float>(y);
@@ -251,7 +251,7 @@ void make_holes(const DepthVariation& camera, const Edges& edges, const Surfaces
                 Random& random) {
   if (camera.edge_loss <= 0.0 && camera.min_cosine <= 0.0 && camera.min_signal <= 0.0) return;
   cv::Mat near_edges;
-  cv::dilate(edges.mask, near_edges, cv::Mat());  // where a slant is one across the edge
+  cv::dilate(edges.mask, near_edges, cv::Mat());  // excludes slants across the edge
   const cv::Mat noise = window_noise(depth.size(), random);
   const auto edge_loss = static_cast<float>(camera.edge_loss);
   const auto cosine_sq = static_cast<float>(camera.min_cosine * camera.min_cosine);

@@ -33,13 +33,13 @@ enum class DepthSmoothing : std::uint8_t { kNone, kMedian, kBilateral };
 
 /// A colour camera. As it stands, it changes nothing.
 struct ColourVariation {
-  double blur_px = 0.0;    ///< of the lens: standard deviation
+  double blur_px = 0.0;    ///< blur of the lens: standard deviation
   double motion_px = 0.0;  ///< way of the image while the shutter is open
   double motion_angle = 0.0;
-  double exposure_stops = 0.0;                             ///< what is too bright then is clipped
+  double exposure_stops = 0.0;                             ///< change of exposure; brighter values are clipped
   double exposure_follow = 0.0;                            ///< automatic: 1 = every image as bright as others
   double vignetting = 0.0;                                 ///< light lost in the farthest corner, 0 to 1
-  std::array<double, 2> vignette_centre{0.5, 0.5};         ///< in image sizes: images are parts of frames
+  std::array<double, 2> vignette_centre{0.5, 0.5};         ///< centre in image sizes: images are parts of frames
   double shot_noise = 0.0;                                 ///< deviation of full light, 1 = full scale
   double read_noise = 0.0;                                 ///< deviation without light, 1 = full scale
   double flare = 0.0;                                      ///< light from everywhere, 1 = full scale
@@ -65,7 +65,7 @@ struct DepthVariation {
   std::array<int, 2> offset_px{0, 0};                ///< depth lies by so much to the right and down of colour
   std::array<int, 2> grown_px{0, 0};                 ///< nearer surfaces, to both sides, up and down
   double jitter_px = 0.0;                            ///< deviation of outlines
-  double flying_pixel_fraction = 0.0;                ///< of the pixels at edges that get a depth in between
+  double flying_pixel_fraction = 0.0;                ///< fraction of the pixels at edges that get a depth in between
   double noise = 0.0;                                ///< structured light: in axial deviations (Nguyen et al.)
   double noise_floor = 0.0;                          ///< time of flight: deviation however much light returns, metres
   double noise_light = 0.0;                          ///< deviation where 1 m^-2 returns, inverse to it, metres
@@ -73,8 +73,8 @@ struct DepthVariation {
   double wiggle_wave = 1.0;                          ///< its length, metres
   double wiggle_phase = 0.0;                         ///< radians
   double dark_bias = 0.0;                            ///< metres that black is measured too far away
-  double disparity_step_px = 0.0;                    ///< of a camera of 580 px with 75 mm baseline, 0 = none
-  DepthSmoothing smoothing = DepthSmoothing::kNone;  ///< as some cameras filter what they measured
+  double disparity_step_px = 0.0;                    ///< step of a camera of 580 px with 75 mm baseline, 0 = none
+  DepthSmoothing smoothing = DepthSmoothing::kNone;  ///< filter that some cameras apply to their depth
   int smoothing_px = 3;                              ///< window
   double edge_loss = 0.0;                            ///< share of pixels at edges that get no depth, 0 to 1
   double shadow_m = 0.0;                             ///< projector to the right (or left: negative) of the camera
@@ -87,10 +87,11 @@ struct CameraRandomisation {
   DepthVariation depth;
 };
 
-/// A camera. `strength` 0 = one that changes nothing, 1 = as widely as real ones differ; more is allowed.
+/// Draws a camera. `strength` 0 gives one that changes nothing, 1 one that varies as widely as real ones do; more is
+/// allowed.
 CameraRandomisation sample_camera(double strength, Random& random);
 
-/// Another camera looks, in a share of all images: one that differs by anything up to `strength`.
+/// Changes a fraction of all images to those of another camera, one that differs by anything up to `strength`.
 void randomise_camera(double fraction, double strength, RgbdFrame& frame, Random& random);
 
 /// Applies the camera's colour processing in place: CV_8UC3 BGR. `random` gives the noise.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kBaselineM = 0.075;  // projector to camera, PrimeSense and Kinect
 
-/// A turned rectangle or ellipse around a point of the object's outline box.
+/// Draws a turned rectangle or ellipse around a point of the object's outline box.
 cv::Mat random_shape(const cv::Rect& object_px, cv::Size size, Random& random) {
   const double side = std::sqrt(static_cast<double>(object_px.area()));
   const cv::Point2f centre(static_cast<float>(object_px.x + random.uniform(-0.3, 1.3) * object_px.width),
@@ -35,7 +35,7 @@ cv::Mat random_shape(const cv::Rect& object_px, cv::Size size, Random& random) {
   return mask;
 }
 
-/// Depth is lost where the occluder hides the projector, to the right of the camera: to the left of each occluded run.
+/// Removes depth where the occluder hides the projector, to the right of the camera: to the left of each occluded run.
 void cast_shadow(const cv::Mat& occluder, double occluder_depth, RgbdFrame& frame) {
   for (int y = 0; y < occluder.rows; ++y) {
     auto* depth = frame.depth.ptr<float>(y);
@@ -95,7 +95,7 @@ struct Patchwork {
   cv::Mat colour;
   cv::Mat depth;
   cv::Mat mask;
-  cv::Rect box_px;  // of the object in the view
+  cv::Rect box_px;  // box of the object in the view
 };
 
 Patchwork resized_object(const TrainingView& view, double scale, double sharpness) {
@@ -141,7 +141,7 @@ void paste(const Patchwork& part, cv::Point at, Composite& out, Random& random) 
   }
 }
 
-/// A part of the room that could lie behind something at this distance: little of it is nearer.
+/// Draws a part of the background that could lie behind something at this distance: little of it is nearer.
 cv::Rect place_behind(const RgbdFrame& background, cv::Size size, double distance, Random& random) {
   constexpr int kTries = 12;
   constexpr int kStep = 8;

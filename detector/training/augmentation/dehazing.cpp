@@ -8,7 +8,7 @@
 namespace houghstream::training {
 namespace {
 
-/// The value below which `rank` of the counted pixels lie.
+/// Returns the value below which `rank` of the counted pixels lie.
 double quantile(const std::array<int, 256>& counts, int rank) {
   int sum = 0;
   for (std::size_t v = 0; v < counts.size(); ++v) {

@@ -12,7 +12,7 @@
 namespace houghstream::training {
 namespace {
 
-/// Each pixel takes the nearest depth around it; holes lend none and take none.
+/// Grows near surfaces: each pixel takes the nearest depth around it; holes lend none and take none.
 cv::Mat grown(const cv::Mat& depth, int right_px, int down_px) {
   constexpr double kMaxDistance = 1e6;
   cv::Mat out = depth.clone();
@@ -22,14 +22,14 @@ cv::Mat grown(const cv::Mat& depth, int right_px, int down_px) {
   return out;
 }
 
-/// Moved to the right and down, at most `max_px`; the border's pixels fill what is left free.
+/// Moves an image to the right and down, at most `max_px`; the border's pixels fill what is left free.
 cv::Mat moved(const cv::Mat& depth, int right_px, int down_px, int max_px) {
   cv::Mat padded;
   cv::copyMakeBorder(depth, padded, max_px, max_px, max_px, max_px, cv::BORDER_REPLICATE);
   return padded(cv::Rect({max_px - right_px, max_px - down_px}, depth.size())).clone();
 }
 
-/// Smooth errors in cells of random size, metres.
+/// Makes smooth errors in cells of random size, metres.
 cv::Mat ripples(cv::Size size, double sigma, Random& random) {
   const int cell_px = random.between(6, 30);
   cv::Mat coarse(size.height / cell_px + 2, size.width / cell_px + 2, CV_32FC1);
@@ -41,7 +41,7 @@ cv::Mat ripples(cv::Size size, double sigma, Random& random) {
   return out;
 }
 
-/// Where its values are high, depth stays.
+/// Makes smooth noise; depth stays where its values are high.
 cv::Mat smooth_noise(cv::Size size, Random& random) {
   const int cell_px = random.between(6, 40);
   cv::Mat coarse(size.height / cell_px + 2, size.width / cell_px + 2, CV_32FC1);

@@ -15,7 +15,7 @@
 namespace houghstream::training {
 namespace {
 
-/// Where the object is put.
+/// Draws the distance at which the object is put.
 double draw_distance(const TrainingView& view, const ImageInput& input, Random& random) {
   const AugmentationSettings& settings = input.settings;
   const DistanceRange range =
@@ -23,7 +23,7 @@ double draw_distance(const TrainingView& view, const ImageInput& input, Random& 
   return std::exp(random.uniform(std::log(range.nearest), std::log(range.farthest)));
 }
 
-/// Random pixels of the working frame that `wanted` accepts, at most `count`.
+/// Draws at most `count` random pixels of the working frame that `wanted` accepts.
 template <typename Wanted>
 std::vector<cv::Point> draw_pixels(cv::Size size, int count, Random& random, const Wanted& wanted) {
   std::vector<cv::Point> all;
@@ -49,7 +49,7 @@ TrainingSample sample_at(cv::Point at, const WorkingFrame& frame, const ImageInp
   return sample;
 }
 
-/// Pixel of the view that a pixel of the composite shows.
+/// Returns the pixel of the view that a pixel of the composite shows.
 ShownPoint shown_point(const Composite& composite, cv::Point2d frame_px, float depth) {
   const cv::Point2d view_px = (frame_px - composite.origin_px) / composite.scale;
   return {view_px, depth - composite.depth_change.at(frame_px), composite.scale};
@@ -58,12 +58,12 @@ ShownPoint shown_point(const Composite& composite, cv::Point2d frame_px, float d
 /// The composite as a level works on it, and where patches may be drawn.
 struct Canvas {
   WorkingFrame frame;
-  cv::Mat mask;      // of the object, working pixels
+  cv::Mat mask;      // mask of the object, working pixels
   cv::Mat measured;  // depth without what holes have borrowed
   double to_frame = 1.0;
 
-  /// A hole's borrowed depth may be the background's and a rim's may be an occluder's: good enough to look at a patch,
-  /// not to learn where the centre is.
+  /// Returns whether depth is measured. A hole's borrowed depth may be the background's and a rim's may be an
+  /// occluder's: this suffices to test a patch, not to learn where the centre is.
   bool depth_is_measured(int x, int y) const {
     return std::abs(measured.at<float>(y, x) - frame.filled_depth.at<float>(y, x)) < 0.02F;
   }
@@ -80,7 +80,7 @@ Canvas make_canvas(const Composite& composite, const FeatureLevel& level, const 
   return canvas;
 }
 
-/// All features of an image; they stay until the next one.
+/// Computes all features of an image; they stay until the next one.
 const FeatureImage& all_features(const WorkingFrame& frame, const ImageInput& input, ImageWorkspace& workspace) {
   workspace.tiles.want_all(frame.colour.size());
   const ExtraPlanes extra = input.scales.extra_planes(frame, input.features);
@@ -89,7 +89,7 @@ const FeatureImage& all_features(const WorkingFrame& frame, const ImageInput& in
   return workspace.features;
 }
 
-/// Region that the patches of an image read.
+/// Returns the region that the patches of an image read.
 cv::Rect seen_by(const TrainingImage& image, const PatchSettings& patch) {
   cv::Rect seen;
   for (const auto* list : {&image.samples, &image.negative_pool}) {
@@ -101,7 +101,7 @@ cv::Rect seen_by(const TrainingImage& image, const PatchSettings& patch) {
   return seen;
 }
 
-/// A part of the background that the level sees something in, or any part where there is none.
+/// Draws a part of the background that the level sees something in, or any part where there is none.
 cv::Rect background_window(const RgbdFrame& background, const FeatureLevel& level, const Scales& scales,
                            Random& random) {
   constexpr int kTries = 12;
@@ -233,7 +233,7 @@ std::vector<ObjectClass> list_classes(const std::vector<const TrainingView*>& vi
   return classes;
 }
 
-/// One of `every` views of each class, whose labels these are, in ascending order.
+/// Returns one of `every` views of each class, whose labels these are, in ascending order.
 std::vector<std::size_t> views_in_images(const std::vector<int>& labels, int every) {
   std::map<int, int> counts;
   std::vector<std::size_t> selected;

@@ -20,22 +20,22 @@ namespace houghstream::training {
 
 /// One patch to learn from.
 struct TrainingSample {
-  std::int32_t image = 0;  ///< into TrainingSet::images
+  std::int32_t image = 0;  ///< index into TrainingSet::images
   std::int16_t x = 0;      ///< patch centre, working pixels
   std::int16_t y = 0;
   std::int32_t scale = 0;                            ///< patch_scale of its depth
-  std::uint32_t view = 0;                            ///< into TrainingSet::views; meaningless for background
+  std::uint32_t view = 0;                            ///< index into TrainingSet::views; meaningless for background
   std::uint16_t label = 0;                           ///< 0 = background, else class index + 1
-  Eigen::Vector3f offset = Eigen::Vector3f::Zero();  ///< to the object's centre in the patch's ray frame, metres
+  Eigen::Vector3f offset = Eigen::Vector3f::Zero();  ///< offset to the object's centre in the patch's ray frame, metres
 };
 
 /// Everything the trees see.
 struct TrainingSet {
-  FeatureLayout layout;  ///< of the images
+  FeatureLayout layout;  ///< layout of the images
   std::vector<FeatureImage> images;
   std::vector<TrainingSample> samples;        ///< grouped by image
   std::vector<TrainingSample> negative_pool;  ///< more background patches, from which the hard ones are chosen
-  std::vector<ObjectClass> classes;           ///< by class id
+  std::vector<ObjectClass> classes;           ///< classes by class id
   std::vector<ViewTemplate> views;
   std::uint16_t first_class = 0;  ///< classes and views that the forest has already
   std::uint32_t first_view = 0;
@@ -62,7 +62,7 @@ struct TrainingImage {
   FeatureImage features;
   std::vector<TrainingSample> samples;
   std::vector<TrainingSample> negative_pool;
-  float whole_area = 0.0F;  ///< of the object, square metres; 0 in a background image
+  float whole_area = 0.0F;  ///< area of the object, square metres; 0 in a background image
 };
 
 /// A view that objects are taught by.
@@ -80,13 +80,14 @@ struct ImageWorkspace {
   FeatureImage features;
 };
 
-/// An object put into a background: patches on it and some beside it. Empty where the background is too small.
+/// Makes an object's image: puts it into a background, with patches on it and some beside it. Empty where the
+/// background is too small.
 TrainingImage object_image(const LabelledView& taught, const RgbdFrame& background, const ImageInput& input,
                            Random& random, ImageWorkspace& workspace);
 
 constexpr int kBackgroundImages = 4;  ///< per background frame, spread over the levels
 
-/// A part of a background as one level sees it.
+/// Makes an image of a part of a background as one level sees it.
 TrainingImage background_image(const RgbdFrame& background, const FeatureLevel& level, const ImageInput& input,
                                Random& random, ImageWorkspace& workspace);
 

@@ -51,8 +51,8 @@ std::uint32_t draw_view(const std::vector<const TrainingView*>& views, Random& r
   return static_cast<std::uint32_t>(random.below(static_cast<int>(views.size())));
 }
 
-/// The view of a thing that has the object's shape and pattern, but other colours: hues turned, and where there are
-/// none, some put on; darker or brighter.
+/// Returns the view of a thing with the object's shape and pattern, but other colours: hues are turned, and some are
+/// added where there are none; it is darker or brighter.
 TrainingView recoloured(const TrainingView& view, Random& random) {
   constexpr double kNeutral = 128.0;
   const double angle = random.uniform(0.5 * M_PI, 1.5 * M_PI);
@@ -79,7 +79,7 @@ TrainingView recoloured(const TrainingView& view, Random& random) {
   return out;
 }
 
-/// The view of a thing that looks like the object, but is clearly smaller or larger.
+/// Returns the view of a thing that looks like the object, but is clearly smaller or larger.
 TrainingView resized(const TrainingView& view, Random& random) {
   const double size = random.uniform() < 0.5 ? random.uniform(0.5, 0.75) : random.uniform(1.33, 1.8);
   TrainingView out = view;
@@ -89,7 +89,7 @@ TrainingView resized(const TrainingView& view, Random& random) {
   return out;
 }
 
-/// The view of a thing that has the object's colours and pattern, but is clearly narrower or wider.
+/// Returns the view of a thing with the object's colours and pattern, but clearly narrower or wider.
 TrainingView squeezed(const TrainingView& view, Random& random) {
   const double width = random.uniform() < 0.5 ? random.uniform(0.4, 0.7) : random.uniform(1.4, 2.2);
   const cv::Size size(std::max(1, static_cast<int>(std::lround(width * view.mask.cols))), view.mask.rows);
@@ -107,7 +107,7 @@ TrainingView squeezed(const TrainingView& view, Random& random) {
   return out;
 }
 
-/// The view of a thing that has one object's shape and another's colours and pattern.
+/// Returns the view of a thing with one object's shape and another's colours and pattern.
 TrainingView painted(const TrainingView& shape, const TrainingView& paint) {
   const cv::Rect from = cv::boundingRect(paint.mask);
   const cv::Rect to = cv::boundingRect(shape.mask);
@@ -138,7 +138,7 @@ class Others {
     put_none(paint.class_id == view.class_id ? squeezed(view, stage_.random) : painted(view, paint));
   }
 
-  /// The views that they were made of.
+  /// Returns the views that they were made of.
   std::vector<std::uint32_t> views() && { return std::move(views_); }
 
  private:

@@ -21,7 +21,7 @@ constexpr int kTile_px = 100;
 constexpr int kTitle_px = 26;
 const cv::Scalar kGround(40, 40, 40);
 
-/// The view, square, without being distorted; what is not the object is darker.
+/// Returns the view as a square, without distortion; the background is darker.
 cv::Mat tile_of(const TrainingView& view) {
   cv::Mat shown = view.frame.colour * 0.6;
   view.frame.colour.copyTo(shown, view.mask);
@@ -36,7 +36,7 @@ cv::Mat tile_of(const TrainingView& view) {
   return tile;
 }
 
-/// "3 half turns", "2 turns by 90 degrees", largest angle first.
+/// Returns "3 half turns", "2 turns by 90 degrees", largest angle first.
 std::vector<std::string> rotation_words(const std::vector<Eigen::Isometry3d>& rotations) {
   constexpr std::array<int, 6> kWhole_deg = {60, 72, 90, 120, 144, 180};  // a scan's products are a degree off
   std::map<int, int, std::greater<>> count_by_deg;

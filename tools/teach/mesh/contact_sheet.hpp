@@ -17,18 +17,19 @@ std::string symmetry_words(const ShapeSymmetry& shape);
 /// for NaN.
 std::string size_words(const Eigen::Vector3d& size_m);
 
-/// Caption of an object's views; its size stands along the axes of its frame, metres, where a wrong unit shows.
+/// Returns the caption of an object's views; its size is given along the axes of its frame, metres, which shows a wrong
+/// unit.
 std::string title_of(const store::StoredObject& object, const Eigen::Vector3d& size_m);
 
-/// Two dozen of an object's views, spread over all of them, side by side under a title, for a person to look at.
-/// CV_8UC3, the same width for every object.
+/// Returns two dozen of an object's views, spread over all of them, side by side under a title, for a person to look
+/// at. CV_8UC3, the same width for every object.
 cv::Mat view_image(const std::vector<TrainingView>& views, const std::string& title);
 
-/// Another title above them.
+/// Writes another title above them.
 void write_title(const std::string& title, cv::Mat& view_image);
 
-/// The images below one another. Throws InputError where one cannot be read or has another width, or the sheet cannot
-/// be written.
+/// Writes the images below one another. Throws InputError where one cannot be read or has another width, or the sheet
+/// cannot be written.
 void write_contact_sheet(const std::vector<std::filesystem::path>& images, const std::filesystem::path& sheet);
 
 }  // namespace houghstream::teach

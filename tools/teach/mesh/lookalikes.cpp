@@ -17,12 +17,12 @@ namespace {
 
 constexpr int kPoints = 400;
 constexpr float kMaxScale = 1.25F;
-constexpr float kSpreadTolerance = 0.08F;  // of the spread along each principal axis
+constexpr float kSpreadTolerance = 0.08F;  // tolerance over the spread along each principal axis
 constexpr float kTolerance = 0.02F;        // mean distance between the surfaces, of the diameter
 constexpr int kFirstLook = 50;             // points that rule most ways out
 constexpr int kRotations = 36;
 constexpr double kDetail_m = 0.005;       // finer texture does not count
-constexpr float kColourDistance = 30.0F;  // in L*a*b* of 8 bits: the same texture in another light
+constexpr float kColourDistance = 30.0F;  // distance in L*a*b* of 8 bits: the same texture in another light
 constexpr float kMinAlike = 0.75F;        // share of the surface whose colours agree
 
 /// A mesh as it is compared.
@@ -62,7 +62,7 @@ float mean_distance(const Shape& from, const Eigen::Matrix3f& map, const Shape& 
   return sum / static_cast<float>(count);
 }
 
-/// Both ways: a part of a shape is not the shape.
+/// Compares both ways, since a part of a shape is not the shape.
 bool same_shape(const Shape& one, const Eigen::Matrix3f& map, const Shape& other) {
   const float allowed = kTolerance * other.diameter;
   const Eigen::Matrix3f back = map.inverse();
@@ -85,7 +85,7 @@ bool same_colours(const Shape& one, const Eigen::Matrix3f& map, const Shape& oth
   return static_cast<float>(alike) >= kMinAlike * static_cast<float>(one.points.size());
 }
 
-/// All ways to lay three axes on three axes: 48, half of them mirrored.
+/// Returns all ways to lay three axes on three axes: 48, half of them mirrored.
 std::vector<Eigen::Matrix3f> axis_maps() {
   std::vector<Eigen::Matrix3f> maps;
   std::array<int, 3> order = {0, 1, 2};

@@ -19,14 +19,14 @@ struct Lookalike {
 /// A mesh by its object's name.
 using NamedMesh = std::pair<std::string, const Mesh*>;
 
-/// All pairs whose shapes and colours agree after a turn, a reflection, and a change of size by at most a quarter. The
-/// centroids and principal axes of evenly spread surface points are laid on each other in every way, and turned about
-/// each of them in steps of 10 degrees, since principal axes of what is round or square are arbitrary; distances are
-/// those to the other's surface. Colours agree also where one of the two has none. Throws InputError for a mesh without
-/// surface.
+/// Returns all pairs whose shapes and colours agree after a turn, a reflection, and a change of size by at most a
+/// quarter. The centroids and principal axes of evenly spread surface points are laid on each other in every way, and
+/// turned about each of them in steps of 10 degrees, since principal axes of what is round or square are arbitrary;
+/// distances are those to the other's surface. Colours agree also where one of the two has none. Throws InputError for
+/// a mesh without surface.
 std::vector<Lookalike> find_lookalikes(const std::vector<NamedMesh>& meshes);
 
-/// One line that says so.
+/// Returns one line that says so.
 std::string describe(const Lookalike& pair);
 
 }  // namespace houghstream::teach

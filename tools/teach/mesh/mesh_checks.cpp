@@ -21,7 +21,7 @@ void require_size(const std::string& where, double unit_m, const Mesh& mesh) {
   require(fault.empty(), "{}: {}", where, fault);
 }
 
-/// CAD in an assembly's coordinates may lie far beside its origin.
+/// Refuses a mesh far from its origin, as CAD in an assembly's coordinates may be.
 void require_near_origin(const std::string& where, const Mesh& mesh) {
   const float away = mesh_bounds(mesh).center().norm();
   require(away < store::kMaxCentre_m,
@@ -47,8 +47,8 @@ std::vector<std::uint32_t> weld(const Mesh& mesh) {
 /// Topology of a surface.
 struct Topology {
   double open_m = 0.0;      ///< length of edges that one face has alone
-  std::size_t edges = 0;    ///< between two faces
-  std::size_t against = 0;  ///< of these, between two that are wound against each other
+  std::size_t edges = 0;    ///< number of edges between two faces
+  std::size_t against = 0;  ///< number of these between two faces of opposite winding
   double volume_m3 = 0.0;   ///< signed, about the middle of the bounding box; negative where faces look inwards
   double box_volume_m3 = 0.0;
 };
@@ -89,7 +89,7 @@ void flip_faces(Mesh& mesh) {
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }
 
-/// Share of the surface whose normals look to the side from which its faces are counter-clockwise.
+/// Returns the fraction of the surface whose normals look to the side from which its faces are counter-clockwise.
 double agreement(const Mesh& mesh) {
   double agreeing = 0.0;
   double all = 0.0;
@@ -104,7 +104,7 @@ double agreement(const Mesh& mesh) {
   return all > 0.0 ? agreeing / all : 1.0;
 }
 
-/// Largest distance from the surface that the motion gives one of its points.
+/// Returns the largest distance from the surface that the motion gives one of its points.
 double max_distance(const std::vector<Eigen::Vector3f>& points, const MeshBvh& tree, const Eigen::Isometry3d& motion) {
   float largest = 0.0F;
   for (const Eigen::Vector3f& point : points)
@@ -118,7 +118,7 @@ void check_mesh(const std::string& where, double unit_m, Mesh& mesh) {
   require_size(where, unit_m, mesh);
   require_near_origin(where, mesh);
   const Topology found = examine(mesh);
-  constexpr double kMinVolume = 1e-3;  // of the box's: below, a plate has no inside
+  constexpr double kMinVolume = 1e-3;  // fraction of the box's volume: below it, a plate has no inside
   if (found.volume_m3 < -kMinVolume * found.box_volume_m3) {
     flip_faces(mesh);
     log_warning("{}: the surface faces inwards (volume {:.4g} cm3), expected outwards: turned around", where,
@@ -131,7 +131,7 @@ void check_mesh(const std::string& where, double unit_m, Mesh& mesh) {
     log_warning("{}: {:.0f} % of the normals face inwards, expected none: made anew from the faces", where,
                 100.0 * (1.0 - agreeing));
   }
-  constexpr double kOpen = 0.25;  // of the diameter: less are cracks
+  constexpr double kOpen = 0.25;  // fraction of the diameter: less are cracks
   if (found.open_m > kOpen * mesh_diameter(mesh))
     log_warning("{}: open edges of {:.3g} m in all, expected a closed surface: taught as it is", where, found.open_m);
   constexpr std::size_t kAgainst = 100;  // one of so many
@@ -143,7 +143,7 @@ void check_mesh(const std::string& where, double unit_m, Mesh& mesh) {
 void check_symmetries(const std::string& where, const Mesh& mesh, const Symmetries& symmetries) {
   if (symmetries.empty()) return;
   constexpr int kPoints = 500;
-  constexpr double kSteps = 12.0;  // of a full turn
+  constexpr double kSteps = 12.0;  // steps of a full turn
   const double allowed = std::max(0.015, 0.1 * mesh_diameter(mesh));
   const MeshBvh tree(mesh);
   const std::vector<Eigen::Vector3f> points = sample_surface(mesh, kPoints, 1).points;
@@ -166,8 +166,8 @@ void check_symmetries(const std::string& where, const Mesh& mesh, const Symmetri
 }
 
 bool has_colour(const Mesh& mesh) {
-  constexpr int kSame = 4;   // of 255: what a JPEG changes
-  constexpr int kGrey = 10;  // of 255, between the channels
+  constexpr int kSame = 4;   // difference of 255 that a JPEG makes
+  constexpr int kGrey = 10;  // difference of 255 between the channels
   cv::Mat pixels;
   if (!mesh.texture.empty()) {
     pixels = mesh.texture;

@@ -18,7 +18,7 @@ void check_mesh(const std::string& where, double unit_m, Mesh& mesh);
 /// the diameter and 15 mm, which is what BOP allows a candidate (Hodan et al. 2020).
 void check_symmetries(const std::string& where, const Mesh& mesh, const Symmetries& symmetries);
 
-/// False where a mesh has no colours, or one grey only, which is what programs write that know none.
+/// Returns false where a mesh has no colours, or one grey only, as programs write that know none.
 bool has_colour(const Mesh& mesh);
 
 }  // namespace houghstream::teach

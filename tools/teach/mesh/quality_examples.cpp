@@ -15,7 +15,7 @@ namespace {
 PoseSettings unfiltered_settings(const PosedModels& models, int threads) {
   PoseSettings settings;
   settings.threads = threads;
-  settings.learn_camera_colours = false;  // as scores are learnt: EvidenceSettings
+  settings.learn_camera_colours = false;  // off, as scores are learnt: EvidenceSettings
   settings.model.vote_centres = models.vote_centres;
   settings.model.symmetries = models.symmetries;
   settings.model.shape_symmetries = models.shape_symmetries;

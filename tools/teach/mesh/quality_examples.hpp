@@ -16,7 +16,7 @@ namespace houghstream::quality {
 /// A pose that was found in a scene, judged by the truth.
 struct Example : QualityExample {
   std::string scene;
-  std::size_t frame = 0;  ///< of the scene
+  std::size_t frame = 0;  ///< index of the frame of the scene
 };
 
 /// Model and settings for the labels of a pose.
@@ -35,29 +35,30 @@ struct FoundPoses {
   std::vector<std::vector<std::optional<PoseTerms>>> terms;
 };
 
-/// The poses of the classes with a model beside the truth. Those of detections that are neither true nor false, and of
-/// objects whose truth has no pose, are left out.
+/// Returns the poses of the classes with a model beside the ground truth. Those of detections that are neither true nor
+/// false, and of objects whose truth has no pose, are left out.
 std::vector<Example> label_examples(const FoundPoses& found, const std::map<std::string, PoseModel>& models);
 
 /// Models by class name, metres, and for which point of each its detections' votes are (ObjectModel::vote_centre).
 struct PosedModels {
   std::map<std::string, Mesh> meshes;
   std::map<std::string, Eigen::Vector3f> vote_centres;
-  std::map<std::string, Symmetries> symmetries = {};           ///< ModelSettings::symmetries
-  std::map<std::string, ShapeSymmetry> shape_symmetries = {};  ///< those of others are found in the meshes
-  BrightnessRange tone = {};                                   ///< see RegionSettings
+  std::map<std::string, Symmetries> symmetries = {};  ///< ModelSettings::symmetries
+  /// Symmetries of shapes; those of other classes are found in the meshes.
+  std::map<std::string, ShapeSymmetry> shape_symmetries = {};
+  BrightnessRange tone = {};  ///< see RegionSettings
 };
 
 /// Finds poses and withholds none, and says what each would be judged by.
 class UnfilteredPoseFinder {
  public:
-  /// `threads` as PoseSettings::threads.
+  /// Makes a finder. `threads` is as PoseSettings::threads.
   UnfilteredPoseFinder(const PosedModels& models, int threads);
 
   /// Detects in frames 0, N, 2N, ... of a scene and finds the detections' poses.
   FoundPoses find(const std::string& name, const BopScene& scene, const Detector& detector, int every) const;
 
-  /// The poses of `found.detections`, into `found.poses`; returns what each is judged by. Thread-safe.
+  /// Estimates the poses of `found.detections` into `found.poses`; returns what each is judged by. Thread-safe.
   std::vector<std::optional<PoseTerms>> find_in(const RgbdFrame& frame, EvaluatedFrame& found) const;
 
  private:

@@ -22,7 +22,8 @@ namespace {
 
 constexpr std::uint64_t kCameras = 0x63616D657261ULL;
 
-/// Rendered once, looked at twice. The objects are not quite those that were taught: light, wear and printer differ.
+/// Renders the frames once; both passes read them. The objects are not quite those that were taught: light, wear and
+/// printer differ.
 std::vector<world::RenderedFrame> render_frames(const std::vector<world::CalibrationSceneObject>& objects,
                                                 const CalibrationSettings& settings, int scene_count) {
   const world::CalibrationScenes scenes(objects, settings.seed);
@@ -76,12 +77,12 @@ int half_of(std::size_t frame) {
 
 /// The calibration of a group, in rooms of its own.
 struct GroupCalibration {
-  std::size_t place = 0;                               ///< of its forest among the groups
-  std::set<int> ids;                                   ///< of the classes that it is for
-  std::vector<world::CalibrationSceneObject> objects;  ///< of all groups, as they stand in its rooms
+  std::size_t place = 0;                               ///< index of its forest among the groups
+  std::set<int> ids;                                   ///< ids of the classes that it is for
+  std::vector<world::CalibrationSceneObject> objects;  ///< objects of all groups, as they stand in its rooms
   CalibrationSettings settings;                        ///< its seed is the group's
   std::vector<world::RenderedFrame> frames;            ///< not kept from step to step where there are several groups
-  std::vector<training::ScoreExamples> examples;       ///< of each frame, of the group's classes
+  std::vector<training::ScoreExamples> examples;       ///< examples of each frame, of the group's classes
 };
 
 std::vector<GroupCalibration> calibrations_of(const std::vector<CalibrationObject>& objects,
@@ -143,9 +144,10 @@ DetectionSettings detection_of(const Forest& forest) {
   return detection;
 }
 
-/// Each half of the group's rooms is searched with scores that were fitted without it: what a score is worth to a pose
-/// is learnt where the score is as uncertain as it will be. The forests, which may be too large to be in memory twice,
-/// are lent to a detector; the group's takes the scores of one half after the other, and is left with those of all.
+/// Finds poses. Each half of the group's rooms is searched with scores that were fitted without it: what a score is
+/// worth to a pose is learnt where the score is as uncertain as it will be. The forests, which may be too large to be
+/// in memory twice, are lent to a detector; the group's takes the scores of one half after the other, and is left with
+/// those of all.
 quality::FoundPoses find_poses(const GroupCalibration& calibration, const quality::UnfilteredPoseFinder& finder,
                                std::vector<Forest>& groups) {
   const DetectionSettings detection = detection_of(groups.front());

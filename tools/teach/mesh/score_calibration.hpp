@@ -17,20 +17,21 @@ namespace houghstream::teach {
 /// A taught object as calibration needs it.
 struct CalibrationObject {
   std::string name;
-  Mesh mesh;                                              ///< as poses are compared with it, metres
+  Mesh mesh;                                              ///< mesh with which poses are compared, metres
   Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();  ///< see store::StoredObject
-  Symmetries symmetries;                                  ///< of models_info.json: the same pose, texture included
-  ShapeSymmetry shape_symmetry;                           ///< see store::StoredObject
-  world::CalibrationSceneObject in_scene;                 ///< its id is the class's
+  Symmetries symmetries;                   ///< symmetries of models_info.json: the same pose, texture included
+  ShapeSymmetry shape_symmetry;            ///< see store::StoredObject
+  world::CalibrationSceneObject in_scene;  ///< its id is the class's
 };
 
 struct CalibrationSettings {
-  static constexpr int kMaxScenes = 500;  ///< whose images, 4.3 MB a room, are all in memory at once: 2 GB
+  /// Maximum number of scenes, whose images, 4.3 MB a room, are all in memory at once: 2 GB.
+  static constexpr int kMaxScenes = 500;
 
   std::optional<int>
       scenes;  ///< each is looked at world::CalibrationScenes::kFramesPerScene times; default: scene_count_for()
   double surface_variation = 0.6;     ///< strength of the changes of objects' colours, see training::resurface
-  double camera_fraction = 0.8;       ///< of the frames, that another camera sees than the one that taught
+  double camera_fraction = 0.8;       ///< fraction of the frames that another camera sees than the one that taught
   double camera_randomisation = 0.8;  ///< see detector/training/augmentation/camera_randomisation.hpp
   std::uint64_t seed = 1;
   int threads = 2;
@@ -49,11 +50,11 @@ struct CalibratedObject {
   PracticeCount practice;
 };
 
-/// In how many rooms so many new objects are practised. Where the settings do not say: as many as one more object in
-/// 60 s, and seven in five minutes, leave time for.
+/// Returns the number of rooms in which so many new objects are practised. Without a setting these are as many as one
+/// more object in 60 s, and seven in five minutes, leave time for.
 int scene_count_for(std::size_t new_objects, const CalibrationSettings& settings = {});
 
-/// Names of the new objects that none of the frames shows: of such nothing can be learnt.
+/// Returns the names of the new objects that none of the frames shows, of which nothing can be learnt.
 std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFrame>& frames,
                                             const std::vector<CalibrationObject>& objects,
                                             const std::set<int>& new_ids);

@@ -17,7 +17,7 @@ class StopNotice {
   StopNotice(const StopNotice&) = delete;
   StopNotice& operator=(const StopNotice&) = delete;
 
-  /// From here on the signals wait until this one is gone.
+  /// Lets the signals wait from here on until this one is gone.
   void release();
 
  private:

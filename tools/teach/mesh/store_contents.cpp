@@ -27,7 +27,7 @@ std::string model_name(int id) {
   return fmt::format("obj_{:06d}", id);
 }
 
-/// A mesh of another id names its texture by that.
+/// Carries a model over. A mesh of another id names its texture by that id.
 void carry_model_over(const StoreModel& from, const fs::path& models_folder, Carrying carrying) {
   const fs::path to = models_folder / (model_name(from.model.object_id) + ".ply");
   const fs::path texture = fs::path(from.file).replace_extension(".png");

@@ -14,7 +14,7 @@ namespace houghstream::teach {
 /// The forest of a group of a store.
 struct GroupForest {
   Forest forest;               ///< its classes have the ids of the store's list
-  std::filesystem::path file;  ///< that holds it as it is, and is carried over; empty where it has changed
+  std::filesystem::path file;  ///< file that holds it as it is, and is carried over; empty where it has changed
 };
 
 /// An object's mesh and what models_info.json says of it.
@@ -27,20 +27,20 @@ struct StoreModel {
 /// A store with its forests and meshes, all of it in memory.
 struct StoreContents {
   store::ObjectStore list;
-  std::vector<GroupForest> groups;  ///< by the number of the group
+  std::vector<GroupForest> groups;  ///< groups by number
   std::map<std::string, Mesh> meshes;
 };
 
 /// Reads all of a store. Throws InputError where a part of it cannot be read.
 StoreContents read_contents(const std::filesystem::path& folder);
 
-/// Number of the group that a forest is of.
+/// Returns the number of the group that a forest is of.
 int number_of(const Forest& forest, const store::ObjectStore& list);
 
 /// Begins a store in a folder that is there. Throws InputError where it cannot be written.
 store::ObjectStore start_store(const std::filesystem::path& folder);
 
-/// The entries of models_info.json by id, with their keys in the file's order.
+/// Reads the entries of models_info.json by id, with their keys in the file's order.
 std::map<int, OrderedJson> read_model_entries(const store::ObjectStore& list);
 
 /// Copies the unchanged objects of a store, all but the one of this name, into the list, the models and the images of
@@ -50,8 +50,8 @@ void keep_objects(const StoreContents& old, const std::string& except, store::Ob
 
 /// Carrying of files that have not changed into a new store.
 enum class Carrying {
-  kLinked,  ///< from the store that it replaces: by another name, or copied where the file system has no such links
-  kCopied   ///< from a store that stays, and may be written to
+  kLinked,  ///< link to a file of the store that it replaces, or a copy where the file system has no such links
+  kCopied   ///< copy of a file of a store that stays, and may be written to
 };
 
 /// Throws InputError where it cannot be carried over.

@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 using store::ObjectStore;
 using store::StoredObject;
 
-/// The meshes, what is known of them, and the images of views. What else lies there is somebody's, which
-/// StoreTransaction carries over.
+/// Copies the meshes, their entries, and the images of views. Other files there are the user's, which StoreTransaction
+/// carries over.
 void copy_files(const ObjectStore& from, const fs::path& to) {
   for (const char* folder : {"models", "views"}) {
     std::error_code error;
@@ -103,7 +103,7 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
   write_names(store);
   write_images(store, store::find_object(store, new_name));
   store::write_store_json(store);
-  load_group_forest(store::read_store(build.folder()), group);  // what nothing can read takes no store's place
+  load_group_forest(store::read_store(build.folder()), group);  // an unreadable store replaces none
   build.commit();
 }
 
@@ -157,7 +157,7 @@ void set_frame_in_store(const fs::path& folder, const std::string& object_name, 
   if (fs::exists(sheet)) carry_over(sheet, build.folder() / sheet.filename());  // a store can do without
   store.folder = build.folder();
   store::write_store_json(store);
-  store::read_store(build.folder());  // what nothing can read takes no store's place
+  store::read_store(build.folder());  // an unreadable store replaces none
   build.commit();
 }
 

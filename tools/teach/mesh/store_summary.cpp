@@ -22,7 +22,7 @@ std::string known_symmetries(const store::StoredObject& object) {
   return object.shape_symmetry ? symmetry_words(*object.shape_symmetry) : "unknown, hs-teach practise finds them";
 }
 
-/// As a person has to type it here: with its folder where that is not searched for programs.
+/// Returns the command as a person has to type it here: with its folder where that is not searched for programs.
 std::string stream_program() {
   namespace fs = std::filesystem;
   const std::string name = "hs-stream";

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using store::ObjectStore;
 using store::StoredObject;
 
-/// So many views of each of so many objects: the fewer, the more there is time and memory for.
+/// Returns the number of views of each of so many objects: the fewer, the more there is time and memory for.
 int views_of_each(std::size_t objects) {
   constexpr int kAll = 12600;
   constexpr int kMin = 1280;
@@ -32,8 +32,8 @@ int views_of_each(std::size_t objects) {
   return std::clamp(kAll / static_cast<int>(objects), kMin, kMax);
 }
 
-/// The middle of an object's box: where the origin of a mesh lies, at a corner or a metre beside it, makes no
-/// difference.
+/// Returns the middle of an object's box, so that the place of a mesh's origin, at a corner or a metre beside it, makes
+/// no difference.
 Eigen::Vector3f vote_centre_of(const Mesh& mesh) {
   return mesh_bounds(mesh).center();
 }
@@ -43,7 +43,7 @@ void vote_for(const Eigen::Vector3f& centre, std::vector<TrainingView>& views) {
   for (TrainingView& view : views) view.T_camera_object.translate(centre.cast<double>());
 }
 
-/// Training views of a mesh; those that show no depth of it are left out.
+/// Renders training views of a mesh; those that show no depth of it are left out.
 std::vector<TrainingView> render_views(const TaughtMesh& taught, const TeachOptions& options, int maximum) {
   world::MeshViewSettings settings = options.views;
   settings.max_views = std::min(settings.max_views, maximum);
@@ -68,7 +68,7 @@ std::vector<TrainingView> render_views(const TaughtMesh& taught, const TeachOpti
   return views;
 }
 
-/// The views of one object as a scene folder in BOP format.
+/// Writes the views of one object as a scene folder in BOP format.
 void dump_views(const std::vector<TrainingView>& views, const fs::path& folder) {
   BopWriter writer(folder);
   for (const TrainingView& view : views) {
@@ -133,7 +133,7 @@ std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, cons
 Forest train_store_forest(std::vector<TrainingView> views, const Forest* old, const TeachOptions& options,
                           const std::function<void(const std::string&)>& report) {
   constexpr double kToneFraction = 0.7;  // see TrainingSettings
-  constexpr int kPatches = 26000;        // of an object: what trees are grown of, and how long that takes
+  constexpr int kPatches = 26000;        // patches of an object that trees are grown of, which sets how long that takes
   constexpr int kMinPatches = 100;
   constexpr int kMaxPatches = 250;
   constexpr int kViewsPerImage = 2;  // a view template costs a tenth of one that trees learn from

@@ -12,17 +12,18 @@
 
 namespace houghstream::teach {
 
-/// The meshes as a models/ folder of a BOP dataset has them.
+/// Returns the meshes as a models/ folder of a BOP dataset has them.
 std::vector<NamedModel> models_of(const std::vector<TaughtMesh>& meshes);
 
-/// Training views of all objects, in order, those of a camera behind the rendered ones; their votes are for the middle
-/// of each mesh's box. The objects join `made`, their images its folder, and a dump the views where one is wanted;
-/// `report` gets a line for each object. Throws InputError for a mesh of which no view shows any depth.
+/// Renders training views of all objects, in order, with those of a camera behind the rendered ones; their votes are
+/// for the middle of each mesh's box. The objects join `made`, their images its folder, and a dump the views where one
+/// is wanted; `report` gets a line for each object. Throws InputError for a mesh of which no view shows any depth.
 std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, const TeachOptions& options,
                                      store::ObjectStore& made, const std::function<void(const std::string&)>& report);
 
-/// The forest of a group, from the views of its objects and of rooms. With an `old` one, which else is null, that with
-/// these objects added, and of the profile of `options` only what is for training. `report` gets a line for each step.
+/// Trains the forest of a group, from the views of its objects and of rooms. With an `old` one, which else is null,
+/// that with these objects added, and of the profile of `options` only what is for training. `report` gets a line for
+/// each step.
 Forest train_store_forest(std::vector<TrainingView> views, const Forest* old, const TeachOptions& options,
                           const std::function<void(const std::string&)>& report);
 

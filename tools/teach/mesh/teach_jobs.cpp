@@ -40,7 +40,8 @@ class Progress {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// Ids of BOP folders are kept where they are free; what has none, or another object's, gets the next free one.
+/// Gives ids. Those of BOP folders are kept where they are free; an object without one, or with another's, gets the
+/// next free one.
 void give_ids(const ObjectStore& old, std::vector<TaughtMesh>& meshes) {
   std::vector<int> taken;
   for (const StoredObject& object : old.objects) taken.push_back(object.id);
@@ -68,8 +69,8 @@ void require_new(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) 
 
 using Practice = std::map<std::string, PracticeCount>;
 
-/// The objects of the finished store, looked for in rooms; what is learnt of the new ones goes into their groups'
-/// forests and the store.
+/// Searches the objects of the finished store in rooms; what is learnt of the new ones goes into their groups' forests
+/// and the store.
 Practice calibrate_all(const std::vector<StoreModel>& models, const std::set<int>& new_ids,
                        const CalibrationSettings& settings, std::vector<GroupForest>& groups, ObjectStore& made) {
   std::vector<CalibrationObject> objects(models.size());
@@ -127,7 +128,8 @@ struct GroupPlan {
   std::vector<TaughtMesh> meshes;
 };
 
-/// The objects join the last group where all of them have room there; else they make new groups of about the same size.
+/// Divides the objects into groups: they join the last group where all of them have room there; else they make new
+/// groups of about the same size.
 std::vector<GroupPlan> divide(std::vector<TaughtMesh> meshes, const ObjectStore& old, int max_objects) {
   const auto room = static_cast<std::size_t>(max_objects);
   if (!old.objects.empty()) {
@@ -143,7 +145,7 @@ std::vector<GroupPlan> divide(std::vector<TaughtMesh> meshes, const ObjectStore&
   return plans;
 }
 
-/// The classes of a forest that has grown get the ids of the store.
+/// Gives the classes of a forest that has grown the ids of the store.
 void take_ids(const ObjectStore& list, Forest& forest) {
   for (ObjectClass& known : forest.classes) known.class_id = store::find_object(list, known.name).id;
 }
@@ -151,7 +153,8 @@ void take_ids(const ObjectStore& list, Forest& forest) {
 /// Grows the forest of a group, whose objects join the list.
 void teach_group(const GroupPlan& plan, const TeachOptions& options, const Progress& progress, ObjectStore& made,
                  std::vector<GroupForest>& groups) {
-  std::vector<TrainingView> views = read_backgrounds(options.backgrounds);  // of each group: training changes them
+  // Views of each group: training changes them.
+  std::vector<TrainingView> views = read_backgrounds(options.backgrounds);
   progress(fmt::format("{} pictures of rooms read", views.size()));
   const std::size_t known = made.objects.size();
   std::vector<TrainingView> of_objects = make_views(plan.meshes, options, made, progress);
@@ -169,7 +172,7 @@ void teach_group(const GroupPlan& plan, const TeachOptions& options, const Progr
   }
 }
 
-/// As a store that is read has them.
+/// Sorts objects and groups as a store that is read has them.
 void put_in_order(ObjectStore& made, std::vector<GroupForest>& groups) {
   store::number_groups(made);
   std::stable_sort(groups.begin(), groups.end(), [&](const GroupForest& a, const GroupForest& b) {
@@ -177,7 +180,7 @@ void put_in_order(ObjectStore& made, std::vector<GroupForest>& groups) {
   });
 }
 
-/// All objects are meant where no names are given.
+/// Returns the ids of the names; those of all objects where no names are given.
 std::set<int> ids_of(const ObjectStore& list, const std::vector<std::string>& names) {
   std::set<int> ids;
   for (const std::string& name : names) ids.insert(store::find_object(list, name).id);
@@ -186,13 +189,13 @@ std::set<int> ids_of(const ObjectStore& list, const std::vector<std::string>& na
   return ids;
 }
 
-/// Nothing is made beside what is no store.
+/// Refuses a folder that is no store.
 void require_store(const fs::path& folder) {
   store::recover_store(folder);
   store::read_store(folder);
 }
 
-/// Views of another teaching would be taken for this one's.
+/// Refuses a folder with views of another teaching, which would be taken for this one's.
 void require_free(const fs::path& dump) {
   std::error_code error;
   require(dump.empty() || !fs::exists(dump, error) || (fs::is_directory(dump, error) && fs::is_empty(dump, error)),
@@ -207,7 +210,7 @@ void require_no_store(const fs::path& folder) {
   if (!fs::exists(there.json_file())) return;
   try {
     there = store::read_store(folder);
-  } catch (const InputError& error) {  // of another version, for one: somebody else may read it
+  } catch (const InputError& error) {  // a store of another version, for one, that another program may read
     fail("{}: an object store that cannot be read ({}), expected --replace to put a new one in its place",
          folder.string(), error.what());
   }
@@ -226,7 +229,7 @@ void teach_meshes(const TeachOptions& options) {
   StoreContents old;
   if (options.add) {
     old = read_contents(options.out);
-    stored_quality(old.list, QualitySettings{});  // of other terms: refused before anything is taught, not by hs-pose
+    stored_quality(old.list, QualitySettings{});  // refuses other terms before anything is taught, not in hs-pose
   }
   std::vector<TaughtMesh> meshes = options.shown;
   if (meshes.empty() || !options.meshes.sources.empty()) {

@@ -42,11 +42,11 @@ bool is_mesh_file(const fs::path& file) {
 
 double unit_of(const fs::path& file, const MeshSources& sources) {
   const std::string extension = lower_extension(file);
-  const bool is_gltf = extension == ".glb" || extension == ".gltf";  // whose standard says metres
+  const bool is_gltf = extension == ".glb" || extension == ".gltf";  // glTF's standard says metres
   return sources.unit_m.value_or(is_gltf ? 1.0 : kMillimetre);
 }
 
-/// An OBJ names a file of materials, and without it would be taught without its colours.
+/// Requires the file of materials that an OBJ names, without which it would be taught without its colours.
 void require_materials(const fs::path& file) {
   if (lower_extension(file) != ".obj") return;
   constexpr const char* kWord = "mtllib ";
@@ -112,7 +112,7 @@ void append_plain_folder(const fs::path& folder, const MeshSources& sources, std
   for (const fs::path& file : files) meshes.push_back(read_mesh(0, file.stem().string(), file, unit_of(file, sources)));
 }
 
-/// New names, by id or by old name. Throws InputError for one without effect.
+/// Renames objects, by id or by old name. Throws InputError for a name without effect.
 void rename(const std::vector<std::string>& renames, std::vector<TaughtMesh>& meshes) {
   std::set<std::string> renamed;
   for (const std::string& rename : renames) {
@@ -134,7 +134,7 @@ void require_names(const std::vector<TaughtMesh>& meshes) {
 }
 
 void require_different(const std::vector<TaughtMesh>& meshes) {
-  std::map<std::string, std::string> files;  // by name
+  std::map<std::string, std::string> files;  // files by name
   std::map<int, std::string> files_by_id;
   for (const TaughtMesh& mesh : meshes) {
     const auto [other, is_new] = files.emplace(mesh.name, mesh.file.string());
@@ -165,7 +165,8 @@ void remove_leftovers(const fs::path& cache, const std::string& prefix) {
   }
 }
 
-/// The folder of the rendered rooms; renders them beside it first where it is missing, so that it is always whole.
+/// Returns the folder of the rendered rooms; renders them beside it first where it is missing, so that it is always
+/// whole.
 fs::path render_backgrounds(const BackgroundSettings& settings) {
   const fs::path cache = settings.cache.empty() ? cache_folder("--cache FOLDER") : settings.cache;
   fs::path rooms = cache / fmt::format("rooms-{}-{}", kRoomsVersion, settings.count);
@@ -181,7 +182,7 @@ fs::path render_backgrounds(const BackgroundSettings& settings) {
   options.out = partial;
   options.seed = kRoomsSeed;
   options.threads = settings.threads;
-  options.replace = true;  // what an interrupted process of this number has left
+  options.replace = true;  // replaces the remains of an interrupted process of this number
   render::render_background(options, settings.count);
   sync_folder_to_disk(partial);  // a power cut must not leave half of it for every later teaching
   fs::rename(partial, rooms, error);

@@ -66,7 +66,7 @@ OrderedJson report_json(const ShowResult& shown, const ModelAssessment& assessme
     hz = std::min(hz, take.tracking_hz);
     for (const LostSpan& span : take.lost)
       lost.push_back({{"from", second_of(take, span.from)}, {"to", second_of(take, span.to)}, {"why", span.why}});
-    if (!take.gap) continue;  // of several takes the worst one tells
+    if (!take.gap) continue;  // the worst of several takes counts
     drift_mm = std::max(1e3 * take.gap->shift_m, drift_mm.is_null() ? 0.0 : drift_mm.get<double>());
     drift_deg = std::max(degrees_of(*take.gap), drift_deg.is_null() ? 0.0 : drift_deg.get<double>());
   }
@@ -92,7 +92,7 @@ OrderedJson report_json(const ShowResult& shown, const ModelAssessment& assessme
   return json;
 }
 
-/// The keyframes of all takes.
+/// Returns the keyframes of all takes.
 std::vector<TrainingView> all_views(const ShowResult& shown) {
   std::vector<TrainingView> views;
   for (std::size_t t = 0; t < shown.takes.size(); ++t) {
@@ -102,7 +102,7 @@ std::vector<TrainingView> all_views(const ShowResult& shown) {
   return views;
 }
 
-/// The model's outline over a keyframe, and its mask where that ends elsewhere.
+/// Draws the model's outline over a keyframe, and its mask where that ends elsewhere.
 cv::Mat outline_image(const Mesh& mesh, const TrainingView& view) {
   RgbdFrame nothing_hides = view.frame;
   nothing_hides.depth = cv::Mat(view.frame.depth.size(), CV_32FC1, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
@@ -156,7 +156,7 @@ void write_views(const ShowResult& shown, const std::vector<TrainingView>& views
   write_bop_models({{1, shown.name, shown.mesh, {}}}, folder / "models");
 }
 
-/// Where it lies: a slash at the end names the folder itself, not something in it.
+/// Returns the folder's place: a slash at the end names the folder itself, not something in it.
 fs::path kept_folder(const fs::path& folder) {
   return fs::absolute(folder / "").lexically_normal().parent_path();
 }

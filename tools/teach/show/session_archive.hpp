@@ -19,11 +19,11 @@ void archive_session(const ShowResult& shown, const ModelAssessment& assessment,
 
 /// Files beside report.html that it shows.
 struct SessionImages {
-  std::vector<std::string> selected;  ///< of each take
-  std::vector<std::string> outlines;  ///< of some keyframes
+  std::vector<std::string> selected;  ///< keyframes of each take
+  std::vector<std::string> outlines;  ///< outlines of some keyframes
 };
 
-/// report.html. Names are shown as they are, whatever they hold.
+/// Returns report.html. Names are shown as they are, whatever they hold.
 std::string report_page(const ShowResult& shown, const ModelAssessment& assessment, const SessionImages& images);
 
 }  // namespace houghstream::teach

@@ -93,7 +93,8 @@ TeachOptions options_to_teach(const ShowOptions& options, const ShowResult& show
   return teach;
 }
 
-/// Nobody can turn the object over between two takes of one camera that begin at once; videos have no second take.
+/// Refuses two takes of one camera that begin at once, between which nobody can turn the object over; videos have no
+/// second take.
 void check_second(const ShowOptions& options) {
   if (options.second.empty()) return;
   require(options.second.rfind("openni2", 0) != 0,
@@ -145,10 +146,10 @@ reconstruction::ReconstructionSettings making_of(const ShowOptions& options) {
 
 /// The selected object.
 struct TakeSource {
-  std::string name;             ///< for messages
-  const ShownFrames& frames;    ///< of it
-  std::optional<cv::Rect> box;  ///< of the object in the first frame; none: it is chosen
-  std::optional<cv::Point> at;  ///< by this place, or by the middle
+  std::string name;             ///< name for messages
+  const ShownFrames& frames;    ///< frames of it
+  std::optional<cv::Rect> box;  ///< box of the object in the first frame; none: it is chosen
+  std::optional<cv::Point> at;  ///< place at which it is chosen, or the middle
 };
 
 struct ModelledTake {
@@ -159,7 +160,7 @@ struct ModelledTake {
 Take follow(const TakeSource& source, const ShowOptions& options, ProgressReporter& reporter) {
   constexpr std::size_t kMin = 20;
   constexpr int kAwake = 90;   // frames after which a camera has found its exposure
-  constexpr int kAimed = 300;  // and in which somebody has pointed it at the object
+  constexpr int kAimed = 300;  // frames in which somebody has pointed it at the object
   const bool live = is_live(source.name);
   reconstruction::TakePlacerSettings settings;
   if (live && !source.at) settings.max_frames_to_choose = kAimed;
@@ -228,8 +229,8 @@ ShowResult show_takes(const ShowOptions& options, const ShownFrames& frames, con
   return shown;
 }
 
-/// Into the store twice: with scores and qualities of a little calibration, so that a stream that runs finds the object
-/// soon, and again when they were learnt as thoroughly as those of any other.
+/// Teaches into the store twice: with scores and qualities of a little calibration, so that a stream that runs finds
+/// the object soon, and again when they were learnt as thoroughly as those of any other.
 void teach_shown(const ShowOptions& options, const ShowResult& shown, ProgressReporter& reporter) {
   constexpr int kFirstScenes = 18;
   TeachOptions teach = options_to_teach(options, shown);

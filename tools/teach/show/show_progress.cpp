@@ -42,7 +42,7 @@ void ProgressReporter::fail(const std::string& message) {
 }
 
 void ProgressReporter::tell() {
-  constexpr std::int64_t kApart_us = 1'000'000;  // of the take's time
+  constexpr std::int64_t kApart_us = 1'000'000;  // interval of the take's time
   const std::string line = fmt::format("{}: {}", to_string(now_.state), now_.message);
   const bool is_choice = printed_state_ == TeachingState::kChoosing && now_.state != TeachingState::kChoosing;
   const std::int64_t since_us = microseconds_between(printed_us_, now_.frame.utime);

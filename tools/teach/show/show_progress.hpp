@@ -15,16 +15,17 @@ namespace houghstream::teach {
 
 /// Progress of showing an object: after each frame, and during fusion and teaching.
 struct ShowProgress {
-  static constexpr int kDirections = 60;  ///< of a sphere about the object: reconstruction::view_directions()
+  /// Directions of a sphere about the object: reconstruction::view_directions().
+  static constexpr int kDirections = 60;
 
   FrameId frame;     ///< the last that was looked at
-  std::string name;  ///< of the object
+  std::string name;  ///< name of the object
   TeachingState state = TeachingState::kChoosing;
-  std::string message;                   ///< for a person, one line: what was seen, what is missing, why it failed
-  std::array<bool, kDirections> seen{};  ///< from which directions of the object's frame
+  std::string message;                   ///< one line for a person: what was observed, what is missing, why it failed
+  std::array<bool, kDirections> seen{};  ///< directions of the object's frame that were observed
   int frames = 0;                        ///< looked at so far
   int keyframes = 0;                     ///< kept so far
-  cv::Rect box;                          ///< of the object in the last frame, pixels; empty where it is not known
+  cv::Rect box;                          ///< box of the object in the last frame, pixels; empty where it is not known
   double progress = 0.0;                 ///< 0 to 1: of the sphere while tracking, of the work afterwards
   std::optional<Eigen::Isometry3d> T_camera_object;  ///< metres, z up, origin at its foot; none while it is not known
 };
@@ -41,13 +42,13 @@ class ProgressReporter {
   /// Reports on the object `name`. `observer` may be null.
   ProgressReporter(const std::string& name, ShowObserver* observer);
 
-  /// After a frame of the take.
+  /// Reports a frame of the take.
   void frame(const FrameId& id, const reconstruction::TakePlacerStatus& state);
 
-  /// A step after the takes; `progress` of all work, 0 to 1.
+  /// Reports a step after the takes; `progress` of all work, 0 to 1.
   void step(TeachingState state, double progress, const std::string& message);
 
-  /// The terminal gets the exception's line itself.
+  /// Reports a failure; the terminal gets the exception's line itself.
   void fail(const std::string& message);
 
  private:

@@ -23,7 +23,7 @@ std::string span_text(const Take& take, const LostSpan& span) {
                      span.why);
 }
 
-/// Why it was seen from few sides, where that was not for want of frames.
+/// Returns why it was seen from few sides, where that was not for want of frames.
 std::string unused_frames(const Take& take) {
   constexpr double kMany = 0.3;
   if (take.blurred + take.badly_exposed <= kMany * static_cast<double>(take.frames.size())) return {};

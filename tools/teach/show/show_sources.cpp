@@ -26,7 +26,7 @@ class TakeTime {
  public:
   explicit TakeTime(double max_duration_s) : max_s_(max_duration_s) {}
 
-  /// The camera is open; its first frame may need longer than a short take.
+  /// Begins the take when the camera is open; its first frame may need longer than a short take.
   void open() { end_ = after(std::max(max_s_, kFirstFrameS)); }
   void note_first_frame() { end_ = after(max_s_ + kLateS); }
   bool is_cancelled() const { return end_ && Clock::now() > *end_; }

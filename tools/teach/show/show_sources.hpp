@@ -7,9 +7,9 @@
 
 namespace houghstream::teach {
 
-/// Frames of a camera (openni2...), which end after `options.longest_s` or with a stop signal, or of a recording:
-/// log:FILE or FILE of any kind that hs-log import reads, bop:DIR, uw:DIR, tum:DIR. Throws InputError where it cannot
-/// be opened.
+/// Opens the frames of a camera (openni2...), which end after `options.longest_s` or with a stop signal, or of a
+/// recording: log:FILE or FILE of any kind that hs-log import reads, bop:DIR, uw:DIR, tum:DIR. Throws InputError where
+/// it cannot be opened.
 ShownFrames open_shown(const std::string& source, const ShowOptions& options);
 
 /// Returns whether a source's frames arrive in real time: openni2 or openni2:CAMERA, or a stream's, stream:CHANNEL.
@@ -19,7 +19,7 @@ bool is_live(const std::string& source);
 /// frames do. From then on a stop signal ends the program.
 class CameraTake : public ShowObserver {
  public:
-  /// `observer` (may be null) hears all that this does.
+  /// Makes a take. `observer` (may be null) receives all its events.
   CameraTake(ShownFrames frames, ShowObserver* observer) : frames_(std::move(frames)), observer_(observer) {}
 
   std::optional<RgbdFrame> next();

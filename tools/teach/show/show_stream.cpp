@@ -38,7 +38,7 @@ class TakeObserver : public ShowObserver {
   CoverageCriterion is_covered_;
 };
 
-/// From here on a stop signal ends the program.
+/// Ends the take. From here on a stop signal ends the program.
 void end_take(const StreamTake& take) {
   if (take.passed_over() > 0) log_warning("{} frames came too fast and were passed over", take.passed_over());
   if (take.refused() > 0) log_warning("{} messages were no frames of the take and were dropped", take.refused());

@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kMaxWaiting = 300;  // ten seconds at 30 Hz, some 60 MB
 constexpr std::size_t kMaxBytes = std::size_t{256} << 20U;
-constexpr milliseconds kMoment(50);  // for which a stop signal may go unnoticed
+constexpr milliseconds kMoment(50);  // time for which a stop signal may go unnoticed
 
 }  // namespace
 

@@ -19,13 +19,13 @@
 
 namespace houghstream::teach {
 
-/// Which frames of a stream are a take.
+/// Settings that decide which frames of a stream are a take.
 struct StreamTakeSettings {
-  std::string channel = channel::kFrame;  ///< of one camera's frames
-  std::optional<Camera> camera;           ///< of frames that carry none of their own
+  std::string channel = channel::kFrame;  ///< channel of one camera's frames
+  std::optional<Camera> camera;           ///< camera of frames that carry none of their own
   std::chrono::milliseconds max_length{60'000};
-  std::chrono::milliseconds first_frame_timeout{10'000};  ///< with the first frame
-  std::chrono::milliseconds frame_timeout{3'000};         ///< without a frame, after which the stream counts as ended
+  std::chrono::milliseconds first_frame_timeout{10'000};  ///< timeout of the first frame
+  std::chrono::milliseconds frame_timeout{3'000};  ///< time without a frame, after which the stream counts as ended
 };
 
 /// A take that comes off the bus while the stream goes on. A thread receives, so that none of the frames waits in LCM;
@@ -40,13 +40,13 @@ class StreamTake {
   StreamTake(const StreamTake&) = delete;
   StreamTake& operator=(const StreamTake&) = delete;
 
-  /// The next frame; waits for it. Nothing at the take's end: after end() or a stop signal, as soon as `max_length` has
-  /// passed since the first frame, or where no frame comes for `frame_timeout`. Throws InputError where none comes
-  /// within `first_frame_timeout`, or receiving fails. Time in which the bus cannot be reached counts for none of
-  /// these.
+  /// Returns the next frame; waits for it. Returns nothing at the take's end: after end() or a stop signal, as soon as
+  /// `max_length` has passed since the first frame, or where no frame comes for `frame_timeout`. Throws InputError
+  /// where none comes within `first_frame_timeout`, or receiving fails. Time in which the bus cannot be reached counts
+  /// for none of these.
   std::optional<RgbdFrame> next();
 
-  /// The take is long enough. May be called from any thread.
+  /// Ends the take, which is long enough. It may be called from any thread.
   void end();
 
   /// Drops all waiting frames but the newest.
@@ -85,7 +85,7 @@ class StreamTake {
   std::size_t waiting_bytes_ = 0;
   std::optional<Clock::time_point> first_;  // arrival of the first frame
   Clock::time_point last_;                  // arrival of the last frame that was taken or dropped
-  cv::Size size_;                           // of the first frame
+  cv::Size size_;                           // size of the first frame
   std::string last_reason_;                 // why the last message was refused
   LogThrottle lines_;
   bool ended_ = false;

@@ -24,7 +24,7 @@ Teaching teaching_of(const ShowProgress& now, const std::array<Eigen::Vector3d, 
 /// once, and the last again each second: who listens can tell work that takes its time from a process that is gone.
 class TeachingPublisher : public ShowObserver {
  public:
-  /// `bus` must outlive it.
+  /// Makes a publisher on `bus`, which must outlive it.
   TeachingPublisher(LcmBus& bus, const std::array<Eigen::Vector3d, ShowProgress::kDirections>& directions);
   ~TeachingPublisher() override;
   TeachingPublisher(const TeachingPublisher&) = delete;
@@ -59,7 +59,7 @@ class CoverageCriterion {
  private:
   int seen_ = 0;
   std::optional<std::int64_t> last_utime_;
-  std::int64_t took_us_ = 0;  // from the first frame to the last one that brought something new
+  std::int64_t took_us_ = 0;  // time from the first frame to the last one that brought something new
   std::int64_t nothing_new_us_ = 0;
 };
 

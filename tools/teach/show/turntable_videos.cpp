@@ -30,7 +30,7 @@ struct Video {
   double overlap = 0.0;  ///< median over its views, of the model's outline and the masks
 };
 
-/// Median overlap of the model's outline with the views' masks.
+/// Returns the median overlap of the model's outline with the views' masks.
 double silhouette_iou(const Mesh& mesh, const std::vector<TrainingView>& views) {
   std::vector<double> overlaps;
   overlaps.reserve(views.size());
@@ -54,8 +54,8 @@ Video fuse(const std::string& name, std::vector<TrainingView> views, int threads
   return video;
 }
 
-/// The best of the poses that the axis gives, of those that registration makes of them, and of those that the outlines
-/// do: the masks, of which none is made, tell.
+/// Makes a video of the best poses: those of the axis, those that registration makes of them, or those of the outlines;
+/// the masks, from which none is made, decide.
 Video make_video(const std::string& name, const std::vector<TrainingView>& views, int threads) {
   std::vector<TrainingView> registered = views;
   reconstruction::register_views(registered, threads);
@@ -153,7 +153,7 @@ class Merging {
   double overlap_ = 0.0;
 };
 
-/// The views as a take that is over.
+/// Returns the views as a take that is over.
 Take take_of(const std::vector<TrainingView>& views, std::vector<MaskedKeyframe>& shown) {
   Take take;
   take.motion = reconstruction::Motion::kTurntable;
