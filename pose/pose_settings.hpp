@@ -57,13 +57,13 @@ inline void check_settings(const PoseSettings& settings, const std::string& sour
     check_settings(quality, fmt::format("{}: quality of '{}'", source, name));
 }
 
-/// The quality that a class' poses are judged by: the one learnt for it, or the common one.
+/// Returns the quality that a class' poses are judged by: the one learnt for it, or the common one.
 inline const QualitySettings& class_quality_of(const PoseSettings& settings, const std::string& class_name) {
   const auto learnt = settings.class_quality.find(class_name);
   return learnt != settings.class_quality.end() ? learnt->second : settings.quality;
 }
 
-/// The settings of all stages that the choice among registered candidates reads.
+/// Returns the settings of all stages that the choice among registered candidates reads.
 inline PoseSelectionSettings pose_selection_settings(const PoseSettings& settings) {
   PoseSelectionSettings selection;
   selection.initial = settings.initial;

@@ -7,11 +7,11 @@
 
 namespace houghstream {
 
-/// The motion that a 4x4 matrix stands for, its rotation made exact again after rounding.
+/// Returns the motion of a 4x4 matrix, its rotation made exact again after rounding.
 Eigen::Isometry3d rigid_motion(const Eigen::Matrix4d& matrix);
 
-/// The reference for registration: pcl::IterativeClosestPoint, point to plane, of the measured points (camera frame,
-/// metres) to those of the model that are visible at the start.
+/// Registers points as the reference does: pcl::IterativeClosestPoint, point to plane, of the measured points (camera
+/// frame, metres) to those of the model that are visible at the start.
 RegistrationResult register_points_pcl(const std::vector<Eigen::Vector3f>& points_camera, const ObjectModel& model,
                                        const Eigen::Isometry3d& T_camera_object, const RegistrationStage& stage,
                                        const RegistrationSettings& settings);

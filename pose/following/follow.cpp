@@ -56,7 +56,7 @@ bool is_depth_measured(const ObjectObservation& observation, const FollowerInput
   return cv::countNonZero(part == part) >= input.pose.region.min_points;
 }
 
-/// The texture moves the pose a little, where depth and silhouette leave it free.
+/// Returns the refinement that moves the pose a little by texture, where depth and silhouette leave it free.
 RefinePose texture_refinement(const ObjectObservation& observation, const FollowerInput& input) {
   return [&](const Eigen::Isometry3d& T_camera_object) {
     const FollowSettings& follow = input.follow;

@@ -40,8 +40,8 @@ void fields(const JointSettings& /*settings*/, const Visit& visit) {
 /// Appearance of a followed object, as earlier frames showed it.
 struct FollowedAppearance {
   std::shared_ptr<const ColourStatistics> colours;  ///< null: no colours were learnt, only depth is measured
-  std::shared_ptr<const Silhouette> silhouette;     ///< that of an earlier frame, or null
-  std::shared_ptr<const TextureKeyframe> texture;   ///< that of an earlier frame, or null
+  std::shared_ptr<const Silhouette> silhouette;     ///< appearance in an earlier frame, or null
+  std::shared_ptr<const TextureKeyframe> texture;   ///< appearance in an earlier frame, or null
 };
 
 /// Moves a pose by a cue other than depth and silhouette.

@@ -23,7 +23,7 @@ struct FollowerSettings {
   int max_failures = 3;           ///< consecutive frames without evidence after which it is lost
   float min_kept_quality = 0.3F;  ///< quality from which on a withheld pose is followed on
   double max_rejected_s = 1.0;    ///< time without a valid pose after which it is lost
-  double max_hidden_s = 2.0;      ///< the same time while it is hidden
+  double max_hidden_s = 2.0;      ///< time without a valid pose while it is hidden
   /// Distance between a detection's centre and a followed pose of its class that associates them.
   double reach_m = 0.07;
   double duplicate_distance_ratio = 0.5;  ///< distance over the smaller radius, below which two objects are one

@@ -283,7 +283,7 @@ MotionEquations region_equations(const RegionView& view, const std::vector<Regio
 
 void learn_colours(const RegionView& view, const Silhouette& silhouette, const Eigen::Isometry3d& T_camera_object,
                    const RegionModalitySettings& settings, ColourStatistics& colours) {
-  // At the edge itself a lens mixes both sides; what is learnt of it would confirm any pose that is a little beside.
+  // A lens mixes both sides at the edge itself; what is learnt of it would confirm any pose that is a little beside.
   constexpr int kGap_px = 3;
   constexpr int kReach_px = 20;
   constexpr int kBeside_px = 4;

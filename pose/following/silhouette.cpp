@@ -29,7 +29,7 @@ struct OutlineView {
   }
 };
 
-/// The camera looks at the model's centre from where it is, so that the model fills the image.
+/// Renders the model from the camera's place, looking at its centre, so that the model fills the image.
 OutlineView look_at_centre(const ObjectModel& model, const Eigen::Vector3d& eye) {
   constexpr int kMargin = 4;
   const int size = kDiameter_px + 2 * kMargin;
@@ -65,7 +65,7 @@ Eigen::Vector2d outward_at(const OutlineView& view, const std::vector<cv::Point>
   const Eigen::Vector2d at(chain[i].x, chain[i].y);
   const bool left = view.is_model(at + 2.0 * across);
   const bool right = view.is_model(at - 2.0 * across);
-  if (left == right) return Eigen::Vector2d::Zero();  // as thin as that has no inside
+  if (left == right) return Eigen::Vector2d::Zero();  // so thin a model has no inside
   return left ? Eigen::Vector2d(-across) : across;
 }
 

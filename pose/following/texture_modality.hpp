@@ -44,7 +44,7 @@ struct TextureKeyframe {
   struct Point {
     Eigen::Vector3f point = Eigen::Vector3f::Zero();           ///< object frame, metres
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();          ///< unit, object frame
-    std::array<float, BrightnessImage::kLevels> brightness{};  ///< by level
+    std::array<float, BrightnessImage::kLevels> brightness{};  ///< brightness by level
   };
   std::vector<Point> points;
 };

@@ -119,7 +119,7 @@ std::vector<Equations> compare_all(const std::vector<DepthView>& views, const Co
 /// radius, about its middle.
 Eigen::Isometry3d solve(const Equations& equations, const Eigen::Vector3d& middle, double radius, double damping) {
   if (equations.weight <= 0.0) return Eigen::Isometry3d::Identity();
-  // In coordinates about the object's middle, rotations and shifts are nearly independent.
+  // Rotations and shifts are nearly independent in coordinates about the object's middle.
   Matrix6d about_middle = Matrix6d::Identity();
   for (int k = 0; k < 3; ++k) {
     about_middle.block<3, 1>(3, k) = -Eigen::Vector3d::Unit(k).cross(middle);

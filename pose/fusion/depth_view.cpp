@@ -97,7 +97,7 @@ cv::Mat outside_of(const cv::Mat& mask, const cv::Mat& depth) {
   return with_depth > kMinFraction * cv::countNonZero(beside) ? beside : outside_hull(wide);
 }
 
-/// Pixel of `area` that shows a point of the camera frame.
+/// Returns the pixel of `area` that shows a point of the camera frame.
 std::optional<cv::Point> pixel_in(const cv::Rect& area, const Camera& camera, const Eigen::Vector3d& point_camera) {
   if (point_camera.z() <= 0.0) return std::nullopt;
   const Eigen::Vector2d at = camera.project(point_camera);

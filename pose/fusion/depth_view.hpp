@@ -30,7 +30,7 @@ struct DepthView {
     return {n[0], n[1], n[2]};
   }
 
-  /// Pixel that shows a point of the camera frame; none where that is not in the image.
+  /// Returns the pixel that shows a point of the camera frame; none where that is not in the image.
   std::optional<cv::Point> pixel_of(const Eigen::Vector3d& point_camera) const;
 
   /// Returns whether the whole image shows a point of the camera frame, even where the cropped images do not.

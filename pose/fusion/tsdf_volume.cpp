@@ -29,7 +29,7 @@ std::vector<Eigen::Vector3d> object_points(const std::vector<DepthView>& views) 
   return points;
 }
 
-/// Stray points of a few views do not count.
+/// Returns the range of points along an axis. Stray points of a few views do not count.
 std::array<double, 2> range_along(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& direction) {
   std::vector<double> along;
   along.reserve(points.size());

@@ -105,7 +105,7 @@ class ViewMaker {
   /// order.
   ModelView make(const Eigen::Vector3f& direction, std::uint64_t seed) const;
 
-  /// The colours of all that is seen from one direction.
+  /// Adds the colours of all that is visible from one direction.
   void add_texture(const Eigen::Vector3f& direction, SurfaceTextureBuilder& texture) const;
 
   bool has_colours() const { return colour_.has_colour(); }
@@ -119,7 +119,7 @@ class ViewMaker {
   std::vector<Eigen::Vector3f> face_normals_;
 };
 
-/// All points that are seen, row by row, and their silhouette's area.
+/// Returns all visible points, row by row, and their silhouette's area.
 std::vector<SeenPoint> ViewMaker::seen_from(const Eigen::Vector3f& direction, float& area_px) const {
   const double distance = std::max(settings_.view_distance_m, 3.0 * model_.radius);
   const int size = settings_.pixels_per_diameter + 8;

@@ -26,7 +26,8 @@ struct ModelSettings {
   /// an entry have none. A symmetry that the texture contradicts is accepted as stated.
   std::map<std::string, Symmetries> symmetries;
   double right_within = 0.1;  ///< ObjectModel::alternatives are farther from the pose than this, diameters (MSSD)
-  std::map<std::string, ShapeSymmetry> shape_symmetries;  ///< by class name; for other classes the mesh is searched
+  /// Symmetries by class name; for other classes the mesh is searched.
+  std::map<std::string, ShapeSymmetry> shape_symmetries;
 };
 
 template <typename Visit>
@@ -84,7 +85,7 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
 /// Returns the stored view nearest to the camera's view of the model.
 const ModelView& nearest_view(const ObjectModel& model, const Eigen::Isometry3d& T_camera_object);
 
-/// Corners of the icosahedron whose edges are cut in `parts`, on the unit sphere, in a fixed order.
+/// Returns the corners of the icosahedron whose edges are cut in `parts`, on the unit sphere, in a fixed order.
 std::vector<Eigen::Vector3f> sphere_directions(int parts);
 
 }  // namespace houghstream

@@ -243,7 +243,7 @@ std::vector<Eigen::Isometry3d> registered_group(const RotationSymmetryTest& chec
   return group;
 }
 
-/// Half a turn that exchanges the ends of an axis about which any angle fits.
+/// Returns half turns that exchange the ends of an axis about which any angle fits.
 std::vector<Eigen::Isometry3d> end_over_end(const RotationSymmetryTest& check, const ContinuousSymmetry& round) {
   const Eigen::Vector3d across = round.axis.unitOrthogonal();
   const Eigen::Isometry3d plain = rotation_about({across, round.offset}, M_PI);

@@ -90,7 +90,7 @@ class RotationSymmetryTest {
   float distance(const Eigen::Vector3f& point, float limit_m) const {
     return measured_.tree.nearest(point, limit_m).distance;
   }
-  /// Share of the samples whose colour is another where the rotation takes them.
+  /// Returns the fraction of the samples whose colour differs where the rotation takes them.
   double differing_fraction(const Eigen::Isometry3f& T) const;
 
   const MeasuredMesh& measured_;

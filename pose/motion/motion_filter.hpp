@@ -17,7 +17,7 @@ struct PoseMeasurement {
 
 struct MotionSettings {
   double drift_m = 0.0002;            ///< random walk of a static object within a second, metres
-  double drift_rad = 0.0024;          ///< and of its rotation: together they average over some two seconds
+  double drift_rad = 0.0024;          ///< drift of its rotation: together they average over some two seconds
   double acceleration = 1.0;          ///< spectral density of a moving object, m^2/s^3: a hand's
   double angular_acceleration = 8.0;  ///< rad^2/s^3
   double coast_s = 0.15;              ///< time for which a moving object continues without a measurement

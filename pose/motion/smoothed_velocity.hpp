@@ -26,7 +26,7 @@ class SmoothedVelocity {
 
   bool is_zero() const;
 
-  const Eigen::Vector3d& linear_velocity() const { return speed_; }              ///< of the origin, m/s
+  const Eigen::Vector3d& linear_velocity() const { return speed_; }              ///< velocity of the origin, m/s
   const Eigen::Vector3d& angular_velocity() const { return angular_velocity_; }  ///< rad/s
 
  private:

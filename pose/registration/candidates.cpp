@@ -21,12 +21,12 @@ std::vector<RotationVote> usable_votes(const std::vector<RotationVote>& votes) {
   return out;
 }
 
-/// |a.b| is the cosine of half the angle between two rotations.
+/// Returns the kernel of two rotations; |a.b| is the cosine of half the angle between them.
 float rotation_kernel(const RotationVote& a, const RotationVote& b) {
   return std::abs(a.R_camera_object.dot(b.R_camera_object));
 }
 
-/// Largest eigenvector of the weighted sum of q q^T (Markley et al. 2007, eq. 12).
+/// Returns the largest eigenvector of the weighted sum of q q^T (Markley et al. 2007, eq. 12).
 RotationCandidate mean_rotation(const std::vector<RotationVote>& votes) {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   RotationCandidate mean;
@@ -41,7 +41,7 @@ RotationCandidate mean_rotation(const std::vector<RotationVote>& votes) {
   return mean;
 }
 
-/// The vote with most weight within the radius; ties go to the first.
+/// Returns the vote with most weight within the radius; ties go to the first.
 std::size_t densest(const std::vector<RotationVote>& votes, float min_kernel) {
   std::size_t best = 0;
   float best_weight = -1.0F;

@@ -14,9 +14,9 @@ namespace houghstream {
 /// Rotations from the votes.
 struct InitialSettings {
   double cluster_radius_deg = 25.0;
-  int clusters = 6;          ///< at most
-  int rotated_clusters = 1;  ///< of the heaviest also turned by quarters about the object's z axis
-  float vote_gain = 0.1F;    ///< how much a rotation that the votes agree on is preferred after registration
+  int clusters = 6;          ///< maximum number of clusters
+  int rotated_clusters = 1;  ///< number of the heaviest that are also turned by quarters about the object's z axis
+  float vote_gain = 0.1F;    ///< preference after registration for a rotation that the votes agree on
 };
 
 template <typename Visit>
@@ -30,10 +30,10 @@ void fields(const InitialSettings& /*settings*/, const Visit& visit) {
 
 /// Coarse choice by depth score: each rotation at several places, the best go to registration.
 struct SearchSettings {
-  double reach_m = 0.06;      ///< along the line of sight, to each side of the detected centre
-  double step_m = 0.012;      ///< between places across the line of sight
-  int steps = 1;              ///< to each side
-  int points = 80;            ///< of a view
+  double reach_m = 0.06;      ///< reach along the line of sight, to each side of the detected centre
+  double step_m = 0.012;      ///< step between places across the line of sight
+  int steps = 1;              ///< number of steps to each side
+  int points = 80;            ///< points of a view
   int keep = 3;               ///< candidates that are registered
   double tolerance_m = 0.02;  ///< measured and model depth agree; 3 sigma is added
 };
@@ -51,8 +51,8 @@ void fields(const SearchSettings& /*settings*/, const Visit& visit) {
 
 /// Poses of an earlier frame as further candidates.
 struct WarmStartSettings {
-  double max_age_s = 0.5;  ///< between the frames
-  double reach_m = 0.1;    ///< from the detected centre; objects farther away are others
+  double max_age_s = 0.5;  ///< time between the frames
+  double reach_m = 0.1;    ///< distance from the detected centre; objects farther away are others
 };
 
 template <typename Visit>
@@ -65,13 +65,13 @@ void fields(const WarmStartSettings& /*settings*/, const Visit& visit) {
 /// A rotation on which votes agree.
 struct RotationCandidate {
   Eigen::Quaternionf R_camera_object = Eigen::Quaternionf::Identity();
-  float weight = 0.0F;  ///< of its votes, 0 for one that was added without votes
+  float weight = 0.0F;  ///< weight of its votes, 0 for one that was added without votes
 };
 
-/// Modes of the votes' rotations, heaviest first: the vote with most weight about it gathers its neighbours, whose mean
-/// (Markley et al. 2007) is a candidate; again with the rest. Then the heaviest turned by quarters about the
-/// object's z axis, because views of a standing object are most easily confused that way.
-/// Empty where the votes hold no finite rotation with weight.
+/// Returns the modes of the votes' rotations, heaviest first: the vote with most weight about it gathers its
+/// neighbours, whose mean (Markley et al. 2007) is a candidate; again with the rest. Then the heaviest turned by
+/// quarters about the object's z axis, because views of a standing object are most easily confused that way. Empty
+/// where the votes hold no finite rotation with weight.
 std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>& votes,
                                                  const InitialSettings& settings);
 

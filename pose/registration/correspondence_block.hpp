@@ -23,8 +23,8 @@ struct PixelRays {
 
   Eigen::Vector2f focal;   ///< pixels
   Eigen::Vector2f centre;  ///< pixels
-  Eigen::Vector3f first;   ///< of pixel (0,0), with z = 1
-  Eigen::Vector3f step;    ///< between neighbours
+  Eigen::Vector3f first;   ///< ray of pixel (0,0), with z = 1
+  Eigen::Vector3f step;    ///< step between neighbours
   int columns;
   int rows;
   int row_step;  ///< values of depth
@@ -34,16 +34,17 @@ struct PixelRays {
 struct CorrespondenceBlock {
   static constexpr std::size_t kSize = 64;
   using Values = std::array<float, kSize>;
-  std::size_t count = 0;                                        ///< points that are set
-  alignas(64) Values x{}, y{}, z{};                             ///< z > 0
-  alignas(64) Values residual_x{}, residual_y{}, residual_z{};  ///< from the point to the measured one; 0 without
-  alignas(64) Values distance_sq{};  ///< of them; the square of CorrespondenceSearch::distance_m without
+  std::size_t count = 0;             ///< points that are set
+  alignas(64) Values x{}, y{}, z{};  ///< z > 0
+  /// Offset from the point to the measured one; 0 without.
+  alignas(64) Values residual_x{}, residual_y{}, residual_z{};
+  alignas(64) Values distance_sq{};  ///< square of these distances; that of CorrespondenceSearch::distance_m without
 };
 
 /// The lattice of pixels about a model point's pixel on which its measured point is searched.
 struct CorrespondenceSearch {
   float distance_m = 0.0F;  ///< measured points farther away are none; the lattice reaches as far to each side
-  int steps = 1;            ///< of the lattice to each side
+  int steps = 1;            ///< steps of the lattice to each side
 };
 
 /// Sets the residual from each of the block's points to the measured point nearest to it on its lattice. Written for

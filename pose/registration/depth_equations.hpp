@@ -20,10 +20,11 @@ struct MotionEquations {
 
 /// Weighted sums of products over correspondences. Arms lead from the model's centre to the points, in its radius.
 struct CorrespondenceSums {
-  OuterProductSum across = OuterProductSum::Zero();  ///< of (arm x normal, normal, residual along the normal, 0)
-  OuterProductSum along = OuterProductSum::Zero();   ///< of (arm, 1, residual, 0)
+  /// Products of (arm x normal, normal, residual along the normal, 0).
+  OuterProductSum across = OuterProductSum::Zero();
+  OuterProductSum along = OuterProductSum::Zero();  ///< products of (arm, 1, residual, 0)
   int count = 0;
-  double squares = 0.0;  ///< of the distances along the normals, m^2
+  double squares = 0.0;  ///< sum of the squared distances along the normals, m^2
 };
 
 /// Finds the correspondences of the first `count` points of the view nearest to the pose, and sums them up under

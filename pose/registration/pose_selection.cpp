@@ -32,7 +32,7 @@ class PoseSelector {
     return best;
   }
 
-  /// The best of `result` and of the best turns of it, registered again.
+  /// Returns the best of `result` and of the best turns of it, registered again.
   RegistrationResult best_rotation(const RegistrationResult& result, double step_deg, double reach_deg,
                                    std::size_t maximum) const {
     RegistrationResult best = result;
@@ -47,8 +47,8 @@ class PoseSelector {
     return best;
   }
 
-  /// `result`, and it turned by half a turn about each principal axis, registered again: a box looks the same to depth
-  /// then, and only its texture tells. The best first, and none that ends elsewhere.
+  /// Returns `result`, and it turned by half a turn about each principal axis, registered again: a box looks the same
+  /// to depth then, and only its texture differs. The best comes first, and none that ends elsewhere.
   std::vector<Scored> flips_of(const RegistrationResult& result) const {
     std::vector<Scored> flips = {{result, score_of(result)}};
     const Eigen::Vector3d middle = seen_.model.surface_median.cast<double>();
@@ -97,7 +97,7 @@ class PoseSelector {
   CorrespondenceDistances distances_;
 };
 
-/// The last steps of a choice: turned a little to where all speaks most for it, and registered.
+/// Ends a selection: turns the pose a little to where all cues agree most, and registers it.
 RegistrationResult refine_fully(const PoseSelector& selector, const ObjectObservation& observation,
                                 const RegistrationResult& result, const PoseSelectionSettings& settings) {
   const RotationSearchSettings& search = settings.rotation_search;

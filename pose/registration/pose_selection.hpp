@@ -11,14 +11,14 @@ namespace houghstream {
 
 /// Turns about the object's z axis that are tried after registration, degrees.
 struct RotationSearchSettings {
-  double step_deg = 15.0;              ///< all the way round
-  double fine_step_deg = 3.0;          ///< up to one step to each side
+  double step_deg = 15.0;              ///< step all the way round
+  double fine_step_deg = 3.0;          ///< fine step, up to one coarse step to each side
   double hill_climb_step_m = 0.004;    ///< shifts along the object's axes that are tried with small turns
-  int hill_climb_rounds = 4;           ///< of those, to each side
-  int points = 250;                    ///< of a view
-  std::size_t registered = 3;          ///< the best turns all round are registered again
-  std::size_t alternatives = 1;        ///< flips beside the best one that are chosen too,
-  float min_alternative_ratio = 0.8F;  ///< where they score at least so much of it
+  int hill_climb_rounds = 4;           ///< number of such shifts to each side
+  int points = 250;                    ///< points of a view
+  std::size_t registered = 3;          ///< number of the best turns all round that are registered again
+  std::size_t alternatives = 1;        ///< number of flips that are selected beside the best one
+  float min_alternative_ratio = 0.8F;  ///< smallest score of such a flip over that of the best one
 };
 
 template <typename Visit>
@@ -53,8 +53,8 @@ std::vector<RegistrationResult> select_poses(const ObjectObservation& observatio
                                              const std::vector<RotationCandidate>& votes,
                                              const PoseSelectionSettings& settings);
 
-/// A pose that was found otherwise, registered finely and turned a little about its z axis to where depth, colour and
-/// votes speak most for it, as select_poses() ends.
+/// Registers a pose that was found otherwise finely, and turns it a little about its z axis to where depth, colour and
+/// votes agree most, as select_poses() ends.
 RegistrationResult refine_pose(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                const std::vector<RotationCandidate>& votes, const PoseSelectionSettings& settings);
 

@@ -8,8 +8,9 @@
 namespace houghstream {
 namespace {
 
-constexpr int kMinPairs = 12;      // for a step: twice the unknowns
-constexpr double kDamping = 1e-3;  // of the Hessian's mean diagonal; holds rotations that symmetric surfaces leave open
+constexpr int kMinPairs = 12;  // minimum number of pairs for a step: twice the unknowns
+// Fraction of the Hessian's mean diagonal; holds rotations that symmetric surfaces leave open.
+constexpr double kDamping = 1e-3;
 
 /// Moves the model by the damped Gauss-Newton step and returns the step's length, metres.
 double apply_gauss_newton_step(MotionEquations equations, const ObjectModel& model,

@@ -23,7 +23,7 @@ struct RegistrationResult {
 /// Maximum correspondence distances of a registration, which shrink from start to end, metres.
 struct RegistrationStage {
   int iterations = 0;
-  int points = 0;  ///< of the model's view, at most
+  int points = 0;  ///< maximum number of points of the model's view
   double max_correspondence_start_m = 0.0;
   double max_correspondence_end_m = 0.0;
   int search_steps = 2;  ///< ours: measured points looked at to each side of a model point's pixel
@@ -37,8 +37,8 @@ using RegistrationEngine = RegistrationResult (*)(const ObjectObservation& obser
                                                   const Eigen::Isometry3d& T_camera_object,
                                                   const RegistrationStage& stage, const RegistrationSettings& settings);
 
-/// Ours: each visible model point is paired with the nearest measured point about its pixel (projective data
-/// association, Blais & Levine 1995), and one step of Gauss-Newton lowers the distances along the model's normals
+/// Registers by our ICP: each visible model point is paired with the nearest measured point about its pixel (projective
+/// data association, Blais & Levine 1995), and one step of Gauss-Newton lowers the distances along the model's normals
 /// (Chen & Medioni 1992) under Tukey's weights. What lies in front of the model or behind it finds no pair.
 RegistrationResult register_projective(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                        const RegistrationStage& stage, const RegistrationSettings& settings);
@@ -52,9 +52,9 @@ struct RegistrationSettings {
   int fine_points = 600;
   double max_correspondence_start_m = 0.035;  ///< pairs farther apart have no weight; shrinks with every iteration
   double max_correspondence_end_m = 0.008;    ///< 3 sigma is added
-  double point_weight = 0.1;                  ///< of the distance along the surface beside that across it
-  double max_shift_m = 0.07;                  ///< from the detected centre; what ended farther away is something else
-  double converged_m = 0.0005;                ///< last step moved the model's surface by less
+  double point_weight = 0.1;                  ///< weight of the distance along the surface beside that across it
+  double max_shift_m = 0.07;    ///< distance from the detected centre; a result farther away is another object
+  double converged_m = 0.0005;  ///< last step moved the model's surface by less
 };
 
 template <typename Visit>
@@ -80,20 +80,20 @@ struct CorrespondenceDistances {
 CorrespondenceDistances correspondence_distances(const ObjectObservation& observation,
                                                  const RegistrationSettings& settings);
 
-/// With few points, from pairs `start_m` apart on.
+/// Registers with few points, from pairs `start_m` apart on.
 RegistrationResult register_coarsely(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                      double start_m, const RegistrationSettings& settings);
 
-/// With many points from where another registration ended; that one's result where this one leads too far away. Counts
-/// the iterations of both.
+/// Registers with many points from where another registration ended; returns that one's result where this one leads too
+/// far away. Counts the iterations of both.
 RegistrationResult register_finely(const ObjectObservation& observation, const RegistrationResult& result,
                                    const RegistrationSettings& settings);
 
-/// The result is where the detection is.
+/// Returns whether the result is where the detection is.
 bool is_near_detection(const ObjectObservation& observation, const RegistrationResult& result,
                        const RegistrationSettings& settings);
 
-/// Every candidate registered coarsely, in their order.
+/// Registers every candidate coarsely, in their order.
 std::vector<RegistrationResult> register_candidates(const ObjectObservation& observation,
                                                     const std::vector<PoseCandidate>& candidates,
                                                     const RegistrationSettings& settings);

@@ -14,21 +14,21 @@ struct ScoredPose {
   float score = 0.0F;
 };
 
-/// At the first `points` points of the view nearest to the pose.
+/// Scores a pose at the first `points` points of the view nearest to it.
 ScoredPose score_pose_jointly(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                               int points, const DepthTolerance& tolerance);
 
-/// Which turns are tried, and how many of them are wanted.
+/// Range of the turns that are tried, and the number that is wanted.
 struct RotationRange {
   double step_rad = 0.0;
-  double reach_rad = 0.0;  ///< to each side
+  double reach_rad = 0.0;  ///< reach to each side
   std::size_t maximum = 1;
-  int points = 0;  ///< of a view
+  int points = 0;  ///< points of a view
 };
 
-/// The pose turned about the object's z axis, through the middle of its surface; those turns that are better than their
-/// neighbours, best first. Views of a standing object are most easily confused that way, and of a round one only its
-/// texture tells them apart.
+/// Returns the pose turned about the object's z axis, through the middle of its surface; those turns that are better
+/// than their neighbours, best first. Views of a standing object are most easily confused that way, and of a round one
+/// only its texture tells them apart.
 std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& observation,
                                                const Eigen::Isometry3d& T_camera_object, const RotationRange& range,
                                                const DepthTolerance& tolerance);
@@ -37,12 +37,12 @@ std::vector<ScoredPose> best_rotations_about_z(const ObjectObservation& observat
 struct HillClimb {
   double step_rad = 0.0;
   double step_m = 0.0;
-  int rounds = 0;  ///< of one step each way; halved after a round without a better pose
-  int points = 0;  ///< of a view
+  int rounds = 0;  ///< rounds of one step each way; it is halved after a round without a better pose
+  int points = 0;  ///< points of a view
 };
 
-/// From the pose uphill by such steps: what neither depth alone nor a coarse turn settles, such as how far a printed
-/// round thing stands along its axis.
+/// Climbs from the pose by such steps to what neither depth alone nor a coarse turn settles, such as how far a printed
+/// round object stands along its axis.
 ScoredPose hill_climb_pose(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                            const HillClimb& hill_climb, const DepthTolerance& tolerance);
 

@@ -30,7 +30,7 @@ class CameraColours {
   bool has_jumped(const std::vector<ChromaPair>& confirmed) const;
 
   FrameId frame_;
-  std::map<std::string, ChromaPair> remembered_;  // by class name
+  std::map<std::string, ChromaPair> remembered_;  // pairs by class name
   int jumps_ = 0;                                 // consecutive frames that contradict the stored colours
 };
 

@@ -59,7 +59,7 @@ struct ShiftSearch {
   DepthTolerance tolerance;
 };
 
-/// The shift within reach that makes most visible points agree; none where no point is within reach.
+/// Returns the shift within reach that makes most visible points agree; none where no point is within reach.
 DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                             const ShiftSearch& search);
 

@@ -12,7 +12,7 @@ namespace houghstream::tracks {
 /// Settings of the assignment of measured poses to objects.
 struct AssociationSettings {
   double reach_m = 0.06;         ///< distance up to which a pose is of an object that stands, metres
-  double moving_reach_m = 0.12;  ///< the same distance for a moving object
+  double moving_reach_m = 0.12;  ///< that distance for a moving object
   double rotation_cost = 0.5;    ///< cost of a rotation by half a turn; that of the whole reach is 1
   double exclusion_ratio = 0.6;  ///< radii within which there is no second object of a class
 };

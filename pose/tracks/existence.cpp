@@ -81,7 +81,7 @@ void update_unobserved(const UnobservedContext& frame, const MissedDetection& mi
   }
   if (track.id == 0 && missed.by_recognition) rate += settings.tentative_rate;
   track.log_odds -= missed.seconds * rate;
-  // Where several cameras see the place, the last observer sets the state for a short time after its observation.
+  // The last observer sets the state for a short time after its observation, where several cameras see the place.
   constexpr double kLastObserverHold_s = 0.1;
   const bool says_anything = missed.by_recognition || visibility.state != TrackState::kUnrecognised;
   if (says_anything && (track.last_seen.channel == observation.poses.frame.channel || unseen_s > kLastObserverHold_s)) {

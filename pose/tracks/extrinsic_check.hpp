@@ -33,7 +33,7 @@ class ExtrinsicCheck {
   /// Returns pairs of cameras whose median offset over the last samples is too large, by their names.
   std::vector<ExtrinsicInconsistency> inconsistencies() const;
 
-  /// All pairs that have enough samples, for a report.
+  /// Returns all pairs that have enough samples, for a report.
   std::vector<ExtrinsicInconsistency> pairs() const;
 
  private:

@@ -101,9 +101,9 @@ struct PoseTrackSettings {
   double same_rotation_rad = 0.44;  ///< poses rotated farther apart are two hypotheses
   /// Minimum gate for the distance of a measurement of a static object; 4 sigma if larger.
   double static_gate_m = 0.008;
-  double static_gate_rad = 0.21;     ///< the same gate for its rotation
+  double static_gate_rad = 0.21;     ///< that gate for its rotation
   double rest_threshold_m = 0.004;   ///< an object rests when the halves of 0.4 s differ by less
-  double rest_threshold_rad = 0.09;  ///< the same threshold for its rotation
+  double rest_threshold_rad = 0.09;  ///< that threshold for its rotation
 };
 
 template <typename Visit>
@@ -157,7 +157,7 @@ class PoseTrack {
   std::vector<Hypothesis> hypotheses_;
   std::size_t best_ = 0;
   std::int64_t weighed_utime_ = 0;
-  std::map<std::string, ObserverHistory> observers_;  // by camera channel
+  std::map<std::string, ObserverHistory> observers_;  // observers by camera channel
   std::deque<PoseMeasurement> recent_;                // while it moves
 };
 

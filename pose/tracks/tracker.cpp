@@ -110,7 +110,7 @@ void Tracker::update_track(Track& track, const PoseObservation& pose, double sec
   track.reason = fmt::format("seen by {}", pose.frame.channel);
 }
 
-/// A track without a pose is missed once a frame, however many results the frame has.
+/// Updates the tracks without a pose; each is missed once a frame, however many results the frame has.
 void Tracker::update_unobserved_tracks(const FrameObservation& observation, const std::vector<PoseObservation>& poses,
                                        CameraClock& camera) {
   searched_classes_.note(observation.poses);

@@ -104,7 +104,7 @@ class WorldClock {
   void tell_new_world(const FrameId& frame, std::int64_t last_utime);
   void warn(const std::string& line);
 
-  std::map<std::string, Camera> cameras_;        // by channel name
+  std::map<std::string, Camera> cameras_;        // cameras by channel name
   std::map<std::string, std::int64_t> doubted_;  // time far from the camera's last one, by channel
   std::optional<FrameId> newest_;                // newest frame of all cameras, on the world's clock
   std::int64_t ahead_us_ = 0;
@@ -141,8 +141,8 @@ class SearchedClasses {
 
   bool is_reporting(const std::string& class_name, std::int64_t utime) const;
 
-  std::map<std::string, Coverage> coverage_;  // by class name
-  std::map<std::string, Camera> cameras_;     // by channel name
+  std::map<std::string, Coverage> coverage_;  // coverage by class name
+  std::map<std::string, Camera> cameras_;     // cameras by channel name
 };
 
 /// Tracks the objects of a world over time and over all cameras. It assigns measured poses to objects (by class, place
@@ -190,7 +190,7 @@ class Tracker {
 
   TrackModels models_;
   ObjectTrackerSettings settings_;
-  std::vector<Track> tracks_;  // in the order of their creation; numbers follow in the order of confirmation
+  std::vector<Track> tracks_;  // tracks in the order of their creation; numbers follow in the order of confirmation
   WorldClock clock_;
   SearchedClasses searched_classes_;
   ClassNames names_;

@@ -13,7 +13,7 @@ namespace houghstream {
 struct QualityExample {
   QualityTerms terms;
   bool is_correct = false;              ///< the object that was detected, MSSD (or ADD) below a tenth of the diameter
-  bool is_correct_up_to_shape = false;  ///< the same by ADD-S: correct up to the symmetries of the shape
+  bool is_correct_up_to_shape = false;  ///< whether it is correct by ADD-S, up to the symmetries of the shape
   /// Evidence of a pose that is correct up to its shape if the object had another texture: the fit separates the two.
   std::optional<QualityTerms> with_swapped_texture = std::nullopt;
   std::optional<double> texture_margin = std::nullopt;  ///< TextureComparison::margin, where the pose has alternatives

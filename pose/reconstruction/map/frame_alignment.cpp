@@ -155,7 +155,7 @@ double bearing_error_at(const Eigen::Vector3d& p, const LandmarkObservation& cor
   return (p.head<2>() / p.z() - corner.in_camera.head<2>() / corner.in_camera.z()).norm();
 }
 
-/// A landmark's bearing hardly depends on its depth, so far landmarks constrain the camera's rotation.
+/// Adds a landmark. Its bearing hardly depends on its depth, so far landmarks constrain the camera's rotation.
 void add_corner(const LandmarkObservation& corner, const Eigen::Isometry3d& T, NormalEquations& equations) {
   constexpr double kSigma = 0.003;  // error of a bearing: one to two pixels
   const Eigen::Vector3d p = T * corner.in_world;

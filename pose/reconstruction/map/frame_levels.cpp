@@ -89,7 +89,7 @@ ImageQuality measure_quality(const cv::Mat& grey) {
 /// there.
 bool fit_normal(const FrameLevel& level, int x, int y, Eigen::Vector3f& normal) {
   constexpr int kRadius_px = 3;
-  constexpr int kMin = 30;  // of 49 pixels
+  constexpr int kMin = 30;  // minimum number of the 49 pixels
   const float z = level.depth.at<float>(y, x);
   const float same = 0.008F + 0.012F * z;
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();

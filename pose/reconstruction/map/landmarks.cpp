@@ -35,7 +35,7 @@ Pairs like_pairs(const Landmarks& a, const Landmarks& b) {
   return pairs;
 }
 
-/// The rigid motion that takes the first points to the second (Umeyama 1991).
+/// Returns the rigid motion that takes the first points to the second (Umeyama 1991).
 Eigen::Isometry3d motion_between(const Pairs& pairs) {
   Eigen::Matrix3Xd from(3, pairs.size());
   Eigen::Matrix3Xd to(3, pairs.size());

@@ -64,7 +64,7 @@ fusion::TsdfSettings grid_settings(double voxel, int threads) {
   fusion::TsdfSettings settings;
   settings.voxel = voxel;
   settings.min_fraction = 0.02;
-  settings.outline_weight = 0.0;  // beside a crop nothing is known about the object
+  settings.outline_weight = 0.0;  // nothing is known about the object beside a crop
   settings.threads = threads;
   return settings;
 }

@@ -63,10 +63,10 @@ void register_views(std::vector<TrainingView>& views, int threads);
 /// Adds a mesh's triangles to another one's.
 void append_mesh(const Mesh& mesh, const Eigen::Isometry3d& T_to_from, Mesh& to);
 
-/// The middle of what is lowest, on its height.
+/// Returns the middle of the lowest part, on its height.
 Eigen::Vector3d foot_of(const Mesh& mesh);
 
-/// The keyframes of a take as views of its object.
+/// Returns the keyframes of a take as views of its object.
 std::vector<TrainingView> training_views(const Take& take, const std::vector<MaskedKeyframe>& views,
                                          const std::string& name);
 

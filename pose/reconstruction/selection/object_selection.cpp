@@ -22,7 +22,7 @@ cv::Point2d meant_place(const RgbdFrame& frame, const SelectionSettings& setting
   return {0.5 * frame.depth.cols, 0.5 * frame.depth.rows};
 }
 
-/// The cluster that is meant; 0 = none.
+/// Returns the cluster that is meant; 0 = none.
 int meant_cluster(const Clusters& clusters, const RgbdFrame& frame, const SelectionSettings& settings) {
   constexpr int kMinPixels = 60;
   constexpr double kMaxFoot_m = 0.035;
@@ -40,7 +40,7 @@ int meant_cluster(const Clusters& clusters, const RgbdFrame& frame, const Select
   return best;
 }
 
-/// Why the chosen cluster cannot be taught; empty where it can.
+/// Returns why the selected cluster cannot be taught; empty where it can.
 std::string fault_of(const SelectedObject& object, const RgbdFrame& frame, const SelectionSettings& settings) {
   const double widest = std::max(2.0 * object.radius_m, object.height_m);
   if (widest > settings.max_m)
@@ -89,8 +89,8 @@ bool is_level(const RgbdFrame& frame, const Plane& plane, int x, int y) {
   return normal.allFinite() && std::abs(normal.normalized().dot(plane.normal)) > kCosine;
 }
 
-/// A cluster may be an object on a disc, a book or a box lid: a wide horizontal surface that supports something
-/// smaller.
+/// Returns the plane that carries a smaller object, since a cluster may be an object on a disc, a book or a box lid: a
+/// wide horizontal surface.
 std::optional<Plane> carried_by(const RgbdFrame& frame, const SelectedObject& object) {
   constexpr double kBin_m = 0.002;
   constexpr double kMax_m = 0.06;

@@ -15,10 +15,10 @@ struct PlaneAxes {
 
   Eigen::Vector3d origin, x, y;
 
-  /// About the point at which the camera looks along a ray, x to the camera's right.
+  /// Makes axes about the point at which the camera looks along a ray, x to the camera's right.
   PlaneAxes(const Plane& plane, const Eigen::Vector3d& middle_ray);
 
-  /// The cell that a point is above; none where that is too far from the origin.
+  /// Returns the cell that a point is above; none where that is too far from the origin.
   std::optional<cv::Point> cell_of(const Eigen::Vector3d& point) const;
   /// Returns the point of the plane at a position in cells.
   Eigen::Vector3d point_at(double u, double v) const;
@@ -46,7 +46,7 @@ struct SearchedPart {
   double max_distance_m = 0.0;  ///< maximum distance from the camera
 };
 
-/// Clusters of points above a plane.
+/// Finds clusters of points above a plane.
 Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes, const SearchedPart& searched);
 
 }  // namespace houghstream::reconstruction

@@ -81,7 +81,7 @@ std::optional<Plane> largest_plane(const std::vector<Eigen::Vector3d>& points, R
   return best;
 }
 
-/// A camera held upright looks down on a table, or straight down.
+/// Returns whether a plane may carry objects: a camera held upright looks down on a table, or straight down.
 bool may_carry(const Plane& plane) {
   return plane.offset > 0.08 && (-plane.normal.y() > 0.2 || -plane.normal.z() > 0.8);
 }

@@ -28,7 +28,7 @@ class FrameFollower {
                             KeyframeMap& map) const;
 
   FlowFrame last_flow_;
-  std::vector<LandmarkObservation> corners_;  ///< of `last_flow_`, with their present positions
+  std::vector<LandmarkObservation> corners_;  ///< corners of `last_flow_`, with their present positions
   double usual_light_rms_ = 0.3;
 };
 

@@ -12,7 +12,8 @@ namespace houghstream::reconstruction {
 /// the chosen object's bounds. World: z up, origin at the object's foot.
 cv::Mat object_pixels(const FrameLevel& level, const SelectedObject& object, const Eigen::Isometry3d& T_camera_world);
 
-/// Points of all that a keyframe shows, while the camera is carried about; those of the table are marked. Camera frame.
+/// Returns points of all that a keyframe shows, while the camera is carried about; those of the table are marked.
+/// Camera frame.
 LevelPoints points_of_scene(const Keyframe& keyframe);
 
 /// Returns points of the object alone, while it rotates before the camera: without a hand, which violates free space of

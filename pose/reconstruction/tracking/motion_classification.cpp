@@ -58,7 +58,7 @@ MotionClassifier::MotionClassifier(FlowFrame first, const FrameLevels& levels, c
 bool MotionClassifier::camera_is_still(const FlowFrame& now, const FrameLevels& levels,
                                        const Eigen::Isometry3d& T_moved) const {
   constexpr double kMoved = 0.003;  // radians, of half of the corners
-  constexpr double kBetter = 0.01;  // of intensity
+  constexpr double kBetter = 0.01;  // fraction of intensity
   const std::optional<LandmarkMatch> flow = track_corners(first_, corners_, now);
   if (flow && flow->inliers.size() >= min_corners_) {
     const auto moved = std::count_if(flow->inliers.begin(), flow->inliers.end(), [&](const auto& pair) {

@@ -24,7 +24,7 @@ cv::Rect box_of(const SelectedObject& object, const Camera& camera, const Eigen:
 
 }  // namespace
 
-/// Masks, levels and boxes of the first frame are laid over all others.
+/// Requires one size, since masks, levels and boxes of the first frame are laid over all others.
 void TakePlacer::require_same_size(const RgbdFrame& frame) {
   const cv::Size size = frame.depth.size();
   if (take_.frames.empty()) size_ = size;
@@ -222,7 +222,7 @@ void TakePlacer::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
   if (!gap) return;
   step_.restart(map_.keyframes().back().T_camera_world);
   const auto seen_round = std::count(round_.begin(), round_.end(), true);
-  constexpr int kNearlyRound = 30;  // of 36 sectors
+  constexpr int kNearlyRound = 30;  // number of the 36 sectors
   if (seen_round >= kNearlyRound && !take_.gap) take_.gap = gap;
 }
 
