@@ -19,7 +19,7 @@ import rule_command
 
 TOP = ("pipeline", "drivers", "detector", "pose", "tools", "tests")
 MOST = 4
-# Intrinsic matrices with the size of their pictures, in the order of every calibration file and of --camera WIDTHxHEIGHT,fx,fy,cx,cy.
+# Intrinsic matrices with the size of their images, in the order of every calibration file and of --camera WIDTHxHEIGHT,fx,fy,cx,cy.
 MATRICES = {"Camera", "rs2_intrinsics"}
 NOT_CODE = re.compile(
     r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<!\w)\'(?:\\.|[^\'\\\n])+\'|^[ \t]*#(?:\\\n|[^\n])*', re.DOTALL | re.MULTILINE)

@@ -1,4 +1,4 @@
-"""The objects of a store in single pictures, without LCM: the example find_in_images on a scene whose truth is known.
+"""The objects of a store in single images, without LCM: the example find_in_images on a scene whose truth is known.
 
 Forest, models and scene are those that end_to_end_test.py has made.
 """

@@ -73,7 +73,7 @@ def run_unplugged(tools, folder, start_stream, script):
 
 
 def check_live_stream(tools, folder, start_stream, offline):
-    """Poses come back after the camera; detections are those of the same pictures read from the folder."""
+    """Poses come back after the camera; detections are those of the same images read from the folder."""
     script = folder / "camera_script"
     write_script(script, f"scene {folder / 'scene'}\n")
     os.environ["HOUGHSTREAM_VIRTUAL_CAMERA"] = str(script)

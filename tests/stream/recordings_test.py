@@ -151,20 +151,20 @@ class Recordings(unittest.TestCase):
         self.assertRegex(view.log.read_text(), r"take.mp4: the video is whole, \d+ frames; its end took [\d.]+ s")
         self.assertIn(b"moov", video.read_bytes())
 
-    def test_pictures_that_are_there(self):
+    def test_images_that_are_there(self):
         """Each run of hs-capture sends frames of the same times."""
-        pictures = self.folder / "pictures"
+        images = self.folder / "pictures"
         send = (self.tools / "hs-capture", "--source", f"bop:{self.made / 'scene'}", "--frames", 20, "--rate", 10)
         for wanted in (r"\d+\.jpg", r"\d+_2\.jpg"):
-            before = {name: digest(pictures / name) for name in names(pictures, "")}
-            view = self.start_view("--pictures", pictures)
+            before = {name: digest(images / name) for name in names(images, "")}
+            view = self.start_view("--pictures", images)
             run(*send)
             end = time.monotonic() + SECONDS
-            while not any(re.fullmatch(wanted, name) for name in names(pictures, "")):
-                assert time.monotonic() < end, f"no {wanted} in {names(pictures, '')}"
+            while not any(re.fullmatch(wanted, name) for name in names(images, "")):
+                assert time.monotonic() < end, f"no {wanted} in {names(images, '')}"
                 time.sleep(0.1)
             view.stop(SECONDS)
-            self.assertEqual(before, {name: digest(pictures / name) for name in before})
+            self.assertEqual(before, {name: digest(images / name) for name in before})
 
 
 def main():

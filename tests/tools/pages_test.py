@@ -78,7 +78,7 @@ def names_in(template):
     """The variables of a template: the words in its expressions, whatever else they are too."""
     text = (page.PACKAGE / template).read_text()
     inside = " ".join(re.findall(r"{[{%](.*?)[}%]}", text, re.DOTALL))
-    return set(re.findall(r"(?<![.\w\"])[a-z_][a-z_0-9]*", re.sub(r'"[^"]*"', "", inside))) - {"figure", "picture", "show", "table"}
+    return set(re.findall(r"(?<![.\w\"])[a-z_][a-z_0-9]*", re.sub(r'"[^"]*"', "", inside))) - {"figure", "image", "show", "table"}
 
 
 class Pages(unittest.TestCase):

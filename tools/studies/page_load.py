@@ -20,11 +20,11 @@ from studies.stream import Process, Stream, UsageWatch, enter_private_network
 
 CAMERA_HZ, PAGE_HZ = 30, 10
 SECONDS, ROUNDS = 60, 4
-PICTURES = ("colour", "depth")  # that the page shows when it is opened
+IMAGES = ("colour", "depth")  # that the page shows when it is opened
 
 
 class Viewer(threading.Thread):
-    """Listens for frames and asks for the pictures of each, until he is told to leave. In `frames` how many came."""
+    """Listens for frames and asks for the images of each, until he is told to leave. In `frames` how many came."""
 
     def __init__(self, port):
         super().__init__(daemon=True)
@@ -32,7 +32,7 @@ class Viewer(threading.Thread):
         self.start()
 
     def run(self):
-        events, pictures = (http.client.HTTPConnection("127.0.0.1", self.port, timeout=10) for _ in range(2))
+        events, images = (http.client.HTTPConnection("127.0.0.1", self.port, timeout=10) for _ in range(2))
         events.request("GET", "/events")
         answer = events.getresponse()
         while not self.gone.is_set():
@@ -41,11 +41,11 @@ class Viewer(threading.Thread):
                 break
             if line.strip() == b"event: frame":
                 self.frames += 1
-                for name in PICTURES:
-                    pictures.request("GET", f"/picture/{name}.jpg")
-                    self.bytes += len(pictures.getresponse().read())
+                for name in IMAGES:
+                    images.request("GET", f"/picture/{name}.jpg")
+                    self.bytes += len(images.getresponse().read())
         events.close()
-        pictures.close()
+        images.close()
 
     def leave(self):
         self.gone.set()

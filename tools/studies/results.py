@@ -148,7 +148,7 @@ def bop_sections(out, commit):
     return [section("Sets of the BOP challenge", measured, command, bop_table, bop_words, bop_rivals)]
 
 
-def copy_pictures(folder, into):
+def copy_images(folder, into):
     from PIL import Image
 
     into.mkdir(parents=True, exist_ok=True)
@@ -173,11 +173,11 @@ def page(out, commit):
 
 def write(out=REPOSITORY / "out", into=HERE / "RESULTS.md", commit=None):
     commit = commit or commit_name()
-    text, with_pictures = page(out, commit)
+    text, with_images = page(out, commit)
     if text.count("Not measured of this commit") == text.count("\n## "):
         die(f"{out}: nothing there was measured of commit {commit}")
-    if with_pictures:
-        copy_pictures(out / "reproduce", into.parent / "pictures")
+    if with_images:
+        copy_images(out / "reproduce", into.parent / "pictures")
     into.write_text(text)
     print(into)
 

@@ -1,11 +1,11 @@
-"""One picture of a rendered scene as a scene of its own: what stands in it stays where it is, however long it is shown."""
+"""One image of a rendered scene as a scene of its own: what stands in it stays where it is, however long it is shown."""
 
 import json
 import shutil
 
 
 def make_still_scene(scene, folder, number=0):
-    """Copies the picture of this number, counted from 0, of a BOP scene folder to a new one. Returns the new folder."""
+    """Copies the image of this number, counted from 0, of a BOP scene folder to a new one. Returns the new folder."""
     shutil.copytree(scene, folder, ignore=shutil.ignore_patterns("*.png", "*.jpg"))
     kept = None
     for file in sorted(folder.glob("*.json")):

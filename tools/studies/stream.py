@@ -218,7 +218,7 @@ class Stream:
     out: pathlib.Path
     detect: tuple = ()  # further options
     pose: tuple = ()
-    show: bool = False  # hs-view's pictures and video, and the results as an LCM log
+    show: bool = False  # hs-view's images and video, and the results as an LCM log
     watch: bool = False  # what finding the objects costs: OUT/usage.json
     detect_threads: int = 0  # 0: as many as this process may use
     track: bool = False  # hs-track too

@@ -123,7 +123,7 @@ class Store:
         return self.file(self.units[name])
 
     def part(self, unit):
-        """Keeps the file's ending: programs choose a picture's format by it."""
+        """Keeps the file's ending: programs choose an image's format by it."""
         return self.out / "part" / self.file(unit).name
 
     def log(self, unit):

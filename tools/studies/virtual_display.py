@@ -62,10 +62,10 @@ class VirtualDisplay:
     def photograph(self, window=None):
         """The screen, or the part of it where a window is."""
         left, top, width, height = self.geometry(window) if window else (0, 0, *self.size)
-        return Picture.of_screen(self.folder / "Xvfb_screen0").cut(left, top, width, height)
+        return ScreenImage.of_screen(self.folder / "Xvfb_screen0").cut(left, top, width, height)
 
 
-class Picture:
+class ScreenImage:
     """Pixels as rows of (red, green, blue) bytes."""
 
     def __init__(self, width, height, rows):
@@ -85,12 +85,12 @@ class Picture:
             rgb = bytearray(3 * width)
             rgb[0::3], rgb[1::3], rgb[2::3] = row[2::4], row[1::4], row[0::4]  # blue, green, red, unused
             rows.append(bytes(rgb))
-        return Picture(width, height, rows)
+        return ScreenImage(width, height, rows)
 
     def cut(self, left, top, width, height):
         left, top = max(left, 0), max(top, 0)
         rows = [row[3 * left : 3 * (left + width)] for row in self.rows[top : top + height]]
-        return Picture(len(rows[0]) // 3, len(rows), rows)
+        return ScreenImage(len(rows[0]) // 3, len(rows), rows)
 
     def count(self, colour, tolerance=24):
         """Pixels that differ from a colour by at most `tolerance` in each of red, green and blue."""

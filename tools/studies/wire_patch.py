@@ -12,7 +12,7 @@ def utime_of(data):
 
 
 def with_utime(data, utime):
-    """The message at another time; those of pictures in it stay."""
+    """The message at another time; those of images in it stay."""
     return data[:FINGERPRINT] + TIME.pack(utime) + data[FINGERPRINT + TIME.size :]
 
 

@@ -16,7 +16,7 @@ SCENES = {
         "judged": [(0.95, True), (0.85, True), (0.7, True)], "required": 4, "ar": 0.5, "targets": 4, "ms": [8.0, 20.0],
     },
 }  # fmt: skip
-PICTURE = bytes.fromhex(
+IMAGE = bytes.fromhex(
     "89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c4890000000d49444154789c6360f8cf500f0003860180"
     "5a347d6b0000000049454e44ae426082"
 )
@@ -81,7 +81,7 @@ def stand_in(name, words):
         for scene in scenes:
             write_evaluation(out / scene.name, scene.name, 0.9)
     elif name == "hs-study failures":
-        out.write_bytes(PICTURE)
+        out.write_bytes(IMAGE)
     elif name == "hs-study pose":
         facts = SCENES[scenes[0].name]
         rivals = {} if "--no-rivals" in words else {
@@ -89,7 +89,7 @@ def stand_in(name, words):
             for name, value in (("unchecked", 1.0), ("prerejective", facts["ar"] / 2), ("ppf", facts["ar"] / 3))
         }  # fmt: skip
         write_json(out / "results.json", {"on_rival_frames": rivals, "rival_frames": len(rivals) and 1})
-        (out / "worst_1.png").write_bytes(PICTURE)
+        (out / "worst_1.png").write_bytes(IMAGE)
 
 
 def install(folder):

@@ -8,7 +8,7 @@ import sys
 import tempfile
 import unittest
 
-from bop_fakes import PICTURE, install, write_json
+from bop_fakes import IMAGE, install, write_json
 from studies.bop import figures, report
 from studies.bop.subset import BadSet, choose, chosen_images, names_of
 from studies.bop.dataset import open_dataset
@@ -41,7 +41,7 @@ def write_scene(folder, images):
     for kind in ("rgb", "depth"):
         (folder / kind).mkdir()
         for image in images:
-            (folder / kind / f"{image:06}.png").write_bytes(PICTURE)
+            (folder / kind / f"{image:06}.png").write_bytes(IMAGE)
 
 
 def write_set(root, split="test"):

@@ -21,7 +21,7 @@ def observed(received, processed, skipped, on_bus):
 
 
 class Words(unittest.TestCase):
-    def test_pictures_are_of_the_rendered_scene_alone(self):
+    def test_images_are_of_the_rendered_scene_alone(self):
         for other in (("--live",), ("--teach",)):
             with self.assertRaisesRegex(SystemExit, "--pictures are of the rendered scene"):
                 parse(["--pictures", "somewhere", *other])
@@ -168,10 +168,10 @@ class Report(unittest.TestCase):
 class Teach(unittest.TestCase):
     def test_the_camera_plays_its_scene_forwards_then_backwards(self):
         taken = [(1_000_000 + 66_667 * number, number) for number in range(9)]
-        seen = [pose_scatter.picture_at(taken, utime + 500, 4) for utime, _ in taken]
+        seen = [pose_scatter.image_at(taken, utime + 500, 4) for utime, _ in taken]
         self.assertEqual(seen, [0, 1, 2, 3, 3, 2, 1, 0, 0])
-        self.assertIsNone(pose_scatter.picture_at(taken, 5_000_000, 4))
-        self.assertIsNone(pose_scatter.picture_at([], 5_000_000, 4))
+        self.assertIsNone(pose_scatter.image_at(taken, 5_000_000, 4))
+        self.assertIsNone(pose_scatter.image_at([], 5_000_000, 4))
 
     def test_poses_of_another_frame_on_the_object_scatter_by_their_errors_alone(self):
         def about_z(degrees):

@@ -64,8 +64,8 @@ class Figures(unittest.TestCase):
         capture.write_text('#!/bin/sh\necho "$7" >>"$(dirname "$0")/calls"\n: >"$9"\n')
         capture.chmod(0o755)
         scene.mkdir()
-        for picture, seconds in (("a", 60), ("a", 60), ("a", 20), ("b", 20)):
-            (scene / "picture").write_text(picture)
+        for image, seconds in (("a", 60), ("a", 60), ("a", 20), ("b", 20)):
+            (scene / "picture").write_text(image)
             self.assertEqual(follow_speed.make_log(folder, scene, 30, seconds, log), log)
             self.assertTrue(log.exists())
         self.assertEqual((folder / "calls").read_text().split(), ["1800", "600", "600"])

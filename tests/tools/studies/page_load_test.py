@@ -12,7 +12,7 @@ FRAMES = 5
 
 
 class Page(http.server.BaseHTTPRequestHandler):
-    """As hs-view serves it: chunks of events, of which some are no frames, and pictures on a connection that is kept."""
+    """As hs-view serves it: chunks of events, of which some are no frames, and images on a connection that is kept."""
 
     protocol_version = "HTTP/1.1"
 
@@ -37,7 +37,7 @@ class Page(http.server.BaseHTTPRequestHandler):
 
 
 class Viewer(unittest.TestCase):
-    def test_he_asks_for_the_pictures_of_each_frame_and_leaves(self):
+    def test_he_asks_for_the_images_of_each_frame_and_leaves(self):
         server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Page)
         server.asked, server.leave = [], threading.Event()
         threading.Thread(target=server.serve_forever, daemon=True).start()

@@ -15,7 +15,7 @@ import time
 
 NAMES = ("hs-render", "hs-import", "hs-log", "hs-train", "hs-evaluate", "hs-study")
 OBJECTS = ("bowl", "cereal_box", "coffee_mug", "soda_can")
-PICTURE = base64.b64decode(
+IMAGE = base64.b64decode(
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
 )
 QUALITY = {
@@ -121,7 +121,7 @@ def run(name, words):
     elif name == "speed":
         bench_speed(words, out)
     elif name in ("hough", "failures"):
-        out.write_bytes(PICTURE)
+        out.write_bytes(IMAGE)
     else:
         out.mkdir(parents=True)
 

@@ -11,7 +11,7 @@ import sys
 
 NAMES = ("hs-render", "hs-teach", "hs-evaluate", "hs-capture", "hs-study")
 IDS = {"bowl": 1, "cereal_box": 2, "coffee_mug": 3}
-PICTURE = bytes.fromhex(
+IMAGE = bytes.fromhex(
     "89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c4890000000d49444154789c6360f8cf500f0003860180"
     "5a347d6b0000000049454e44ae426082"
 )
@@ -54,7 +54,7 @@ def keep(folder, name, verdict):
         "seen_share": 0.6, "tracking_hz": 40.0, "drift_mm": 1.0, "drift_deg": 0.2,
     })  # fmt: skip
     (folder / "model.ply").write_text("ply")
-    (folder / "contact_sheet.jpg").write_bytes(PICTURE)
+    (folder / "contact_sheet.jpg").write_bytes(IMAGE)
 
 
 def teach(words, out):
@@ -85,7 +85,7 @@ def compare(words, out):
         figures |= {"mesh_mm_median": 9.0}
     write_json(out / "compared.json", figures)
     for name in ("taught", "true"):
-        (out / f"{name}.png").write_bytes(PICTURE)
+        (out / f"{name}.png").write_bytes(IMAGE)
 
 
 def evaluate(words, out):

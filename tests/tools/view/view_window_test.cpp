@@ -20,7 +20,7 @@ std::string refusal(const char* display) {
   return "";
 }
 
-// Its content and its keys are tested on a real display by live_pictures_test.
+// Its content and its keys are tested on a real display by live_images_test.
 TEST(ViewWindow, WithoutADisplayTheWaysToGoOnAreNamed) {
   for (const char* display : {"", ":9999"}) {
     const std::string words = refusal(display);

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Prints poses as they come, and how far the middle of the picture is. Needs LCM's Python module; a line says how to get it."""
+"""Prints poses as they come, and how far the middle of the image is. Needs LCM's Python module; a line says how to get it."""
 
 import sys
 

@@ -73,10 +73,10 @@ def _jpeg(image):
     from PIL import Image
 
     try:
-        with Image.open(io.BytesIO(image.data)) as picture:
-            size = picture.size
+        with Image.open(io.BytesIO(image.data)) as decoded:
+            size = decoded.size
             if size == (image.width, image.height):
-                return numpy.asarray(picture.convert("RGB"))
+                return numpy.asarray(decoded.convert("RGB"))
     except (OSError, SyntaxError, EOFError, Image.DecompressionBombError) as error:
         raise ValueError(f"image {image.utime}: a JPEG of {len(image.data)} bytes that is damaged or cut: {error}") from error
     raise ValueError(f"image {image.utime}: a JPEG of {size}, expected {image.width} x {image.height}")

@@ -6,7 +6,7 @@ import json
 import pathlib
 import re
 
-from studies.bop.subset import FILES, BadSet, chosen_images, missing_picture, read, read_targets
+from studies.bop.subset import FILES, BadSet, chosen_images, missing_image, read, read_targets
 
 MODELS = ("models", "models_cad", "models_eval")  # as sets call them; the first that is there
 TARGETS = "test_targets_bop19.json"
@@ -92,7 +92,7 @@ def check_scene(dataset, scene, every):
     for file in FILES:
         if not (scene / file).is_file():
             raise BadSet(f"{scene / file}: not there, expected the scene's truth")
-    missing = missing_picture(scene, images_of(dataset, scene, every))
+    missing = missing_image(scene, images_of(dataset, scene, every))
     if missing:
         raise BadSet(f"{missing}: not there, expected the picture of each chosen image")
 
@@ -139,7 +139,7 @@ def known_objects(dataset, store):
 
 
 def folder_digest(folder):
-    """Of the contents of small files, and of name, size and time of pictures: enough to see that something changed."""
+    """Of the contents of small files, and of name, size and time of images: enough to see that something changed."""
     lines = []
     for file in sorted(path for path in folder.rglob("*") if path.is_file()):
         if file.suffix in (".json", ".txt"):

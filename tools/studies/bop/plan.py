@@ -124,7 +124,7 @@ class Plan:
         units.add(self.place(one, "ranked", scene), "", *evaluate, *RANKED, of=known, **facts)
         units.add(self.place(one, "default", scene), "", *evaluate, of=known, **facts)
         if one.seed > 1:
-            return  # rivals and pictures are of the first
+            return  # rivals and images are of the first
         store = ("--objects", one.store)
         limit = (
             ("--rivals-every", 1, "--rivals-seconds", self.seconds_a_scene(dataset))

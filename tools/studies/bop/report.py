@@ -81,8 +81,8 @@ def reliability(calibration, title):
 WORST = 4  # poses of a scene that are shown
 
 
-def pictures(folders):
-    """Of each scene what was missed or false, and the worst poses, by (words, pictures)."""
+def images(folders):
+    """Of each scene what was missed or false, and the worst poses, by (words, images)."""
     out = []
     for scene in folders:
         if scene.failures:
@@ -112,7 +112,7 @@ def page(summary, folders):
             "chart": reliability(run["calibration"], name) if any(run["calibration"].values()) else None,
             "cut": run["rivals_cut"],
             "unknown": run["unknown"],
-            "pictures": pictures(folders[name]),
+            "images": images(folders[name]),
         }
         for name, run in summary["datasets"].items()
     ]

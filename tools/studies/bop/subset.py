@@ -1,4 +1,4 @@
-"""Writes a scene of a BOP set that holds the chosen images and the known objects only; pictures are links.
+"""Writes a scene of a BOP set that holds the chosen images and the known objects only; images are links.
 
 Usage: subset.py --scene FOLDER --out FOLDER --names 2=cracker,5=mustard [--every N] [--targets FILE] [--digest TEXT]"""
 
@@ -8,7 +8,7 @@ import pathlib
 
 from studies.unit_runner import UnitFailed
 
-PICTURES = ("rgb", "depth", "mask_visib")
+IMAGES = ("rgb", "depth", "mask_visib")
 FILES = ("scene_camera.json", "scene_gt.json", "scene_gt_info.json")
 IGNORED = 0.0  # visible fraction of what is there but is no target: neither missed nor false
 
@@ -58,7 +58,7 @@ def chosen_images(scene, targets, every):
     return sorted(targets)[::every]
 
 
-def missing_picture(scene, images):
+def missing_image(scene, images):
     """The first file that an image lacks, or None."""
     for image in images:
         if not any((scene / "rgb" / f"{image:06}.{ending}").exists() for ending in ("png", "jpg")):
@@ -109,7 +109,7 @@ def write(out, scene, contents, names, digest):
         (out / file).write_text(json.dumps(content) + "\n")
     (out / "names.json").write_text(json.dumps({str(key): name for key, name in names.items()}) + "\n")
     (out / "source.json").write_text(json.dumps({"scene": str(scene), "digest": digest}) + "\n")
-    for name in PICTURES:
+    for name in IMAGES:
         if (scene / name).is_dir():
             (out / name).symlink_to(scene.resolve() / name)
 

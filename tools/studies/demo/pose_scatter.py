@@ -55,7 +55,7 @@ def scatter(relative):
 
 
 def true_poses(scene):
-    """The object's pose in each picture of the take."""
+    """The object's pose in each image of the take."""
     truth = read_json(scene / "scene_gt.json")
     poses = []
     for image in sorted(truth, key=int):
@@ -65,13 +65,13 @@ def true_poses(scene):
     return poses
 
 
-def pictures_taken(file):
+def images_taken(file):
     """(utime, number) of each shutter, by time. The camera plays its scene forwards, then backwards."""
     return sorted((int(words[2]), int(words[0])) for words in map(str.split, file.read_text().splitlines()))
 
 
-def picture_at(taken, utime, count):
-    """Which of the scene's pictures was taken then; None where none was."""
+def image_at(taken, utime, count):
+    """Which of the scene's images was taken then; None where none was."""
     place = bisect.bisect_left(taken, (utime, 0))
     nearest = min(taken[max(place - 1, 0) : place + 1], key=lambda shutter: abs(shutter[0] - utime), default=None)
     if nearest is None or abs(nearest[0] - utime) > HALF_PERIOD_US:
@@ -81,11 +81,11 @@ def picture_at(taken, utime, count):
 
 
 def pose_figures(posed, scene, shutter):
-    truth, taken = true_poses(scene), pictures_taken(shutter)
+    truth, taken = true_poses(scene), images_taken(shutter)
     relative = []
     for utime, detection in posed:
-        picture = picture_at(taken, utime, len(truth))
+        image = image_at(taken, utime, len(truth))
         pose = detection["pose"]
-        if picture is not None:
-            relative.append(seen_from_truth(truth[picture], (rotation_of(pose["quat"]), pose["trans"])))
+        if image is not None:
+            relative.append(seen_from_truth(truth[image], (rotation_of(pose["quat"]), pose["trans"])))
     return scatter(relative)

@@ -8,7 +8,7 @@ from studies.records import about, read_csv, read_json, train_seconds, write_jso
 from studies.report.charts import Chart
 from studies.report.page import embedded, render, show
 
-FEW, SPREAD = 24, 8  # pictures of a stream: all of so few, else so many of them
+FEW, SPREAD = 24, 8  # images of a stream: all of so few, else so many of them
 RIGHT_RECALL = "mssd_recall"
 POSE_RECALL = "pose_recall_add_s_10"  # right up to what the shape cannot tell
 
@@ -141,10 +141,10 @@ def latency_rows(summary):
 
 
 def contact_sheet(folder):
-    """Pictures spread evenly over the stream."""
-    pictures = sorted(folder.glob("*.jpg"))
-    count = len(pictures) if len(pictures) <= FEW else SPREAD
-    return [embedded(pictures[round(i * (len(pictures) - 1) / max(count - 1, 1))], "jpeg") for i in range(count)]
+    """Images spread evenly over the stream."""
+    images = sorted(folder.glob("*.jpg"))
+    count = len(images) if len(images) <= FEW else SPREAD
+    return [embedded(images[round(i * (len(images) - 1) / max(count - 1, 1))], "jpeg") for i in range(count)]
 
 
 def page(out, summary):
@@ -160,8 +160,8 @@ def page(out, summary):
         latency_rows=latency_rows(summary),
         frame_rows=frame_rows(summary),
         stage_rows=[(stage, show(ms, "{:.2f}")) for stage, ms in evaluation["stage_ms_median"].items()],
-        pictures=contact_sheet(stream / "pictures"),
-        clutter_pictures=contact_sheet(out / "clutter_stream" / "pictures") if "clutter" in summary else [],
+        images=contact_sheet(stream / "pictures"),
+        clutter_images=contact_sheet(out / "clutter_stream" / "pictures") if "clutter" in summary else [],
         settings=json.dumps(summary["settings"], indent=2),
     )
 

@@ -12,7 +12,7 @@ from studies.records import threads, write_json
 from studies.stream import Stream, virtual_camera_of
 from studies.unit_runner import Store, Units, make
 
-RATE, SINGLE_PICTURES_RATE = 30, 2  # Hz; single pictures are sent slowly enough that each is looked at
+RATE, SINGLE_IMAGES_RATE = 30, 2  # Hz; single images are sent slowly enough that each is looked at
 AWAY_S = 3.0  # for which --unplug takes the camera away
 
 
@@ -43,7 +43,7 @@ def add_log(units, name, scene, rate):
 class Demo:
     def __init__(self, options, programs, units):
         self.options, self.programs, self.out = options, programs, options.out
-        self.rate = SINGLE_PICTURES_RATE if options.real else RATE
+        self.rate = SINGLE_IMAGES_RATE if options.real else RATE
         self.store = Store(options.out, programs, units.all(), files="data")
         make(self.store, options.fresh)
 
@@ -75,8 +75,8 @@ class Demo:
 def run_replay(options, programs):
     if options.real:
         units = recorded_units(options)
-        add_log(units, "stream.lcmlog", "scenes", SINGLE_PICTURES_RATE)
-        add_log(units, "clutter_stream.lcmlog", "clutter", SINGLE_PICTURES_RATE)
+        add_log(units, "stream.lcmlog", "scenes", SINGLE_IMAGES_RATE)
+        add_log(units, "clutter_stream.lcmlog", "clutter", SINGLE_IMAGES_RATE)
         demo = Demo(options, programs, units)
         sent = demo.replay("stream", "stream.lcmlog", "scenes")
         demo.replay("clutter_stream", "clutter_stream.lcmlog", "clutter")
@@ -115,7 +115,7 @@ class Hand(threading.Thread):
 
 
 def run_live(options, programs):
-    """The virtual camera's pictures are in memory, and its shutter writes down when it opens."""
+    """The virtual camera's images are in memory, and its shutter writes down when it opens."""
     demo = Demo(options, programs, rendered_units(options))
     out, frames = options.out, RATE * options.seconds
     script, shutter = out / "camera_script", out / "shutter.txt"
@@ -140,15 +140,15 @@ def run_live(options, programs):
     print(f"{out}/summary.json, {out}/overlay.png, {out}/overlay.mp4")
 
 
-def run_pictures(options):
-    from studies.demo import pictures  # which alone needs PIL
+def run_images(options):
+    from studies.demo import front_page  # which alone needs PIL
 
-    pictures.take(options, Demo(options, options.programs, rendered_units(options)))
+    front_page.take(options, Demo(options, options.programs, rendered_units(options)))
 
 
 def run(options):
     if options.pictures:
-        run_pictures(options)
+        run_images(options)
     elif options.teach:
         teach.run(options, options.programs)
     elif options.live:

@@ -44,7 +44,7 @@ def start_stream(running, programs, out, store, scene):
 
 
 def await_frames(capture, shutter, seconds=120):
-    """The camera reads all its pictures before it takes the first."""
+    """The camera reads all its images before it takes the first."""
     end = time.monotonic() + seconds
     while not shutter.exists():
         if not capture.runs() or time.monotonic() > end:
@@ -170,21 +170,21 @@ def summarise(out, scene, story):
 
 
 def drawn(out):
-    """hs-view's pictures by the frame's utime, in order."""
+    """hs-view's images by the frame's utime, in order."""
     return dict(sorted((int(file.stem), file) for file in (out / "pictures").glob("*.jpg")))
 
 
 def steps(out, story, found, posed):
-    """(what, picture) of each step; hs-view drew a few of the frames."""
-    pictures = drawn(out)
-    found = [one for one in found if one[0] in pictures] or found
-    posed = [one for one in posed if one[0] in pictures] or posed
+    """(what, image) of each step; hs-view drew a few of the frames."""
+    images = drawn(out)
+    found = [one for one in found if one[0] in images] or found
+    posed = [one for one in posed if one[0] in images] or posed
     take, fused = story.begin(teaching_t.TRACKING)[1], story.begin(teaching_t.FUSING)[1]
     half = take.utime + (fused.utime - take.utime) // 2
     training = (story.begin(teaching_t.TRAINING)[0] + story.last(teaching_t.TRAINING)[0]) // 2
     surest = max(posed, key=lambda one: one[1]["pose"]["quality"])
     views = [
-        ("Nobody has seen the object: nothing is found", min(pictures)),
+        ("Nobody has seen the object: nothing is found", min(images)),
         ("Shown: what stands nearest to the middle is meant", take.utime + 500_000),
         ("Followed while the camera moves around it; the sphere fills", half),
         ("Seen from all sides that can be seen: the take ends", fused.utime - 300_000),
@@ -192,7 +192,7 @@ def steps(out, story, found, posed):
         ("Found", found[0][0]),
         ("Found and posed, with the outline of the model that was made of it", surest[0]),
     ]
-    told = [(words, embedded(pictures[min(pictures, key=lambda drawn_us: abs(drawn_us - utime))], "jpeg"))
+    told = [(words, embedded(images[min(images, key=lambda drawn_us: abs(drawn_us - utime))], "jpeg"))
             for words, utime in views]  # fmt: skip
     told.insert(4, ("What was kept of the take, and the model", embedded(out / "shown" / "contact_sheet.jpg", "jpeg")))
     return told

@@ -1,4 +1,4 @@
-"""Pages as single files that need no network: templates of this package, with tables and pictures inside them."""
+"""Pages as single files that need no network: templates of this package, with tables and images inside them."""
 
 import base64
 import pathlib
@@ -15,13 +15,13 @@ def embedded(file, kind):
 
 
 def figure(svg, caption=""):
-    """A chart; as a picture of its own, so that two charts' names inside them cannot mix."""
+    """A chart; as an image of its own, so that two charts' names inside them cannot mix."""
     data = base64.b64encode(svg.encode()).decode()
     below = f"<figcaption>{escape(caption)}</figcaption>" if caption else ""
     return Markup(f'<figure><img class="chart" alt="chart" src="data:image/svg+xml;base64,{data}">{below}</figure>')
 
 
-def picture(file, caption):
+def image(file, caption):
     return Markup(f"<figure>{embedded(file, 'png')}<figcaption>{escape(caption)}</figcaption></figure>")
 
 
@@ -52,5 +52,5 @@ def render(template, **values):
     loader = jinja2.FileSystemLoader(PACKAGE)
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined,
                                      trim_blocks=True, lstrip_blocks=True)  # fmt: skip
-    environment.globals.update(figure=figure, picture=picture, show=show, table=table)
+    environment.globals.update(figure=figure, image=image, show=show, table=table)
     return environment.get_template(template).render(**values)

@@ -59,7 +59,7 @@ class Frames:
 
 
 class Planner:
-    """The kinds of work: training, evaluation, timing, pictures."""
+    """The kinds of work: training, evaluation, timing, images."""
 
     def __init__(self, protocol):
         self.units = Units()
@@ -132,7 +132,7 @@ class Planner:
         command = ("hs-study", "speed", "--scene", source.scenes[scene], *detectors, "--out", "{out}")
         self.units.add(f"side_by_side/{scene}.json", figure, *command, scene=scene, seed=1)
 
-    def hough_pictures(self, source):
+    def hough_images(self, source):
         for name, what in (("before", "gall"), ("after", "final")):
             forest = self.train(what, source, 1, "3")
             command = ("hs-study", "hough", "--forest", f"{{{forest}}}", "--scene", source.scenes[FEATURE_SCENE])
@@ -140,7 +140,7 @@ class Planner:
                 f"hough/{name}.png", "3", *command, "--frame", HOUGH_FRAME, "--out", "{out}", what=what, seed=1
             )
 
-    def failure_pictures(self, source, scenes):
+    def failure_images(self, source, scenes):
         forest = self.train("realtime", source, 1, "failures")
         listed = [word for scene in scenes for word in ("--scene", source.scenes[scene])]
         command = ("hs-study", "failures", "--forest", f"{{{forest}}}", *listed, "--count", 2, "--every", 2)
@@ -196,13 +196,13 @@ def add_comparison(planner, source):
     add_features(planner, source, first)
     planner.linemod(source, SCENES, "6", planner.protocol.every)
     add_single_studies(planner, source, first)
-    planner.hough_pictures(source)
-    planner.failure_pictures(source, SCENES)
+    planner.hough_images(source)
+    planner.failure_images(source, SCENES)
     planner.timings(source)
 
 
 def add_real(planner, source):
-    """Few pictures: even a quick run looks at all."""
+    """Few images: even a quick run looks at all."""
     first = planner.protocol.seeds[0]
     add_real_runs(planner, source, first)
     planner.linemod(source, ["scenes"], "real", 1, prefix="real_")
@@ -216,7 +216,7 @@ def add_real_runs(planner, source, seed):
 
 
 def make_plan(dataset, folder, real, protocol):
-    """`dataset` is rendered, uw or real; `real` is the folder of recorded pictures, or empty."""
+    """`dataset` is rendered, uw or real; `real` is the folder of recorded images, or empty."""
     planner = Planner(protocol)
     source = None
     if dataset == "rendered":

@@ -5,7 +5,7 @@ import json
 
 from studies.command import die
 from studies.records import commit_name, cpu_name, rounded, today, write_atomically
-from studies.report.page import picture, render
+from studies.report.page import image, render
 from studies.reproduce import figures, tables
 from studies.reproduce.plan import Protocol, make_plan, quick
 from studies.reproduce.results import Results
@@ -34,9 +34,9 @@ def drawings(summary, results):
 
 
 def page(summary, results, drawn):
-    def pictures(captions):
+    def images(captions):
         made = {unit.name: results.store.file(unit) for unit in results.units}
-        return [picture(made[name], caption) for name, caption in captions.items() if name in made]
+        return [image(made[name], caption) for name, caption in captions.items() if name in made]
 
     settings = summary["settings"]
     return render(
@@ -47,7 +47,7 @@ def page(summary, results, drawn):
         feature_curves=figures.feature_curves(results),
         feature_bars=drawn["features"],
         features=tables.feature_rows(summary, settings["left_out"]),
-        hough=pictures(HOUGH),
+        hough=images(HOUGH),
         depth_normalisation_charts=figures.depth_normalisation(results),
         depth_normalisation=tables.depth_normalisation(summary),
         stride_chart=drawn["stride"],
@@ -61,7 +61,7 @@ def page(summary, results, drawn):
         reliability_chart=drawn["reliability"],
         reliability=tables.reliability(summary["reliability"]),
         failures=tables.failures(results),
-        failure_pictures=pictures(FAILURES),
+        failure_images=images(FAILURES),
     )
 
 

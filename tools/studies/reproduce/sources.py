@@ -77,7 +77,7 @@ def uw(units, folder):
 
 
 def recorded(units, folder):
-    """Pictures of a camera: DIR/objects, background, scenes (with boxes), clutter (without any taught object)."""
+    """Images of a camera: DIR/objects, background, scenes (with boxes), clutter (without any taught object)."""
     clutter = ("hs-log", "export", "bop", f"uw:{folder}/clutter,{CAMERA}", "{out}")
     scenes = {
         "scenes": units.add("data/real/scenes", "real", "hs-import", "boxes", f"{folder}/scenes", "{out}"),

@@ -34,7 +34,7 @@ SCALE_HANDLING = {
 HALF_SIZE = {"half_size": ("--profile", "gall", "--image-scale", "0.5")}
 TRAINING = {**FEATURES, **PROFILES, **SCALE_HANDLING, **HALF_SIZE}
 
-# What a quick run does without: features, the study of twenty objects, two of the profiles on recorded pictures, and
+# What a quick run does without: features, the study of twenty objects, two of the profiles on recorded images, and
 # what the paper did not compare.
 NOT_IN_QUICK = (
     *OTHER_KERNELS,

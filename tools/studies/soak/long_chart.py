@@ -1,4 +1,4 @@
-"""The picture of a long run: what each process takes, and how long frames take, over its minutes."""
+"""The chart of a long run: what each process takes, and how long frames take, over its minutes."""
 
 from matplotlib.figure import Figure
 

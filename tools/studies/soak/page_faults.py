@@ -22,7 +22,7 @@ ENDED_S = 1.0  # after Ctrl-C
 MOST_MB = 1000
 USUAL = (64, 48)
 ODD = ((16384, 1), (1, 16384), (16384, 506), (506, 16384), (1, 1))
-PICTURES = tuple(f"/picture/{name}.jpg" for name in ("colour", "depth", "3d", "world"))
+IMAGES = tuple(f"/picture/{name}.jpg" for name in ("colour", "depth", "3d", "world"))
 
 
 def frame_message(utime, width, height):
@@ -120,9 +120,9 @@ CROWDS = {
     "that send a header a byte at a time": (b"GET / HTTP/1.1\r\nHost: local", b"h"),
     "that send headers without an end": (b"GET / HTTP/1.1\r\nHost: localhost\r\n", b"X: " + b"x" * 4000 + b"\r\n"),
     "that send content a byte at a time": (request("/orders", "X-Houghstream-Token: x", "Content-Length: 4000", method="POST"), b" "),
-    "that read no picture": (request(PICTURES[0]), b""),
+    "that read no picture": (request(IMAGES[0]), b""),
     "that read no events": (request("/events"), b""),
-    "that ask for ranges": (request(PICTURES[0], "Range: bytes=0-" + ",0-" * 2600), b""),
+    "that ask for ranges": (request(IMAGES[0], "Range: bytes=0-" + ",0-" * 2600), b""),
 }  # fmt: skip
 
 
@@ -154,7 +154,7 @@ class PageFaults(Faults):
                 for habit, (words, drip) in CROWDS.items():
                     with Crowd(words, drip) as crowd:
                         crowd.drip_for(1.0)
-                        reached[habit], drawn[habit] = fetch("/"), fetch(PICTURES[1])
+                        reached[habit], drawn[habit] = fetch("/"), fetch(IMAGES[1])
                         crowd.drip_for(1.0)
                 peak = peak_mb(view)
                 with Crowd(*CROWDS["that read no picture"]), Crowd(*CROWDS["that send a header a byte at a time"]) as crowd:
@@ -176,7 +176,7 @@ class PageFaults(Faults):
             view = self.view(folder, where.replace(":", "_"), "--http", where, "--http-host", "robot.example")
             try:
                 with ShapedFrames(odd=False):
-                    seen[where] = {host: fetch(path, host)[0] for host in evil for path in ("/", PICTURES[0], "/events")}
+                    seen[where] = {host: fetch(path, host)[0] for host in evil for path in ("/", IMAGES[0], "/events")}
                     seen[where]["robot.example"] = fetch("/", "robot.example")[0]
                 self.end(view, ENDED_S)
             finally:
@@ -187,23 +187,23 @@ class PageFaults(Faults):
     def shaped(self, name, *words):
         """hs-view among frames of odd shapes: its peak of memory, and whether it runs on."""
         view = self.view(self.folder(f"shapes_{name}"), "view", *words)
-        views = PICTURES if "--http" in words else ()
-        pictures = {path: 0 for path in views}
+        views = IMAGES if "--http" in words else ()
+        images = {path: 0 for path in views}
         try:
             with ShapedFrames(odd=True) as frames:
                 end = time.monotonic() + 30
                 while time.monotonic() < end and frames.sent < 4 * 3 * len(ODD):
                     for path in views:
-                        pictures[path] += fetch(path)[0] == 200
+                        images[path] += fetch(path)[0] == 200
                     time.sleep(0.05)
                 runs, peak = view.runs(), peak_mb(view) if view.runs() else 0
             ended_s = self.end(view, 30) if runs else None
         finally:
             view.kill()
         refused = account(view)["refused"] if runs else None
-        return {"peak_mb": peak, "ended_after_s": ended_s, "refused": refused, **({"pictures": pictures} if views else {}),
+        return {"peak_mb": peak, "ended_after_s": ended_s, "refused": refused, **({"pictures": images} if views else {}),
                 "reported": said(view, "ends:|WARN|ERROR"), "good": runs and refused == 0 and peak <= MOST_MB
-                and all(pictures.values())}  # fmt: skip
+                and all(images.values())}  # fmt: skip
 
     def shapes(self):
         folder = self.folder("shapes")

@@ -71,8 +71,8 @@ class StoreFaults(Faults):
         shutil.copyfile(self.data / "forest", store / "forest")
         shutil.copytree(self.models, store / "models")
         (store / "views").mkdir()
-        for picture in self.models.glob("*.png"):  # of one size
-            shutil.copyfile(self.models / "obj_000001.png", store / "views" / picture.name)
+        for image in self.models.glob("*.png"):  # of one size
+            shutil.copyfile(self.models / "obj_000001.png", store / "views" / image.name)
         names = {int(number): name for number, name in json.loads((self.models / "names.json").read_text()).items()}
         objects = [{"id": number, "name": names[number], "mesh": f"obj_{number:06d}.ply", "coloured": True, "views": 1, "attitudes": "any"}
                    for number in sorted(names)]  # fmt: skip

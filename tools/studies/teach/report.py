@@ -75,8 +75,8 @@ def rows(objects):
     return [(name, *(cell(key, one[key]) for key, _ in TABLE)) for name, one in objects.items()]
 
 
-def pictures(it):
-    """(words, picture) of an object: the taught model, the true one, and what hs-teach kept to look at."""
+def images(it):
+    """(words, image) of an object: the taught model, the true one, and what hs-teach kept to look at."""
     out = []
     if it.compared:
         out += [("taught", embedded(it.compared / "taught.png", "png")), ("true", embedded(it.compared / "true.png", "png"))]
@@ -89,7 +89,7 @@ def pictures(it):
 def page(summary, folders):
     objects = summary["objects"]
     shown = [{"name": name, "verdict": objects[name]["verdict"], "reasons": objects[name]["reasons"],
-              "faults": faults(objects[name]), "pictures": pictures(it)} for name, it in folders.items()]  # fmt: skip
+              "faults": faults(objects[name]), "images": images(it)} for name, it in folders.items()]  # fmt: skip
     return render("teach/page.html", summary=summary, header=("object", *(words for _, words in TABLE)),
                   rows=rows(objects), shown=shown)  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Writes a scene whose truth is that of taught models, which have frames of their own; pictures are links.
+"""Writes a scene whose truth is that of taught models, which have frames of their own; images are links.
 
 Usage: taught_truth.py --scene FOLDER --out FOLDER [--compared NAME=FILE ...]
 FILE is compared.json of hs-study shown: its T_true_taught maps the taught frame into that of the true mesh. Objects
@@ -8,7 +8,7 @@ import argparse
 import json
 import pathlib
 
-PICTURES = ("rgb", "depth", "mask_visib")
+IMAGES = ("rgb", "depth", "mask_visib")
 
 
 def product(a, b):
@@ -45,7 +45,7 @@ def main():
     (options.out / "names.json").write_text(json.dumps(names) + "\n")
     for name in ("scene_camera.json", "scene_gt_info.json"):
         (options.out / name).write_text((options.scene / name).read_text())
-    for name in PICTURES:
+    for name in IMAGES:
         (options.out / name).symlink_to((options.scene / name).resolve())
 
 

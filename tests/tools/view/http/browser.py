@@ -155,6 +155,6 @@ class Browser:
 
     def photograph(self, file, whole=False):
         """The page as PNG: what is in sight, or all of it."""
-        picture = self.ask("Page.captureScreenshot", format="png", captureBeyondViewport=whole)
+        image = self.ask("Page.captureScreenshot", format="png", captureBeyondViewport=whole)
         with open(file, "wb") as png:
-            png.write(base64.b64decode(picture["data"]))
+            png.write(base64.b64decode(image["data"]))

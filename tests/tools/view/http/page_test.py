@@ -21,7 +21,7 @@ DRAWN = """(() => { const canvas = document.createElement('canvas'), image = PIC
 WORDS = "document.getElementById('link').textContent"
 
 
-# Samples of the page: which of thirty frames the picture is of, by the commonest brightness of its pixels, and which the list.
+# Samples of the page: which of thirty frames the image is of, by the commonest brightness of its pixels, and which the list.
 SAMPLE_BOTH = """(async () => { const pairs = []; const canvas = document.createElement('canvas'); canvas.width = 64; canvas.height = 48;
   const pen = canvas.getContext('2d', { willReadFrequently: true });
   for (let i = 0; i < 120; ++i) { await new Promise(done => setTimeout(done, 25));
@@ -61,15 +61,15 @@ def check_elements(page):
 
 
 def check_loading(page):
-    """Until the first frame the page says that it waits, and shows no broken picture."""
+    """Until the first frame the page says that it waits, and shows no broken image."""
     page.wait_for(f"{WORDS} === 'no frames'", 60)
-    for picture in ("colour", "second"):
-        hidden = f"(image => getComputedStyle(image).visibility === 'hidden' && getComputedStyle(image.parentElement, '::before').content)(document.getElementById('{picture}'))"
-        assert page.value(hidden) == '"waiting for the first frame"', picture
+    for image in ("colour", "second"):
+        hidden = f"(image => getComputedStyle(image).visibility === 'hidden' && getComputedStyle(image.parentElement, '::before').content)(document.getElementById('{image}'))"
+        assert page.value(hidden) == '"waiting for the first frame"', image
 
 
 def check_same_frame(page):
-    """The list and the picture beside it are of one frame at any moment: the picture's brightness and the score both name it."""
+    """The list and the image beside it are of one frame at any moment: the image's brightness and the score both name it."""
     told = page.value(SAMPLE_BOTH)
     assert len({score for _, score in told}) >= 5, told
     others = [pair for pair in told if pair[0] != pair[1]]
@@ -107,7 +107,7 @@ def box_of(page, selector):
 
 
 def check_layout(page, out):
-    """The camera's picture is the largest thing, with the objects beside it, on a phone below it."""
+    """The camera's image is the largest thing, with the objects beside it, on a phone below it."""
     for width, height in ((360, 740), (1300, 900), (1920, 1080)):
         page.resize(width, height, width < 900)
         page.wait_for(f"innerWidth === {width} && scrollY === 0")
@@ -125,7 +125,7 @@ def check_layout(page, out):
 
 
 def check_world(page):
-    """Beside the picture: the world from above, which changes as the objects do, and its list."""
+    """Beside the image: the world from above, which changes as the objects do, and its list."""
     page.wait_for("!document.getElementById('world-card').hidden")
     bowl, mug = page.wait_for("[...document.querySelectorAll('#world tbody tr')].map(row => row.innerText)")
     assert "#1 bowl" in bowl and "visible" in bowl, bowl
@@ -142,13 +142,13 @@ def check_world(page):
 
 
 def check_live_change(page):
-    scores, pictures = set(), set()
+    scores, images = set(), set()
     end = time.monotonic() + 60
-    while time.monotonic() < end and min(len(scores), len(pictures)) < 3:
+    while time.monotonic() < end and min(len(scores), len(images)) < 3:
         scores.add(page.value("document.querySelector('#objects td.n').innerText"))
-        pictures.add(page.value("document.getElementById('colour').src"))
+        images.add(page.value("document.getElementById('colour').src"))
         time.sleep(0.1)
-    assert min(len(scores), len(pictures)) >= 3, (scores, pictures)
+    assert min(len(scores), len(images)) >= 3, (scores, images)
 
 
 def check_picking(page):

@@ -25,7 +25,7 @@ NAN = float("nan")
 
 
 def frame_message(utime, turn):
-    """A grey picture, whose brightness names the frame: 8 * (turn % 30) + 4."""
+    """A grey image, whose brightness names the frame: 8 * (turn % 30) + 4."""
     message = images_t()
     message.utime, message.n_images = utime, 2
     message.image_types = [images_t.LEFT, images_t.DEPTH_MM]

@@ -1,7 +1,7 @@
 """What people see of a running stream: lcm-spy with our viewers, the preview channel, and hs-view's window.
 
 Plays a scene live through hs-detect and hs-pose, opens the windows on a display without a screen, checks by their
-pixels that boxes and pose axes are drawn, and keeps the pictures: spy.png, spy_rgbd.png, spy_detections.png,
+pixels that boxes and pose axes are drawn, and keeps the images: spy.png, spy_rgbd.png, spy_detections.png,
 spy_preview.png, view.png. Data and forest are those that end_to_end_test.py made.
 """
 
@@ -28,34 +28,34 @@ def wait_until(condition, complaint, seconds=60):
         time.sleep(0.2)
 
 
-def overlay_pixels(picture):
+def overlay_pixels(image):
     """Pixels in the colours of boxes, and in the rarest colour of the axes."""
-    boxes = sum(picture.count(colour) for colour in BOX_COLOURS.values())
-    return boxes, min(picture.count(colour) for colour in AXES)
+    boxes = sum(image.count(colour) for colour in BOX_COLOURS.values())
+    return boxes, min(image.count(colour) for colour in AXES)
 
 
 def await_overlay(display, window, size=None, seconds=120):
-    """The first picture of a window on which a box and all three axes are drawn over a photograph, whose place is the
+    """The first image of a window on which a box and all three axes are drawn over a photograph, whose place is the
     upper left corner of this size."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
-        picture = display.photograph(window)
-        width, height = size or (picture.width, picture.height)
-        boxes, axis = overlay_pixels(picture.cut(0, 0, width, height))
-        if boxes > 300 and axis > 25 and picture.colours() > 5000:
-            return picture
+        image = display.photograph(window)
+        width, height = size or (image.width, image.height)
+        boxes, axis = overlay_pixels(image.cut(0, 0, width, height))
+        if boxes > 300 and axis > 25 and image.colours() > 5000:
+            return image
         time.sleep(0.3)
     raise AssertionError(f"no overlay after {seconds} s: {boxes} box pixels, {axis} axis pixels")
 
 
-def written(picture, row):
+def written(image, row):
     """Whether there is text in the first column of a row."""
-    return picture.cut(2, row_of_table(row) - 6, 120, 12).count((51, 51, 51)) > 20  # the colour of its text
+    return image.cut(2, row_of_table(row) - 6, 120, 12).count((51, 51, 51)) > 20  # the colour of its text
 
 
-def rows_of(picture):
+def rows_of(image):
     """How many rows of spy's table are written."""
-    return sum(written(picture, row) for row in range(1, 20))
+    return sum(written(image, row) for row in range(1, 20))
 
 
 def check_spy(tools, logs, display, out):
@@ -92,16 +92,16 @@ def check_frames(display, window, out):
     """Colour beside depth: the right half holds the warm and cold colours of the map, the left hardly any."""
     end = time.monotonic() + 60
     while True:
-        picture = display.photograph(window)
-        left = picture.cut(0, 0, picture.width // 2, picture.height)
-        right = picture.cut(picture.width // 2, 0, picture.width // 2, picture.height)
+        image = display.photograph(window)
+        left = image.cut(0, 0, image.width // 2, image.height)
+        right = image.cut(image.width // 2, 0, image.width // 2, image.height)
         vivid = [sum(max(row[x : x + 3]) - min(row[x : x + 3]) > 180 for row in half.rows for x in range(0, len(row), 3))
                  for half in (left, right)]
         if left.colours() > 5000 and vivid[1] > 50000 > 5 * vivid[0]:
             break
         assert time.monotonic() < end, f"{left.colours()} colours, {vivid} vivid pixels"
         time.sleep(0.3)
-    picture.save(out / "spy_rgbd.png")
+    image.save(out / "spy_rgbd.png")
     display.do("windowmove", window, AWAY, AWAY)
 
 
@@ -124,7 +124,7 @@ def check_view(tools, data, logs, display, out):
 
 
 def check_saving(display, window):
-    """s saves the picture that is shown, in the folder where hs-view was started."""
+    """s saves the image that is shown, in the folder where hs-view was started."""
     saved = lambda: list(pathlib.Path().glob("view_*.png"))
     for file in saved():
         file.unlink()

@@ -1,4 +1,4 @@
-"""The front page's pictures, of a stream that goes on: hs-view's window, and lcm-spy's viewer of detections."""
+"""The front page's images, of a stream that goes on: hs-view's window, and lcm-spy's viewer of detections."""
 
 import shutil
 import time
@@ -17,30 +17,30 @@ VIEW_SIZE = (640, 480)  # where hs-view's window shows colour
 LOOKS, BETWEEN_S, PATIENCE_S = 12, 1.0, 180.0
 
 
-def drawn(picture):
+def drawn(image):
     """(objects whose box is drawn, pixels in the rarest colour of the axes)"""
-    boxes = sum(picture.count(colour) > BOX_PIXELS for colour in BOXES)
-    return boxes, min(picture.count(colour) for colour in AXES)
+    boxes = sum(image.count(colour) > BOX_PIXELS for colour in BOXES)
+    return boxes, min(image.count(colour) for colour in AXES)
 
 
-def best_picture(display, window, size=None):
+def best_image(display, window, size=None):
     """Of some looks at a window, from the first that shows a pose on, the one with the most objects and axes in its upper left
     part of this size."""
     best, most, looks, end = None, (0, 0), 0, time.monotonic() + PATIENCE_S
     while looks < LOOKS:
         time.sleep(BETWEEN_S)
-        picture = display.photograph(window)
-        found = drawn(picture.cut(0, 0, *(size or (picture.width, picture.height))))
+        image = display.photograph(window)
+        found = drawn(image.cut(0, 0, *(size or (image.width, image.height))))
         if found[1] > 0 and found > most:
-            best, most = picture, found
+            best, most = image, found
         looks += best is not None
         if best is None and time.monotonic() > end:
             die(f"no pose is drawn within {PATIENCE_S:.0f} s, expected some")
     return best
 
 
-def save_jpeg(picture, file):
-    Image.frombytes("RGB", (picture.width, picture.height), b"".join(picture.rows)).save(file, quality=88)
+def save_jpeg(image, file):
+    Image.frombytes("RGB", (image.width, image.height), b"".join(image.rows)).save(file, quality=88)
 
 
 def take(options, demo):
@@ -48,7 +48,7 @@ def take(options, demo):
     for program in ("Xvfb", "xdotool"):
         if not shutil.which(program):
             die(f"{program}: not there; sudo apt-get install xvfb xdotool")
-    step("pictures of a stream")
+    step("images of a stream")
     programs, models = options.programs, demo.store.path("training") / "models"
     scene = ("--source", f"bop:{demo.store.path('scene')}", "--loop", "--rate", RATE_HZ, "--jpeg-quality", 90)
     options.pictures.mkdir(parents=True, exist_ok=True)
@@ -59,10 +59,10 @@ def take(options, demo):
             running.by_name[name].wait_until_ready()
         running.start("capture", programs / "hs-capture", *scene)
         view = running.start("view", programs / "hs-view", "--models", models, "--rate", RATE_HZ)
-        save_jpeg(best_picture(display, display.window("Houghstream"), VIEW_SIZE), options.pictures / "hs_view.jpg")
+        save_jpeg(best_image(display, display.window("Houghstream"), VIEW_SIZE), options.pictures / "hs_view.jpg")
         view.kill()
         spy = running.start("spy", programs / "hs-spy")
         display.window("LCM Spy")
         time.sleep(BETWEEN_S)  # spy counts rates once a second
-        save_jpeg(best_picture(display, open_viewer(display, spy, "HOUGHSTREAM_DETECTIONS")), options.pictures / "lcm_spy.jpg")
+        save_jpeg(best_image(display, open_viewer(display, spy, "HOUGHSTREAM_DETECTIONS")), options.pictures / "lcm_spy.jpg")
     print(f"{options.pictures}/hs_view.jpg, {options.pictures}/lcm_spy.jpg")
