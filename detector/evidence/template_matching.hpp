@@ -72,7 +72,7 @@ class BoundaryContinuation {
 
 /// Compares a template with the frame, cell by cell, after moving it along the ray by at most a few centimetres to
 /// where most of it agrees: the depth of a vote is less exact than that of a surface. Brightness, contrast and colour
-/// cast, which the light decides, do not change the likeness. With a `size` other than 1 the template counts as that of
+/// cast, which the light decides, do not change the match. With a `size` other than 1 the template counts as that of
 /// an object so many times as large.
 TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame,
                              float size = 1.0F);
