@@ -4,7 +4,6 @@ Each row names a document, a pattern in it and a source, a pattern in it; both p
 pattern is not found are a fault too. Prints one line per fault; status 1 where there is any. Usage: documented_defaults.py REPOSITORY
 """
 
-import pathlib
 import re
 
 import rule_command

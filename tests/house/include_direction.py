@@ -3,7 +3,6 @@
 Prints one line per fault and exits with 1 when there is any. Usage: include_direction.py REPOSITORY
 """
 
-import pathlib
 import re
 
 import rule_command

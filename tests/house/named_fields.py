@@ -12,7 +12,6 @@ Prints one line per fault; status 1 where there is any. Usage: named_fields.py R
 
 import collections
 import itertools
-import pathlib
 import re
 
 import rule_command

@@ -9,7 +9,6 @@ Prints one line per fault and exits with 1 when there is any. Usage: unique_name
 """
 
 import collections
-import pathlib
 import re
 
 import rule_command

@@ -8,7 +8,7 @@ import sys
 import time
 
 from folders import read_arguments
-from studies.network import MULTICAST, URL, ip
+from studies.network import MULTICAST, ip
 from studies.soak.wire import Listener
 from studies.stream import Process
 from two_hosts_test import enter_own_namespace

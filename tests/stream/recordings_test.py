@@ -82,7 +82,7 @@ class Recordings(unittest.TestCase):
         for _ in range(3):
             result = run(*self.camera("--frames", 3, "--log", log))
         self.assertEqual(names(self.folder, "take"), ["take.lcmlog", "take_2.lcmlog", "take_3.lcmlog"])
-        self.assertIn(f"3 frames of", result.stderr)
+        self.assertIn("3 frames of", result.stderr)
         self.assertIn(f"to {self.folder / 'take_3.lcmlog'}", result.stderr)
         first, second = digest(log), digest(self.folder / "take_2.lcmlog")
         run(*self.camera("--frames", 2, "--log", log, "--replace"))

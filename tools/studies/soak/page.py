@@ -1,8 +1,6 @@
 """summary.json and report.md: what is measured now takes the place of what was measured before, the rest stays; each part
 says of which commit it is."""
 
-import json
-
 from studies.command import die
 from studies.records import about, commit_name, read_json_if_any, write_atomically, write_json
 
