@@ -247,21 +247,27 @@ class Report(unittest.TestCase):
         log, folder = self.out / "results.lcmlog", self.out / "pictures"
         folder.mkdir()
         with open(log, "wb") as out:
-            for utime, poses in ((1, [("can", 0.9), ("mug", 0.3)]), (2, [("can", 0.8), ("mug", 0.9)]), (3, [("can", 1.0)]),
+            for utime, poses in ((1, [("can", 0.9), ("mug", 0.3)]), (2, [("can", 0.8), ("mug", 0.9)]), (3, [("can", 1.0)]), (6, [("can", 1.0), ("mug", 1.0), ("mug", 1.0)]),
                                  (4, [("can", 0.9), ("mug", 0.9), ("bowl", 0.9)])):  # fmt: skip
                 message = object_poses_t()
                 message.utime, message.n_poses = utime, len(poses)
                 for name, visible in poses:
                     pose = object_pose_t()
                     pose.class_name, pose.visible_fraction, pose.status = name, visible, object_pose_t.VALID
+                    pose.detection_index = -1
                     message.poses.append(pose)
                 write_event(out, utime, Event(utime, "HOUGHSTREAM_POSES", message.encode()))
-        for utime in (1, 2, 3, 5):  # hs-view draws a few of the frames
+            late = object_poses_t()  # of detections: hs-view has drawn the frame by then
+            late.utime, late.n_poses, late.poses = 3, 4, [object_pose_t() for _ in range(4)]
+            for number, pose in enumerate(late.poses):
+                pose.class_name, pose.visible_fraction, pose.status = f"late {number}", 1.0, object_pose_t.VALID
+            write_event(out, 9, Event(9, "HOUGHSTREAM_POSES", late.encode()))
+        for utime in (1, 2, 3, 5, 6):  # hs-view draws a few of the frames
             (folder / f"{utime}.jpg").touch()
         self.assertEqual(fullest_image(poses_by_frame(log), folder).name, "2.jpg")
         (folder / "2.jpg").unlink()
         self.assertEqual(fullest_image(poses_by_frame(log), folder).name, "1.jpg")
-        for utime in (1, 3):
+        for utime in (1, 3, 6):
             (folder / f"{utime}.jpg").unlink()
         with self.assertRaisesRegex(SystemExit, "no image of a frame with published poses"):
             fullest_image(poses_by_frame(log), folder)
