@@ -1,5 +1,5 @@
-# What is installed, where the GNU directories want it, in four components that become Debian packages (packages.cmake):
-# programs, development, python, java.
+# What is installed, where the GNU directories want it, in components that become Debian packages (packages.cmake):
+# programs, development, python, java, samples.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(shared_data "${CMAKE_INSTALL_DATADIR}/houghstream")
@@ -128,4 +128,5 @@ if(TARGET houghstream_types_jar)
           DESTINATION "${CMAKE_INSTALL_DATADIR}/java" COMPONENT java)
 endif()
 
+include(samples)
 include(packages)

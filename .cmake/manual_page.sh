@@ -17,7 +17,7 @@ jobs_of() {
 text_of_jobs() {
   for job in $(jobs_of "$@"); do
     printf '\n*%s %s*\n\n' "$(basename "$program")" "$(echo "$@" "$job")"
-    "$program" "$@" "$job" --help | sed -e 's/^Usage:/\n&/' -e 's/^Options:/Its options:/'
+    "$program" "$@" "$job" --help | sed -e 's/^[Uu]sage:/\nUsage:/' -e 's/^[Oo]ptions:/Its options:/'
     text_of_jobs "$@" "$job"
   done
 }

@@ -1,4 +1,5 @@
-# Debian packages, with the target `package`: houghstream, libhoughstream-dev, python3-houghstream, houghstream-java.
+# Debian packages, with the target `package`: houghstream, libhoughstream-dev, python3-houghstream, houghstream-java, and
+# houghstream-samples where the samples have been made (samples.cmake).
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME houghstream)
 set(CPACK_PACKAGE_VERSION "${PROJECT_VERSION}")
@@ -8,7 +9,7 @@ set(CPACK_PACKAGE_DIRECTORY "${PROJECT_BINARY_DIR}/packages")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL programs development python)
+set(CPACK_COMPONENTS_ALL programs development python ${samples_component})
 if(TARGET houghstream_types_jar)
   list(APPEND CPACK_COMPONENTS_ALL java)
 endif()
@@ -21,6 +22,7 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
 # houghstream-demo reads messages with the Python of the same version, hs-import MATLAB files with scipy.
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "python3-houghstream (= ${PROJECT_VERSION}), python3, python3-matplotlib, python3-jinja2, python3-pil, python3-scipy, liblcm-bin, iproute2")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "houghstream-java, libopenni2-0")
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "houghstream-samples")
 set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION "finds taught objects in an RGB-D camera's stream, and their poses
  Processes for capture, detection (a depth-normalised Hough forest) and pose
  estimation (ICP) that exchange LCM messages, and tools that teach, view, log,
@@ -64,6 +66,15 @@ set(CPACK_DEBIAN_JAVA_PACKAGE_RECOMMENDS "default-jdk-headless") # java FILE.jav
 set(CPACK_COMPONENT_JAVA_DESCRIPTION "finds taught objects in an RGB-D camera's stream: Java
  Message types, and viewers for lcm-spy.")
 
+set(CPACK_DEBIAN_SAMPLES_PACKAGE_NAME houghstream-samples)
+set(CPACK_DEBIAN_SAMPLES_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_SAMPLES_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_SAMPLES_PACKAGE_DEPENDS "houghstream (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz) # the forest becomes a third of its size
+set(CPACK_COMPONENT_SAMPLES_DESCRIPTION "finds taught objects in an RGB-D camera's stream: samples
+ Four taught objects and ten seconds of a rendered recording, which
+ houghstream-demo shows.")
+
 # Each package has its copyright file and a changelog.
 file(WRITE "${PROJECT_BINARY_DIR}/copyright"
 "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
@@ -82,7 +93,11 @@ execute_process(
   OUTPUT_FILE "${PROJECT_BINARY_DIR}/changelog" COMMAND_ERROR_IS_FATAL ANY)
 find_program(GZIP gzip REQUIRED)
 execute_process(COMMAND "${GZIP}" -9nf "${PROJECT_BINARY_DIR}/changelog")
-foreach(pair programs:houghstream development:libhoughstream-dev python:python3-houghstream java:houghstream-java)
+set(documented programs:houghstream development:libhoughstream-dev python:python3-houghstream java:houghstream-java)
+if(samples_component)
+  list(APPEND documented samples:houghstream-samples)
+endif()
+foreach(pair IN LISTS documented)
   string(REPLACE ":" ";" pair "${pair}")
   list(GET pair 0 component)
   list(GET pair 1 package)

@@ -122,6 +122,7 @@ Evaluation evaluate(const std::vector<EvaluatedFrame>& all_frames, const std::ve
   }
   evaluate_poses(frames, models, rules, out);
   score_qualities(frames, models, out);
+  out.followed = count_followed_poses(all_frames, class_names, models, rules.detection.min_visible);
   out.stage_ms = stage_medians(frames);
   return out;
 }

@@ -7,6 +7,7 @@
 
 #include "tools/evaluate/metrics/average_recall.hpp"
 #include "tools/evaluate/metrics/detection_metrics.hpp"
+#include "tools/evaluate/metrics/followed_poses.hpp"
 #include "tools/evaluate/metrics/pose_metrics.hpp"
 
 namespace houghstream {
@@ -56,6 +57,8 @@ struct Evaluation {
   std::map<std::string, double> strict_recall;
   std::map<std::string, double> add_s_recall;
   std::map<std::string, double> add_or_add_s_recall;
+  /// Of all frames of the scenes, whether a detector inspected them or not; nothing unless objects were followed.
+  std::optional<FollowedPoses> followed;
   std::optional<LocalisationScores> localisation;  ///< nothing unless poses were measured against depth too
   std::optional<LocalisationScores> localisation_nothing_withheld;  ///< nothing unless withheld poses are known
   std::map<std::string, double> stage_ms;                           ///< median by stage

@@ -103,6 +103,21 @@ OrderedJson recall_json(const std::map<std::string, double>& recalls) {
   return json;
 }
 
+OrderedJson followed_json(const FollowedPoses& followed) {
+  OrderedJson json = {{"frames", followed.frames}, {"frames_missed", followed.frames_missed}};
+  const auto add = [&](const std::string& name, const FollowedCount& count) {
+    json["required"][name] = count.required;
+    json["published"][name] = count.published;
+    json["right_fraction"][name] = ratio(count.correct, count.published);
+    json["right_up_to_shape_fraction"][name] = ratio(count.correct_up_to_shape, count.published);
+    json["recall"][name] = ratio(count.correct, count.required);
+    json["recall_up_to_shape"][name] = ratio(count.correct_up_to_shape, count.required);
+  };
+  for (const auto& [name, count] : followed.by_class) add(name, count);
+  add("all", followed.all());
+  return json;
+}
+
 OrderedJson localisation_json(const LocalisationScores& scores) {
   OrderedJson json;
   json["variant"] =
@@ -173,6 +188,7 @@ OrderedJson summary_json(const Evaluation& evaluation, const EvaluationRules& ru
   json["published_right_fraction"] = published ? ratio(published->correct, published->count) : OrderedJson(nullptr);
   json["published_good_fraction"] =
       published ? ratio(published->correct_up_to_shape, published->count) : OrderedJson(nullptr);
+  if (evaluation.followed) json["followed"] = followed_json(*evaluation.followed);
   if (evaluation.localisation) json["bop19"] = localisation_json(*evaluation.localisation);
   if (evaluation.localisation_nothing_withheld)
     json["bop19_nothing_withheld"] = localisation_json(*evaluation.localisation_nothing_withheld);
@@ -239,6 +255,12 @@ std::string summary_table(const Evaluation& evaluation, const EvaluationRules& r
                               evaluation.published->count, evaluation.published->correct,
                               evaluation.published->correct_up_to_shape)
                 : "poses not judged: no models of these objects (--models)\n";
+  }
+  if (evaluation.followed) {
+    const FollowedCount all = evaluation.followed->all();
+    text += fmt::format("followed in {} frames, {} missed: {} poses, {} right, {} right up to shape, of {} objects\n",
+                        evaluation.followed->frames, evaluation.followed->frames_missed, all.published, all.correct,
+                        all.correct_up_to_shape, all.required);
   }
   text += fmt::format("false detections {} from score {} on, or confirmed by a pose\n", evaluation.false_detections,
                       rules.operating_score);

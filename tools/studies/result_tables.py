@@ -23,20 +23,26 @@ def table(rows):
 def demo_table(summary):
     names = list(summary["auc"])
     right, recall, processed = "mssd_recall", "pose_recall_add_s_10", summary["processed"]
-    listed = [("AUC", summary["auc"]), ("recall at the defaults", summary["recall"])]
-    if summary["bop19_ar"]:
-        listed += [
-            ("poses right", summary.get(right, {})),
-            ("ADD-S recall (right up to shape)", summary[recall]),
-            ("BOP average recall", summary["bop19_ar"] | {"mean": summary["bop19_ar"]["all"]}),
-        ]
+    listed = []
+    if "followed" in summary:
+        for words, key in (("poses of followed objects: right", "right_fraction"),
+                           ("objects in all frames with a right pose", "recall")):  # fmt: skip
+            found = summary["followed"][key]
+            listed.append((words, found | {"mean": found["all"]}))
     listed += [
-        ("AUC, processed frames alone", processed["auc"]),
-        ("recall, processed frames alone", processed["recall"]),
+        ("AUC, inspected frames alone", processed["auc"]),
+        ("recall, inspected frames alone", processed["recall"]),
     ]
     if summary["bop19_ar"]:
-        listed.append(("poses right, processed frames alone", processed.get(right, {})))
-        listed.append(("ADD-S recall, processed frames alone", processed[recall]))
+        listed.append(("poses right, inspected frames alone", processed.get(right, {})))
+        listed.append(("ADD-S recall, inspected frames alone", processed[recall]))
+    listed += [("AUC, all frames", summary["auc"]), ("recall at the defaults, all frames", summary["recall"])]
+    if summary["bop19_ar"]:
+        listed += [
+            ("poses right, all frames", summary.get(right, {})),
+            ("ADD-S recall, all frames (right up to shape)", summary[recall]),
+            ("BOP average recall", summary["bop19_ar"] | {"mean": summary["bop19_ar"]["all"]}),
+        ]
 
     def cell(found, name):
         return "" if name == "mean" and name not in found else show(found.get(name))
@@ -48,9 +54,13 @@ def demo_frames(summary):
     latency = "; ".join(
         f"{stage} {ms(found['p50'])}, {ms(found['p99'])}" for stage, found in summary["latency_ms"].items()
     )
-    text = ("{frames_sent} frames sent, {frames_detected} detected, {frames_skipped} passed over for newer ones, {frames_lost} "
-            "lost; {frames_with_poses} with poses; {rate_hz:.1f} results a second; false detections at the "
-            "defaults: {false_detections}; training {train_seconds:.0f} s. ").format(**summary)  # fmt: skip
+    followed = summary.get("followed")
+    text = ("{frames_followed} frames followed, {frames_passed_over} passed over for newer ones, {frames_lost} lost. "
+            "The detector: ").format(**followed) if followed else ""  # fmt: skip
+    skipped = "not inspected, as meant" if followed else "passed over for newer ones"
+    text += ("{frames_sent} frames sent, {frames_detected} detected, {frames_skipped} {skipped}, {frames_lost} "
+             "lost; {frames_with_poses} with poses; {rate_hz:.1f} results a second; false detections at the "
+             "defaults: {false_detections}; training {train_seconds:.0f} s. ").format(skipped=skipped, **summary)  # fmt: skip
     clutter = summary.get("clutter")
     if clutter:
         text += "Clutter: {false_detections} detections, all false, in {frames_processed} frames. ".format(**clutter)

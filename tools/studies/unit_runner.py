@@ -19,6 +19,7 @@ import time
 from studies.command import die, prepare, step
 from studies.records import cpu_name, today, write_atomically
 from studies.stream import ProcessFailed
+from studies.time_left import SECONDS_APART, in_words, last_words, left_in_words, pace_of
 
 INPUT = re.compile(r"\{([^{}]+)\}")
 MODULES = pathlib.Path(__file__).resolve().parent.parent  # where the package lies
@@ -37,6 +38,7 @@ class Unit:
     scene: str = ""
     seed: int = 0  # 0: the same for all
     of: str = ""  # digest of what it reads that no unit has made
+    expected_s: float = 0.0  # seconds where it has never run; 0: nobody knows
 
     @property
     def kind(self):
@@ -197,14 +199,6 @@ class UnitFailed(Exception):
     pass
 
 
-def in_words(seconds):
-    minutes, seconds = divmod(int(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    if hours:
-        return f"{hours} h {minutes:02} min"
-    return f"{minutes} min {seconds:02} s" if minutes else f"{seconds} s"
-
-
 def end(process):
     """Asks nicely, waits, insists; the unit's own children too."""
     for sign in (signal.SIGTERM, signal.SIGKILL):
@@ -219,12 +213,14 @@ def end(process):
 
 
 class Runner:
-    """Runs units in order, one at a time since times are measured, and leaves out what is current."""
+    """Runs units in order, one at a time since times are measured, and leaves out what is current. While one runs, a line
+    every ten seconds says how far it is and how long all of them still take, with `after_s` expected seconds of what follows."""
 
-    def __init__(self, store, tell=functools.partial(print, flush=True)):
-        self.store, self.tell = store, tell
+    def __init__(self, store, tell=functools.partial(print, flush=True), after_s=0.0):
+        self.store, self.tell, self.after_s = store, tell, after_s
         self.begin = time.monotonic()
         self.seconds = {}  # of the units that ran, by kind
+        self.pairs = []  # (seconds, expected ones) of those of which both are known
 
     def run(self, units):
         """Raises UnitFailed at the first that fails."""
@@ -236,25 +232,39 @@ class Runner:
             if not self.store.is_current(waiting[0]):  # as it may be by now: its inputs turned out as they were
                 elapsed = in_words(time.monotonic() - self.begin)
                 self.tell(f"[{done + 1}/{len(units)}, {elapsed}, {self._rest(waiting)}] {waiting[0].name}")
-                self._run_one(waiting[0])
+                self._run_one(waiting)
             waiting.pop(0)
             done += 1
 
-    def _rest(self, waiting):
-        """By what units took earlier, else by what others of their kind took."""
+    def _rest(self, waiting, running_s=0.0):
+        """By what units took earlier, else by what others of their kind took, else by what they are expected to take. The
+        first one has run for `running_s` seconds."""
         known = [self._expected(unit) for unit in waiting]
         measured = [seconds for seconds in known if seconds is not None]
         if not measured:
             return "rest unknown"
         mean = sum(measured) / len(measured)
-        return "about " + in_words(sum(mean if seconds is None else seconds for seconds in known)) + " left"
+        first, *others = (mean if seconds is None else seconds for seconds in known)
+        return left_in_words(max(first - running_s, 0.0) + sum(others) + self.after_s * pace_of(self.pairs))
 
     def _expected(self, unit):
         earlier = self.store.record(unit).get("seconds")
         of_kind = self.seconds.get(unit.kind)
-        return earlier if earlier is not None else sum(of_kind) / len(of_kind) if of_kind else None
+        if earlier is not None or of_kind:
+            return earlier if earlier is not None else sum(of_kind) / len(of_kind)
+        return unit.expected_s * pace_of(self.pairs) if unit.expected_s else None
 
-    def _run_one(self, unit):
+    def _wait(self, process, waiting, begin):
+        """Returns the exit status; says meanwhile how far it is."""
+        while True:
+            try:
+                return process.wait(SECONDS_APART)
+            except subprocess.TimeoutExpired:
+                words = last_words(self.store.log(waiting[0])) or "begun"
+                self.tell(f"    {words}; all: {self._rest(waiting, time.monotonic() - begin)}")
+
+    def _run_one(self, waiting):
+        unit = waiting[0]
         self.store.begin(unit)
         begin = time.monotonic()
         with open(self.store.log(unit), "w") as log:
@@ -264,13 +274,15 @@ class Runner:
             except OSError as error:
                 raise UnitFailed(f"{unit.name}: {error}") from error
             try:
-                status = process.wait()
+                status = self._wait(process, waiting, begin)
             except BaseException:
                 end(process)
                 raise
         self._check(unit, status)
         seconds = time.monotonic() - begin
         self.seconds.setdefault(unit.kind, []).append(seconds)
+        if unit.expected_s:
+            self.pairs.append((seconds, unit.expected_s))
         self.store.finish(unit, seconds)
 
     def _check(self, unit, status):
@@ -323,10 +335,10 @@ def main(parse, targets, network, study):
         die(INTERRUPTED)
 
 
-def make(store, fresh=False):
-    """Everything of the store that is not current."""
+def make(store, fresh=False, after_s=0.0):
+    """Everything of the store that is not current; `after_s` are the expected seconds of what follows."""
     units = list(store.units.values())
     store.require_programs()
     for unit in units if fresh else ():
         store.forget(unit)
-    Runner(store).run(units)
+    Runner(store, after_s=after_s).run(units)

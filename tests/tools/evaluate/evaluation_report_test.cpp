@@ -103,6 +103,24 @@ TEST(EvaluationReport, AverageRecallsStandInTheSummaryWhereTheyWereMeasured) {
   EXPECT_NE(summary_table(evaluation, rules).find("0.400 of 2 targets"), std::string::npos);
 }
 
+TEST(EvaluationReport, PosesOfFollowedObjectsStandInTheSummaryWhereThereAreAny) {
+  EvaluationRules rules;
+  std::vector<EvaluatedFrame> frames = two_frames();
+  EXPECT_FALSE(summary_json(evaluate(frames, {"mug"}, kModels, rules), rules, std::nullopt).contains("followed"));
+  frames[0].followed = frames[0].poses;
+  frames[0].followed->poses[0].class_name = "mug";
+  rules.processed_only = true;
+  const Evaluation evaluation = evaluate(frames, {"mug"}, kModels, rules);
+  const OrderedJson followed = summary_json(evaluation, rules, std::nullopt)["followed"];
+  EXPECT_EQ(followed["frames"], 1);
+  EXPECT_EQ(followed["frames_missed"], 1);
+  EXPECT_EQ(followed["required"]["mug"], 2) << "frames without detections count too";
+  EXPECT_EQ(followed["right_fraction"]["all"], 1.0);
+  EXPECT_EQ(followed["recall"]["mug"], 0.5);
+  EXPECT_NE(summary_table(evaluation, rules).find("followed in 1 frames, 1 missed: 1 poses, 1 right"),
+            std::string::npos);
+}
+
 TEST(EvaluationReport, ProposedScoresAreNotRounded) {
   constexpr float kScore = 0.758051F;
   std::vector<EvaluatedFrame> frames = two_frames();

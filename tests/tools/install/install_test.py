@@ -142,12 +142,18 @@ class Programs(unittest.TestCase):
         self.assertEqual(sorted(pages), sorted(f"{program.name}.1.gz" for program in HOME.glob("bin/*")))
         for page, words in (("hs-log", r'.SH "HS-LOG EXPORT BOP"'), ("hs-log", r"\-\-from\-channel"), ("hs-teach", r"\-\-no\-teach"),
                             ("hs-render", r"\-\-pitches"), ("hs-import", "hs-import boxes FRAMES SCENE"), ("hs-spy", r"\-\-heap"),
-                            ("houghstream-demo", r"\-\-unplug"), ("hs-detect", ".SH EXAMPLES")):  # fmt: skip
+                            ("houghstream-demo", r"\-\-unplug"), ("houghstream-demo", ".SH \"HOUGHSTREAM-DEMO MEASURE\""), ("hs-detect", ".SH EXAMPLES")):  # fmt: skip
             self.assertIn(words, pages[f"{page}.1.gz"], page)
 
     def test_the_demo_has_the_name_that_it_is_started_by(self):
         self.assertTrue(run(HOME / "bin/houghstream-demo", "--help").startswith("usage: houghstream-demo "))
         self.assertIn("houghstream-demo: unrecognized", run(HOME / "bin/houghstream-demo", "--nonsense", status=1))
+        said = run(HOME / "bin/houghstream-demo", "measure", "--help")
+        self.assertTrue(said.startswith("usage: houghstream-demo measure "), said)
+
+    def test_the_demo_says_where_samples_come_from(self):
+        said = run(HOME / "bin/houghstream-demo", "--samples", "/nowhere", "--page", status=1)
+        self.assertIn("/nowhere/forest: not there; install the package houghstream-samples", said)
 
     def test_nothing_names_the_source_folder(self):
         for file in HOME.rglob("*"):

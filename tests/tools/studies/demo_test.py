@@ -8,11 +8,14 @@ import tempfile
 import unittest
 from unittest import mock
 
-from houghstream import status_t, teaching_t
-from studies import command
-from studies.demo import live, pose_scatter, report, teach
-from studies.demo.__main__ import parse
+from houghstream import object_pose_t, object_poses_t, status_t, teaching_t
+from houghstream.event_log import Event, write_event
+from studies import command, time_left
+from studies.demo import followed, live, pose_scatter, report, teach
+from studies.demo.__main__ import parse, targets
+from studies.demo.posed import fullest_image, poses_by_frame
 from studies.records import write_json
+from studies.unit_runner import Runner, Store, Units
 
 
 def observed(received, processed, skipped, on_bus):
@@ -25,6 +28,52 @@ class Words(unittest.TestCase):
         for other in (("--live",), ("--teach",)):
             with self.assertRaisesRegex(SystemExit, "--pictures are of the rendered scene"):
                 parse(["--pictures", "somewhere", *other])
+
+
+    def test_the_rendered_scene_is_followed_unless_that_is_not_wanted(self):
+        self.assertTrue(parse([]).follow)
+        self.assertFalse(parse(["--no-follow"]).follow)
+        self.assertFalse(parse(["--live"]).follow)
+        for other in (("--live",), ("--teach",)):
+            with self.assertRaisesRegex(SystemExit, "--no-follow is of the rendered scene"):
+                parse(["--no-follow", *other])
+
+    def test_only_what_is_run_is_built(self):
+        self.assertIn("hs-track", targets(parse([])))
+        self.assertNotIn("hs-spy", targets(parse([])))
+        self.assertIn("hs-teach", targets(parse(["--teach"])))
+
+
+class TimeLeft(unittest.TestCase):
+    def test_steps_that_are_done_set_the_pace_of_the_others(self):
+        now = [0.0]
+        left = time_left.TimeLeft({"scene": 10, "forest": 20, "report": 4}, clock=lambda: now[0])
+        left.begin("scene")
+        self.assertEqual(left.seconds(), 34)
+        now[0] = 20.0  # twice as long as expected
+        left.begin("forest")
+        self.assertEqual(left.seconds(), 48)
+        now[0] = 30.0
+        self.assertEqual(left.words(), "about 38 s left")
+        now[0] = 300.0  # an estimate that was too small leaves what follows
+        self.assertEqual(left.seconds(), 8)
+        left.begin("report")
+        with self.assertRaisesRegex(KeyError, "no step, expected one of scene, forest, report"):
+            left.begin("scne")
+
+    def test_a_unit_that_has_never_run_has_an_expected_time_and_says_how_far_it_is(self):
+        units = Units()
+        units.add("quick", "", "sh", "-c", "touch {out}", expected_s=1)
+        units.add("slow", "", "sh", "-c", "echo 'views: 40 %'; sleep 0.5; touch {out}", expected_s=50)
+        said = []
+        with tempfile.TemporaryDirectory() as folder, mock.patch("studies.unit_runner.SECONDS_APART", 0.2):
+            programs = pathlib.Path(folder, "bin")
+            programs.mkdir()
+            (programs / "sh").symlink_to("/bin/sh")
+            Runner(Store(folder, programs, units.all()), tell=said.append, after_s=9).run(units.all())
+        self.assertRegex(said[0], r"^\[1/2, 0 s, about 1 min 00 s left\] quick$")
+        self.assertRegex(said[1], r"^\[2/2, 0 s, (about \d+ s left|nearly done)\] slow$")
+        self.assertRegex(said[2], r"^    views: 40 %; all: ")
 
 
 class Messages(unittest.TestCase):
@@ -105,8 +154,8 @@ def evaluation(auc, recall):
 class Options:
     command, network, real, scene = "tools/demo", "private", None, "desk_1"
 
-    def __init__(self, out):
-        self.out = out
+    def __init__(self, out, follow=False):
+        self.out, self.follow = out, follow
 
 
 class OneUnit:
@@ -160,12 +209,83 @@ class Report(unittest.TestCase):
             self.assertIn(words, page)
         self.assertNotIn("http", page)
 
+    def follow(self):
+        """What hs-observe and hs-evaluate say of a stream that follows."""
+        stream = self.out / "stream"
+        latency = {"p50": 4.0, "p95": 5.0, "p99": 6.0}
+        pose = {"received": 9, "processed": 8, "skipped": 1}
+        counts = observed(received=10, processed=2, skipped=8, on_bus=2)
+        counts["processes"]["hs-pose"] = pose
+        write_json(stream / "observe.json", {**counts, "detection_rate_hz": 5.0, "latency_ms": {"total": latency},
+                                             "objects_latency_ms": latency})  # fmt: skip
+        by_object = {"published": 16, "required": 20, "right_fraction": 0.875, "right_up_to_shape_fraction": 1.0, "recall": 0.7,
+                     "recall_up_to_shape": 0.8}  # fmt: skip
+        figures = {key: {"<bowl>": value, "all": value} for key, value in by_object.items()}
+        write_json(stream / "evaluation" / "summary.json", {**evaluation(0.15, 0.14), "followed": figures})
+        return report.summarise(Options(self.out, follow=True), OneUnit(self.out), 10)
+
+    def test_poses_of_followed_objects_stand_first_and_what_was_passed_over_beside_them(self):
+        summary = self.follow()
+        self.assertEqual(next(iter(summary)), "followed")
+        found = summary["followed"]
+        self.assertEqual((found["frames_followed"], found["frames_passed_over"], found["frames_lost"]), (8, 1, 1))
+        self.assertEqual((found["looks"], found["recall"]["<bowl>"], summary["auc"]["<bowl>"]), (2, 0.7, 0.15))
+        page = report.page(self.out, summary)
+        self.assertLess(page.index("<td>0.875</td>"), page.index("<td>0.900</td>"))
+        self.assertIn("<td>passed over for newer ones</td><td>1</td>", page)
+        self.assertIn("<td>not inspected, as meant</td><td>8</td>", page)
+        self.assertNotIn("http", page)
+        self.assertIn("<bowl>                  16   0.875     1.000             20       0.700     0.800", followed.words(found, 10))
+
+    def test_a_hole_in_the_account_of_what_was_followed_ends_the_report(self):
+        pose = {"received": 9, "processed": 7, "skipped": 1}
+        for processes in ({"hs-pose": pose}, {}):
+            with self.assertRaises(SystemExit):
+                followed.account(10, {"processes": processes})
+
+    def test_the_image_on_top_shows_most_objects_and_most_of_them(self):
+        log, folder = self.out / "results.lcmlog", self.out / "pictures"
+        folder.mkdir()
+        with open(log, "wb") as out:
+            for utime, poses in ((1, [("can", 0.9), ("mug", 0.3)]), (2, [("can", 0.8), ("mug", 0.9)]), (3, [("can", 1.0)]), (6, [("can", 1.0), ("mug", 1.0), ("mug", 1.0)]),
+                                 (4, [("can", 0.9), ("mug", 0.9), ("bowl", 0.9)])):  # fmt: skip
+                message = object_poses_t()
+                message.utime, message.n_poses = utime, len(poses)
+                for name, visible in poses:
+                    pose = object_pose_t()
+                    pose.class_name, pose.visible_fraction, pose.status = name, visible, object_pose_t.VALID
+                    pose.detection_index = -1
+                    message.poses.append(pose)
+                write_event(out, utime, Event(utime, "HOUGHSTREAM_POSES", message.encode()))
+            late = object_poses_t()  # of detections: hs-view has drawn the frame by then
+            late.utime, late.n_poses, late.poses = 3, 4, [object_pose_t() for _ in range(4)]
+            for number, pose in enumerate(late.poses):
+                pose.class_name, pose.visible_fraction, pose.status = f"late {number}", 1.0, object_pose_t.VALID
+            write_event(out, 9, Event(9, "HOUGHSTREAM_POSES", late.encode()))
+        for utime in (1, 2, 3, 5, 6):  # hs-view draws a few of the frames
+            (folder / f"{utime}.jpg").touch()
+        self.assertEqual(fullest_image(poses_by_frame(log), folder).name, "2.jpg")
+        (folder / "2.jpg").unlink()
+        self.assertEqual(fullest_image(poses_by_frame(log), folder).name, "1.jpg")
+        for utime in (1, 3, 6):
+            (folder / f"{utime}.jpg").unlink()
+        with self.assertRaisesRegex(SystemExit, "no image of a frame with published poses"):
+            fullest_image(poses_by_frame(log), folder)
+
     def test_latency_is_of_frames_that_have_results(self):
         times = [{"t_frame": "0.1", "t_poses": "0.13"}, {"t_frame": "0.2", "t_poses": ""}]
         self.assertEqual([(x, round(y, 6)) for x, y in report.latency_points(times, "t_poses")], [(0.1, 30.0)])
 
 
 class Teach(unittest.TestCase):
+    def test_what_hs_teach_says_tells_how_far_it_is(self):
+        said = ["hs-teach: tracking: 12 of 60 directions", "hs-teach: fusing: the model is made",
+                "hs-teach: training: the model is taught", "tree 3 of 15: 900 leaves",
+                "hs-teach: training: mug is known, and what its detections are worth is learnt in more rooms"]  # fmt: skip
+        phases = [teach.phase_of("\n".join(said[:count])) for count in range(len(said) + 1)]
+        self.assertEqual(phases, ["take", "take", "fusing", "training", "training", "practise"])
+        self.assertTrue(set(phases) <= set(teach.STEPS_S))
+
     def test_the_camera_plays_its_scene_forwards_then_backwards(self):
         taken = [(1_000_000 + 66_667 * number, number) for number in range(9)]
         seen = [pose_scatter.image_at(taken, utime + 500, 4) for utime, _ in taken]

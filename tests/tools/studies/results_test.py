@@ -72,11 +72,23 @@ class ResultsOfACommit(unittest.TestCase):
         write_json(self.out / "demo" / "summary.json", demo())
         section = self.section(self.written(), "Demo: a rendered scene")
         self.assertIn("*`tools/demo`; a | processor; 2020-02-20*", section)
-        self.assertIn("| AUC | 0.720 | 0.720 |", section)
-        self.assertIn("| poses right | 0.200 | 0.200 |", section)
-        self.assertIn("| ADD-S recall (right up to shape) | 0.250 | 0.250 |", section)
+        self.assertIn("| AUC, inspected frames alone | 0.720 | 0.720 |", section)
+        self.assertIn("| AUC, all frames | 0.720 | 0.720 |", section)
+        self.assertIn("| poses right, all frames | 0.200 | 0.200 |", section)
+        self.assertIn("| ADD-S recall, all frames (right up to shape) | 0.250 | 0.250 |", section)
         self.assertLess(section.index("poses right"), section.index("ADD-S recall"))
         self.assertIn("| BOP average recall | 0.600 | 0.600 |", section)
+
+    def test_poses_of_followed_objects_come_before_what_the_detector_found(self):
+        by_object = {"bowl": 0.9, "all": 0.8}
+        followed = {"frames_followed": 297, "frames_passed_over": 3, "frames_lost": 0, "right_fraction": by_object,
+                    "recall": by_object}  # fmt: skip
+        write_json(self.out / "demo" / "summary.json", {**demo(), "followed": followed})
+        section = self.section(self.written(), "Demo: a rendered scene")
+        self.assertIn("| objects in all frames with a right pose | 0.900 | 0.800 |", section)
+        self.assertLess(section.index("poses of followed objects: right"), section.index("AUC"))
+        self.assertIn("297 frames followed, 3 passed over for newer ones, 0 lost. The detector: 300 frames sent", section)
+        self.assertIn("300 not inspected, as meant", section)
 
     def test_what_is_of_another_commit_is_not_measured(self):
         write_json(self.out / "demo" / "summary.json", demo())

@@ -85,6 +85,7 @@ void add_results(std::vector<EvaluatedFrame>& frames, const PublishedResults& pu
     const std::string where = fmt::format("{}: utime {}", source, utime);
     check_classes(results, where);
     check_poses(results, where);
+    frame->second->followed = results.followed();
     if (std::optional<FrameResult> all = results.merge()) {
       frame->second->detections = std::move(all->detections);
       frame->second->poses = std::move(all->poses);

@@ -31,6 +31,7 @@ struct EvaluatedFrame {
   std::vector<NamedObject> objects;
   std::optional<Detections> detections;  ///< detections of all detectors; nothing where the frame was skipped or lost
   std::optional<ObjectPoses> poses;      ///< likewise
+  std::optional<ObjectPoses> followed;   ///< poses of followed objects; nothing unless hs-pose --follow published them
   /// All poses, with those that were not published because of low quality or of detections of low score; nothing unless
   /// they were estimated in this process.
   std::optional<ObjectPoses> unfiltered_poses;

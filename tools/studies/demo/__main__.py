@@ -7,15 +7,19 @@ from studies.command import Options, die, positive
 from studies.stream import enter_network
 from studies.unit_runner import main
 
-TARGETS = ("hs-render", "hs-train", "hs-capture", "hs-import", "hs-log", "hs-detect", "hs-pose", "hs-view", "hs-observe",
-           "hs-spy", "hs-evaluate")  # fmt: skip
-LIVE_TARGETS = ("hs-teach", "virtual_camera")  # of --live and --teach: a minute of the build
+TARGETS = ("hs-render", "hs-train", "hs-capture", "hs-detect", "hs-pose", "hs-track", "hs-view", "hs-observe",
+           "hs-evaluate")  # fmt: skip
+FURTHER_TARGETS = {"live": ("virtual_camera",), "teach": ("hs-teach", "hs-log", "virtual_camera"),
+                   "real": ("hs-import", "hs-log"), "pictures": ("hs-spy",)}  # fmt: skip
 
 
 def parse(words):
     parser = Options("demo", "Installs, builds, makes or reads data, trains, replays the recorded scene through the "
                              "stream, and measures what comes out.")  # fmt: skip
     add = parser.add_argument
+    add("--no-follow", dest="follow", action="store_false", help="the rendered scene: detects in each frame and looks for its "
+                                                                 "poses anew, instead of following objects from frame to "
+                                                                 "frame; a slow machine passes over frames")  # fmt: skip
     add("--live", action="store_true", help="a virtual camera plays the rendered scene through OpenNI2; measures from "
                                             "its shutter to the poses")  # fmt: skip
     add("--seconds", type=positive, default=60, metavar="N", help="how long it does so (default 60)")
@@ -47,6 +51,9 @@ def parse(words):
         die("--teach is a demo of its own; it goes neither with --live nor with --real")
     if options.pictures and (options.live or options.real or options.teach):
         die("--pictures are of the rendered scene; it goes with none of --live, --real and --teach")
+    if not options.follow and (options.live or options.real or options.teach or options.pictures):
+        die("--no-follow is of the rendered scene; it goes with none of --live, --real, --teach and --pictures")
+    options.follow = options.follow and not (options.live or options.real)
     if options.unplug and not options.live:
         die("--unplug goes with --live")
     options.pictures = options.pictures and options.pictures.resolve()
@@ -58,7 +65,7 @@ def parse(words):
 
 
 def targets(options):
-    return TARGETS + LIVE_TARGETS if options.live or options.teach else TARGETS
+    return sum((more for kind, more in FURTHER_TARGETS.items() if getattr(options, kind)), TARGETS)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,10 @@
 import json
 import shutil
 
+from PIL import Image
 from studies.command import die
+from studies.demo import followed
+from studies.demo.posed import fullest_image, poses_by_frame
 from studies.records import about, read_csv, read_json, train_seconds, write_json
 from studies.report.charts import Chart
 from studies.report.page import embedded, render, show
@@ -57,11 +60,13 @@ def commands(store):
 
 
 def summarise(options, store, sent):
-    """Recalls and AUC are over all frames that were sent; under "processed", over those that were looked at."""
+    """Recalls and AUC are over all frames that were sent; under "processed", over those that hs-detect inspected. Where objects
+    are followed, "followed" holds their poses beside the truth, and hs-detect inspects few frames on purpose."""
     out = options.out
     observed = read_json(out / "stream" / "observe.json")
     evaluation = read_json(out / "stream" / "evaluation" / "summary.json")
-    summary = account(sent, observed)
+    summary = {"followed": followed.summarise(out, sent, observed)} if options.follow else {}
+    summary |= account(sent, observed)
     summary |= {"rate_hz": observed["detection_rate_hz"], "latency_ms": observed["latency_ms"]}
     summary |= detection_figures(evaluation)
     summary["bop19_ar"] = evaluation["bop19"]["ar"] if "bop19" in evaluation else None
@@ -104,21 +109,28 @@ def latency_chart(times):
 
 
 def object_rows(summary):
-    """The first four figures over all frames that were sent, then again over those that were looked at."""
+    """The first figures over the frames that hs-detect inspected, the last ones over all that were sent."""
 
     def figures(found, name):
         return [show(found[key].get(name)) for key in ("auc", "recall", RIGHT_RECALL, POSE_RECALL)]
 
     return [
-        (name, summary["required"].get(name, ""), *figures(summary, name), show(summary["precision"].get(name)),
-         *figures(summary["processed"], name))
+        (name, summary["processed"]["required"].get(name, ""), *figures(summary["processed"], name),
+         show(summary["precision"].get(name)), summary["required"].get(name, ""), *figures(summary, name))
         for name in summary["auc"]
     ]  # fmt: skip
 
 
 def frame_rows(summary):
-    keys = ("frames_sent", "frames_received", "frames_detected", "frames_skipped", "frames_lost", "frames_with_poses")
-    rows = [(key.replace("_", " "), summary[key]) for key in keys]
+    skipped = "not inspected, as meant" if "followed" in summary else "passed over for newer ones"
+    rows = [
+        ("frames sent", summary["frames_sent"]),
+        ("received by hs-detect", summary["frames_received"]),
+        ("inspected", summary["frames_detected"]),
+        (skipped, summary["frames_skipped"]),
+        ("lost", summary["frames_lost"]),
+        ("with poses", summary["frames_with_poses"]),
+    ]
     rows += [
         ("results a second", show(summary["rate_hz"], "{:.1f}")),
         ("training, s", show(summary["train_seconds"], "{:.0f}")),
@@ -154,6 +166,10 @@ def page(out, summary):
         "demo/page.html",
         summary=summary,
         overlay=embedded(out / "overlay.png", "png"),
+        followed=summary.get("followed"),
+        followed_header=followed.HEADER,
+        followed_objects=followed.object_rows(summary["followed"]) if "followed" in summary else [],
+        followed_frames=followed.frame_rows(summary["followed"], summary["frames_sent"]) if "followed" in summary else [],
         objects=object_rows(summary),
         precision_recall=precision_recall_chart(read_csv(stream / "evaluation" / "curves.csv")),
         latencies=latency_chart(read_csv(stream / "frame_times.csv")),
@@ -167,17 +183,22 @@ def page(out, summary):
 
 
 def print_table(summary):
-    print(f"\n{'object':<16}{'AUC':>8}{'poses right':>14}{'ADD-S recall':>14}")
-    for name, auc in summary["auc"].items():
-        recalls = (show(summary[key].get(name)) for key in (RIGHT_RECALL, POSE_RECALL))
-        print(f"{name:<16}{show(auc):>8}" + "".join(f"{recall:>14}" for recall in recalls))
+    if "followed" in summary:
+        print(f"\nPoses of followed objects beside the truth\n{followed.words(summary['followed'], summary['frames_sent'])}")
+    inspected, sent = summary["processed"], summary["frames_sent"]
+    print(f"\nThe detector, in the {summary['frames_detected']} frames that it inspected; AUC over all {sent} beside, the others missed")
+    print(f"{'object':<16}{'AUC':>8}{'poses right':>14}{'ADD-S recall':>14}{f'AUC of {sent}':>14}")
+    for name, auc in inspected["auc"].items():
+        recalls = (show(inspected[key].get(name)) for key in (RIGHT_RECALL, POSE_RECALL))
+        cells = [*recalls, show(summary["auc"].get(name))]
+        print(f"{name:<16}{show(auc):>8}" + "".join(f"{cell:>14}" for cell in cells))
     print(f"\n{'latency, ms':<16}{'p50':>8}{'p95':>8}{'p99':>8}")
     for stage, *latencies in latency_rows(summary):
         print(f"{stage:<16}" + "".join(f"{latency:>8}" for latency in latencies))
     print(
-        "\nframes: {frames_sent} sent = {frames_detected} detected + {frames_skipped} skipped + {frames_lost} lost;"
+        "\nhs-detect: {frames_sent} frames sent = {frames_detected} inspected + {frames_skipped} {skipped} + {frames_lost} lost;"
         " {frames_with_poses} with poses; {rate_hz:.1f} results a second; trained in {train_seconds:.0f} s".format(
-            **summary
+            skipped="left out, as meant" if "followed" in summary else "passed over", **summary
         )
     )
     if "clutter" in summary:
@@ -190,8 +211,9 @@ def write(options, store, sent):
     out = options.out
     summary = summarise(options, store, sent)
     write_json(out / "summary.json", summary)
-    for name in ("overlay.png", "overlay.mp4"):
-        shutil.copyfile(out / "stream" / name, out / name)
+    shutil.copyfile(out / "stream" / "overlay.mp4", out / "overlay.mp4")
+    with Image.open(fullest_image(poses_by_frame(out / "stream" / "results.lcmlog"), out / "stream" / "pictures")) as image:
+        image.save(out / "overlay.png")
     (out / "report.html").write_text(page(out, summary))
     print_table(summary)
     print(f"{out}/report.html, {out}/summary.json, {out}/overlay.png, {out}/overlay.mp4")

@@ -10,20 +10,27 @@ from studies.command import RECORDED_CAMERA, call, die, recorded_views, step
 from studies.demo import live, report, teach
 from studies.records import threads, write_json
 from studies.stream import Stream, virtual_camera_of
+from studies.time_left import TimeLeft
 from studies.unit_runner import Store, Units, make
 
 RATE, SINGLE_IMAGES_RATE = 30, 2  # Hz; single images are sent slowly enough that each is looked at
+LOOKS = 5  # of the detector, a second, where hs-pose follows
+USUAL_FRAMES = 300
+# Seconds on a machine with two slow cores, of so many frames; STREAM_S beside what the frames take by their rate.
+TRAINING_S, BACKGROUND_S, FOREST_S, SCENE_S, LOG_S = 44, 30, 70, 31, 8
+STREAM_S, EVALUATION_S, REPORT_S = 8, 10, 2
 AWAY_S = 3.0  # for which --unplug takes the camera away
 
 
 def rendered_units(options):
     """Rendered views and rooms, the forest that is trained on them, and the test scene."""
     units = Units()
-    units.add("training", "", "hs-render", "training", "--out", "{out}")
-    units.add("background", "", "hs-render", "background", "--count", 215, "--out", "{out}")
+    units.add("training", "", "hs-render", "training", "--out", "{out}", expected_s=TRAINING_S)
+    units.add("background", "", "hs-render", "background", "--count", 215, "--out", "{out}", expected_s=BACKGROUND_S)
     units.add("forest", "", "hs-train", "--threads", threads(), "--out", "{out}", "--views", "bop:{training}",
-              "--background", "bop:{background}")  # fmt: skip
-    units.add("scene", "", "hs-render", "scene", options.scene, "--frames", options.frames, "--out", "{out}")
+              "--background", "bop:{background}", expected_s=FOREST_S)  # fmt: skip
+    units.add("scene", "", "hs-render", "scene", options.scene, "--frames", options.frames, "--out", "{out}",
+              expected_s=SCENE_S * options.frames / USUAL_FRAMES)  # fmt: skip
     return units
 
 
@@ -37,7 +44,18 @@ def recorded_units(options):
 
 
 def add_log(units, name, scene, rate):
-    units.add(name, "", "hs-capture", "--source", f"bop:{{{scene}}}", "--rate", rate, "--log", "{out}")
+    units.add(name, "", "hs-capture", "--source", f"bop:{{{scene}}}", "--rate", rate, "--log", "{out}", expected_s=LOG_S)
+
+
+def steps_of(options):
+    """What follows when the data are there: {step: expected seconds}."""
+    names = ("stream", "clutter_stream") if options.real else ("stream",)
+    rate, frames = (SINGLE_PICTURES_RATE, USUAL_FRAMES) if options.real else (RATE, options.frames)
+    steps = {}
+    for name in names:
+        steps[name] = frames / rate + STREAM_S
+        steps[f"{name} evaluation"] = 2 * EVALUATION_S * frames / USUAL_FRAMES
+    return {**steps, "report": REPORT_S}
 
 
 class Demo:
@@ -45,21 +63,31 @@ class Demo:
         self.options, self.programs, self.out = options, programs, options.out
         self.rate = SINGLE_IMAGES_RATE if options.real else RATE
         self.store = Store(options.out, programs, units.all(), files="data")
-        make(self.store, options.fresh)
+        steps = steps_of(options)
+        make(self.store, options.fresh, after_s=sum(steps.values()))
+        self.time_left = TimeLeft(steps)
 
-    def stream(self, name, frames, models):
+    def stream(self, name, frames, models, follow=False):
         """hs-detect sends even its weakest detections here, as candidates: precision and recall are drawn over all scores.
         hs-pose looks at none but those that it would be sent."""
+        looks, following = (("--looks-per-second", LOOKS), ("--follow",)) if follow else ((), ())
         return Stream(self.programs, self.store.path("forest"), models, frames, self.out / name,
-                      detect=("--candidates", 0.01), pose=("--threads", 1, "--min-score", 0.2), show=True)  # fmt: skip
+                      detect=("--candidates", 0.01, *looks), pose=("--threads", 1, "--min-score", 0.2, *following),
+                      show=True, track=follow)  # fmt: skip
+
+    def step(self, name, words):
+        """A line of progress with the time that the demo still takes."""
+        self.time_left.begin(name)
+        step(f"{words}; {self.time_left.words()}")
 
     def replay(self, name, log, scene, models=None):
         """The log through the stream, and what came out beside the truth of the scene. Returns how many frames were sent."""
         file = self.store.path(log)
         sent = sum(event.channel == "OPENNI_FRAME" for event in read_log(file))
-        step(f"{name}: {sent} frames through the stream")
-        self.stream(name, sent, models).play("lcm-logplayer", file)
-        step(f"{name}: evaluation")
+        how = f"follows objects, {LOOKS} looks of the detector a second" if self.options.follow else "detects in each frame"
+        self.step(name, f"{name}: {sent} frames through the stream, which {how}")
+        self.stream(name, sent, models, self.options.follow).play("lcm-logplayer", file)
+        self.step(f"{name} evaluation", f"{name}: evaluation")
         self.evaluate(name, "evaluation", scene, models)
         self.evaluate(name, "evaluation_processed", scene, models, "--processed-only")
         return sent
@@ -85,7 +113,7 @@ def run_replay(options, programs):
         add_log(units, "stream.lcmlog", "scene", RATE)
         demo = Demo(options, programs, units)
         sent = demo.replay("stream", "stream.lcmlog", "scene", demo.store.path("training") / "models")
-    step("report")
+    demo.step("report", "report")
     report.write(options, demo.store, sent)
 
 

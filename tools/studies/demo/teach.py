@@ -2,6 +2,7 @@
 and posed in the same stream. Times are those of the messages' arrival at the logger."""
 
 import shutil
+import subprocess
 import time
 
 from houghstream import known_objects_t, status_t, teaching_t
@@ -11,6 +12,7 @@ from studies.demo.pose_scatter import pose_figures
 from studies.records import about, read_json, threads, write_json
 from studies.report.page import embedded, render, show
 from studies.stream import Processes, virtual_camera_of
+from studies.time_left import SECONDS_APART, TimeLeft, last_words
 from studies.unit_runner import Store, Units, make
 
 OBJECT, NAME = "coffee_mug", "mug"
@@ -18,6 +20,9 @@ WORLD = 4  # of the rooms that are for development
 TAKE_HZ, TAKE_FRAMES = 15, 240  # one turn about the object
 LONGEST_S = 40  # of the take
 AFTERWARDS_S = 20  # for which the stream goes on when the object is known
+TEACHING_TIMEOUT_S = 600
+TAKES_S = 25  # the take is rendered; this and STEPS_S on a machine with two slow cores
+STEPS_S = {"begin": 12, "take": 20, "fusing": 60, "training": 150, "practise": 200, "afterwards": AFTERWARDS_S, "report": 8}
 AROUND_US = 2_000_000  # the change of the store: so long before and after
 POOR = 3  # exit status of hs-teach
 
@@ -25,7 +30,7 @@ POOR = 3  # exit status of hs-teach
 def units():
     found = Units()
     found.add("takes", "", "hs-render", "takes", "--development", "--world", WORLD, "--objects", OBJECT, "--take", 1,
-              "--frames", TAKE_FRAMES, "--fps", TAKE_HZ, "--out", "{out}")  # fmt: skip
+              "--frames", TAKE_FRAMES, "--fps", TAKE_HZ, "--out", "{out}", expected_s=TAKES_S)  # fmt: skip
     return found
 
 
@@ -52,21 +57,51 @@ def await_frames(capture, shutter, seconds=120):
         time.sleep(0.1)
 
 
-def stream(programs, out, scene):
+def phase_of(words):
+    """Which of STEPS_S hs-teach show is in, by all that it has said so far."""
+    said = [line for line in words.splitlines() if line.startswith("hs-teach: ")]
+    for phase, begins, holds in (("practise", "hs-teach: training: ", " is known"), ("training", "hs-teach: training: ", ""),
+                                 ("fusing", "hs-teach: fusing: ", "")):  # fmt: skip
+        if any(line.startswith(begins) and holds in line for line in said):
+            return phase
+    return "take"
+
+
+def await_teaching(teach, time_left):
+    """Returns the exit status of hs-teach show; until then says every ten seconds how far it is and how long the demo still
+    takes."""
+    end, told = time.monotonic() + TEACHING_TIMEOUT_S, time.monotonic()
+    while True:
+        phase = phase_of(teach.log.read_text(errors="replace"))
+        if phase != time_left.running:
+            time_left.begin(phase)
+        try:
+            return teach.process.wait(1.0)
+        except subprocess.TimeoutExpired:
+            if time.monotonic() > end:
+                teach.fail(f"did not end within {TEACHING_TIMEOUT_S} s")
+        if time.monotonic() - told >= SECONDS_APART:
+            told = time.monotonic()
+            print(f"    {last_words(teach.log) or 'hs-teach begins'}; all: {time_left.words()}", flush=True)
+
+
+def stream(programs, out, scene, time_left):
     """The stream from its start to AFTERWARDS_S after the object is known, all that was said in OUT/results.lcmlog."""
     store = out / "store"
     with Processes(out / "log") as running:
         start_stream(running, programs, out, store, scene)
         await_frames(running.by_name["capture"], out / "shutter.txt")
-        step(f"the object is shown: {TAKE_HZ} frames a second, while hs-detect and hs-pose work on them")
+        time_left.begin("take")
+        step(f"the object is shown: {TAKE_HZ} frames a second, while hs-detect and hs-pose work on them; {time_left.words()}")
         teach = running.start("teach", programs / "hs-teach", "show", "--from-stream", "--name", NAME, "--out", store,
                               "--seconds", LONGEST_S, "--keep", out / "shown")  # fmt: skip
-        status = teach.process.wait(600)
+        status = await_teaching(teach, time_left)
         if status == POOR:
             die(f"hs-teach calls what it saw poor: {teach.log.read_text().strip().splitlines()[-1]}")
         if status != 0:
             teach.fail(f"ended with status {status}")
-        step("taught; the stream goes on")
+        time_left.begin("afterwards")
+        step(f"taught; the stream goes on; {time_left.words()}")
         time.sleep(AFTERWARDS_S)
         for name in ("detect", "pose", "capture"):
             if not running.by_name[name].runs():
@@ -227,14 +262,17 @@ def rows(summary):
 def run(options, programs):
     out = options.out
     store = Store(out, programs, units().all(), files="data")
-    make(store, options.fresh)
+    make(store, options.fresh, after_s=sum(STEPS_S.values()))
     takes = store.path("takes")
     scene = takes / "test" / f"{read_json(takes / 'takes.json')[0]['scene']:06d}"
     stream_folder = out / "stream"
     shutil.rmtree(stream_folder, ignore_errors=True)
-    step("a stream in which nothing is known")
-    stream(programs, stream_folder, scene)
-    step("report")
+    time_left = TimeLeft(STEPS_S)
+    time_left.begin("begin")
+    step(f"a stream in which nothing is known; {time_left.words()}")
+    stream(programs, stream_folder, scene, time_left)
+    time_left.begin("report")
+    step(f"report; {time_left.words()}")
     call(programs / "hs-log", "export", "json", stream_folder / "results.lcmlog", stream_folder / "results.json",
          into=out / "logs" / "export.txt")  # fmt: skip
     story = Story(stream_folder / "results.lcmlog")
