@@ -2,14 +2,17 @@
 
 #include <filesystem>
 
+#include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/files/camera_info.hpp"
 #include "drivers/openni/oni_repair.hpp"
+#include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "tools/common/progress_line.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/log/export_frames.hpp"
+#include "tools/log/export_mcap.hpp"
 #include "tools/log/export_objects.hpp"
 #include "tools/log/export_results.hpp"
 #include "tools/log/filter_log.hpp"
@@ -26,6 +29,9 @@ struct Options {
   std::string camera;
   std::string channel = "OPENNI_FRAME";
   LogFilter filter;
+  std::string models;
+  double model_unit_m = 1e-3;
+  std::string objects;
   RecordingSettings recording;
 };
 
@@ -98,6 +104,27 @@ CommandLine add_export(CommandLine& app, const std::string& name, const std::str
   return part;
 }
 
+CommandLine add_mcap(CommandLine& app, Options& options) {
+  CommandLine mcap = app.add_subcommand(
+      "mcap", "frames and results for Foxglove and Rerun: images, depth, boxes, transforms, and models in the scene");
+  mcap.add_option("log", options.in, "LCM log").required();
+  mcap.add_option("out", options.out, "file to write").required();
+  mcap.add_option("--objects", options.objects, "object store of hs-teach with the models");
+  add_model_options(mcap, options.models, options.model_unit_m);
+  mcap.add_option("--camera", options.camera, kCameraOptionHelp);
+  mcap.add_example("hs-log export mcap RESULTS.lcmlog OUT.mcap --objects my.store");
+  return mcap;
+}
+
+std::int64_t export_mcap_of(const Options& options, LossReport& losses) {
+  require(options.models.empty() || options.objects.empty(), "expected either --objects STORE or --models FOLDER");
+  McapExtras extras;
+  extras.camera = options.recording.camera;
+  if (!options.models.empty()) extras.models = load_class_models(options.models, options.model_unit_m);
+  if (!options.objects.empty()) extras.models = store::load_store_meshes(store::read_store(options.objects));
+  return export_mcap(options.in, extras, options.out, losses);
+}
+
 std::int64_t seal_with_progress(const Options& options) {
   ProgressLine progress(std::filesystem::path(options.in).filename().string(), 1.0);
   return seal_log(options.in, options.out, [&](double fraction) { progress.at(fraction); });
@@ -134,6 +161,7 @@ int main(int argc, char** argv) {
                  options);
   const CommandLine json = add_export(
       exporter, "json", "detections and poses of all cameras and detectors by frame, with stage times", options);
+  const CommandLine mcap = add_mcap(exporter, options);
   const CommandLine objects_csv =
       add_export(exporter, "objects-csv", "hs-track's objects, a row for each after each frame", options);
   add_export(exporter, "objects-json", "hs-track's objects by frame, and when and why each one's state changed",
@@ -156,6 +184,7 @@ int main(int argc, char** argv) {
                                  : import.given() ? import_log(options.recording, options.channel, options.out, losses)
                                  : bop.given()    ? export_bop(options.recording, options.out, losses)
                                  : png.given()    ? export_pngs(options.recording, options.out, losses)
+                                 : mcap.given()   ? export_mcap_of(options, losses)
                                  : csv.given()    ? export_results_csv(options.in, options.out, losses)
                                  : json.given()   ? export_results_json(options.in, options.out, losses)
                                  : objects_csv.given() ? export_objects_csv(options.in, options.out, losses)
