@@ -17,6 +17,7 @@
 #include "tools/log/export_results.hpp"
 #include "tools/log/filter_log.hpp"
 #include "tools/log/log_info.hpp"
+#include "tools/log/record_log.hpp"
 #include "tools/log/recording.hpp"
 
 namespace houghstream::log_tools {
@@ -32,6 +33,7 @@ struct Options {
   std::string models;
   double model_unit_m = 1e-3;
   std::string objects;
+  RecordSettings record;
   RecordingSettings recording;
 };
 
@@ -59,6 +61,33 @@ CommandLine add_filter(CommandLine& app, Options& options) {
   filter.add_flag("-i,--invert", options.filter.others, "keep the channels that do not match");
   filter.add_example("hs-log filter IN.lcmlog OUT.lcmlog -s 2.5 -e 10 -c 'OPENNI_.*'");
   return filter;
+}
+
+CommandLine add_record(CommandLine& app, Options& options) {
+  CommandLine record = app.add_subcommand("record", "records what is published, until Ctrl-C");
+  record.add_option("out", options.record.file, "LCM log to write").required();
+  record
+      .add_option("-c,--channel", options.record.channels,
+                  "channels: a regular expression for the whole name; repeatable; default: all")
+      .repeatable();
+  record.add_option("--seconds", options.record.seconds, "end after so many seconds (0: when stopped)")
+      .capture_default_str()
+      .non_negative();
+  add_replace_option(record, options.record.replace, "OUT");
+  add_lcm_url_option(record, options.record.url);
+  record.add_example("hs-log record take.lcmlog -c OPENNI_FRAME -c 'HOUGHSTREAM_.*'");
+  return record;
+}
+
+void record_and_tell(const RecordSettings& settings) {
+  const RecordResult result = record_log(settings);
+  fmt::print("{} events on {} channels, {:.1f} MB, in {}\n", result.events, result.channels,
+             static_cast<double>(result.bytes) * 1e-6, result.file);
+  if (result.is_complete()) {
+    log_info("{}", result.losses_line());
+  } else {
+    log_warning("{}: {}", result.file, result.losses_line());
+  }
 }
 
 CommandLine add_seal(CommandLine& app, Options& options) {
@@ -137,7 +166,7 @@ int main(int argc, char** argv) {
   using namespace houghstream;
   using namespace houghstream::log_tools;
   CommandLine app(
-      "Looks into LCM logs, cuts them, makes them of other recordings and writes what is in them to files. "
+      "Looks into LCM logs, records and cuts them, makes them of other recordings and writes what is in them to files. "
       "What is damaged is passed over and reported.",
       "hs-log");
   app.require_subcommand();
@@ -145,6 +174,7 @@ int main(int argc, char** argv) {
   app.add_example("hs-log export csv RESULTS.lcmlog results.csv");
   Options options;
   const CommandLine info = add_info(app, options);
+  const CommandLine record = add_record(app, options);
   const CommandLine filter = add_filter(app, options);
   const CommandLine seal = add_seal(app, options);
   const CommandLine repair = add_repair(app, options);
@@ -168,6 +198,7 @@ int main(int argc, char** argv) {
              options);
 
   return run_tool(app, argc, argv, [&] {
+    if (record.given()) return record_and_tell(options.record);
     LossReport losses;
     options.recording.source = options.in;
     if (!options.camera.empty()) options.recording.camera = camera_of_option(options.camera);
