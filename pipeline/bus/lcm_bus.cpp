@@ -39,6 +39,7 @@ const std::string kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
 constexpr int kQueueCapacity = 100;
 // Fewer messages may wait where these would have more bytes than this. LCM lets one more wait than its limit.
 constexpr std::size_t kQueueBytes = std::size_t{128} << 20U;
+constexpr int kUnboundedCapacity = 100'000'000;
 
 // A service manager otherwise limits the time of a start.
 const std::string kStartTakesTime = "EXTEND_TIMEOUT_USEC=60000000";
@@ -68,6 +69,7 @@ struct MessageQueue {
   lcm_subscription_t* made = nullptr;  // LCM's, while there is one
   int capacity = 0;
   std::size_t message_bytes = 1;  // size of the largest recent message
+  bool is_bounded = true;
 
   void set_capacity(int messages) {
     if (messages == capacity) return;
@@ -77,6 +79,7 @@ struct MessageQueue {
 
   /// LCM counts messages, not bytes. A large one is forgotten over some hundred smaller ones.
   void bound(std::size_t bytes) {
+    if (!is_bounded) return set_capacity(kUnboundedCapacity);
     message_bytes = std::max({bytes, message_bytes - message_bytes / 64, std::size_t{1}});
     const auto fitting = static_cast<int>(std::min<std::size_t>(kQueueBytes / message_bytes, kQueueCapacity));
     set_capacity(std::max(fitting, 1));
@@ -187,7 +190,7 @@ LcmBus::LcmBus(const std::string& url, const std::string& output_log, Existing e
     }
     return;
   }
-  require(output_log.empty(), "an output log goes with a file:// URL, not with {}; record a bus with lcm-logger",
+  require(output_log.empty(), "an output log goes with a file:// URL, not with {}; hs-log record records a bus",
           state_->url);
   open_network();
 }
@@ -227,7 +230,16 @@ LcmBus::~LcmBus() {
 }
 
 void LcmBus::subscribe(const std::string& channels, Handler handler) {
+  add_subscription(channels, std::move(handler), true);
+}
+
+void LcmBus::subscribe_unbounded(const std::string& channels, Handler handler) {
+  add_subscription(channels, std::move(handler), false);
+}
+
+void LcmBus::add_subscription(const std::string& channels, Handler handler, bool is_bounded) {
   state_->subscriptions.push_back({ChannelPattern(channels), std::move(handler), state_->complaints});
+  state_->subscriptions.back().queue.is_bounded = is_bounded;
   if (is_log()) return;
   subscribe_to_network();
   if (is_host_local(state_->url)) refuse_others();

@@ -49,6 +49,10 @@ class LcmBus {
   /// InputError as it does, and where the pattern is none.
   void subscribe(const std::string& channels, Handler handler);
 
+  /// Subscribes as subscribe() does, but any number of messages may wait for handle(), where LCM else drops what comes
+  /// in a burst without saying so. For a recorder, which handles at once and bounds its memory itself.
+  void subscribe_unbounded(const std::string& channels, Handler handler);
+
   /// Subscribes to frames: where none arrives on these channels for three seconds while the network can be reached, the
   /// channels on which frames arrive are logged.
   void subscribe_to_frames(const std::string& channels, Handler handler);
@@ -89,6 +93,7 @@ class LcmBus {
   struct State;
   void open_network();
   void wait_until_reachable();
+  void add_subscription(const std::string& channels, Handler handler, bool is_bounded);
   void subscribe_to_network();
   void refuse_others();
   void look_at_network();

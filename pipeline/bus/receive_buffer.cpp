@@ -1,8 +1,15 @@
 #include "pipeline/bus/receive_buffer.hpp"
 
 #include <fmt/format.h>
+#include <linux/sock_diag.h>
 #include <sys/socket.h>
 #include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 
@@ -24,6 +31,20 @@ std::int64_t granted_receive_buffer(std::int64_t asked) {
   const bool known = getsockopt(socket_fd, SOL_SOCKET, SO_RCVBUF, &granted, &size) == 0;
   close(socket_fd);
   return known ? granted / 2 : 0;  // Linux doubles what was asked for, to pay for its bookkeeping: socket(7)
+}
+
+bool force_receive_buffer(int socket, std::int64_t bytes) {
+  const int wanted = static_cast<int>(bytes);
+  return setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &wanted, sizeof wanted) == 0;
+}
+
+std::int64_t count_dropped_datagrams(int socket) {
+  std::array<std::uint32_t, SK_MEMINFO_VARS> counts{};
+  socklen_t size = sizeof counts;
+  const bool is_known = getsockopt(socket, SOL_SOCKET, SO_MEMINFO, counts.data(), &size) == 0;
+  require(is_known && size > SK_MEMINFO_DROPS * sizeof counts[0], "the kernel does not say what it drops: {}",
+          std::strerror(errno));
+  return counts[SK_MEMINFO_DROPS];
 }
 
 std::int64_t needed_receive_buffer(std::int64_t frame_bytes) {

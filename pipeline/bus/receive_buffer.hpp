@@ -22,6 +22,14 @@ std::int64_t granted_receive_buffer(std::int64_t asked);
 /// kNeededReceiveBuffer.
 std::int64_t needed_receive_buffer(std::int64_t frame_bytes);
 
+/// Gives an open socket a receive buffer beyond the kernel's limit (SO_RCVBUFFORCE), which root may. Returns false
+/// where the kernel refuses; the socket then keeps its buffer.
+bool force_receive_buffer(int socket, std::int64_t bytes);
+
+/// Returns how many datagrams the kernel has dropped on this socket since it was opened, because its receive buffer was
+/// full or a filter refused them. Throws InputError where the kernel does not say (before Linux 4.12).
+std::int64_t count_dropped_datagrams(int socket);
+
 /// The command that makes the kernel grant what is asked for, until the next start of the machine.
 std::string receive_buffer_remedy();
 

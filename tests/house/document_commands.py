@@ -15,6 +15,7 @@ COMMAND = re.compile(r"(?:[\w$./-]*/)?(hs-[a-z-]+)\s+(\S.*)")
 SPAN = re.compile(r"`([^`\n]+)`")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]+")
 WITH_SUBCOMMANDS = ("hs-teach", "hs-log", "hs-render", "hs-import", "hs-study")
+WITH_JOBS = ("export",)  # subcommands that have subcommands
 NO_HELP = ("hs-spy",)  # a script of Java's, whose options are lcm-spy's
 MADE = ("out", "build")
 
@@ -30,8 +31,13 @@ def commands_in(text):
 
 
 def subcommand_of(program, rest):
-    word = rest.split()[0]
-    return word if program in WITH_SUBCOMMANDS and re.match(r"[a-z][a-z-]*$", word) else ""
+    """Its words: "info", "export csv"; "" where there is none."""
+    words = []
+    for word in rest.split() if program in WITH_SUBCOMMANDS else []:
+        if not re.match(r"[a-z][a-z-]*$", word) or (words and words[0] not in WITH_JOBS):
+            break
+        words.append(word)
+    return " ".join(words[:2])
 
 
 def find_faults(root, help_of):
@@ -66,7 +72,7 @@ class Programs:
     def ask(program, subcommand):
         if not program.is_file():
             return None
-        words = [program, *filter(None, [subcommand]), "--help"]
+        words = [program, *subcommand.split(), "--help"]
         return subprocess.run(words, capture_output=True, text=True, check=False).stdout
 
 

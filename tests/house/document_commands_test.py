@@ -8,15 +8,17 @@ import seeded_faults
 HELP = {
     ("hs-detect", ""): "  --forest TEXT  a forest\n  --threads INT\n",
     ("hs-log", "export"): "  --frames INT\n",
+    ("hs-log", "export bop"): "  --camera TEXT\n",
     ("hs-log", "info"): "  --json\n",
 }
 GOOD = {
     "README.md": "Run\n\n    build/bin/hs-detect --forest F --threads 2    # --made-up is a comment's\n    hs-log export --frames 3 LOG | sort --unique\n",
-    "tools/README.md": "`hs-log info --json LOG`, `--anything`, `hs-detect`, `hs-spy --log`, `ls --all`\n",
+    "tools/README.md": "`hs-log info --json LOG`, `--anything`, `hs-detect`, `hs-log export bop LOG --camera C`, `hs-spy --log`, `ls --all`\n",
 }
 WRONG = {
     "an option that is gone": "    build/bin/hs-detect --model F\n",
     "one of another subcommand": "`hs-log info --frames 3`\n",
+    "one of a job of another subcommand": "`hs-log export bop LOG --frames 3`\n",
     "a program that is gone": "    hs-find --forest F\n",
     "one in the middle of a line": "    hs-log info LOG && build/bin/hs-detect --treads 2\n",
 }

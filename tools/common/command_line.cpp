@@ -160,6 +160,11 @@ CommandOption& CommandOption::one_of(const std::vector<int>& values) {
   return *this;
 }
 
+CommandOption& CommandOption::repeatable() {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
 CommandOption& CommandOption::excludes(const CommandOption& other) {
   option_->excludes(other.option_);
   return *this;

@@ -31,7 +31,8 @@ class CommandOption {
   CommandOption& positive();                             ///< above 0
   CommandOption& non_negative();                         ///< 0 or above
   CommandOption& one_of(const std::vector<int>& values);
-  CommandOption& excludes(const CommandOption& other);                    ///< at most one of the two is given
+  CommandOption& repeatable();                          ///< of a list: one value each time that the option is given
+  CommandOption& excludes(const CommandOption& other);  ///< at most one of the two is given
   CommandOption& transform(const std::map<std::string, double>& values);  ///< a name becomes its value
 
  private:

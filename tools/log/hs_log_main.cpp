@@ -2,18 +2,22 @@
 
 #include <filesystem>
 
+#include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/files/camera_info.hpp"
 #include "drivers/openni/oni_repair.hpp"
+#include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "tools/common/progress_line.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/log/export_frames.hpp"
+#include "tools/log/export_mcap.hpp"
 #include "tools/log/export_objects.hpp"
 #include "tools/log/export_results.hpp"
 #include "tools/log/filter_log.hpp"
 #include "tools/log/log_info.hpp"
+#include "tools/log/record_log.hpp"
 #include "tools/log/recording.hpp"
 
 namespace houghstream::log_tools {
@@ -26,6 +30,10 @@ struct Options {
   std::string camera;
   std::string channel = "OPENNI_FRAME";
   LogFilter filter;
+  std::string models;
+  double model_unit_m = 1e-3;
+  std::string objects;
+  RecordSettings record;
   RecordingSettings recording;
 };
 
@@ -53,6 +61,33 @@ CommandLine add_filter(CommandLine& app, Options& options) {
   filter.add_flag("-i,--invert", options.filter.others, "keep the channels that do not match");
   filter.add_example("hs-log filter IN.lcmlog OUT.lcmlog -s 2.5 -e 10 -c 'OPENNI_.*'");
   return filter;
+}
+
+CommandLine add_record(CommandLine& app, Options& options) {
+  CommandLine record = app.add_subcommand("record", "records what is published, until Ctrl-C");
+  record.add_option("out", options.record.file, "LCM log to write").required();
+  record
+      .add_option("-c,--channel", options.record.channels,
+                  "channels: a regular expression for the whole name; repeatable; default: all")
+      .repeatable();
+  record.add_option("--seconds", options.record.seconds, "end after so many seconds (0: when stopped)")
+      .capture_default_str()
+      .non_negative();
+  add_replace_option(record, options.record.replace, "OUT");
+  add_lcm_url_option(record, options.record.url);
+  record.add_example("hs-log record take.lcmlog -c OPENNI_FRAME -c 'HOUGHSTREAM_.*'");
+  return record;
+}
+
+void record_and_tell(const RecordSettings& settings) {
+  const RecordResult result = record_log(settings);
+  fmt::print("{} events on {} channels, {:.1f} MB, in {}\n", result.events, result.channels,
+             static_cast<double>(result.bytes) * 1e-6, result.file);
+  if (result.is_complete()) {
+    log_info("{}", result.losses_line());
+  } else {
+    log_warning("{}: {}", result.file, result.losses_line());
+  }
 }
 
 CommandLine add_seal(CommandLine& app, Options& options) {
@@ -98,6 +133,27 @@ CommandLine add_export(CommandLine& app, const std::string& name, const std::str
   return part;
 }
 
+CommandLine add_mcap(CommandLine& app, Options& options) {
+  CommandLine mcap = app.add_subcommand(
+      "mcap", "frames and results for Foxglove and Rerun: images, depth, boxes, transforms, and models in the scene");
+  mcap.add_option("log", options.in, "LCM log").required();
+  mcap.add_option("out", options.out, "file to write").required();
+  mcap.add_option("--objects", options.objects, "object store of hs-teach with the models");
+  add_model_options(mcap, options.models, options.model_unit_m);
+  mcap.add_option("--camera", options.camera, kCameraOptionHelp);
+  mcap.add_example("hs-log export mcap RESULTS.lcmlog OUT.mcap --objects my.store");
+  return mcap;
+}
+
+std::int64_t export_mcap_of(const Options& options, LossReport& losses) {
+  require(options.models.empty() || options.objects.empty(), "expected either --objects STORE or --models FOLDER");
+  McapExtras extras;
+  extras.camera = options.recording.camera;
+  if (!options.models.empty()) extras.models = load_class_models(options.models, options.model_unit_m);
+  if (!options.objects.empty()) extras.models = store::load_store_meshes(store::read_store(options.objects));
+  return export_mcap(options.in, extras, options.out, losses);
+}
+
 std::int64_t seal_with_progress(const Options& options) {
   ProgressLine progress(std::filesystem::path(options.in).filename().string(), 1.0);
   return seal_log(options.in, options.out, [&](double fraction) { progress.at(fraction); });
@@ -110,7 +166,7 @@ int main(int argc, char** argv) {
   using namespace houghstream;
   using namespace houghstream::log_tools;
   CommandLine app(
-      "Looks into LCM logs, cuts them, makes them of other recordings and writes what is in them to files. "
+      "Looks into LCM logs, records and cuts them, makes them of other recordings and writes what is in them to files. "
       "What is damaged is passed over and reported.",
       "hs-log");
   app.require_subcommand();
@@ -118,6 +174,7 @@ int main(int argc, char** argv) {
   app.add_example("hs-log export csv RESULTS.lcmlog results.csv");
   Options options;
   const CommandLine info = add_info(app, options);
+  const CommandLine record = add_record(app, options);
   const CommandLine filter = add_filter(app, options);
   const CommandLine seal = add_seal(app, options);
   const CommandLine repair = add_repair(app, options);
@@ -134,12 +191,14 @@ int main(int argc, char** argv) {
                  options);
   const CommandLine json = add_export(
       exporter, "json", "detections and poses of all cameras and detectors by frame, with stage times", options);
+  const CommandLine mcap = add_mcap(exporter, options);
   const CommandLine objects_csv =
       add_export(exporter, "objects-csv", "hs-track's objects, a row for each after each frame", options);
   add_export(exporter, "objects-json", "hs-track's objects by frame, and when and why each one's state changed",
              options);
 
   return run_tool(app, argc, argv, [&] {
+    if (record.given()) return record_and_tell(options.record);
     LossReport losses;
     options.recording.source = options.in;
     if (!options.camera.empty()) options.recording.camera = camera_of_option(options.camera);
@@ -156,6 +215,7 @@ int main(int argc, char** argv) {
                                  : import.given() ? import_log(options.recording, options.channel, options.out, losses)
                                  : bop.given()    ? export_bop(options.recording, options.out, losses)
                                  : png.given()    ? export_pngs(options.recording, options.out, losses)
+                                 : mcap.given()   ? export_mcap_of(options, losses)
                                  : csv.given()    ? export_results_csv(options.in, options.out, losses)
                                  : json.given()   ? export_results_json(options.in, options.out, losses)
                                  : objects_csv.given() ? export_objects_csv(options.in, options.out, losses)

@@ -5,8 +5,6 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <houghstream/drake_image_array_t.hpp>
-#include <houghstream/kinect_frame_msg_t.hpp>
 #include <memory>
 #include <set>
 #include <string_view>
@@ -64,13 +62,6 @@ void refuse_other_kinds(const std::string& file) {
   }
 }
 
-images_t images_of(ByteView bytes) {
-  const std::int64_t fingerprint = fingerprint_of(bytes);
-  if (fingerprint == kinect_frame_msg_t::getHash()) return images_from_kinect(bytes);
-  if (fingerprint == drake_image_array_t::getHash()) return images_from_drake(bytes);
-  return decode_message<images_t>(bytes);
-}
-
 /// Gives it the camera that it lacks; throws InputError unless it is a frame with images that can be decoded.
 void complete(images_t& message, const RecordingSettings& settings, std::int64_t sequence) {
   const FrameImages images = images_from_message(message);
@@ -93,7 +84,7 @@ class LogRecording {
       const ByteView bytes{event->data.data(), event->data.size()};
       if (!is_wanted(*event, bytes)) continue;
       try {
-        RecordedFrame frame{event->timestamp, images_of(bytes), event->channel};
+        RecordedFrame frame{event->timestamp, to_images(bytes), event->channel};
         complete(frame.message, settings_, sequence_++);
         return frame;
       } catch (const InputError& error) {

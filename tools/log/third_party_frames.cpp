@@ -8,7 +8,9 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/image_decoding.hpp"
 #include "pipeline/messages/codecs.hpp"
+#include "pipeline/messages/wire_check.hpp"
 #include "pipeline/types/frame.hpp"
+#include "tools/log/message_types.hpp"
 
 namespace houghstream::log_tools {
 namespace {
@@ -207,6 +209,13 @@ images_t images_from_drake(ByteView message) {
   require(colours.size() == 1 && depths.size() == 1, "{}: {} colour images and {} of depth, expected one each",
           reader.source(), colours.size(), depths.size());
   return make_images(utime, colour_image(colours[0]), images_t::DEPTH_MM, depth_image(depths[0]));
+}
+
+images_t to_images(ByteView message) {
+  const std::int64_t fingerprint = fingerprint_of(message);
+  if (fingerprint == kinect_frame_msg_t::getHash()) return images_from_kinect(message);
+  if (fingerprint == drake_image_array_t::getHash()) return images_from_drake(message);
+  return decode_message<images_t>(message);
 }
 
 }  // namespace houghstream::log_tools

@@ -51,4 +51,7 @@ images_t images_from_kinect(ByteView message);
 /// which are rounded to millimetres; raw, zlib or PNG. Other images in it are ignored.
 images_t images_from_drake(ByteView message);
 
+/// Converts a message of either kind, or decodes an images_t.
+images_t to_images(ByteView message);
+
 }  // namespace houghstream::log_tools
