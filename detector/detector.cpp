@@ -45,7 +45,9 @@ struct Detector::State {
   std::vector<SearchContext> searches(const std::vector<ChromaPair>& camera_colours) const {
     std::vector<SearchContext> all;
     all.reserve(indices.size());
-    for (const ForestIndex& index : indices) all.push_back({index, settings, {}, camera_colours});
+    std::size_t classes = 0;
+    for (const Forest& forest : groups) classes += forest.classes.size();
+    for (const ForestIndex& index : indices) all.push_back({index, settings, {}, camera_colours, classes});
     return all;
   }
 

@@ -53,8 +53,8 @@ std::vector<Hypothesis> find_hypotheses(const SearchContext& search, DetectorWor
 }
 
 VotingInput voting_input(const SearchContext& search, const DetectorWorkspace& workspace) {
-  return {search.forest(), workspace.patches, workspace.posteriors, workspace.images.frames.at(0).camera,
-          search.settings.voting};
+  return {search.forest(),        workspace.patches,      workspace.posteriors, workspace.images.frames.at(0).camera,
+          search.settings.voting, search.searched_classes};
 }
 
 std::vector<ScoredHypothesis> score_hypotheses(const SearchContext& search, const RgbdFrame& frame,

@@ -158,19 +158,24 @@ void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
   const std::optional<TextureComparison> texture =
       compare_with_alternatives(*it.observation, published.T_camera_object, tolerance, settings.registration);
   if (!texture) return;
+  const auto judge = [&](RegistrationResult result, const std::optional<TextureComparison>& compared) {
+    if (compared && compared->aligned) result.T_camera_object = *compared->aligned;
+    PoseEvidence evidence =
+        gather_evidence(*it.observation, result.T_camera_object, it.detection.score, settings.verification);
+    bring_to_camera(it.pose.camera_colours, evidence);
+    evidence.texture_probability = compared ? texture_probability(compared->margin, learnt) : 1.0F;
+    return judged_pose(it, result, evidence, settings);
+  };
   PoseEvidence& published_evidence = it.evidence[it.published];
   published_evidence.texture_probability = texture_probability(texture->margin, learnt);
-  ObjectPose judged = judged_pose(it, published, published_evidence, settings);
+  ObjectPose judged =
+      texture->aligned ? judge(published, texture) : judged_pose(it, published, published_evidence, settings);
   if (texture->better) {
     const RegistrationResult other =
         refine_pose(*it.observation, *texture->better, it.rotations, pose_selection_settings(settings));
     const std::optional<TextureComparison> there =
         compare_with_alternatives(*it.observation, other.T_camera_object, tolerance, settings.registration);
-    PoseEvidence evidence =
-        gather_evidence(*it.observation, other.T_camera_object, it.detection.score, settings.verification);
-    bring_to_camera(it.pose.camera_colours, evidence);
-    evidence.texture_probability = there ? texture_probability(there->margin, learnt) : 1.0F;
-    ObjectPose rotated = judged_pose(it, other, evidence, settings);
+    ObjectPose rotated = judge(other, there);
     if (other.inliers > 0 && rotated.quality > judged.quality) judged = std::move(rotated);
   }
   it.pose = std::move(judged);

@@ -10,9 +10,6 @@
 namespace houghstream {
 namespace {
 
-/// The candidates of each group.
-using GroupCandidates = std::vector<std::vector<ScoredHypothesis>>;
-
 /// The camera's rendering of the colours of each class of each group.
 using GroupCameras = std::vector<std::vector<ChromaMap>>;
 
@@ -144,13 +141,6 @@ bool bring_into_cameras(GroupCameras cameras, std::vector<LabFrame>& frames) {
   return is_far;
 }
 
-GroupCandidates score_each(const std::vector<GroupHypotheses>& groups, int threads, ScoringWorkspace& workspace) {
-  GroupCandidates candidates;
-  for (const GroupHypotheses& searched : groups)
-    candidates.push_back(score_hypotheses(searched.input, searched.hypotheses, threads, workspace));
-  return candidates;
-}
-
 std::vector<ScoredHypothesis> joined(GroupCandidates by_group) {
   std::vector<ScoredHypothesis> all = std::move(by_group.front());
   for (std::size_t i = 1; i < by_group.size(); ++i)
@@ -180,7 +170,7 @@ void judge_again(const ScoringInput& input, int threads, std::vector<ScoredHypot
 
 std::vector<ScoredHypothesis> score_groups(const std::vector<GroupHypotheses>& groups, int threads,
                                            ScoringWorkspace& workspace) {
-  return joined(score_each(groups, threads, workspace));
+  return joined(score_by_group(groups, threads, workspace));
 }
 
 std::vector<ScoredHypothesis> weigh_in_camera_colours(const std::vector<GroupHypotheses>& groups,
@@ -199,7 +189,7 @@ std::vector<ScoredHypothesis> weigh_in_camera_colours(const std::vector<GroupHyp
     frames[i].cameras.assign(groups[i].input.index.forest().classes.size(), colourless_camera());
   if (is_grey) return score_groups(in_camera, threads, workspace);
   if (!colours.empty()) bring_into_cameras(learn_cameras(groups, colours), frames);
-  GroupCandidates candidates = score_each(in_camera, threads, workspace);
+  GroupCandidates candidates = score_by_group(in_camera, threads, workspace);
   if (bring_into_cameras(learn_cameras(groups, all_pairs(groups, colours, candidates)), frames))
     return score_groups(in_camera, threads, workspace);
   for (std::size_t i = 0; i < groups.size(); ++i) judge_again(in_camera[i].input, threads, candidates[i]);

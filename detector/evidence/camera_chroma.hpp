@@ -7,14 +7,7 @@
 
 namespace houghstream {
 
-/// The hypotheses of one of the forests that a frame is searched with, and what they are scored with. What it refers to
-/// must outlive it.
-struct GroupHypotheses {
-  ScoringInput input;
-  const std::vector<Hypothesis>& hypotheses;
-};
-
-/// Returns the candidates of all groups, one group's after another's, as score_hypotheses() finds them: in colours as
+/// Returns the candidates of all groups, one group's after another's, as score_by_group() finds them: in colours as
 /// taught.
 std::vector<ScoredHypothesis> score_groups(const std::vector<GroupHypotheses>& groups, int threads,
                                            ScoringWorkspace& workspace);

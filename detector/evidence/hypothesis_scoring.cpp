@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace houghstream {
 namespace {
@@ -25,24 +27,44 @@ struct SeedTemplates {
   const PlacedTemplate* end() const { return templates.data() + count; }
 };
 
-/// Scores hypotheses one after another, in one thread. Its functions stand below in the order of their calls.
+/// A hypothesis and what it is scored with.
+struct ScoringTask {
+  const ScoringInput* input = nullptr;
+  const Hypothesis* hypothesis = nullptr;
+  float spread = 1.0F;  ///< attitude_spread() of its class
+  std::size_t group = 0;
+  ScoredHypothesis scored;
+  bool is_refined = false;
+};
+
+/// Scores one hypothesis, in one thread. Its functions stand below in the order of their calls.
 class HypothesisScorer {
  public:
-  HypothesisScorer(const ScoringInput& input, ScoringWorkspace::Worker& workspace)
-      : input_(input), forest_(input.index.forest()), views_(forest_.views), workspace_(workspace) {}
+  HypothesisScorer(ScoringTask& task, std::vector<PlacedTemplate>& compared, ScoringWorkspace::Worker& workspace)
+      : input_(*task.input),
+        hypothesis_(*task.hypothesis),
+        spread_(task.spread),
+        forest_(input_.index.forest()),
+        object_(forest_.classes[hypothesis_.class_index]),
+        views_(forest_.views),
+        scored_(task.scored),
+        compared_(compared),
+        workspace_(workspace) {}
 
-  ScoredHypothesis score_hypothesis(const Hypothesis& hypothesis, float spread);
+  /// Compares the first templates that most votes remember with the frame.
+  void compare();
+  void refine();
+  /// Adds the box, and the rotations of a candidate.
+  void complete();
 
  private:
-  Evidence evidence_of_votes(const Hypothesis& hypothesis) const;
-  void add_best_match(const Hypothesis& hypothesis, float spread, Evidence& evidence);
-  void compare_templates(const Hypothesis& hypothesis, std::size_t count);
+  void compare_templates(std::size_t count);
   void set_match(const PlacedTemplate& placed, Evidence& evidence) const;
   SeedTemplates find_seeds(std::size_t count);
   PlacedTemplate refine_over_neighbours(PlacedTemplate best);
   static cv::Rect2f visible_box_between(const cv::Rect2f& voted, const cv::Rect2f& fitted, const Camera& camera);
-  const WeightedViews& weight_views(const Hypothesis& hypothesis, float spread);
-  void add_rotations(const Hypothesis& hypothesis, const WeightedViews& views, std::vector<RotationVote>& rotations);
+  const WeightedViews& weight_views();
+  void add_rotations(const WeightedViews& views, std::vector<RotationVote>& rotations);
 
   bool is_excluded(std::uint32_t view) const {
     const std::vector<std::uint32_t>& excluded = input_.excluded_views;
@@ -50,29 +72,46 @@ class HypothesisScorer {
   }
 
   const ScoringInput& input_;
+  const Hypothesis& hypothesis_;
+  const float spread_;
   const Forest& forest_;
+  const ObjectClass& object_;
   const std::vector<ViewTemplate>& views_;
+  ScoredHypothesis& scored_;
+  std::vector<PlacedTemplate>& compared_;
   ScoringWorkspace::Worker& workspace_;
 };
 
+// The steps of score_by_group(); they stand behind it in the order of their calls.
+std::vector<ScoringTask> list_tasks(const std::vector<GroupHypotheses>& groups);
+Evidence evidence_of_votes(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera);
+void keep_most_promising(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks);
+void choose_refined(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks);
+
 }  // namespace
 
-std::vector<ScoredHypothesis> score_hypotheses(const ScoringInput& input, const std::vector<Hypothesis>& hypotheses,
-                                               int threads, ScoringWorkspace& workspace) {
-  std::vector<float> spreads(input.index.forest().classes.size(), 0.0F);
-  for (const Hypothesis& hypothesis : hypotheses) {
-    float& spread = spreads[hypothesis.class_index];
-    if (spread == 0.0F)
-      spread = attitude_spread(input.index.forest(), static_cast<std::uint32_t>(hypothesis.class_index));
-  }
+GroupCandidates score_by_group(const std::vector<GroupHypotheses>& groups, int threads, ScoringWorkspace& workspace) {
+  const EvidenceSettings& settings = groups.front().input.settings;
+  std::vector<ScoringTask> tasks = list_tasks(groups);
+  keep_most_promising(settings, tasks);
   workspace.workers.resize(threads);
-  std::vector<ScoredHypothesis> scored(hypotheses.size());
-  parallel_for_workers(threads, static_cast<int>(hypotheses.size()), [&](int worker, int i) {
-    const Hypothesis& hypothesis = hypotheses[static_cast<std::size_t>(i)];
-    HypothesisScorer scorer(input, workspace.workers[worker]);
-    scored[static_cast<std::size_t>(i)] = scorer.score_hypothesis(hypothesis, spreads[hypothesis.class_index]);
+  workspace.compared.resize(std::max(workspace.compared.size(), tasks.size()));
+  const auto for_each_task = [&](const auto& step) {
+    parallel_for_workers(threads, static_cast<int>(tasks.size()), [&](int worker, int i) {
+      ScoringTask& task = tasks[static_cast<std::size_t>(i)];
+      HypothesisScorer scorer(task, workspace.compared[static_cast<std::size_t>(i)], workspace.workers[worker]);
+      step(task, scorer);
+    });
+  };
+  for_each_task([](const ScoringTask& /*task*/, HypothesisScorer& scorer) { scorer.compare(); });
+  choose_refined(settings, tasks);
+  for_each_task([](const ScoringTask& task, HypothesisScorer& scorer) {
+    if (task.is_refined) scorer.refine();
+    scorer.complete();
   });
-  return scored;
+  GroupCandidates candidates(groups.size());
+  for (ScoringTask& task : tasks) candidates[task.group].push_back(std::move(task.scored));
+  return candidates;
 }
 
 float attitude_spread(const Forest& forest, std::uint32_t class_index) {
@@ -82,35 +121,34 @@ float attitude_spread(const Forest& forest, std::uint32_t class_index) {
   return std::clamp(static_cast<float>(views) / kOneAttitude, 1.0F, static_cast<float>(kMaxAttitudes));
 }
 
-ScoredHypothesis HypothesisScorer::score_hypothesis(const Hypothesis& hypothesis, float spread) {
-  const ObjectClass& object = forest_.classes[hypothesis.class_index];
-  const Camera& camera = input_.frame.frame.camera;
-  workspace_.compared.clear();
-  ScoredHypothesis scored;
-  scored.evidence = evidence_of_votes(hypothesis);
-  Detection& detection = scored.detection;
-  detection.class_id = object.class_id;
-  detection.class_name = object.name;
-  detection.centre_camera = hypothesis.centre_camera;
-  detection.vote_weight = hypothesis.weight;
-  detection.vote_count = hypothesis.vote_count;
-  detection.box_px = backproject_box(forest_, hypothesis, input_.patches, camera, workspace_.box);
-  detection.score = vote_score(scored.evidence.relative_vote_mass);
-  if (forest_.scoring == Scoring::kEvidence) {
-    add_best_match(hypothesis, spread, scored.evidence);
-    detection.score = score(object.score_model, scored.evidence);
-    detection.box_px = visible_box_between(detection.box_px, scored.evidence.fit.visible_box_px, camera);
+namespace {
+
+/// Lists the hypotheses of all groups with the evidence of their votes.
+std::vector<ScoringTask> list_tasks(const std::vector<GroupHypotheses>& groups) {
+  std::size_t count = 0;
+  for (const GroupHypotheses& searched : groups) count += searched.hypotheses.size();
+  std::vector<ScoringTask> tasks;
+  tasks.reserve(count);
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    const auto& [input, hypotheses] = groups[group];
+    const Forest& forest = input.index.forest();
+    std::vector<float> spreads(forest.classes.size(), 0.0F);
+    for (const Hypothesis& hypothesis : hypotheses) {
+      float& spread = spreads[hypothesis.class_index];
+      if (spread == 0.0F) spread = attitude_spread(forest, static_cast<std::uint32_t>(hypothesis.class_index));
+      ScoringTask& task = tasks.emplace_back();
+      task.input = &input;
+      task.hypothesis = &hypothesis;
+      task.spread = spread;
+      task.group = group;
+      task.scored.evidence = evidence_of_votes(forest, hypothesis, input.frame.frame.camera);
+    }
   }
-  const float min_score = std::min(input_.settings.threshold, input_.settings.candidates_from);
-  const float max_score = std::max(detection.score, score_as_taught(object.score_model, scored.evidence));
-  if (max_score < min_score) return scored;  // most of them: nothing reads their rotations
-  add_rotations(hypothesis, weight_views(hypothesis, spread), detection.rotations);
-  return scored;
+  return tasks;
 }
 
-Evidence HypothesisScorer::evidence_of_votes(const Hypothesis& hypothesis) const {
-  const ObjectClass& object = forest_.classes[hypothesis.class_index];
-  const Camera& camera = input_.frame.frame.camera;
+Evidence evidence_of_votes(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera) {
+  const ObjectClass& object = forest.classes[hypothesis.class_index];
   Evidence evidence;
   evidence.relative_vote_mass = hypothesis.vote_mass / object.nominal_vote_mass;
   evidence.certainty = hypothesis.weight / static_cast<float>(std::max<std::size_t>(hypothesis.patches.size(), 1));
@@ -119,48 +157,65 @@ Evidence HypothesisScorer::evidence_of_votes(const Hypothesis& hypothesis) const
   return evidence;
 }
 
-/// Completes the evidence by the template that matches the frame best, after refinement. Of templates of unlike
-/// attitudes that one counts which most supports an object, by what all objects have in common: a template of a small
-/// side easily matches a part of the object, and only what lies beyond its outline tells them apart. A hypothesis that
-/// is hopeless is not refined: most maxima are, and refinement takes longer than everything else about them.
-void HypothesisScorer::add_best_match(const Hypothesis& hypothesis, float spread, Evidence& evidence) {
+/// Returns the indices of the `count` largest values, of equal ones the first, in ascending order.
+std::vector<std::size_t> largest(const std::vector<double>& values, int count) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (values.size() <= static_cast<std::size_t>(count)) return order;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
+  order.resize(static_cast<std::size_t>(count));
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
+/// Drops the hypotheses that are not compared with the frame.
+void keep_most_promising(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks) {
+  std::vector<double> promises;
+  promises.reserve(tasks.size());
+  for (const ScoringTask& task : tasks) promises.push_back(vote_promise(task.scored.evidence));
+  std::vector<ScoringTask> kept;
+  for (const std::size_t i : largest(promises, settings.max_compared)) kept.push_back(std::move(tasks[i]));
+  tasks.swap(kept);
+}
+
+/// Chooses the hypotheses that are refined. One that is hopeless is not: most maxima are, and refinement takes longer
+/// than everything else about them.
+void choose_refined(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks) {
   constexpr float kHopeless = 0.02F;  // score: votes bring occluded objects templates that hardly match
-  constexpr ScoreModel kCommon;
-  std::vector<PlacedTemplate>& compared = workspace_.compared;
-  compare_templates(hypothesis, kTemplates);
-  if (compared.empty()) return;
-  set_match(best_match(compared), evidence);
-  if (score(forest_.classes[hypothesis.class_index].score_model, evidence) < kHopeless) return;
-  compare_templates(hypothesis, static_cast<std::size_t>(kTemplates * spread));
-  const Evidence unrefined = evidence;
-  workspace_.best_visited.clear();
-  double max_log_odds = -std::numeric_limits<double>::infinity();
-  for (const PlacedTemplate& seed : find_seeds(static_cast<std::size_t>(spread))) {
-    const PlacedTemplate best = refine_over_neighbours(seed);
-    Evidence refined = unrefined;
-    set_match(best, refined);
-    refined.alternative_scale_gain = alternative_scale_gain(views_[best.view], best, input_.frame);
-    const double odds = score_logit(kCommon, score_terms(refined));
-    if (odds <= max_log_odds) continue;
-    max_log_odds = odds;
-    evidence = refined;
-    workspace_.visited.swap(workspace_.best_visited);
+  std::vector<double> scores;
+  scores.reserve(tasks.size());
+  for (const ScoringTask& task : tasks) {
+    const bool is_compared = task.scored.evidence.view != Evidence::kNoView;
+    scores.push_back(is_compared ? task.scored.detection.score : 0.0F);
   }
-  // Only the refinement that led to the best match supports rotations.
-  compared.insert(compared.end(), workspace_.best_visited.begin(), workspace_.best_visited.end());
+  for (const std::size_t i : largest(scores, settings.max_refined)) tasks[i].is_refined = scores[i] >= kHopeless;
+}
+
+void HypothesisScorer::compare() {
+  Detection& detection = scored_.detection;
+  detection.class_id = object_.class_id;
+  detection.class_name = object_.name;
+  detection.centre_camera = hypothesis_.centre_camera;
+  detection.vote_weight = hypothesis_.weight;
+  detection.vote_count = hypothesis_.vote_count;
+  detection.score = vote_score(scored_.evidence.relative_vote_mass);
+  compared_.clear();
+  if (forest_.scoring != Scoring::kEvidence) return;
+  compare_templates(kTemplates);
+  if (!compared_.empty()) set_match(best_match(compared_), scored_.evidence);
+  detection.score = score(object_.score_model, scored_.evidence);
 }
 
 /// Compares the first `count` templates that most votes remember with the frame, but for those that stand in
 /// `compared` already: they come first.
-void HypothesisScorer::compare_templates(const Hypothesis& hypothesis, std::size_t count) {
-  std::vector<PlacedTemplate>& compared = workspace_.compared;
-  const Eigen::Vector3f& centre = hypothesis.centre_camera;
+void HypothesisScorer::compare_templates(std::size_t count) {
+  const Eigen::Vector3f& centre = hypothesis_.centre_camera;
   std::size_t place = 0;
-  for (const auto& [view, weight] : hypothesis.views) {
+  for (const auto& [view, weight] : hypothesis_.views) {
     if (place == count) break;
     if (is_excluded(view)) continue;
-    if (place == compared.size())
-      compared.push_back({view, centre, match_template(views_[view], centre, input_.frame)});
+    if (place == compared_.size())
+      compared_.push_back({view, centre, match_template(views_[view], centre, input_.frame)});
     ++place;
   }
 }
@@ -173,6 +228,31 @@ void HypothesisScorer::set_match(const PlacedTemplate& placed, Evidence& evidenc
   evidence.outline = measure_boundary_continuation(views_[placed.view], placed.centre_camera, input_.frame);
 }
 
+/// Completes the evidence by the template that matches the frame best, after refinement. Of templates of unlike
+/// attitudes that one counts which most supports an object, by what all objects have in common: a template of a small
+/// side easily matches a part of the object, and only what lies beyond its outline tells them apart.
+void HypothesisScorer::refine() {
+  constexpr ScoreModel kCommon;
+  compare_templates(static_cast<std::size_t>(kTemplates * spread_));
+  const Evidence unrefined = scored_.evidence;
+  workspace_.best_visited.clear();
+  double max_log_odds = -std::numeric_limits<double>::infinity();
+  for (const PlacedTemplate& seed : find_seeds(static_cast<std::size_t>(spread_))) {
+    const PlacedTemplate best = refine_over_neighbours(seed);
+    Evidence refined = unrefined;
+    set_match(best, refined);
+    refined.alternative_scale_gain = alternative_scale_gain(views_[best.view], best, input_.frame);
+    const double odds = score_logit(kCommon, score_terms(refined));
+    if (odds <= max_log_odds) continue;
+    max_log_odds = odds;
+    scored_.evidence = refined;
+    workspace_.visited.swap(workspace_.best_visited);
+  }
+  // Only the refinement that led to the best match supports rotations.
+  compared_.insert(compared_.end(), workspace_.best_visited.begin(), workspace_.best_visited.end());
+  scored_.detection.score = score(object_.score_model, scored_.evidence);
+}
+
 /// Returns the template that matches best, and up to `count` in all of those that match next best in attitudes unlike
 /// these; at most kMaxAttitudes. Sorts `compared` by how they match.
 SeedTemplates HypothesisScorer::find_seeds(std::size_t count) {
@@ -181,8 +261,8 @@ SeedTemplates HypothesisScorer::find_seeds(std::size_t count) {
     return Eigen::Quaternionf(views_[placed.view].R_ray_object);
   };
   SeedTemplates seeds;
-  seeds.templates[seeds.count++] = align_best_templates(views_, input_.frame, workspace_.compared);
-  for (const PlacedTemplate& next : workspace_.compared) {
+  seeds.templates[seeds.count++] = align_best_templates(views_, input_.frame, compared_);
+  for (const PlacedTemplate& next : compared_) {
     if (seeds.count == count) break;
     const auto is_like = [&](const PlacedTemplate& seed) {
       return rotation(seed).angularDistance(rotation(next)) <= kUnlike_rad;
@@ -212,6 +292,18 @@ PlacedTemplate HypothesisScorer::refine_over_neighbours(PlacedTemplate best) {
   return align_template(views_, best, input_.frame, 0.5F);
 }
 
+void HypothesisScorer::complete() {
+  const Camera& camera = input_.frame.frame.camera;
+  Detection& detection = scored_.detection;
+  detection.box_px = backproject_box(forest_, hypothesis_, input_.patches, camera, workspace_.box);
+  if (forest_.scoring == Scoring::kEvidence)
+    detection.box_px = visible_box_between(detection.box_px, scored_.evidence.fit.visible_box_px, camera);
+  const float min_score = std::min(input_.settings.threshold, input_.settings.candidates_from);
+  const float max_score = std::max(detection.score, score_as_taught(object_.score_model, scored_.evidence));
+  if (max_score < min_score) return;  // most of them: nothing reads their rotations
+  add_rotations(weight_views(), detection.rotations);
+}
+
 /// Returns the box that votes and template say. Votes tell which patches belong to the object, depth tells where the
 /// template is not occluded: their errors are different ones, so the sides are taken midway.
 cv::Rect2f HypothesisScorer::visible_box_between(const cv::Rect2f& voted, const cv::Rect2f& fitted,
@@ -225,12 +317,12 @@ cv::Rect2f HypothesisScorer::visible_box_between(const cv::Rect2f& voted, const 
 
 /// Returns views with the weight of their rotation, heaviest first: the votes that remember them. Of a class that was
 /// taught in many attitudes the views lie far apart, and how their templates match the frame says more.
-const WeightedViews& HypothesisScorer::weight_views(const Hypothesis& hypothesis, float spread) {
+const WeightedViews& HypothesisScorer::weight_views() {
   constexpr float kSharpness = 4.0F;
-  if (spread == 1.0F || workspace_.compared.empty()) return hypothesis.views;
+  if (spread_ == 1.0F || compared_.empty()) return hypothesis_.views;
   WeightedViews& weighted = workspace_.weighted_views;
   weighted.clear();
-  for (const PlacedTemplate& placed : workspace_.compared) {
+  for (const PlacedTemplate& placed : compared_) {
     weighted.emplace_back(placed.view, std::exp(kSharpness * match_quality(placed.fit)));
   }
   std::stable_sort(weighted.begin(), weighted.end(), [](const auto& a, const auto& b) {
@@ -242,15 +334,16 @@ const WeightedViews& HypothesisScorer::weight_views(const Hypothesis& hypothesis
   return weighted;
 }
 
-void HypothesisScorer::add_rotations(const Hypothesis& hypothesis, const WeightedViews& views,
-                                     std::vector<RotationVote>& rotations) {
-  const Eigen::Quaternionf R_camera_ray(ray_rotation(hypothesis.centre_camera));
+void HypothesisScorer::add_rotations(const WeightedViews& views, std::vector<RotationVote>& rotations) {
+  const Eigen::Quaternionf R_camera_ray(ray_rotation(hypothesis_.centre_camera));
   const auto max_count = static_cast<std::size_t>(std::max(input_.settings.max_rotations, 0));
-  rotations.reserve(std::min(max_count, hypothesis.views.size()));
+  rotations.reserve(std::min(max_count, hypothesis_.views.size()));
   for (const auto& [view, weight] : views) {
     if (rotations.size() >= max_count) break;
     rotations.push_back({R_camera_ray * Eigen::Quaternionf(views_[view].R_ray_object), weight});
   }
 }
+
+}  // namespace
 
 }  // namespace houghstream

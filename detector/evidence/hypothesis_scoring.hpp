@@ -20,7 +20,7 @@ struct ScoredHypothesis {
   Evidence evidence;
 };
 
-/// Inputs of score_hypotheses().
+/// Inputs of score_by_group() that the hypotheses of one forest share.
 struct ScoringInput {
   const ForestIndex& index;
   const LabFrame& frame;
@@ -30,22 +30,34 @@ struct ScoringInput {
   const std::vector<std::uint32_t>& excluded_views;
 };
 
-/// Workspace of score_hypotheses(), used again from frame to frame.
+/// The hypotheses of one of the forests that a frame is searched with, and what they are scored with. What it refers to
+/// must outlive it.
+struct GroupHypotheses {
+  ScoringInput input;
+  const std::vector<Hypothesis>& hypotheses;
+};
+
+/// The candidates of each group.
+using GroupCandidates = std::vector<std::vector<ScoredHypothesis>>;
+
+/// Workspace of score_by_group(), used again from frame to frame.
 struct ScoringWorkspace {
   struct Worker {
-    std::vector<PlacedTemplate> compared;      ///< templates of a hypothesis, compared with the frame
     std::vector<PlacedTemplate> visited;       ///< templates that were compared while one was refined
     std::vector<PlacedTemplate> best_visited;  ///< templates of the refinement that led to the best match
     std::vector<std::pair<std::uint32_t, float>> weighted_views;  ///< views with the weight of their rotation
     BoxWorkspace box;
   };
   PerWorker<Worker> workers;
+  std::vector<std::vector<PlacedTemplate>> compared;  ///< of each hypothesis: templates compared with the frame
 };
 
-/// Returns a candidate for each hypothesis, in their order: its box, how the templates match the frame at its centre,
-/// and the score that follows. The result is the same for any number of threads.
-std::vector<ScoredHypothesis> score_hypotheses(const ScoringInput& input, const std::vector<Hypothesis>& hypotheses,
-                                               int threads, ScoringWorkspace& workspace);
+/// Scores the hypotheses of all groups: how templates match the frame at each centre, the score that follows, the box.
+/// Time is spent where it may matter, whatever the number of groups: EvidenceSettings::max_compared hypotheses, those
+/// whose votes promise most, are compared with the frame, and max_refined of them, those that then score highest, are
+/// refined; settings are those of the first group. Hypotheses that are not compared have no candidate; the others keep
+/// their order. The result is the same for any number of threads.
+GroupCandidates score_by_group(const std::vector<GroupHypotheses>& groups, int threads, ScoringWorkspace& workspace);
 
 /// Returns how many times as many views a class has as one that was taught in one attitude, 1 to 3.
 float attitude_spread(const Forest& forest, std::uint32_t class_index);

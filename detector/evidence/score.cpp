@@ -77,6 +77,11 @@ float score_as_taught(const ScoreModel& model, const Evidence& evidence) {
   return score(model, as_taught);
 }
 
+double vote_promise(const Evidence& evidence) {
+  const ScoreTerms terms = score_terms(evidence);
+  return 2.8 * terms.log_vote_mass + 0.7 * terms.log_certainty + 1.4 * terms.extent;
+}
+
 ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior) {
   std::vector<LogisticExample<kScoreTerms>> judged;
   judged.reserve(examples.size());

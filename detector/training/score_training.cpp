@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "detector/stages.hpp"
@@ -135,6 +136,9 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
   DetectionSettings detection = profile.detection;
   detection.threads = 1;
   detection.evidence.learn_camera_colours = false;
+  detection.evidence.max_compared =
+      std::numeric_limits<int>::max();  // of what a frame has no time for, scores learn too
+  detection.evidence.max_refined = std::numeric_limits<int>::max();
   const ForestIndex index(forest);
   const int threads = profile.training.threads;
   std::vector<ScoreExamples> by_frame(static_cast<std::size_t>(source.count));

@@ -56,6 +56,8 @@ struct VotingInput {
   const PatchPosteriors& posteriors;
   const Camera& camera;  ///< camera in whose pixels Hough spaces are laid out: that of the level for near surfaces
   const VotingSettings& settings;
+  /// Number of classes of all the forests that are searched in the frame, which share its candidates; 0: this one's.
+  std::size_t searched_classes = 0;
 };
 
 /// Votes in the order of those who cast them.

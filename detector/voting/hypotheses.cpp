@@ -144,7 +144,8 @@ std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t c
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return scored_maxima[a].vote_mass > scored_maxima[b].vote_mass;
   });
-  const auto maximum = static_cast<std::size_t>(per_class_budget(classes, settings.candidates_per_class));
+  const std::size_t sharing = std::max(classes, input.searched_classes);
+  const auto maximum = static_cast<std::size_t>(per_class_budget(sharing, settings.candidates_per_class));
   if (order.size() > maximum) order.resize(maximum);
   std::vector<Hypothesis> hypotheses;
   hypotheses.reserve(order.size());

@@ -55,8 +55,7 @@ std::vector<Eigen::Isometry3d> expand_symmetries(const Symmetries& symmetries, d
   const int steps = static_cast<int>(std::ceil(M_PI / max_step));
   for (const ContinuousSymmetry& symmetry : symmetries.continuous) {
     for (int i = rotations.empty() ? 0 : 1; i < steps; ++i) {
-      const Eigen::AngleAxisd rotation_step(2.0 * M_PI * i / steps, symmetry.axis);
-      rotations.push_back(rotate_about(Eigen::Quaterniond(rotation_step), symmetry.offset));
+      rotations.push_back(rotation_about(symmetry, 2.0 * M_PI * i / steps));
     }
   }
   if (rotations.empty()) rotations.push_back(Eigen::Isometry3d::Identity());
@@ -65,6 +64,10 @@ std::vector<Eigen::Isometry3d> expand_symmetries(const Symmetries& symmetries, d
     for (const Eigen::Isometry3d& rotation_step : rotations) all.emplace_back(rotation_step * discrete);
   }
   return all;
+}
+
+Eigen::Isometry3d rotation_about(const ContinuousSymmetry& symmetry, double angle_rad) {
+  return rotate_about(Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, symmetry.axis)), symmetry.offset);
 }
 
 Eigen::Isometry3d symmetry_towards(const Eigen::Quaterniond& R_camera_object, const Eigen::Quaterniond& R_reference,

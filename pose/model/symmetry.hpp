@@ -14,6 +14,9 @@ namespace houghstream {
 /// which for a ball is less than the whole group. Throws InputError unless `max_step` is above 0.
 std::vector<Eigen::Isometry3d> expand_symmetries(const Symmetries& symmetries, double max_step = 0.01);
 
+/// Returns the rotation about the symmetry's axis by an angle in radians.
+Eigen::Isometry3d rotation_about(const ContinuousSymmetry& symmetry, double angle_rad);
+
 /// Returns the symmetry S for which R_camera_object * S is nearest to the reference, by the angle between them. It is
 /// exact: nothing is discretised, and two or more continuous axes mean a ball, which can be rotated to any reference.
 /// Ties go to the identity, then to the first listed.

@@ -10,6 +10,7 @@
 #include "pose/model/angles.hpp"
 #include "pose/model/revolution_axis.hpp"
 #include "pose/model/surface_colour.hpp"
+#include "pose/model/symmetry.hpp"
 
 namespace houghstream {
 namespace {
@@ -75,11 +76,6 @@ Moments surface_moments(const Mesh& mesh) {
   out.axes = solver.eigenvectors();
   out.spread = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
   return out;
-}
-
-Eigen::Isometry3d rotation_about(const ContinuousSymmetry& axis, double angle_rad) {
-  return Eigen::Translation3d(axis.offset) * Eigen::AngleAxisd(angle_rad, axis.axis) *
-         Eigen::Translation3d(-axis.offset);
 }
 
 double angle_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {

@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "pipeline/geometry/renderer.hpp"
+#include "pose/model/symmetry.hpp"
 #include "pose/registration/registration.hpp"
 #include "pose/seen/depth_score.hpp"
 
@@ -26,6 +27,7 @@ constexpr double kTemper = 0.3;
 constexpr double kNoise = 8.0;  // variance of a channel without texture and shading, 8-bit CIE L*a*b*
 constexpr double kMinGain = 0.3;
 constexpr double kMaxGain = 2.5;
+constexpr double kInformative = 1.0;  // gain of a log likelihood from which on it is not noise that a rotation follows
 
 /// Holds a band of one colour channel: one number for each compared cell, and the sum of their squares.
 struct Band {
@@ -303,31 +305,52 @@ struct Alternative {
   double likelihood = 0.0;  ///< log
 };
 
+/// Turns a pose about the model's axes of revolution to where its texture agrees best with the observed one, by steps
+/// from half the distance of two samples (ObjectModel::alternatives) down to two degrees.
+void align_about_axes(const ObjectModel& model, const Face& face, const Eigen::Isometry3d& T_object_camera,
+                      const std::vector<TextureBands>& observed, Alternative& pose) {
+  constexpr double kFirstStep_rad = M_PI / 24.0;
+  constexpr int kSteps = 3;
+  for (const ContinuousSymmetry& axis : model.shape_symmetries.continuous) {
+    double step_rad = kFirstStep_rad;
+    for (int i = 0; i < kSteps; ++i, step_rad *= 0.5) {
+      const Eigen::Isometry3d from = pose.T_camera_object;
+      for (const double angle_rad : {step_rad, -step_rad}) {
+        const Eigen::Isometry3d turned = from * rotation_about(axis, angle_rad);
+        std::optional<TextureBands> texture = model_texture(model, face, T_object_camera * turned);
+        if (!texture) continue;
+        const double likelihood = best_log_likelihood(*texture, observed);
+        if (likelihood > pose.likelihood) pose = {turned, *std::move(texture), likelihood};
+      }
+    }
+  }
+}
+
 /// Returns the alternatives at which the model's surface agrees with the depth. Of many rotations only the likeliest
-/// are compared with small offsets.
+/// are aligned.
 std::vector<Alternative> likely_alternatives(const ObjectObservation& observation, const Face& face,
                                              const Eigen::Isometry3d& T_camera_object,
                                              const std::vector<Eigen::Isometry3d>& poses,
                                              const std::vector<TextureBands>& seen_at) {
-  constexpr std::size_t kLikeliest = 3;
+  constexpr std::size_t kAligned = 8;
+  const auto is_likelier = [](const Alternative& a, const Alternative& b) { return a.likelihood > b.likelihood; };
   const Eigen::Isometry3d T_object_camera = T_camera_object.inverse();
   std::vector<Alternative> shown;
   for (const Eigen::Isometry3d& pose : poses) {
     std::optional<TextureBands> texture = model_texture(observation.model, face, T_object_camera * pose);
     if (!texture) continue;
-    const double likelihood = log_likelihood(*texture, seen_at.front());
+    const double likelihood = best_log_likelihood(*texture, seen_at);
     shown.push_back({pose, *std::move(texture), likelihood});
   }
-  std::stable_sort(shown.begin(), shown.end(),
-                   [](const Alternative& a, const Alternative& b) { return a.likelihood > b.likelihood; });
-  for (std::size_t i = 0; i < std::min(kLikeliest, shown.size()); ++i)
-    shown[i].likelihood = best_log_likelihood(shown[i].texture, seen_at);
+  std::stable_sort(shown.begin(), shown.end(), is_likelier);
+  for (std::size_t i = 0; i < std::min(kAligned, shown.size()); ++i)
+    align_about_axes(observation.model, face, T_object_camera, seen_at, shown[i]);
   return shown;
 }
 
 /// Returns the margin without information from the texture: all alternatives are equally probable.
 TextureComparison undecided(std::size_t alternatives) {
-  return {-std::log(static_cast<double>(alternatives)), std::nullopt};
+  return {-std::log(static_cast<double>(alternatives)), std::nullopt, std::nullopt};
 }
 
 }  // namespace
@@ -342,16 +365,21 @@ std::optional<TextureComparison> compare_with_alternatives(const ObjectObservati
   if (observation.model.texture.empty() || observation.colours.lab.empty()) return undecided(alternatives.size());
   const Face face = visible_face(observation, T_camera_object, tolerance);
   if (face.cells.size() < kMinCells) return undecided(alternatives.size());
-  const std::optional<TextureBands> own = model_texture(observation.model, face, Eigen::Isometry3d::Identity());
+  std::optional<TextureBands> own = model_texture(observation.model, face, Eigen::Isometry3d::Identity());
   if (!own) return undecided(alternatives.size());
   const std::vector<TextureBands> seen_at = observed_textures(observation, face);
-  const double own_likelihood = best_log_likelihood(*own, seen_at);
+  const double likelihood = best_log_likelihood(*own, seen_at);
+  Alternative pose{T_camera_object, *std::move(own), likelihood};
+  align_about_axes(observation.model, face, T_camera_object.inverse(), seen_at, pose);
+  const bool is_turned = pose.likelihood > likelihood + kInformative;
+  const double own_likelihood = pose.likelihood;
   const std::vector<Alternative> shown = likely_alternatives(observation, face, T_camera_object, alternatives, seen_at);
   if (shown.empty()) return std::nullopt;
-  // All other evidence supports the present pose. Another one replaces it on strong evidence only, a Bayes factor of 20
-  // (Kass and Raftery 1995, "Bayes Factors").
-  constexpr double kClearly = 3.0;  // its logarithm
+  // Another pose replaces the present one on positive evidence, a Bayes factor of 3 (Kass and Raftery 1995, "Bayes
+  // Factors").
+  constexpr double kClearly = 1.1;  // its logarithm
   TextureComparison comparison;
+  if (is_turned) comparison.aligned = pose.T_camera_object;
   double best = own_likelihood + kClearly;
   double others = 0.0;  // sum of likelihoods over the pose's own
   for (const Alternative& other : shown) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 
@@ -65,6 +66,38 @@ TEST(Candidates, NoClassOffersMoreThanItMay) {
   EXPECT_EQ(stripes(1), 1);
 }
 
+TEST(Candidates, OnlyTheMostPromisingAreCompared) {
+  RgbdFrame frame = toy::background(77);
+  toy::put_tile(0, 80, 119.5, 0.7, frame);
+  toy::put_tile(0, 240, 119.5, 0.7, frame);
+  const std::vector<ScoredHypothesis> all = candidates(frame);
+  ASSERT_GT(all.size(), 2U);
+  std::vector<double> promises;
+  for (const ScoredHypothesis& found : all) promises.push_back(vote_promise(found.evidence));
+  std::sort(promises.begin(), promises.end(), std::greater<>());
+  DetectionSettings settings;
+  settings.evidence.max_compared = 2;
+  const std::vector<ScoredHypothesis> two = candidates(frame, settings);
+  ASSERT_EQ(two.size(), 2U);
+  for (const ScoredHypothesis& found : two) EXPECT_GE(vote_promise(found.evidence), promises[1]);
+}
+
+TEST(Candidates, OnlyTheLikeliestAreRefined) {
+  RgbdFrame frame = toy::background(77);
+  toy::put_tile(0, 159.5, 119.5, 0.7, frame);
+  const auto count_refined = [&](int max_refined) {
+    DetectionSettings settings;
+    settings.evidence.max_refined = max_refined;
+    const std::vector<ScoredHypothesis> found = candidates(frame, settings);
+    return std::count_if(found.begin(), found.end(), [](const ScoredHypothesis& c) {
+      return c.evidence.alternative_scale_gain != Evidence{}.alternative_scale_gain;
+    });
+  };
+  EXPECT_GE(count_refined(1000), 1);
+  EXPECT_EQ(count_refined(1), 1);
+  EXPECT_EQ(count_refined(0), 0);
+}
+
 /// Returns the middle of the toy view alone, as if another side of the object looked like it.
 ViewTemplate middle_part() {
   const TrainingView whole = toy::training_views().front();
@@ -96,7 +129,8 @@ Evidence evidence_among(std::size_t views, const RgbdFrame& frame) {
   hypothesis.views = {{0, 0.5F}, {1, 0.5F}};
   ScoringWorkspace workspace;
   const ScoringInput input{index, toy::lab_frame(frame, frame.colour, 1.0F), {}, {}, without_appearance};
-  return score_hypotheses(input, {hypothesis}, 1, workspace).front().evidence;
+  const std::vector<Hypothesis> hypotheses = {hypothesis};
+  return score_by_group({{input, hypotheses}}, 1, workspace).front().front().evidence;
 }
 
 TEST(Candidates, APartThatAgreesBetterIsNotTakenForTheWholeInAnotherAttitude) {

@@ -59,6 +59,25 @@ std::vector<Hypothesis> find(const PatchGrid& patches, float min_mass) {
   return class_hypotheses(input, 0, workspace);
 }
 
+TEST(Hypotheses, ClassesOfOtherForestsShareTheCandidates) {
+  PatchGrid patches;
+  for (int i = 0; i < 9; ++i) add_cluster({-0.4F + 0.1F * static_cast<float>(i), 0.0F, 1.0F}, 0.0001F, patches);
+  Forest forest = centre_forest();
+  forest.classes[0].nominal_vote_mass = 1.0F;
+  const ForestIndex index(forest);
+  const PatchPosteriors posteriors = all_voting(index, patches);
+  VotingSettings settings;
+  settings.min_mass_fraction = 0.0F;
+  const auto count = [&](std::size_t searched_classes) {
+    const VotingInput input{forest, patches, posteriors, toy::kSmallCamera, settings, searched_classes};
+    VotingWorkspace::Worker workspace;
+    cast_votes(input, 0, workspace.casting, workspace.space);
+    return class_hypotheses(input, 0, workspace).size();
+  };
+  EXPECT_EQ(count(0), 9U);
+  EXPECT_EQ(count(40), 6U) << "as many as a forest of 40 classes offers";
+}
+
 TEST(Hypotheses, TwoClustersGiveTwoMaximaAtTheirMeans) {
   const Eigen::Vector3f left(-0.15F, 0.05F, 1.0F);
   const Eigen::Vector3f right(0.15F, 0.05F, 1.02F);

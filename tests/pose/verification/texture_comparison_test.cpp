@@ -61,6 +61,61 @@ TEST(TextureComparison, TellsThroughAnotherCamera) {
   expect_told(through_camera(frame, [](double value, int c) { return value * (c == 0 ? 0.8 : 1.05); }), "warm light");
 }
 
+/// Returns a can whose label has narrow stripes of unequal widths and colours.
+Mesh printed_can() {
+  constexpr int kSides = 96;
+  constexpr float kRadius = 0.05F;
+  constexpr float kHalf = 0.07F;
+  constexpr float kFullTurn_rad = 6.2831853F;
+  const std::array<cv::Vec3b, 4> paints = {cv::Vec3b(200, 60, 40), cv::Vec3b(230, 230, 230), cv::Vec3b(40, 40, 60),
+                                           cv::Vec3b(30, 120, 220)};
+  const auto ring = [&](int i, float z) {
+    const float angle = kFullTurn_rad * static_cast<float>(i) / kSides;
+    return Eigen::Vector3f(kRadius * std::cos(angle), kRadius * std::sin(angle), z);
+  };
+  Mesh mesh;
+  Random random(5);
+  cv::Vec3b paint = paints[0];
+  for (int i = 0; i < kSides; ++i) {
+    if (i % 2 == 0) paint = paints.at(static_cast<std::size_t>(random.below(4)));
+    add_quad(mesh, {ring(i, -kHalf), ring(i + 1, -kHalf), ring(i + 1, kHalf), ring(i, kHalf)});
+    add_quad(mesh, {ring(i, kHalf), ring(i + 1, kHalf), {0.0F, 0.0F, kHalf}, {0.0F, 0.0F, kHalf}});
+    add_quad(mesh, {ring(i + 1, -kHalf), ring(i, -kHalf), {0.0F, 0.0F, -kHalf}, {0.0F, 0.0F, -kHalf}});
+    mesh.colours.insert(mesh.colours.end(), 4, paint);
+    mesh.colours.insert(mesh.colours.end(), 8, cv::Vec3b(150, 150, 150));
+  }
+  return mesh;
+}
+
+double degrees_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  constexpr double kDegrees = 57.29577951308232;
+  return kDegrees * Eigen::Quaterniond(a.linear()).angularDistance(Eigen::Quaterniond(b.linear()));
+}
+
+/// Colours may be registered two pixels beside the depth, which are 3.5 degrees of the can.
+constexpr double kWithin_deg = 5.0;
+
+TEST(TextureComparison, ACanIsTurnedToWhereItsLabelIs) {
+  const RgbdFrame frame = coloured_frame(printed_can(), kTruth, 1);
+  for (const double off_deg : {9.0, -9.0}) {
+    const std::optional<TextureComparison> compared = compared_at(rotated(kTruth, off_deg), printed_can(), frame);
+    ASSERT_TRUE(compared.has_value());
+    EXPECT_GT(compared->margin, 1.0) << off_deg;
+    ASSERT_TRUE(compared->aligned.has_value()) << off_deg;
+    EXPECT_LT(degrees_between(*compared->aligned, kTruth), kWithin_deg) << off_deg;
+  }
+}
+
+TEST(TextureComparison, TheLabelsPlaceIsFoundBetweenTheAlternatives) {
+  const RgbdFrame frame = coloured_frame(printed_can(), kTruth, 1);
+  for (const double off_deg : {52.0, 127.0, -97.0}) {  // half way between samples
+    const std::optional<TextureComparison> compared = compared_at(rotated(kTruth, off_deg), printed_can(), frame);
+    ASSERT_TRUE(compared.has_value());
+    ASSERT_TRUE(compared->better.has_value()) << off_deg;
+    EXPECT_LT(degrees_between(*compared->better, kTruth), kWithin_deg) << off_deg;
+  }
+}
+
 TEST(TextureComparison, OfAPlainObjectItIsOneOfAsMany) {
   Mesh plain = printed_box();
   for (cv::Vec3b& colour : plain.colours) colour = cv::Vec3b(40, 90, 160);

@@ -50,7 +50,7 @@ def add_log(units, name, scene, rate):
 def steps_of(options):
     """What follows when the data are there: {step: expected seconds}."""
     names = ("stream", "clutter_stream") if options.real else ("stream",)
-    rate, frames = (SINGLE_PICTURES_RATE, USUAL_FRAMES) if options.real else (RATE, options.frames)
+    rate, frames = (SINGLE_IMAGES_RATE, USUAL_FRAMES) if options.real else (RATE, options.frames)
     steps = {}
     for name in names:
         steps[name] = frames / rate + STREAM_S
