@@ -47,7 +47,11 @@ struct Detector::State {
     all.reserve(indices.size());
     std::size_t classes = 0;
     for (const Forest& forest : groups) classes += forest.classes.size();
-    for (const ForestIndex& index : indices) all.push_back({index, settings, {}, camera_colours, classes});
+    for (const ForestIndex& index : indices) {
+      SearchContext& search = all.emplace_back(SearchContext{index, settings});
+      search.remembered_colours = camera_colours;
+      search.searched_classes = classes;
+    }
     return all;
   }
 

@@ -53,8 +53,10 @@ std::vector<Hypothesis> find_hypotheses(const SearchContext& search, DetectorWor
 }
 
 VotingInput voting_input(const SearchContext& search, const DetectorWorkspace& workspace) {
-  return {search.forest(),        workspace.patches,      workspace.posteriors, workspace.images.frames.at(0).camera,
-          search.settings.voting, search.searched_classes};
+  VotingInput input{search.forest(), workspace.patches, workspace.posteriors, workspace.images.frames.at(0).camera,
+                    search.settings.voting};
+  input.searched_classes = search.searched_classes;
+  return input;
 }
 
 std::vector<ScoredHypothesis> score_hypotheses(const SearchContext& search, const RgbdFrame& frame,

@@ -8,24 +8,24 @@ namespace houghstream {
 /// Of all products of two measures the ones listed here reduced the loss most on the development worlds.
 struct ScoreTerms {
   float constant = 0.0F;
-  float log_vote_mass = 0.0F;  ///< logarithm of the vote mass over the expected one
-  float log_visible = 0.0F;    ///< logarithm of the fraction that is not occluded: half an object has half the mass
-  float free_space_violation = 0.0F;  ///< share of the view's surface behind which something is measured
-  float no_depth = 0.0F;              ///< share without depth
-  float rim_continuation = 0.0F;      ///< share of the rim beyond which the surface goes on
+  float log_vote_mass = 0.0F;         ///< logarithm of the vote mass over the expected one
+  float log_visible = 0.0F;           ///< logarithm of the fraction that is not occluded: half an object, half the mass
+  float free_space_violation = 0.0F;  ///< fraction of the view's surface behind which something is measured
+  float no_depth = 0.0F;              ///< fraction without depth
+  float rim_continuation = 0.0F;      ///< fraction of the rim beyond which the surface continues
   float colour_correlation = 0.0F;    ///< correlation of colours
   float hue_mismatch = 0.0F;          ///< see ColourSimilarity
   float mean_chroma_distance = 0.0F;  ///< squared: light makes a little of it
-  /// Error of the visible depth Objects mostly without depth: vote mass and colour correlation are.
-  float depth_residual = 0.0F;
-  ///< distributed differently there, and near surfaces lose their depth more often than far ones.
+  float depth_residual = 0.0F;        ///< error of the visible depth
+  // Vote mass and colour correlation of an object that is mostly without depth are distributed differently, and near
+  // surfaces lose their depth more often than far ones.
   float no_depth_log_vote_mass = 0.0F;
   float no_depth_colour_correlation = 0.0F;
   float no_depth_distance = 0.0F;                ///< product with the distance's logarithm
-  float colour_correlation_hue_mismatch = 0.0F;  ///< print of other colours may be as like as can be
+  float colour_correlation_hue_mismatch = 0.0F;  ///< texture of other colours may correlate as well as can be
   float alternative_scale_gain = 0.0F;           ///< gain of another size, see alternative_scale_gain
-  float log_certainty = 0.0F;  ///< logarithm: as many votes of patches that are less sure come from elsewhere Products,
-                               ///< where the terms above are not linear in the logit.
+  float log_certainty = 0.0F;  ///< logarithm: as many votes of patches that are less sure come from elsewhere
+  // Products stand where the terms above are not linear in the logit.
   float log_visible_sq = 0.0F;
   float alternative_scale_gain_sq = 0.0F;
   float free_space_violation_log_certainty = 0.0F;
@@ -36,8 +36,8 @@ struct ScoreTerms {
   float log_contrast_ratio = 0.0F;         ///< see ColourSimilarity
   float extent_colour_correlation = 0.0F;  ///< products
   float contrast_colour_correlation = 0.0F;
-  /// See ColourSimilarity Continuation of the scene across the boundary, see BoundaryContinuation.
-  float chroma_deficit = 0.0F;
+  float chroma_deficit = 0.0F;  ///< see ColourSimilarity
+  // Continuation of the scene across the outline, see BoundaryContinuation.
   float boundary_continuation = 0.0F;
   float surface_continuation = 0.0F;
   float colour_continuation = 0.0F;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "detector/stages.hpp"
 #include "detector/training/augmentation/sensor_errors.hpp"
@@ -151,7 +152,8 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
       if (object.view) shown.push_back(*object.view);
     }
     for (std::uint32_t& view : shown) view += first_view;
-    const SearchContext search{index, detection, shown};
+    SearchContext search{index, detection};
+    search.excluded_views = std::move(shown);
     by_frame[static_cast<std::size_t>(f)] =
         label_hypotheses(scales.search(search, validation.frame, workspaces[worker]), validation);
   });

@@ -17,7 +17,8 @@ namespace {
 
 std::vector<ScoredHypothesis> candidates(const RgbdFrame& frame, const DetectionSettings& settings = {},
                                          const std::vector<std::uint32_t>& excluded_views = {}) {
-  const SearchContext search{toy::forest_index(), settings, excluded_views};
+  SearchContext search{toy::forest_index(), settings};
+  search.excluded_views = excluded_views;
   DetectorWorkspace workspace;
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);

@@ -69,7 +69,8 @@ TEST(Hypotheses, ClassesOfOtherForestsShareTheCandidates) {
   VotingSettings settings;
   settings.min_mass_fraction = 0.0F;
   const auto count = [&](std::size_t searched_classes) {
-    const VotingInput input{forest, patches, posteriors, toy::kSmallCamera, settings, searched_classes};
+    VotingInput input{forest, patches, posteriors, toy::kSmallCamera, settings};
+    input.searched_classes = searched_classes;
     VotingWorkspace::Worker workspace;
     cast_votes(input, 0, workspace.casting, workspace.space);
     return class_hypotheses(input, 0, workspace).size();
