@@ -181,20 +181,28 @@ void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
   it.pose = std::move(judged);
 }
 
+/// Returns whether the centres of two objects are closer than `ratio` times the smaller radius. False without a model.
+bool are_closer(const std::map<std::string, ObjectModel>& models, const PlacedObject& a, const PlacedObject& b,
+                double ratio) {
+  const auto model_a = models.find(a.class_name);
+  const auto model_b = models.find(b.class_name);
+  if (model_a == models.end() || model_b == models.end()) return false;
+  const Eigen::Vector3d middle_a = a.T_camera_object * model_a->second.centre.cast<double>();
+  const Eigen::Vector3d middle_b = b.T_camera_object * model_b->second.centre.cast<double>();
+  return (middle_a - middle_b).norm() < ratio * std::min(model_a->second.radius, model_b->second.radius);
+}
+
 /// Withholds the less probable of two poses of a class in one place, as of two detections of one object.
 void withhold_duplicates(const PoseEstimator& estimator, std::vector<ObjectPose>& poses) {
-  constexpr double kDistanceRatio = 0.5;
   for (ObjectPose& pose : poses) {
     if (!pose.T_camera_object) continue;
     const PlacedObject here{pose.class_name, *pose.T_camera_object};
     const bool is_weaker = std::any_of(poses.begin(), poses.end(), [&](const ObjectPose& other) {
       if (&other == &pose || !other.T_camera_object || other.class_name != pose.class_name) return false;
       const bool is_surer = other.quality > pose.quality || (other.quality == pose.quality && &other < &pose);
-      return is_surer && estimator.is_duplicate(here, {other.class_name, *other.T_camera_object}, kDistanceRatio);
+      return is_surer && estimator.is_duplicate(here, {other.class_name, *other.T_camera_object});
     });
-    if (!is_weaker) continue;
-    pose.T_camera_object.reset();
-    pose.status = PoseStatus::kLowScore;
+    if (is_weaker) withhold_duplicate(pose);
   }
 }
 
@@ -293,13 +301,17 @@ Eigen::Vector3d PoseEstimator::vote_centre(const PlacedObject& object) const {
   return object.T_camera_object * model->second.vote_centre.cast<double>();
 }
 
+bool PoseEstimator::is_duplicate(const PlacedObject& a, const PlacedObject& b) const {
+  return are_closer(state_->models, a, b, state_->settings.duplicate_distance_ratio);
+}
+
 bool PoseEstimator::is_duplicate(const PlacedObject& a, const PlacedObject& b, double max_distance_ratio) const {
-  const auto model_a = state_->models.find(a.class_name);
-  const auto model_b = state_->models.find(b.class_name);
-  if (model_a == state_->models.end() || model_b == state_->models.end()) return false;
-  const Eigen::Vector3d middle_a = a.T_camera_object * model_a->second.centre.cast<double>();
-  const Eigen::Vector3d middle_b = b.T_camera_object * model_b->second.centre.cast<double>();
-  return (middle_a - middle_b).norm() < max_distance_ratio * std::min(model_a->second.radius, model_b->second.radius);
+  return are_closer(state_->models, a, b, max_distance_ratio);
+}
+
+void withhold_duplicate(ObjectPose& pose) {
+  pose.T_camera_object.reset();
+  pose.status = PoseStatus::kLowScore;
 }
 
 }  // namespace houghstream

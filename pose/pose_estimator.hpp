@@ -43,7 +43,7 @@ class PoseEstimator {
 
   /// Returns one ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
   /// pose.registration, pose.choice and pose.verification are appended to those of the detections. The detections must
-  /// be of this frame (same name). Of two poses of a class in one place (is_duplicate at 0.5) the less probable one is
+  /// be of this frame (same name). Of two poses of a class in one place (is_duplicate) the less probable one is
   /// withheld with kLowScore. Throws std::logic_error for another frame, and InputError for an invalid frame.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 
@@ -57,13 +57,19 @@ class PoseEstimator {
   /// has no model.
   Eigen::Vector3d vote_centre(const PlacedObject& object) const;
 
-  /// Returns whether the centres of two objects are closer than `max_distance_ratio` times the smaller radius, so that
-  /// one is a duplicate. False where a class has no model.
-  bool is_duplicate(const PlacedObject& a, const PlacedObject& b, double max_distance_ratio) const;
+  /// Returns whether the centres of two objects are closer than PoseSettings::duplicate_distance_ratio times the
+  /// smaller radius, so that one is a duplicate. False where a class has no model.
+  bool is_duplicate(const PlacedObject& a, const PlacedObject& b) const;
+  [[deprecated("takes PoseSettings::duplicate_distance_ratio now")]] bool is_duplicate(const PlacedObject& a,
+                                                                                       const PlacedObject& b,
+                                                                                       double max_distance_ratio) const;
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Withholds the pose of a duplicate: it has none then, and its status is kLowScore.
+void withhold_duplicate(ObjectPose& pose);
 
 }  // namespace houghstream

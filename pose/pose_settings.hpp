@@ -30,7 +30,8 @@ struct PoseSettings {
   QualitySettings quality;
   std::map<std::string, QualitySettings> class_quality;  ///< learnt for one class, by name; of the others: `quality`
   float min_score = 0.1F;                                ///< minimum score of a detection whose pose is estimated
-  int threads = 1;                                       ///< any number gives the same poses
+  double duplicate_distance_ratio = 0.5;  ///< distance over the smaller radius, below which two objects are one
+  int threads = 1;                        ///< any number gives the same poses
 };
 
 template <typename Visit>
@@ -47,6 +48,7 @@ void fields(const PoseSettings& /*settings*/, const Visit& visit) {
   visit(group("verification", &S::verification));
   visit(group("quality", &S::quality));
   visit(number("min_score", &S::min_score, 0, 1));
+  visit(number("duplicate_distance_ratio", &S::duplicate_distance_ratio, 0, 10));
   visit(number("threads", &S::threads, 1, 256));
 }
 

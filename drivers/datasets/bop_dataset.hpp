@@ -60,6 +60,9 @@ constexpr int kDatasetRateHz = 30;
 /// Returns the utime of image `index` of a dataset. Datasets have no clock, so ours starts in July 2017.
 std::int64_t dataset_utime(std::size_t index);
 
+/// Returns the file of an object's mesh in a models folder: obj_000001.ply.
+std::filesystem::path bop_mesh_file(const std::filesystem::path& models_folder, int object_id);
+
 /// models/models_info.json and the optional models/names.json ({"1": "bowl", ...}); without it names are "object_N".
 struct BopModels {
   std::filesystem::path folder;
@@ -67,7 +70,7 @@ struct BopModels {
   std::map<int, double> diameters;                       ///< metres, by object id
   std::map<int, Eigen::AlignedBox3d> bounds;             ///< metres, object frame; of those that state min and size
   std::map<int, Symmetries> symmetries;                  ///< empty for an object without any
-  std::filesystem::path mesh_file(int object_id) const;  ///< obj_000001.ply
+  std::filesystem::path mesh_file(int object_id) const;  ///< bop_mesh_file()
 };
 /// Throws InputError when files are missing or their numbers absurd.
 BopModels read_bop_models(const std::filesystem::path& models_folder);

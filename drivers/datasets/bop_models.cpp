@@ -47,8 +47,12 @@ std::vector<std::pair<std::string, fs::path>> named_files(const fs::path& folder
 
 }  // namespace
 
+fs::path bop_mesh_file(const fs::path& models_folder, int object_id) {
+  return models_folder / fmt::format("obj_{:06d}.ply", object_id);
+}
+
 fs::path BopModels::mesh_file(int object_id) const {
-  return folder / fmt::format("obj_{:06d}.ply", object_id);
+  return bop_mesh_file(folder, object_id);
 }
 
 std::map<int, std::string> read_bop_names(const fs::path& names_file) {

@@ -140,7 +140,7 @@ void write_bop_models(const std::vector<NamedModel>& models, const fs::path& mod
   for (const NamedModel& model : models) {
     require(!model.mesh.vertices.empty(), "{}: model {} '{}' has no vertices", models_folder.string(), model.object_id,
             model.name);
-    save_ply(model.mesh, models_folder / fmt::format("obj_{:06d}.ply", model.object_id));
+    save_ply(model.mesh, bop_mesh_file(models_folder, model.object_id));
     info[std::to_string(model.object_id)] = model_entry(model);
     names[model.object_id] = model.name;
   }

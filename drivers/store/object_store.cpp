@@ -231,6 +231,10 @@ fs::path ObjectStore::models_folder() const {
   return folder / "models";
 }
 
+fs::path ObjectStore::mesh_file(int id) const {
+  return bop_mesh_file(models_folder(), id);
+}
+
 fs::path ObjectStore::view_image(int id) const {
   return folder / "views" / fmt::format("obj_{:06d}.png", id);
 }

@@ -54,6 +54,7 @@ struct ObjectStore {
   std::filesystem::path forest_file(int group) const;           ///< file of a group's detector
   std::filesystem::path forests_folder() const;                 ///< folder of the forests of a store of several groups
   std::filesystem::path models_folder() const;                  ///< a BOP models folder
+  std::filesystem::path mesh_file(int id) const;                ///< an object's mesh in it
   std::filesystem::path view_image(int id) const;               ///< some of its views, side by side
   std::filesystem::path contact_sheet() const;                  ///< the images of all objects
   std::map<std::string, nlohmann::json> quality() const;        ///< quality settings by name, of objects that have any

@@ -28,7 +28,7 @@ enum class PoseStatus : std::int8_t {
   kOccluded = 10,          ///< followed, and mostly hidden by what was measured in front of it
   kRefuted = 11,           ///< the best pose makes it less probable that the object is there than that it is not
   kValidUpToSymmetry =
-      12,  ///< a pose, of which the print does not tell that it is not one that looks alike by its shape
+      12,  ///< a pose, of which the texture does not tell that it is not one that looks alike by its shape
 };
 
 /// Returns whether a pose of this status is published.

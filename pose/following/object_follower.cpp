@@ -178,15 +178,12 @@ int choose_recheck(const DetectionAssociation& look, const FollowerSettings& set
 }
 
 /// Withholds the pose of a detection where an object of its class was followed already, which has a pose.
-void withhold_where_followed(const PoseEstimator& estimator, const FollowedFrame& followed_frame, double ratio,
-                             ObjectPose& pose) {
+void withhold_where_followed(const PoseEstimator& estimator, const FollowedFrame& followed_frame, ObjectPose& pose) {
   const PlacedObject here{pose.class_name, *pose.T_camera_object};
   for (const FollowedPose& followed : followed_frame.poses) {
     if (!followed.pose.T_camera_object || followed.pose.class_name != pose.class_name) continue;
-    if (!estimator.is_duplicate(here, {pose.class_name, *followed.pose.T_camera_object}, ratio)) continue;
-    pose.T_camera_object.reset();
-    pose.status = PoseStatus::kLowScore;
-    return;
+    if (estimator.is_duplicate(here, {pose.class_name, *followed.pose.T_camera_object}))
+      return withhold_duplicate(pose);
   }
 }
 
@@ -402,12 +399,10 @@ void ObjectFollower::remove_lost(const PoseEstimator& estimator, FollowedCamera&
       const FollowedPose& b = followed_frame.poses[j];
       if (lost[i] || lost[j] || !a.pose.T_camera_object || !b.pose.T_camera_object) continue;
       const PlacedObject here{a.pose.class_name, a.T_camera_object};
-      if (!estimator.is_duplicate(here, {b.pose.class_name, b.T_camera_object}, settings_.duplicate_distance_ratio))
-        continue;
+      if (!estimator.is_duplicate(here, {b.pose.class_name, b.T_camera_object})) continue;
       const std::size_t weaker = a.pose.shape_quality < b.pose.shape_quality ? i : j;
       lost[weaker] = true;
-      followed_frame.poses[weaker].pose.T_camera_object.reset();
-      followed_frame.poses[weaker].pose.status = PoseStatus::kLowScore;
+      withhold_duplicate(followed_frame.poses[weaker].pose);
     }
   }
   for (std::size_t i = lost.size(); i-- > 0;) {
@@ -436,8 +431,7 @@ ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, c
   std::size_t next = 0;
   for (std::size_t i = 0; i < detections.detections.size(); ++i) {
     ObjectPose pose = look.needs_estimate(i) ? std::move(found.poses[next++]) : ObjectPose();
-    if (pose.T_camera_object && look.matches[i] < 0)
-      withhold_where_followed(estimator, look.followed_frame, settings_.duplicate_distance_ratio, pose);
+    if (pose.T_camera_object && look.matches[i] < 0) withhold_where_followed(estimator, look.followed_frame, pose);
     if (look.matches[i] >= 0) {
       const auto place = static_cast<std::size_t>(look.matches[i]);
       FollowedObject* object = find_followed(look.followed_frame.numbers[place], camera);
@@ -476,8 +470,7 @@ void ObjectFollower::add_object(const PoseEstimator& estimator, const RgbdFrame&
   const PlacedObject here{found.class_name, found.T_camera_object};
   std::vector<FollowedObject> others;
   for (const FollowedObject& object : camera.objects) {
-    const bool is_here =
-        estimator.is_duplicate(here, {object.class_name, object.T_camera_object}, settings_.duplicate_distance_ratio);
+    const bool is_here = estimator.is_duplicate(here, {object.class_name, object.T_camera_object});
     const bool is_valid = object.valid_us == object.clock_us;
     if (is_here && is_valid && object.class_name == found.class_name) return;
     if (!is_here || is_valid) others.push_back(object);  // follow() removes the weaker of two valid ones

@@ -26,10 +26,9 @@ struct FollowerSettings {
   double max_hidden_s = 2.0;      ///< time without a valid pose while it is hidden
   /// Distance between a detection's centre and a followed pose of its class that associates them.
   double reach_m = 0.07;
-  double duplicate_distance_ratio = 0.5;  ///< distance over the smaller radius, below which two objects are one
-  double logit_gain = 0.3;                ///< fraction by which one detection moves the score's log odds
-  float miss_score = 0.3F;                ///< score of a detector run that does not find an object in full view
-  double missed_after_s = 1.0;            ///< time without a detection from which on such a run counts
+  double logit_gain = 0.3;      ///< fraction by which one detection moves the score's log odds
+  float miss_score = 0.3F;      ///< score of a detector run that does not find an object in full view
+  double missed_after_s = 1.0;  ///< time without a detection from which on such a run counts
   /// Time after which a detection's pose is estimated again, beside the followed one.
   double recheck_interval_s = 0.15;
   float doubtful_quality = 0.85F;  ///< quality below which the next detection is estimated at once
@@ -50,7 +49,6 @@ void fields(const FollowerSettings& /*settings*/, const Visit& visit) {
   visit(number("max_rejected_s", &S::max_rejected_s, 0, 3600, "s"));
   visit(number("max_hidden_s", &S::max_hidden_s, 0, 3600, "s"));
   visit(number("reach_m", &S::reach_m, 0, 10, "m"));
-  visit(number("duplicate_distance_ratio", &S::duplicate_distance_ratio, 0, 10));
   visit(number("logit_gain", &S::logit_gain, 0, 1));
   visit(number("miss_score", &S::miss_score, 0, 1));
   visit(number("missed_after_s", &S::missed_after_s, 0, 3600, "s"));

@@ -58,7 +58,7 @@ def find_faults(root, help_of):
 
 
 class Programs:
-    """What the programs in a folder say of themselves, each asked once."""
+    """The help of the programs in a folder, each asked once."""
 
     def __init__(self, folder):
         self.folder, self.said = folder, {}

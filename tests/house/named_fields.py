@@ -38,7 +38,7 @@ def code_of(text):
 
 
 def closing_of(code, begin):
-    """Where the bracket that opens at `begin` closes."""
+    """Returns the place where the bracket that opens at `begin` closes."""
     depth = 0
     for place in range(begin, len(code)):
         if code[place] in OPENING:
@@ -64,7 +64,8 @@ def template_angles(code):
 
 
 def parts_of(code):
-    """What stands between the commas of a list; commas in brackets, and in template arguments that hold nothing else, do not count."""
+    """Returns what stands between the commas of a list; commas in brackets, and in template arguments that hold nothing else,
+    do not count."""
     parts, depth, part = [], 0, ""
     angles = template_angles(code)
     for place, letter in enumerate(code):
@@ -140,7 +141,7 @@ def plain(type_name):
 
 
 def element_of(type_name):
-    """What a vector or the like holds, as nested lists fill it; None where it is no container."""
+    """Returns the type that a vector or the like holds, as nested lists fill it; None where it is no container."""
     found = re.match(r"(?:std::)?(?:vector|deque|list|array|optional|initializer_list|set)<(.*)>$", type_name)
     return parts_of(found.group(1))[0] if found else None
 
@@ -150,7 +151,7 @@ def leading_references(fields):
 
 
 class Types:
-    """What the repository's sources say of types: fields of structs, variables, members, results and parameters of functions."""
+    """The types of the repository's sources: fields of structs, variables, members, results and parameters of functions."""
 
     def __init__(self, codes):
         self.structs = collections.defaultdict(list)  # name: [(file, fields or None)]
@@ -178,7 +179,7 @@ class Types:
                 self.parameters[name].add(tuple(plain(one.group(1)) if one else "?" for one in declared))
 
     def fields(self, name, file):
-        """Of the definition nearest to `file`; None where it is no plain struct of ours."""
+        """Returns the fields of the definition nearest to `file`; None where it is no plain struct of ours."""
         unit = file.rsplit(".", 1)[0]
 
         def distance(entry):
@@ -208,7 +209,8 @@ class Source:
         self.lists = {}  # of each brace: the type of the list that begins there, or None
 
     def type_of_name(self, name, place):
-        """Of `a` the variable declared last before `place`, else the member that is called so; of `a.b` the member b of the type of a."""
+        """Returns the type of a name: of `a` the variable declared last before `place`, else the member that is called so; of
+        `a.b` the member b of the type of a."""
         *owner, last = re.split(r"\.|->", name)
         if owner:
             fields = self.types.fields(self.type_of_name(".".join(owner), place) or "", self.file)
@@ -218,7 +220,7 @@ class Source:
         return before[-1] if before else only(self.types.members.get(last, set()))
 
     def result_at(self, place):
-        """What the function returns whose body `place` is in."""
+        """Returns the result type of the function whose body `place` is in."""
         depth = 0
         for begin in range(place - 1, -1, -1):
             depth += (self.code[begin] == "}") - (self.code[begin] == "{")
@@ -234,7 +236,7 @@ class Source:
         return None
 
     def type_before(self, begin):
-        """Of the list that opens at `begin`, by what stands before it."""
+        """Returns the type of the list that opens at `begin`, by what stands before it."""
         head = self.code[max(0, begin - 300):begin].rstrip()
         if head.endswith(("return", "co_return")):
             return self.result_at(begin)
@@ -251,7 +253,7 @@ class Source:
         return None
 
     def type_as_argument(self, begin):
-        """Of the list that opens at `begin` among the arguments of a call."""
+        """Returns the type of the list that opens at `begin` among the arguments of a call."""
         opening = self.enclosing(begin)
         if opening is None or self.code[opening] != "(":
             return None
@@ -267,7 +269,7 @@ class Source:
         return only(fitting)
 
     def enclosing(self, place):
-        """Where the bracket opens that `place` is in."""
+        """Returns the place where the bracket opens that `place` is in."""
         depth = 0
         for begin in range(place - 1, -1, -1):
             if self.code[begin] in CLOSING:
@@ -296,7 +298,7 @@ class Source:
         return self.type_as_argument(begin)
 
     def is_row(self, begin, outer):
-        """Whether a list is one of several below one another in a list of them: a table."""
+        """Returns whether a list is one of several below one another in a list of them: a table."""
         opening = self.enclosing(begin)
         return bool(outer and element_of(outer)) and len(parts_of(self.code[opening + 1:closing_of(self.code, opening)])) > 1
 

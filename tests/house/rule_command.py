@@ -1,4 +1,5 @@
-"""What the checks of the house have in common when they are commands: the repository, one line a fault, status 1 where there is any."""
+"""The frame of the checks of the house when they are commands: the repository, one line a fault, status 1 where there is
+any."""
 
 import pathlib
 import sys

@@ -144,8 +144,8 @@ def circles_among(part_of, includes):
 
 
 def circle_faults(root, includes):
-    """Of units, and of folders, each with its own files alone. Of folders, the includes that their order forbids are left out: they are
-    faults of their own."""
+    """Yields the circles of units, and of folders, each with its own files alone. Of folders, the includes that their order
+    forbids are left out: they are faults of their own."""
     for members in circles_among(unit_of, includes):
         yield f"circle: {', '.join(members)}"
     forbidden = {(file, target) for file, target, _, _, _ in includes_against_order(read_orders(root), includes)}
@@ -198,7 +198,7 @@ def find_faults(root):
 
 
 def news(root):
-    """What differs from known.txt, one line each."""
+    """Returns the differences from known.txt, one line each."""
     file = root / HOUSE / "known.txt"
     known = set(filter(None, file.read_text().splitlines())) if file.is_file() else set()
     found = set(find_faults(root))

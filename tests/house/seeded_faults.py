@@ -5,7 +5,7 @@ import tempfile
 
 
 def faults_of(files, find_faults):
-    """What `find_faults` says of a folder that holds `files` ({path: text})."""
+    """Returns what `find_faults` says of a folder that holds `files` ({path: text})."""
     with tempfile.TemporaryDirectory() as folder:
         for name, text in files.items():
             file = pathlib.Path(folder, name)

@@ -150,6 +150,10 @@ TEST(PoseEstimator, TwoDetectionsOfOneObjectHaveOnePose) {
   EXPECT_NE(found.poses[0].T_camera_object.has_value(), found.poses[1].T_camera_object.has_value());
   const ObjectPose& withheld = found.poses[found.poses[0].T_camera_object ? 1 : 0];
   EXPECT_EQ(withheld.status, PoseStatus::kLowScore);
+  PoseSettings settings;
+  settings.duplicate_distance_ratio = 0.0;
+  const ObjectPoses both = estimator_for("mug", mug(), settings).estimate(scene.frame, two);
+  EXPECT_TRUE(both.poses[0].T_camera_object.has_value() && both.poses[1].T_camera_object.has_value());
 }
 
 TEST(PoseEstimator, WhatIsHardlyAnObjectIsNotLookedAt) {

@@ -32,7 +32,7 @@ CHANNELS = {"detections": "HOUGHSTREAM_DETECTIONS", "poses": "HOUGHSTREAM_POSES"
 
 
 class Clock:
-    """What the processes take for the host's clock."""
+    """The clock that the processes take for the host's."""
 
     def __init__(self, file):
         self.file = file
@@ -66,7 +66,7 @@ def start(arguments, scene, clock):
 
 
 def found_in(kind, data):
-    """How many objects a message has found."""
+    """Returns how many objects a message has found."""
     if kind == "detections":
         return len(detections_of(data))
     if kind == "poses":
@@ -101,8 +101,8 @@ def run(arguments):
 
 
 def check_part(kind, events, part, begin, end):
-    """What was stamped in the time of a part: how many messages, how soon the first one that has found something, and how
-    long after their stamps they came."""
+    """Returns what was stamped in the time of a part: how many messages, how soon the first one that has found something, and
+    how long after their stamps they came."""
     ahead_us = int(STEPS[part] * 1e6)
     stamped = [(arrival, utime_of(data) - ahead_us, found_in(kind, data)) for arrival, channel, data in events
                if channel == CHANNELS[kind] and begin <= utime_of(data) - ahead_us < end]  # fmt: skip

@@ -138,7 +138,7 @@ def check_detections(truth, offline):
 
 
 def check_same_on_the_bus(heard, offline):
-    """What went over the network is what the log gives: other threads, other timing, same detections."""
+    """The results over the network are those of the log: other threads, other timing, same detections."""
     compared = {utime: found for utime, found in detections_by_utime(heard).items() if utime in offline}
     for utime, found in compared.items():
         assert found == offline[utime], utime
@@ -146,7 +146,7 @@ def check_same_on_the_bus(heard, offline):
 
 
 def check_poses(truth, folder, heard):
-    """Where an object was found, a pose that claims to be valid is near the truth."""
+    """A pose that claims to be valid is near the truth where an object was found."""
     utimes = [utime_of(data) for _, _, data in read_log(folder / "replay.log")]
     objects_of = {utime: truth[i % FRAMES] for i, utime in enumerate(utimes)}
     detections = detections_by_utime(heard)
@@ -190,7 +190,8 @@ def check_bad_input(tools, folder):
 
 
 def check_strange_names(tools, folder):
-    """What shares no name cannot be compared: one line that names both sides, and a failure, instead of figures of nothing."""
+    """Sides that share no name cannot be compared: one line that names both sides, and a failure, instead of figures of
+    nothing."""
     scene, forest, models = folder / "scene", folder / "small.forest", folder / "views" / "models"
     strange = folder / "strange_models"
     strange.mkdir(exist_ok=True)
@@ -217,7 +218,7 @@ def state_of(folder):
 
 
 def check_refusals(tools, folder):
-    """What would cost what is there is refused, in one line that says why; nothing has changed."""
+    """A command that would overwrite existing data is refused, in one line that says why; nothing has changed."""
     scene, log, forest, models = (folder / name for name in ("scene", "scene.log", "small.forest", "views/models"))
     of_scene, played = ("--scene", scene), ("-l", f"file://{folder / 'recorded.log'}")
     no_results = ("-l", f"file://{log}", "--output-log", folder / "results.log")

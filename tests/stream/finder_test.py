@@ -23,7 +23,7 @@ def start(program, store, scene, image):
 
 
 def find(program, store, scene, image):
-    """Where soda_cans are said to be in an image, metres."""
+    """Returns where soda_cans are said to be in an image, metres."""
     done = start(program, store, scene, image)
     assert done.returncode == 0, done
     return [tuple(map(float, place)) for place in LINE.findall(done.stdout)]

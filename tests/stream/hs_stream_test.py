@@ -45,7 +45,7 @@ class Stream:
 
 
 def is_alive(pid):
-    """Whether the process runs; one that only waits for its burial does not."""
+    """Returns whether the process runs; one that only waits for its burial does not."""
     try:
         return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
     except FileNotFoundError:

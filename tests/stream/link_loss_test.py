@@ -65,7 +65,7 @@ def wait_for_results():
 
 
 def start_all(tools, made, folder):
-    """By number of processes that say what becomes of the bus."""
+    """Starts the stream and an observer, each with its number of processes that say what becomes of the bus."""
     models = made / "views" / "models"
     stream = Process(folder, tools / "hs-stream", "--source", f"bop:{made / 'scene'}", "--capture-options=--loop --rate 5", "--forest",
                      made / "small.forest", "--models", models, "--track", "--view-options=--preview", "--every", 1)

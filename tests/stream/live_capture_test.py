@@ -114,7 +114,7 @@ def images_of(data):
 
 
 def places_of(sent, replayed):
-    """Where each live frame is in the replay, in rising order, and its utime; the first few were sent before recording
+    """Returns where each live frame is in the replay, in rising order, and its utime; the first few were sent before recording
     began."""
     places = []
     for utime, images in sent:
@@ -138,7 +138,7 @@ def check_import(tools, folder, events):
 
 
 def check_recording(tools, camera, folder, script):
-    """What is replayed from a .oni file is, message by message, what went out live."""
+    """The replay of a .oni file is, message by message, what went out live."""
     camera.write(script)
     live = run(tools / "hs-capture", "--source", "openni2", "--frames", LIVE_FRAMES, "--log", folder / "live.log", "--record",
                folder / "live.oni", "--replace")  # fmt: skip

@@ -1,4 +1,4 @@
-"""What people see of a running stream: lcm-spy with our viewers, the preview channel, and hs-view's window.
+"""A running stream on a display: lcm-spy with our viewers, the preview channel, and hs-view's window.
 
 Plays a scene live through hs-detect and hs-pose, opens the windows on a display without a screen, checks by their
 pixels that boxes and pose axes are drawn, and keeps the images: spy.png, spy_rgbd.png, spy_detections.png,
@@ -49,12 +49,12 @@ def await_overlay(display, window, size=None, seconds=120):
 
 
 def written(image, row):
-    """Whether there is text in the first column of a row."""
+    """Returns whether there is text in the first column of a row."""
     return image.cut(2, row_of_table(row) - 6, 120, 12).count((51, 51, 51)) > 20  # the colour of its text
 
 
 def rows_of(image):
-    """How many rows of spy's table are written."""
+    """Returns how many rows of spy's table are written."""
     return sum(written(image, row) for row in range(1, 20))
 
 
@@ -82,7 +82,7 @@ def check_spy(tools, logs, display, out):
 
 
 def check_no_route(tools):
-    """Where there is no multicast route hs-spy says so, instead of showing an empty table."""
+    """Without a multicast route hs-spy says so, instead of showing an empty table."""
     command = ["unshare", "-rn", str(tools / "hs-spy")]
     result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert result.returncode == 1 and "is there a multicast route?" in result.stderr, result

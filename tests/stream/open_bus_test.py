@@ -30,7 +30,7 @@ def send(address, host=()):
 
 
 def heard(tools, made, folder, ttl, deliver):
-    """How many of the messages that deliver() sends a detector has heard."""
+    """Returns how many of the messages that deliver() sends a detector has received."""
     folder.mkdir()
     process = Process(folder, tools / "hs-detect", "--forest", made / "small.forest", "-l", f"udpm://{GROUP}:7667?ttl={ttl}")
     try:
@@ -45,7 +45,7 @@ def heard(tools, made, folder, ttl, deliver):
 
 
 def check_no_route(tools):
-    """Where there is no multicast route a program says so, and what mends it, in one line without LCM's fifteen, and waits;
+    """Without a multicast route a program says so, and what mends it, in one line without LCM's fifteen, and waits;
     a stop signal ends that."""
     said = subprocess.run(["unshare", "-rn", "timeout", "-s", "INT", "2", str(tools / "hs-observe"), "-l", f"udpm://{GROUP}:7667?ttl=0"],
                           capture_output=True, text=True, check=False, timeout=60)  # fmt: skip

@@ -32,7 +32,7 @@ WRONG_STAMPS = {"a year ahead": YEAR, "a year ago": -YEAR, "five seconds ahead":
 
 
 def followed_in(heard):
-    """How many objects are followed with a valid pose; None for poses of detections."""
+    """Returns how many objects are followed with a valid pose; None for poses of detections."""
     poses = poses_of(heard.payload)
     return None if any(pose.detection_index >= 0 for pose in poses) else sum(pose.status == VALID for pose in poses)
 
@@ -72,7 +72,7 @@ def check_order(sender, listener, followed, first, order):
 
 
 def check_wrong_stamp(sender, listener, followed, first, by):
-    """Of six frames the third has a stamp that is wrong; each has all its poses, under its stamp."""
+    """The third of six frames has a stamp that is wrong; each has all its poses, under its stamp."""
     for number in range(6):
         utime = FIRST_US + (first + number + (by if number == 2 else 0)) * PERIOD_US
         sender.send_one(first + number, utime)

@@ -1,5 +1,5 @@
-"""What a program leaves on a disk that loses power: every file as it was when it was last synced, and of the names that were made, moved and
-removed since their folder was synced the first few, in order.
+"""The files that a program leaves on a disk that loses power: every file as it was when it was last synced, and of the names
+that were made, moved and removed since their folder was synced the first few, in order.
 
 The program runs with disk_recorder.cpp preloaded, which writes down what it does to a folder.
 """
@@ -62,7 +62,7 @@ class Disk:
         self.folders = {moved(path) for path in self.folders}
 
     def below(self, folder, contents):
-        """What lies in a folder, as bytes by path; None where it is not there."""
+        """Returns the content of a folder, as bytes by path; None where it is not there."""
         if folder not in self.folders:
             return None
         return {str(path.relative_to(folder)): contents.get(number, b"") for path, number in self.files.items() if folder in path.parents}

@@ -1,4 +1,4 @@
-"""What results say, as values that can be compared; times of stages are left out, they differ from run to run."""
+"""Results as values that can be compared; times of stages are left out, they differ from run to run."""
 
 from typing import NamedTuple
 

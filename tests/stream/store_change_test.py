@@ -27,7 +27,7 @@ STILL = 23  # image in which each object is found once: before a camera that jum
 
 
 def make_store(made, store):
-    """As hs-teach leaves one."""
+    """Makes a store as hs-teach leaves one."""
     (store / "views").mkdir(parents=True)
     shutil.copy(made / "small.forest", store / "forest")
     shutil.copytree(made / "views" / "models", store / "models")
@@ -99,7 +99,7 @@ def check_killed(tools, store):
 
 
 class Log:
-    """What the processes say."""
+    """The messages of the processes, in a log."""
 
     def __init__(self, file):
         self.file = file

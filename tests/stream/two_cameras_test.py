@@ -38,7 +38,7 @@ def write_log(path, events):
 
 
 def make_twin_forest(source, target):
-    """The same forest, which calls its objects by other names."""
+    """Makes the same forest, which calls its objects by other names."""
     data = source.read_bytes()
     head = data.index(b"\n") + 1
     size, checksum = struct.unpack_from("<QI", data, head)
@@ -149,7 +149,7 @@ def check_transforms(posed):
 
 
 def names_of(objects):
-    """Of both detectors."""
+    """Counts the names of both detectors."""
     return Counter(twin for name, *_ in objects for twin in (name, TWINS[name]))
 
 
@@ -184,7 +184,7 @@ def check_evaluation(tools, made, folder, results):
 
 
 def check_kept_frames(tools, folder, found, posed):
-    """What hs-pose keeps beside its poses is a log for hs-track and for the exports; its poses alone are none."""
+    """The frames that hs-pose keeps beside its poses make a log for hs-track and for the exports; its poses alone are none."""
     write_log(folder / "found.log", found)
     run(tools / "hs-pose", "--models", folder / "models", "-c", "LEFT|RIGHT", "-l", f"file://{folder / 'found.log'}",
         "--output-log", folder / "kept.log", "--keep-frames")  # fmt: skip
@@ -248,7 +248,7 @@ def start(tools, made, folder):
 
 
 def check_bus(tools, made, folder, detections, expected):
-    """The same over a bus: frames may be passed over on a busy machine, but what is said of one is right."""
+    """Tracks over a bus: frames may be passed over on a busy machine, but what is said of one is right."""
     recorded = folder / "recorded.log"
     logger = subprocess.Popen(["lcm-logger", "-f", "-q", "-c", "HOUGHSTREAM_.*|.*_TO_.*", str(recorded)],
                               stderr=subprocess.DEVNULL)

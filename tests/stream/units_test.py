@@ -87,7 +87,7 @@ class Manager:
             folder.rmdir()
 
     def rights_of(self, unit, seconds):
-        """What the kernel says of the unit's process: of the next one where that ends meanwhile."""
+        """Returns what the kernel says of the unit's process: of the next one where that ends meanwhile."""
         end = time.monotonic() + seconds
         while True:
             try:
@@ -97,7 +97,7 @@ class Manager:
                 time.sleep(0.05)
 
     def wait_for_another(self, unit, pid, seconds):
-        """How long until another process than this one has started."""
+        """Returns how long it takes until another process than this one has started."""
         start = time.monotonic()
         while self.show(unit, "MainPID") in ("0", str(pid)) or self.show(unit, "ActiveState") != "active":
             assert time.monotonic() - start < seconds, self.tell("status", "--no-pager", f"houghstream-{unit}")

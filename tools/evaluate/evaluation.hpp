@@ -57,7 +57,8 @@ struct Evaluation {
   std::map<std::string, double> strict_recall;
   std::map<std::string, double> add_s_recall;
   std::map<std::string, double> add_or_add_s_recall;
-  /// Of all frames of the scenes, whether a detector inspected them or not; nothing unless objects were followed.
+  /// Figures of all frames of the scenes, whether a detector inspected them or not; nothing unless objects were
+  /// followed.
   std::optional<FollowedPoses> followed;
   std::optional<LocalisationScores> localisation;  ///< nothing unless poses were measured against depth too
   std::optional<LocalisationScores> localisation_nothing_withheld;  ///< nothing unless withheld poses are known

@@ -11,7 +11,7 @@
 
 namespace houghstream::log_tools {
 
-/// What the log itself does not hold.
+/// Inputs that the log itself does not hold.
 struct McapExtras {
   std::map<std::string, Mesh> models;  ///< meshes by class name, metres
   std::optional<Camera> camera;        ///< intrinsics of frames that come without

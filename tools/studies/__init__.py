@@ -1,1 +1,1 @@
-"""What measures Houghstream: the demo, the benchmarks, the comparison with the paper, and what they share."""
+"""The measurements of Houghstream: the demo, the benchmarks, the comparison with the paper, and what they share."""

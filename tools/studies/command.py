@@ -1,4 +1,4 @@
-"""What the commands that a person starts have in common: options, lines of progress, installing and building."""
+"""The parts that all commands of a person share: options, lines of progress, installing and building."""
 
 import argparse
 import glob

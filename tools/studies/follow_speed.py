@@ -1,4 +1,4 @@
-"""How fast hs-pose --follow is: frame to pose, and to the world's objects of hs-track, at several rates, what is lost, and
+"""The speed of hs-pose --follow: frame to pose, and to the world's objects of hs-track, at several rates, what is lost, and
 what it costs. tools/bench tracks asks measure(); by itself:
 
     cd tools && PYTHONPATH=../build/python python3 -m studies.follow_speed --scene SCENE --forest FOREST --models MODELS --out OUT
@@ -33,9 +33,9 @@ class Replays(NamedTuple):
 
 
 def figures(folder, frames):
-    """Of one replay: milliseconds from a frame's publication to its first poses, and to the objects of the world after it,
-    frames that never reached hs-pose, those that it passed over, those after which no objects came, and processor cores that
-    detector, poses and tracks took together."""
+    """Returns of one replay: milliseconds from a frame's publication to its first poses, and to the objects of the world after
+    it, frames that never reached hs-pose, those that it passed over, those after which no objects came, and processor cores
+    that detector, poses and tracks took together."""
     observed, usage = read_json(folder / "observe.json"), read_json(folder / "usage.json")
     pose = observed["processes"]["hs-pose"]
     return {

@@ -1,4 +1,5 @@
-"""What one viewer of hs-view's page costs the stream: paired replays, without and with him, and what hs-view takes meanwhile.
+"""The load of one viewer of hs-view's page on the stream: paired replays, without and with him, and what hs-view takes
+meanwhile.
 
     cd tools && PYTHONPATH=../build/python python3 -m studies.page_load --scene SCENE --forest FOREST --models MODELS --out OUT
 
@@ -63,7 +64,7 @@ def cpu_seconds(usage):
 
 
 def figures(observed, frames, page_cpu_s, seconds):
-    """Of one replay: milliseconds from a frame's publication to its poses, frames without, and hs-view's cores."""
+    """Returns of one replay: milliseconds from a frame's publication to its poses, frames without, and hs-view's cores."""
     total, pose = observed["latency_ms"]["total"], observed["processes"]["hs-pose"]
     return {
         "p50_ms": total["p50"],

@@ -44,7 +44,7 @@ def percentiles(values, of=(50, 95, 99), unit=""):
 
 
 def threads():
-    """As many as this process may use, like nproc."""
+    """Returns the number of threads that this process may use, like nproc."""
     return len(os.sched_getaffinity(0))
 
 
@@ -75,12 +75,12 @@ def today():
 
 
 def about(command):
-    """What stands beside every figure: machine, commit, date, and the command that measures it."""
+    """Returns what stands beside every figure: machine, commit, date, and the command that measures it."""
     return {"cpu": cpu_name(), "commit": commit_name(), "date": today(), "command": command}
 
 
 def train_seconds(log):
-    """What the last line "train_seconds X" of a trainer's words says, or None."""
+    """Returns the value of the last line "train_seconds X" of a trainer's words, or None."""
     values = [line.split()[1] for line in log.read_text().splitlines() if line.startswith("train_seconds ")]
     return float(values[-1]) if values else None
 
@@ -101,7 +101,7 @@ def mean_of(values):
 
 
 def rounded(value):
-    """For people who read the file: four digits behind the point, at any depth."""
+    """Rounds for people who read the file: four digits behind the point, at any depth."""
     if isinstance(value, float):
         return round(value, 4)
     if isinstance(value, dict):

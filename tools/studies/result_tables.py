@@ -1,4 +1,4 @@
-"""What RESULTS.md shows of each summary.json: tables and sentences, as Markdown. None where there is nothing to say."""
+"""The parts of RESULTS.md for each summary.json: tables and sentences, as Markdown. None where there is nothing to say."""
 
 NOT_MEASURED = "not measured"
 
@@ -284,7 +284,7 @@ def host_words(summary):
 
 
 def shown_table(summary):
-    """Of each object: the model beside the true mesh, and what is found by it beside what the true mesh finds."""
+    """Returns of each object: the model beside the true mesh, and what is found by it beside what the true mesh finds."""
     header = ("", "mesh: mm, 95 %", "drift: mm, degrees", "masks' IoU", "AUC, of true mesh", "ADD-S, of true mesh", "verdict")
     rows = [header]
     for name, one in summary["objects"].items():

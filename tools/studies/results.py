@@ -133,7 +133,7 @@ def bench_sections(out, commit):
 
 
 def life_sections(out, commit):
-    """Of objects that are followed over time, and of objects that are shown."""
+    """Returns the sections of objects that are followed over time, and of objects that are shown."""
     tracks, shown = Source(out / "bench" / "tracks.json", commit), Source(out / "teach" / "summary.json", commit)
     followed = (sequence_table, track_words, rate_table, host_words)
     return [

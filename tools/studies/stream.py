@@ -95,7 +95,7 @@ class Process:
             self.fail(f"ended with status {status}")
 
     def ask_to_end(self):
-        """As a user does, with Ctrl-C."""
+        """Ends it as a user does, with Ctrl-C."""
         self.process.send_signal(signal.SIGINT)
 
     def stop(self, seconds=3.0):
@@ -110,7 +110,7 @@ class Process:
 
 
 class Processes:
-    """Those of one run, by name. Use with `with`: what still runs at its end is killed."""
+    """The processes of one run, by name. Use with `with`: what still runs at its end is killed."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -157,7 +157,7 @@ def resident_mb(pid, proc=pathlib.Path("/proc")):
 
 
 class Usage:
-    """What one process costs, from the first sample to the last."""
+    """The cost of one process, from the first sample to the last."""
 
     def __init__(self):
         self.samples = []  # (time, CPU seconds, MB)

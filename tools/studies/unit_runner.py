@@ -93,7 +93,7 @@ def sha256_of_file(file):
 
 
 def sha256_of_folder(folder):
-    """Of names and contents."""
+    """Returns the digest of names and contents."""
     files = sorted(file for file in folder.rglob("*") if file.is_file())
     lines = [f"{file.relative_to(folder)} {sha256_of_file(file)}" for file in files]
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()
@@ -159,14 +159,14 @@ class Store:
         return self.digests[file]
 
     def digest(self, unit):
-        """Of the command, its program and what the inputs contain: a program that was built again but makes the same as
-        before does not make all after it run again."""
+        """Returns the digest of the command, its program and what the inputs contain: a program that was built again but makes
+        the same as before does not make all after it run again."""
         inputs = [self.record(self.units[name]).get("made") for name in unit.inputs]
         text = json.dumps([unit.command, self._program_digest(unit), inputs] + [unit.of] * bool(unit.of))
         return hashlib.sha256(text.encode()).hexdigest()
 
     def record(self, unit):
-        """What is known of the last time that the unit ran; empty if it never did."""
+        """Returns what is known of the last time that the unit ran; empty if it never did."""
         try:
             return json.loads(self._stamp(unit).read_text())
         except FileNotFoundError:
@@ -237,8 +237,8 @@ class Runner:
             done += 1
 
     def _rest(self, waiting, running_s=0.0):
-        """By what units took earlier, else by what others of their kind took, else by what they are expected to take. The
-        first one has run for `running_s` seconds."""
+        """Says how long the rest takes, by what units took earlier, else by what others of their kind took, else by what they
+        are expected to take. The first one has run for `running_s` seconds."""
         known = [self._expected(unit) for unit in waiting]
         measured = [seconds for seconds in known if seconds is not None]
         if not measured:
@@ -309,7 +309,7 @@ def locked(out):
 
 @contextlib.contextmanager
 def command_in(out):
-    """What a command does in its folder, alone there: a failure is one line, and the last line says that it is done."""
+    """Runs what a command does in its folder, alone there: a failure is one line, and the last line says that it is done."""
     try:
         with locked(out):
             yield

@@ -100,7 +100,7 @@ class ScreenImage:
             for row in self.rows for x in range(0, 3 * self.width, 3))
 
     def colours(self):
-        """How many different colours there are: few in an empty window, thousands in a photograph."""
+        """Returns how many different colours there are: few in an empty window, thousands in a photograph."""
         return len({row[x : x + 3] for row in self.rows for x in range(0, 3 * self.width, 3)})
 
     def save(self, file):

@@ -1,4 +1,4 @@
-"""What can be told of an encoded message, or changed in it, without decoding the whole. All of Houghstream's begin with a
+"""Reads and changes of an encoded message without decoding the whole. All of Houghstream's begin with a
 utime; in results, the channel of the source frame follows. What else they hold: TYPE.decode(data) of the package houghstream."""
 
 import struct

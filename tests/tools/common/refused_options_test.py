@@ -1,4 +1,5 @@
-"""What an option cannot heed is refused by every program, before anything is done, in one line that names program and option.
+"""A combination that an option cannot honour is refused by every program, before anything is done, in one line that names
+program and option.
 
 Usage: refused_options_test.py EXECUTABLES_FOLDER
 """

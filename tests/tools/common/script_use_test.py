@@ -1,4 +1,5 @@
-"""What programs give scripts: JSON where it is asked for, statuses, colours for a terminal only. Usage: script_use_test.py EXECUTABLES_FOLDER"""
+"""The output of programs for scripts: JSON where it is asked for, statuses, colours for a terminal only. Usage:
+script_use_test.py EXECUTABLES_FOLDER"""
 
 import json
 import os
@@ -22,7 +23,7 @@ def run(*words, **environment):
 
 
 def on_terminal(*words, **environment):
-    """What a terminal gets of the program."""
+    """Returns what a terminal gets of the program."""
     reader, writer = pty.openpty()
     command = [str(EXECUTABLES / words[0]), *map(str, words[1:])]
     child = subprocess.Popen(command, stdin=writer, stdout=writer, stderr=writer, env={**os.environ, **environment})

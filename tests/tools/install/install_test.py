@@ -1,4 +1,4 @@
-"""What `cmake --install` leaves: programs that run from there, libraries and headers that the examples build with, and types
+"""The result of `cmake --install`: programs that run from there, libraries and headers that the examples build with, and types
 for Python. Arguments: the source folder, the build folder."""
 
 import gzip
@@ -188,8 +188,8 @@ for number in range(100):
         run("/usr/bin/python3", "-c", script, cls.log, env=python_of_installation())
 
     def listen(self, *words):
-        """What a program prints while the log of poses is played in a private network, again until it prints something; it
-        has a second to end its line."""
+        """Returns what a program prints while the log of poses is played in a private network, again until it prints something;
+        it has a second to end its line."""
         play = (
             'stdbuf -oL "$@" > "$SAID" 2>&1 & '
             'for again in $(seq 20); do sleep 1; lcm-logplayer "$LOG" > /dev/null 2>&1; grep -q mug "$SAID" && break; done; '
@@ -257,7 +257,8 @@ for number in range(100):
         self.assertIn("mug at 0.100 0.200 1.500 m, quality 0.90", said)
 
     def frames_of(self, *words):
-        """What a program that sends frames has sent: channel, shapes, first and middle depth, first pixel and fx of each."""
+        """Returns what a program that sends frames has sent: channel, shapes, first and middle depth, first pixel and fx of
+        each."""
         log = self.folder / "frames.lcmlog"
         log.unlink(missing_ok=True)
         start = 'lcm-logger -f "$LOG" > /dev/null 2>&1 & sleep 1; "$@"; sleep 1; kill -INT %1; wait; true'

@@ -28,7 +28,7 @@ def check_command(test, name, words):
 
 
 def help_of(*words):
-    """What --help of a program, or of a program's job, says."""
+    """Returns what --help of a program, or of a program's job, says."""
     return subprocess.run([str(EXECUTABLES / words[0]), *words[1:], "--help"], capture_output=True, text=True, check=False).stdout
 
 
@@ -106,7 +106,7 @@ class Configuration(unittest.TestCase):
 
 class Completion(unittest.TestCase):
     def completed(self, *words):
-        """What the last of the words may become."""
+        """Returns what the last of the words may become."""
         script = 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _houghstream "$1"; printf "%s\\n" "${COMPREPLY[@]}"'
         words = (str(EXECUTABLES / words[0]), *words[1:])
         said = subprocess.run(["bash", "-c", script, "bash", str(SAMPLES / "bash_completion"), *words], capture_output=True,
@@ -174,7 +174,7 @@ class Samples(unittest.TestCase):
         self.assertEqual(len(set(steps)), 1)
         with tempfile.TemporaryDirectory() as folder:
             def pause(ago=0):
-                """How long the next start would wait, where the last one was `ago` seconds ago."""
+                """Returns how long the next start would wait, where the last one was `ago` seconds ago."""
                 tries = pathlib.Path(folder) / "tries"
                 if tries.exists():
                     _, deaths = tries.read_text().split()

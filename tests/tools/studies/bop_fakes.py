@@ -62,7 +62,7 @@ def write_evaluation(folder, scene, least=0.0):
 
 
 def stand_in(name, words):
-    """What a program writes, at once; a line for each call goes into the file that BOP_FAKE_LOG names."""
+    """Writes what a program writes, at once; a line for each call goes into the file that BOP_FAKE_LOG names."""
     if name == "hs-study":
         name, words = f"hs-study {words[0]}", words[1:]
     with open(os.environ["BOP_FAKE_LOG"], "a") as log:

@@ -159,7 +159,7 @@ class Options:
 
 
 class OneUnit:
-    """In place of the store: the forest alone."""
+    """A replacement of the store: the forest alone."""
 
     def __init__(self, folder):
         self.folder, self.units = folder, {"forest": "forest"}

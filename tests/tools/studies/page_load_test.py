@@ -12,7 +12,8 @@ FRAMES = 5
 
 
 class Page(http.server.BaseHTTPRequestHandler):
-    """As hs-view serves it: chunks of events, of which some are no frames, and images on a connection that is kept."""
+    """Serves the page as hs-view does: chunks of events, of which some are no frames, and images on a connection that is
+    kept."""
 
     protocol_version = "HTTP/1.1"
 

@@ -16,7 +16,7 @@ LATENCY = {"p50": 20.0, "p95": 25.0, "p99": 31.0}
 
 
 class Nothing:
-    """In place of the store of tools/reproduce: no unit has been run."""
+    """A replacement of the store of tools/reproduce: no unit has been run."""
 
     def is_current(self, unit):
         return False

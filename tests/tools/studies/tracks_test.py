@@ -1,4 +1,4 @@
-"""What tools/bench tracks adds up of its sequences, and how it asks for them."""
+"""The sums of tools/bench tracks over its sequences, and its requests for them."""
 
 import contextlib
 import io

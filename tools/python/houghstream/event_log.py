@@ -42,7 +42,7 @@ def read_log(path):
 
 
 def checksum(event):
-    """What a seal says of an event: CRC-32 of its timestamp, channel and data."""
+    """Returns a seal's checksum of an event: CRC-32 of its timestamp, channel and data."""
     return zlib.crc32(event.data, zlib.crc32(struct.pack(">q", event.timestamp) + event.channel.encode()))
 
 

@@ -1,4 +1,4 @@
-"""What is found in a frame, and what is known of the world: poses and objects with their evidence.
+"""Results of a frame and of the world: poses and objects with their evidence.
 
 Lengths are metres and angles radians; pixels count from the centre of the first one; a camera looks along z, with x to the
 right and y down.
@@ -59,13 +59,13 @@ class Pose:
     shape_quality: float
     """Probability that it is right up to the symmetries of the object's shape, 0 to 1; never below `quality`."""
     up_to_symmetry: bool
-    """Whether only the latter is sure: it may be turned to another side that looks alike by its shape."""
+    """True where only the latter is sure: it may be turned to another side that looks alike by its shape."""
     status: str
     """"valid", or "valid up to its shape's symmetry"."""
     inliers: int
     """Points of the model that have a partner in the measured depth."""
     inlier_fraction: float
-    """The same as a fraction of the points that were used, 0 to 1."""
+    """Inliers as a fraction of the points that were used, 0 to 1."""
     residual: float
     """Root mean square distance of the inliers to the model, metres; nan where there are none."""
     visible_fraction: float
@@ -156,7 +156,7 @@ class WorldObject:
     probability: float
     """Probability that it is where it is said to be, 0 to 1."""
     moving: bool
-    """Whether it moves; else its pose is an average."""
+    """True while it moves; else its pose is an average."""
     matrix: Array
     """(4, 4), takes points of the object's frame to the world's, metres."""
     covariance: Array

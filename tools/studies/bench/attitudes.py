@@ -25,7 +25,8 @@ def figures(folders):
 
 
 def summarise(out):
-    """By scene, and by group: AUC and AR are the means of its scenes', the others are of what was counted in all of them."""
+    """Returns figures by scene, and by group: AUC and AR are the means of its scenes', the others are of what was counted in
+    all of them."""
     scenes = {name: {scene: figures([scene_folders(out, name, scene)]) for group in GROUPS.values() for scene in group}
               for name in TAUGHT}  # fmt: skip
     groups = {}
@@ -59,7 +60,7 @@ def rows(summary):
 
 
 def default_rows(summary):
-    """What is reported and published at the defaults; the header first."""
+    """Returns rows of what is reported and published at the defaults; the header first."""
     header = ("at the defaults", "precision", "recall", "right, of published", "up to shape", "ECE score", "ECE quality",
               "ms detection", "ms poses")  # fmt: skip
     keys = FIGURES[2:]

@@ -60,7 +60,7 @@ class Bench:
         return {name: store.file(unit) for name, unit in store.units.items()}
 
     def fresh_folder(self, name):
-        """What an earlier run measured does not speak for this one."""
+        """Makes an empty folder: what an earlier run measured does not speak for this one."""
         folder = self.out / name
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
@@ -157,7 +157,7 @@ def bench_stream(bench):
 
 
 def objects_forest(bench, names, count):
-    """Of the first so many of forty objects."""
+    """Makes the forest of the first so many of forty objects."""
     few = ",".join(names[:count])
     views = bench.units.add(
         f"growth/views_{count}", "", "hs-render", "training", "--objects", few, *GROWTH_VIEWS, "--out", "{out}"
@@ -166,7 +166,7 @@ def objects_forest(bench, names, count):
 
 
 def bench_growth(bench):
-    """How time grows with objects, trees and pixels."""
+    """Measures how time grows with objects, trees and pixels."""
     bench.scene(SPEED_SCENE)
     bench.train("forest")
     bench.train("growth/trees_30", "--trees", 30)

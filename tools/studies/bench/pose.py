@@ -17,7 +17,7 @@ REAL = ("within_5mm_5deg", "frames", "with_pose", "median_mm", "median_deg")
 
 
 def figure(group, variant, *keys):
-    """What a group of results.json says of a variant; None where it was not measured."""
+    """Returns what a group of results.json says of a variant; None where it was not measured."""
     value = group.get(variant)
     for key in keys:
         value = None if value is None else value[key]

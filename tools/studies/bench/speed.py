@@ -104,7 +104,7 @@ def detection(out):
 
 
 def stream(folder):
-    """Of one replay, or None."""
+    """Returns the figures of one replay, or None."""
     observed, usage = read_json_if_any(folder / "observe.json"), read_json_if_any(folder / "usage.json")
     if not observed or not usage:
         return None
@@ -225,7 +225,7 @@ def page(summary, history):
 
 
 def glance(summary):
-    """What one wants to know first."""
+    """Returns the figures that a reader wants first."""
     rows = detection_rows(summary) if summary["parts"]["speed"] else []
     lines = [f"{words:<52}{ms:>10} ms   AUC {auc}" for words, ms, auc, _ in rows]
     for row in stream_rows(summary):

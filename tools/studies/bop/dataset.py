@@ -139,7 +139,8 @@ def known_objects(dataset, store):
 
 
 def folder_digest(folder):
-    """Of the contents of small files, and of name, size and time of images: enough to see that something changed."""
+    """Returns a digest of the contents of small files, and of name, size and time of images: enough to see that something
+    changed."""
     lines = []
     for file in sorted(path for path in folder.rglob("*") if path.is_file()):
         if file.suffix in (".json", ".txt"):

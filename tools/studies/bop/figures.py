@@ -165,7 +165,7 @@ def of_run(folders):
 
 
 def mean_figure(values):
-    """Of the seeds that have one."""
+    """Returns the mean over the seeds that have one."""
     known = [number for number in values if number is not None]
     return sum(known) / len(known) if known else None
 

@@ -1,4 +1,4 @@
-"""What tools/bench bop runs: teaching first, since it gives the names, then what looks for the objects and measures."""
+"""The units of tools/bench bop: teaching first, since it gives the names, then what looks for the objects and measures."""
 
 import dataclasses
 import pathlib
@@ -28,7 +28,7 @@ class Taught:
 
 @dataclasses.dataclass
 class SceneFolders:
-    """Where a scene's measurements lie; None where there are none."""
+    """The places of a scene's measurements; None where there are none."""
 
     name: str
     ranked: pathlib.Path  # every detection, ranked
@@ -79,7 +79,8 @@ class Plan:
         return f"{dataset.name}/seed_{seed}/taught"
 
     def names(self, dataset, store):
-        """Of the objects that the store knows, by the dataset's ids. Those in its images that it does not know are told."""
+        """Returns the names of the objects that the store knows, by the dataset's ids. Those in its images that it does not
+        know are told."""
         known = known_objects(dataset, store)
         there = {key for _, key, _, _ in true_objects(dataset, self.options.every)}
         unknown = sorted(there - set(known))
@@ -175,13 +176,13 @@ class Plan:
 
 
 def teach_seconds(log):
-    """What the last line "teach_seconds X" of hs-teach's words says, or None."""
+    """Returns the value of the last line "teach_seconds X" of hs-teach's words, or None."""
     values = [line.split()[1] for line in log.read_text().splitlines() if line.startswith("teach_seconds ")]
     return float(values[-1]) if values else None
 
 
 def target_count(dataset):
-    """Of all instances that the targets name, or None where there are none."""
+    """Returns the number of all instances that the targets name, or None where there are none."""
     if dataset.targets is None:
         return None
     return sum(

@@ -1,4 +1,4 @@
-"""What tools/bench bop leaves: summary.json, a file of poses for each set as BOP's tools read it, and the page."""
+"""The output of tools/bench bop: summary.json, a file of poses for each set as BOP's tools read it, and the page."""
 
 from studies.bop import figures
 from studies.bop.figures import COUNTS, FIGURES
@@ -43,7 +43,7 @@ def header(columns, first=""):
 
 
 def kept(run):
-    """What summary.json holds of a run, or of one of its scenes."""
+    """Returns the entry of summary.json for a run, or for one of its scenes."""
     out = {key: run[key] for key in KEPT}
     for key in ("spread", "calibration"):
         if key in run:
@@ -54,7 +54,7 @@ def kept(run):
 
 
 def cut(options, run):
-    """What the rivals did not look at for want of time, in words, or None."""
+    """Returns what the rivals did not search for want of time, in words, or None."""
     if not options.rivals:
         return None
     told = [
@@ -82,7 +82,7 @@ WORST = 4  # poses of a scene that are shown
 
 
 def images(folders):
-    """Of each scene what was missed or false, and the worst poses, by (words, images)."""
+    """Returns of each scene what was missed or false, and the worst poses, by (words, images)."""
     out = []
     for scene in folders:
         if scene.failures:
@@ -131,7 +131,7 @@ def page(summary, folders):
 
 
 def glance(summary):
-    """For the terminal."""
+    """Returns the lines for the terminal."""
     lines = []
     for name, run in summary["datasets"].items():
         lines.append(f"{name}: " + ", ".join(f"{words} {with_spread(run, key)}" for key, words in TABLE))

@@ -24,8 +24,8 @@ def drawn(image):
 
 
 def best_image(display, window, size=None):
-    """Of some looks at a window, from the first that shows a pose on, the one with the most objects and axes in its upper left
-    part of this size."""
+    """Returns the image of a window, of some from the first that shows a pose on, with the most objects and axes in its upper
+    left part of this size."""
     best, most, looks, end = None, (0, 0), 0, time.monotonic() + PATIENCE_S
     while looks < LOOKS:
         time.sleep(BETWEEN_S)

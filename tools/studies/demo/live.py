@@ -23,7 +23,7 @@ def nearest(times, wanted):
 
 
 def latencies_ms(rows, key, shutters, start_us):
-    """From the shutter to the arrival of what `key` names, for the frames for which it came."""
+    """Returns the times from the shutter to the arrival of what `key` names, for the frames for which it came."""
     taken = [(nearest(shutters, int(row["utime"])), row[key]) for row in rows if row[key]]
     unknown = sum(shutter is None for shutter, _ in taken)
     if unknown:
@@ -32,7 +32,7 @@ def latencies_ms(rows, key, shutters, start_us):
 
 
 def unplugging(rows, start_us, replugged_us):
-    """How long no frame came, and how soon after the camera frames and poses were back."""
+    """Returns how long no frame came, and how soon after the camera frames and poses were back."""
     frames, poses = (sorted(start_us + 1e6 * float(row[key]) for row in rows if row[key]) for key in ("t_frame", "t_poses"))
     frame, pose = bisect.bisect_left(frames, replugged_us), bisect.bisect_left(poses, replugged_us)
     if frame in (0, len(frames)) or pose == len(poses):

@@ -1,5 +1,5 @@
-"""How far the poses in a stream of the virtual camera are from one another, seen from the true object: a taught model has a
-frame of its own on the object, so that only this can be told.
+"""The scatter: how far the poses in a stream of the virtual camera are from one another, seen from the true object: a taught
+model has a frame of its own on the object, so that only this can be told.
 
 Transforms: rotation as three rows, translation in metres."""
 
@@ -42,7 +42,8 @@ def degrees_between(a, b):
 
 
 def scatter(relative):
-    """How far the poses are, in the frame of the true object, from the one that is nearest to all others: median and 95 %."""
+    """Returns how far the poses are, in the frame of the true object, from the one that is nearest to all others: median and 95
+    %."""
     if not relative:
         return {}
     middle = [statistics.median(axis) for axis in zip(*(where for _, where in relative))]
@@ -71,7 +72,7 @@ def images_taken(file):
 
 
 def image_at(taken, utime, count):
-    """Which of the scene's images was taken then; None where none was."""
+    """Returns which of the scene's images was taken then; None where none was."""
     place = bisect.bisect_left(taken, (utime, 0))
     nearest = min(taken[max(place - 1, 0) : place + 1], key=lambda shutter: abs(shutter[0] - utime), default=None)
     if nearest is None or abs(nearest[0] - utime) > HALF_PERIOD_US:

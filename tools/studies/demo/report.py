@@ -17,12 +17,12 @@ POSE_RECALL = "pose_recall_add_s_10"  # right up to what the shape cannot tell
 
 
 def about_run(options):
-    """What stands beside the figures."""
+    """Returns what stands beside the figures."""
     return {**about(options.command), "network": options.network}
 
 
 def account(sent, observed):
-    """What became of every frame that was sent, by the detector's own count. Ends the demo where it does not add up."""
+    """Returns what became of every frame that was sent, by the detector's own count. Ends the demo where it does not add up."""
     detector = observed["processes"].get("hs-detect")
     if detector is None:
         die("hs-detect has sent no status, so the frames cannot be accounted for")
@@ -43,7 +43,7 @@ def account(sent, observed):
 
 
 def detection_figures(evaluation):
-    """By object; "mean" is over the objects."""
+    """Returns figures by object; "mean" is over the objects."""
     auc = {name: value for name, value in evaluation["auc"].items() if name != "weighted"}
     figures = {"auc": auc, "auc_weighted": evaluation["auc"]["weighted"]}
     return figures | {key: evaluation[key] for key in ("precision", "recall", "required", RIGHT_RECALL, POSE_RECALL)}
@@ -55,7 +55,7 @@ def clutter(folder):
 
 
 def commands(store):
-    """How each piece of data was made."""
+    """Returns how each piece of data was made."""
     return {name: store.record(unit)["command"] for name, unit in store.units.items()}
 
 

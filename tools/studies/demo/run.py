@@ -1,4 +1,4 @@
-"""What tools/demo does: data, log, stream, evaluation, report; of a rendered scene, of recorded ones, or live. --teach is
+"""The steps of tools/demo: data, log, stream, evaluation, report; of a rendered scene, of recorded ones, or live. --teach is
 in teach.py."""
 
 import shutil

@@ -35,7 +35,7 @@ def units():
 
 
 def start_stream(running, programs, out, store, scene):
-    """All that a stream has, with the camera last. Nothing is known in it: there is no store yet."""
+    """Starts all that a stream has, with the camera last. Nothing is known in it: there is no store yet."""
     running.start("detect", programs / "hs-detect", "--objects", store, "--threads", threads())
     running.start("pose", programs / "hs-pose", "--objects", store, "--threads", 1)
     running.start("view", programs / "hs-view", "--objects", store, "--rate", 4, "--pictures", out / "pictures", "--replace")
@@ -115,7 +115,7 @@ def first(items, condition):
 
 
 class Story:
-    """What the log says, in order of arrival."""
+    """The events of the log, in order of arrival."""
 
     def __init__(self, log):
         self.teaching, self.statuses = [], []
@@ -147,7 +147,7 @@ class Story:
 
 
 def stream_figures(story):
-    """What hs-detect lost and passed over, in all and around the moment when it took over the store."""
+    """Returns what hs-detect lost and passed over, in all and around the moment when it took over the store."""
     statuses = story.of_process("hs-detect")
     last = statuses[-1][1]
     before = [status for arrival, status in statuses if arrival < story.known_us - AROUND_US] or [statuses[0][1]]
@@ -165,12 +165,12 @@ def found_in(frames):
 
 
 def posed_in(found):
-    """Those with a valid pose; a detection that hs-pose passed over has none at all."""
+    """Returns those with a valid pose; a detection that hs-pose passed over has none at all."""
     return [(utime, detection) for utime, detection in found if detection["pose"] and detection["pose"]["status"] == "valid"]
 
 
 def shares(frames, found, posed, since_us):
-    """In how many of the frames from then on it was found and posed."""
+    """Returns in how many of the frames from then on it was found and posed."""
     later = {frame["utime"] for frame in frames if frame["utime"] > since_us}
 
     def share(those):

@@ -108,7 +108,7 @@ def grouped_bars(groups, series, y_label, title="", size=WIDE):
 
 
 def draw_spread(axes, place, spread):
-    """From the worst to the best; returns its upper end."""
+    """Draws a bar from the worst to the best; returns its upper end."""
     if not spread or spread[0] == spread[1]:
         return 0.0
     axes.plot([place, place], spread, color=DARK, linewidth=0.9)

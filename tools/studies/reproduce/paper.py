@@ -1,4 +1,4 @@
-"""What the paper reports (Haensch, Kaiser, Hellwich, VISAPP 2017): only what its text states in numbers."""
+"""The figures of the paper (Haensch, Kaiser, Hellwich, VISAPP 2017): only what its text states in numbers."""
 
 BASELINE_AUC = 0.576  # Section 4.1
 # Section 4: gain over the baseline; AUC where the text states it.
@@ -19,7 +19,7 @@ SECONDS = {"original": 53.0, "final": 2.0}  # Sections 5 and 6
 
 
 def feature_auc(feature):
-    """As stated, else from the gain over the baseline; None where the paper has no figure for it."""
+    """Returns the figure as stated, else from the gain over the baseline; None where the paper has no figure for it."""
     known = FEATURES.get(feature)
     if known is None:
         return None

@@ -99,8 +99,8 @@ class Planner:
         return ("--scene", source.scenes[scene], "--forest", f"{{{forest}}}", "--every", every, "--out", "{out}")
 
     def linemod(self, source, scenes, figure, every, prefix=""):
-        """With and without its check of depth. Learns its templates without chance: one run stands for all. As evaluate()
-        where it is left out."""
+        """Runs LINEMOD with and without its check of depth. Learns its templates without chance: one run stands for all. As
+        evaluate() where it is left out."""
         listed = [word for scene in scenes for word in ("--scene", source.scenes[scene])]
         for name, check in (("linemod", CHECK_DEPTH), ("linemod_no_check", ())):
             what = prefix + name
@@ -169,7 +169,7 @@ def add_single_studies(planner, source, seed):
 
 
 def add_other_sensor(planner, source, seed):
-    """The same forest, asked about scenes that another sensor saw."""
+    """Evaluates the same forest on scenes that another sensor saw."""
     forest = planner.train("realtime", source, seed, "sensor")
     other = sources.other_sensor(planner.units, source)
     for scene in other.scenes:

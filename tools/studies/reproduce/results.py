@@ -1,4 +1,4 @@
-"""What the units measured, as rows (kind, what, scene, seed, object, metric, value), and questions about them: means,
+"""The measurements of the units, as rows (kind, what, scene, seed, object, metric, value), and questions about them: means,
 spreads, times, and whether scores are the probabilities that they claim to be."""
 
 import csv
@@ -58,7 +58,7 @@ class Results:
         self.rows += [{**facts, "object": name, "metric": metric, "value": value} for name, metric, value in rows]
 
     def values(self, metric, **facts):
-        """Of all rows that match, in order of the seeds; what was not measurable is left out."""
+        """Returns the values of all rows that match, in order of the seeds; what was not measurable is left out."""
         found = [
             row
             for row in self.rows
@@ -80,12 +80,13 @@ class Results:
         return (min(values), max(values)) if values else None
 
     def objects(self, what, scene):
-        """Those that are in the scene."""
+        """Returns the objects that are in the scene."""
         rows = [row for row in self.rows if (row["metric"], row["what"], row["scene"]) == ("required", what, scene)]
         return list(dict.fromkeys(row["object"] for row in rows if row["value"]))
 
     def milliseconds(self, what, scene, kind="evaluate", classification_only=False):
-        """Of one frame: all stages of the detector, or those from classification on; mean over the training runs."""
+        """Returns the time of one frame: all stages of the detector, or those from classification on; mean over the training
+        runs."""
         facts = {"what": what, "scene": scene, "kind": kind}
         rows = [row for row in self.rows if all(row[key] == value for key, value in facts.items())]
         metrics = dict.fromkeys(row["metric"] for row in rows if row["metric"].startswith("ms detect."))
@@ -126,7 +127,7 @@ def wilson(share, count, z=1.96):
 
 
 def reliability(curves):
-    """For each bin of the score that has any: its mean score, count, share that is true, and that share's interval."""
+    """Returns for each bin of the score that has any: its mean score, count, share that is true, and that share's interval."""
     bins = [[] for _ in range(BINS)]
     for score, is_true in (verdict for curve in curves for verdict in verdicts(curve)):
         bins[min(max(int(score * BINS), 0), BINS - 1)].append((score, is_true))

@@ -1,4 +1,4 @@
-"""What tools/reproduce does: runs the units of the comparison and writes its report."""
+"""The steps of tools/reproduce: runs the units of the comparison and writes its report."""
 
 import dataclasses
 import json
@@ -95,7 +95,8 @@ class Reproduction:
         return " ".join(["tools/reproduce", *(["--quick"] if self.options.quick else []), *dataset])
 
     def settings(self):
-        """Of the units that are current: programs that differ have made them anew, so that all are of this commit."""
+        """Returns the settings of the units that are current: programs that differ have made them anew, so that all are of this
+        commit."""
         done = [self.store.record(unit) for unit in self.units if self.store.is_current(unit)]
         return {
             "command": self.command_in_words(),

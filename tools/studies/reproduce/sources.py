@@ -1,4 +1,4 @@
-"""Where views, background and scenes come from: each source adds the units that make them."""
+"""The sources of views, background and scenes: each source adds the units that make them."""
 
 import dataclasses
 import pathlib
@@ -49,7 +49,7 @@ def twenty(units, few):
 
 
 def other_sensor(units, usual):
-    """The same objects in scenes that another sensor saw than the one of the training views."""
+    """Makes the same objects in scenes that another sensor saw than the one of the training views."""
     return dataclasses.replace(usual, scenes=rendered_scenes(units, OTHER_SENSOR_SCENES, "sensor", OTHER_SENSOR))
 
 

@@ -64,7 +64,8 @@ def auc_by_object(results, what):
 
 
 def twenty_objects(results):
-    """Of a forest of twenty and one of four, on the same frames. None what is not measured in all scenes."""
+    """Returns the figures of a forest of twenty and one of four, on the same frames; None where one is not measured in all
+    scenes."""
     ms_20, ms_4 = (
         mean_of(results.mean("ms", what=what, scene=scene, kind="side_by_side") for scene in SCENES_20)
         for what in ("objects_20_realtime", "realtime")
@@ -124,7 +125,8 @@ def timings(results):
 
 
 def gains(time):
-    """How many times as fast as the original: in the same engine on one thread each, and as the whole systems run."""
+    """Returns how many times as fast as the original it is: in the same engine on one thread each, and as the whole systems
+    run."""
     ms = {name: found["ms"] for name, found in time.items()}
     return {
         "same_engine_one_thread": ratio(ms["fast_engine_one_thread"], ms["realtime_one_thread"]),

@@ -73,7 +73,7 @@ def final_rows(summary):
 
 
 def glance(summary):
-    """What the paper says and what was measured here."""
+    """Returns what the paper says and what was measured here."""
     return [
         ("", "paper", "here"),
         *quality_rows(summary),

@@ -1,4 +1,4 @@
-"""What may happen to the bus itself: a link that goes away, and rubbish while an object is shown."""
+"""Faults of the bus itself: a link that goes away, and rubbish while an object is shown."""
 
 import random
 import re

@@ -41,7 +41,7 @@ class ClockFaults(Faults):
         return processes
 
     def through_line(self, name, send):
-        """What is heard while `send` sends frames to the line, and the processes, which have ended."""
+        """Returns what is received while `send` sends frames to the line, and the processes, which have ended."""
         processes = self.line(self.folder(name))
         listener = Listener(HEARD, [*RESULTS.values(), OBJECTS])
         try:

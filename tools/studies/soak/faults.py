@@ -1,4 +1,4 @@
-"""What all faults share: the processes, and their accounts."""
+"""The parts that all faults share: the processes, and their accounts."""
 
 import re
 import shutil
@@ -14,7 +14,7 @@ RESULTS = {"detect": "HOUGHSTREAM_DETECTIONS", "pose": "HOUGHSTREAM_POSES", "cap
 
 
 def account(process):
-    """What a process says of its frames in the end."""
+    """Returns what a process says of its frames in the end."""
     found = ACCOUNT.search(process.log.read_text(errors="replace"))
     if not found:
         process.fail("has given no account")

@@ -1,4 +1,4 @@
-"""What may happen to frames on their way, and that each one is accounted for."""
+"""Faults of frames on their way, each of which is accounted for."""
 
 import random
 import time

@@ -1,4 +1,4 @@
-"""What the samples, arrivals and accounts of a long run say, and what in it is not as it should be."""
+"""The account of a long run, of its samples, arrivals and counts, with what is not as it should be."""
 
 import csv
 import itertools
@@ -35,15 +35,15 @@ def windows(samples):
 
 
 def grows(settled, key):
-    """Whether there is a window in which the count never came down to the least of the first: a file that is open while it
-    is read does not count."""
+    """Returns whether there is a window in which the count never came down to the least of the first: a file that is open while
+    it is read does not count."""
     least = [min(one[key] for one in window) for window in settled]
     return max(least) > least[0]
 
 
 def fewer(values):
-    """As how many times fewer values these count, whose neighbours resemble one another, as in a slow swing (Hamed and Rao
-    1998)."""
+    """Returns as how many times fewer values these count, whose neighbours resemble one another, as in a slow swing (Hamed and
+    Rao 1998)."""
     count, mean = len(values), statistics.fmean(values)
     spread = sum((value - mean) ** 2 for value in values)
     # What is left of an exact line is the rounding of its numbers.
@@ -73,8 +73,8 @@ def trend(times, values):
 
 
 def memory_growth(settled):
-    """How memory grows, as parts of its median: an hour, by the slope of the minutes' medians; what that is at least; and the
-    rise from all of the first quarter to all of the last one."""
+    """Returns how memory grows, as parts of its median: an hour, by the slope of the minutes' medians; what that is at least;
+    and the rise from all of the first quarter to all of the last one."""
     hours = [statistics.fmean(one["s"] for one in window) / 3600 for window in settled]
     mb = [statistics.median(one["mb"] for one in window) for window in settled]
     middle = statistics.median(mb)
@@ -90,7 +90,7 @@ def memory_growth(settled):
 
 
 def cost(samples):
-    """What one process takes, and how far that grows from minute two on."""
+    """Returns what one process takes, and how far that grows from minute two on."""
     settled = windows(samples)
     seconds = samples[-1]["s"] - samples[0]["s"]
     return {
@@ -109,16 +109,16 @@ def captured(words):
 
 
 def looks_of(words):
-    """What hs-pose --follow says in the end of the detector's results, or None."""
+    """Returns what hs-pose --follow says in the end of the detector's results, or None."""
     found = LOOKS.search(words)
     return dict(zip(("came", "answered", "passed_over"), map(int, found.groups()))) if found else None
 
 
 def accounts(sent, counts, looks=None):
-    """What each process says of its frames, which share it passed over, and how many of the results of the one before it
-    never came to it: what is lost behind the last that comes its own count cannot know. hs-pose --follow takes each frame
-    itself, hs-detect looks at some only, as it is told to; the answer to such a look (`looks`: see looks_of) is a second
-    result of its frame, which hs-track passes over when it has the first."""
+    """Returns what each process says of its frames, which share it passed over, and how many of the results of the one before
+    it never came to it: what is lost behind the last that comes its own count cannot know. hs-pose --follow takes each frame
+    itself, hs-detect looks at some only, as it is told to; the answer to such a look (`looks`: see looks_of) is a second result
+    of its frame, which hs-track passes over when it has the first."""
     found, before = {}, sent
     for name in CHAIN[1:]:
         one = counts[name]
@@ -153,7 +153,7 @@ def of_result(by_minute):
 
 
 def wrong_of_process(name, one):
-    """In words."""
+    """Yields the faults of a process, in words."""
     for count in ("lost", "missing", "refused"):
         if one.get(count):
             yield f"hs-{name}: {one[count]} {count}"
@@ -169,7 +169,7 @@ def wrong_of_process(name, one):
 
 
 def wrong(seen):
-    """What is not as it should be; nothing where the run is good."""
+    """Returns what is not as it should be; nothing where the run is good."""
     found = [seen["failed"]] if "failed" in seen else []
     if "sent_hz" in seen and seen["sent_hz"] < LEAST_RATE * seen["rate_hz"]:
         found.append(f"hs-capture: {seen['sent_hz']} Hz, expected {seen['rate_hz']}")

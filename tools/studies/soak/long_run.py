@@ -51,7 +51,7 @@ class StopSignals:
 
 
 def taken(pid):
-    """What a process has of the machine now."""
+    """Returns what a process has of the machine now."""
     folder = pathlib.Path(f"/proc/{pid}")
     threads = int(re.search(r"Threads:\s+(\d+)", (folder / "status").read_text()).group(1))
     return {"mb": round(resident_mb(pid), 3), "descriptors": len(os.listdir(folder / "fd")), "threads": threads,

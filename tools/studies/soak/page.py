@@ -48,7 +48,7 @@ def words_of(value):
 
 
 def counts_of(seen):
-    """What became of the frames: of those that were sent, where that is known, of those that came elsewhere."""
+    """Returns what became of the frames: of those that were sent, where that is known, of those that came elsewhere."""
     if "processed" not in seen:
         return "–"
     whole = f"{seen['sent']} sent" if "sent" in seen else f"{seen['received']} came"

@@ -1,4 +1,4 @@
-"""What may happen to the page of hs-view, and to what draws frames: clients that mean no good, frames of odd shapes."""
+"""Faults of the page of hs-view, and to what draws frames: clients that mean no good, frames of odd shapes."""
 
 import contextlib
 import http.client

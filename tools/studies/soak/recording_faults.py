@@ -1,4 +1,4 @@
-"""What may happen to the programs that record: what was recorded stays and can be read."""
+"""Faults of the programs that record: what was recorded stays and can be read."""
 
 import os
 import re
@@ -34,7 +34,7 @@ class RecordingFaults(Faults):
             time.sleep(0.02)
 
     def frames_in(self, folder, recording):
-        """How many frames a recording holds, as hs-log reads them; None where it reads none."""
+        """Returns how many frames a recording holds, as hs-log reads them; None where it reads none."""
         log = folder / f"{recording.name}.read"
         source = ["import", recording, log] if recording.suffix == ".oni" else ["filter", recording, log]
         subprocess.run([self.programs / "hs-log", *source], capture_output=True, text=True, timeout=300, check=False)

@@ -18,7 +18,7 @@ SPARED = 3  # messages of a camera at the beginning and the end of a run: what i
 
 
 class Chances(NamedTuple):
-    """What becomes of a message, as probabilities; most are passed on as they are."""
+    """The fate of a message, as probabilities; most are passed on as they are."""
 
     lose: float = 0.0
     swap: float = 0.0  # the next one overtakes it

@@ -1,4 +1,4 @@
-"""What may happen to the object store that a stream works on."""
+"""Faults of the object store that a stream works on."""
 
 import json
 import re
@@ -34,7 +34,7 @@ class Worlds:
         self.logger.wait()
 
     def read(self):
-        """Of each frame when the log got it, seconds, and the numbers of the objects that are there, lists by name."""
+        """Returns of each frame when the log got it, seconds, and the numbers of the objects that are there, lists by name."""
         worlds = []
         for utime, _, data in self.events():
             named = {}
@@ -51,7 +51,7 @@ class Worlds:
             return []  # not there yet, or its end is just being written
 
     def wait_for(self, is_it, seconds):
-        """Whether the last world is so, soon."""
+        """Returns whether the last world is so, soon."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             worlds = self.read()
@@ -91,25 +91,25 @@ class StoreFaults(Faults):
             return None, process.communicate()[0]
 
     def changed(self, *words):
-        """What nobody disturbs."""
+        """Changes the store by hs-teach, which nobody disturbs."""
         status, answer = self.teach(*words)
         if status != 0:
             raise ProcessFailed(f"hs-teach {' '.join(map(str, words))}: {answer}")
 
     def names(self, store):
-        """What the store holds, or None where it is none."""
+        """Returns what the store holds, or None where it is none."""
         status, _ = self.teach("list", store)
         if status != 0:
             return None
         return sorted(one["name"] for one in json.loads((store / "store.json").read_text())["objects"])
 
     def goes_on(self, listener, seconds=20.0):
-        """Whether detections and poses still come."""
+        """Returns whether detections and poses still come."""
         since = time.monotonic()
         return all(listener.wait_for(RESULTS[name], lambda one: one.time > since, seconds) for name in ("detect", "pose"))
 
     def writer_killed(self):
-        """Who renames, and who removes, is killed at several moments while the stream runs."""
+        """Kills programs that rename and remove at several moments while the stream runs."""
         folder = self.folder("writer_killed")
         store = self.store(folder)
         stream = self.stream(folder, "--objects", store)
@@ -233,7 +233,7 @@ class StoreFaults(Faults):
 
     @staticmethod
     def missing(store):
-        """Of somebody's files those that are not there as they were."""
+        """Returns those of somebody's files that are not there as they were."""
         return [name for name, words in FOREIGN.items() if not (store / name).is_file() or (store / name).read_text() != words]
 
     def changes_under_track(self):

@@ -1,4 +1,4 @@
-"""What may happen to the processes of a stream, to its disk and to its files."""
+"""Faults of the processes of a stream, of its disk and of its files."""
 
 import os
 import shutil

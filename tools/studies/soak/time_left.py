@@ -1,4 +1,4 @@
-"""How long a row of works still takes."""
+"""The time that a row of works still takes."""
 
 import statistics
 import time

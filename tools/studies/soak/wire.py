@@ -67,8 +67,8 @@ Heard = collections.namedtuple("Heard", "time sender utime source payload")
 
 
 class Listener:
-    """What has been heard on some channels, until stop(): of each message when, from whom, the frame's utime and, of
-    results, the frame's channel and, where they fit into a datagram, all their bytes."""
+    """The messages that were received on some channels, until stop(): of each message when, from whom, the frame's utime and,
+    of results, the frame's channel and, where they fit into a datagram, all their bytes."""
 
     RESULTS = ("HOUGHSTREAM_DETECTIONS", "HOUGHSTREAM_POSES", "HOUGHSTREAM_OBJECTS")
 

@@ -17,7 +17,7 @@ SAID = 10  # lines of stderr
 
 
 def teach(program, out, before, words):
-    """What hs-teach answered; raises where it ended otherwise."""
+    """Returns what hs-teach answered; raises where it ended otherwise."""
     if before and before.is_dir():
         shutil.copytree(before, out / "store")
         words = [*words, "--add"]

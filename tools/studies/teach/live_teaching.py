@@ -23,7 +23,7 @@ AFTERWARDS_S = 20.0  # after hs-teach has ended: all frames of the scene have go
 
 
 def events(log):
-    """Of a log that may still be written: what is whole of it."""
+    """Returns what is whole of a log that may still be written."""
     found = []
     try:
         for event in read_log(log):

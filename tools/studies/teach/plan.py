@@ -1,4 +1,4 @@
-"""What tools/bench teach runs: takes, what is made of them, and scenes in which the objects are looked for."""
+"""The units of tools/bench teach: takes, what is made of them, and scenes in which the objects are looked for."""
 
 import dataclasses
 import json
@@ -19,7 +19,7 @@ STREAM_PROGRAMS = ("hs-teach", "hs-detect", "hs-pose")
 
 @dataclasses.dataclass
 class ObjectFolders:
-    """What was made of an object; None where it was not."""
+    """The output for an object; None where it was not."""
 
     name: str
     answer: dict  # of hs-teach show: status, seconds, said
@@ -84,7 +84,7 @@ class Plan:
         return units
 
     def units_of_comparisons(self, store):
-        """Of what was kept; a refused object has nothing that could be compared."""
+        """Returns the comparisons of what was kept; a refused object has nothing that could be compared."""
         units = Units()
         for name in self.options.objects:
             if (store.path(f"shown/{name}") / "kept" / "model.ply").is_file():

@@ -1,4 +1,4 @@
-"""What tools/bench teach leaves: summary.json, and a page with every model beside the true one."""
+"""The output of tools/bench teach: summary.json, and a page with every model beside the true one."""
 
 from studies.command import step
 from studies.records import about, read_json, rounded, threads, write_json
@@ -45,7 +45,7 @@ def figures(folders, summaries):
 
 
 def faults(one):
-    """What of the promised an object does not keep, in words."""
+    """Returns the promises that an object does not keep, in words."""
     out = [f"{key} {show(one[key])}" for key, limit in LIMITS.items() if one[key] is None or one[key] > limit]
     out += [f"{key} {show(one[key])}" for key, limit in LEAST.items() if one[key] is None or one[key] < limit]
     for key in ("auc", "add_s"):
@@ -56,7 +56,7 @@ def faults(one):
 
 
 def judged(objects):
-    """Which objects keep everything, which do not and were named poor, and which do not and were called good."""
+    """Returns which objects keep everything, which do not and were named poor, and which do not and were called good."""
     kept = [name for name, one in objects.items() if not faults(one)]
     return {
         "kept": kept,
@@ -100,7 +100,7 @@ def least(values):
 
 
 def stream_figures(live):
-    """What is said of the teaching in a stream."""
+    """Returns what is said of the teaching in a stream."""
     if live is None:
         return {"seconds_to_found": None, "stream": None}
     kept = ("name", "seconds_to_taught", "frames", "lost", "skipped", "frame_rate_hz")

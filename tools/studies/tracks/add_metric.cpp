@@ -6,10 +6,8 @@
 namespace houghstream::studies {
 namespace {
 
-constexpr double kReachM = 0.1;  // a published object farther away is of none of its class
 constexpr double kDiameters = 0.1;
 constexpr double kSure = 0.9;
-constexpr double kMinVisible = 1.0 / 3.0;  // fraction of what is measured by its medians
 
 double mean_distance(const AddModel& model, const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   const Eigen::Isometry3f T_a = a.cast<float>();
@@ -47,32 +45,24 @@ AddModel make_add_model(const Mesh& mesh) {
   return {sample_surface(mesh, kPoints, 1).points, mesh_diameter(mesh)};
 }
 
-OrderedJson add_metrics(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
-                        const ClassSymmetries& symmetries, const std::map<std::string, AddModel>& models) {
+OrderedJson add_metrics(const std::vector<MatchedPose>& poses, const std::map<std::string, AddModel>& models) {
   std::map<std::string, AddCount> counts;
   int sure = 0;
   int wrong = 0;
-  for (const PublishedFrame& frame : published) {
-    const std::vector<TrueInstance>& truth = sequence.frames[frame.index];
-    const std::vector<int> given = matches(truth, frame.objects, symmetries, kReachM);
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      const auto model = models.find(truth[i].class_name);
-      if (!truth[i].T_world_object || model == models.end()) continue;
-      AddCount& count = counts[truth[i].class_name];
-      ++count.frames;
-      if (given[i] < 0) continue;
-      const auto place = static_cast<std::size_t>(given[i]);
-      const PublishedObject& object = frame.objects[place];
-      const double apart_m =
-          mean_distance(model->second, as_the_truth(object, truth[i], symmetries), *truth[i].T_world_object);
-      const bool is_correct = apart_m < kDiameters * model->second.diameter_m;
-      count.right += is_correct ? 1 : 0;
-      if (truth[i].visible >= kMinVisible)
-        note_errors(model->second, as_the_truth(object, truth[i], symmetries), *truth[i].T_world_object, count);
-      if (frame.qualities.empty() || !(frame.qualities[place] > kSure)) continue;
-      ++sure;
-      wrong += is_correct ? 0 : 1;
-    }
+  for (const MatchedPose& pose : poses) {
+    const auto model = models.find(pose.truth->class_name);
+    if (model == models.end()) continue;
+    AddCount& count = counts[pose.truth->class_name];
+    ++count.frames;
+    if (!pose.T_world_object) continue;
+    const Eigen::Isometry3d& truth = *pose.truth->T_world_object;
+    const bool is_correct =
+        mean_distance(model->second, *pose.T_world_object, truth) < kDiameters * model->second.diameter_m;
+    count.right += is_correct ? 1 : 0;
+    if (pose.is_clearly_visible()) note_errors(model->second, *pose.T_world_object, truth, count);
+    if (!(pose.quality > kSure)) continue;
+    ++sure;
+    wrong += is_correct ? 0 : 1;
   }
   OrderedJson add = OrderedJson::object();
   OrderedJson errors = OrderedJson::object();

@@ -17,18 +17,17 @@ struct AddModel {
   double diameter_m = 0.0;
 };
 
-/// A few hundred points of the mesh's surface, and its diameter.
+/// Makes a model of a few hundred points of the mesh's surface, with its diameter.
 AddModel make_add_model(const Mesh& mesh);
 
-/// ADD of published poses (Hinterstoisser et al. 2012: mean distance between points of the model under both poses; of
-/// the poses that look the same as the true one, the nearest), beside a tenth of the diameter:
+/// Computes ADD of published poses (Hinterstoisser et al. 2012: mean distance between points of the model under both
+/// poses; of the poses that look the same as the true one, the nearest), beside a tenth of the diameter:
 ///
 ///   "add"              by class: share of the frames in which the object is there whose pose is below it; a frame in
 ///                      which it is not published counts as one that is not
 ///   "median_error"     by class, of what is published and at least a third visible: "mm" between the points' means,
 ///                      "deg" about any axis
 ///   "wrong_above_0_9"  of what was published with a quality above 0.9: "published", and "wrong", which is above it
-OrderedJson add_metrics(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
-                        const ClassSymmetries& symmetries, const std::map<std::string, AddModel>& models);
+OrderedJson add_metrics(const std::vector<MatchedPose>& poses, const std::map<std::string, AddModel>& models);
 
 }  // namespace houghstream::studies

@@ -1,4 +1,4 @@
-"""What the third host of hosts.py heard of the two others: how often, how late, and what becomes of a lost one's objects."""
+"""The record of the third host of hosts.py on the two others: how often, how late, and what becomes of a lost one's objects."""
 
 from houghstream import object_pose_t, object_poses_t, objects_t, tracked_object_t
 from houghstream.event_log import read_log
@@ -7,7 +7,7 @@ from studies.records import percentiles
 
 
 class Record:
-    """What the third host heard, with times in seconds."""
+    """The messages that the third host received, with times in seconds."""
 
     def __init__(self, log):
         self.frames, self.poses = {}, []  # times by utime; (time, utime, names of valid poses)
@@ -57,7 +57,7 @@ def world_at(record, end):
 
 
 def seconds_until(record, begin, objects, reached):
-    """From `begin` until a world in which that is so of the objects' states, or None."""
+    """Returns the time from `begin` until a world in which that is so of the objects' states, or None."""
     for when, _, world in record.worlds:
         if when >= begin and reached([world[name][0] for name in objects if name in world]):
             return round(when - begin, 2)
@@ -65,7 +65,7 @@ def seconds_until(record, begin, objects, reached):
 
 
 def lost_host(record, times, parts, said):
-    """What becomes of host b's objects from the pulling of its cable on, and when they are back."""
+    """Returns what becomes of host b's objects from the pulling of its cable on, and when they are back."""
     cut, joined = times["cut"], times["joined"]
     objects = {name for name in world_at(record, cut) if name in parts["b"]}
     aged = [probability for name, (_, probability) in world_at(record, joined).items() if name in objects]

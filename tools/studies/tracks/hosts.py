@@ -139,7 +139,7 @@ class Stream:
         return None
 
     def record(self):
-        """What was heard; the log, which holds all frames, goes."""
+        """Returns what was received; the log, which holds all frames, goes."""
         record = Record(self.recorded)
         self.recorded.unlink()
         return record
@@ -207,7 +207,7 @@ def measure(programs, out):
 
 
 def by_number(measured):
-    """For tables: (words, figures) of one host and of two."""
+    """Returns rows for tables: (words, figures) of one host and of two."""
     return [("twenty objects", measured["one"]), ("forty objects", measured["two"])] if measured else []
 
 

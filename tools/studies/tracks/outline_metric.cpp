@@ -6,12 +6,6 @@
 #include "pose/following/silhouette.hpp"
 
 namespace houghstream::studies {
-namespace {
-
-constexpr double kOutlineReachM = 0.1;  // a published object farther away is of none of its class
-constexpr double kOutlineVisible = 1.0 / 3.0;
-
-}  // namespace
 
 double outline_distance_px(const ObjectModel& model, const Camera& camera, const Eigen::Isometry3d& truth,
                            const Eigen::Isometry3d& found) {
@@ -30,24 +24,18 @@ double outline_distance_px(const ObjectModel& model, const Camera& camera, const
   return sum / count;  // 0/0 is NaN
 }
 
-OrderedJson outline_metrics(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
-                            const ClassSymmetries& symmetries, const std::map<std::string, ObjectModel>& models) {
+OrderedJson outline_metrics(const SequenceFile& sequence, const std::vector<MatchedPose>& poses,
+                            const std::map<std::string, ObjectModel>& models) {
   const SequenceCamera& first = sequence.cameras.at(0);
   const Camera camera = BopScene(first.scene).images().at(0).camera;
   std::map<std::string, std::vector<double>> distances;
-  for (const PublishedFrame& frame : published) {
-    const std::vector<TrueInstance>& truth = sequence.frames[frame.index];
-    const std::vector<int> given = matches(truth, frame.objects, symmetries, kOutlineReachM);
-    const Eigen::Isometry3d T_camera_world = first.T_world_camera[frame.index].inverse();
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      const auto model = models.find(truth[i].class_name);
-      if (given[i] < 0 || model == models.end() || truth[i].visible < kOutlineVisible) continue;
-      const Eigen::Isometry3d found =
-          as_the_truth(frame.objects[static_cast<std::size_t>(given[i])], truth[i], symmetries);
-      const double apart_px =
-          outline_distance_px(model->second, camera, T_camera_world * *truth[i].T_world_object, T_camera_world * found);
-      if (std::isfinite(apart_px)) distances[truth[i].class_name].push_back(apart_px);
-    }
+  for (const MatchedPose& pose : poses) {
+    const auto model = models.find(pose.truth->class_name);
+    if (!pose.T_world_object || model == models.end() || !pose.is_clearly_visible()) continue;
+    const Eigen::Isometry3d T_camera_world = first.T_world_camera[pose.frame->index].inverse();
+    const double apart_px = outline_distance_px(model->second, camera, T_camera_world * *pose.truth->T_world_object,
+                                                T_camera_world * *pose.T_world_object);
+    if (std::isfinite(apart_px)) distances[pose.truth->class_name].push_back(apart_px);
   }
   OrderedJson out = OrderedJson::object();
   for (const auto& [name, values] : distances) out[name] = quantile(values, 0.5);

@@ -15,8 +15,8 @@ namespace houghstream::studies {
 /// by class the median over frames of the mean distance across the true outline, pixels. Counted where the object is
 /// published and at least a third of it visible; a class that never is has no entry. Throws InputError where the
 /// camera's scene cannot be read.
-OrderedJson outline_metrics(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
-                            const ClassSymmetries& symmetries, const std::map<std::string, ObjectModel>& models);
+OrderedJson outline_metrics(const SequenceFile& sequence, const std::vector<MatchedPose>& poses,
+                            const std::map<std::string, ObjectModel>& models);
 
 /// Returns the mean distance in pixels, across the outline of the model at `truth`, to where its points are at `found`.
 /// NaN where no point of the outline is before the camera.

@@ -1,4 +1,4 @@
-"""What tools/bench tracks runs: for each sequence its log, what is found in it, its tracks, and the comparison."""
+"""The units of tools/bench tracks: for each sequence its log, what is found in it, its tracks, and the comparison."""
 
 import pathlib
 
@@ -80,7 +80,7 @@ class Plan:
         return store
 
     def path(self, store, words):
-        """Of words for a forest or models."""
+        """Returns the path that words for a forest or models name."""
         for unit in self.units.all():
             words = words.replace(f"{{{unit.name}}}", str(store.file(unit)))
         return pathlib.Path(words)

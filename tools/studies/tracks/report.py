@@ -1,4 +1,4 @@
-"""What tools/bench tracks writes: OUT/tracks.json and OUT/tracks.html."""
+"""The output of tools/bench tracks: OUT/tracks.json and OUT/tracks.html."""
 
 import math
 import pathlib
@@ -22,7 +22,7 @@ MOVED = ("pushed", "carried", "removed", "swapped", "cans")
 
 
 def hota_of(figures):
-    """Of several sequences as TrackEval combines them: each threshold's counts are added up."""
+    """Combines several sequences as TrackEval does: each threshold's counts are added up."""
     thresholds = zip(*(one["hota_counts"] for one in figures))
     sums = [[sum(count) for count in zip(*counts)] for counts in thresholds]
     # DetA AssA is TP / (TP + FN + FP) times the sum of A(c) / TP.
@@ -30,7 +30,7 @@ def hota_of(figures):
 
 
 def pooled(figures):
-    """Of several sequences: counts are added up, shares follow the counts."""
+    """Combines several sequences: counts are added up, shares follow the counts."""
     required = sum(one["required"] for one in figures)
     found = sum(one["recall"] * one["required"] for one in figures)
     right = found + sum(one["kept"] for one in figures)
@@ -52,13 +52,13 @@ def longest(lists):
 
 
 def wrong_share(counts):
-    """Of all sequences; None where nothing was published that surely."""
+    """Returns the share over all sequences; None where nothing was published that surely."""
     published = sum(one["published"] for one in counts)
     return sum(one["wrong"] for one in counts) / published if published else None
 
 
 def check_extrinsics(options, plan, store):
-    """What hs-track --check says of right places, and of one that is wrong."""
+    """Returns what hs-track --check says of right places, and of one that is wrong."""
     out = {}
     for name, log in (("right", "found/cameras.lcmlog"), ("wrong", "wrong_found.lcmlog")):
         words = [options.programs / "hs-track", "--check", "-l", f"file://{store.path(log)}", "-c", "|".join(CAMERAS), "--models",
@@ -87,7 +87,7 @@ def cameras(options, plan, store, tracked):
 
 
 def told(log):
-    """What a log tells of the world, byte for byte but for the times that stages took."""
+    """Returns what a log tells of the world, byte for byte but for the times that stages took."""
     for timestamp, channel, data in read_log(log):
         if channel == OBJECTS:
             world = objects_t.decode(data)
@@ -97,7 +97,7 @@ def told(log):
 
 
 def tracks_are_equal(store, names):
-    """Whether each sequence has the same tracks each time that it is replayed."""
+    """Returns whether each sequence has the same tracks each time that it is replayed."""
     logs = [[store.path(f"tracks/{name}{again}.lcmlog") for again in ("", "_again")] for name in names]
     return all(list(told(first)) == list(told(again)) for first, again in logs)
 

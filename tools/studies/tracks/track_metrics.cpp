@@ -162,6 +162,27 @@ std::vector<int> matches(const std::vector<TrueInstance>& truth, const std::vect
   return solve_assignment(costs, reach_m);
 }
 
+std::vector<MatchedPose> match_published(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
+                                         const ClassSymmetries& symmetries) {
+  constexpr double kReachM = 0.1;
+  std::vector<MatchedPose> out;
+  for (const PublishedFrame& frame : published) {
+    const std::vector<TrueInstance>& truth = sequence.frames[frame.index];
+    const std::vector<int> given = matches(truth, frame.objects, symmetries, kReachM);
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      if (!truth[i].T_world_object) continue;
+      MatchedPose& pose = out.emplace_back();
+      pose.frame = &frame;
+      pose.truth = &truth[i];
+      if (given[i] < 0) continue;
+      const auto place = static_cast<std::size_t>(given[i]);
+      pose.T_world_object = as_the_truth(frame.objects[place], truth[i], symmetries);
+      if (!frame.qualities.empty()) pose.quality = frame.qualities[place];
+    }
+  }
+  return out;
+}
+
 double quantile(std::vector<double> values, double fraction) {
   if (values.empty()) return std::nan("");
   std::sort(values.begin(), values.end());

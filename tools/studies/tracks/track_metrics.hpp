@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,23 @@ double apart_m(const TrueInstance& truth, const PublishedObject& object, const C
 /// of distances is minimal.
 std::vector<int> matches(const std::vector<TrueInstance>& truth, const std::vector<PublishedObject>& objects,
                          const ClassSymmetries& symmetries, double reach_m);
+
+/// A ground-truth object that is present in a published frame, with the published pose of its class that is assigned to
+/// it within 0.1 m: a published object farther away belongs to none of its class.
+struct MatchedPose {
+  const PublishedFrame* frame = nullptr;
+  const TrueInstance* truth = nullptr;                        ///< T_world_object is set
+  std::optional<Eigen::Isometry3d> T_world_object;            ///< as_the_truth(); nothing where it is not published
+  double quality = std::numeric_limits<double>::quiet_NaN();  ///< NaN of tracks, and where it is not published
+
+  /// Returns whether at least a third of it is visible, as medians of errors require.
+  bool is_clearly_visible() const { return truth->visible >= 1.0 / 3.0; }
+};
+
+/// Returns the objects that are present in the published frames, frame by frame. They refer to `sequence` and
+/// `published`, which must outlive them.
+std::vector<MatchedPose> match_published(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
+                                         const ClassSymmetries& symmetries);
 
 /// Returns the value below which a fraction (0 to 1) of the values lies; NaN of none.
 double quantile(std::vector<double> values, double fraction);

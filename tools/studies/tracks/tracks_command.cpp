@@ -103,8 +103,9 @@ void compare(const Arguments& arguments) {
   }
   const std::vector<PublishedFrame> published = published_in(arguments, sequence);
   OrderedJson json = track_metrics(sequence, published, symmetries, {});
-  json.update(add_metrics(sequence, published, symmetries, models));
-  if (arguments.single_frames) json["outline_px"] = outline_metrics(sequence, published, symmetries, outlined);
+  const std::vector<MatchedPose> poses = match_published(sequence, published, symmetries);
+  json.update(add_metrics(poses, models));
+  if (arguments.single_frames) json["outline_px"] = outline_metrics(sequence, poses, outlined);
   json["name"] = sequence.name;
   write_json(json, arguments.out);
 }

@@ -23,22 +23,19 @@ void make_store_folder(const fs::path& folder) {
   require(!error, "{}: cannot make this folder: {}", folder.string(), error.message());
 }
 
-std::string model_name(int id) {
-  return fmt::format("obj_{:06d}", id);
-}
-
 /// Carries a model over. A mesh of another id names its texture by that id.
 void carry_model_over(const StoreModel& from, const fs::path& models_folder, Carrying carrying) {
-  const fs::path to = models_folder / (model_name(from.model.object_id) + ".ply");
+  const fs::path to = bop_mesh_file(models_folder, from.model.object_id);
+  const fs::path to_texture = fs::path(to).replace_extension(".png");
   const fs::path texture = fs::path(from.file).replace_extension(".png");
   const bool has_texture = fs::exists(texture);
-  if (has_texture) carry_over(texture, fs::path(to).replace_extension(".png"), carrying);
+  if (has_texture) carry_over(texture, to_texture, carrying);
   if (!has_texture || from.file.filename() == to.filename()) return carry_over(from.file, to, carrying);
   std::string text = read_file(from.file, "a mesh");
   const std::string named = "TextureFile " + texture.filename().string();
   const std::size_t place = text.substr(0, text.find("end_header")).find(named);
   require(place != std::string::npos, "{}: names no texture, expected {}", from.file.string(), named);
-  text.replace(place, named.size(), "TextureFile " + model_name(from.model.object_id) + ".png");
+  text.replace(place, named.size(), "TextureFile " + to_texture.filename().string());
   write_file_atomically(to, text);
 }
 
@@ -113,7 +110,7 @@ void keep_objects(const StoreContents& old, const std::string& except, ObjectSto
     if (!shape) shape = find_shape_symmetry(old.meshes.at(object.name));  // taught before it was looked for
     StoreModel& kept = models.emplace_back();
     kept.model = {object.id, object.name, old.meshes.at(object.name), old.list.symmetries.at(object.id)};
-    kept.file = old.list.models_folder() / (model_name(object.id) + ".ply");
+    kept.file = old.list.mesh_file(object.id);
     kept.info = entries.at(object.id);
     carry_over(old.list.view_image(object.id), made.view_image(object.id));
   }

@@ -162,7 +162,7 @@ std::vector<StoreModel> add_objects(const std::vector<MergedObject>& objects, Ob
     if (known.count(it.from) == 0) known[it.from] = {read_model_entries(list), object_sizes(list)};
     const ModelEntries& stated = known.at(it.from);
     models.push_back({{object.id, object.name, it.mesh(), list.symmetries.at(before.id)},
-                      list.models_folder() / fmt::format("obj_{:06d}.ply", before.id),
+                      list.mesh_file(before.id),
                       stated.entries.at(before.id)});
     copy_views(it, before, stated.sizes_m.at(before.id), made);
   }

@@ -9,6 +9,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/geometry/renderer.hpp"
+#include "tests/tools/render/world/scene_checks.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
 
 namespace houghstream::world {
@@ -29,11 +30,6 @@ CalibrationSceneObject brick(int id, const Eigen::Vector3d& size, const cv::Vec3
 
 CalibrationScenes two_bricks(std::uint64_t seed) {
   return {{brick(3, {0.08, 0.12, 0.18}, {30, 30, 200}), brick(8, {0.1, 0.1, 0.06}, {200, 60, 20})}, seed};
-}
-
-// Returns whether the bytes are equal, NaN included.
-bool identical(const cv::Mat& a, const cv::Mat& b) {
-  return a.size() == b.size() && a.type() == b.type() && std::equal(a.datastart, a.dataend, b.datastart);
 }
 
 /// Returns the pose of the second object relative to the first, in a frame that shows both.

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "pipeline/geometry/renderer.hpp"
+#include "tests/tools/render/world/scene_checks.hpp"
 #include "tools/render/world/objects/objects.hpp"
 #include "tools/render/world/rooms/held.hpp"
 #include "tools/render/world/rooms/table_setter.hpp"
@@ -24,13 +25,6 @@ std::vector<const char*> handled_scenes() {
   std::vector<const char*> names(kHandledScenes.begin(), kHandledScenes.end());
   names.insert(names.end(), kHandledDevelopmentScenes.begin(), kHandledDevelopmentScenes.end());
   return names;
-}
-
-double lowest(const PlacedAsset& placed) {
-  double z = 1e9;
-  for (const Eigen::Vector3f& vertex : placed.thing->mesh.vertices)
-    z = std::min(z, (placed.T_world_object * vertex.cast<double>()).z());
-  return z;
 }
 
 /// Returns the support of the item behind this one in the list: "block", "hand", or nothing.
@@ -52,7 +46,7 @@ TEST(HandledScenes, TiltedOnesHoldEachClassStandingLyingAndLeaning) {
     std::map<int, int> leaning;
     for (std::size_t i = 0; i < items.size(); ++i) {
       if (items[i].object_id == 0) continue;
-      EXPECT_NEAR(lowest(items[i]), 0.0, 1e-5) << "nothing reaches into the table or floats";
+      EXPECT_NEAR(lowest_point(items[i]), 0.0, 1e-5) << "nothing reaches into the table or floats";
       if (carrier(items, i) == "block") {
         ++leaning[items[i].object_id];
       } else {
@@ -74,16 +68,16 @@ TEST(HandledScenes, HeldOnesHoldEachClassInAHandAndOnTheTable) {
     std::map<int, int> put;
     for (std::size_t i = 0; i < items.size(); ++i) {
       if (items[i].thing->name == "hand") {
-        EXPECT_GT(lowest(items[i]), 0.0);
+        EXPECT_GT(lowest_point(items[i]), 0.0);
       }
       if (items[i].object_id == 0) continue;
       if (carrier(items, i) == "hand") {
         ++held[items[i].object_id];
-        EXPECT_GE(lowest(items[i]), kMinHeldM - 1e-6);
-        EXPECT_LE(lowest(items[i]), kMaxHeldM + 1e-6);
+        EXPECT_GE(lowest_point(items[i]), kMinHeldM - 1e-6);
+        EXPECT_LE(lowest_point(items[i]), kMaxHeldM + 1e-6);
       } else {
         ++put[items[i].object_id];
-        EXPECT_NEAR(lowest(items[i]), 0.0, 1e-5);
+        EXPECT_NEAR(lowest_point(items[i]), 0.0, 1e-5);
       }
     }
     const std::map<int, int> once = {{1, 1}, {2, 1}, {3, 1}, {4, 1}};

@@ -6,6 +6,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
+#include "tests/tools/render/world/scene_checks.hpp"
 
 namespace houghstream::world {
 namespace {
@@ -26,11 +27,6 @@ class SceneFrames : public ::testing::Test {
   static inline Scene scene;
   static inline LitWorld lit_world;
 };
-
-// Returns whether the bytes are equal, NaN included.
-bool identical(const cv::Mat& a, const cv::Mat& b) {
-  return a.size() == b.size() && a.type() == b.type() && std::equal(a.datastart, a.dataend, b.datastart);
-}
 
 TEST_F(SceneFrames, AreTheSameForAnyNumberOfThreads) {
   const auto serial = render(1);

@@ -26,6 +26,11 @@ SequenceFile one_stick(int frames) {
   return out;
 }
 
+OrderedJson measure(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
+                    const ClassSymmetries& symmetries = {}) {
+  return add_metrics(match_published(sequence, published, symmetries), {{"stick", stick()}});
+}
+
 TEST(AddMetrics, ATenthOfTheDiameterDividesRightFromWrong) {
   const SequenceFile sequence = one_stick(4);
   Eigen::Isometry3d rotated = at_height(0.0);
@@ -34,13 +39,13 @@ TEST(AddMetrics, ATenthOfTheDiameterDividesRightFromWrong) {
                                            {1, {{0, "stick", at_height(0.021)}}, {0.95}},
                                            {2, {{0, "stick", rotated}}, {0.5}},
                                            {3, {}}};
-  const OrderedJson json = add_metrics(sequence, published, {}, {{"stick", stick()}});
+  const OrderedJson json = measure(sequence, published);
   EXPECT_EQ(json["add"]["stick"], 0.25) << "what is not published is not right";
   EXPECT_EQ(json["wrong_above_0_9"]["published"], 2);
   EXPECT_EQ(json["wrong_above_0_9"]["wrong"], 1);
   Symmetries half_turn;
   half_turn.discrete.push_back(Eigen::Isometry3d(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ())));
-  const OrderedJson alike = add_metrics(sequence, published, {{"stick", half_turn}}, {{"stick", stick()}});
+  const OrderedJson alike = measure(sequence, published, {{"stick", half_turn}});
   EXPECT_EQ(alike["add"]["stick"], 0.5);
   EXPECT_NEAR(alike["median_error"]["stick"]["mm"], 19.0, 1e-3) << "of 0, 19 and 21";
   EXPECT_NEAR(alike["median_error"]["stick"]["deg"], 0.0, 1e-3);
@@ -50,14 +55,14 @@ TEST(AddMetrics, ATenthOfTheDiameterDividesRightFromWrong) {
 TEST(AddMetrics, WhatIsHardlyVisibleHasNoPlaceInTheMedians) {
   SequenceFile sequence = one_stick(1);
   sequence.frames[0][0].visible = 0.3;
-  const OrderedJson json = add_metrics(sequence, {{0, {{0, "stick", at_height(0.01)}}}}, {}, {{"stick", stick()}});
+  const OrderedJson json = measure(sequence, {{0, {{0, "stick", at_height(0.01)}}}});
   EXPECT_EQ(json["add"]["stick"], 1.0);
   EXPECT_TRUE(json["median_error"].empty());
 }
 
 TEST(AddMetrics, TracksHaveNoQualities) {
   const SequenceFile sequence = one_stick(1);
-  const OrderedJson json = add_metrics(sequence, {{0, {{3, "stick", at_height(0.0)}}}}, {}, {{"stick", stick()}});
+  const OrderedJson json = measure(sequence, {{0, {{3, "stick", at_height(0.0)}}}});
   EXPECT_EQ(json["add"]["stick"], 1.0);
   EXPECT_EQ(json["wrong_above_0_9"]["published"], 0);
 }

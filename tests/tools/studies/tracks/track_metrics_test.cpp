@@ -139,5 +139,19 @@ TEST(TrackMetrics, WhatIsHiddenIsNeitherMissedNorWrongButKept) {
   EXPECT_NEAR(json["hidden_kept"].get<double>(), 0.75, 1e-12);
 }
 
+TEST(MatchedPoses, APublishedObjectTenCentimetresAwayBelongsToNone) {
+  const SequenceFile sequence = two_cans(2);
+  std::vector<PublishedFrame> published = {{0, {{0, "can", at(0.099)}, {0, "can", at(1.101)}}, {0.8, 0.9}}, {1, {}}};
+  const std::vector<MatchedPose> poses = match_published(sequence, published, {});
+  ASSERT_EQ(poses.size(), 4U) << "each can of each frame";
+  ASSERT_TRUE(poses[0].T_world_object.has_value());
+  EXPECT_EQ(poses[0].T_world_object->translation().x(), 0.099);
+  EXPECT_EQ(poses[0].quality, 0.8);
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    EXPECT_FALSE(poses[i].T_world_object.has_value()) << i;
+    EXPECT_TRUE(std::isnan(poses[i].quality)) << i;
+  }
+}
+
 }  // namespace
 }  // namespace houghstream::studies

@@ -131,7 +131,7 @@ class Browser:
         self.ask("Page.navigate", url=url)
 
     def value(self, expression):
-        """What a JavaScript expression is worth in the page."""
+        """Returns the value of a JavaScript expression in the page."""
         result = self.ask("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         assert "exceptionDetails" not in result, (expression, result["exceptionDetails"])
         return result["result"].get("value")

@@ -173,7 +173,7 @@ def check_buttons(page):
 
 
 def check_token(page, start_view):
-    """Where others can come from, buttons without the printed token are refused, and the page says so."""
+    """Served to other machines, buttons without the printed token are refused, and the page says so."""
     port = free_port()
     view = start_view(f"0.0.0.0:{port}", "hs-view-open")
     address = view.log.read_text().split("page: ")[1].split()[0]

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/tools/render/world/closed_surface.hpp"
+#include "tests/tools/render/world/scene_checks.hpp"
 #include "tools/render/world/objects/objects.hpp"
 
 namespace houghstream::world {
@@ -17,13 +18,6 @@ HeldPlace place() {
   place.arm_azimuth_rad = 0.3;
   place.views = {look_at({-0.5, -1.1, 0.8}, {0, 0, 0.1}), look_at({0.5, -1.1, 0.7}, {0, 0, 0.1})};
   return place;
-}
-
-double lowest(const PlacedAsset& placed) {
-  double z = 1e9;
-  for (const Eigen::Vector3f& vertex : placed.thing->mesh.vertices)
-    z = std::min(z, (placed.T_world_object * vertex.cast<double>()).z());
-  return z;
 }
 
 TEST(Held, AnyAttitudeIsUniformOverAllRotations) {
@@ -53,9 +47,9 @@ TEST(Held, ThingsFloatBetween5And30CentimetresAboveTheirPlaceAndTheHandDoesNotTo
       EXPECT_EQ(group[0].thing->name, "hand");
       EXPECT_EQ(group[0].object_id, 0);
       EXPECT_EQ(group[1].object_id, id);
-      EXPECT_GE(lowest(group[1]), kMinHeldM - 1e-6);
-      EXPECT_LE(lowest(group[1]), kMaxHeldM + 1e-6);
-      EXPECT_GT(lowest(group[0]), 0.0);
+      EXPECT_GE(lowest_point(group[1]), kMinHeldM - 1e-6);
+      EXPECT_LE(lowest_point(group[1]), kMaxHeldM + 1e-6);
+      EXPECT_GT(lowest_point(group[0]), 0.0);
       EXPECT_NEAR((group[1].T_world_object.translation().head<2>() - place().over).norm(), 0.0, 1e-9);
     }
   }
