@@ -1,16 +1,18 @@
 #include "tools/view/foxglove/foxglove_server.hpp"
 
 #define ASIO_STANDALONE
+// One thread runs the handlers, and its queue has a lock; the thread sanitizer does not know fences.
+#define ASIO_DISABLE_FENCED_BLOCK
 #define _WEBSOCKETPP_CPP11_STL_  // NOLINT(bugprone-reserved-identifier): the library's own
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <map>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
@@ -20,7 +22,10 @@
 #include <websocketpp/server.hpp>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/log_throttle.hpp"
+#include "pipeline/base/printable.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "tools/foxglove/protobuf_message.hpp"
 
@@ -37,6 +42,7 @@ using Clock = std::chrono::steady_clock;
 const std::array<std::string, 2> kSubprotocols = {"foxglove.websocket.v1", "foxglove.sdk.v1"};
 constexpr std::size_t kMaxRequestBytes = std::size_t{256} << 10U;
 constexpr std::size_t kMaxSubscriptions = 2 * FoxgloveServer::kMaxTopics;
+constexpr std::size_t kLastingFactor = 4;  // so many times more may wait for a client with what must not be lost
 constexpr std::chrono::milliseconds kCloseTimeout(200);
 
 /// One connection.
@@ -79,6 +85,16 @@ std::string frame_data(std::uint32_t subscription, std::string_view data) {
   return bytes.append(data);
 }
 
+/// Returns what a client asks for, or a value that is no object where that is no JSON, or nested too deep.
+Json parse_request(const std::string& text) {
+  try {
+    check_json_nesting(text, "request");
+  } catch (const InputError&) {
+    return {};  // the client is told that it is no request
+  }
+  return Json::parse(text, nullptr, false);
+}
+
 /// Returns a list of numbers of 32 bits; others are left out.
 std::vector<std::uint32_t> numbers_in(const Json& list) {
   std::vector<std::uint32_t> numbers;
@@ -102,6 +118,8 @@ bool admits_origin(const HttpAddress& address, const std::string& origin) {
 
 }  // namespace
 
+// All functions of State but open() run in its thread, and so do the handlers of the socket: nothing of it is shared
+// but what is atomic.
 struct FoxgloveServer::State {
   State(const HttpAddress& where, std::size_t bytes) : address(where), waiting_bytes(bytes) {}
 
@@ -111,10 +129,11 @@ struct FoxgloveServer::State {
   void forget(const Handle& handle);
   void take_request(const Handle& handle, const std::string& text);
   void subscribe(const Handle& handle, Client& client, const Json& request);
+  void publish(const foxglove::FoxgloveMessage& message);
+  void end_clients();
   void send_text(const Handle& handle, const Json& json);
   void send_status(const Handle& handle, const std::string& words);
-  void send_data(const Handle& handle, Client& client, std::uint32_t subscription, const Topic& topic,
-                 std::string_view data);
+  void send_data(const Handle& handle, Client& client, std::uint32_t subscription, std::string_view data);
   void drop(const Handle& handle, Client& client);
   std::optional<std::size_t> find_topic(const foxglove::FoxgloveMessage& message);
 
@@ -122,11 +141,13 @@ struct FoxgloveServer::State {
   std::size_t waiting_bytes;
   Socket socket;
   std::thread thread;
-  mutable std::mutex mutex;  // guards the rest
   std::map<Handle, Client, std::owner_less<Handle>> clients;
   std::vector<Topic> topics;
   std::map<std::string, std::size_t> topic_numbers;
-  std::int64_t dropped = 0;
+  LogThrottle complaints;
+  std::atomic<std::size_t> client_count{0};
+  std::atomic<std::size_t> posted_bytes{0};  // of messages that wait for the thread
+  std::atomic<std::int64_t> dropped{0};
 };
 
 void FoxgloveServer::State::open() {
@@ -161,7 +182,9 @@ bool FoxgloveServer::State::accept(const Handle& handle) {
   const auto refuse = [&](websocketpp::http::status_code::value status, const std::string& words) {
     connection->set_status(status);
     connection->set_body(words + "\n");
-    log_warning("Foxglove at {} is refused: {}", connection->get_remote_endpoint(), words);
+    const std::string line =
+        fmt::format("Foxglove at {} is refused: {}", connection->get_remote_endpoint(), printable(words));
+    if (const auto admitted = complaints.admit("refused", line, Clock::now())) log_warning("{}", *admitted);
     return false;
   };
   const std::string origin = connection->get_request_header("Origin");
@@ -174,7 +197,6 @@ bool FoxgloveServer::State::accept(const Handle& handle) {
   });
   if (known == kSubprotocols.end())
     return refuse(websocketpp::http::status_code::bad_request, "expected the subprotocol " + kSubprotocols[0]);
-  const std::lock_guard lock(mutex);
   if (clients.size() >= kMaxClients)
     return refuse(websocketpp::http::status_code::service_unavailable,
                   fmt::format("{} clients are connected already", clients.size()));
@@ -183,8 +205,8 @@ bool FoxgloveServer::State::accept(const Handle& handle) {
 }
 
 void FoxgloveServer::State::greet(const Handle& handle) {
-  const std::lock_guard lock(mutex);
   clients[handle];
+  client_count = clients.size();
   send_text(handle, {{"op", "serverInfo"},
                      {"name", "hs-view"},
                      {"capabilities", Json::array()},
@@ -196,17 +218,16 @@ void FoxgloveServer::State::greet(const Handle& handle) {
 }
 
 void FoxgloveServer::State::forget(const Handle& handle) {
-  const std::lock_guard lock(mutex);
   const auto client = clients.find(handle);
   if (client == clients.end()) return;
   if (client->second.dropped > 0)
     log_warning("a client of Foxglove that reads too slowly has lost {} messages", client->second.dropped);
   clients.erase(client);
+  client_count = clients.size();
 }
 
 void FoxgloveServer::State::take_request(const Handle& handle, const std::string& text) {
-  const Json request = Json::parse(text, nullptr, false);
-  const std::lock_guard lock(mutex);
+  const Json request = parse_request(text);
   const auto client = clients.find(handle);
   if (client == clients.end()) return;
   const std::string op = request.is_object() && request.contains("op") && request["op"].is_string()
@@ -234,7 +255,7 @@ void FoxgloveServer::State::subscribe(const Handle& handle, Client& client, cons
     }
     client.subscriptions[numbers[0]] = numbers[1];
     const Topic& topic = topics[numbers[1]];
-    if (topic.last) send_data(handle, client, numbers[0], topic, *topic.last);
+    if (topic.last) send_data(handle, client, numbers[0], *topic.last);
   }
 }
 
@@ -251,13 +272,12 @@ void FoxgloveServer::State::send_status(const Handle& handle, const std::string&
 }
 
 void FoxgloveServer::State::send_data(const Handle& handle, Client& client, std::uint32_t subscription,
-                                      const Topic& topic, std::string_view data) {
-  constexpr std::size_t kLastingFactor = 4;
+                                      std::string_view data) {
   websocketpp::lib::error_code gone;
   const auto connection = socket.get_con_from_hdl(handle, gone);
   if (gone) return;
   const std::size_t waiting = connection->get_buffered_amount() + data.size();
-  const bool lasts = is_lasting(topic.type);
+  const bool lasts = is_lasting(topics[client.subscriptions[subscription]].type);
   if (lasts && waiting > kLastingFactor * waiting_bytes) {
     connection->close(websocketpp::close::status::try_again_later, "the connection is too slow", gone);
   } else if (!lasts && waiting > waiting_bytes) {
@@ -265,6 +285,24 @@ void FoxgloveServer::State::send_data(const Handle& handle, Client& client, std:
   } else {
     connection->send(frame_data(subscription, data), websocketpp::frame::opcode::binary);
   }
+}
+
+void FoxgloveServer::State::publish(const foxglove::FoxgloveMessage& message) {
+  const std::optional<std::size_t> number = find_topic(message);
+  if (!number) return;
+  if (is_lasting(message.type)) topics[*number].last = message.data;
+  for (auto& [handle, client] : clients) {
+    for (const auto& [subscription, wanted] : client.subscriptions) {
+      if (wanted == *number) send_data(handle, client, subscription, message.data);
+    }
+  }
+}
+
+void FoxgloveServer::State::end_clients() {
+  websocketpp::lib::error_code unasked;
+  socket.stop_listening(unasked);
+  for (const auto& [handle, client] : clients)
+    socket.close(handle, websocketpp::close::status::going_away, "hs-view ends", unasked);
 }
 
 void FoxgloveServer::State::drop(const Handle& handle, Client& client) {
@@ -303,13 +341,7 @@ FoxgloveServer::FoxgloveServer(const HttpAddress& address, std::size_t waiting_b
 }
 
 FoxgloveServer::~FoxgloveServer() {
-  websocketpp::lib::error_code unasked;
-  state_->socket.stop_listening(unasked);
-  {
-    const std::lock_guard lock(state_->mutex);
-    for (const auto& [handle, client] : state_->clients)
-      state_->socket.close(handle, websocketpp::close::status::going_away, "hs-view ends", unasked);
-  }
+  websocketpp::lib::asio::post(state_->socket.get_io_service(), [state = state_.get()] { state->end_clients(); });
   const Clock::time_point end = Clock::now() + kCloseTimeout;
   while (has_clients() && Clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   state_->socket.stop();
@@ -333,25 +365,24 @@ std::vector<std::string> FoxgloveServer::urls() const {
 }
 
 bool FoxgloveServer::has_clients() const {
-  const std::lock_guard lock(state_->mutex);
-  return !state_->clients.empty();
+  return state_->client_count > 0;
 }
 
-void FoxgloveServer::publish(const foxglove::FoxgloveMessage& message) {
-  const std::lock_guard lock(state_->mutex);
-  const std::optional<std::size_t> number = state_->find_topic(message);
-  if (!number) return;
-  Topic& topic = state_->topics[*number];
-  if (is_lasting(topic.type)) topic.last = message.data;
-  for (auto& [handle, client] : state_->clients) {
-    for (const auto& [subscription, wanted] : client.subscriptions) {
-      if (wanted == *number) state_->send_data(handle, client, subscription, topic, message.data);
-    }
+void FoxgloveServer::publish(foxglove::FoxgloveMessage message) {
+  const std::size_t size = message.data.size();
+  if (!is_lasting(message.type) && state_->posted_bytes + size > kLastingFactor * state_->waiting_bytes) {
+    ++state_->dropped;  // the thread itself is late
+    return;
   }
+  state_->posted_bytes += size;
+  websocketpp::lib::asio::post(state_->socket.get_io_service(),
+                               [state = state_.get(), size, message = std::move(message)] {
+                                 state->posted_bytes -= size;
+                                 state->publish(message);
+                               });
 }
 
 std::int64_t FoxgloveServer::dropped() const {
-  const std::lock_guard lock(state_->mutex);
   return state_->dropped;
 }
 

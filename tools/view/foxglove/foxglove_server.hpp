@@ -39,10 +39,11 @@ class FoxgloveServer {
 
   bool has_clients() const;
 
-  /// Sends a message to those who have subscribed to its topic. One topic too many is passed over.
-  void publish(const foxglove::FoxgloveMessage& message);
+  /// Sends a message to those who have subscribed to its topic, and returns before it is sent. One topic too many is
+  /// passed over.
+  void publish(foxglove::FoxgloveMessage message);
 
-  /// Returns the number of messages that slow clients have lost.
+  /// Returns the number of messages that slow clients have lost, or that this machine was too busy to send.
   std::int64_t dropped() const;
 
  private:

@@ -117,7 +117,7 @@ void LiveFoxglove::run() {
       if (server_.has_clients()) update_models();
       const std::optional<Waiting> waiting = pop();
       if (!waiting) continue;
-      for (const foxglove::FoxgloveMessage& message : convert(*waiting)) server_.publish(message);
+      for (foxglove::FoxgloveMessage& message : convert(*waiting)) server_.publish(std::move(message));
     } catch (const std::exception& error) {  // OpenCV's too: no message may end the program
       const auto admitted = complaints_.admit("foxglove", error.what(), LogThrottle::Clock::now());
       if (admitted) log_error("for Foxglove: {}", *admitted);

@@ -86,8 +86,12 @@ TEST(FoxgloveServer, GreetsAdvertisesAndSendsWhatIsSubscribedTo) {
   }
   EXPECT_NE(status.find("hs-view takes the requests subscribe and unsubscribe"), std::string::npos) << status;
   server.publish(message_on("/late", "foxglove.RawImage", "after it was left"));
-  client.send_text("no JSON");
-  EXPECT_EQ(next_json(client)["op"], "status") << "nothing comes in between";
+  for (const std::string& rubbish :
+       {std::string("no JSON"), std::string(100, '['), std::string("{}"),
+        std::string(R"({"op":"subscribe","subscriptions":[{"id":-1},7,{"id":1,"channelId":9}]})")}) {
+    client.send_text(rubbish);
+    EXPECT_EQ(next_json(client)["op"], "status") << rubbish;
+  }
 }
 
 TEST(FoxgloveServer, ALateClientGetsTheModelThatWasSentOnce) {
