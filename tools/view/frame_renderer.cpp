@@ -47,6 +47,7 @@ FrameRenderer::FrameRenderer(const FrameRendererSettings& settings, const std::s
       models_(load_models(settings)),
       page_(settings.http.empty() ? nullptr : std::make_unique<LivePage>(settings.http, settings.http_hosts)),
       page_alone_(page_ && !settings.writes()),
+      draws_nothing_(!window_ && !page_ && !settings.writes()),
       outputs_(settings.outputs),
       camera_(settings.camera),
       image_settings_(settings.image),
@@ -64,6 +65,7 @@ FrameRenderer::FrameRenderer(const FrameRendererSettings& settings, const std::s
 }
 
 void FrameRenderer::show(const MatchedFrame& matched, BusWatcher& watcher) {
+  if (draws_nothing_) return watcher.note_drawn(matched);
   const bool unseen = page_alone_ && !page_->has_viewers();
   if (unseen || image_settings_.paused || !watcher.cameras().is_shown(matched.id.channel)) {
     watcher.note_skipped();

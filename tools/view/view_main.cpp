@@ -25,8 +25,11 @@ void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSetting
   app.add_flag("--preview", show.preview, "send JPEGs below 100 kB on HOUGHSTREAM_PREVIEW");
   app.add_option("--http", show.http,
                  "serve a page for browsers at [ADDRESS:]PORT; without an address for this machine only");
+  app.add_option("--foxglove", show.foxglove,
+                 "serve the stream to Foxglove at [ADDRESS:]PORT; without an address for this machine only");
   app.add_option("--http-host", show.http_hosts,
-                 "a further name that the page is served for, beside this machine's names and addresses; repeatable");
+                 "a further name that the page is served for, or that Foxglove's page has, beside this machine's names "
+                 "and addresses; repeatable");
   app.add_option("--rate", outputs.rate_hz, "pictures drawn per second, at most")
       .capture_default_str()
       .range(0.1, 100.0);
@@ -50,7 +53,7 @@ int main(int argc, char** argv) {
   houghstream::CommandLine app(
       "Shows the stream: boxes, names, scores, pose axes and model outlines over each frame, depth, stage times and "
       "latency. Of several cameras one is shown at a time: the first that is heard, the next one after key c. With "
-      "--snapshot, --video, --pictures, --preview or --http it needs no display.",
+      "--snapshot, --video, --pictures, --preview, --http or --foxglove it needs no display.",
       "hs-view");
   houghstream::view::ViewerSettings settings;
   std::string camera;
@@ -58,9 +61,10 @@ int main(int argc, char** argv) {
   app.add_example("hs-view --objects my.store");
   app.add_example("hs-view --models out/demo/data/training/models --snapshot seen.png --after 30");
   return houghstream::run_tool(app, argc, argv, [&] {
-    houghstream::require(settings.show.http_hosts.empty() || !settings.show.http.empty(),
-                         "--http-host {}: no page is served, expected --http too",
-                         fmt::join(settings.show.http_hosts, ", "));
+    houghstream::require(
+        settings.show.http_hosts.empty() || !settings.show.http.empty() || !settings.show.foxglove.empty(),
+        "--http-host {}: no page is served, expected --http or --foxglove too",
+        fmt::join(settings.show.http_hosts, ", "));
     if (!camera.empty()) settings.show.camera = houghstream::camera_of_option(camera);
     houghstream::view::run_viewer(settings);
   });

@@ -10,6 +10,7 @@
 #include "pipeline/base/service_notice.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "tools/view/bus_watcher.hpp"
+#include "tools/view/foxglove/live_foxglove.hpp"
 
 namespace houghstream::view {
 namespace {
@@ -32,6 +33,15 @@ std::size_t waiting_frames(const FrameRendererSettings& settings) {
   return settings.writes() ? kForFiles : 1;
 }
 
+LiveFoxgloveSettings foxglove_settings(const ViewerSettings& settings) {
+  LiveFoxgloveSettings foxglove;
+  foxglove.address = settings.show.foxglove;
+  foxglove.names = settings.show.http_hosts;
+  foxglove.frame_channels = settings.frame_channels;
+  foxglove.camera = settings.show.camera;
+  return foxglove;
+}
+
 }  // namespace
 
 void run_viewer(const ViewerSettings& settings) {
@@ -40,6 +50,9 @@ void run_viewer(const ViewerSettings& settings) {
   MatchSettings match;
   match.rate_hz = settings.show.outputs.rate_hz;
   LcmBus bus(settings.lcm_url);
+  std::optional<LiveFoxglove> foxglove;  // before the watcher, which handles the bus
+  if (!settings.show.foxglove.empty())
+    foxglove.emplace(bus, foxglove_settings(settings), [&frame_show] { return frame_show.models(); });
   BusWatcher watcher(bus, settings.frame_channels, match, waiting_frames(settings.show));
   // On a busy machine, and with a long video, the end takes longer than the caller of this program would wait.
   std::optional<StillFinishing> finishing;

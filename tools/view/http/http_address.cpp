@@ -54,20 +54,20 @@ bool is_ipv6(const std::string& host) {
 
 }  // namespace
 
-HttpAddress parse_http_address(const std::string& text) {
+HttpAddress parse_http_address(const std::string& text, const std::string& option) {
   const std::string expected = "expected [ADDRESS:]PORT, for instance 8080, 0.0.0.0:8080 or [::1]:8080";
   HttpAddress address;
   const std::size_t colon = text.rfind(':');
   const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
   if (colon != std::string::npos) address.host = text.substr(0, colon);
-  require(is_port(port), "--http {}: '{}' is no port, {}", text, port, expected);
+  require(is_port(port), "{} {}: '{}' is no port, {}", option, text, port, expected);
   address.port = std::stoi(port);
-  require(address.port <= 65535, "--http {}: port {}, expected at most 65535", text, port);
+  require(address.port <= 65535, "{} {}: port {}, expected at most 65535", option, text, port);
   const bool in_brackets = address.host.size() > 2 && address.host.front() == '[' && address.host.back() == ']';
   if (in_brackets) address.host = address.host.substr(1, address.host.size() - 2);
   const bool bare = !in_brackets && address.host.find(':') != std::string::npos;
   require(!address.host.empty() && !bare && address.host.find('/') == std::string::npos,
-          "--http {}: '{}' is no address, {}", text, address.host, expected);
+          "{} {}: '{}' is no address, {}", option, text, address.host, expected);
   return address;
 }
 

@@ -6,7 +6,7 @@
 
 namespace houghstream::view {
 
-/// Gives the address of hs-view's page.
+/// Gives the address of hs-view's page, or of its server for Foxglove.
 struct HttpAddress {
   std::string host = "127.0.0.1";  ///< a name or an address, IPv6 without brackets
   int port = 0;                    ///< 0 = any that is free
@@ -14,8 +14,8 @@ struct HttpAddress {
   std::vector<std::string> names;
 };
 
-/// Parses "[ADDRESS:]PORT", an IPv6 address in brackets. Throws InputError.
-HttpAddress parse_http_address(const std::string& text);
+/// Parses "[ADDRESS:]PORT", an IPv6 address in brackets. Throws InputError that names the option.
+HttpAddress parse_http_address(const std::string& text, const std::string& option = "--http");
 
 /// Returns whether only programs of this machine reach it: 127.x.x.x, ::1 and localhost.
 bool is_local(const std::string& host);
