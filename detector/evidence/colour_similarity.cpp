@@ -12,6 +12,25 @@ constexpr double kPale = 120.0;     // squared strength in the a*b* plane about 
 
 }  // namespace
 
+void ColourSimilarity::add(const ColourPairs& pairs) {
+  count_ += static_cast<int>(pairs.count);
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    const ColourPairs::Values& expected = pairs.expected[c];
+    const ColourPairs::Values& observed = pairs.observed[c];
+    Sums sums{};
+    for (std::size_t i = 0; i < pairs.count; ++i) {
+      const std::int32_t a = expected[i];
+      const std::int32_t b = observed[i];
+      sums[0] += a;
+      sums[1] += b;
+      sums[2] += a * a;
+      sums[3] += b * b;
+      sums[4] += a * b;
+    }
+    for (std::size_t k = 0; k < sums.size(); ++k) channels_[c][k] += sums[k];
+  }
+}
+
 double ColourSimilarity::observed_variance(std::size_t channel) const {
   const double count = count_;
   const double mean = channels_[channel][1] / count;

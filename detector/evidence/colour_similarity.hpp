@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
+#include "detector/forest/view_template.hpp"
+
 namespace houghstream {
 
 /// Mean colours of a view and of the frame over the same cells, CIE L*a*b*.
@@ -12,6 +14,16 @@ struct MeanColours {
   std::array<float, 2> measured_ab{};
   float measured_lightness = 0.0F;  ///< 0 to 100
   bool is_known = false;            ///< false for fewer than a dozen pairs
+};
+
+/// Pairs of colours, channel by channel: those that are expected and those that are observed, 8-bit L*a*b*.
+struct ColourPairs {
+  static constexpr std::size_t kMax = TemplateGrid::kSide * TemplateGrid::kSide;
+  using Values = std::array<std::int16_t, kMax>;
+
+  std::size_t count = 0;  ///< of the first values, which are meant
+  std::array<Values, 3> expected;
+  std::array<Values, 3> observed;
 };
 
 /// Compares two sets of 8-bit L*a*b* colours, pair by pair. The correlation takes all three channels together, each
@@ -57,6 +69,9 @@ class ColourSimilarity {
   /// clamped to [-1, 2]. A black carton thereby differs from a dark red one. Returns 0 for achromatic templates and for
   /// fewer than twelve pairs.
   float chroma_deficit() const;
+
+  /// Adds all pairs, several at once: the sums are exact.
+  void add(const ColourPairs& pairs);
 
  private:
   /// Sums of a, b, a * a, b * b and a * b.

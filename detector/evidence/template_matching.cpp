@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "detector/evidence/cell_comparison.hpp"
 #include "detector/evidence/colour_similarity.hpp"
 #include "detector/forest/off_axis_slope.hpp"
 #include "pipeline/base/no_value.hpp"
@@ -14,40 +15,23 @@ namespace {
 
 constexpr int kSide = TemplateGrid::kSide;
 
-struct Cell {
-  std::uint16_t index = 0;  // index into the depth template
-  std::uint8_t row = 0;
-  std::uint8_t column = 0;
-};
-
-/// The cells of a template placed in the frame, and how much farther than in the template the frame's surface is there.
-/// Only cells within the frame, row by row.
+/// The cells of a template placed in the frame, and their depths.
 struct Comparison {
-  std::size_t object_cells = 0;
-  std::array<Cell, kSide * kSide> cells;  // the first object_cells: those on the object
-  // Excess at these cells, metres; NaN where depth is unknown in the frame or in the template.
-  std::array<float, kSide * kSide> excess;
-  std::size_t beside_cells = 0;
-  std::array<float, kSide * kSide> excess_beside;  // the first beside_cells: beside the outline
-  std::array<int, kSide> column_px{};              // frame pixels that the cells' centres lie in
-  std::array<int, kSide> row_px{};
-  std::array<float, kSide>
-      row_depth{};  // depth that the depth template is counted from, in a row at the centre's column...
-  std::array<float, kSide> column_depth{};  // ...and more in a column
-  float left = 0.0F;                        // left side of the first cell, frame pixels
+  CellPlaces places;
+  CellDepths depths;
+  float left = 0.0F;  // of the first cell, frame pixels
   float top = 0.0F;
   float cell_width = 0.0F;
   float cell_height = 0.0F;
-  cv::Point2f centre_px;  // centre of the view, as cell_centre()
+  cv::Point2f centre_px;  // of the view, as cell_centre()
   float metres_per_px = 0.0F;
-  float metres_per_mm = 0.0F;  // of the view
 
   /// Returns how far the measured surface lies behind the template's zero at a cell, metres; NaN where depth is not
   /// measured, nothing where the cell is not in the frame.
   std::optional<float> beyond_centre(const RgbdFrame& frame, OutlineCells::Cell cell) const {
-    const cv::Point at(column_px[cell.column], row_px[cell.row]);
+    const cv::Point at(places.column_px[cell.column], places.row_px[cell.row]);
     if (!cv::Rect(cv::Point(), frame.depth.size()).contains(at)) return std::nullopt;
-    return frame.depth.at<float>(at) - (row_depth[cell.row] + column_depth[cell.column]);
+    return frame.depth.at<float>(at) - (places.row_depth[cell.row] + places.column_depth[cell.column]);
   }
 
   /// Returns the centre of a cell, frame pixels from the left upper edge of the first pixel.
@@ -60,24 +44,6 @@ struct Comparison {
 /// A bit for each row or column of cells that shows a part of the object.
 using Lines = std::uint32_t;
 static_assert(kSide <= 32);
-
-/// Counts of the object's cells by how they compare.
-struct Tally {
-  std::size_t cells = 0;
-  int visible = 0;
-  int occluded = 0;
-  int free_space_violations = 0;
-  int no_depth = 0;
-  float depth_residual = 0.0F;  // sum over the visible ones
-  Lines rows = 0;               // rows with cells that are visible or unknown
-  Lines columns = 0;
-  std::size_t unoccluded = 0;                        // number of cells that are visible or unknown
-  std::array<Cell, kSide * kSide> unoccluded_cells;  // the first `unoccluded` of them
-
-  float fraction(int count) const {
-    return static_cast<float>(count) / static_cast<float>(std::max<std::size_t>(cells, 1));
-  }
-};
 
 /// The frame's colours at the cells of a template.
 class CellColours {
@@ -95,16 +61,15 @@ class CellColours {
 };
 
 // The steps of the two functions below; they stand behind them in the order of their calls.
-Comparison compare(const ViewTemplate& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, float size);
+void compare(const ViewTemplate& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, float size,
+             Comparison& out);
 void place(const ViewTemplate& view, const Eigen::Vector3f& centre, const Camera& camera, float size, Comparison& out);
-float common_shift(const Comparison& comparison);
 float tolerance_at(float z);
-Tally tally_cells(const Comparison& comparison, float shift, float tolerance);
 std::size_t level_of(float cell_width, const LabLevels& levels);
-ColourSimilarity compare_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours);
-ColourSimilarity compare_camera_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours,
-                                        const ChromaMap& camera);
-float rim_continuation(const Comparison& comparison, float shift, float tolerance);
+void collect_colours(const CellTally& tally, const TemplateGrid& appearance, const CellColours& colours,
+                     ColourPairs& pairs);
+void bring_to_camera(const ChromaMap& camera, ColourPairs& pairs);
+float rim_continuation(const CellDepths& depths, float shift, float tolerance);
 cv::Rect2f visible_box(const Comparison& comparison, Lines columns, Lines rows);
 std::pair<int, int> range(Lines seen);
 
@@ -112,22 +77,29 @@ std::pair<int, int> range(Lines seen);
 
 TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame,
                              float size) {
-  const Comparison comparison = compare(view, centre_camera, frame.frame, size);
-  const float shift = common_shift(comparison);
+  Comparison comparison;
+  compare(view, centre_camera, frame.frame, size, comparison);
+  const float shift = common_shift(comparison.depths);
   const float tolerance = tolerance_at(centre_camera.z());
-  const Tally tally = tally_cells(comparison, shift, tolerance);
-  const CellColours colours(comparison, frame);
-  const ColourSimilarity as_taught = compare_colours(tally, view.appearance, colours);
-  const ColourSimilarity similarity =
-      frame.cameras.empty() ? as_taught
-                            : compare_camera_colours(tally, view.appearance, colours, frame.cameras[view.class_index]);
+  CellTally tally;
+  tally_cells(comparison.depths, shift, tolerance, tally);
+  ColourPairs pairs;
+  collect_colours(tally, view.appearance, CellColours(comparison, frame), pairs);
+  ColourSimilarity as_taught;
+  as_taught.add(pairs);
+  ColourSimilarity similarity = as_taught;
+  if (!frame.cameras.empty()) {
+    bring_to_camera(frame.cameras[view.class_index], pairs);
+    similarity = ColourSimilarity();
+    similarity.add(pairs);
+  }
   TemplateMatch fit;
-  fit.depth_residual = tally.depth_residual / static_cast<float>(std::max(tally.visible, 1));
+  fit.depth_residual = tally.depth_residual / static_cast<float>(std::max<std::size_t>(tally.visible, 1));
   fit.visible_fraction = tally.fraction(tally.visible);
   fit.occluded_fraction = tally.fraction(tally.occluded);
   fit.free_space_violation = tally.fraction(tally.free_space_violations);
   fit.no_depth_fraction = tally.fraction(tally.no_depth);
-  fit.rim_continuation = rim_continuation(comparison, shift, tolerance);
+  fit.rim_continuation = rim_continuation(comparison.depths, shift, tolerance);
   fit.colour_correlation = similarity.correlation();
   fit.mean_chroma_distance = similarity.mean_chroma_distance();
   fit.hue_mismatch = similarity.hue_mismatch();
@@ -140,9 +112,10 @@ TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& ce
 
 BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, const Eigen::Vector3f& centre_camera,
                                                    const LabFrame& frame) {
-  const Comparison comparison = compare(view, centre_camera, frame.frame, 1.0F);
+  Comparison comparison;
+  compare(view, centre_camera, frame.frame, 1.0F, comparison);
   const CellColours colours(comparison, frame);
-  const float shift = common_shift(comparison);
+  const float shift = common_shift(comparison.depths);
   const float tolerance = tolerance_at(centre_camera.z());
   const TemplateGrid& appearance = view.appearance;
   BoundaryContinuation fit;
@@ -154,14 +127,15 @@ BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, con
     const std::optional<float> beyond = comparison.beyond_centre(frame.frame, out);
     if (!inside || !beyond) continue;
     const std::int16_t mm = appearance.mm[in.row * kSide + in.column];
-    const bool is_hidden = mm > TemplateGrid::kNoDepth && *inside - comparison.metres_per_mm * mm - shift < -tolerance;
+    const bool is_hidden =
+        mm > TemplateGrid::kNoDepth && *inside - comparison.places.metres_per_mm * mm - shift < -tolerance;
     if (is_hidden) continue;
     BoundarySample sample;
     const float cell_px = in.row == out.row ? comparison.cell_width : comparison.cell_height;
     sample.lateral_distance = OutlineCells::kApart * comparison.metres_per_px * cell_px;
     sample.depth_change = *beyond - *inside;
     sample.expected_depth_change =
-        cells.gained_mm > TemplateGrid::kNoDepth ? comparison.metres_per_mm * cells.gained_mm : kNoValue;
+        cells.gained_mm > TemplateGrid::kNoDepth ? comparison.places.metres_per_mm * cells.gained_mm : kNoValue;
     sample.colour_sq = colour_distance_sq(colours.at(in.row, in.column), colours.at(out.row, out.column));
     if (!is_foreground_step(sample, tolerance)) fit.add(sample, tolerance);
   }
@@ -170,47 +144,22 @@ BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, con
 
 namespace {
 
-/// Compares a template with the frame cell by cell, without branches on the cells' kind, which would be mispredicted.
-Comparison compare(const ViewTemplate& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, float size) {
-  Comparison out;
+/// Places a template in the frame, and compares its depth there, cell by cell.
+void compare(const ViewTemplate& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, float size,
+             Comparison& out) {
   place(view, centre, frame.camera, size, out);
-  out.metres_per_mm = 0.001F * size;
   out.metres_per_px = static_cast<float>(frame.camera.metres_per_px(centre.z()));
-  const float metres_per_mm = out.metres_per_mm;
-  const float metres_per_px = out.metres_per_px;
+  CellPlaces& places = out.places;
+  places.metres_per_mm = 0.001F * size;
   const OffAxisSlope tilt = off_axis_slope(centre);
   for (std::size_t i = 0; i < kSide; ++i) {
     const cv::Point2f px = out.cell_centre(i, i);
-    out.column_px[i] = static_cast<int>(std::floor(px.x));
-    out.row_px[i] = static_cast<int>(std::floor(px.y));
-    out.column_depth[i] = tilt.right * metres_per_px * (px.x - out.centre_px.x);
-    out.row_depth[i] = centre.z() + tilt.down * metres_per_px * (px.y - out.centre_px.y);
+    places.column_px[i] = static_cast<int>(std::floor(px.x));
+    places.row_px[i] = static_cast<int>(std::floor(px.y));
+    places.column_depth[i] = tilt.right * out.metres_per_px * (px.x - out.centre_px.x);
+    places.row_depth[i] = centre.z() + tilt.down * out.metres_per_px * (px.y - out.centre_px.y);
   }
-  std::array<float, kSide> expected{};  // depth that the depth template is counted from, in a row
-  for (std::size_t row = 0; row < kSide; ++row) {
-    const int y = out.row_px[row];
-    if (y < 0 || y >= frame.depth.rows) continue;
-    const auto* depth = frame.depth.ptr<float>(y);
-    for (std::size_t column = 0; column < kSide; ++column)
-      expected[column] = out.row_depth[row] + out.column_depth[column];
-    for (std::size_t column = 0; column < kSide; ++column) {
-      const int x = out.column_px[column];
-      if (x < 0 || x >= frame.depth.cols) continue;
-      const std::size_t cell = row * kSide + column;
-      const float beyond_centre = depth[x] - expected[column];
-      const std::int16_t template_mm = view.appearance.mm[cell];
-      const std::int16_t neighbour = view.appearance.beside[cell];
-      out.cells[out.object_cells] = {static_cast<std::uint16_t>(cell), static_cast<std::uint8_t>(row),
-                                     static_cast<std::uint8_t>(column)};
-      out.excess[out.object_cells] =
-          template_mm > TemplateGrid::kNoDepth ? beyond_centre - metres_per_mm * template_mm : kNoValue;
-      out.object_cells += template_mm != TemplateGrid::kBeside ? 1 : 0;
-      out.excess_beside[out.beside_cells] =
-          neighbour > TemplateGrid::kNoDepth ? beyond_centre - metres_per_mm * neighbour : kNoValue;
-      out.beside_cells += neighbour != TemplateGrid::kBeside ? 1 : 0;
-    }
-  }
-  return out;
+  compare_depths(view.appearance, places, frame.depth, out.depths);
 }
 
 /// Computes where the template's cells lie in the frame.
@@ -225,64 +174,9 @@ void place(const ViewTemplate& view, const Eigen::Vector3f& centre, const Camera
   out.top = out.centre_px.y + px_per_metre * view.box[1] - TemplateGrid::kRim * out.cell_height;
 }
 
-/// Returns the median of the depth differences within reach. Only the class of a histogram that holds it is searched:
-/// searching all of them mispredicts a branch for about every second value.
-float common_shift(const Comparison& comparison) {
-  constexpr float kReach = 0.03F;
-  constexpr int kClasses = 64;
-  std::array<float, kSide * kSide> near;
-  std::array<std::uint8_t, kSide * kSide> classes;
-  std::array<std::size_t, kClasses + 1> counts{};  // the last: out of reach
-  const std::size_t cells = comparison.object_cells;
-  for (std::size_t i = 0; i < cells; ++i) {
-    const float e = comparison.excess[i];
-    const bool within = std::abs(e) < kReach;
-    const float position = within ? (e + kReach) * (kClasses / (2.0F * kReach)) : 0.0F;
-    const int bin = within ? std::min(static_cast<int>(position), kClasses - 1) : kClasses;
-    classes[i] = static_cast<std::uint8_t>(bin);
-    ++counts[static_cast<std::size_t>(bin)];
-  }
-  const std::size_t total = cells - counts[kClasses];
-  if (total == 0) return 0.0F;
-  std::size_t rank = total / 2;
-  std::size_t middle = 0;
-  for (; rank >= counts[middle]; ++middle) rank -= counts[middle];
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < cells; ++i) {
-    near[count] = comparison.excess[i];
-    count += classes[i] == middle ? 1 : 0;
-  }
-  auto* const median = near.data() + rank;
-  std::nth_element(near.data(), median, near.data() + count);
-  return *median;
-}
-
 /// Returns the tolerance of depth, metres: alignment, and the noise of a structured-light camera.
 float tolerance_at(float z) {
   return 0.010F + 0.003F * z * z;
-}
-
-/// Counts the cells by how they compare, after a shift along the ray, without branches, as compare().
-Tally tally_cells(const Comparison& comparison, float shift, float tolerance) {
-  Tally tally;
-  tally.cells = comparison.object_cells;
-  for (std::size_t i = 0; i < comparison.object_cells; ++i) {
-    const Cell cell = comparison.cells[i];
-    const float e = comparison.excess[i] - shift;
-    const int no_depth = std::isnan(e) ? 1 : 0;
-    const int visible = std::abs(e) <= tolerance ? 1 : 0;
-    const int seen = visible | no_depth;
-    tally.unoccluded_cells[tally.unoccluded] = cell;
-    tally.unoccluded += static_cast<std::size_t>(seen);
-    tally.depth_residual += visible != 0 ? std::abs(e) / tolerance : 0.0F;
-    tally.visible += visible;
-    tally.no_depth += no_depth;
-    tally.occluded += e < -tolerance ? 1 : 0;
-    tally.free_space_violations += e > tolerance ? 1 : 0;
-    tally.rows |= static_cast<Lines>(seen) << cell.row;
-    tally.columns |= static_cast<Lines>(seen) << cell.column;
-  }
-  return tally;
 }
 
 /// Returns the level whose pixels show about as much as a cell does: finer detail than that of the template is noise.
@@ -304,45 +198,43 @@ CellColours::CellColours(const Comparison& comparison, const LabFrame& frame) {
   }
 }
 
-/// Compares the colours of the cells that are visible or unknown: where depth is missing, only colour is known.
-ColourSimilarity compare_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours) {
-  ColourSimilarity similarity;
+/// Collects the colours of the cells that are visible or unknown: where depth is missing, only colour is known.
+void collect_colours(const CellTally& tally, const TemplateGrid& appearance, const CellColours& colours,
+                     ColourPairs& pairs) {
+  pairs.count = tally.unoccluded;
   for (std::size_t i = 0; i < tally.unoccluded; ++i) {
-    const Cell cell = tally.unoccluded_cells[i];
-    similarity.add(appearance.lab[cell.index], colours.at(cell.row, cell.column));
+    const TemplateCell cell = tally.unoccluded_cells[i];
+    const std::array<std::uint8_t, 3>& expected = appearance.lab[cell.index];
+    const cv::Vec3b& observed = colours.at(cell.row, cell.column);
+    for (std::size_t c = 0; c < 3; ++c) {
+      pairs.expected[c][i] = expected[c];
+      pairs.observed[c][i] = observed[static_cast<int>(c)];
+    }
   }
-  return similarity;
 }
 
-/// Compares the colours as compare_colours() does, with the template's colours as the camera would measure them in the
-/// light of the frame.
-ColourSimilarity compare_camera_colours(const Tally& tally, const TemplateGrid& appearance, const CellColours& colours,
-                                        const ChromaMap& camera) {
+/// Brings the expected colours to what the camera would measure in the light of the frame.
+void bring_to_camera(const ChromaMap& camera, ColourPairs& pairs) {
   constexpr double kGrey = 128.0;
-  constexpr double kLightness = 100.0 / 255.0;  // factor from 8-bit L* to L*
-  ColourSimilarity similarity;
-  for (std::size_t i = 0; i < tally.unoccluded; ++i) {
-    const Cell cell = tally.unoccluded_cells[i];
-    const cv::Vec3b& seen = colours.at(cell.row, cell.column);
-    const std::array<std::uint8_t, 3>& lab = appearance.lab[cell.index];
-    const Eigen::Vector2d ab = camera.apply({lab[1] - kGrey, lab[2] - kGrey}, kLightness * seen[0]);
-    similarity.add(
-        {lab[0], cv::saturate_cast<std::uint8_t>(ab.x() + kGrey), cv::saturate_cast<std::uint8_t>(ab.y() + kGrey)},
-        seen);
+  constexpr double kLightness = 100.0 / 255.0;  // of 8-bit L*
+  for (std::size_t i = 0; i < pairs.count; ++i) {
+    const Eigen::Vector2d model(pairs.expected[1][i] - kGrey, pairs.expected[2][i] - kGrey);
+    const Eigen::Vector2d ab = camera.apply(model, kLightness * pairs.observed[0][i]);
+    pairs.expected[1][i] = cv::saturate_cast<std::uint8_t>(ab.x() + kGrey);
+    pairs.expected[2][i] = cv::saturate_cast<std::uint8_t>(ab.y() + kGrey);
   }
-  return similarity;
 }
 
 /// Returns the fraction of the cells beside the outline to which the object's surface continues: a larger thing of the
 /// same shape comes nearer there before it turns away.
-float rim_continuation(const Comparison& comparison, float shift, float tolerance) {
+float rim_continuation(const CellDepths& depths, float shift, float tolerance) {
   constexpr float kNearer = 0.03F;
   int continued = 0;
-  for (std::size_t i = 0; i < comparison.beside_cells; ++i) {
-    const float e = comparison.excess_beside[i] - shift;
+  for (std::size_t i = 0; i < depths.beside_cells; ++i) {
+    const float e = depths.excess_beside[i] - shift;
     continued += (e >= -kNearer ? 1 : 0) & (e <= 2.0F * tolerance ? 1 : 0);
   }
-  return static_cast<float>(continued) / static_cast<float>(std::max<std::size_t>(comparison.beside_cells, 1));
+  return static_cast<float>(continued) / static_cast<float>(std::max<std::size_t>(depths.beside_cells, 1));
 }
 
 cv::Rect2f visible_box(const Comparison& comparison, Lines columns, Lines rows) {

@@ -41,6 +41,30 @@ TEST(ColourSimilarity, ColoursThatHaveNothingInCommonAreNotAlike) {
   EXPECT_NEAR(similarity.correlation(), 0.0F, 0.1F);
 }
 
+TEST(ColourSimilarity, ManyPairsAtOnceAreThatManyPairs) {
+  Random random(7);
+  ColourSimilarity one_by_one;
+  ColourPairs pairs;
+  pairs.count = 401;
+  for (std::size_t i = 0; i < pairs.count; ++i) {
+    std::array<std::uint8_t, 3> expected{};
+    cv::Vec3b observed;
+    for (std::size_t c = 0; c < 3; ++c) {
+      expected[c] = static_cast<std::uint8_t>(random.below(256));
+      observed[static_cast<int>(c)] = static_cast<std::uint8_t>((expected[c] + random.below(128)) / 2);
+      pairs.expected[c][i] = expected[c];
+      pairs.observed[c][i] = observed[static_cast<int>(c)];
+    }
+    one_by_one.add(expected, observed);
+  }
+  ColourSimilarity at_once;
+  at_once.add(pairs);
+  EXPECT_EQ(at_once.correlation(), one_by_one.correlation());
+  EXPECT_EQ(at_once.hue_mismatch(), one_by_one.hue_mismatch());
+  EXPECT_EQ(at_once.log_contrast_ratio(), one_by_one.log_contrast_ratio());
+  EXPECT_GT(at_once.correlation(), 0.5F);
+}
+
 TEST(ColourSimilarity, PlainSurfacesAndFewPairsSayNothing) {
   ColourSimilarity plain;
   for (int i = 0; i < 100; ++i) plain.add({100, 128, 128}, {90, 128, 128});

@@ -1,0 +1,175 @@
+#include "detector/evidence/cell_comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "pipeline/base/no_value.hpp"
+#include "pipeline/base/random.hpp"
+#include "tests/every_target.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr float kShift_m = 0.004F;
+constexpr float kTolerance_m = 0.012F;
+
+/// A template, a frame, and where the one lies in the other: some of its cells beside the image.
+struct Case {
+  TemplateGrid grid;
+  CellPlaces places;
+  cv::Mat depth = cv::Mat(40, 50, CV_32FC1);
+};
+
+std::unique_ptr<Case> random_case(std::uint64_t seed) {
+  Random random(seed);
+  auto made = std::make_unique<Case>();
+  for (std::size_t i = 0; i < kTemplateCells; ++i) {
+    const int kind = random.below(5);
+    made->grid.mm[i] = kind == 0   ? TemplateGrid::kBeside
+                       : kind == 1 ? TemplateGrid::kNoDepth
+                                   : static_cast<std::int16_t>(random.between(-40, 40));
+    made->grid.beside[i] = kind == 0 ? static_cast<std::int16_t>(random.between(-40, 40)) : TemplateGrid::kBeside;
+  }
+  const int left = random.between(-12, 40);
+  const int top = random.between(-12, 30);
+  for (std::size_t i = 0; i < kTemplateSide; ++i) {
+    made->places.column_px[i] = left + static_cast<int>(i) * 3 / 2;
+    made->places.row_px[i] = top + static_cast<int>(i);
+    made->places.column_depth[i] = static_cast<float>(random.uniform(-0.01, 0.01));
+    made->places.row_depth[i] = static_cast<float>(random.uniform(0.99, 1.01));
+  }
+  for (int y = 0; y < made->depth.rows; ++y) {
+    for (int x = 0; x < made->depth.cols; ++x)
+      made->depth.at<float>(y, x) = random.uniform() < 0.2 ? kNoValue : static_cast<float>(random.uniform(0.95, 1.05));
+  }
+  return made;
+}
+
+/// Compares one cell after another, as the definition says.
+struct Reference {
+  explicit Reference(const Case& made) {
+    for (std::size_t row = 0; row < kTemplateSide; ++row) {
+      for (std::size_t column = 0; column < kTemplateSide; ++column) add(made, row, column);
+    }
+  }
+
+  void add(const Case& made, std::size_t row, std::size_t column) {
+    const cv::Point at(made.places.column_px[column], made.places.row_px[row]);
+    if (!cv::Rect(cv::Point(), made.depth.size()).contains(at)) return;
+    const float beyond = made.depth.at<float>(at) - (made.places.row_depth[row] + made.places.column_depth[column]);
+    const std::size_t cell = row * kTemplateSide + column;
+    const auto over = [&](std::int16_t mm) {
+      return mm > TemplateGrid::kNoDepth ? beyond - made.places.metres_per_mm * static_cast<float>(mm) : kNoValue;
+    };
+    if (made.grid.mm[cell] != TemplateGrid::kBeside) {
+      cells.push_back(cell);
+      excess.push_back(over(made.grid.mm[cell]));
+    }
+    if (made.grid.beside[cell] != TemplateGrid::kBeside) excess_beside.push_back(over(made.grid.beside[cell]));
+  }
+
+  std::vector<std::size_t> cells;
+  std::vector<float> excess;
+  std::vector<float> excess_beside;
+};
+
+void expect_equal(const std::vector<float>& expected, const float* values, std::size_t count) {
+  ASSERT_EQ(expected.size(), count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (std::isnan(expected[i])) {
+      EXPECT_TRUE(std::isnan(values[i])) << i;
+    } else {
+      EXPECT_EQ(expected[i], values[i]) << i;
+    }
+  }
+}
+
+TEST(CellComparison, IsThatOfOneCellAfterAnother) {
+  simd::with_every_target([] {
+    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+      const std::unique_ptr<Case> made = random_case(seed);
+      const Reference expected(*made);
+      CellDepths depths;
+      compare_depths(made->grid, made->places, made->depth, depths);
+      expect_equal(expected.excess, depths.excess.data(), depths.object_cells);
+      expect_equal(expected.excess_beside, depths.excess_beside.data(), depths.beside_cells);
+      for (std::size_t i = 0; i < depths.object_cells; ++i) {
+        const TemplateCell cell = depths.cells[i];
+        ASSERT_EQ(cell.index, expected.cells[i]);
+        ASSERT_EQ(cell.row * kTemplateSide + cell.column, expected.cells[i]);
+      }
+    }
+  });
+}
+
+TEST(CellComparison, TheCommonShiftIsTheMedianWithinReach) {
+  simd::with_every_target([] {
+    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+      const std::unique_ptr<Case> made = random_case(seed);
+      CellDepths depths;
+      compare_depths(made->grid, made->places, made->depth, depths);
+      std::vector<float> near;
+      std::copy_if(depths.excess.begin(), depths.excess.begin() + static_cast<std::ptrdiff_t>(depths.object_cells),
+                   std::back_inserter(near), [](float e) { return std::abs(e) < 0.03F; });
+      std::sort(near.begin(), near.end());
+      EXPECT_EQ(common_shift(depths), near.empty() ? 0.0F : near[near.size() / 2]) << seed;
+    }
+  });
+}
+
+TEST(CellComparison, TalliesEachCellOnce) {
+  simd::with_every_target([] {
+    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+      const std::unique_ptr<Case> made = random_case(seed);
+      CellDepths depths;
+      compare_depths(made->grid, made->places, made->depth, depths);
+      CellTally tally;
+      tally_cells(depths, kShift_m, kTolerance_m, tally);
+      CellTally expected;
+      for (std::size_t i = 0; i < depths.object_cells; ++i) {
+        const float e = depths.excess[i] - kShift_m;
+        const TemplateCell cell = depths.cells[i];
+        expected.no_depth += std::isnan(e) ? 1 : 0;
+        expected.occluded += e < -kTolerance_m ? 1 : 0;
+        expected.free_space_violations += e > kTolerance_m ? 1 : 0;
+        const bool is_visible = std::abs(e) <= kTolerance_m;
+        expected.visible += is_visible ? 1 : 0;
+        if (is_visible) expected.depth_residual += std::abs(e) / kTolerance_m;
+        if (!is_visible && !std::isnan(e)) continue;
+        ASSERT_LT(expected.unoccluded, tally.unoccluded);
+        EXPECT_EQ(tally.unoccluded_cells[expected.unoccluded++].index, cell.index);
+        expected.rows |= 1U << cell.row;
+        expected.columns |= 1U << cell.column;
+      }
+      EXPECT_EQ(tally.cells, depths.object_cells);
+      EXPECT_EQ(tally.no_depth, expected.no_depth);
+      EXPECT_EQ(tally.occluded, expected.occluded);
+      EXPECT_EQ(tally.free_space_violations, expected.free_space_violations);
+      EXPECT_EQ(tally.visible, expected.visible);
+      EXPECT_EQ(tally.depth_residual, expected.depth_residual) << "the sum is that of one after another";
+      EXPECT_EQ(tally.unoccluded, expected.unoccluded);
+      EXPECT_EQ(tally.rows, expected.rows);
+      EXPECT_EQ(tally.columns, expected.columns);
+    }
+  });
+}
+
+TEST(CellComparison, ATemplateBesideTheImageHasNoCells) {
+  const std::unique_ptr<Case> made = random_case(1);
+  made->places.row_px.fill(-1);
+  CellDepths depths;
+  compare_depths(made->grid, made->places, made->depth, depths);
+  EXPECT_EQ(depths.object_cells, 0U);
+  EXPECT_EQ(common_shift(depths), 0.0F);
+  CellTally tally;
+  tally_cells(depths, 0.0F, kTolerance_m, tally);
+  EXPECT_EQ(tally.unoccluded, 0U);
+  EXPECT_EQ(tally.fraction(tally.visible), 0.0F);
+}
+
+}  // namespace
+}  // namespace houghstream
