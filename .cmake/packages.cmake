@@ -21,7 +21,7 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
 # houghstream-demo reads messages with the Python of the same version, hs-import MATLAB files with scipy.
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "python3-houghstream (= ${PROJECT_VERSION}), python3, python3-matplotlib, python3-jinja2, python3-pil, python3-scipy, liblcm-bin, iproute2")
-set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "houghstream-java, libopenni2-0")
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "houghstream-java, libopenni2-0, libjs-three")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "houghstream-samples")
 set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION "finds taught objects in an RGB-D camera's stream, and their poses
  Processes for capture, detection (a depth-normalised Hough forest) and pose

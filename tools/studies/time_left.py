@@ -1,6 +1,7 @@
 """How long work still takes: by what its steps took before, or what they are expected to take, at the pace of those that are
 done. The expected seconds are of a machine with two slow cores; the first step that ends corrects them."""
 
+import re
 import time
 
 SECONDS_APART = 10  # of two lines of progress
@@ -18,6 +19,14 @@ def in_words(seconds):
 def left_in_words(seconds):
     """Of less than a second: what goes on takes longer than it was expected to, and ends soon."""
     return "about " + in_words(seconds) + " left" if seconds >= 1.0 else "nearly done"
+
+
+def seconds_said(words):
+    """How long a program says that it still takes, "..., about 2 min 03 s left"; 0 where it does not. Of several parts it says so of
+    the one that it is at."""
+    said = re.search(r"about (?:(\d+) h )?(?:(\d+) min )?(?:(\d+) s )?left", words)
+    hours, minutes, seconds = (int(part or 0) for part in said.groups()) if said else (0, 0, 0)
+    return 3600 * hours + 60 * minutes + seconds
 
 
 def last_words(log):

@@ -19,7 +19,7 @@ import time
 from studies.command import die, prepare, step
 from studies.records import cpu_name, today, write_atomically
 from studies.stream import ProcessFailed
-from studies.time_left import SECONDS_APART, in_words, last_words, left_in_words, pace_of
+from studies.time_left import SECONDS_APART, in_words, last_words, left_in_words, pace_of, seconds_said
 
 INPUT = re.compile(r"\{([^{}]+)\}")
 MODULES = pathlib.Path(__file__).resolve().parent.parent  # where the package lies
@@ -236,16 +236,16 @@ class Runner:
             waiting.pop(0)
             done += 1
 
-    def _rest(self, waiting, running_s=0.0):
+    def _rest(self, waiting, running_s=0.0, said_s=0.0):
         """Says how long the rest takes, by what units took earlier, else by what others of their kind took, else by what they
-        are expected to take. The first one has run for `running_s` seconds."""
+        are expected to take. The first one has run for `running_s` seconds, and says itself that it takes `said_s` more."""
         known = [self._expected(unit) for unit in waiting]
         measured = [seconds for seconds in known if seconds is not None]
         if not measured:
             return "rest unknown"
         mean = sum(measured) / len(measured)
         first, *others = (mean if seconds is None else seconds for seconds in known)
-        return left_in_words(max(first - running_s, 0.0) + sum(others) + self.after_s * pace_of(self.pairs))
+        return left_in_words(max(first - running_s, said_s, 0.0) + sum(others) + self.after_s * pace_of(self.pairs))
 
     def _expected(self, unit):
         earlier = self.store.record(unit).get("seconds")
@@ -261,7 +261,8 @@ class Runner:
                 return process.wait(SECONDS_APART)
             except subprocess.TimeoutExpired:
                 words = last_words(self.store.log(waiting[0])) or "begun"
-                self.tell(f"    {words}; all: {self._rest(waiting, time.monotonic() - begin)}")
+                rest = self._rest(waiting, time.monotonic() - begin, seconds_said(words))
+                self.tell(f"    {words}; all: {rest}")
 
     def _run_one(self, waiting):
         unit = waiting[0]

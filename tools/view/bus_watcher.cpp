@@ -8,6 +8,7 @@
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/placed_objects_message.hpp"
 #include "tools/view/preview.hpp"
 
 namespace houghstream::view {
@@ -94,6 +95,10 @@ void BusWatcher::subscribe_to_world() {
   reception_.subscribe_to_messages<objects_t>(
       channel::kObjects, [this](const objects_t& message, const ReceivedMessage& arrival) {
         stream_.note_world(world_from_message(message), microseconds(arrival.time));
+      });
+  reception_.subscribe_to_messages<placed_objects_t>(
+      channel::kPlacedObjects, [this](const placed_objects_t& message, const ReceivedMessage& /*arrival*/) {
+        stream_.note_placed(placed_objects_from_message(message));
       });
 }
 

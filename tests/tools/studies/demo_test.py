@@ -64,7 +64,7 @@ class TimeLeft(unittest.TestCase):
     def test_a_unit_that_has_never_run_has_an_expected_time_and_says_how_far_it_is(self):
         units = Units()
         units.add("quick", "", "sh", "-c", "touch {out}", expected_s=1)
-        units.add("slow", "", "sh", "-c", "echo 'views: 40 %'; sleep 0.5; touch {out}", expected_s=50)
+        units.add("slow", "", "sh", "-c", "echo 'views: 40 %, about 2 min 03 s left'; sleep 0.5; touch {out}", expected_s=50)
         said = []
         with tempfile.TemporaryDirectory() as folder, mock.patch("studies.unit_runner.SECONDS_APART", 0.2):
             programs = pathlib.Path(folder, "bin")
@@ -73,7 +73,12 @@ class TimeLeft(unittest.TestCase):
             Runner(Store(folder, programs, units.all()), tell=said.append, after_s=9).run(units.all())
         self.assertRegex(said[0], r"^\[1/2, 0 s, about 1 min 00 s left\] quick$")
         self.assertRegex(said[1], r"^\[2/2, 0 s, (about \d+ s left|nearly done)\] slow$")
-        self.assertRegex(said[2], r"^    views: 40 %; all: ")
+        self.assertRegex(said[2], r"^    views: 40 %, about 2 min 03 s left; all: about 2 min 0[3-6] s left$")
+
+    def test_what_a_program_says_of_its_end_is_understood(self):
+        for words, seconds in (("scene: 7 %, about 28 s left", 28), ("a: 1 %, about 1 h 02 min left", 3720), ("tree 2 of 15", 0),
+                               ("a: 2 %, about 2 min 03 s left", 123)):  # fmt: skip
+            self.assertEqual(time_left.seconds_said(words), seconds)
 
 
 class Messages(unittest.TestCase):

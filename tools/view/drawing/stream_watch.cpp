@@ -45,7 +45,13 @@ void StreamWatch::note_colours(const CameraChroma& colours, std::int64_t now_us)
 void StreamWatch::note_world(const WorldObjects& world, std::int64_t now_us) {
   const std::lock_guard lock(mutex_);
   world_.add(world);
+  if (placed_) world_.add(*placed_);
   world_us_ = now_us;
+}
+
+void StreamWatch::note_placed(ObjectPlacements placed) {
+  const std::lock_guard lock(mutex_);
+  placed_ = std::move(placed);
 }
 
 std::vector<ProcessState> StreamWatch::listed_processes(std::int64_t now_us) const {

@@ -46,6 +46,8 @@ class StreamWatch {
   void note_teaching(Teaching teaching, std::int64_t now_us);
   void note_colours(const CameraChroma& colours, std::int64_t now_us);
   void note_world(const WorldObjects& world, std::int64_t now_us);
+  /// Notes the boxes of the objects of the next world: hs-track publishes them just before it.
+  void note_placed(ObjectPlacements placed);
 
   /// A process that has been silent for five seconds has ended; it is listed for a minute more, unless another one of
   /// its name is alive. A teaching or a world that is silent for so long is gone.
@@ -61,6 +63,7 @@ class StreamWatch {
   std::int64_t taught_us_ = 0;                                         // time of its reception
   std::map<std::string, std::pair<ChromaMap, std::int64_t>> colours_;  // map and time of its reception, by camera
   WorldState world_;
+  std::optional<ObjectPlacements> placed_;                                // of the world that comes next
   std::int64_t world_us_ = std::numeric_limits<std::int64_t>::min() / 2;  // time of its reception
 };
 

@@ -146,6 +146,7 @@ void WorldState::add(const WorldObjects& world) {
   if (world.world_number != last.world_number || world.world != last.world) {
     T_world_camera.clear();
     trails.clear();
+    boxes.clear();
   }
   last = world;
   if (T_world_camera.size() < kCameras || T_world_camera.count(world.frame.channel) > 0)
@@ -158,6 +159,12 @@ void WorldState::add(const WorldObjects& world) {
     if (trail.size() > kTrail) trail.pop_front();
   }
   trails = std::move(kept);
+}
+
+void WorldState::add(const ObjectPlacements& placed) {
+  if (placed.frame != last.frame || placed.world != last.world || placed.world_number != last.world_number) return;
+  boxes.clear();
+  for (const ObjectPlacement& object : placed.objects) boxes[object.track_id] = object;
 }
 
 TrackLabels draw_tracks(cv::Mat& image, const WorldState& world, const RgbdFrame& frame) {

@@ -8,19 +8,24 @@
 
 #include "pipeline/types/camera.hpp"
 #include "pipeline/types/frame.hpp"
+#include "pipeline/types/placed_objects.hpp"
 #include "pipeline/types/tracked_object.hpp"
 #include "tools/view/drawing/overlay.hpp"
 
 namespace houghstream::view {
 
-/// Holds the last message of hs-track, and the earlier positions of its objects.
+/// Holds the last message of hs-track, the boxes about its objects, and their earlier positions.
 struct WorldState {
   WorldObjects last;
   std::map<std::string, Eigen::Isometry3d> T_world_camera;     ///< last, by channel (64 at most)
   std::map<std::int64_t, std::deque<Eigen::Vector3d>> trails;  ///< positions of the last seconds by track_id, metres
 
+  std::map<std::int64_t, ObjectPlacement> boxes;  ///< last known ones by track_id; empty without models
+
   /// A new world has no past.
   void add(const WorldObjects& world);
+  /// Adds the boxes of the same frame as `last`; others are ignored.
+  void add(const ObjectPlacements& placed);
 };
 
 /// Draws over an image of a frame (CV_8UC3, BGR) the objects of the world in it: a ring of two standard deviations of

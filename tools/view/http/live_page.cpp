@@ -82,7 +82,7 @@ void LivePage::show(const PageContent& content) {
   const std::chrono::duration<double, std::milli> since = now - first_shown_;
   const ViewedFrame viewed = without_weak(content.viewed, content.settings.min_score);
   const double latency_ms = viewed.pose_latency_ms.value_or(viewed.detect_latency_ms.value_or(0.0));
-  board_.put_frame(frame_json(viewed, latency_ms + since.count()));
+  board_.put_frame(frame_json(viewed, latency_ms + since.count(), content.stream.state.world));
   draw(board_.wanted(), {viewed, content.models, content.settings, content.stream});
 }
 

@@ -32,6 +32,13 @@ const ObjectPose* pose_of(const ViewedFrame& viewed, std::size_t detection) {
   return viewed.poses ? find_pose(*viewed.poses, detection) : nullptr;
 }
 
+void set_pose(const Eigen::Isometry3d& T, json& value) {
+  const Eigen::Vector3d t = T.translation();
+  const Eigen::Quaterniond q(T.linear());
+  value["position"] = {t.x(), t.y(), t.z()};
+  value["quaternion"] = {q.w(), q.x(), q.y(), q.z()};
+}
+
 json pose_json(const ObjectPose& pose) {
   json value = {{"status", to_string(pose.status)},
                 {"quality", pose.quality},
@@ -44,11 +51,7 @@ json pose_json(const ObjectPose& pose) {
                 {"free_space_violation", pose.free_space_violation},
                 {"position", nullptr},
                 {"quaternion", nullptr}};
-  if (!pose.T_camera_object) return value;
-  const Eigen::Vector3d t = pose.T_camera_object->translation();
-  const Eigen::Quaterniond q(pose.T_camera_object->linear());
-  value["position"] = {t.x(), t.y(), t.z()};
-  value["quaternion"] = {q.w(), q.x(), q.y(), q.z()};
+  if (pose.T_camera_object) set_pose(*pose.T_camera_object, value);
   return value;
 }
 
@@ -93,6 +96,31 @@ json world_json(const WorldState& world) {
   return {{"name", world.last.world}, {"cameras", world.T_world_camera.size()}, {"objects", objects}};
 }
 
+json box_json(const ObjectPlacement& placed) {
+  json box = {{"size", {placed.box_size.x(), placed.box_size.y(), placed.box_size.z()}}};
+  set_pose(placed.T_world_box, box);
+  return box;
+}
+
+// The world as it is drawn in 3-D; gone objects are left out.
+json scene_json(const WorldState& world) {
+  json cameras = json::array();
+  for (const auto& [channel, T_world_camera] : world.T_world_camera)
+    set_pose(T_world_camera, cameras.emplace_back(json{{"name", channel}}));
+  json objects = json::array();
+  for (const TrackedObject& object : world.last.objects) {
+    if (object.state == TrackState::kGone) continue;
+    const auto box = world.boxes.find(object.track_id);
+    json& entry = objects.emplace_back(json{{"number", object.track_id},
+                                            {"name", object.class_name},
+                                            {"colour", css_colour(class_colour(object.class_id))},
+                                            {"state", to_string(object.state)},
+                                            {"box", box == world.boxes.end() ? json(nullptr) : box_json(box->second)}});
+    set_pose(object.T_world_object, entry);
+  }
+  return {{"name", world.last.world}, {"cameras", cameras}, {"objects", objects}};
+}
+
 }  // namespace
 
 std::string why_no_pose(const ObjectPose* pose) {
@@ -125,7 +153,7 @@ std::string why_no_pose(const ObjectPose* pose) {
   }
 }
 
-std::string frame_json(const ViewedFrame& viewed, double age_ms) {
+std::string frame_json(const ViewedFrame& viewed, double age_ms, const std::optional<WorldState>& world) {
   json objects = json::array();
   for (std::size_t i = 0; i < viewed.detections.detections.size(); ++i)
     objects.push_back(object_json(viewed.detections.detections[i], pose_of(viewed, i)));
@@ -133,6 +161,12 @@ std::string frame_json(const ViewedFrame& viewed, double age_ms) {
                   {"utime", viewed.frame.id.utime},
                   {"width", viewed.frame.camera.width},
                   {"height", viewed.frame.camera.height},
+                  {"camera",
+                   {{"fx", viewed.frame.camera.fx},
+                    {"fy", viewed.frame.camera.fy},
+                    {"cx", viewed.frame.camera.cx},
+                    {"cy", viewed.frame.camera.cy}}},
+                  {"world", world ? scene_json(*world) : json(nullptr)},
                   {"age_ms", age_ms},
                   {"detect_ms", or_null(viewed.detect_latency_ms)},
                   {"pose_ms", or_null(viewed.pose_latency_ms)},

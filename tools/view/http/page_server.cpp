@@ -15,6 +15,7 @@
 #include "pipeline/base/stop_signal.hpp"
 #include "tools/view/http/client_server.hpp"
 #include "tools/view/http/page.hpp"
+#include "tools/view/http/three_script.hpp"
 
 namespace houghstream::view {
 namespace {
@@ -179,6 +180,12 @@ std::string PageServer::State::refusal_of_host(const httplib::Request& request) 
 void PageServer::State::add_pages() {
   server.Get("/", [](const httplib::Request&, httplib::Response& response) {
     response.set_content(kPageHtml, "text/html; charset=utf-8");
+  });
+  // The page fetches it as text and runs it in place, which its policy allows to it alone.
+  server.Get("/three.js", [](const httplib::Request&, httplib::Response& response) {
+    const std::optional<std::string> script = read_three_script();
+    if (!script) return answer(response, 404, "three.js is not there: sudo apt-get install libjs-three");
+    response.set_content(*script, "text/javascript; charset=utf-8");
   });
   server.Get("/events", [this](const httplib::Request&, httplib::Response& response) { serve_events(response); });
   server.Get(R"(/picture/(colour|depth|3d|world)\.jpg)",

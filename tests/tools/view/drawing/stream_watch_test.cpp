@@ -49,6 +49,21 @@ TEST(StreamWatch, AProcessThatRunsAgainReplacesTheOneThatEnded) {
   EXPECT_EQ(state.processes[0].pid, 17);
 }
 
+TEST(StreamWatch, BoxesThatComeJustBeforeTheirWorldAreOfIt) {
+  StreamWatch watch;
+  WorldObjects world;
+  world.frame = {"CAMERA", 7};
+  ObjectPlacements placed;
+  placed.frame = world.frame;
+  placed.world_number = world.world_number;
+  placed.objects.resize(1);
+  placed.objects[0].track_id = 9;
+  watch.note_placed(placed);
+  EXPECT_FALSE(watch.state(1'000'000).world.has_value());
+  watch.note_world(world, 1'000'000);
+  EXPECT_EQ(watch.state(1'000'000).world->boxes.count(9), 1U);
+}
+
 TEST(StreamWatch, ATeachingIsShownUntilItFallsSilent) {
   StreamWatch watch;
   EXPECT_FALSE(watch.state(0).teaching.has_value());

@@ -80,6 +80,27 @@ TEST(WorldView, AnotherWorldHasNoPast) {
   EXPECT_EQ(state.trails.at(4).size(), 1U);
 }
 
+TEST(WorldView, BoxesAreThoseOfTheSameFrameAndWorld) {
+  WorldState state;
+  const WorldObjects world = one_can(0.0);
+  state.add(world);
+  ObjectPlacement box;
+  box.track_id = 4;
+  box.box_size = {0.07, 0.07, 0.12};
+  ObjectPlacements placed{world.frame, world.world, world.world_number, {box}};
+  ObjectPlacements late = placed;
+  late.frame.utime += 1;
+  state.add(late);
+  EXPECT_TRUE(state.boxes.empty()) << "of another frame";
+  state.add(placed);
+  ASSERT_EQ(state.boxes.count(4), 1U);
+  EXPECT_EQ(state.boxes.at(4).box_size.z(), 0.12);
+  WorldObjects next = one_can(0.5);
+  next.world_number = 2;
+  state.add(next);
+  EXPECT_TRUE(state.boxes.empty()) << "another world";
+}
+
 TEST(WorldView, CamerasWithoutEndAreNotRemembered) {
   WorldState state;
   for (int i = 0; i < 200; ++i) {

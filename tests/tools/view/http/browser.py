@@ -44,7 +44,8 @@ class Browser:
     def __init__(self, program, width=1280, height=900):
         adopt_orphans()
         self.folder = tempfile.TemporaryDirectory(prefix="page_test_")
-        command = [program, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
+        command = [program, "--headless=new", "--no-sandbox", "--use-angle=swiftshader",
+                   "--enable-unsafe-swiftshader", "--disable-dev-shm-usage", "--no-first-run",
                    "--disable-background-networking", "--disable-component-update", "--disable-extensions", "--disable-quic",
                    "--disable-sync", "--disable-breakpad",
                    f"--user-data-dir={self.folder.name}", f"--window-size={width},{height}", "--remote-debugging-pipe",

@@ -42,7 +42,7 @@ void add_poses(ViewedFrame& viewed) {
 TEST(PageJson, AFrameTellsItsObjectsWithTheirPoses) {
   ViewedFrame viewed = viewed_frame();
   add_poses(viewed);
-  const json told = json::parse(frame_json(viewed, 17.0));
+  const json told = json::parse(frame_json(viewed, 17.0, std::nullopt));
   EXPECT_EQ(told["channel"], "LEFT");
   EXPECT_EQ(told["utime"], 42);
   EXPECT_EQ(told["age_ms"], 17.0);
@@ -61,12 +61,12 @@ TEST(PageJson, AFrameTellsItsObjectsWithTheirPoses) {
 TEST(PageJson, AWithheldPoseSaysWhyAndAnOddNameIsStillText) {
   ViewedFrame viewed = viewed_frame();
   add_poses(viewed);
-  const json mug = json::parse(frame_json(viewed, 0.0))["objects"][1];
+  const json mug = json::parse(frame_json(viewed, 0.0, std::nullopt))["objects"][1];
   EXPECT_TRUE(mug["pose"]["position"].is_null());
   EXPECT_TRUE(mug["pose"]["residual"].is_null());
   EXPECT_NE(mug["why"].get<std::string>().find("contradicts the measured depth"), std::string::npos);
   EXPECT_NE(mug["name"].get<std::string>().find("<b>"), std::string::npos);
-  EXPECT_NE(json::parse(frame_json(viewed_frame(), 0.0))["objects"][0]["why"], "");  // hs-pose is silent
+  EXPECT_NE(json::parse(frame_json(viewed_frame(), 0.0, std::nullopt))["objects"][0]["why"], "");  // hs-pose is silent
 }
 
 TEST(PageJson, EveryReasonHasWordsOfItsOwn) {
@@ -146,6 +146,43 @@ TEST(PageJson, TheWorldIsToldWithItsObjects) {
   EXPECT_EQ(told["objects"][0]["reason"], "occluded by a nearer surface");
   EXPECT_TRUE(told["objects"][0]["speed"].is_null());
   EXPECT_NEAR(told["objects"][1]["speed"].get<double>(), 0.5, 1e-9);
+}
+
+TEST(PageJson, AFrameHoldsTheWorldWithCamerasPosesAndBoxes) {
+  TrackedObject mug;
+  mug.track_id = 3;
+  mug.class_name = "mug";
+  mug.state = TrackState::kVisible;
+  mug.T_world_object = Eigen::Translation3d(1, 2, 3);
+  TrackedObject gone = mug;
+  gone.track_id = 4;
+  gone.state = TrackState::kGone;
+  TrackedObject plain = mug;
+  plain.track_id = 5;
+  WorldObjects world;
+  world.frame = {"LEFT", 6};
+  world.world = "WORLD";
+  world.T_world_camera = Eigen::Translation3d(0, -1, 0.5);
+  world.objects = {mug, gone, plain};
+  ObjectPlacement box;
+  box.track_id = 3;
+  box.T_world_box = Eigen::Translation3d(1, 2, 3.05);
+  box.box_size = {0.08, 0.09, 0.1};
+  std::optional<WorldState> state;
+  EXPECT_TRUE(json::parse(frame_json(viewed_frame(), 0.0, state))["world"].is_null());
+  state.emplace().add(world);
+  state->add(ObjectPlacements{world.frame, world.world, world.world_number, {box}});
+  const json told = json::parse(frame_json(viewed_frame(), 0.0, state));
+  EXPECT_GT(told["camera"]["fx"], 0.0);
+  const json& scene = told["world"];
+  EXPECT_EQ(scene["cameras"][0]["name"], "LEFT");
+  EXPECT_EQ(scene["cameras"][0]["position"], json({0.0, -1.0, 0.5}));
+  ASSERT_EQ(scene["objects"].size(), 2U) << "one is gone";
+  EXPECT_EQ(scene["objects"][0]["position"], json({1.0, 2.0, 3.0}));
+  EXPECT_EQ(scene["objects"][0]["box"]["position"], json({1.0, 2.0, 3.05}));
+  EXPECT_EQ(scene["objects"][0]["box"]["size"], json({0.08, 0.09, 0.1}));
+  EXPECT_EQ(scene["objects"][0]["box"]["quaternion"], json({1.0, 0.0, 0.0, 0.0}));
+  EXPECT_TRUE(scene["objects"][1]["box"].is_null()) << "no model of it is known";
 }
 
 }  // namespace

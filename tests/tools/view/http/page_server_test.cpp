@@ -12,6 +12,8 @@
 #include <thread>
 #include <vector>
 
+#include "tools/view/http/three_script.hpp"
+
 namespace houghstream::view {
 namespace {
 
@@ -103,6 +105,19 @@ TEST(PageServer, ThePageIsWholeAndLoadsNothingFromElsewhere) {
     EXPECT_EQ(page->body.find(elsewhere), std::string::npos) << elsewhere;
   EXPECT_NE(page->get_header_value("Content-Security-Policy").find("default-src 'none'"), std::string::npos);
   EXPECT_EQ(served.client.Get("/nothing")->status, 404);
+}
+
+TEST(PageServer, TheScriptOfThe3dViewIsServedFromWhereItIsInstalled) {
+  Served served;
+  const httplib::Result script = served.client.Get("/three.js");
+  ASSERT_TRUE(script);
+  const std::optional<std::string> installed = read_three_script();
+  EXPECT_EQ(script->status, installed ? 200 : 404);
+  if (installed) {
+    EXPECT_EQ(script->body, *installed);
+  } else {
+    EXPECT_NE(script->body.find("apt-get install libjs-three"), std::string::npos);
+  }
 }
 
 TEST(PageServer, ImagesAreThoseOfTheFrameThatIsShown) {

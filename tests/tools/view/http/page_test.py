@@ -1,5 +1,5 @@
 """hs-view's page in a real browser: what is there, what changes while the stream goes on, what the buttons do, and that it
-comes back by itself when hs-view does. Leaves page_desktop.png, page_phone.png and page_WIDTH.png in OUT."""
+comes back by itself when hs-view does. Leaves page_desktop.png, page_phone.png, page_WIDTH.png and scene_WIDTH.png in OUT."""
 
 import argparse
 import contextlib
@@ -10,7 +10,7 @@ import time
 
 from browser import Browser, find_chromium
 from studies.stream import Processes, enter_private_network
-from scripted_stream import CAMERA, ToldStream
+from scripted_stream import BOWL_HEIGHT, CAMERA, MUG_BOX, ToldStream
 
 SKIPPED = 77
 ROWS = "document.querySelectorAll('#objects tr[data-key]:not(.gone)').length"
@@ -141,6 +141,85 @@ def check_world(page):
     assert len(sums) >= 3, "the world stands still"
 
 
+CHOOSE_SCENE = "{ const view = document.getElementById('second-view'); view.value = 'scene'; view.dispatchEvent(new Event('change')); }"
+DRAWN_PIXELS = """(() => { const canvas = document.createElement('canvas'); canvas.width = 160; canvas.height = 120;
+  const pen = canvas.getContext('2d'); scene3d.draw(); pen.drawImage(document.getElementById('scene'), 0, 0, 160, 120);
+  const data = pen.getImageData(0, 0, 160, 120).data; let drawn = 0;
+  for (let at = 0; at < data.length; at += 4) drawn += Math.abs(data[at] - 0x16) + Math.abs(data[at + 1] - 0x18) + Math.abs(data[at + 2] - 0x1b) > 60;
+  return drawn; })()"""
+POINT = """(events => events.forEach(([name, id, x, y]) => { const at = document.getElementById('scene').getBoundingClientRect();
+  document.getElementById('scene').dispatchEvent(new PointerEvent(`pointer${name}`, { pointerId: id, pointerType: 'touch', clientX: at.left + x, clientY: at.top + y, buttons: 1 })); }))"""
+
+
+def away(page):
+    """From what the 3-D view looks at to where it looks from: [x, y, z]."""
+    return page.value("scene3d.camera.position.clone().sub(scene3d.target).toArray()")
+
+
+def length(vector):
+    return sum(value * value for value in vector) ** 0.5
+
+
+def close(some, others):
+    return len(some) == len(others) and all(abs(a - b) < 1e-6 for a, b in zip(some, others))
+
+
+def check_scene_falls_back(page):
+    """Without libjs-three, or without WebGL, the page says so in a line and goes on."""
+    page.value("fetchThree = window.fetch, window.fetch = (url, ...more) => url === 'three.js' ? Promise.resolve(new Response("
+               "'three.js is not there: sudo apt-get install libjs-three', { status: 404 })) : fetchThree(url, ...more), 0")  # fmt: skip
+    page.value(CHOOSE_SCENE)
+    page.wait_for(f"{text_of('#scene-words')} === 'The world cannot be drawn in 3-D here. three.js is not there: sudo apt-get install libjs-three'")
+    page.value("window.fetch = fetchThree, contextOf = HTMLCanvasElement.prototype.getContext, HTMLCanvasElement.prototype.getContext ="
+               " function (kind, ...more) { return kind === 'webgl' ? null : contextOf.call(this, kind, ...more); },"
+               " sceneLoading = null, showScene()")  # fmt: skip
+    page.wait_for(f"{text_of('#scene-words')}.endsWith('This browser has no WebGL.')")
+    assert page.value("document.getElementById('scene').hidden")
+    page.value("HTMLCanvasElement.prototype.getContext = contextOf, sceneLoading = null, showScene()")
+
+
+def check_scene(page, out):
+    """The world in 3-D: objects as the boxes of the messages, cameras, and that it turns, moves and comes nearer by hand."""
+    if page.value("fetch('three.js').then(answer => answer.status)") != 200:
+        print("3-D view: not looked at, sudo apt-get install libjs-three")
+        return
+    check_scene_falls_back(page)
+    page.wait_for("scene3d !== null && !document.getElementById('scene').hidden && scene3d.objects.size === 2")
+    place = "(group => ({ position: group.position.toArray(), size: group.userData.box.scale.toArray(), quaternion: [group.quaternion.w, group.quaternion.x, group.quaternion.y, group.quaternion.z] }))(scene3d.objects.get(%d))"
+    mug = page.value(place % 2)
+    for key, expected in MUG_BOX.items():
+        assert close(mug[key], expected), (key, mug, expected)
+    places = set()
+    for _ in range(100):
+        shown, told = page.value(f"[{place % 1}, frame.world.objects[0]]")
+        assert close(shown["position"], told["box"]["position"]), (shown, told)
+        x, y, z = told["position"]
+        assert close(shown["position"], [x, y, z + BOWL_HEIGHT / 2]) and abs(x * x + y * y - 0.09) < 1e-6, (shown, told)
+        places.add(tuple(shown["position"]))
+        if len(places) > 2:
+            break
+        time.sleep(0.1)
+    assert len(places) > 2, "the bowl stands still in the 3-D view"
+    assert close(page.value("scene3d.cameras.get('OPENNI_FRAME').position.toArray()"), [0.0, -0.8, 0.6])
+    assert page.value("scene3d.cameras.size") == 2 and page.value("scene3d.ground.position.z") == 0
+    assert page.value(DRAWN_PIXELS) > 300, "hardly anything is drawn"
+    before = away(page)
+    page.value(f"{POINT}([['down', 1, 100, 60], ['move', 1, 160, 60], ['up', 1, 160, 60]])")
+    turned = away(page)  # what moves does not move the view
+    assert not close(before, turned) and abs(length(before) - length(turned)) < 1e-6 and abs(before[2] - turned[2]) < 1e-6, (before, turned)
+    page.value(f"{POINT}([['down', 1, 100, 60], ['down', 2, 140, 60], ['move', 2, 180, 60], ['up', 1, 0, 0], ['up', 2, 0, 0]])")
+    assert abs(length(away(page)) - 0.5 * length(turned)) < 1e-6, "two fingers that part come nearer"
+    page.value("document.getElementById('scene').dispatchEvent(new WheelEvent('wheel', { deltaY: 500, cancelable: true }))")
+    assert length(away(page)) > 0.7 * length(turned)
+    page.value("document.getElementById('scene').dispatchEvent(new MouseEvent('dblclick'))")
+    for width, height in ((360, 740), (1300, 900), (1920, 1080)):
+        page.resize(width, height, width < 900)
+        page.wait_for(f"innerWidth === {width} && document.getElementById('scene').clientWidth > {width // 4}")
+        assert page.value("document.documentElement.scrollWidth") <= width
+        time.sleep(0.5)
+        page.photograph(out / f"scene_{width}.png", whole=True)
+
+
 def check_live_change(page):
     scores, images = set(), set()
     end = time.monotonic() + 60
@@ -221,6 +300,8 @@ def check_page(program, arguments):
         page.resize(1280, 900, False)
         check_processes(page, told)
         check_world(page)
+        check_scene(page, out)
+        page.resize(1280, 900, False)
         check_picking(page)
         page.photograph(out / "page_desktop.png")
         check_buttons(page)

@@ -15,6 +15,8 @@ from houghstream.images_t import images_t
 from houghstream.object_pose_t import object_pose_t
 from houghstream.object_poses_t import object_poses_t
 from houghstream.objects_t import objects_t
+from houghstream.placed_object_t import placed_object_t
+from houghstream.placed_objects_t import placed_objects_t
 from houghstream.stage_time_t import stage_time_t
 from houghstream.status_t import status_t
 from houghstream.tracked_object_t import tracked_object_t
@@ -102,6 +104,27 @@ def objects_message(utime, channel, turn):
     return message
 
 
+MUG_BOX = {"position": [0.1, 0.2, 0.05], "quaternion": [math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)], "size": [0.08, 0.12, 0.1]}
+BOWL_HEIGHT = 0.06
+
+
+def placed_message(world):
+    """The boxes about the objects of that world: the bowl stands on its origin, the mug is turned by a quarter."""
+    message = placed_objects_t()
+    message.utime, message.source_channel, message.world, message.world_number = world.utime, world.source_channel, "WORLD", 1
+    for told in world.objects:
+        placed = placed_object_t()
+        placed.track_id, placed.class_name = told.track_id, told.class_name
+        if told.class_name == "bowl":
+            placed.box_trans = [*told.trans[:2], told.trans[2] + BOWL_HEIGHT / 2]
+            placed.box_quat, placed.box_size = [1.0, 0.0, 0.0, 0.0], [0.16, 0.16, BOWL_HEIGHT]
+        else:
+            placed.box_trans, placed.box_quat, placed.box_size = MUG_BOX["position"], MUG_BOX["quaternion"], MUG_BOX["size"]
+        message.objects.append(placed)
+    message.n_objects = len(message.objects)
+    return message
+
+
 def status_message(utime):
     message = status_t()
     message.utime, message.process, message.pid, message.rate_hz = utime, "hs-pose", 4242, 10.0
@@ -136,7 +159,9 @@ class ToldStream:
             self.send("HOUGHSTREAM_DETECTIONS", detections_message(utime, self.channel, objects))
             self.send("HOUGHSTREAM_POSES", poses_message(utime, self.channel, objects, 5000.0 if turn % 40 == 15 else 7.5))
             for camera in (self.channel, "SIDE"):
-                self.send("HOUGHSTREAM_OBJECTS", objects_message(utime, camera, turn))
+                world = objects_message(utime, camera, turn)
+                self.send("HOUGHSTREAM_PLACED_OBJECTS", placed_message(world))
+                self.send("HOUGHSTREAM_OBJECTS", world)
             if not self.pose_process_ended.is_set():
                 self.send("HOUGHSTREAM_STATUS", status_message(utime))
 
