@@ -258,10 +258,10 @@ std::vector<FoxgloveMessage> FoxgloveMessages::convert_objects(const ReportedObj
     if (!has_valid_pose(object)) continue;
     const int count = ++counts[class_of(object)];
     const std::string name = count == 1 ? class_of(object) : fmt::format("{}_{}", class_of(object), count);
-    add_transform(transforms, utime, {channel, channel + "/" + name}, *object.pose->T_camera_object);
     Shown entity;
-    entity.topic = "/" + channel + "/objects/" + name;
-    entity.frame = channel + "/" + name;
+    entity.topic = fmt::format("/{}/objects/{}", channel, name);
+    entity.frame = fmt::format("{}/{}", channel, name);
+    add_transform(transforms, utime, {channel, entity.frame}, *object.pose->T_camera_object);
     entity.class_name = class_of(object);
     shown.push_back(std::move(entity));
   }

@@ -46,7 +46,7 @@ class GlbBuffer {
 
   /// Appends a list of float vectors or of indices, and returns the number of its accessor.
   template <typename Element>
-  std::size_t add_list(const std::vector<Element>& list, const char* type, Json more = Json::object()) {
+  std::size_t add_list(const std::vector<Element>& list, const char* type, const Json& more = Json::object()) {
     const bool is_index = std::string(type) == "SCALAR";
     Json accessor = {{"bufferView", add_view(list.data(), list.size() * sizeof(Element),
                                              is_index ? kElementArrayBuffer : kArrayBuffer)},

@@ -13,7 +13,7 @@ constexpr std::int64_t kRestart_us = 2'000'000;  // a source that steps back far
 
 }  // namespace
 
-LiveConversion::LiveConversion(std::optional<Camera> camera) : messages_({}), camera_(std::move(camera)) {}
+LiveConversion::LiveConversion(const std::optional<Camera>& camera) : messages_({}), camera_(camera) {}
 
 bool LiveConversion::knows(const std::string& channel) {
   if (shown_.count(channel) == 0 && shown_.size() >= kMaxCameras) return false;

@@ -21,7 +21,7 @@ class LiveConversion {
   static constexpr std::size_t kMaxCameras = 64;
 
   /// `camera` are the intrinsics of frames that carry none.
-  explicit LiveConversion(std::optional<Camera> camera);
+  explicit LiveConversion(const std::optional<Camera>& camera);
 
   void set_models(const std::map<std::string, Mesh>& models) { messages_.set_models(models); }
 
