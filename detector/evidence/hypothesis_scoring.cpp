@@ -170,6 +170,7 @@ std::vector<std::size_t> largest(const std::vector<double>& values, int count) {
 
 /// Drops the hypotheses that are not compared with the frame.
 void keep_most_promising(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks) {
+  if (tasks.size() <= static_cast<std::size_t>(settings.max_compared)) return;
   std::vector<double> promises;
   promises.reserve(tasks.size());
   for (const ScoringTask& task : tasks) promises.push_back(vote_promise(task.scored.evidence));
@@ -182,13 +183,20 @@ void keep_most_promising(const EvidenceSettings& settings, std::vector<ScoringTa
 /// than everything else about them.
 void choose_refined(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks) {
   constexpr float kHopeless = 0.02F;  // score: votes bring occluded objects templates that hardly match
+  std::size_t count = 0;
+  for (ScoringTask& task : tasks) {
+    const bool is_compared = task.scored.evidence.view != Evidence::kNoView;
+    task.is_refined = is_compared && task.scored.detection.score >= kHopeless;
+    count += task.is_refined ? 1 : 0;
+  }
+  if (count <= static_cast<std::size_t>(settings.max_refined)) return;
   std::vector<double> scores;
   scores.reserve(tasks.size());
-  for (const ScoringTask& task : tasks) {
-    const bool is_compared = task.scored.evidence.view != Evidence::kNoView;
-    scores.push_back(is_compared ? task.scored.detection.score : 0.0F);
+  for (ScoringTask& task : tasks) {
+    scores.push_back(task.is_refined ? task.scored.detection.score : -1.0F);
+    task.is_refined = false;
   }
-  for (const std::size_t i : largest(scores, settings.max_refined)) tasks[i].is_refined = scores[i] >= kHopeless;
+  for (const std::size_t i : largest(scores, settings.max_refined)) tasks[i].is_refined = true;
 }
 
 void HypothesisScorer::compare() {

@@ -25,11 +25,8 @@ void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSetting
   app.add_flag("--preview", show.preview, "send JPEGs below 100 kB on HOUGHSTREAM_PREVIEW");
   app.add_option("--http", show.http,
                  "serve a page for browsers at [ADDRESS:]PORT; without an address for this machine only");
-  app.add_option("--foxglove", show.foxglove,
-                 "serve the stream to Foxglove at [ADDRESS:]PORT; without an address for this machine only");
-  app.add_option("--http-host", show.http_hosts,
-                 "a further name that the page is served for, or that Foxglove's page has, beside this machine's names "
-                 "and addresses; repeatable");
+  app.add_option("--foxglove", show.foxglove, "serve the stream to Foxglove, as --http");
+  app.add_option("--http-host", show.http_hosts, "further name for --http, --foxglove; repeatable");
   app.add_option("--rate", outputs.rate_hz, "pictures drawn per second, at most")
       .capture_default_str()
       .range(0.1, 100.0);
