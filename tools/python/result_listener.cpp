@@ -15,6 +15,7 @@
 #include "pipeline/messages/placed_objects_message.hpp"
 #include "pipeline/process/reception.hpp"
 #include "pipeline/types/frame_results.hpp"
+#include "tools/common/last_messages.hpp"
 
 namespace houghstream {
 namespace {
@@ -75,27 +76,6 @@ class ResultQueue {
   std::condition_variable filled_;
   std::deque<Waiting> waiting_;
   std::exception_ptr failure_;
-};
-
-/// Messages that come before the results which they belong to; the last ones are kept.
-template <typename Message>
-class LastMessages {
- public:
-  void add(Message message) {
-    constexpr std::size_t kMax = 64;
-    messages_.push_front(std::move(message));
-    if (messages_.size() > kMax) messages_.pop_back();
-  }
-
-  /// Returns the newest message that is wanted; null where none is.
-  template <typename IsWanted>
-  const Message* find(const IsWanted& is_wanted) const {
-    const auto found = std::find_if(messages_.begin(), messages_.end(), is_wanted);
-    return found == messages_.end() ? nullptr : &*found;
-  }
-
- private:
-  std::deque<Message> messages_;  // the newest first
 };
 
 }  // namespace

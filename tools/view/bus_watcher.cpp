@@ -61,10 +61,14 @@ void BusWatcher::subscribe_to_results() {
         if (!cameras_.is_shown(result.id.channel)) return;
         matcher_.add_detections(std::move(detections), microseconds(result.time), result.bytes.size);
       });
+  reception_.subscribe_to_messages<pose_probabilities_t>(
+      channel::kPoseProbabilities,
+      [this](const pose_probabilities_t& message, const ReceivedMessage& /*arrival*/) { probabilities_.add(message); });
   reception_.subscribe_to_results<object_poses_t>(
       channel::kPoses, Account::kOthers, [this](const ReceivedResult& result) {
         ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(result.bytes));
         if (!cameras_.is_shown(result.id.channel)) return;
+        probabilities_.find([&](const auto& message) { return apply_probabilities(message, poses); });
         matcher_.add_poses(std::move(poses), microseconds(result.time), result.bytes.size);
       });
 }

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <houghstream/pose_probabilities_t.hpp>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/process/process_loop.hpp"
 #include "pipeline/process/reception.hpp"
+#include "tools/common/last_messages.hpp"
 #include "tools/view/drawing/stream_watch.hpp"
 #include "tools/view/frame_matcher.hpp"
 
@@ -67,7 +69,8 @@ class BusWatcher {
   Reception reception_;
   SelectedCamera cameras_;
   FrameMatcher matcher_;
-  std::int64_t passed_over_told_ = 0;  // skipped frames of the matcher that the status has counted
+  LastMessages<pose_probabilities_t> probabilities_;  // come before their poses
+  std::int64_t passed_over_told_ = 0;                 // skipped frames of the matcher that the status has counted
   StreamWatch stream_;
   MatchedFrameQueue queue_;
   std::atomic<bool> stopping_{false};

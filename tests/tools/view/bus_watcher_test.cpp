@@ -27,6 +27,34 @@ TEST(BusWatcher, AFrameComesWithItsResults) {
   EXPECT_FALSE(watched.watcher.next(std::chrono::milliseconds(0)).has_value());
 }
 
+TEST(BusWatcher, PosesHaveTheProbabilitiesThatCameBeforeThem) {
+  WatchedBus watched;
+  watched.publish_frame(1);
+  Detections detections;
+  detections.frame = {channel::kFrame, 1};
+  detections.detections.resize(1);
+  detections.detections[0].class_id = 1;
+  detections.detections[0].class_name = "can";
+  detections.detections[0].box_px = {10.0F, 10.0F, 20.0F, 20.0F};
+  ObjectPoses poses;
+  poses.frame = detections.frame;
+  poses.poses.resize(1);
+  poses.poses[0].class_name = "can";
+  poses.poses[0].detection_index = 0;
+  poses.poses[0].status = PoseStatus::kNotConverged;
+  poses.poses[0].quality = 0.25F;
+  poses.poses[0].shape_quality = 0.875F;
+  watched.bus.publish(channel::kDetections, to_message(detections));
+  watched.bus.publish(channel::kPoseProbabilities, probabilities_to_message(poses));
+  watched.bus.publish(channel::kPoses, to_message(poses));
+  const std::optional<MatchedFrame> matched = watched.next();
+  ASSERT_TRUE(matched.has_value());
+  const std::optional<FrameResult> found = matched->results.merge();
+  ASSERT_TRUE(found.has_value() && found->poses.has_value());
+  EXPECT_EQ(found->poses->poses.at(0).quality, 0.25F);
+  EXPECT_EQ(found->poses->poses.at(0).shape_quality, 0.875F);
+}
+
 TEST(BusWatcher, RateAndFramesThatNeverArrivedAreCounted) {
   WatchedBus watched;
   watched.publish_frame(1);

@@ -42,6 +42,7 @@ void set_pose(const Eigen::Isometry3d& T, json& value) {
 json pose_json(const ObjectPose& pose) {
   json value = {{"status", to_string(pose.status)},
                 {"quality", pose.quality},
+                {"shape_quality", pose.shape_quality},
                 {"converged", pose.converged},
                 {"iterations", pose.iterations},
                 {"inliers", pose.inliers},

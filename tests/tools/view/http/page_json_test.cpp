@@ -33,6 +33,8 @@ void add_poses(ViewedFrame& viewed) {
   viewed.poses->poses.resize(2);
   viewed.poses->poses[0].detection_index = 0;
   viewed.poses->poses[0].status = PoseStatus::kValid;
+  viewed.poses->poses[0].quality = 0.25F;
+  viewed.poses->poses[0].shape_quality = 0.75F;
   viewed.poses->poses[0].T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.2, 0.9));
   viewed.poses->poses[1].detection_index = 1;
   viewed.poses->poses[1].status = PoseStatus::kRejectedByDepth;
@@ -55,6 +57,8 @@ TEST(PageJson, AFrameTellsItsObjectsWithTheirPoses) {
   EXPECT_TRUE(bowl["centre"][0].is_null());
   EXPECT_EQ(bowl["pose"]["position"], json({0.1, 0.2, 0.9}));
   EXPECT_EQ(bowl["pose"]["quaternion"], json({1.0, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(bowl["pose"]["quality"], 0.25);
+  EXPECT_EQ(bowl["pose"]["shape_quality"], 0.75);
   EXPECT_EQ(bowl["why"], "");
 }
 
