@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
-#include "detector/forest/view_template.hpp"
+#include "detector/evidence/cell_comparison.hpp"
 
 namespace houghstream {
 
@@ -18,8 +18,7 @@ struct MeanColours {
 
 /// Pairs of colours, channel by channel: those that are expected and those that are observed, 8-bit L*a*b*.
 struct ColourPairs {
-  static constexpr std::size_t kMax = TemplateGrid::kSide * TemplateGrid::kSide;
-  using Values = std::array<std::int16_t, kMax>;
+  using Values = PerCell<std::int16_t>;
 
   std::size_t count = 0;  ///< of the first values, which are meant
   std::array<Values, 3> expected;

@@ -16,7 +16,6 @@
 namespace houghstream::foxglove {
 namespace {
 
-constexpr int kColourQuality = 94;  // of JPEG, where the colour comes raw; that of hs-capture
 constexpr double kLineThickness_px = 2.0;
 constexpr double kFontSize_px = 14.0;
 constexpr double kTextHeight_m = 0.02;
@@ -95,7 +94,8 @@ std::string_view view_of(const std::vector<std::uint8_t>& bytes) {
 std::vector<std::uint8_t> jpeg_of(const images_t& frame, const FrameImages& images) {
   const auto left = std::find(frame.image_types.begin(), frame.image_types.end(), images_t::LEFT);
   const image_t& colour = frame.images[static_cast<std::size_t>(left - frame.image_types.begin())];
-  return colour.pixelformat == image_t::PIXEL_FORMAT_MJPEG ? colour.data : encode_jpeg(images.colour, kColourQuality);
+  return colour.pixelformat == image_t::PIXEL_FORMAT_MJPEG ? colour.data
+                                                           : encode_jpeg(images.colour, WireFormat{}.jpeg_quality);
 }
 
 FoxgloveMessage depth_message(const cv::Mat& depth_mm, const std::string& channel, std::int64_t utime) {

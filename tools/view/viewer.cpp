@@ -1,7 +1,5 @@
 #include "tools/view/viewer.hpp"
 
-#include <unistd.h>
-
 #include <chrono>
 #include <opencv2/core/utility.hpp>
 #include <optional>
@@ -9,6 +7,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/service_notice.hpp"
 #include "pipeline/base/stop_signal.hpp"
+#include "pipeline/base/thread_priority.hpp"
 #include "tools/view/bus_watcher.hpp"
 #include "tools/view/foxglove/live_foxglove.hpp"
 
@@ -17,13 +16,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Lowers the priority of drawing below the stream's: on a busy machine images are late, results are not. On Linux this
-// holds for the calling thread and those that it starts later (the video encoder's), not for the one that receives. One
-// thread draws: several that share so little work spend more time on waking than they save.
+// Lowers the priority of drawing and of the threads that it starts later (the video encoder's), not of the one that
+// receives. One thread draws: several that share so little work spend more time on waking than they save.
 void step_back() {
   cv::setNumThreads(1);
-  constexpr int kPolite = 15;
-  if (nice(kPolite) == -1) log_warning("the priority of drawing cannot be lowered");
+  yield_to_results("drawing");
 }
 
 // Returns how many frames may wait: files leave time after the stream, while in a window and on a page only the newest

@@ -88,73 +88,72 @@ void expect_equal(const std::vector<float>& expected, const float* values, std::
   }
 }
 
-TEST(CellComparison, IsThatOfOneCellAfterAnother) {
-  simd::with_every_target([] {
+/// Calls check(case, depths) for 50 cases, with every instruction set that the processor has.
+template <typename Check>
+void for_each_case(const Check& check) {
+  simd::with_every_target([&] {
     for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+      SCOPED_TRACE(seed);
       const std::unique_ptr<Case> made = random_case(seed);
-      const Reference expected(*made);
       CellDepths depths;
       compare_depths(made->grid, made->places, made->depth, depths);
-      expect_equal(expected.excess, depths.excess.data(), depths.object_cells);
-      expect_equal(expected.excess_beside, depths.excess_beside.data(), depths.beside_cells);
-      for (std::size_t i = 0; i < depths.object_cells; ++i) {
-        const TemplateCell cell = depths.cells[i];
-        ASSERT_EQ(cell.index, expected.cells[i]);
-        ASSERT_EQ(cell.row * kTemplateSide + cell.column, expected.cells[i]);
-      }
+      check(*made, depths);
+    }
+  });
+}
+
+TEST(CellComparison, IsThatOfOneCellAfterAnother) {
+  for_each_case([](const Case& made, const CellDepths& depths) {
+    const Reference expected(made);
+    expect_equal(expected.excess, depths.excess.data(), depths.object_cells);
+    expect_equal(expected.excess_beside, depths.excess_beside.data(), depths.beside_cells);
+    for (std::size_t i = 0; i < depths.object_cells; ++i) {
+      const TemplateCell cell = depths.cells[i];
+      ASSERT_EQ(cell.index, expected.cells[i]);
+      ASSERT_EQ(cell.row * kTemplateSide + cell.column, expected.cells[i]);
     }
   });
 }
 
 TEST(CellComparison, TheCommonShiftIsTheMedianWithinReach) {
-  simd::with_every_target([] {
-    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-      const std::unique_ptr<Case> made = random_case(seed);
-      CellDepths depths;
-      compare_depths(made->grid, made->places, made->depth, depths);
-      std::vector<float> near;
-      std::copy_if(depths.excess.begin(), depths.excess.begin() + static_cast<std::ptrdiff_t>(depths.object_cells),
-                   std::back_inserter(near), [](float e) { return std::abs(e) < 0.03F; });
-      std::sort(near.begin(), near.end());
-      EXPECT_EQ(common_shift(depths), near.empty() ? 0.0F : near[near.size() / 2]) << seed;
-    }
+  for_each_case([](const Case& /*made*/, const CellDepths& depths) {
+    std::vector<float> near;
+    std::copy_if(depths.excess.begin(), depths.excess.begin() + static_cast<std::ptrdiff_t>(depths.object_cells),
+                 std::back_inserter(near), [](float e) { return std::abs(e) < 0.03F; });
+    std::sort(near.begin(), near.end());
+    EXPECT_EQ(common_shift(depths), near.empty() ? 0.0F : near[near.size() / 2]);
   });
 }
 
 TEST(CellComparison, TalliesEachCellOnce) {
-  simd::with_every_target([] {
-    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-      const std::unique_ptr<Case> made = random_case(seed);
-      CellDepths depths;
-      compare_depths(made->grid, made->places, made->depth, depths);
-      CellTally tally;
-      tally_cells(depths, kShift_m, kTolerance_m, tally);
-      CellTally expected;
-      for (std::size_t i = 0; i < depths.object_cells; ++i) {
-        const float e = depths.excess[i] - kShift_m;
-        const TemplateCell cell = depths.cells[i];
-        expected.no_depth += std::isnan(e) ? 1 : 0;
-        expected.occluded += e < -kTolerance_m ? 1 : 0;
-        expected.free_space_violations += e > kTolerance_m ? 1 : 0;
-        const bool is_visible = std::abs(e) <= kTolerance_m;
-        expected.visible += is_visible ? 1 : 0;
-        if (is_visible) expected.depth_residual += std::abs(e) / kTolerance_m;
-        if (!is_visible && !std::isnan(e)) continue;
-        ASSERT_LT(expected.unoccluded, tally.unoccluded);
-        EXPECT_EQ(tally.unoccluded_cells[expected.unoccluded++].index, cell.index);
-        expected.rows |= 1U << cell.row;
-        expected.columns |= 1U << cell.column;
-      }
-      EXPECT_EQ(tally.cells, depths.object_cells);
-      EXPECT_EQ(tally.no_depth, expected.no_depth);
-      EXPECT_EQ(tally.occluded, expected.occluded);
-      EXPECT_EQ(tally.free_space_violations, expected.free_space_violations);
-      EXPECT_EQ(tally.visible, expected.visible);
-      EXPECT_EQ(tally.depth_residual, expected.depth_residual) << "the sum is that of one after another";
-      EXPECT_EQ(tally.unoccluded, expected.unoccluded);
-      EXPECT_EQ(tally.rows, expected.rows);
-      EXPECT_EQ(tally.columns, expected.columns);
+  for_each_case([](const Case& /*made*/, const CellDepths& depths) {
+    CellTally tally;
+    tally_cells(depths, kShift_m, kTolerance_m, tally);
+    CellTally expected;
+    for (std::size_t i = 0; i < depths.object_cells; ++i) {
+      const float e = depths.excess[i] - kShift_m;
+      const TemplateCell cell = depths.cells[i];
+      expected.no_depth += std::isnan(e) ? 1 : 0;
+      expected.occluded += e < -kTolerance_m ? 1 : 0;
+      expected.free_space_violations += e > kTolerance_m ? 1 : 0;
+      const bool is_visible = std::abs(e) <= kTolerance_m;
+      expected.visible += is_visible ? 1 : 0;
+      if (is_visible) expected.depth_residual += std::abs(e) / kTolerance_m;
+      if (!is_visible && !std::isnan(e)) continue;
+      ASSERT_LT(expected.unoccluded, tally.unoccluded);
+      EXPECT_EQ(tally.unoccluded_cells[expected.unoccluded++].index, cell.index);
+      expected.rows |= 1U << cell.row;
+      expected.columns |= 1U << cell.column;
     }
+    EXPECT_EQ(tally.cells, depths.object_cells);
+    EXPECT_EQ(tally.no_depth, expected.no_depth);
+    EXPECT_EQ(tally.occluded, expected.occluded);
+    EXPECT_EQ(tally.free_space_violations, expected.free_space_violations);
+    EXPECT_EQ(tally.visible, expected.visible);
+    EXPECT_EQ(tally.depth_residual, expected.depth_residual) << "the sum is that of one after another";
+    EXPECT_EQ(tally.unoccluded, expected.unoccluded);
+    EXPECT_EQ(tally.rows, expected.rows);
+    EXPECT_EQ(tally.columns, expected.columns);
   });
 }
 

@@ -27,6 +27,7 @@
 #include "pipeline/base/log_throttle.hpp"
 #include "pipeline/base/printable.hpp"
 #include "pipeline/base/stop_signal.hpp"
+#include "pipeline/base/thread_priority.hpp"
 #include "tools/foxglove/protobuf_message.hpp"
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "numbers are sent as they lie in memory");
@@ -334,8 +335,7 @@ FoxgloveServer::FoxgloveServer(const HttpAddress& address, std::size_t waiting_b
   state_->open();
   const BlockStopSignals block;
   state_->thread = std::thread([state = state_.get()] {
-    constexpr int kPolite = 15;  // results are not to wait for it; on Linux of this thread only
-    if (nice(kPolite) == -1) log_warning("the priority of serving Foxglove cannot be lowered");
+    yield_to_results("serving Foxglove");
     state->socket.run();
   });
 }

@@ -1,7 +1,6 @@
 #include "tools/view/foxglove/live_foxglove.hpp"
 
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
+#include "pipeline/base/thread_priority.hpp"
 #include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/placed_objects_message.hpp"
@@ -110,8 +110,7 @@ LiveConversion::Messages LiveFoxglove::convert(const Waiting& waiting) {
 }
 
 void LiveFoxglove::run() {
-  constexpr int kPolite = 15;  // results are not to wait for it; on Linux of this thread only
-  if (nice(kPolite) == -1) log_warning("the priority of converting for Foxglove cannot be lowered");
+  yield_to_results("converting for Foxglove");
   while (!is_ending_) {
     try {
       if (server_.has_clients()) update_models();

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
+#include "pipeline/base/thread_priority.hpp"
 #include "tools/view/http/client_server.hpp"
 #include "tools/view/http/page.hpp"
 #include "tools/view/http/three_script.hpp"
@@ -238,9 +238,7 @@ PageServer::PageServer(const HttpAddress& address, PageBoard& board) : state_(st
   require(bound, "--http {}:{}: cannot be listened at", address.host, address.port);
   const BlockStopSignals block;
   state_->thread = std::thread([state = state_.get()] {
-    // Pages are late on a busy machine, results are not; on Linux of this thread and its own.
-    constexpr int kPolite = 15;
-    if (nice(kPolite) == -1) log_warning("the priority of serving pages cannot be lowered");
+    yield_to_results("serving pages");
     state->server.listen_after_bind();
   });
   while (!state_->server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
