@@ -19,7 +19,7 @@ import unittest.mock
 
 from studies.wire_patch import utime_of
 from studies.soak import __main__ as soak
-from studies.soak import faults, frames, long_account, long_run, page, relay, time_left, wire
+from studies.soak import faults, frames, long_account, long_run, page, player, relay, time_left, wire
 from studies.stream import ProcessFailed
 
 
@@ -257,6 +257,23 @@ class Time(unittest.TestCase):
         self.assertNotIn("seconds", seen["third"], "it says nothing of the next time")
 
 
+class Player(unittest.TestCase):
+    def test_each_frame_has_the_present_time_and_its_own_number(self):
+        payload = struct.pack(">qq", 1, 2) + struct.pack(">i", len(frames.SEQUENCE) + 1) + frames.SEQUENCE + b"\0"
+        payload += struct.pack(">i", 1) + b"7the end"
+        sent = []
+        sender = types.SimpleNamespace(send=lambda channel, message: sent.append((channel, message)))
+        before = time.time_ns() // 1000
+        self.assertEqual(player.play([payload, payload], sender, 200.0, lambda: len(sent) == 5), 5)
+        times = [utime_of(message) for _, message in sent]
+        self.assertEqual({channel for channel, _ in sent}, {frames.FRAME})
+        self.assertEqual(times, sorted(set(times)), "no two frames of a camera have one time")
+        self.assertLessEqual(before, times[0])
+        self.assertGreaterEqual(times[-1] - times[0], 4 * 4_000)
+        for number, (_, message) in enumerate(sent):
+            self.assertIn(frames.SEQUENCE + b"\0" + struct.pack(">i", 1) + b"%dthe end" % number, message)
+
+
 # Says that it is ready, and in the end what the program in whose place it is says.
 STAND_IN = """#!/usr/bin/python3
 import os, signal, sys, time
@@ -285,7 +302,7 @@ class Long(unittest.TestCase):
             (self.folder / name).write_text(STAND_IN)
             (self.folder / name).chmod(0o755)
         self.options = types.SimpleNamespace(programs=self.folder, data=self.folder / "data", minutes=1, rate=[30, 60],
-                                             together=True, follow=False)  # fmt: skip
+                                             together=True, follow=False, play=False)  # fmt: skip
 
     def end_when_all_run(self, how):
         """From a thread, once both cameras are ready."""

@@ -84,6 +84,9 @@ def read_options():
     parts.add_argument("--faults-only", action="store_true", help="no long run")
     parts.add_argument("--long-only", action="store_true", help="no faults")
     parser.add_argument("--follow", action="store_true", help="the long run's poses by hs-pose --follow, of few detections a second")
+    parser.add_argument("--play", action="store_true",
+                        help="the long run's frames are those of the data's stream.lcmlog, sent as they are, in place of hs-capture, "
+                        "whose decoding and encoding of pictures takes most of a core at 60 Hz")  # fmt: skip
     parser.add_argument("--only", metavar="WORDS", default="", help="faults whose names hold these words")
     parser.add_argument("--objects", metavar="STORE", help="kill the processes of a stream of this store's objects too")
     options = parser.parse_args()
@@ -102,7 +105,7 @@ def read_options():
 
 def long_command(options):
     listed = ",".join(map(str, options.rate))
-    given = "".join(f" --{word}" for word in ("together", "follow") if getattr(options, word))
+    given = "".join(f" --{word}" for word in ("together", "follow", "play") if getattr(options, word))
     return f"tools/soak --long-only --minutes {options.minutes} --rate {listed}{given}"
 
 

@@ -8,6 +8,7 @@ import pathlib
 import re
 import shutil
 import signal
+import sys
 import time
 
 from studies.command import step
@@ -63,7 +64,7 @@ class LongRun:
     of each frame. Use with `with`."""
 
     def __init__(self, options, out, rate, port):
-        self.options, self.rate, self.url = options, rate, bus(port)
+        self.options, self.rate, self.port, self.url = options, rate, port, bus(port)
         self.folder, self.file = out / f"long_{rate}", out / f"long_run_{rate}.json"
         self.partial = self.file.with_name(self.file.name + ".partial")
         self.samples = {name: [] for name in CHAIN}
@@ -99,7 +100,11 @@ class LongRun:
             process.wait_until_ready(60)
 
     def start_camera(self):
-        self._start("capture", "hs-capture", "--source", f"bop:{self.options.data / 'scene'}", "--loop", "--rate", self.rate)
+        if self.options.play:
+            camera = (sys.executable, "-m", "studies.soak.player", self.options.data / "stream.lcmlog", self.port, self.rate)
+            self.running.start("capture", "setsid", *camera)
+        else:
+            self._start("capture", "hs-capture", "--source", f"bop:{self.options.data / 'scene'}", "--loop", "--rate", self.rate)
         self.began = time.monotonic()
 
     def _start(self, name, program, *words):
@@ -134,7 +139,7 @@ class LongRun:
         samples = {name: of_process for name, of_process in self.samples.items() if of_process}
         minutes = max((of_process[-1]["s"] / 60 for of_process in samples.values()), default=0.0)
         seen = {"rate_hz": self.rate, "minutes": round(minutes, 1), "of_minutes": self.options.minutes, "beside_hz": beside,
-                "follows": self.options.follow, "processes": {name: cost(of_process) for name, of_process in samples.items()}}  # fmt: skip
+                "follows": self.options.follow, "plays": self.options.play, "processes": {name: cost(of_process) for name, of_process in samples.items()}}  # fmt: skip
         seen["cores"] = round(sum(one["cores"] for one in seen["processes"].values()), 3)
         self.attempt(lambda: self.add_counts(seen))
         latency = {}
