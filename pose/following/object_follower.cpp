@@ -9,6 +9,7 @@
 #include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/frame_results.hpp"
 #include "pipeline/types/frame_time.hpp"
+#include "pose/motion/twist.hpp"
 
 namespace houghstream {
 namespace {
@@ -216,7 +217,8 @@ void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, con
   const double by_shape = logit(pose.shape_quality, kMargin) - logit(followed.pose.shape_quality, kMargin);
   const double by_all = logit(pose.quality, kMargin) - logit(followed.pose.quality, kMargin);
   if (std::max(by_shape, by_all) < settings.better_log_odds) return;
-  object.T_camera_object = object.T_camera_object * followed.T_camera_object.inverse() * *pose.T_camera_object;
+  object.T_camera_object =
+      orthonormalised(object.T_camera_object * followed.T_camera_object.inverse() * *pose.T_camera_object);
   object.texture_probability = texture_probability_of(pose);
   object.appearance.texture.reset();  // the keyframe was made at the wrong pose
 }
@@ -350,7 +352,7 @@ void ObjectFollower::note_result(const PoseEstimator& estimator, const FollowedP
     object.velocity.limit_rotation(observed_rotation(result.information, model->second.radius, settings_.follow.joint));
   }
   object.failures = kept || result.pose.status == PoseStatus::kOccluded ? 0 : object.failures + 1;
-  object.T_camera_object = result.T_camera_object;
+  object.T_camera_object = orthonormalised(result.T_camera_object);
   object.verified = result.verified;
   object.clock_us = clock_us;
   if (valid) object.valid_us = clock_us;

@@ -2,6 +2,12 @@
 
 namespace houghstream {
 
+Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T) {
+  Eigen::Isometry3d out = T;
+  out.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
+  return out;
+}
+
 Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
   const Eigen::AngleAxisd rotation_step(rotation);
   return rotation_step.angle() * rotation_step.axis();
@@ -38,9 +44,7 @@ Eigen::Isometry3d retract_about_body(const Eigen::Isometry3d& T, const Vector6& 
   Eigen::Isometry3d step = Eigen::Isometry3d::Identity();
   if (angle > 0.0) step.linear() = Eigen::AngleAxisd(angle, twist.tail<3>() / angle).toRotationMatrix();
   step.translation() = twist.head<3>();
-  Eigen::Isometry3d out = T * step;
-  out.linear() = Eigen::Quaterniond(out.linear()).normalized().toRotationMatrix();  // many steps keep it a rotation
-  return out;
+  return orthonormalised(T * step);
 }
 
 Eigen::Isometry3d retract_about_point(const Eigen::Isometry3d& T, const Eigen::Vector3d& shift,

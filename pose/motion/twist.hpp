@@ -18,9 +18,13 @@ namespace houghstream {
 //                           graph, and the registration of models: there T_a_b is T_camera_world, and the world moves.
 //   about a point           the point is the origin of frame b: it is shifted along the axes of frame a, and the pose
 //                           rotates about it. Computes with matrices, and leaves them as they come. For
-//                           SmoothedVelocity, whose poses are measured anew in each frame.
+//                           SmoothedVelocity, whose caller makes its poses orthonormal in each frame.
 //
 // The inner loops of registration and fusion have steps of their own, which stand there.
+
+/// Returns the pose with its rotation orthonormal again. Each product leaves rounding in it, and a product with the
+/// inverse of a pose, which is taken as the transpose, multiplies what is there.
+Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& T);
 
 /// Returns the rotation vector of a rotation, radians.
 Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation);

@@ -281,6 +281,23 @@ TEST(ObjectFollower, AWrongTurnIsNoticedByLookingAsIfItWereNotFollowed) {
   EXPECT_LT(handle_error_after_a_turn({}), 0.45) << "as good as a single look at it";
 }
 
+TEST(ObjectFollower, PosesStayRotationsHoweverOftenADetectionReplacesThem) {
+  FollowerSettings eager;
+  eager.recheck_interval_s = 0.0;
+  eager.better_log_odds = 0.0;
+  Following it(Film().with("box", cereal_box(), 0.0, 0.13), eager);
+  double largest = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const RgbdFrame frame = it.film.next();
+    const ObjectPoses poses = it.follower.follow(estimator(), frame).value();
+    ASSERT_EQ(valid_ones(poses), 1);
+    const Eigen::Matrix3d R = poses.poses[0].T_camera_object->linear();
+    largest = std::max(largest, (R * R.transpose() - Eigen::Matrix3d::Identity()).norm());
+    it.follower.process_detections(estimator(), frame, it.film.detected(frame.id));
+  }
+  EXPECT_LT(largest, 1e-12);
+}
+
 TEST(ObjectFollower, WhatTheDetectorMissesThoughItIsInFullViewBecomesLessSure) {
   Following it(box_and_mug());
   float score = 1.0F;

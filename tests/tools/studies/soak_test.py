@@ -260,18 +260,19 @@ class Time(unittest.TestCase):
 class Player(unittest.TestCase):
     def test_each_frame_has_the_present_time_and_its_own_number(self):
         payload = struct.pack(">qq", 1, 2) + struct.pack(">i", len(frames.SEQUENCE) + 1) + frames.SEQUENCE + b"\0"
-        payload += struct.pack(">i", 1) + b"7the end"
+        payloads = [payload + struct.pack(">i", 1) + b"7" + place for place in (b"first", b"second", b"third")]
         sent = []
         sender = types.SimpleNamespace(send=lambda channel, message: sent.append((channel, message)))
         before = time.time_ns() // 1000
-        self.assertEqual(player.play([payload, payload], sender, 200.0, lambda: len(sent) == 5), 5)
+        self.assertEqual(player.play(payloads, sender, 200.0, lambda: len(sent) == 5), 5)
         times = [utime_of(message) for _, message in sent]
         self.assertEqual({channel for channel, _ in sent}, {frames.FRAME})
         self.assertEqual(times, sorted(set(times)), "no two frames of a camera have one time")
         self.assertLessEqual(before, times[0])
         self.assertGreaterEqual(times[-1] - times[0], 4 * 4_000)
-        for number, (_, message) in enumerate(sent):
-            self.assertIn(frames.SEQUENCE + b"\0" + struct.pack(">i", 1) + b"%dthe end" % number, message)
+        for number, place in enumerate((b"first", b"second", b"third", b"second", b"first")):
+            entry = frames.SEQUENCE + b"\0" + struct.pack(">i", 1) + b"%d" % number
+            self.assertTrue(sent[number][1].endswith(entry + place), "forwards, then backwards")
 
 
 # Says that it is ready, and in the end what the program in whose place it is says.

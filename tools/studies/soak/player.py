@@ -1,5 +1,6 @@
-"""Plays the demo's recording at any rate, again and again, each frame at the present time and with a number of its own, until
-SIGINT: a camera that decodes and encodes nothing. Called as python3 -m studies.soak.player RECORDING PORT RATE."""
+"""Plays the demo's recording at any rate, forwards and backwards again and again so that the camera never jumps, each frame at
+the present time and with a number of its own, until SIGINT: a camera that decodes and encodes nothing. Called as
+python3 -m studies.soak.player RECORDING PORT RATE."""
 
 import itertools
 import signal
@@ -15,11 +16,11 @@ from studies.wire_patch import with_utime
 def play(payloads, sender, rate, stopped):
     """Returns how many frames were sent until `stopped` says so. A frame that is due late is sent at once."""
     start = time.monotonic()
-    for number in itertools.count():
+    for number, payload in enumerate(itertools.cycle(payloads + payloads[-2:0:-1])):
         time.sleep(max(0.0, start + number / rate - time.monotonic()))
         if stopped():
             return number
-        now = with_utime(payloads[number % len(payloads)], time.time_ns() // 1000)
+        now = with_utime(payload, time.time_ns() // 1000)
         sender.send(FRAME, with_metadata(now, SEQUENCE, number))
 
 
