@@ -297,44 +297,60 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
   return poses;
 }
 
+/// Returns whether an object without a valid pose in this frame is tried once more: in the frame that loses it and
+/// while nothing shows it, after which it is lost; one that is hidden or withheld may be without for a while, and is
+/// tried now and then.
+bool ObjectFollower::is_retried(const FollowedObject& object, std::int64_t clock_us) const {
+  return object.valid_us == object.clock_us || object.failures > 0 ||
+         seconds_between(object.retry_us, clock_us) >= settings_.retry_interval_s;
+}
+
 /// Retries objects without a valid pose from their last place, and from where the camera's motion has brought them.
-void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
+void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
                                 std::vector<FollowedPose>& poses) const {
+  const std::int64_t clock_us = clock_of(frame.id.utime, camera);
   std::vector<Eigen::Isometry3d> motions;
-  std::vector<std::size_t> failed;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!has_pose(poses[i].pose.status)) {
-      failed.push_back(i);
-    } else {
+    if (has_pose(poses[i].pose.status))
       motions.push_back(poses[i].T_camera_object * camera.objects[i].T_camera_object.inverse());
-    }
   }
-  if (failed.empty()) return;
+  std::vector<std::size_t> retried;
   std::vector<ExpectedObject> expected;
-  for (const std::size_t i : failed) {
-    const FollowedObject& object = camera.objects[i];
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (has_pose(poses[i].pose.status)) continue;
+    FollowedObject& object = camera.objects[i];
+    const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(object.T_camera_object, motions);
+    if (!is_retried(object, clock_us)) {
+      if (poses[i].pose.shape_quality < settings_.min_kept_quality)
+        poses[i].T_camera_object = carried.value_or(object.T_camera_object);
+      continue;
+    }
+    object.retry_us = clock_us;
     ExpectedObject again = expected_at(object.T_camera_object, object);
     again.refine_by_texture = true;
     again.is_lost = true;
     again.camera_colours = colours_for(object, estimator, camera);
-    const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(object.T_camera_object, motions);
     if (carried) again.initial_poses.insert(again.initial_poses.begin(), *carried);
     // An object that stands was expected there the first time too, which has tested its occlusion.
     again.check_occlusion = carried || !object.velocity.is_zero();
+    retried.push_back(i);
     expected.push_back(std::move(again));
   }
+  if (retried.empty()) return;
   std::vector<FollowedPose> found = follow_objects(estimator, settings_.follow, frame, expected);
-  for (std::size_t k = 0; k < failed.size(); ++k) {
-    FollowedPose& pose = poses[failed[k]];
-    const PoseStatus before = pose.pose.status;
-    const bool better = found[k].pose.shape_quality > pose.pose.shape_quality;
-    if (better) pose = std::move(found[k]);
-    if (has_pose(pose.pose.status)) continue;
-    if (before == PoseStatus::kOccluded || (!better && found[k].pose.status == PoseStatus::kOccluded)) {
-      pose.pose.status = PoseStatus::kOccluded;
-    }
-    if (pose.pose.shape_quality < settings_.min_kept_quality) pose.T_camera_object = expected[k].initial_poses.front();
-  }
+  for (std::size_t k = 0; k < retried.size(); ++k) merge_retried(expected[k], std::move(found[k]), poses[retried[k]]);
+}
+
+/// Takes the result of the second try where that is better.
+void ObjectFollower::merge_retried(const ExpectedObject& expected, FollowedPose found, FollowedPose& pose) const {
+  const PoseStatus before = pose.pose.status;
+  const PoseStatus after = found.pose.status;
+  const bool better = found.pose.shape_quality > pose.pose.shape_quality;
+  if (better) pose = std::move(found);
+  if (has_pose(pose.pose.status)) return;
+  if (before == PoseStatus::kOccluded || (!better && after == PoseStatus::kOccluded))
+    pose.pose.status = PoseStatus::kOccluded;
+  if (pose.pose.shape_quality < settings_.min_kept_quality) pose.T_camera_object = expected.initial_poses.front();
 }
 
 /// Continues from the result; without evidence the object stays where it was, or where the camera's motion has brought

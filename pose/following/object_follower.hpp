@@ -24,6 +24,9 @@ struct FollowerSettings {
   float min_kept_quality = 0.3F;  ///< quality from which on a withheld pose is followed on
   double max_rejected_s = 1.0;    ///< time without a valid pose after which it is lost
   double max_hidden_s = 2.0;      ///< time without a valid pose while it is hidden
+  /// Time after which an object that stays hidden or withheld is searched for anew in its surroundings, which costs
+  /// several times what following it does.
+  double retry_interval_s = 0.05;
   /// Distance between a detection's centre and a followed pose of its class that associates them.
   double reach_m = 0.07;
   double logit_gain = 0.3;      ///< fraction by which one detection moves the score's log odds
@@ -48,6 +51,7 @@ void fields(const FollowerSettings& /*settings*/, const Visit& visit) {
   visit(number("min_kept_quality", &S::min_kept_quality, 0, 1));
   visit(number("max_rejected_s", &S::max_rejected_s, 0, 3600, "s"));
   visit(number("max_hidden_s", &S::max_hidden_s, 0, 3600, "s"));
+  visit(number("retry_interval_s", &S::retry_interval_s, 0, 3600, "s"));
   visit(number("reach_m", &S::reach_m, 0, 10, "m"));
   visit(number("logit_gain", &S::logit_gain, 0, 1));
   visit(number("miss_score", &S::miss_score, 0, 1));
@@ -74,6 +78,7 @@ struct FollowedObject {
   std::int64_t valid_us = 0;    ///< time of its last valid pose
   std::int64_t found_us = 0;    ///< time of its last detection
   std::int64_t recheck_us = 0;  ///< time at which it was last estimated as if it were not followed
+  std::int64_t retry_us = 0;    ///< time at which it was last searched for in its surroundings
   int failures = 0;
   float shape_quality = 0.0F;            ///< shape quality of its last pose that was judged by depth
   std::optional<Verification> verified;  ///< verification by the last rendering
@@ -133,8 +138,10 @@ class ObjectFollower {
  private:
   std::vector<FollowedPose> follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                        FollowedCamera& camera) const;
-  void retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
+  bool is_retried(const FollowedObject& object, std::int64_t clock_us) const;
+  void retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
                   std::vector<FollowedPose>& poses) const;
+  void merge_retried(const ExpectedObject& expected, FollowedPose found, FollowedPose& pose) const;
   void note_result(const PoseEstimator& estimator, const FollowedPose& result, std::int64_t clock_us,
                    FollowedObject& object) const;
   void learn_appearance(const PoseEstimator& estimator, const RgbdFrame& frame, bool is_refined,
