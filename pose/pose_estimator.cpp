@@ -11,6 +11,7 @@
 #include "pipeline/base/parallel.hpp"
 #include "pose/seen/camera_colours.hpp"
 #include "pose/verification/pose_decision.hpp"
+#include "pose/verification/shared_surface.hpp"
 #include "pose/verification/texture_comparison.hpp"
 
 namespace houghstream {
@@ -192,15 +193,24 @@ bool are_closer(const std::map<std::string, ObjectModel>& models, const PlacedOb
   return (middle_a - middle_b).norm() < ratio * std::min(model_a->second.radius, model_b->second.radius);
 }
 
-/// Withholds the less probable of two poses of a class in one place, as of two detections of one object.
-void withhold_duplicates(const PoseEstimator& estimator, std::vector<ObjectPose>& poses) {
+/// Returns whether `a` is less probable than `b` where both are one object: of one class by all that was seen, of two
+/// by the shape, since the texture that does not tell which way round an object is does not speak for another.
+bool is_less_probable(const ObjectPose& a, const ObjectPose& b) {
+  const bool by_shape = a.class_name != b.class_name;
+  const float of_a = by_shape ? a.shape_quality : a.quality;
+  const float of_b = by_shape ? b.shape_quality : b.quality;
+  return of_a < of_b || (of_a == of_b && &b < &a);
+}
+
+/// Withholds the less probable of two poses of one object, as of two detections of it, or of two classes that look
+/// alike.
+void withhold_duplicates(const PoseEstimator& estimator, const RgbdFrame& frame, std::vector<ObjectPose>& poses) {
   for (ObjectPose& pose : poses) {
     if (!pose.T_camera_object) continue;
     const PlacedObject here{pose.class_name, *pose.T_camera_object};
     const bool is_weaker = std::any_of(poses.begin(), poses.end(), [&](const ObjectPose& other) {
-      if (&other == &pose || !other.T_camera_object || other.class_name != pose.class_name) return false;
-      const bool is_surer = other.quality > pose.quality || (other.quality == pose.quality && &other < &pose);
-      return is_surer && estimator.is_duplicate(here, {other.class_name, *other.T_camera_object});
+      return &other != &pose && other.T_camera_object && is_less_probable(pose, other) &&
+             estimator.is_same_object(frame, here, {other.class_name, *other.T_camera_object});
     });
     if (is_weaker) withhold_duplicate(pose);
   }
@@ -288,7 +298,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   clock.mark("pose.verification");
   parallel_for(settings.threads, static_cast<int>(estimations.size()),
                [&](int i) { resolve_symmetry(settings, estimations[i]); });
-  withhold_duplicates(*this, result.poses);
+  withhold_duplicates(*this, frame, result.poses);
   clock.mark("pose.print");
 
   result.stages.insert(result.stages.end(), clock.times().begin(), clock.times().end());
@@ -303,6 +313,16 @@ Eigen::Vector3d PoseEstimator::vote_centre(const PlacedObject& object) const {
 
 bool PoseEstimator::is_duplicate(const PlacedObject& a, const PlacedObject& b) const {
   return are_closer(state_->models, a, b, state_->settings.duplicate_distance_ratio);
+}
+
+bool PoseEstimator::is_same_object(const RgbdFrame& frame, const PlacedObject& a, const PlacedObject& b) const {
+  if (a.class_name == b.class_name) return is_duplicate(a, b);
+  const auto model_a = state_->models.find(a.class_name);
+  const auto model_b = state_->models.find(b.class_name);
+  if (model_a == state_->models.end() || model_b == state_->models.end()) return false;
+  const DepthTolerance tolerance{state_->settings.verification.tolerance_m, state_->settings.noise};
+  return shared_surface(frame, {model_a->second, a.T_camera_object}, {model_b->second, b.T_camera_object}, tolerance) >
+         state_->settings.max_shared_surface;
 }
 
 bool PoseEstimator::is_duplicate(const PlacedObject& a, const PlacedObject& b, double max_distance_ratio) const {

@@ -43,8 +43,8 @@ class PoseEstimator {
 
   /// Returns one ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
   /// pose.registration, pose.choice and pose.verification are appended to those of the detections. The detections must
-  /// be of this frame (same name). Of two poses of a class in one place (is_duplicate) the less probable one is
-  /// withheld with kLowScore. Throws std::logic_error for another frame, and InputError for an invalid frame.
+  /// be of this frame (same name). Of two poses of one object (is_same_object) the less probable one is withheld with
+  /// kLowScore. Throws std::logic_error for another frame, and InputError for an invalid frame.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 
   /// Estimates with the poses of an earlier frame as a warm start: they are candidates beside those of the votes, never
@@ -60,6 +60,10 @@ class PoseEstimator {
   /// Returns whether the centres of two objects are closer than PoseSettings::duplicate_distance_ratio times the
   /// smaller radius, so that one is a duplicate. False where a class has no model.
   bool is_duplicate(const PlacedObject& a, const PlacedObject& b) const;
+  /// Returns whether two poses in a frame are of one object: of one class, whether they are duplicates; of two classes,
+  /// whether they explain the same surface by more than PoseSettings::max_shared_surface. What lies in a bowl is not
+  /// the bowl, though their centres may coincide.
+  bool is_same_object(const RgbdFrame& frame, const PlacedObject& a, const PlacedObject& b) const;
   [[deprecated("takes PoseSettings::duplicate_distance_ratio now")]] bool is_duplicate(const PlacedObject& a,
                                                                                        const PlacedObject& b,
                                                                                        double max_distance_ratio) const;

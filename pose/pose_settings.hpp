@@ -30,8 +30,11 @@ struct PoseSettings {
   QualitySettings quality;
   std::map<std::string, QualitySettings> class_quality;  ///< learnt for one class, by name; of the others: `quality`
   float min_score = 0.1F;                                ///< minimum score of a detection whose pose is estimated
-  double duplicate_distance_ratio = 0.5;  ///< distance over the smaller radius, below which two objects are one
-  int threads = 1;                        ///< any number gives the same poses
+  double duplicate_distance_ratio = 0.5;  ///< distance over the smaller radius, below which two of a class are one
+  /// Fraction of the smaller surface that two classes explain in common (shared_surface), above which they are one
+  /// object. Chosen: faces of equal boxes share all of it, things that touch nothing.
+  float max_shared_surface = 0.5F;
+  int threads = 1;  ///< any number gives the same poses
 };
 
 template <typename Visit>
@@ -49,6 +52,7 @@ void fields(const PoseSettings& /*settings*/, const Visit& visit) {
   visit(group("quality", &S::quality));
   visit(number("min_score", &S::min_score, 0, 1));
   visit(number("duplicate_distance_ratio", &S::duplicate_distance_ratio, 0, 10));
+  visit(number("max_shared_surface", &S::max_shared_surface, 0, 1));
   visit(number("threads", &S::threads, 1, 256));
 }
 

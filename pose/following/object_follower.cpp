@@ -259,7 +259,7 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
       learn_appearance(estimator, frame, followed_frame.poses[i].is_refined, camera.objects[i]);
     followed_frame.numbers.push_back(camera.objects[i].number);
   }
-  remove_lost(estimator, camera, followed_frame);
+  remove_lost(estimator, frame, camera, followed_frame);
   ++camera.frames;
   ObjectPoses result{frame.id, {}, frame.stages};
   for (const FollowedPose& followed : followed_frame.poses) result.poses.push_back(followed.pose);
@@ -406,7 +406,7 @@ bool ObjectFollower::is_lost(const FollowedObject& object, const FollowedPose& r
 }
 
 /// Removes lost objects, and the weaker of two that have become one.
-void ObjectFollower::remove_lost(const PoseEstimator& estimator, FollowedCamera& camera,
+void ObjectFollower::remove_lost(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
                                  FollowedFrame& followed_frame) const {
   std::vector<bool> lost(camera.objects.size());
   for (std::size_t i = 0; i < lost.size(); ++i)
@@ -417,7 +417,7 @@ void ObjectFollower::remove_lost(const PoseEstimator& estimator, FollowedCamera&
       const FollowedPose& b = followed_frame.poses[j];
       if (lost[i] || lost[j] || !a.pose.T_camera_object || !b.pose.T_camera_object) continue;
       const PlacedObject here{a.pose.class_name, a.T_camera_object};
-      if (!estimator.is_duplicate(here, {b.pose.class_name, b.T_camera_object})) continue;
+      if (!estimator.is_same_object(frame, here, {b.pose.class_name, b.T_camera_object})) continue;
       const std::size_t weaker = a.pose.shape_quality < b.pose.shape_quality ? i : j;
       lost[weaker] = true;
       withhold_duplicate(followed_frame.poses[weaker].pose);

@@ -147,7 +147,8 @@ class ObjectFollower {
   void learn_appearance(const PoseEstimator& estimator, const RgbdFrame& frame, bool is_refined,
                         FollowedObject& object) const;
   bool is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const;
-  void remove_lost(const PoseEstimator& estimator, FollowedCamera& camera, FollowedFrame& followed_frame) const;
+  void remove_lost(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
+                   FollowedFrame& followed_frame) const;
   void add_object(const PoseEstimator& estimator, const RgbdFrame& frame, const ObjectPose& pose,
                   FollowedCamera& camera);
   static void propagate_to_latest(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found);

@@ -156,6 +156,24 @@ TEST(PoseEstimator, TwoDetectionsOfOneObjectHaveOnePose) {
   EXPECT_TRUE(both.poses[0].T_camera_object.has_value() && both.poses[1].T_camera_object.has_value());
 }
 
+TEST(PoseEstimator, OneSurfaceIsOfOneClass) {
+  const StandingScene scene(cereal_box(), -0.13, standing(10.0, 20.0, 0.8), 3);
+  Mesh deeper;  // the same front, which hides what lies behind it
+  add_box(deeper, {-0.09F, -0.03F, -0.13F}, {0.09F, 0.05F, 0.13F});
+  const PoseEstimator estimator({{"box", cereal_box()}, {"deeper", deeper}}, PoseSettings());
+  Detections two = only(detection_of("box", scene.object, scene.truth, 5));
+  two.detections.push_back(detection_of("deeper", deeper, scene.truth, 6));
+  const ObjectPoses found = estimator.estimate(scene.frame, two);
+  ASSERT_TRUE(found.poses.at(0).T_camera_object.has_value()) << to_string(found.poses[0].status);
+  EXPECT_LT(error_of(scene, found.poses[0]), 0.003);
+  EXPECT_EQ(found.poses.at(1).status, PoseStatus::kLowScore);
+  EXPECT_FALSE(found.poses[1].T_camera_object.has_value());
+  PoseSettings settings;
+  settings.max_shared_surface = 1.0F;
+  const PoseEstimator trusting({{"box", cereal_box()}, {"deeper", deeper}}, settings);
+  EXPECT_TRUE(trusting.estimate(scene.frame, two).poses.at(1).T_camera_object.has_value()) << "fits as well";
+}
+
 TEST(PoseEstimator, WhatIsHardlyAnObjectIsNotLookedAt) {
   const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
   PoseSettings settings;

@@ -202,6 +202,25 @@ TEST(ObjectFollower, NothingDriftsOntoItsEqualNeighbour) {
   }
 }
 
+TEST(ObjectFollower, WhatLiesInATrayIsFollowedAsTheTrayIs) {
+  Mesh tray;  // open at the top
+  add_box(tray, {-0.1F, -0.1F, -0.03F}, {0.1F, 0.1F, -0.025F});
+  add_box(tray, {-0.1F, -0.1F, -0.025F}, {-0.095F, 0.1F, 0.03F});
+  add_box(tray, {0.095F, -0.1F, -0.025F}, {0.1F, 0.1F, 0.03F});
+  add_box(tray, {-0.095F, -0.1F, -0.025F}, {0.095F, -0.095F, 0.03F});
+  add_box(tray, {-0.095F, 0.095F, -0.025F}, {0.095F, 0.1F, 0.03F});
+  Mesh brick;
+  add_box(brick, {-0.03F, -0.04F, -0.025F}, {0.03F, 0.04F, 0.025F});
+  const PoseEstimator estimator({{"tray", tray}, {"brick", brick}}, PoseSettings());
+  Film film = Film().with("tray", tray, 0.0, 0.03).with("brick", brick, 0.0, 0.03);
+  film.T_camera_table = standing(20.0, 50.0, 0.7);
+  ObjectFollower follower;
+  const RgbdFrame frame = film.next();
+  follower.follow(estimator, frame);
+  ASSERT_EQ(valid_ones(follower.process_detections(estimator, frame, film.detected(frame.id))), 2);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(valid_ones(follower.follow(estimator, film.next()).value()), 2) << i;
+}
+
 TEST(ObjectFollower, AJerkOfTheCameraIsFollowed) {
   Following it(box_and_mug());
   for (int i = 0; i < 5; ++i) {

@@ -1,0 +1,70 @@
+#include "pose/verification/shared_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/geometry/renderer.hpp"
+
+namespace houghstream {
+namespace {
+
+// Fraction of the tolerance within which two surfaces coincide: what lies flat on another thing must not.
+constexpr float kCoincident = 0.25F;
+
+/// Returns the fraction of the points of one model's view that lie in the other's bounding box, a little enlarged.
+float fraction_inside(const PlacedModel& one, const PlacedModel& other) {
+  constexpr float kMargin = 0.005F;  // metres: the error of a pose
+  constexpr std::size_t kPoints = 100;
+  const ModelView& view = nearest_view(one.model, one.T_camera_object);
+  Eigen::AlignedBox3f box = mesh_bounds(other.model.mesh);
+  box.min().array() -= kMargin;
+  box.max().array() += kMargin;
+  const Eigen::Isometry3f T_other_one = (other.T_camera_object.inverse() * one.T_camera_object).cast<float>();
+  const std::size_t count = std::min(kPoints, view.points.size());
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < count; ++i) inside += box.contains(T_other_one * view.points[i]) ? 1 : 0;
+  return count == 0 ? 0.0F : static_cast<float>(inside) / static_cast<float>(count);
+}
+
+/// Returns whether a large part of one of the models may lie where the other is.
+bool may_share(const PlacedModel& a, const PlacedModel& b) {
+  constexpr float kLeast = 0.25F;
+  const Eigen::Vector3d between =
+      a.T_camera_object * a.model.centre.cast<double>() - b.T_camera_object * b.model.centre.cast<double>();
+  if (between.norm() > a.model.radius + b.model.radius) return false;
+  return fraction_inside(a, b) >= kLeast || fraction_inside(b, a) >= kLeast;
+}
+
+}  // namespace
+
+float shared_surface(const RgbdFrame& frame, const PlacedModel& a, const PlacedModel& b,
+                     const DepthTolerance& tolerance) {
+  if (!may_share(a, b)) return 0.0F;
+  const RenderedRegion first = render_depth_region(a.model.mesh, a.T_camera_object, frame.camera);
+  const RenderedRegion second = render_depth_region(b.model.mesh, b.T_camera_object, frame.camera);
+  const cv::Rect both = first.region_px | second.region_px;
+  int explained_first = 0;
+  int explained_second = 0;
+  int shared = 0;
+  const auto depth_at = [](const RenderedRegion& part, const cv::Point& pixel) {
+    return part.region_px.contains(pixel) ? part.depth.at<float>(pixel - part.region_px.tl())
+                                          : std::numeric_limits<float>::quiet_NaN();
+  };
+  for (int y = both.y; y < both.br().y; ++y) {
+    for (int x = both.x; x < both.br().x; ++x) {
+      const float measured = frame.depth.at<float>(y, x);
+      const float here = depth_at(first, {x, y});
+      const float there = depth_at(second, {x, y});
+      const auto limit = static_cast<float>(tolerance.at(measured));
+      const bool is_first = std::abs(measured - here) <= limit;  // false for NaN
+      const bool is_second = std::abs(measured - there) <= limit;
+      explained_first += is_first ? 1 : 0;
+      explained_second += is_second ? 1 : 0;
+      shared += is_first && is_second && std::abs(here - there) <= kCoincident * limit ? 1 : 0;
+    }
+  }
+  const int fewer = std::min(explained_first, explained_second);
+  return fewer == 0 ? 0.0F : static_cast<float>(shared) / static_cast<float>(fewer);
+}
+
+}  // namespace houghstream
