@@ -208,11 +208,11 @@ void withhold_duplicates(const PoseEstimator& estimator, const RgbdFrame& frame,
   for (ObjectPose& pose : poses) {
     if (!pose.T_camera_object) continue;
     const PlacedObject here{pose.class_name, *pose.T_camera_object};
-    const bool is_weaker = std::any_of(poses.begin(), poses.end(), [&](const ObjectPose& other) {
+    const auto better = std::find_if(poses.begin(), poses.end(), [&](const ObjectPose& other) {
       return &other != &pose && other.T_camera_object && is_less_probable(pose, other) &&
              estimator.is_same_object(frame, here, {other.class_name, *other.T_camera_object});
     });
-    if (is_weaker) withhold_duplicate(pose);
+    if (better != poses.end()) withhold_duplicate(*better, pose);
   }
 }
 
@@ -329,9 +329,9 @@ bool PoseEstimator::is_duplicate(const PlacedObject& a, const PlacedObject& b, d
   return are_closer(state_->models, a, b, max_distance_ratio);
 }
 
-void withhold_duplicate(ObjectPose& pose) {
+void withhold_duplicate(const ObjectPose& other, ObjectPose& pose) {
   pose.T_camera_object.reset();
-  pose.status = PoseStatus::kLowScore;
+  pose.status = other.class_name == pose.class_name ? PoseStatus::kLowScore : PoseStatus::kRefuted;
 }
 
 }  // namespace houghstream

@@ -43,8 +43,8 @@ class PoseEstimator {
 
   /// Returns one ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
   /// pose.registration, pose.choice and pose.verification are appended to those of the detections. The detections must
-  /// be of this frame (same name). Of two poses of one object (is_same_object) the less probable one is withheld with
-  /// kLowScore. Throws std::logic_error for another frame, and InputError for an invalid frame.
+  /// be of this frame (same name). Of two poses of one object (is_same_object) the less probable one is withheld
+  /// (withhold_duplicate). Throws std::logic_error for another frame, and InputError for an invalid frame.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 
   /// Estimates with the poses of an earlier frame as a warm start: they are candidates beside those of the votes, never
@@ -73,7 +73,8 @@ class PoseEstimator {
   std::unique_ptr<State> state_;
 };
 
-/// Withholds the pose of a duplicate: it has none then, and its status is kLowScore.
-void withhold_duplicate(ObjectPose& pose);
+/// Withholds the less probable pose of one object: it has none then. Its status is kLowScore where the other one is of
+/// its class, and kRefuted where the surface is another class's.
+void withhold_duplicate(const ObjectPose& other, ObjectPose& pose);
 
 }  // namespace houghstream

@@ -184,7 +184,7 @@ void withhold_where_followed(const PoseEstimator& estimator, const FollowedFrame
   for (const FollowedPose& followed : followed_frame.poses) {
     if (!followed.pose.T_camera_object || followed.pose.class_name != pose.class_name) continue;
     if (estimator.is_duplicate(here, {pose.class_name, *followed.pose.T_camera_object}))
-      return withhold_duplicate(pose);
+      return withhold_duplicate(followed.pose, pose);
   }
 }
 
@@ -418,9 +418,10 @@ void ObjectFollower::remove_lost(const PoseEstimator& estimator, const RgbdFrame
       if (lost[i] || lost[j] || !a.pose.T_camera_object || !b.pose.T_camera_object) continue;
       const PlacedObject here{a.pose.class_name, a.T_camera_object};
       if (!estimator.is_same_object(frame, here, {b.pose.class_name, b.T_camera_object})) continue;
-      const std::size_t weaker = a.pose.shape_quality < b.pose.shape_quality ? i : j;
+      const bool is_first_weaker = a.pose.shape_quality < b.pose.shape_quality;
+      const std::size_t weaker = is_first_weaker ? i : j;
       lost[weaker] = true;
-      withhold_duplicate(followed_frame.poses[weaker].pose);
+      withhold_duplicate(is_first_weaker ? b.pose : a.pose, followed_frame.poses[weaker].pose);
     }
   }
   for (std::size_t i = lost.size(); i-- > 0;) {
