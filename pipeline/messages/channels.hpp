@@ -14,6 +14,7 @@ inline const std::string kDetections = "HOUGHSTREAM_DETECTIONS";                
 inline const std::string kPoses = "HOUGHSTREAM_POSES";                           ///< object_poses_t
 inline const std::string kPoseProbabilities = "HOUGHSTREAM_POSE_PROBABILITIES";  ///< pose_probabilities_t
 inline const std::string kCameraColours = "HOUGHSTREAM_CAMERA_COLOURS";          ///< camera_colours_t, 1 Hz
+inline const std::string kCameraTiming = "HOUGHSTREAM_CAMERA_TIMING";            ///< camera_timing_t, 1 Hz
 inline const std::string kObjects = "HOUGHSTREAM_OBJECTS";                       ///< objects_t
 inline const std::string kPlacedObjects = "HOUGHSTREAM_PLACED_OBJECTS";          ///< placed_objects_t
 inline const std::string kStatus = "HOUGHSTREAM_STATUS";                         ///< status_t, 1 Hz, every process

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <houghstream/camera_colours_t.hpp>
+#include <houghstream/camera_timing_t.hpp>
 #include <houghstream/detections_t.hpp>
 #include <houghstream/images_t.hpp>
 #include <houghstream/known_objects_t.hpp>
@@ -12,6 +13,7 @@
 #include <optional>
 #include <string>
 
+#include "pipeline/types/camera_timing.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/known_objects.hpp"
@@ -95,6 +97,10 @@ bool apply_probabilities(const houghstream::pose_probabilities_t& message, Objec
 houghstream::camera_colours_t to_message(const CameraChroma& colours);
 /// Throws InputError where a colour, a lightness or a probability is none.
 CameraChroma camera_colours_from_message(const houghstream::camera_colours_t& message);
+
+houghstream::camera_timing_t to_message(const CameraTiming& timing);
+/// Throws InputError for a lag beyond ten seconds, and for a deviation that is none.
+CameraTiming camera_timing_from_message(const houghstream::camera_timing_t& message);
 
 houghstream::rigid_transform_t to_message(std::int64_t utime, const Eigen::Isometry3d& T_camera_object);
 

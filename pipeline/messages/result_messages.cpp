@@ -239,6 +239,24 @@ CameraChroma camera_colours_from_message(const camera_colours_t& message) {
   return colours;
 }
 
+camera_timing_t to_message(const CameraTiming& timing) {
+  camera_timing_t message{};
+  message.utime = timing.frame.utime;
+  message.source_channel = timing.frame.channel;
+  message.depth_lag_s = static_cast<float>(timing.depth_lag_s);
+  message.depth_lag_sigma_s = static_cast<float>(timing.sigma_s);
+  return message;
+}
+
+CameraTiming camera_timing_from_message(const camera_timing_t& message) {
+  constexpr float kMaxLag = 10.0F;  // seconds; no camera waits so long
+  require(std::abs(message.depth_lag_s) <= kMaxLag && message.depth_lag_sigma_s >= 0.0F &&
+              message.depth_lag_sigma_s <= kMaxLag,  // false for NaN
+          "timing of camera {}: a lag of {} s with a deviation of {} s, expected -{} to {} s and 0 to {} s",
+          message.source_channel, message.depth_lag_s, message.depth_lag_sigma_s, kMaxLag, kMaxLag, kMaxLag);
+  return {{message.source_channel, message.utime}, message.depth_lag_s, message.depth_lag_sigma_s};
+}
+
 object_poses_t to_message(const ObjectPoses& poses) {
   object_poses_t message{};
   message.utime = poses.frame.utime;

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <houghstream/camera_colours_t.hpp>
+#include <houghstream/camera_timing_t.hpp>
 #include <houghstream/detections_t.hpp>
 #include <houghstream/images_t.hpp>
 #include <houghstream/known_objects_t.hpp>
@@ -166,6 +167,12 @@ void walk_camera_colours(WireReader& reader) {
   reader.skip(kNumbers * objects + kMap);
 }
 
+void walk_camera_timing(WireReader& reader) {
+  reader.skip(8);
+  read_channel(reader);
+  reader.skip(4 + 4);
+}
+
 void walk_known_objects(WireReader& reader) {
   reader.skip(8);
   walk_name(reader);
@@ -262,6 +269,8 @@ void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& typ
     walk_probabilities(reader);
   } else if (fingerprint == camera_colours_t::getHash()) {
     walk_camera_colours(reader);
+  } else if (fingerprint == camera_timing_t::getHash()) {
+    walk_camera_timing(reader);
   } else if (fingerprint == objects_t::getHash()) {
     walk_objects(reader);
   } else if (fingerprint == placed_objects_t::getHash()) {

@@ -149,16 +149,18 @@ class PoseProcess {
     bus_.publish(channel::kPoses, to_message(poses));
   }
 
-  /// Publishes once a second of each camera's frames, as soon as some colours are known.
-  void publish_camera_colours(const FrameId& frame) {
+  /// Publishes once a second of each camera's frames what is known of it, as soon as some of it is.
+  void publish_camera(const FrameId& frame) {
     constexpr std::int64_t kPeriodUs = 1'000'000;
-    if (!options_.camera_colours) return;
-    const auto sent = colours_sent_us_.find(frame.channel);
-    if (sent != colours_sent_us_.end() && std::abs(frame.utime - sent->second) < kPeriodUs) return;
-    const CameraChroma colours = options_.camera_colours(frame.channel);
-    if (colours.objects.empty()) return;
-    colours_sent_us_[frame.channel] = frame.utime;
-    bus_.publish(channel::kCameraColours, to_message(colours));
+    const auto sent = camera_sent_us_.find(frame.channel);
+    if (sent != camera_sent_us_.end() && std::abs(frame.utime - sent->second) < kPeriodUs) return;
+    const CameraChroma colours = options_.camera_colours ? options_.camera_colours(frame.channel) : CameraChroma();
+    const std::optional<CameraTiming> timing =
+        options_.camera_timing ? options_.camera_timing(frame.channel) : std::nullopt;
+    if (colours.objects.empty() && !timing) return;
+    camera_sent_us_[frame.channel] = frame.utime;
+    if (!colours.objects.empty()) bus_.publish(channel::kCameraColours, to_message(colours));
+    if (timing) bus_.publish(channel::kCameraTiming, to_message(*timing));
   }
 
   bool follow_newest(milliseconds timeout) {
@@ -172,7 +174,7 @@ class PoseProcess {
       }
       poses->frame = encoded->id;
       publish(*poses);
-      publish_camera_colours(poses->frame);
+      publish_camera(poses->frame);
       transforms_.publish(*poses);
       status_.count_processed(std::chrono::steady_clock::now() - encoded->arrival);
     } catch (const std::exception& error) {
@@ -194,7 +196,7 @@ class PoseProcess {
       if (follow_) {
         ++answered_;
       } else {
-        publish_camera_colours(poses.frame);
+        publish_camera(poses.frame);
         transforms_.publish(poses);
         status_.count_processed(std::chrono::steady_clock::now() - pair->arrival);
       }
@@ -292,10 +294,10 @@ class PoseProcess {
   PoseHistory history_;
   ModelCheck models_;
   TransformPublisher transforms_;
-  std::map<std::string, std::int64_t> colours_sent_us_;  // frame time by camera
-  std::int64_t without_frame_ = 0;                       // detections
-  std::int64_t answered_ = 0;                            // detections, by who follows
-  std::int64_t overtaken_ = 0;                           // passed over for newer ones, before they were answered
+  std::map<std::string, std::int64_t> camera_sent_us_;  // frame time by camera
+  std::int64_t without_frame_ = 0;                      // detections
+  std::int64_t answered_ = 0;                           // detections, by who follows
+  std::int64_t overtaken_ = 0;                          // passed over for newer ones, before they were answered
   // These are set by the receiving thread.
   std::set<std::string> cameras_;            // cameras that detections name
   std::atomic<std::int64_t> detections_{0};  // detections of frames on these channels

@@ -9,6 +9,7 @@
 
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/messages/channels.hpp"
+#include "pipeline/types/camera_timing.hpp"
 #include "pipeline/types/chroma_map.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
@@ -32,6 +33,8 @@ struct PoseProcessOptions {
   std::function<NamedFrames()> frames;
   /// Returns the colours learnt of the camera with this channel; empty = none are.
   std::function<CameraChroma(const std::string&)> camera_colours;
+  /// Returns the timing learnt of the camera with this channel; nothing = it is not known.
+  std::function<std::optional<CameraTiming>(const std::string&)> camera_timing;
 };
 
 /// Estimates the poses of a frame's detections; the third argument holds the poses of this camera's previous frame, as

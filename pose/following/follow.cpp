@@ -165,6 +165,7 @@ FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, co
   copy_registration_evidence(registration, pose);
   followed.silhouette = result.silhouette;
   followed.information = result.information;
+  followed.lag = result.lag;
   followed.is_refined = expected.refine_by_texture && followed.has_depth;
   const double jump_m = (middle_of(model, registration.T_camera_object) - middle_of(model, start)).norm();
   const double max_m = expected.is_lost ? settings.registration.max_shift_m : input.follow.max_jump_m;

@@ -76,6 +76,7 @@ struct FollowedPose {
   bool has_depth = false;                   ///< whether it was judged by depth
   bool is_refined = false;                  ///< whether its texture has moved it (ExpectedObject::refine_by_texture)
   Matrix6d information = Matrix6d::Zero();  ///< JointResult::information of that attempt
+  LagEvidence lag;                          ///< JointResult::lag of that attempt
   std::shared_ptr<const Silhouette> silhouette;  ///< silhouette that it used last, or null
 };
 

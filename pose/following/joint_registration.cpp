@@ -149,11 +149,23 @@ class JointRegistration {
     const double turn_m = settings_.tikhonov_rad * seen_.model.radius;
     all.hessian.diagonal().head<3>().array() += 1.0 / (turn_m * turn_m);
     all.hessian.diagonal().tail<3>().array() += 1.0 / (settings_.tikhonov_m * settings_.tikhonov_m);
-    const Vector6d step = all.hessian.selfadjointView<Eigen::Lower>().ldlt().solve(all.gradient);
-    if (lag_.hessian > 0.0) lag_.deviations += (lag_.gradient - lag_.mixed.dot(step)) / lag_.hessian;
+    const Eigen::LDLT<Matrix6d> solver = all.hessian.selfadjointView<Eigen::Lower>().ldlt();
+    const Vector6d step = solver.solve(all.gradient);
+    if (lag_.hessian > 0.0) {
+      lag_.deviations += (lag_.gradient - lag_.mixed.dot(step)) / lag_.hessian;
+      note_lag(solver);
+    }
     ++result_.registration.iterations;
     result_.registration.converged =
         step.allFinite() && move_by_step(step, seen_.model, pose()) < registration_.converged_m;
+  }
+
+  /// Notes what is known of the lag when the pose is free as well, less its prior.
+  void note_lag(const Eigen::LDLT<Matrix6d>& solver) {
+    const double from_pose = lag_.mixed.dot(solver.solve(lag_.mixed)) / (lag_.hessian * lag_.hessian);
+    const double variance = 1.0 / lag_.hessian + from_pose;
+    result_.lag.information = std::max(0.0, 1.0 / variance - 1.0);
+    result_.lag.weighted = lag_.deviations / variance;
   }
 
   void note_evidence() {

@@ -54,6 +54,13 @@ struct DepthLag {
   Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
 };
 
+/// What one registration tells of the lag, without its prior, in information form: the sum over registrations of
+/// `weighted` over that of `information` is their estimate.
+struct LagEvidence {
+  double information = 0.0;  ///< inverse variance, of deviations; 0: nothing
+  double weighted = 0.0;     ///< information times the lag, in deviations; positive where depth is the later one
+};
+
 /// Start of a joint registration.
 struct JointStart {
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
@@ -71,6 +78,7 @@ struct JointResult {
   /// of colour and texture. A direction that none of them observes has none.
   Matrix6d information = Matrix6d::Zero();
   std::shared_ptr<const Silhouette> silhouette;  ///< silhouette that it used last, or null
+  LagEvidence lag;                               ///< of a moving object that depth and colours show both
   int edges = 0;                                 ///< number of lines with an edge, at the finest level
   int blank = 0;                                 ///< number of lines without one
   int covered = 0;                               ///< number of silhouette points behind nearer depth

@@ -88,6 +88,14 @@ DepthLag depth_lag(double seconds, const SmoothedVelocity& velocity) {
   return lag;
 }
 
+/// Learns the lag of poses that are surely right: others are not where colours or depth show the object.
+void learn_lag(const FollowedFrame& followed_frame, double deviation_s, CameraLag& lag) {
+  constexpr float kSure = 0.9F;
+  for (const FollowedPose& followed : followed_frame.poses) {
+    if (has_pose(followed.pose.status) && followed.pose.shape_quality >= kSure) lag.update(followed.lag, deviation_s);
+  }
+}
+
 /// A frame's detections, associated with the objects that were followed in it.
 struct DetectionAssociation {
   FollowedFrame followed_frame;
@@ -242,6 +250,15 @@ CameraChroma ObjectFollower::camera_colours(const std::string& channel) {
   return camera == cameras_.end() ? CameraChroma{} : camera->second.colours.chroma();
 }
 
+std::optional<CameraTiming> ObjectFollower::camera_timing(const std::string& channel) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = cameras_.find(channel);
+  if (found == cameras_.end() || found->second.recent_frames.empty()) return std::nullopt;
+  const CameraLag& lag = *found->second.lag;
+  if (!lag.is_known()) return std::nullopt;
+  return CameraTiming{{channel, found->second.recent_frames.back().utime}, lag.seconds(), lag.sigma_s()};
+}
+
 std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator, const RgbdFrame& frame) {
   constexpr std::size_t kRecentFrames = 32;  // number of frames; a detector's answer comes a few frames late
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -252,6 +269,7 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
   const std::int64_t clock_us = clock_of(frame.id.utime, camera);
   camera.is_colourless = is_colourless(frame.colour);
   note_depth(frame, clock_us, camera);
+  if (!camera.lag) camera.lag.emplace(settings_.depth_lag_s);
   FollowedFrame followed_frame{frame.id.utime, clock_us, {}, follow_all(estimator, frame, camera)};
   for (std::size_t i = 0; i < camera.objects.size(); ++i) {
     note_result(estimator, followed_frame.poses[i], clock_us, camera.objects[i]);
@@ -259,6 +277,7 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
       learn_appearance(estimator, frame, followed_frame.poses[i].is_refined, camera.objects[i]);
     followed_frame.numbers.push_back(camera.objects[i].number);
   }
+  if (camera.depth_us == clock_us) learn_lag(followed_frame, settings_.depth_lag_s, *camera.lag);
   remove_lost(estimator, frame, camera, followed_frame);
   ++camera.frames;
   ObjectPoses result{frame.id, {}, frame.stages};

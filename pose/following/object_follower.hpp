@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "pipeline/base/settings_fields.hpp"
+#include "pipeline/types/camera_timing.hpp"
+#include "pose/following/camera_lag.hpp"
 #include "pose/following/follow.hpp"
 #include "pose/motion/smoothed_velocity.hpp"
 #include "pose/pose_estimator.hpp"
@@ -38,8 +40,8 @@ struct FollowerSettings {
   /// Log odds of quality by which the new pose must be better to replace the followed one.
   double better_log_odds = 0.3;
   double velocity_gain = 0.5;  ///< fraction by which the last step moves the velocity
-  /// Time by which a camera's depth and colours may be apart. Depth that was in the frame before already, as where
-  /// colours come more often, is older by that frame.
+  /// Standard deviation of the time by which cameras take depth later than colours. Of each camera it is learnt
+  /// (CameraLag). Depth that was in the frame before already, as where colours come more often, is older by that frame.
   double depth_lag_s = 0.01;
 };
 
@@ -101,6 +103,7 @@ struct FollowedCamera {
   bool is_colourless = false;               ///< whether the last frame has no colours
   std::uint64_t depth_digest = 0;           ///< digest of the last frame's depth
   std::int64_t depth_us = 0;                ///< time at which that depth came first, on the camera's clock
+  std::optional<CameraLag> lag;             ///< lag between depth and colours; there from the first frame on
   std::int64_t frames = 0;
   /// The camera's clock minus its frames' utimes, which jump where the host's clock is set or a stamp is wrong. The
   /// camera's clock does not.
@@ -134,6 +137,10 @@ class ObjectFollower {
 
   /// Returns what the followed objects have shown of the colours of the camera with this channel.
   CameraChroma camera_colours(const std::string& channel);
+
+  /// Returns by how much later than its colours the camera with this channel takes depth, as objects that move before
+  /// it have shown; nothing where that is not known (CameraLag::is_known).
+  std::optional<CameraTiming> camera_timing(const std::string& channel);
 
  private:
   std::vector<FollowedPose> follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,

@@ -47,6 +47,7 @@ Taken read_result(ByteView input) {
     ObjectPoses poses = posed();
     apply_probabilities(decode_message<pose_probabilities_t>(input), poses);
   }
+  if (fingerprint == camera_timing_t::getHash()) camera_timing_from_message(decode_message<camera_timing_t>(input));
   if (fingerprint == camera_colours_t::getHash()) camera_colours_from_message(decode_message<camera_colours_t>(input));
   if (fingerprint == teaching_t::getHash()) teaching_from_message(decode_message<teaching_t>(input));
   if (fingerprint == status_t::getHash()) decode_message<status_t>(input);

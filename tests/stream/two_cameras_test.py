@@ -189,7 +189,7 @@ def check_kept_frames(tools, folder, found, posed):
     run(tools / "hs-pose", "--models", folder / "models", "-c", "LEFT|RIGHT", "-l", f"file://{folder / 'found.log'}",
         "--output-log", folder / "kept.log", "--keep-frames")  # fmt: skip
     kept = list(read_log(folder / "kept.log"))
-    assert [event for event in kept if not event[1].startswith(("HOUGHSTREAM_POSE", "HOUGHSTREAM_CAMERA_COLOURS")) and "_TO_" not in event[1]] == list(found)
+    assert [event for event in kept if not event[1].startswith(("HOUGHSTREAM_POSE", "HOUGHSTREAM_CAMERA_")) and "_TO_" not in event[1]] == list(found)
     run(tools / "hs-log", "export", "csv", folder / "kept.log", folder / "kept.csv")
     track = (tools / "hs-track", "--models", folder / "models", "-c", "LEFT", "-l")
     run(*track, f"file://{folder / 'kept.log'}", "--output-log", folder / "objects.log")

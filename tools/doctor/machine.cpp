@@ -35,6 +35,28 @@ void handle_until(LcmBus& bus, milliseconds time, const Done& done) {
   while (!done() && Clock::now() < end) bus.handle(milliseconds(20));
 }
 
+/// Returns the last message of each camera that is heard on the channel within a second and a half.
+template <typename Message, typename Known>
+std::vector<Known> heard_of_cameras(const std::string& url, const std::string& channel,
+                                    Known (*from_message)(const Message&)) {
+  constexpr std::size_t kMaxCameras = 64;  // a sender of rubbish may make up names without end
+  std::map<std::string, Known> cameras;
+  try {
+    LcmBus bus(url, "", Existing::kReplaced, AtStart::kFail);
+    bus.subscribe(channel, [&](const ReceivedMessage& arrival) {
+      Known known = from_message(decode_message<Message>(arrival.bytes));
+      const std::string camera = known.frame.channel;
+      if (cameras.size() < kMaxCameras || cameras.count(camera) > 0) cameras[camera] = std::move(known);
+    });
+    handle_until(bus, milliseconds(1500), [] { return false; });
+  } catch (const std::exception&) {
+    return {};  // the self test reports a fault of the bus
+  }
+  std::vector<Known> all;
+  for (auto& [name, known] : cameras) all.push_back(std::move(known));
+  return all;
+}
+
 }  // namespace
 
 std::size_t heard_bytes(const std::string& url, const std::string& channel) {
@@ -82,22 +104,11 @@ std::map<std::string, std::string> heard_errors(const std::string& url) {
 }
 
 std::vector<CameraChroma> heard_camera_colours(const std::string& url) {
-  constexpr std::size_t kMaxCameras = 64;  // a sender of rubbish may make up names without end
-  std::map<std::string, CameraChroma> cameras;
-  try {
-    LcmBus bus(url, "", Existing::kReplaced, AtStart::kFail);
-    bus.subscribe(channel::kCameraColours, [&](const ReceivedMessage& arrival) {
-      CameraChroma colours = camera_colours_from_message(decode_message<camera_colours_t>(arrival.bytes));
-      const std::string camera = colours.frame.channel;
-      if (cameras.size() < kMaxCameras || cameras.count(camera) > 0) cameras[camera] = std::move(colours);
-    });
-    handle_until(bus, milliseconds(1500), [] { return false; });
-  } catch (const std::exception&) {
-    return {};  // the self test reports a fault of the bus
-  }
-  std::vector<CameraChroma> all;
-  for (auto& [name, colours] : cameras) all.push_back(std::move(colours));
-  return all;
+  return heard_of_cameras(url, channel::kCameraColours, camera_colours_from_message);
+}
+
+std::vector<CameraTiming> heard_camera_timings(const std::string& url) {
+  return heard_of_cameras(url, channel::kCameraTiming, camera_timing_from_message);
 }
 
 SelfTest self_test(const std::string& url, std::size_t bytes) {
@@ -192,6 +203,7 @@ Machine this_machine() {
   machine.heard_frame_channels = heard_frame_channels;
   machine.heard_errors = heard_errors;
   machine.heard_camera_colours = heard_camera_colours;
+  machine.heard_camera_timings = heard_camera_timings;
   machine.self_test = self_test;
   machine.may_use = [](const fs::path& file) { return access(file.c_str(), R_OK | W_OK) == 0; };
   machine.load_error = load_error;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/types/camera_timing.hpp"
 #include "pipeline/types/chroma_map.hpp"
 
 namespace houghstream::doctor {
@@ -37,6 +38,8 @@ struct Machine {
   std::function<std::map<std::string, std::string>(const std::string& url)> heard_errors;
   /// Receives cameras' colours for a second and a half, and returns the last of each camera.
   std::function<std::vector<CameraChroma>(const std::string& url)> heard_camera_colours;
+  /// Receives cameras' timings for a second and a half, and returns the last of each camera.
+  std::function<std::vector<CameraTiming>(const std::string& url)> heard_camera_timings;
   /// Sends messages of so many bytes and waits for them.
   std::function<SelfTest(const std::string& url, std::size_t bytes)> self_test;
   /// Returns whether this user may read and write the file (a full path below root).
@@ -75,6 +78,9 @@ std::map<std::string, std::string> heard_errors(const std::string& url);
 
 /// Implements Machine::heard_camera_colours for this machine.
 std::vector<CameraChroma> heard_camera_colours(const std::string& url);
+
+/// Implements Machine::heard_camera_timings for this machine.
+std::vector<CameraTiming> heard_camera_timings(const std::string& url);
 
 /// Implements Machine::self_test for this machine: it sends some messages one after another on a channel of their own.
 SelfTest self_test(const std::string& url, std::size_t bytes);

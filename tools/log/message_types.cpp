@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <houghstream/camera_colours_t.hpp>
+#include <houghstream/camera_timing_t.hpp>
 #include <houghstream/detections_t.hpp>
 #include <houghstream/drake_image_array_t.hpp>
 #include <houghstream/drake_viewer_draw_t.hpp>
@@ -42,6 +43,7 @@ std::string type_name(std::int64_t fingerprint) {
       {object_poses_t::getHash(), "object_poses_t"},
       {pose_probabilities_t::getHash(), "pose_probabilities_t"},
       {camera_colours_t::getHash(), "camera_colours_t"},
+      {camera_timing_t::getHash(), "camera_timing_t"},
       {objects_t::getHash(), "objects_t"},
       {placed_objects_t::getHash(), "placed_objects_t"},
       {status_t::getHash(), "status_t"},

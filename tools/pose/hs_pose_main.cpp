@@ -91,6 +91,7 @@ void run(LcmBus& bus, PoseOptions options, const CurrentEstimator& current) {
   }
   ObjectFollower follower;
   options.process.camera_colours = [&](const std::string& channel) { return follower.camera_colours(channel); };
+  options.process.camera_timing = [&](const std::string& channel) { return follower.camera_timing(channel); };
   run_follow_process(bus, options.process,
                      {[&](const RgbdFrame& frame) {
                         report_colourless(frame, colourless);

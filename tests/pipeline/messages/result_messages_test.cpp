@@ -237,6 +237,27 @@ TEST(ResultMessages, AbsurdColoursOfACameraAreRefused) {
   refused([](camera_colours_t& m) { m.probability[0] = kNan; });
 }
 
+TEST(ResultMessages, ACamerasTimingComesBack) {
+  const CameraTiming sent{{"LEFT", 77}, -0.0125, 0.0015};
+  const CameraTiming back = camera_timing_from_message(over_the_wire(to_message(sent)));
+  EXPECT_EQ(back.frame, sent.frame);
+  EXPECT_FLOAT_EQ(back.depth_lag_s, -0.0125F);
+  EXPECT_FLOAT_EQ(back.sigma_s, 0.0015F);
+}
+
+TEST(ResultMessages, AnAbsurdTimingOfACameraIsRefused) {
+  const camera_timing_t good = to_message(CameraTiming{{"LEFT", 77}, 0.01, 0.001});
+  const auto refused = [&](const auto& change) {
+    camera_timing_t bad = good;
+    change(bad);
+    EXPECT_THROW(camera_timing_from_message(bad), InputError);
+  };
+  refused([](camera_timing_t& m) { m.depth_lag_s = kNan; });
+  refused([](camera_timing_t& m) { m.depth_lag_s = -11.0F; });
+  refused([](camera_timing_t& m) { m.depth_lag_sigma_s = -0.001F; });
+  refused([](camera_timing_t& m) { m.depth_lag_sigma_s = kNan; });
+}
+
 TEST(ResultMessages, AbsurdPosesAreRefused) {
   const object_poses_t good = to_message(make_poses());
   const auto refused = [&](const auto& change) {

@@ -70,8 +70,8 @@ TEST(PoseProcess, FramesThatAreNamedOnAnObjectHaveTransformsToo) {
   test.stop();
 }
 
-TEST(PoseProcess, WhatIsLearntOfACamerasColoursIsToldOnceASecond) {
-  ProcessOnMemq test({channel::kPoses, channel::kCameraColours});
+TEST(PoseProcess, WhatIsLearntOfACameraIsToldOnceASecond) {
+  ProcessOnMemq test({channel::kPoses, channel::kCameraColours, channel::kCameraTiming});
   PoseProcessOptions options;
   options.camera_colours = [](const std::string& camera) {
     ChromaPair pair;
@@ -79,6 +79,7 @@ TEST(PoseProcess, WhatIsLearntOfACamerasColoursIsToldOnceASecond) {
     pair.probability = 0.9;
     return CameraChroma{{camera, 10}, {pair}};
   };
+  options.camera_timing = [](const std::string& camera) { return CameraTiming{{camera, 10}, -0.011, 0.001}; };
   test.start([&](LcmBus& bus) { run_pose_process(bus, options, at_one_metre); });
   std::size_t answered = 0;
   for (const std::int64_t utime : {10, 500'000, 1'200'000}) {
@@ -87,11 +88,16 @@ TEST(PoseProcess, WhatIsLearntOfACamerasColoursIsToldOnceASecond) {
     ASSERT_TRUE(test.wait_for(channel::kPoses, ++answered));
   }
   ASSERT_TRUE(test.wait_for(channel::kCameraColours, 2));
+  ASSERT_TRUE(test.wait_for(channel::kCameraTiming, 2));
   test.stop();
   EXPECT_EQ(test.count(channel::kCameraColours), 2U);
   const CameraChroma told = camera_colours_from_message(test.at<camera_colours_t>(channel::kCameraColours, 0));
   EXPECT_EQ(told.frame.channel, channel::kFrame);
   EXPECT_EQ(told.objects.at(0).class_name, "bowl");
+  EXPECT_EQ(test.count(channel::kCameraTiming), 2U);
+  const CameraTiming timing = camera_timing_from_message(test.at<camera_timing_t>(channel::kCameraTiming, 0));
+  EXPECT_EQ(timing.frame.channel, channel::kFrame);
+  EXPECT_FLOAT_EQ(timing.depth_lag_s, -0.011F);
 }
 
 TEST(PoseProcess, EmptyDetectionsGiveEmptyPosesWithoutDecoding) {

@@ -136,6 +136,33 @@ double error_with_repeated_depth() {
   return sum / (kFrames / 4);
 }
 
+/// Returns what is learnt of the lag of a camera that walks, whose depth is of the frame before or of the same one.
+std::optional<CameraTiming> timing_learnt(bool is_late) {
+  Following it(box_and_mug());
+  cv::Mat before = it.film.next().depth;
+  for (int i = 0; i < 90; ++i) {
+    it.film.walk();
+    RgbdFrame frame = it.film.next();
+    if (is_late) std::swap(before, frame.depth);
+    it.follower.follow(estimator(), frame);
+  }
+  return it.follower.camera_timing("");
+}
+
+TEST(ObjectFollower, HowMuchOlderACamerasDepthIsIsLearntWhereItMoves) {
+  const std::optional<CameraTiming> same = timing_learnt(false);
+  ASSERT_TRUE(same.has_value());
+  EXPECT_NEAR(same->depth_lag_s, 0.0, 0.003);
+  const std::optional<CameraTiming> older = timing_learnt(true);
+  ASSERT_TRUE(older.has_value());
+  EXPECT_NEAR(older->depth_lag_s, -1e-6 * kPeriod, 0.005);
+  EXPECT_LT(older->sigma_s, 0.002);
+  Following standing_still(box_and_mug());
+  for (int i = 0; i < 30; ++i) standing_still.next();
+  EXPECT_FALSE(standing_still.follower.camera_timing("").has_value()) << "nothing has moved";
+  EXPECT_FALSE(standing_still.follower.camera_timing("ANOTHER").has_value());
+}
+
 TEST(ObjectFollower, DepthThatCameBeforeIsNotMeasuredTwice) {
   EXPECT_LT(error_with_repeated_depth(), 0.0007);
 }

@@ -45,6 +45,7 @@ struct HealthyMachine {
     machine.granted_receive_buffer = [](std::int64_t asked) { return asked; };
     machine.heard_bytes = [](const std::string&, const std::string&) { return std::size_t{0}; };
     machine.heard_frame_channels = [](const std::string&) { return std::set<std::string>(); };
+    machine.heard_camera_timings = [](const std::string&) { return std::vector<CameraTiming>(); };
     machine.heard_camera_colours = [](const std::string&) { return std::vector<CameraChroma>(); };
     machine.heard_errors = [](const std::string&) { return std::map<std::string, std::string>(); };
     machine.self_test = [](const std::string&, std::size_t) { return SelfTest{5, 5, ""}; };

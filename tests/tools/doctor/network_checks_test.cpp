@@ -146,6 +146,22 @@ TEST(NetworkChecks, ACameraWithAStrongCastShouldBeSetByHand) {
   EXPECT_NE(strong.what.find("white balance"), std::string::npos) << strong.what;
 }
 
+TEST(NetworkChecks, ACameraWhoseDepthIsOfAnotherTimeIsToldOf) {
+  HealthyMachine healthy("network_checks_timing");
+  healthy.machine.heard_bytes = [](const std::string&, const std::string&) { return std::size_t{1'000}; };
+  const auto told_of = [&](double lag_s, double sigma_s) {
+    healthy.machine.heard_camera_timings = [=](const std::string&) {
+      return std::vector<CameraTiming>{{{"LEFT", 1}, lag_s, sigma_s}};
+    };
+    return check_network(healthy.machine, kBus).back();
+  };
+  EXPECT_EQ(told_of(0.002, 0.001).level, Level::kOk);
+  EXPECT_EQ(told_of(-0.008, 0.002).level, Level::kOk) << "it may be less";
+  const Finding apart = told_of(-0.0114, 0.001);
+  EXPECT_EQ(apart.level, Level::kNote);
+  EXPECT_EQ(apart.what.rfind("LEFT: depth is 11 ms older than colours, give or take 2", 0), 0U) << apart.what;
+}
+
 TEST(NetworkChecks, WhatProcessesSayDoesNotSteerATerminal) {
   HealthyMachine healthy("network_checks_rubbish");
   healthy.machine.heard_errors = [](const std::string&) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <houghstream/camera_colours_t.hpp>
+#include <houghstream/camera_timing_t.hpp>
 #include <houghstream/drake_viewer_draw_t.hpp>
 #include <houghstream/drake_viewer_load_robot_t.hpp>
 #include <houghstream/placed_objects_t.hpp>
@@ -21,6 +22,7 @@ TEST(MessageTypes, AreKnownByFingerprint) {
   EXPECT_EQ(type_name(placed_objects_t::getHash()), "placed_objects_t");
   EXPECT_EQ(type_name(pose_probabilities_t::getHash()), "pose_probabilities_t");
   EXPECT_EQ(type_name(camera_colours_t::getHash()), "camera_colours_t");
+  EXPECT_EQ(type_name(camera_timing_t::getHash()), "camera_timing_t");
   EXPECT_EQ(type_name(0), "no message");
   EXPECT_EQ(type_name(0x1234), "?? 0000000000001234");
   EXPECT_EQ(type_name(-1), "?? ffffffffffffffff");
