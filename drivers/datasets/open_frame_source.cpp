@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "drivers/datasets/dataset_sources.hpp"
+#include "drivers/ros_bag/bag_source.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 
@@ -36,7 +37,8 @@ std::unique_ptr<FrameSource> open_frame_source(const std::string& specification,
   if (kind == "bop" && !value.empty()) return open_bop_source(value);
   if (kind == "uw" && !value.empty()) return open_with_camera(value, open_uw_source);
   if (kind == "tum" && !value.empty()) return open_with_camera(value, open_tum_source);
-  fail("source '{}', expected {}bop:DIR, uw:DIR or tum:DIR", specification, others);
+  if (kind == "bag" && !value.empty()) return ros_bag::open_bag_source(value);
+  fail("source '{}', expected {}bop:DIR, uw:DIR, tum:DIR or bag:FILE", specification, others);
 }
 
 void require_outside_source(const std::filesystem::path& output, const std::string& specification) {

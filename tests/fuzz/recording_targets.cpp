@@ -1,6 +1,9 @@
 #include "drivers/openni/oni_times.hpp"
+#include "drivers/ros_bag/bag_source.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "pipeline/messages/messages.hpp"
+#include "tests/drivers/ros_bag/test_bag.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
 #include "tests/tools/log/recordings.hpp"
 #include "tools/log/good_events.hpp"
@@ -86,6 +89,35 @@ std::vector<Bytes> onis() {
   return {bytes};
 }
 
+Taken read_bag(ByteView input) {
+  hush_log();  // each bag that is opened says what it holds
+  const std::unique_ptr<FrameSource> source = ros_bag::open_bag_source(as_file(input, "bag"));
+  Taken taken;
+  while (source->next()) ++taken.items;
+  return taken;
+}
+
+/// Returns one of each compression, with five frames in two chunks.
+std::vector<Bytes> bags() {
+  std::vector<Bytes> all;
+  for (const char* compression : {"none", "bz2", "lz4"}) {
+    ros_bag::TestBag recorded(compression);
+    for (int i = 0; i < 5; ++i) {
+      const RgbdFrame frame = make_test_frame(1'600'000'000'000'000 + 33'333 * i, 16, 12);
+      const std::int64_t utime = frame.id.utime;
+      const ros_bag::MessageHeader header = {utime, "camera"};
+      recorded.add("/rgb/camera_info", ros_bag::kCameraInfoType, ros_bag::camera_info_bytes(header, frame.camera),
+                   utime);
+      recorded.add("/rgb/image", ros_bag::kImageType, ros_bag::image_bytes(header, frame.colour, "rgb8"), utime);
+      recorded.add("/depth/image", ros_bag::kImageType,
+                   ros_bag::image_bytes(header, depth_to_millimetres(frame.depth), "16UC1"), utime);
+      if (i == 2) recorded.end_chunk();
+    }
+    all.push_back(recorded.bytes());
+  }
+  return all;
+}
+
 }  // namespace
 
 std::vector<FuzzTarget> recording_targets() {
@@ -94,7 +126,15 @@ std::vector<FuzzTarget> recording_targets() {
           {"log", read_log, logs, nullptr, {sync}, 4096, {false, 0}},
           {"sealed_log", read_log, sealed_logs, nullptr, {sync, "HSSEAL1"}, 4096, kAnyDamage},
           {"klg", read_klg, klgs, nullptr, {}, 4096, kAnyDamage},
-          {"oni", read_oni, onis, nullptr, {"NIR"}, 4096, kAnyDamage}};
+          {"oni", read_oni, onis, nullptr, {"NIR"}, 4096, kAnyDamage},
+          // A changed stamp takes a frame its partner, and is told in the log.
+          {"bag",
+           read_bag,
+           bags,
+           nullptr,
+           {"#ROSBAG V2.0\n", "op=", "conn=", "size=", "compression=lz4", "16UC1", "32FC1", "mono8"},
+           16384,
+           {true, 2}}};
 }
 
 }  // namespace houghstream::fuzz

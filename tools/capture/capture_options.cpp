@@ -49,7 +49,7 @@ void require_no_camera_option(const SourceOptions& options) {
 void add_source_options(CommandLine& app, SourceOptions& options) {
   app.add_option("--source", options.source,
                  "openni2[:CAMERA] (CAMERA is a URI, #1, #2, ... or a serial number; default: the first), oni:FILE, "
-                 "bop:DIR, uw:DIR or tum:DIR");
+                 "bop:DIR, uw:DIR, tum:DIR or bag:FILE (ROS 1)");
   app.add_option("--camera", options.camera,
                  "openni2, oni: intrinsics, a ROS camera_info YAML file or WIDTHxHEIGHT,fx,fy,cx,cy; default: from the "
                  "field of view that the device states");

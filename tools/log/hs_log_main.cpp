@@ -38,7 +38,8 @@ struct Options {
 };
 
 constexpr const char* kSources =
-    "an LCM log of images_t, kinect.frame_msg_t or lcmt_image_array; FILE.klg or FILE.oni; bop:DIR, uw:DIR or tum:DIR";
+    "an LCM log of images_t, kinect.frame_msg_t or lcmt_image_array; FILE.klg, FILE.oni or "
+    "FILE.bag (ROS 1); bop:DIR, uw:DIR, tum:DIR or bag:FILE";
 
 CommandLine add_info(CommandLine& app, Options& options) {
   CommandLine info = app.add_subcommand("info", "channels, types, rates, gaps and sizes");

@@ -46,16 +46,21 @@ struct OtherKind {
   std::string_view begin;
   const char* name;
 };
-constexpr std::array<OtherKind, 4> kOtherKinds = {{{"#ROSBAG", "a ROS bag, as RealSense's SDK records"},
-                                                   {"SQLite format 3", "an SQLite database, as rosbag2 records"},
+constexpr std::array<OtherKind, 3> kOtherKinds = {{{"SQLite format 3", "an SQLite database, as rosbag2 records"},
                                                    {"\x89MCAP", "an MCAP file"},
                                                    {"\x1A\x45\xDF\xA3", "Matroska, as Azure Kinect's SDK records"}}};
 
-void refuse_other_kinds(const std::string& file) {
-  std::error_code unknown;
-  if (!std::filesystem::is_regular_file(file, unknown)) return;
+/// Returns the first bytes of a file; of what is none, zeros.
+std::string begin_of(const std::string& file) {
   std::string begin(16, '\0');
-  std::ifstream(file, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  std::error_code unknown;
+  if (std::filesystem::is_regular_file(file, unknown))
+    std::ifstream(file, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin;
+}
+
+void refuse_other_kinds(const std::string& file) {
+  const std::string begin = begin_of(file);
   for (const OtherKind& kind : kOtherKinds) {
     require(!starts_with(begin, std::string(kind.begin)),
             "{}: {}, expected an LCM log; let its SDK play it into a publisher (tools/examples/cpp)", file, kind.name);
@@ -199,6 +204,8 @@ NextFrame open_recording(const RecordingSettings& settings, LossReport& losses) 
   if (is_frame_source(settings.source)) {
     return reading(std::make_shared<SourceRecording>(open_frame_source(settings.source, "LOG, FILE.klg, FILE.oni, ")));
   }
+  if (starts_with(begin_of(settings.source), "#ROSBAG"))
+    return reading(std::make_shared<SourceRecording>(open_frame_source("bag:" + settings.source)));
   refuse_other_kinds(settings.source);
   return reading(std::make_shared<LogRecording>(settings, losses));
 }

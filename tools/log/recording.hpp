@@ -22,7 +22,7 @@ struct RecordedFrame {
 using NextFrame = std::function<std::optional<RecordedFrame>()>;
 
 struct RecordingSettings {
-  /// An LCM log, FILE.klg (or klg:FILE), FILE.oni (or oni:FILE), or what open_frame_source() knows.
+  /// An LCM log, FILE.klg (or klg:FILE), FILE.oni (or oni:FILE), a ROS 1 bag, or what open_frame_source() knows.
   std::string source;
   std::string channel;           ///< channel of the frames in a log; "" = the first channel that holds frames
   std::optional<Camera> camera;  ///< given to frames that come without

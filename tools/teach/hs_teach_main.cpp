@@ -122,7 +122,7 @@ struct ShowWords {
 CommandLine add_show(CommandLine& app, ShowOptions& options, ShowWords& words) {
   CommandLine show = app.add_subcommand("show", "teaches an object that a camera is moved around, or that turns");
   show.add_option("--source", options.source,
-                  "openni2[:CAMERA], or a recording: log:FILE, FILE.klg, FILE.oni, bop:DIR, uw:DIR, tum:DIR");
+                  "openni2[:CAMERA], or a recording: log:FILE, FILE.klg, FILE.oni, bop:DIR, uw:DIR, tum:DIR, bag:FILE");
   show.add_flag("--from-stream", words.from_stream,
                 "instead: frames of --channel on the bus, while the stream goes on");
   show.add_option("--second", options.second,

@@ -64,7 +64,7 @@ TEST(FrameSource, AFoldersNameMayHoldCommas) {
 
 TEST(FrameSource, WhatIsNotKnownIsRefusedWithAllThatTheCallerTakes) {
   EXPECT_EQ(error_of([] { open_frame_source("bogus", "oni:FILE, "); }),
-            "source 'bogus', expected oni:FILE, bop:DIR, uw:DIR or tum:DIR");
+            "source 'bogus', expected oni:FILE, bop:DIR, uw:DIR, tum:DIR or bag:FILE");
 }
 
 TEST(FrameSource, BadSpecificationsAreRefused) {

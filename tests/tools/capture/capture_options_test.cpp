@@ -62,6 +62,7 @@ TEST(CaptureOptions, WhatTheSourceCannotHeedIsRefused) {
 TEST(CaptureOptions, WhatNamesNoSourceModeOrCameraIsRefused) {
   EXPECT_NE(refusal({"--source", "cinema:/x"}).find("cinema:/x"), std::string::npos);
   EXPECT_NE(refusal({"--source", "cinema:/x"}).find("expected openni2, openni2:CAMERA, oni:FILE"), std::string::npos);
+  EXPECT_NE(refusal({"--source", "bag:/no/such.bag"}).find("/no/such.bag"), std::string::npos);
   EXPECT_NE(refusal({"--source", "klg:/x"}).find("hs-log import"), std::string::npos);
   EXPECT_NE(refusal({"--source", "oni:"}).find("oni:"), std::string::npos);
   EXPECT_NE(refusal({"--source", "openni2", "--mode", "large"}).find("large"), std::string::npos);

@@ -44,7 +44,8 @@ TEST(Recording, TheFirstChannelWithFramesIsReadUnlessOneIsNamed) {
 
 TEST(Recording, WhatIsNotThereIsAnErrorThatNamesIt) {
   LossReport losses;
-  for (const std::string source : {"/no/such.log", "/no/such.klg", "/no/such.oni", "oni:/no/such", "bop:/no/such"}) {
+  for (const std::string source :
+       {"/no/such.log", "/no/such.klg", "/no/such.oni", "oni:/no/such", "bop:/no/such", "bag:/no/such"}) {
     RecordingSettings settings;
     settings.source = source;
     try {
@@ -58,10 +59,8 @@ TEST(Recording, WhatIsNotThereIsAnErrorThatNamesIt) {
 
 TEST(Recording, OtherMakersRecordingsAreNamed) {
   const fs::path folder = fresh_folder("recording_others");
-  const std::vector<std::pair<std::string, std::string>> kinds = {{"#ROSBAG V2.0\n", "a ROS bag"},
-                                                                  {"SQLite format 3", "rosbag2"},
-                                                                  {"\x89MCAP0\r\n", "an MCAP file"},
-                                                                  {"\x1A\x45\xDF\xA3", "Azure Kinect"}};
+  const std::vector<std::pair<std::string, std::string>> kinds = {
+      {"SQLite format 3", "rosbag2"}, {"\x89MCAP0\r\n", "an MCAP file"}, {"\x1A\x45\xDF\xA3", "Azure Kinect"}};
   for (const auto& [begin, name] : kinds) {
     RecordingSettings settings;
     settings.source = (folder / "taken.bag").string();

@@ -5,6 +5,7 @@
 #include "drivers/files/image_file.hpp"
 #include "drivers/frame_source.hpp"
 #include "pipeline/base/checks.hpp"
+#include "tests/drivers/ros_bag/test_bag.hpp"
 #include "tests/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 #include "tools/log/export_frames.hpp"
@@ -84,6 +85,22 @@ TEST(RoundTrip, BopFolder) {
   for (int i = 0; i < kFrames; ++i) writer.add(numbered_frame(i), {}, {});
   writer.finish();
   expect_round_trip("bop:" + (folder / "original").string(), folder, true);
+}
+
+TEST(RoundTrip, RosBag) {
+  const fs::path folder = fresh_folder("trip_bag");
+  ros_bag::TestBag bag("lz4");
+  for (int i = 0; i < kFrames; ++i) {
+    const RgbdFrame frame = numbered_frame(i);
+    const std::int64_t utime = std::int64_t{1'600'000'000'000'000} + 33'333 * i;
+    const ros_bag::MessageHeader header = {utime, "camera"};
+    bag.add("/rgb/camera_info", ros_bag::kCameraInfoType, ros_bag::camera_info_bytes(header, kCamera), utime);
+    bag.add("/rgb/image", ros_bag::kImageType, ros_bag::image_bytes(header, frame.colour, "bgr8"), utime);
+    bag.add("/depth/image", ros_bag::kImageType, ros_bag::image_bytes(header, frame.depth, "32FC1"), utime);
+  }
+  bag.save((folder / "a.bag").string());
+  expect_round_trip((folder / "a.bag").string(), folder, true);
+  expect_round_trip("bag:" + (folder / "a.bag").string() + ",depth=/depth/image", folder, true);
 }
 
 TEST(RoundTrip, UwFolderIsWhatPngExportWrites) {

@@ -19,7 +19,7 @@ import unittest.mock
 
 from studies.wire_patch import utime_of
 from studies.soak import __main__ as soak
-from studies.soak import faults, frames, long_account, long_run, page, player, relay, time_left, wire
+from studies.soak import faults, frames, long_account, long_run, page, player, relay, wire, work_budget
 from studies.stream import ProcessFailed
 
 
@@ -219,7 +219,7 @@ class Kept(unittest.TestCase):
 class Time(unittest.TestCase):
     def test_what_is_left_is_known_from_the_last_time(self):
         at = [0.0]
-        clock = time_left.TimeLeft(["a", "b", "c"], {"a": 60.0, "b": 120.0, "gone": 1e6}, 600.0, now=lambda: at[0])
+        clock = work_budget.WorkBudget(["a", "b", "c"], {"a": 60.0, "b": 120.0, "gone": 1e6}, 600.0, now=lambda: at[0])
         self.assertEqual(clock.words(), "3 left, about 4 min", "c takes as long as the others do")
         clock.begin()
         at[0] = 400.0
@@ -233,7 +233,7 @@ class Time(unittest.TestCase):
         self.assertEqual(clock.words(), "none left")
 
     def test_the_first_time_only_the_limit_is_known(self):
-        self.assertEqual(time_left.TimeLeft(["a"], {}, 2400.0).words(), "1 left, at most 40 min")
+        self.assertEqual(work_budget.WorkBudget(["a"], {}, 2400.0).words(), "1 left, at most 40 min")
 
     def test_faults_end_in_time_and_what_was_not_run_is_told(self):
         ran = []

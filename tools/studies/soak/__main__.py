@@ -11,7 +11,7 @@ from studies.command import Options, die, know_messages, positive, step
 from studies.records import REPOSITORY
 from studies.soak.long_run import long_runs
 from studies.soak.page import Record
-from studies.soak.time_left import TimeLeft
+from studies.soak.work_budget import WorkBudget
 from studies.stream import ProcessFailed, enter_private_network
 
 FAULTS_S = 2400  # that all faults may take
@@ -45,7 +45,7 @@ def run_fault(fault):
 def run_faults(faults, earlier):
     """Yields each one's name and what was seen. `earlier`: what was seen the last time."""
     earlier_s = {name: seen["seconds"] for name, seen in earlier.items() if "seconds" in seen}
-    clock = TimeLeft([name for name, _ in faults], earlier_s, FAULTS_S)
+    clock = WorkBudget([name for name, _ in faults], earlier_s, FAULTS_S)
     step(clock.words())
     for name, fault in faults:
         clock.begin()

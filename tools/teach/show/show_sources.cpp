@@ -111,7 +111,7 @@ ShownFrames open_shown(const std::string& source, const ShowOptions& options) {
     log_info("ready: frames from {}; Ctrl-C ends the take", source);
     return [live] { return live->next(); };
   }
-  for (const char* kind : {"bop:", "uw:", "tum:"}) {
+  for (const char* kind : {"bop:", "uw:", "tum:", "bag:"}) {
     if (!starts_with(source, kind)) continue;
     require(options.camera.empty(), "--camera goes with frames that come without, not with {}", source);
     const std::shared_ptr<FrameSource> frames = open_frame_source(source);

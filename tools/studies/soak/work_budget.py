@@ -1,10 +1,10 @@
-"""The time that a row of works still takes."""
+"""The time that a row of works still takes, and whether it may take it."""
 
 import statistics
 import time
 
 
-class TimeLeft:
+class WorkBudget:
     """Names of works, in their order, and the seconds that some of them took before: what is left of them, from those and,
     where one has not been run before, from the mean of the others. `limit_s` is what all of them may take."""
 
