@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <sstream>
 
 #include "pipeline/base/checks.hpp"
@@ -94,6 +95,29 @@ CommandLine add_merge(CommandLine& app, MergeArguments& merged) {
   return merge;
 }
 
+/// Arguments of hs-teach list.
+struct ListArguments {
+  bool json = false;
+  std::optional<double> precision;
+};
+
+CommandLine add_list(CommandLine& app, std::filesystem::path& folder, ListArguments& listed) {
+  CommandLine list = app.add_subcommand("list", "the objects of a store");
+  list.add_option("store", folder, "object store").required();
+  list.add_flag("--json", listed.json, "print them as JSON, for scripts");
+  list.add_option("--precision", listed.precision,
+                  "also the score and the quality from which on detections and poses of each object were right in this "
+                  "fraction of the cases in its practice, and the recall to expect")
+      .range(0.0, store::kMaxPrecision);
+  list.add_example("hs-teach list my.store");
+  return list;
+}
+
+void print_list(const store::ObjectStore& store, const ListArguments& listed) {
+  if (listed.json) print_json(store_json(store, listed.precision));
+  if (!listed.json) fmt::print("{}", store_text(store, listed.precision));
+}
+
 cv::Rect parse_box(const std::string& text) {
   cv::Rect box;
   char rest = 0;
@@ -180,11 +204,8 @@ int main(int argc, char** argv) {
   const CommandLine show = add_show(app, shown, words);
   MergeArguments merged;
   const CommandLine merge = add_merge(app, merged);
-  CommandLine list = app.add_subcommand("list", "the objects of a store");
-  list.add_option("store", folder, "object store").required();
-  bool json = false;
-  list.add_flag("--json", json, "print them as JSON, for scripts");
-  list.add_example("hs-teach list my.store");
+  ListArguments listed;
+  const CommandLine list = add_list(app, folder, listed);
   CommandLine remove = app.add_subcommand("remove", "takes an object out of a store");
   remove.add_option("store", folder, "object store").required();
   remove.add_option("name", name, "of the object").required();
@@ -225,9 +246,7 @@ int main(int argc, char** argv) {
     } else if (merge.given()) {
       merge_stores({merged.stores.begin(), merged.stores.end()}, merged.out, merged.replace);
     } else if (list.given()) {
-      const store::ObjectStore listed = store::read_store(folder);
-      if (json) print_json(store_json(listed));
-      if (!json) fmt::print("{}", store_text(listed));
+      print_list(store::read_store(folder), listed);
     } else if (frame.given()) {
       require(remove_frame != !place.empty(), "expected either --at x,y,z[,qw,qx,qy,qz] or --remove");
       set_frame_in_store(folder, name, frame_name,
