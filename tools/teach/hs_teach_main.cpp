@@ -8,6 +8,7 @@
 #include "tools/common/tool_main.hpp"
 #include "tools/teach/mesh/store_merge.hpp"
 #include "tools/teach/mesh/store_rename.hpp"
+#include "tools/teach/mesh/store_report.hpp"
 #include "tools/teach/mesh/store_summary.hpp"
 #include "tools/teach/mesh/teach_jobs.hpp"
 #include "tools/teach/show/show_jobs.hpp"
@@ -118,6 +119,16 @@ void print_list(const store::ObjectStore& store, const ListArguments& listed) {
   if (!listed.json) fmt::print("{}", store_text(store, listed.precision));
 }
 
+CommandLine add_report(CommandLine& app, std::filesystem::path& folder, std::filesystem::path& page) {
+  CommandLine report = app.add_subcommand("report", "writes a page of a store, for a browser");
+  report.add_option("store", folder, "object store").required();
+  page = "report.html";
+  report.add_option("--out", page, "HTML file to write; an earlier page of this kind is replaced")
+      .capture_default_str();
+  report.add_example("hs-teach report my.store --out my_store.html");
+  return report;
+}
+
 cv::Rect parse_box(const std::string& text) {
   cv::Rect box;
   char rest = 0;
@@ -206,6 +217,8 @@ int main(int argc, char** argv) {
   const CommandLine merge = add_merge(app, merged);
   ListArguments listed;
   const CommandLine list = add_list(app, folder, listed);
+  std::filesystem::path page;
+  const CommandLine report = add_report(app, folder, page);
   CommandLine remove = app.add_subcommand("remove", "takes an object out of a store");
   remove.add_option("store", folder, "object store").required();
   remove.add_option("name", name, "of the object").required();
@@ -247,6 +260,9 @@ int main(int argc, char** argv) {
       merge_stores({merged.stores.begin(), merged.stores.end()}, merged.out, merged.replace);
     } else if (list.given()) {
       print_list(store::read_store(folder), listed);
+    } else if (report.given()) {
+      write_store_report(folder, page);
+      fmt::print("{}\n", page.string());
     } else if (frame.given()) {
       require(remove_frame != !place.empty(), "expected either --at x,y,z[,qw,qx,qy,qz] or --remove");
       set_frame_in_store(folder, name, frame_name,

@@ -260,16 +260,17 @@ void teach_meshes(const TeachOptions& options) {
   write_store(made, models, groups);
   stop.release();
   build.commit();
-  name_lookalikes(models);
+  name_lookalikes(models, made);
   fmt::print("{}", teaching_summary(store::read_store(options.out), new_ids));
   fmt::print("teach_seconds {:.1f}\n", progress.seconds());
 }
 
-void name_lookalikes(const std::vector<StoreModel>& models) {
+void name_lookalikes(const std::vector<StoreModel>& models, const ObjectStore& list) {
   std::vector<NamedMesh> named;
   named.reserve(models.size());
   for (const StoreModel& it : models) named.emplace_back(it.model.name, &it.model.mesh);
   for (const Lookalike& pair : find_lookalikes(named)) log_warning("{}", describe(pair));
+  for (const std::string& line : confusion_lines(list)) log_warning("{}", line);
 }
 
 void remove_from_store(const fs::path& folder, const std::string& name) {
@@ -316,6 +317,7 @@ void calibrate_store(const fs::path& folder, const CalibrationSettings& settings
   stop.release();
   build.commit();
   progress("scores and qualities learnt");
+  name_lookalikes(models, made);
   fmt::print("{}", teaching_summary(store::read_store(folder), ids));
 }
 
