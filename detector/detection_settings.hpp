@@ -7,6 +7,7 @@
 #include "detector/features/patch_settings.hpp"
 #include "detector/forest/leaf_settings.hpp"
 #include "detector/voting/voting_settings.hpp"
+#include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/settings_fields.hpp"
 
 namespace houghstream {
@@ -33,6 +34,14 @@ void fields(const DetectionSettings& /*settings*/, const Visit& visit) {
   visit(group("voting", &S::voting));
   visit(group("evidence", &S::evidence));
   visit(group("suppression", &S::suppression));
+}
+
+/// Checks the settings as described in pipeline/base/check_settings.hpp, and the thresholds of single classes too.
+inline void check_settings(const DetectionSettings& settings, const std::string& source) {
+  check_fields(settings, source);
+  for (const auto& [name, threshold] : settings.evidence.class_thresholds)
+    require(threshold >= 0.0F && threshold <= 1.0F, "{}: evidence: threshold of '{}' {}, expected 0 to 1", source, name,
+            threshold);
 }
 
 constexpr const char* kPaperProfile = "paper";

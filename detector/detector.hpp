@@ -30,9 +30,9 @@ class Detector {
   ~Detector();
   Detector(Detector&&) noexcept;
 
-  /// Detections from settings.evidence.threshold on, strongest first, with stage times "detect.*" appended to the
-  /// frame's. Same forest, frame and settings: same result, bit for bit, for any number of threads, whatever the
-  /// workspace was used for before. Throws InputError unless the frame's images and camera agree.
+  /// Detections from EvidenceSettings::threshold_of() their class on, strongest first, with stage times "detect.*"
+  /// appended to the frame's. Same forest, frame and settings: same result, bit for bit, for any number of threads,
+  /// whatever the workspace was used for before. Throws InputError unless the frame's images and camera agree.
   /// `camera_colours`: objects that the frame's camera has seen before, of which it is learnt how it renders colours
   /// (CameraChroma), beside those of the frame.
   Detections detect(const RgbdFrame& frame, DetectorWorkspace& workspace,

@@ -152,7 +152,6 @@ std::vector<ScoredHypothesis> joined(GroupCandidates by_group) {
 void judge_again(const ScoringInput& input, int threads, std::vector<ScoredHypothesis>& candidates) {
   constexpr float kHopeless = 0.02F;  // score, if the colours were as usual
   const Forest& forest = input.index.forest();
-  const float minimum = std::min(input.settings.threshold, input.settings.candidates_from);
   parallel_for(threads, static_cast<int>(candidates.size()), [&](int i) {
     ScoredHypothesis& candidate = candidates[static_cast<std::size_t>(i)];
     Evidence& evidence = candidate.evidence;
@@ -162,6 +161,8 @@ void judge_again(const ScoringInput& input, int threads, std::vector<ScoredHypot
     if (score_as_taught(model, evidence) < kHopeless) return;
     evidence.fit = match_template(forest.views[evidence.view], evidence.view_centre, input.frame);
     candidate.detection.score = score(model, evidence);
+    const float threshold = input.settings.threshold_of(candidate.detection.class_name);
+    const float minimum = std::min(threshold, input.settings.candidates_from);
     if (candidate.detection.score < minimum) candidate.detection.rotations.clear();
   });
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "pipeline/base/settings_fields.hpp"
 
 namespace houghstream {
@@ -8,6 +11,7 @@ namespace houghstream {
 struct EvidenceSettings {
   /// Smallest score that is reported. In development_world_20 to 67 95 % of the detections from 0.60 on are true.
   float threshold = 0.65F;
+  std::map<std::string, float> class_thresholds{};  ///< threshold of one class, by name; of the others: `threshold`
   /// Weaker ones from here on are found as candidates (Detection::reported), for a pose to confirm; 1: none are.
   float candidates_from = 1.0F;
   int max_candidates = 16;  ///< the strongest; a frame full of weak maxima must not hold up the poses of the others
@@ -20,6 +24,12 @@ struct EvidenceSettings {
   /// Views are brought to the colours of the camera (camera_chroma.hpp). Scores are learnt without: rendered images
   /// have the models' own colours, and what a map leaves of them is less than what it leaves of a real camera's.
   bool learn_camera_colours = true;
+
+  /// Returns the smallest score of this class that is reported.
+  float threshold_of(const std::string& class_name) const {
+    const auto known = class_thresholds.find(class_name);
+    return known != class_thresholds.end() ? known->second : threshold;
+  }
 };
 
 template <typename Visit>

@@ -10,13 +10,13 @@ std::vector<Detection> suppress(std::vector<ScoredHypothesis>& candidates, const
   std::vector<Detection> likely;
   for (ScoredHypothesis& candidate : candidates) {
     Detection& detection = candidate.detection;
-    detection.reported = detection.score >= evidence.threshold;
+    detection.reported = detection.score >= evidence.threshold_of(detection.class_name);
     if (detection.reported || detection.score >= evidence.candidates_from) likely.push_back(std::move(detection));
   }
   std::vector<Detection> kept = suppress_overlaps(std::move(likely), suppression);
-  const auto reported = std::count_if(kept.begin(), kept.end(), [](const Detection& it) { return it.reported; });
-  const auto max_count = static_cast<std::size_t>(reported + evidence.max_candidates);
-  if (kept.size() > max_count) kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(max_count), kept.end());
+  int candidates_left = evidence.max_candidates;
+  const auto is_surplus = [&](const Detection& it) { return !it.reported && --candidates_left < 0; };
+  kept.erase(std::remove_if(kept.begin(), kept.end(), is_surplus), kept.end());
   return kept;
 }
 

@@ -8,9 +8,10 @@
 
 namespace houghstream {
 
-/// Returns the detections that are likely enough to be reported, strongest first, and behind them weaker candidates,
-/// which a pose may confirm; of overlapping ones the stronger (non-maximum suppression, Section 2). A candidate never
-/// suppresses a detection that is reported. The detections are moved out of `candidates`.
+/// Returns the detections that are likely enough to be reported, and candidates, which a pose may confirm, strongest
+/// first; of overlapping ones the stronger (non-maximum suppression, Section 2). With one threshold for all classes a
+/// candidate never suppresses a detection that is reported; with thresholds of their own, one that is much stronger
+/// does. The detections are moved out of `candidates`.
 std::vector<Detection> suppress(std::vector<ScoredHypothesis>& candidates, const EvidenceSettings& evidence,
                                 const SuppressionSettings& suppression);
 

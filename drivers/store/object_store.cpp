@@ -48,6 +48,7 @@ Eigen::Vector3f vote_centre(const nlohmann::json& entry, const std::string& wher
 
 constexpr const char* kGroupKey = "group";
 constexpr const char* kTaughtIdKey = "taught_id";
+constexpr const char* kPracticeKey = "practice";
 constexpr const char* kShapeKey = "shape_symmetries";
 constexpr const char* kRoundKey = "nearly_round";
 
@@ -121,7 +122,7 @@ StoredObject parse_object(const nlohmann::json& entry, const std::string& file) 
   const std::string where = fmt::format("{} object {}", file, object.id);
   require_known_names(entry,
                       {"id", "name", "mesh", "coloured", "views", "attitudes", "vote_centre_m", kShapeKey, kFramesKey,
-                       "quality", kGroupKey, kTaughtIdKey},
+                       "quality", kGroupKey, kTaughtIdKey, kPracticeKey},
                       where);
   require(object.id >= 1, "{}: expected an id from 1 on", where);
   object.name = text(entry, "name", where);
@@ -134,6 +135,8 @@ StoredObject parse_object(const nlohmann::json& entry, const std::string& file) 
   object.frames = object_frames(entry, where);
   if (entry.contains(kGroupKey)) object.group = json_integer(entry, kGroupKey, where);
   if (entry.contains(kTaughtIdKey)) object.taught_id = json_integer(entry, kTaughtIdKey, where);
+  if (entry.contains(kPracticeKey))
+    object.practice = practice_from_json(entry.at(kPracticeKey), fmt::format("{} '{}'", where, kPracticeKey));
   if (entry.contains("quality")) object.quality = entry.at("quality");
   require(object.quality.is_null() || object.quality.is_object(), "{}: 'quality' is {}, expected numbers by name",
           where, json_text(object.quality));
@@ -364,8 +367,11 @@ void write_store_json(const ObjectStore& store) {
   const bool has_groups = store.groups().size() > 1;
   const bool is_renumbered = std::any_of(store.objects.begin(), store.objects.end(),
                                          [](const StoredObject& object) { return object.taught_id != 0; });
+  const bool has_practice = std::any_of(store.objects.begin(), store.objects.end(),
+                                        [](const StoredObject& object) { return object.practice.has_value(); });
+  constexpr int kVersionOfGroups = 2;
   OrderedJson json;
-  json[kVersionKey] = has_groups || is_renumbered ? kStoreVersion : 1;
+  json[kVersionKey] = has_practice ? kStoreVersion : has_groups || is_renumbered ? kVersionOfGroups : 1;
   json["objects"] = OrderedJson::array();
   for (const StoredObject& object : store.objects) {
     OrderedJson entry;
@@ -381,6 +387,7 @@ void write_store_json(const ObjectStore& store) {
     if (object.shape_symmetry) entry[kShapeKey] = to_json(*object.shape_symmetry);
     if (!object.frames.empty()) entry[kFramesKey] = to_json(object.frames);
     if (!object.quality.is_null()) entry["quality"] = object.quality;
+    if (object.practice) entry[kPracticeKey] = to_json(*object.practice);
     json["objects"].push_back(entry);
   }
   for_each_number(store.tone, [&](const auto& field, float value) { json["tone"][field.name] = value; });

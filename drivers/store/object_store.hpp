@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drivers/files/json_file.hpp"
+#include "drivers/store/practice_record.hpp"
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/symmetry.hpp"
 #include "pipeline/types/brightness.hpp"
@@ -17,9 +18,9 @@
 
 namespace houghstream::store {
 
-/// Newest version of store.json; a newer one is refused. A store of one group is written as version 1, which programs
-/// read that know no groups.
-constexpr int kStoreVersion = 2;
+/// Newest version of store.json; a newer one is refused. A store is written as the oldest version that can hold it:
+/// one without records of practice as version 2, and of one group as version 1, which programs read that know neither.
+constexpr int kStoreVersion = 3;
 
 /// A vote centre is nearer to the origin than this, metres: farther away coordinates lose what a mesh shows.
 constexpr float kMaxCentre_m = 10.0F;
@@ -40,7 +41,8 @@ struct StoredObject {
   /// The number of its group: the smallest id among the group's objects; 0 in a list that was not written yet, where
   /// all are of one group.
   int group = 0;
-  int taught_id = 0;  ///< id with which it was taught, where a merge gave it another; 0: id
+  int taught_id = 0;                         ///< id with which it was taught, where a merge gave it another; 0: id
+  std::optional<PracticeRecord> practice{};  ///< unknown in a store that was last practised before it was counted
 };
 
 struct ObjectStore {

@@ -1,6 +1,7 @@
 #include "pose/verification/quality_training.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include "pipeline/base/logistic_regression.hpp"
@@ -112,6 +113,18 @@ QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples
     settings.weights.*kQualityTerms[i] = weights[static_cast<Eigen::Index>(i) + 1];
   settings.mean_of_correct = average_correct(examples, prior.mean_of_correct);
   return settings;
+}
+
+std::map<std::string, std::vector<float>> cross_fitted_qualities(const ExamplesByName& examples) {
+  const std::array<std::map<std::string, QualitySettings>, 2> without = {fit_each(of_half(1, examples)),
+                                                                         fit_each(of_half(0, examples))};
+  std::map<std::string, std::vector<float>> qualities;
+  for (const auto& [name, class_examples] : examples) {
+    std::vector<float>& here = qualities[name];
+    for (const QualityExample& example : class_examples)
+      here.push_back(shape_quality(example.terms, without[static_cast<std::size_t>(example.half)].at(name)));
+  }
+  return qualities;
 }
 
 std::map<std::string, QualitySettings> learn_qualities(const ExamplesByName& examples) {

@@ -33,6 +33,11 @@ TextureSettings fit_texture_settings(const std::vector<QualityExample>& examples
 QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples, const QualitySettings& prior,
                                      double precision);
 
+/// Returns the shape quality of each example, in their order, by settings that are fitted to the other half of all: as
+/// uncertain as that of a pose that the fit has not seen.
+std::map<std::string, std::vector<float>> cross_fitted_qualities(
+    const std::map<std::string, std::vector<QualityExample>>& examples);
+
 /// Learns the quality settings of several objects from their poses, by name, with the objects' common weights as a
 /// prior, and the presence settings from these qualities. The latter use cross-fitted qualities (those of one half from
 /// the other half), since later ones will not have been trained on their examples either.

@@ -185,9 +185,12 @@ class Arrays(WithAFinder):
         with self.assertRaisesRegex(InputError, "/nowhere") as caught:
             ObjectFinder("/nowhere")
         self.assertEqual(len(str(caught.exception).splitlines()), 1)
-        for option, value in (("threads", 0), ("threads", 65), ("threshold", -0.1), ("min_quality", 1.1), ("threshold", math.nan)):
+        wrong = (("threads", 0), ("threads", 65), ("threshold", -0.1), ("min_quality", 1.1), ("threshold", math.nan))
+        for option, value in (*wrong, ("precision", 1), ("precision", math.nan)):
             with self.assertRaisesRegex(InputError, f"{option}: found {value}, expected"):
                 ObjectFinder(self.store, **{option: value})
+        with self.assertRaisesRegex(InputError, "precision: found a threshold or min_quality beside it"):
+            ObjectFinder(self.store, precision=0.9, threshold=0.5)
 
 
 class Threads(WithAFinder):

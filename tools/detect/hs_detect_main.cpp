@@ -15,6 +15,7 @@
 #include "tools/common/tool_main.hpp"
 #include "tools/finder/search_arguments.hpp"
 #include "tools/finder/stored_forest.hpp"
+#include "tools/finder/stored_precision.hpp"
 
 namespace {
 
@@ -38,11 +39,6 @@ struct ReadyDetector {
   mutable DetectorWorkspace workspace;
 };
 
-std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& store, const SearchOptions& search,
-                                                   const RgbdFrame& made_up) {
-  return std::make_shared<const ReadyDetector>(make_detector(load_store_forests(store), search), made_up);
-}
-
 /// Options of the command line.
 struct DetectOptions {
   std::string objects;
@@ -52,8 +48,15 @@ struct DetectOptions {
   bool replace = false;                // an output log that is there
   bool ignore_camera_colours = false;  // as hs-pose has learnt them
   SearchOptions search;
+  std::optional<double> precision;  // chooses the thresholds of a store's objects
   DetectProcessOptions process;
 };
+
+std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& store, const DetectOptions& options,
+                                                   const RgbdFrame& made_up) {
+  const SearchOptions search = with_precision(options.search, store, options.precision);
+  return std::make_shared<const ReadyDetector>(make_detector(load_store_forests(store), search), made_up);
+}
 
 /// Looks by a budget come at leisure: who follows objects from frame to frame goes first. Of all threads that are
 /// started from here on.
@@ -97,9 +100,8 @@ void run_with_forest(const DetectOptions& options, const KnownColours& colours) 
 /// A store may change while frames go by: each frame is searched by what is there when its turn comes.
 void run_with_store(DetectOptions options, const KnownColours& colours) {
   const std::shared_future<RgbdFrame> made_up = start_warm_up();
-  store::StoreWatcher<ReadyDetector> watch(options.objects, [&](const store::ObjectStore& store) {
-    return load_detector(store, options.search, made_up.get());
-  });
+  store::StoreWatcher<ReadyDetector> watch(
+      options.objects, [&](const store::ObjectStore& store) { return load_detector(store, options, made_up.get()); });
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   bus.is_log() ? watch.require_store() : watch.follow();
@@ -123,6 +125,10 @@ int main(int argc, char** argv) {
   app.add_option("--forest", options.forest_file, "forest file of hs-train, instead of --objects");
   app.add_option("--camera", camera, kCameraOptionHelp);
   add_search_options(app, options.search);
+  add_precision_option(app, options.precision,
+                       "with --objects: what is reported by its score shall be right in this fraction of the cases; "
+                       "each object has the least score that its practice needed for it")
+      .excludes(app.get_option("--threshold"));
   options.search.candidates_from = kCandidatesFrom;
   app.add_option("--candidates", options.search.candidates_from,
                  "weaker detections from this score on are handed to hs-pose, which reports those whose pose is right; "
@@ -148,6 +154,7 @@ int main(int argc, char** argv) {
     if (!camera.empty()) options.process.camera = camera_of_option(camera);
     if (options.process.max_rate_hz > 0.0) give_way();
     require(options.forest_file.empty() != options.objects.empty(), "expected either --objects STORE or --forest FILE");
+    require(!options.precision || !options.objects.empty(), "--precision goes with --objects, whose practice it reads");
     require_output_log(options.url, options.output_log);
     for (const std::string& input : {options.forest_file, options.objects})
       require_other_file(options.output_log, input);

@@ -18,6 +18,7 @@
 #include "tools/finder/search_arguments.hpp"
 #include "tools/finder/searched_objects.hpp"
 #include "tools/finder/stored_forest.hpp"
+#include "tools/finder/stored_precision.hpp"
 #include "tools/finder/stored_quality.hpp"
 
 namespace houghstream {
@@ -104,6 +105,7 @@ float search_in_process(const EvaluateOptions& options, std::vector<Forest> grou
                         const std::map<std::string, Mesh>& meshes, std::vector<OpenScene>& scenes) {
   PublishingRules rules;
   rules.score = options.rules.operating_score;
+  rules.class_scores = options.rules.class_operating_scores;
   if (!options.operating_score) rules.candidates_from = kCandidatesFrom;
   rules.pose = options.pose;
   if (!options.known.models.empty()) rules.pose.model.symmetries = load_class_symmetries(options.known.models);
@@ -165,7 +167,7 @@ void run(EvaluateOptions options) {
   if (!options.log.empty()) add_log(options, groups.empty(), truth, scenes.front());
   choose_frames(options, scenes);
   if (options.log.empty()) {
-    options.rules.min_quality = options.pose.quality.min_quality;
+    if (!options.rules.precision) options.rules.min_quality = options.pose.quality.min_quality;
     options.rules.ranked_from = search_in_process(options, std::move(groups), meshes, scenes);
   }
   const SceneFigures figures =
@@ -214,6 +216,12 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
       .range(range_of(&EvidenceSettings::threshold));
   add_min_quality_option(app, options.min_quality)
       .description("in-process: poses of lower quality are withheld; default: as by hs-pose");
+  add_precision_option(
+      app, options.rules.precision,
+      "in-process, with --objects: score and quality of each object are those that its practice needed "
+      "for this precision, as of hs-detect and hs-pose")
+      .excludes(app.get_option("--operating-score"))
+      .excludes(app.get_option("--min-quality"));
   app.add_flag("--processed-only", rules.processed_only, "skipped frames are left out, not missed");
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   add_search_options(app, options.search);
@@ -227,7 +235,13 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
 /// told otherwise.
 static EvaluateOptions with_store(EvaluateOptions options) {
   options.rules.operating_score = options.operating_score.value_or(EvidenceSettings{}.threshold);
-  options.pose = pose_settings_of(options.pose, resolve_store(options.known), options.min_quality);
+  const std::optional<store::ObjectStore> store = resolve_store(options.known);
+  options.pose = pose_settings_of(options.pose, store, options.min_quality);
+  if (!options.rules.precision) return options;
+  require(store.has_value() && options.log.empty(),
+          "--precision goes with --objects, whose practice it reads, and without --log");
+  options.rules.class_operating_scores = with_precision({}, *store, options.rules.precision).class_thresholds;
+  set_precision(*options.rules.precision, *store, options.pose);
   return options;
 }
 

@@ -111,14 +111,15 @@ Evaluation evaluate(const std::vector<EvaluatedFrame>& all_frames, const std::ve
   int required = 0;
   for (const std::string& name : class_names) {
     out.classes.push_back(evaluate_class(frames, name, rules.detection));
-    out.operating[name] = {count_reported(out.classes.back(), MatchOutcome::kTruePositive, rules.operating_score),
-                           count_reported(out.classes.back(), MatchOutcome::kFalsePositive, rules.operating_score)};
+    const float min_score = rules.operating_score_of(name);
+    out.operating[name] = {count_reported(out.classes.back(), MatchOutcome::kTruePositive, min_score),
+                           count_reported(out.classes.back(), MatchOutcome::kFalsePositive, min_score)};
     required += out.classes.back().required;
   }
   out.detection_calibration = calibrate(score_predictions(out.classes), required);
   for (const std::string& name : detected_classes(frames)) {
     const ClassResult result = evaluate_class(frames, name, rules.detection);
-    out.false_detections += count_reported(result, MatchOutcome::kFalsePositive, rules.operating_score).all();
+    out.false_detections += count_reported(result, MatchOutcome::kFalsePositive, rules.operating_score_of(name)).all();
   }
   evaluate_poses(frames, models, rules, out);
   score_qualities(frames, models, out);

@@ -17,11 +17,19 @@ struct EvaluationRules {
   double pose_min_visible = 0.5;  ///< poses of less visible objects do not enter the recall
   /// Precision, recall and false detections count detections from this score on, and candidates that have a pose.
   float operating_score = 0.0F;
+  std::map<std::string, float> class_operating_scores{};  ///< of single classes, by name; of the others: the above
   /// Leaves skipped frames out; else their objects, and the poses of what was found there, count as missed.
   bool processed_only = false;
   /// Curves and AUC know detections from this score on; nothing where others decided.
   std::optional<float> ranked_from;
-  std::optional<float> min_quality;  ///< poses of lower quality were withheld; nothing where others decided that
+  std::optional<float> min_quality;   ///< poses of lower quality were withheld; nothing where others decided that
+  std::optional<double> precision{};  ///< precision for which scores and qualities of the classes were chosen
+
+  /// Returns the operating score of this class.
+  float operating_score_of(const std::string& class_name) const {
+    const auto known = class_operating_scores.find(class_name);
+    return known != class_operating_scores.end() ? known->second : operating_score;
+  }
 };
 
 /// Detections of one class at the operating score.

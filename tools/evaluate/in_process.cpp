@@ -22,35 +22,61 @@ PoseEstimator make_estimator(const std::map<std::string, Mesh>& models, PoseSett
 DetectionSettings finding_all(DetectionSettings settings, const PublishingRules& rules) {
   float& threshold = settings.evidence.threshold;
   threshold = std::min({threshold, rules.score, rules.candidates_from});
+  for (const auto& [name, score] : rules.class_scores) threshold = std::min(threshold, score);
+  settings.evidence.class_thresholds.clear();
   return settings;
 }
 
 DetectionSettings as_published(DetectionSettings settings, const PublishingRules& rules) {
   settings.evidence.threshold = rules.score;
+  settings.evidence.class_thresholds = rules.class_scores;
   settings.evidence.candidates_from = rules.candidates_from;
   return settings;
 }
 
-/// Returns the detections that would be sent to hs-pose: the first ones, which are the strongest.
-Detections sent_of(Detections found, const PublishingRules& rules, int max_candidates) {
-  std::vector<Detection>& all = found.detections;
-  const auto sent = std::find_if(all.begin(), all.end(), [&](const Detection& it) {
-    return it.score < rules.score && (it.score < rules.candidates_from || --max_candidates < 0);
-  });
-  all.erase(sent, all.end());
-  return found;
+/// Some of the detections of a frame, and the index of each among all.
+struct DetectionSubset {
+  Detections detections;
+  std::vector<std::size_t> places;
+
+  void add(const Detections& all, std::size_t index) {
+    detections.detections.push_back(all.detections[index]);
+    places.push_back(index);
+  }
+};
+
+/// Returns the detections that would be sent to hs-pose: those that are reported, and the strongest candidates.
+DetectionSubset sent_of(const Detections& all, const PublishingRules& rules, int max_candidates) {
+  DetectionSubset sent{{all.frame, {}, all.stages}, {}};
+  for (std::size_t i = 0; i < all.detections.size(); ++i) {
+    const Detection& it = all.detections[i];
+    if (it.reported || (it.score >= rules.candidates_from && --max_candidates >= 0)) sent.add(all, i);
+  }
+  return sent;
 }
 
-/// Marks the detections behind the published ones as unpublished.
-void add_unpublished(const Detections& all, ObjectPoses& published) {
-  for (std::size_t i = published.poses.size(); i < all.detections.size(); ++i) {
-    ObjectPose& pose = published.poses.emplace_back();
+/// Puts the poses of some detections in their places among those of all.
+void place_poses(std::vector<ObjectPose> found, const std::vector<std::size_t>& places, ObjectPoses& poses) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    found[i].detection_index = static_cast<int>(places[i]);
+    poses.poses[places[i]] = std::move(found[i]);
+  }
+}
+
+/// Returns the published poses, in the places of their detections, among poses that say that the others' scores are too
+/// low to be sent.
+ObjectPoses with_unpublished(const Detections& all, ObjectPoses published, const std::vector<std::size_t>& places) {
+  ObjectPoses poses{published.frame, {}, published.stages};
+  for (std::size_t i = 0; i < all.detections.size(); ++i) {
+    ObjectPose& pose = poses.poses.emplace_back();
     pose.class_id = all.detections[i].class_id;
     pose.class_name = all.detections[i].class_name;
     pose.detection_score = all.detections[i].score;
     pose.detection_index = static_cast<int>(i);
     pose.status = PoseStatus::kLowScore;
   }
+  place_poses(std::move(published.poses), places, poses);
+  return poses;
 }
 
 }  // namespace
@@ -81,19 +107,12 @@ struct InProcess::State {
 
   /// Returns the published poses, and those of the detections that have none of these.
   ObjectPoses estimate_all(const RgbdFrame& frame, const Detections& all, const ObjectPoses& published) const {
-    Detections open{all.frame, {}, {}};
-    std::vector<std::size_t> places;
+    DetectionSubset open{{all.frame, {}, {}}, {}};
     for (std::size_t i = 0; i < all.detections.size(); ++i) {
-      if (published.poses[i].T_camera_object) continue;
-      open.detections.push_back(all.detections[i]);
-      places.push_back(i);
+      if (!published.poses[i].T_camera_object) open.add(all, i);
     }
     ObjectPoses poses = published;
-    ObjectPoses found = unfiltered.estimate(frame, open);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      found.poses[i].detection_index = static_cast<int>(places[i]);
-      poses.poses[places[i]] = std::move(found.poses[i]);
-    }
+    place_poses(unfiltered.estimate(frame, open.detections).poses, open.places, poses);
     return poses;
   }
 };
@@ -127,10 +146,11 @@ void InProcess::run(const BopScene& scene, std::vector<EvaluatedFrame>& frames) 
     const RgbdFrame frame = scene.read_frame(out.image);
     Detections all = state_->detect(frame);
     const PublishingRules& rules = state_->rules;
-    for (Detection& detection : all.detections) detection.reported = detection.score >= rules.score;
+    for (Detection& detection : all.detections)
+      detection.reported = detection.score >= rules.score_of(detection.class_name);
     if (state_->has_models) {
-      ObjectPoses published = state_->estimator.estimate(frame, sent_of(all, rules, state_->max_candidates));
-      add_unpublished(all, published);
+      const DetectionSubset sent = sent_of(all, rules, state_->max_candidates);
+      ObjectPoses published = with_unpublished(all, state_->estimator.estimate(frame, sent.detections), sent.places);
       out.unfiltered_poses = state_->estimate_all(frame, all, published);
       out.poses = std::move(published);
     }

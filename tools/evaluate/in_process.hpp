@@ -28,6 +28,13 @@ struct PublishingRules {
   float score = 0.0F;            ///< lowest score of a detection that is reported by itself
   float candidates_from = 1.0F;  ///< see EvidenceSettings
   PoseSettings pose = {};        ///< score from which poses are estimated, and quality from which they are published
+  std::map<std::string, float> class_scores = {};  ///< `score` of single classes, by name
+
+  /// Returns the lowest score of a detection of this class that is reported by itself.
+  float score_of(const std::string& class_name) const {
+    const auto known = class_scores.find(class_name);
+    return known != class_scores.end() ? known->second : score;
+  }
 };
 
 /// Detects, and estimates poses where there are models, without LCM.

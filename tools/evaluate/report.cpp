@@ -32,14 +32,19 @@ OrderedJson number_or_null(const std::optional<float>& value) {
 }
 
 OrderedJson rules_json(const EvaluationRules& rules) {
-  return {{"min_iou", rules.detection.min_iou},
-          {"min_visible", rules.detection.min_visible},
-          {"max_per_class", rules.detection.max_per_class},
-          {"operating_score", number(static_cast<double>(rules.operating_score))},
-          {"pose_min_visible", rules.pose_min_visible},
-          {"ranked_from", number_or_null(rules.ranked_from)},
-          {"min_quality", number_or_null(rules.min_quality)},
-          {"skipped_frames", rules.processed_only ? "left out" : "missed"}};
+  OrderedJson json = {{"min_iou", rules.detection.min_iou},
+                      {"min_visible", rules.detection.min_visible},
+                      {"max_per_class", rules.detection.max_per_class},
+                      {"operating_score", number(static_cast<double>(rules.operating_score))},
+                      {"pose_min_visible", rules.pose_min_visible},
+                      {"ranked_from", number_or_null(rules.ranked_from)},
+                      {"min_quality", number_or_null(rules.min_quality)},
+                      {"skipped_frames", rules.processed_only ? "left out" : "missed"}};
+  if (!rules.precision) return json;
+  json["precision"] = number(*rules.precision);
+  for (const auto& [name, score] : rules.class_operating_scores)
+    json["operating_scores"][name] = number(static_cast<double>(score));
+  return json;
 }
 
 void add_detection_figures(const Evaluation& evaluation, OrderedJson& json) {
@@ -262,8 +267,9 @@ std::string summary_table(const Evaluation& evaluation, const EvaluationRules& r
                         evaluation.followed->frames, evaluation.followed->frames_missed, all.published, all.correct,
                         all.correct_up_to_shape, all.required);
   }
-  text += fmt::format("false detections {} from score {} on, or confirmed by a pose\n", evaluation.false_detections,
-                      rules.operating_score);
+  const std::string from = rules.precision ? fmt::format("the scores for precision {}", *rules.precision)
+                                           : fmt::format("score {}", rules.operating_score);
+  text += fmt::format("false detections {} from {} on, or confirmed by a pose\n", evaluation.false_detections, from);
   for (const auto& [stage, median] : evaluation.stage_ms) text += fmt::format("{:<28}{:>8.2f} ms\n", stage, median);
   return text;
 }

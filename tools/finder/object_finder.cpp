@@ -1,6 +1,7 @@
 #include "tools/finder/object_finder.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "detector/stages.hpp"
 #include "drivers/store/object_store.hpp"
@@ -9,6 +10,7 @@
 #include "pose/pose_estimator.hpp"
 #include "tools/finder/search_options.hpp"
 #include "tools/finder/stored_forest.hpp"
+#include "tools/finder/stored_precision.hpp"
 #include "tools/finder/stored_quality.hpp"
 
 namespace houghstream {
@@ -19,13 +21,21 @@ Detector make_detector(const store::ObjectStore& store, const FinderOptions& opt
   search.threads = options.threads;
   search.threshold = options.threshold;
   search.candidates_from = kCandidatesFrom;
-  return detector_of(load_store_forests(store), search);
+  return detector_of(load_store_forests(store), with_precision(search, store, options.precision));
 }
 
 PoseEstimator make_estimator(const store::ObjectStore& store, const FinderOptions& options) {
   PoseSettings common;
   common.threads = options.threads;
-  return PoseEstimator(store::load_store_meshes(store), pose_settings_of(common, store, options.min_quality));
+  PoseSettings settings = pose_settings_of(common, store, options.min_quality);
+  if (options.precision) set_precision(*options.precision, store, settings);
+  return PoseEstimator(store::load_store_meshes(store), std::move(settings));
+}
+
+const FinderOptions& checked(const FinderOptions& options) {
+  require(!options.precision || (!options.threshold && !options.min_quality),
+          "precision beside threshold or min_quality, expected it in their place");
+  return options;
 }
 
 std::vector<FinderObject> objects_of(const PoseEstimator& estimator) {
@@ -50,7 +60,7 @@ struct ObjectFinder::State {
 };
 
 ObjectFinder::ObjectFinder(const std::filesystem::path& store, const FinderOptions& options)
-    : state_(std::make_unique<State>(store::read_store(store), options)) {}
+    : state_(std::make_unique<State>(store::read_store(store), checked(options))) {}
 ObjectFinder::~ObjectFinder() = default;
 ObjectFinder::ObjectFinder(ObjectFinder&&) noexcept = default;
 

@@ -18,6 +18,9 @@ struct FinderOptions {
   int threads = 2;                   ///< any number gives the same result
   std::optional<float> threshold;    ///< smallest score that is reported, 0 to 1; default: that of hs-detect
   std::optional<float> min_quality;  ///< smallest quality of a pose that is valid, 0 to 1; default: that of hs-pose
+  /// Instead of both: fraction of what is reported that is to be right, 0 to below 1. Each object has the least score
+  /// and quality that its practice (hs-teach) needed for it.
+  std::optional<double> precision = std::nullopt;
 };
 
 /// Objects of one frame. Both lists are of the same frame; poses[i] belongs to detections[i]. The object is found where
@@ -37,7 +40,8 @@ struct FinderObject {
 /// hs-detect and hs-pose do in a stream. Calls of one finder follow one another; several threads take one each.
 class ObjectFinder {
  public:
-  /// Throws InputError with one line where the store is none, half written or of another version.
+  /// Throws InputError with one line where the store is none, half written or of another version; for a precision
+  /// beside a threshold or quality, out of its range, or of which the store's practice knows nothing.
   explicit ObjectFinder(const std::filesystem::path& store, const FinderOptions& options = {});
   ~ObjectFinder();
   ObjectFinder(ObjectFinder&&) noexcept;

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "drivers/store/practice_record.hpp"
 #include "pipeline/base/check_settings.hpp"
 #include "pose/verification/quality.hpp"
 #include "tools/common/command_line.hpp"
@@ -32,6 +33,12 @@ inline CommandOption add_min_mass_option(CommandLine& app, SearchOptions& option
 
 inline CommandOption add_min_quality_option(CommandLine& app, std::optional<float>& min_quality) {
   return app.add_option("--min-quality", min_quality).range(range_of(&QualitySettings::min_quality));
+}
+
+/// Adds the option by which an object store's own practice chooses thresholds.
+inline CommandOption add_precision_option(CommandLine& app, std::optional<double>& precision,
+                                          const std::string& words) {
+  return app.add_option("--precision", precision, words).range(0.0, store::kMaxPrecision);
 }
 
 }  // namespace houghstream

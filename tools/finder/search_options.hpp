@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,7 @@ constexpr float kCandidatesFrom = 0.2F;
 struct SearchOptions {
   std::optional<int> stride;
   std::optional<float> threshold;
+  std::map<std::string, float> class_thresholds{};  ///< of single classes, by name
   std::optional<float> min_mass_fraction;
   float candidates_from = 1.0F;  ///< none
   bool learn_camera_colours = true;
@@ -28,6 +31,7 @@ struct SearchOptions {
     if (stride) settings.spacing.metres = 0.0F;  // what was asked for is a patch at every so many-th pixel
     settings.spacing.stride = stride.value_or(settings.spacing.stride);
     settings.evidence.threshold = threshold.value_or(settings.evidence.threshold);
+    settings.evidence.class_thresholds = class_thresholds;
     settings.evidence.candidates_from = candidates_from;
     settings.evidence.learn_camera_colours = learn_camera_colours;
     settings.voting.min_mass_fraction = min_mass_fraction.value_or(settings.voting.min_mass_fraction);

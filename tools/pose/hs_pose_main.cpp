@@ -16,6 +16,7 @@
 #include "tools/common/mesh_size.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/finder/search_arguments.hpp"
+#include "tools/finder/stored_precision.hpp"
 #include "tools/finder/stored_quality.hpp"
 #include "tools/pose/model_cache.hpp"
 
@@ -34,6 +35,7 @@ struct PoseOptions {
   bool replace = false;  // an output log that is there
   PoseSettings settings;
   std::optional<float> min_quality;
+  std::optional<double> precision;  // chooses the qualities of a store's objects
   bool follow = false;
   PoseProcessOptions process;
 };
@@ -167,7 +169,8 @@ void run_with_store(PoseOptions options) {
   const std::shared_future<RgbdFrame> made_up = start_warm_up();
   const int threads = warm_up_threads(options.settings.threads);  // for the first store; later ones are loaded serially
   const auto load = [&](const store::ObjectStore& store) {
-    const PoseSettings settings = pose_settings_of(options.settings, store, options.min_quality);
+    PoseSettings settings = pose_settings_of(options.settings, store, options.min_quality);
+    if (options.precision) set_precision(*options.precision, store, settings);
     const ModelFiles files{store.folder, [&] { return store::mesh_stamp(store); },
                            [&] { return store::load_store_meshes(store, threads); }};
     return std::make_shared<const StoredEstimator>(StoredEstimator{
@@ -209,6 +212,10 @@ int main(int argc, char** argv) {
           fmt::format("poses that are right with a lower probability are withheld, and it is said why; default: {}, of "
                       "a store's objects {}, of candidates of these {}",
                       options.settings.quality.min_quality, kStoreQuality, kStoreCandidateQuality));
+  add_precision_option(app, options.precision,
+                       "with --objects: poses that are published shall be right, up to what the shape cannot tell, in "
+                       "this fraction of the cases; each object has the least quality that its practice needed for it")
+      .excludes(app.get_option("--min-quality"));
   app.add_flag(
       "--follow", options.follow,
       "follow known objects from frame to frame: poses for each frame, at once, whether detections come or not");
@@ -225,6 +232,7 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     if (!camera.empty()) options.process.camera = camera_of_option(camera);
     require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
+    require(!options.precision || !options.objects.empty(), "--precision goes with --objects, whose practice it reads");
     require_output_log(options.url, options.output_log);
     for (const std::string& input : {options.models, options.objects}) require_other_file(options.output_log, input);
     options.objects.empty() ? run_with_models(options) : run_with_store(options);

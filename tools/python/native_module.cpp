@@ -73,12 +73,13 @@ class NativeFinder {
 };
 
 std::unique_ptr<NativeFinder> make_finder(const std::string& store, int threads, std::optional<float> threshold,
-                                          std::optional<float> min_quality) {
+                                          std::optional<float> min_quality, std::optional<double> precision) {
   const py::gil_scoped_release release;
   FinderOptions options;
   options.threads = threads;
   options.threshold = threshold;
   options.min_quality = min_quality;
+  options.precision = precision;
   return std::make_unique<NativeFinder>(store, options);
 }
 
@@ -118,7 +119,8 @@ PYBIND11_MODULE(_native, module) {
   using namespace houghstream;
   py::register_exception<InputError>(module, "InputError", PyExc_ValueError);
   py::class_<NativeFinder>(module, "Finder")
-      .def(py::init(&make_finder), py::arg("store"), py::arg("threads"), py::arg("threshold"), py::arg("min_quality"))
+      .def(py::init(&make_finder), py::arg("store"), py::arg("threads"), py::arg("threshold"), py::arg("min_quality"),
+           py::arg("precision"))
       .def("find", &NativeFinder::find, py::arg("colour"), py::arg("depth"), py::arg("camera"), py::arg("is_bgr"))
       .def("names", &NativeFinder::names);
   py::class_<ResultListener>(module, "Listener")

@@ -5,6 +5,7 @@
 #include <optional>
 #include <thread>
 
+#include "drivers/store/practice_record.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
@@ -37,6 +38,12 @@ void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
   app.add_option("-c,--channel", options.channel, "channel of the frames").capture_default_str();
   app.add_option("--threshold", options.threshold, "smallest score that is reported").range(0.0, 1.0);
   app.add_option("--min-quality", options.min_quality, "smallest quality of a valid pose").range(0.0, 1.0);
+  app.add_option("--precision", options.precision,
+                 "with --objects: what is reported shall be right in this fraction of the cases; each object has the "
+                 "least score and quality that its practice needed for it")
+      .range(0.0, store::kMaxPrecision)
+      .excludes(app.get_option("--threshold"))
+      .excludes(app.get_option("--min-quality"));
   app.add_clearing_flag("--no-view", options.view, "no window");
   app.add_flag("--follow", options.follow,
                "poses for each frame at once: hs-pose --follow, and hs-detect --looks-per-second 5 unless "
@@ -105,6 +112,7 @@ void await_last_frames(StatusEar& ear, const DrainMonitor& last_frames) {
 
 void run_stream(StreamOptions options, const Pace& pace) {
   require(options.objects.empty() != options.forest.empty(), "expected either --objects STORE or --forest FILE");
+  require(!options.precision || !options.objects.empty(), "--precision goes with --objects, whose practice it reads");
   require(options.objects.empty() || options.models.empty(), "--models goes with --forest; --objects has its own");
   options.executables = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   if (options.view && options.view_options.empty() && !has_display()) {

@@ -138,6 +138,7 @@ std::vector<ChildPlan> plan_stream(const StreamOptions& given) {
   const Words viewed = posed;
   add_number("--threshold", options.threshold, detected);
   add_number("--min-quality", options.min_quality, posed);
+  for (Words* words : {&detected, &posed}) add_number("--precision", options.precision, *words);
   if (!options.cameras.empty()) tracked.insert(tracked.end(), {"--cameras", options.cameras});
   std::vector<ChildPlan> plans;
   plans.push_back(plan(options, "detect", detected, looks + options.detect_options));

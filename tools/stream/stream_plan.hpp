@@ -26,6 +26,7 @@ struct StreamOptions {
   std::string cameras;                ///< camera poses of hs-track, a file
   std::optional<double> threshold;    ///< minimum score that hs-detect reports
   std::optional<double> min_quality;  ///< minimum quality of poses that hs-pose publishes
+  std::optional<double> precision;    ///< instead of both, with a store: what hs-detect and hs-pose choose them for
   std::string channel = "OPENNI_FRAME";
   std::string lcm_url;  ///< "" = LCM's default
   bool view = true;

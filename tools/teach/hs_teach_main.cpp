@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <sstream>
 
 #include "pipeline/base/checks.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/teach/mesh/store_merge.hpp"
 #include "tools/teach/mesh/store_rename.hpp"
+#include "tools/teach/mesh/store_report.hpp"
 #include "tools/teach/mesh/store_summary.hpp"
 #include "tools/teach/mesh/teach_jobs.hpp"
 #include "tools/teach/show/show_jobs.hpp"
@@ -92,6 +94,39 @@ CommandLine add_merge(CommandLine& app, MergeArguments& merged) {
                  "the new store takes the place of the one that is there, when all is done");
   merge.add_example("hs-teach merge a.store b.store --out household.store");
   return merge;
+}
+
+/// Arguments of hs-teach list.
+struct ListArguments {
+  bool json = false;
+  std::optional<double> precision;
+};
+
+CommandLine add_list(CommandLine& app, std::filesystem::path& folder, ListArguments& listed) {
+  CommandLine list = app.add_subcommand("list", "the objects of a store");
+  list.add_option("store", folder, "object store").required();
+  list.add_flag("--json", listed.json, "print them as JSON, for scripts");
+  list.add_option("--precision", listed.precision,
+                  "also the score and the quality from which on detections and poses of each object were right in this "
+                  "fraction of the cases in its practice, and the recall to expect")
+      .range(0.0, store::kMaxPrecision);
+  list.add_example("hs-teach list my.store");
+  return list;
+}
+
+void print_list(const store::ObjectStore& store, const ListArguments& listed) {
+  if (listed.json) print_json(store_json(store, listed.precision));
+  if (!listed.json) fmt::print("{}", store_text(store, listed.precision));
+}
+
+CommandLine add_report(CommandLine& app, std::filesystem::path& folder, std::filesystem::path& page) {
+  CommandLine report = app.add_subcommand("report", "writes a page of a store, for a browser");
+  report.add_option("store", folder, "object store").required();
+  page = "report.html";
+  report.add_option("--out", page, "HTML file to write; an earlier page of this kind is replaced")
+      .capture_default_str();
+  report.add_example("hs-teach report my.store --out my_store.html");
+  return report;
 }
 
 cv::Rect parse_box(const std::string& text) {
@@ -180,11 +215,10 @@ int main(int argc, char** argv) {
   const CommandLine show = add_show(app, shown, words);
   MergeArguments merged;
   const CommandLine merge = add_merge(app, merged);
-  CommandLine list = app.add_subcommand("list", "the objects of a store");
-  list.add_option("store", folder, "object store").required();
-  bool json = false;
-  list.add_flag("--json", json, "print them as JSON, for scripts");
-  list.add_example("hs-teach list my.store");
+  ListArguments listed;
+  const CommandLine list = add_list(app, folder, listed);
+  std::filesystem::path page;
+  const CommandLine report = add_report(app, folder, page);
   CommandLine remove = app.add_subcommand("remove", "takes an object out of a store");
   remove.add_option("store", folder, "object store").required();
   remove.add_option("name", name, "of the object").required();
@@ -225,9 +259,10 @@ int main(int argc, char** argv) {
     } else if (merge.given()) {
       merge_stores({merged.stores.begin(), merged.stores.end()}, merged.out, merged.replace);
     } else if (list.given()) {
-      const store::ObjectStore listed = store::read_store(folder);
-      if (json) print_json(store_json(listed));
-      if (!json) fmt::print("{}", store_text(listed));
+      print_list(store::read_store(folder), listed);
+    } else if (report.given()) {
+      write_store_report(folder, page);
+      fmt::print("{}\n", page.string());
     } else if (frame.given()) {
       require(remove_frame != !place.empty(), "expected either --at x,y,z[,qw,qx,qy,qz] or --remove");
       set_frame_in_store(folder, name, frame_name,

@@ -94,7 +94,7 @@ TEST(ObjectStore, AHalfWrittenOneIsRefused) {
 TEST(ObjectStore, AnotherVersionIsRefused) {
   const fs::path folder = whole_store("store_version");
   replace_in_file(folder / "store.json", "\"houghstream_store\": 1", "\"houghstream_store\": 7");
-  expect_says(error_of_reading(folder), {"store.json", "version 7", "expected at most 2", "newer than this program"});
+  expect_says(error_of_reading(folder), {"store.json", "version 7", "expected at most 3", "newer than this program"});
 }
 
 /// The mug and the brick, each in a group of its own.
@@ -119,6 +119,26 @@ TEST(ObjectStore, OneOfOneGroupIsWrittenAsBeforeThereWereGroups) {
   EXPECT_EQ(store.forest_file(2), folder / "forest");
   write_store_json(store);
   EXPECT_EQ(read_text(folder / "store.json"), text);
+}
+
+TEST(ObjectStore, PracticeIsOfANewerVersionAndStaysWithItsObject) {
+  const fs::path folder = whole_store("store_practice");
+  ObjectStore store = read_store(folder);
+  EXPECT_FALSE(store.objects[0].practice.has_value()) << "which older programs have written";
+  store.objects[1].practice = PracticeRecord();
+  store.objects[1].practice->shown = 7;
+  store.objects[1].practice->scores = {{0.5, 6, 1}};
+  write_store_json(store);
+  const std::string text = read_text(folder / "store.json");
+  EXPECT_NE(text.find("\"houghstream_store\": 3,"), std::string::npos);
+  const ObjectStore read = read_store(folder);
+  EXPECT_FALSE(read.objects[0].practice.has_value());
+  ASSERT_TRUE(read.objects[1].practice.has_value());
+  EXPECT_EQ(read.objects[1].practice->scores.at(0).right, 6);
+  write_store_json(read);
+  EXPECT_EQ(read_text(folder / "store.json"), text);
+  replace_in_file(folder / "store.json", "\"shown\": 7", "\"shown\": -7");
+  expect_says(error_of_reading(folder), {"store.json object 5 'practice': 'shown' is -7, expected a count"});
 }
 
 TEST(ObjectStore, GroupsHaveAForestEach) {

@@ -206,6 +206,26 @@ TEST(EvaluationReport, TheRulesAreFollowed) {
   EXPECT_NE(summary_table(evaluation, rules).find("from score 0.25 on"), std::string::npos);
 }
 
+TEST(EvaluationReport, WithAPrecisionEachClassCountsFromItsOwnScoreOn) {
+  std::vector<EvaluatedFrame> frames = two_frames();
+  frames[0].detections->detections.push_back(detect("mug", {200, 200, 50, 50}, 0.6F));
+  EvaluationRules rules;
+  rules.operating_score = 0.5F;
+  EXPECT_EQ(evaluate(frames, {"mug"}, {}, rules).false_detections, 1);
+  EXPECT_FALSE(summary_json(evaluate(frames, {"mug"}, {}, rules), rules, {})["rules"].contains("operating_scores"));
+  rules.precision = 0.98;
+  rules.class_operating_scores = {{"mug", 0.75F}};
+  const Evaluation evaluation = evaluate(frames, {"mug"}, {}, rules);
+  EXPECT_EQ(evaluation.false_detections, 0);
+  EXPECT_EQ(evaluation.operating.at("mug").correct.all(), 1);
+  EXPECT_EQ(evaluation.operating.at("mug").incorrect.all(), 0);
+  const OrderedJson json = summary_json(evaluation, rules, {})["rules"];
+  EXPECT_EQ(json["precision"], 0.98);
+  EXPECT_EQ(json["operating_scores"]["mug"], 0.75);
+  EXPECT_NE(summary_table(evaluation, rules).find("false detections 0 from the scores for precision 0.98 on"),
+            std::string::npos);
+}
+
 TEST(EvaluationReport, FilesAreWrittenAsStated) {
   const EvaluationRules rules;
   const Evaluation evaluation = evaluate(two_frames(), {"mug"}, kModels, rules);

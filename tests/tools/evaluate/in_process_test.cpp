@@ -139,6 +139,29 @@ TEST(InProcess, CandidatesHavePosesThatArePublishedByALimitOfTheirOwn) {
   }
 }
 
+TEST(InProcess, AClassIsReportedFromItsOwnScoreOn) {
+  const BopScene scene = two_tiles("in_process_classes");
+  PublishingRules rules{0.5F, 0.0F, {}};
+  rules.class_scores = {{"stripes", 1.0F}};
+  rules.pose.min_score = 0.0F;
+  set_min_quality(0.0F, rules.pose);
+  rules.pose.quality.min_candidate_quality = 1.0F;
+  for (const EvaluatedFrame& frame : run(scene, 0.5F, rules)) {
+    int rings = 0;
+    int stripes = 0;
+    for (std::size_t i = 0; i < frame.detections->detections.size(); ++i) {
+      const Detection& detection = frame.detections->detections[i];
+      ASSERT_EQ(frame.poses->poses[i].class_name, detection.class_name) << "each pose in its detection's place";
+      EXPECT_EQ(frame.poses->poses[i].detection_index, static_cast<int>(i));
+      rings += detection.class_name == "rings" && detection.reported ? 1 : 0;
+      stripes += detection.class_name == "stripes" && detection.reported ? 1 : 0;
+      if (detection.class_name == "stripes") EXPECT_FALSE(frame.poses->poses[i].T_camera_object.has_value());
+    }
+    EXPECT_EQ(stripes, 0);
+    EXPECT_GT(rings, 0);
+  }
+}
+
 TEST(InProcess, TimesAreThoseOfASearchForWhatIsPublished) {
   const BopScene scene = two_tiles("in_process_times");
   const std::vector<EvaluatedFrame> frames = run(scene, 0.0F, {0.5F, 0.2F, {}});

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "detector/forest/forest.hpp"
+#include "tests/test_files.hpp"
 #include "tools/finder/search_arguments.hpp"
 
 namespace houghstream {
@@ -45,6 +48,36 @@ TEST(SearchOptions, WhatIsAskedForReplacesTheProfilesOwn) {
   EXPECT_EQ(settings.spacing.metres, 0.0F);
   EXPECT_EQ(settings.evidence.threshold, 0.25F);
   EXPECT_EQ(settings.voting.min_mass_fraction, 0.07F);
+}
+
+TEST(SearchOptions, ThresholdsOfClassesGoBeforeTheCommonOne) {
+  SearchOptions options;
+  options.class_thresholds = {{"mug", 0.8F}};
+  const EvidenceSettings evidence = options.settings_for(forest_of("realtime")).evidence;
+  EXPECT_EQ(evidence.threshold_of("mug"), 0.8F);
+  EXPECT_EQ(evidence.threshold_of("bowl"), EvidenceSettings{}.threshold);
+  DetectionSettings settings;
+  settings.evidence.class_thresholds = {{"mug", 1.5F}};
+  EXPECT_NE(error_of([&] { check_settings(settings, "settings"); }).find("threshold of 'mug' 1.5, expected 0 to 1"),
+            std::string::npos);
+}
+
+TEST(SearchOptions, APrecisionStandsInThePlaceOfAThreshold) {
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"--precision", "1"},
+                                                {"--precision", "-0.1"},
+                                                {"--precision", "nan"},
+                                                {"--precision", "0.9", "--threshold", "0.5"}}) {
+    SearchOptions options;
+    std::optional<double> precision;
+    CommandLine line("words", "name");
+    add_search_options(line, options);
+    add_precision_option(line, precision, "words").excludes(line.get_option("--threshold"));
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(line.parse(words).value_or(0), 2) << words[1];
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_NE(said.find("--precision"), std::string::npos) << said;
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  }
 }
 
 TEST(SearchOptions, AbsurdValuesAreRefused) {

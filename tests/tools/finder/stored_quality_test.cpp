@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/test_files.hpp"
+#include "tools/finder/stored_precision.hpp"
 
 namespace houghstream {
 namespace {
@@ -62,6 +63,24 @@ TEST(StoredQuality, PosesAreMadeWithTheShapeSymmetriesThatTheStoreKnows) {
   const PoseSettings settings = pose_settings_of({}, objects, std::nullopt);
   EXPECT_EQ(settings.model.shape_symmetries.count("mug"), 0U);
   EXPECT_EQ(settings.model.shape_symmetries.at("bowl").symmetries.continuous.size(), 1U);
+}
+
+TEST(StoredQuality, APrecisionChoosesTheQualityOfEachObject) {
+  store::ObjectStore objects = store_with(quality_to_json(learnt()));
+  for (store::StoredObject& object : objects.objects) object.practice = store::PracticeRecord();
+  objects.objects[0].practice->qualities = {{0.8, 90, 0}, {0.3, 95, 40}};
+  PoseSettings settings = pose_settings_of({}, objects, std::nullopt);
+  set_precision(0.95, objects, settings);
+  EXPECT_EQ(class_quality_of(settings, "mug").min_quality, 0.8F);
+  EXPECT_EQ(class_quality_of(settings, "mug").min_candidate_quality, 0.8F) << "of candidates as well";
+  EXPECT_EQ(class_quality_of(settings, "mug").bias, learnt().bias);
+  EXPECT_EQ(class_quality_of(settings, "bowl").min_quality, kStoreQuality) << "nothing was found of it";
+  objects.objects[1].practice->qualities = {{0.7, 60, 1}};
+  set_precision(0.95, objects, settings);
+  EXPECT_EQ(class_quality_of(settings, "bowl").min_quality, 0.7F) << "whose weights are the common ones";
+  EXPECT_EQ(with_precision({}, objects, std::nullopt).class_thresholds.size(), 0U);
+  objects.objects[0].practice->scores = {{0.6, 90, 0}};
+  EXPECT_EQ(with_precision({}, objects, 0.95).class_thresholds.at("mug"), 0.6F);
 }
 
 TEST(StoredQuality, TermsAreHeldByTheirNames) {

@@ -94,6 +94,18 @@ TEST(StreamPlan, TrackingIsAskedForAndTakesTheModels) {
                                                         "--cameras", "c.yaml"}));
 }
 
+TEST(StreamPlan, APrecisionGoesToDetectionAndPoses) {
+  StreamOptions options;
+  options.objects = "store";
+  options.precision = 0.98;
+  options.track = true;
+  for (const ChildPlan& child : plan_stream(options)) {
+    const bool is_for_it = child.name == "detect" || child.name == "pose";
+    EXPECT_EQ(std::count(child.command.begin(), child.command.end(), "--precision"), is_for_it ? 1 : 0) << child.name;
+    if (is_for_it) EXPECT_EQ(child.command.back(), "0.98");
+  }
+}
+
 TEST(StreamPlan, ThresholdsAndPlacesOfCamerasGoToThoseThatTakeThem) {
   StreamOptions options;
   options.objects = "store";

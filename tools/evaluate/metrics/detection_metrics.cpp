@@ -10,11 +10,6 @@ namespace {
 
 using ObjectKey = std::pair<std::size_t, std::size_t>;  // frame, object
 
-bool is_required(const NamedObject& object, const DetectionRules& rules) {
-  const bool is_target = object.is_target.value_or(object.truth.visible_fraction >= rules.min_visible);
-  return is_target && !object.truth.box_visible_px.empty();
-}
-
 /// Returns a detection of the class that has no verdict yet.
 MatchedDetection unjudged(const EvaluatedFrame& frame, std::size_t f, std::size_t index) {
   const Detection& detection = frame.detections->detections[index];
@@ -71,6 +66,11 @@ void match_detection(MatchedDetection& detection, const EvaluatedFrame& frame, c
 }
 
 }  // namespace
+
+bool is_required(const NamedObject& object, const DetectionRules& rules) {
+  const bool is_target = object.is_target.value_or(object.truth.visible_fraction >= rules.min_visible);
+  return is_target && !object.truth.box_visible_px.empty();
+}
 
 std::vector<MatchedDetection> match_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                                                const DetectionRules& rules) {

@@ -34,6 +34,9 @@ struct MatchedDetection {
 std::vector<MatchedDetection> match_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                                                const DetectionRules& rules);
 
+/// Returns whether an object is visible enough to be required, or a target.
+bool is_required(const NamedObject& object, const DetectionRules& rules);
+
 /// Counts the objects of the class that are visible enough to be required, or targets.
 int count_required(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                    const DetectionRules& rules);

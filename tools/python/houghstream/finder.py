@@ -59,12 +59,15 @@ class ObjectFinder:
         threads: int = 2,
         threshold: float | None = None,
         min_quality: float | None = None,
+        precision: float | None = None,
     ) -> None:
         """Reads the store, which takes seconds.
 
         threads: 1 to 64; any number gives the same result.
         threshold: least score of what is reported, 0 to 1; None: that of hs-detect.
         min_quality: least quality of a pose that is valid, 0 to 1; None: that of hs-pose.
+        precision: instead of both, fraction of what is reported that is to be right, 0 to below 1: each object has the
+            least score and quality that its practice (hs-teach) needed for it; a warning names those that do not reach it.
         Raises InputError, a ValueError, where the folder is no store, is half written or of another version, and for a
         number out of its range.
         """
@@ -73,7 +76,11 @@ class ObjectFinder:
         for name, value in (("threshold", threshold), ("min_quality", min_quality)):
             if value is not None and not 0 <= value <= 1:
                 raise InputError(f"{name}: found {value}, expected 0 to 1")
-        self._finder = Finder(os.fspath(store), threads, threshold, min_quality)
+        if precision is not None and not 0 <= precision < 1:
+            raise InputError(f"precision: found {precision}, expected 0 to below 1")
+        if precision is not None and (threshold, min_quality) != (None, None):
+            raise InputError("precision: found a threshold or min_quality beside it, expected one or the other")
+        self._finder = Finder(os.fspath(store), threads, threshold, min_quality, precision)
 
     @property
     def names(self) -> list[str]:

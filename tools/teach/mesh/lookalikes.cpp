@@ -24,6 +24,8 @@ constexpr int kRotations = 36;
 constexpr double kDetail_m = 0.005;       // finer texture does not count
 constexpr float kColourDistance = 30.0F;  // distance in L*a*b* of 8 bits: the same texture in another light
 constexpr float kMinAlike = 0.75F;        // share of the surface whose colours agree
+constexpr double kMinConfused = 0.05;     // share of an object's views in practice in which another is reported there
+constexpr int kMinConfusions = 3;         // fewer may be chance
 
 /// A mesh as it is compared.
 struct Shape {
@@ -123,6 +125,17 @@ std::optional<Lookalike> compare(const Shape& one, const Shape& other) {
   return mirrored;
 }
 
+/// Returns how often `other` was reported in the place of the object, in words; empty where that was rare.
+std::string confusion_words(const store::StoredObject& object, const std::string& other) {
+  if (!object.practice || object.practice->shown == 0) return {};
+  const auto taken = object.practice->taken_for.find(other);
+  const int times = taken != object.practice->taken_for.end() ? taken->second : 0;
+  const double fraction = static_cast<double>(times) / object.practice->shown;
+  if (times < kMinConfusions || fraction < kMinConfused) return {};
+  return fmt::format("'{}' is detected in the place of '{}' in {:.0f} % of {} views", other, object.name,
+                     100.0 * fraction, object.practice->shown);
+}
+
 }  // namespace
 
 std::vector<Lookalike> find_lookalikes(const std::vector<NamedMesh>& meshes) {
@@ -149,6 +162,22 @@ std::string describe(const Lookalike& pair) {
     how += fmt::format(", '{}' {:.2f} times as large", pair.other, pair.scale);
   return fmt::format("'{}' and '{}' can hardly be told apart: {}, with colours alike or unknown", pair.one, pair.other,
                      how);
+}
+
+std::vector<std::string> confusion_lines(const store::ObjectStore& store) {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < store.objects.size(); ++i) {
+    for (std::size_t j = i + 1; j < store.objects.size(); ++j) {
+      const std::string& one = store.objects[i].name;
+      const std::string& other = store.objects[j].name;
+      const std::string there = confusion_words(store.objects[i], other);
+      const std::string back = confusion_words(store.objects[j], one);
+      if (there.empty() && back.empty()) continue;
+      lines.push_back(fmt::format("'{}' and '{}' can hardly be told apart: in practice {}{}{}", one, other, there,
+                                  there.empty() || back.empty() ? "" : ", and ", back));
+    }
+  }
+  return lines;
 }
 
 }  // namespace houghstream::teach

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/store/object_store.hpp"
 #include "pipeline/geometry/mesh.hpp"
 
 namespace houghstream::teach {
@@ -28,5 +29,9 @@ std::vector<Lookalike> find_lookalikes(const std::vector<NamedMesh>& meshes);
 
 /// Returns one line that says so.
 std::string describe(const Lookalike& pair);
+
+/// Returns a line for each two objects of a store of which one was detected in the place of the other too often in
+/// practice (store::PracticeRecord::taken_for), in the order of their ids.
+std::vector<std::string> confusion_lines(const store::ObjectStore& store);
 
 }  // namespace houghstream::teach

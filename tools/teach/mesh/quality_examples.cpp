@@ -42,6 +42,7 @@ std::vector<Example> label_examples(const FoundPoses& found, const std::map<std:
         const GroundTruthObject& truth = frame.objects[judged.object].truth;
         if (!truth.has_pose) continue;
         example.is_present = true;
+        example.object = judged.object;
         const Eigen::Isometry3d& T_camera_object = *frame.poses->poses[judged.index].T_camera_object;
         example.is_correct = is_correct(model, T_camera_object, truth.T_camera_object);
         example.is_correct_up_to_shape = is_correct_up_to_shape(model, T_camera_object, truth.T_camera_object);

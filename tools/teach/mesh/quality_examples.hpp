@@ -16,7 +16,8 @@ namespace houghstream::quality {
 /// A pose that was found in a scene, judged by the truth.
 struct Example : QualityExample {
   std::string scene;
-  std::size_t frame = 0;  ///< index of the frame of the scene
+  std::size_t frame = 0;   ///< index of the frame of the scene
+  std::size_t object = 0;  ///< index into the frame's objects; only meaningful where the object is present
 };
 
 /// Model and settings for the labels of a pose.

@@ -14,7 +14,7 @@
 #include "pipeline/base/parallel.hpp"
 #include "pose/verification/quality_training.hpp"
 #include "tools/common/progress_line.hpp"
-#include "tools/finder/stored_quality.hpp"
+#include "tools/teach/mesh/practice_measurement.hpp"
 #include "tools/teach/mesh/quality_examples.hpp"
 
 namespace houghstream::teach {
@@ -182,40 +182,36 @@ quality::FoundPoses find_poses(const GroupCalibration& calibration, const qualit
   return found;
 }
 
-std::map<std::string, std::vector<QualityExample>> quality_examples(const quality::FoundPoses& found,
-                                                                    const std::map<std::string, PoseModel>& models) {
-  std::map<std::string, std::vector<QualityExample>> by_name;
+using ExamplesByName = std::map<std::string, std::vector<quality::Example>>;
+
+ExamplesByName label_all(const quality::FoundPoses& found, const std::map<std::string, PoseModel>& models) {
+  ExamplesByName by_name;
   for (const auto& [name, model] : models) {
-    std::vector<QualityExample>& class_examples = by_name[name];
-    for (const quality::Example& example : quality::label_examples(found, {{name, model}})) {
-      class_examples.push_back(example);
-      class_examples.back().half = half_of(example.frame);
-    }
+    by_name[name] = quality::label_examples(found, {{name, model}});
+    for (quality::Example& example : by_name[name]) example.half = half_of(example.frame);
   }
   return by_name;
 }
 
-/// Counts the poses that hs-pose would publish; those that are right up to what their shape cannot tell are right.
-PracticeCount count_practice(const std::vector<QualityExample>& examples, const QualitySettings& quality,
-                             float reported_from) {
-  PracticeCount count;
-  for (const QualityExample& example : examples) {
-    const float published_from = example.score >= reported_from ? kStoreQuality : kStoreCandidateQuality;
-    if (shape_quality(example.terms, quality) < published_from) continue;
-    ++(example.is_correct_up_to_shape ? count.right : count.wrong);
+/// Learns the qualities of a group's objects from the poses in its rooms, and counts what was found of them there.
+std::map<std::string, CalibratedObject> learn_from_poses(const GroupCalibration& calibration,
+                                                         const std::vector<CalibrationObject>& objects,
+                                                         const quality::FoundPoses& found,
+                                                         const std::map<std::string, PoseModel>& models,
+                                                         float reported_from) {
+  const ExamplesByName labelled = label_all(found, models);
+  std::map<std::string, CalibratedObject> learnt;
+  std::map<std::string, std::vector<QualityExample>> examples;
+  for (const auto& [name, of_class] : labelled) examples[name] = {of_class.begin(), of_class.end()};
+  const std::map<std::string, QualitySettings> settings = learn_qualities(examples);
+  const std::map<std::string, std::vector<float>> qualities = cross_fitted_qualities(examples);
+  for (const CalibrationObject& object : objects) {
+    if (calibration.ids.count(object.in_scene.id) == 0) continue;
+    learnt[object.name] = {settings.at(object.name),
+                           measure_practice({object.name, object.vote_centre}, found, labelled.at(object.name),
+                                            qualities.at(object.name), reported_from)};
   }
-  return count;
-}
-
-int count_shown(const quality::FoundPoses& found, const std::string& name) {
-  int shown = 0;
-  for (const EvaluatedFrame& frame : found.frames) {
-    for (const NamedObject& object : frame.objects) {
-      const bool counts = object.class_name == name && object.truth.visible_fraction >= DetectionRules{}.min_visible;
-      shown += counts ? 1 : 0;
-    }
-  }
-  return shown;
+  return learnt;
 }
 
 }  // namespace
@@ -301,16 +297,8 @@ std::map<std::string, CalibratedObject> calibrate_on_scenes(const std::vector<Ca
     if (calibration.frames.empty()) render_frames_of(calibration);
     const quality::FoundPoses found = find_poses(calibration, finder, groups);
     calibration.frames.clear();
-    const std::map<std::string, std::vector<QualityExample>> by_name = quality_examples(found, judged_by);
-    const std::map<std::string, QualitySettings> all = learn_qualities(by_name);
     const float reported_from = detection_settings(groups[calibration.place]).evidence.threshold;
-    for (const CalibrationObject& object : objects) {
-      if (calibration.ids.count(object.in_scene.id) == 0) continue;
-      CalibratedObject& calibrated = learnt[object.name];
-      calibrated.quality = all.at(object.name);
-      calibrated.practice = count_practice(by_name.at(object.name), calibrated.quality, reported_from);
-      calibrated.practice.shown = count_shown(found, object.name);
-    }
+    learnt.merge(learn_from_poses(calibration, objects, found, judged_by, reported_from));
   }
   return learnt;
 }

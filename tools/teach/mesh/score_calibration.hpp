@@ -9,6 +9,7 @@
 
 #include "detector/forest/forest.hpp"
 #include "detector/training/profiles.hpp"
+#include "drivers/store/practice_record.hpp"
 #include "pose/verification/quality.hpp"
 #include "tools/render/world/calibration_scenes.hpp"
 
@@ -37,17 +38,10 @@ struct CalibrationSettings {
   int threads = 2;
 };
 
-/// Counts of an object in the rooms of a calibration.
-struct PracticeCount {
-  int shown = 0;  ///< times that it stood in a frame's view
-  int right = 0;  ///< times that it was found with a right pose that would be published
-  int wrong = 0;  ///< poses that would be published and are wrong
-};
-
 /// Results of a calibration for an object.
 struct CalibratedObject {
   QualitySettings quality;
-  PracticeCount practice;
+  store::PracticeRecord practice;
 };
 
 /// Returns the number of rooms in which so many new objects are practised. Without a setting these are as many as one

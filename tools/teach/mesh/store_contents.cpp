@@ -106,6 +106,8 @@ void keep_objects(const StoreContents& old, const std::string& except, ObjectSto
   for (const StoredObject& object : old.list.objects) {
     if (object.name == except) continue;
     made.objects.push_back(object);
+    if (std::optional<store::PracticeRecord>& practice = made.objects.back().practice)
+      practice->taken_for.erase(except);
     std::optional<ShapeSymmetry>& shape = made.objects.back().shape_symmetry;
     if (!shape) shape = find_shape_symmetry(old.meshes.at(object.name));  // taught before it was looked for
     StoreModel& kept = models.emplace_back();

@@ -191,7 +191,7 @@ void merge_stores(const std::vector<fs::path>& stores, const fs::path& out, bool
   for (StoreContents& it : contents) std::move(it.groups.begin(), it.groups.end(), std::back_inserter(groups));
   write_store(made, models, groups, Carrying::kCopied);
   build.commit();
-  name_lookalikes(models);
+  name_lookalikes(models, made);
   fmt::print(
       "{} objects in {} groups in {}; their scores were learnt apart: 'hs-teach practise {}' learns them among one "
       "another\n",

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <map>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include "detector/forest/forest_file.hpp"
@@ -95,6 +96,12 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
   store.folder = build.folder();
   for (StoredObject& object : store.objects) {
     if (object.id == id) object.name = new_name;
+    if (!object.practice) continue;
+    std::map<std::string, int>& taken_for = object.practice->taken_for;
+    if (auto entry = taken_for.extract(old_name)) {
+      entry.key() = new_name;
+      taken_for.insert(std::move(entry));
+    }
   }
   for (ObjectClass& known : forest.classes) {
     if (known.name == old_name) known.name = new_name;

@@ -12,10 +12,67 @@
 namespace houghstream::teach {
 namespace {
 
-std::string practice_words(const PracticeCount& count) {
-  if (count.shown == 0) return "not practised";
-  return fmt::format("found in {:.0f} % of {} practice views", 100.0 * count.right / count.shown, count.shown) +
-         (count.wrong == 0 ? "" : fmt::format(", {} wrong poses", count.wrong));
+using store::PracticeRecord;
+
+double fraction_of(int part, int whole) {
+  return whole > 0 ? static_cast<double>(part) / whole : 0.0;
+}
+
+std::string practice_words(const PracticeRecord& record) {
+  if (record.shown == 0) return "not practised";
+  return fmt::format("found in {:.0f} % of {} practice views", 100.0 * fraction_of(record.right, record.shown),
+                     record.shown) +
+         (record.wrong == 0 ? "" : fmt::format(", {} wrong poses", record.wrong));
+}
+
+/// Returns what practice says of an object, for its line in the list.
+std::string practice_line(const std::optional<PracticeRecord>& record) {
+  if (!record) return "unknown, hs-teach practise learns it";
+  if (record->shown == 0) return "seen in none of its rooms";
+  const store::Confusion confusion = store::most_frequent_confusion(*record);
+  return fmt::format("recall {:.2f}, precision {:.3f} of {} views; {}", fraction_of(record->right, record->shown),
+                     store::estimate_precision(record->right, record->wrong), record->shown,
+                     confusion.name.empty()
+                         ? "taken for nothing else"
+                         : fmt::format("taken for {} in {:.1f} %", confusion.name, 100.0 * confusion.fraction));
+}
+
+std::string threshold_words(const char* measure, const store::PracticeCurve& curve, int shown, double precision) {
+  if (curve.empty()) return fmt::format("{} as by default, as nothing was found", measure);
+  const store::OperatingThreshold chosen = store::choose_threshold(curve, shown, precision);
+  return fmt::format("{} {:.2f}, recall {:.2f}{}", measure, chosen.from, chosen.recall,
+                     chosen.is_reached ? "" : fmt::format(" (not reached: {:.3f} is the best)", chosen.precision));
+}
+
+/// Returns the thresholds that an object needs for a precision, for its line in the list.
+std::string precision_line(const PracticeRecord& record, double precision) {
+  return fmt::format("{}; {}", threshold_words("score", record.scores, record.shown, precision),
+                     threshold_words("quality", record.qualities, record.shown, precision));
+}
+
+OrderedJson threshold_json(const store::PracticeCurve& curve, int shown, double precision) {
+  if (curve.empty()) return {};
+  const store::OperatingThreshold chosen = store::choose_threshold(curve, shown, precision);
+  return {{"from", chosen.from},
+          {"precision", chosen.precision},
+          {"recall", chosen.recall},
+          {"reached", chosen.is_reached}};
+}
+
+OrderedJson practice_json(const std::optional<PracticeRecord>& record, std::optional<double> precision) {
+  if (!record) return {};
+  const store::Confusion confusion = store::most_frequent_confusion(*record);
+  OrderedJson json;
+  json["views"] = record->shown;
+  json["recall"] = record->shown > 0 ? OrderedJson(fraction_of(record->right, record->shown)) : OrderedJson();
+  json["precision"] = store::estimate_precision(record->right, record->wrong);
+  json["taken_for"] = OrderedJson();
+  if (!confusion.name.empty()) json["taken_for"] = {{"name", confusion.name}, {"fraction", confusion.fraction}};
+  if (precision)
+    json["at_precision"] = {{"wanted", *precision},
+                            {"score", threshold_json(record->scores, record->shown, *precision)},
+                            {"quality", threshold_json(record->qualities, record->shown, *precision)}};
+  return json;
 }
 
 std::string known_symmetries(const store::StoredObject& object) {
@@ -48,21 +105,20 @@ std::map<int, Eigen::Vector3d> object_sizes(const store::ObjectStore& store) {
   return sizes;
 }
 
-std::string teaching_summary(const store::ObjectStore& store, const std::set<int>& taught,
-                             const std::map<std::string, PracticeCount>& practice) {
+std::string teaching_summary(const store::ObjectStore& store, const std::set<int>& taught) {
   const std::map<int, Eigen::Vector3d> sizes = object_sizes(store);
   std::string text = fmt::format("{}: {} object{}; look at {}\n", store.folder.string(), store.objects.size(),
                                  store.objects.size() == 1 ? "" : "s", store.contact_sheet().string());
   for (const store::StoredObject& object : store.objects) {
     if (taught.count(object.id) == 0) continue;
-    const auto count = practice.find(object.name);
     text += fmt::format("  {:<24} {:<22} {}\n", object.name, size_words(sizes.at(object.id)),
-                        practice_words(count == practice.end() ? PracticeCount() : count->second));
+                        practice_words(object.practice.value_or(PracticeRecord())));
   }
   return text + fmt::format("next: {} --source openni2 --objects {}\n", stream_program(), store.folder.string());
 }
 
-std::string store_text(const store::ObjectStore& store) {
+std::string store_text(const store::ObjectStore& store, std::optional<double> precision) {
+  if (precision) store::check_precision(*precision, "precision");
   const std::map<int, Eigen::Vector3d> sizes = object_sizes(store);
   const bool has_groups = store.groups().size() > 1;
   std::string text;
@@ -72,6 +128,9 @@ std::string store_text(const store::ObjectStore& store) {
                     size_words(sizes.at(object.id)), object.views, object.attitudes,
                     object.coloured ? "coloured" : "colour unknown",
                     has_groups ? fmt::format("group {}; ", object.group) : "", known_symmetries(object), object.mesh);
+    text += fmt::format("       practice: {}\n", practice_line(object.practice));
+    if (precision && object.practice)
+      text += fmt::format("       precision {}: {}\n", *precision, precision_line(*object.practice, *precision));
     for (const ObjectFrame& frame : object.frames) {
       const Eigen::Vector3d at = frame.T_object_frame.translation();
       const Eigen::Quaterniond q(frame.T_object_frame.linear());
@@ -82,7 +141,8 @@ std::string store_text(const store::ObjectStore& store) {
   return text;
 }
 
-OrderedJson store_json(const store::ObjectStore& store) {
+OrderedJson store_json(const store::ObjectStore& store, std::optional<double> precision) {
+  if (precision) store::check_precision(*precision, "precision");
   const std::map<int, Eigen::Vector3d> sizes = object_sizes(store);
   OrderedJson objects = OrderedJson::array();
   for (const store::StoredObject& object : store.objects) {
@@ -97,6 +157,7 @@ OrderedJson store_json(const store::ObjectStore& store) {
     entry["coloured"] = object.coloured;
     entry["shape_symmetries"] =
         object.shape_symmetry ? OrderedJson(symmetry_words(*object.shape_symmetry)) : OrderedJson();
+    entry["practice"] = practice_json(object.practice, precision);
     entry["frames"] = OrderedJson::object();
     for (const ObjectFrame& frame : object.frames) {
       const Eigen::Vector3d at = frame.T_object_frame.translation();

@@ -67,12 +67,10 @@ void require_new(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) 
   }
 }
 
-using Practice = std::map<std::string, PracticeCount>;
-
 /// Searches the objects of the finished store in rooms; what is learnt of the new ones goes into their groups' forests
 /// and the store.
-Practice calibrate_all(const std::vector<StoreModel>& models, const std::set<int>& new_ids,
-                       const CalibrationSettings& settings, std::vector<GroupForest>& groups, ObjectStore& made) {
+void calibrate_all(const std::vector<StoreModel>& models, const std::set<int>& new_ids,
+                   const CalibrationSettings& settings, std::vector<GroupForest>& groups, ObjectStore& made) {
   std::vector<CalibrationObject> objects(models.size());
   parallel_for(settings.threads, static_cast<int>(models.size()), [&](int i) {
     const NamedModel& model = models[static_cast<std::size_t>(i)].model;
@@ -97,14 +95,12 @@ Practice calibrate_all(const std::vector<StoreModel>& models, const std::set<int
   }
   const std::map<std::string, CalibratedObject> learnt = calibrate_on_scenes(objects, new_ids, settings, forests);
   for (std::size_t i = 0; i < groups.size(); ++i) groups[i].forest = std::move(forests[i]);
-  Practice practice;
   for (StoredObject& object : made.objects) {
     const auto found = learnt.find(object.name);
     if (found == learnt.end()) continue;
     object.quality = quality_to_json(found->second.quality);
-    practice[object.name] = found->second.practice;
+    object.practice = found->second.practice;
   }
-  return practice;
 }
 
 std::string unchanged_notice(const fs::path& folder) {
@@ -257,23 +253,24 @@ void teach_meshes(const TeachOptions& options) {
   calibration.seed = options.seed;
   calibration.threads = options.threads;
   progress(calibration_step(calibration, new_ids, groups));
-  const Practice practice = calibrate_all(models, new_ids, calibration, groups, made);
+  calibrate_all(models, new_ids, calibration, groups, made);
   progress("scores and qualities learnt");
   made.settings = {
       {"attitudes", options.attitudes}, {"seed", options.seed}, {"profile", groups.front().forest.profile}};
   write_store(made, models, groups);
   stop.release();
   build.commit();
-  name_lookalikes(models);
-  fmt::print("{}", teaching_summary(store::read_store(options.out), new_ids, practice));
+  name_lookalikes(models, made);
+  fmt::print("{}", teaching_summary(store::read_store(options.out), new_ids));
   fmt::print("teach_seconds {:.1f}\n", progress.seconds());
 }
 
-void name_lookalikes(const std::vector<StoreModel>& models) {
+void name_lookalikes(const std::vector<StoreModel>& models, const ObjectStore& list) {
   std::vector<NamedMesh> named;
   named.reserve(models.size());
   for (const StoreModel& it : models) named.emplace_back(it.model.name, &it.model.mesh);
   for (const Lookalike& pair : find_lookalikes(named)) log_warning("{}", describe(pair));
+  for (const std::string& line : confusion_lines(list)) log_warning("{}", line);
 }
 
 void remove_from_store(const fs::path& folder, const std::string& name) {
@@ -315,12 +312,13 @@ void calibrate_store(const fs::path& folder, const CalibrationSettings& settings
   std::vector<StoreModel> models;
   keep_objects(old, "", made, models);
   progress(calibration_step(settings, ids, old.groups));
-  const Practice practice = calibrate_all(models, ids, settings, old.groups, made);
+  calibrate_all(models, ids, settings, old.groups, made);
   write_store(made, models, old.groups);
   stop.release();
   build.commit();
   progress("scores and qualities learnt");
-  fmt::print("{}", teaching_summary(store::read_store(folder), ids, practice));
+  name_lookalikes(models, made);
+  fmt::print("{}", teaching_summary(store::read_store(folder), ids));
 }
 
 }  // namespace houghstream::teach

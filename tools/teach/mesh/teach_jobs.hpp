@@ -19,8 +19,8 @@ void require_no_store(const std::filesystem::path& folder);
 /// neither add nor replace.
 void teach_meshes(const TeachOptions& options);
 
-/// Says in the log which objects can hardly be told apart.
-void name_lookalikes(const std::vector<StoreModel>& models);
+/// Says in the log which objects of a store can hardly be told apart, by their meshes and by their practice.
+void name_lookalikes(const std::vector<StoreModel>& models, const store::ObjectStore& list);
 
 /// Learns scores and qualities of a store's objects anew: of all, or of those of the `names`. Throws InputError for a
 /// name that is not there.

@@ -43,5 +43,28 @@ TEST(Lookalikes, OtherShapesAndOtherColoursAreNone) {
   EXPECT_EQ(compare(crooked_part(), green).size(), 1U) << "an unknown colour tells nothing apart";
 }
 
+TEST(Lookalikes, WhatPracticeConfusesIsNamedOnce) {
+  store::ObjectStore list;
+  for (const char* name : {"mug", "cup", "can"}) {
+    store::StoredObject& object = list.objects.emplace_back();
+    object.name = name;
+    object.practice.emplace().shown = 100;
+  }
+  EXPECT_TRUE(confusion_lines(list).empty());
+  list.objects[0].practice->taken_for = {{"can", 4}, {"cup", 30}};
+  list.objects[1].practice->taken_for = {{"mug", 12}};
+  EXPECT_EQ(confusion_lines(list),
+            std::vector<std::string>{"'mug' and 'cup' can hardly be told apart: in practice 'cup' is detected in the "
+                                     "place of 'mug' in 30 % of 100 views, and 'mug' is detected in the place of 'cup' "
+                                     "in 12 % of 100 views"});
+  list.objects[2].practice->shown = 10;
+  list.objects[2].practice->taken_for = {{"cup", 2}};
+  EXPECT_EQ(confusion_lines(list).size(), 1U) << "twice may be chance";
+  list.objects[2].practice->taken_for = {{"cup", 3}};
+  EXPECT_EQ(confusion_lines(list).size(), 2U);
+  for (store::StoredObject& object : list.objects) object.practice.reset();
+  EXPECT_TRUE(confusion_lines(list).empty());
+}
+
 }  // namespace
 }  // namespace houghstream::teach

@@ -145,6 +145,12 @@ TEST(StoreMerge, GroupsAreSearchedTogether) {
   ObjectFinder finder(in / "all");
   RgbdFrame frame = plain_frame(320, 240);
   EXPECT_NO_THROW(finder.find(frame));
+  FinderOptions options;
+  options.precision = 0.5;
+  EXPECT_NO_THROW(ObjectFinder(in / "all", options).find(frame)) << "each group has practised";
+  options.min_quality = 0.5F;
+  EXPECT_EQ(error_of([&] { ObjectFinder(in / "all", options); }),
+            "precision beside threshold or min_quality, expected it in their place");
 }
 
 /// Returns the error of a merge of a changed copy of "b" to "a"; nothing may be written.
@@ -171,7 +177,7 @@ TEST(StoreMerge, WhatDoesNotFitIsRefusedInOneLine) {
               {"/b: 'support' has the mesh of 'bracket' in ", "expected each object once"});
   expect_says(error_after("version",
                           [](const fs::path& in) {
-                            replace_in_file(in / "b" / "store.json", "\"houghstream_store\": 1",
+                            replace_in_file(in / "b" / "store.json", "\"houghstream_store\": 3",
                                             "\"houghstream_store\": 9");
                           }),
               {"store.json: object store of version 9", "newer than this program"});

@@ -7,6 +7,7 @@
 #include "tests/drivers/store/small_store.hpp"
 #include "tests/expect_says.hpp"
 #include "tests/test_files.hpp"
+#include "tools/teach/mesh/contact_sheet.hpp"
 #include "tools/teach/mesh/store_rename.hpp"
 
 namespace houghstream::teach {
@@ -32,6 +33,39 @@ TEST(StoreSummary, SizesStandInTheListAndInItsJson) {
     EXPECT_EQ(json["objects"][i]["size_m"][2], size_m.z());
     EXPECT_TRUE(json["objects"][i]["shape_symmetries"].is_null()) << "not looked for";
   }
+}
+
+TEST(StoreSummary, PracticeStandsInTheListAndInItsJson) {
+  const std::filesystem::path folder = fresh_folder("store_summary_practice");
+  store::fill_store(folder, "brick");
+  store::ObjectStore listed = store::read_store(folder);
+  EXPECT_NE(store_text(listed, 0.98).find("practice: unknown, hs-teach practise learns it\n"), std::string::npos);
+  EXPECT_TRUE(store_json(listed)["objects"][0]["practice"].is_null());
+  store::PracticeRecord& record = listed.objects[0].practice.emplace();
+  EXPECT_NE(store_text(listed).find("practice: seen in none of its rooms\n"), std::string::npos);
+  record.shown = 200;
+  record.right = 150;
+  record.wrong = 1;
+  record.scores = {{0.71, 160, 0}, {0.4, 170, 30}};
+  record.qualities = {{0.66, 9, 0}};
+  record.taken_for = {{"brick", 7}};
+  EXPECT_NE(store_text(listed).find("practice: recall 0.75, precision 0.990 of 200 views; taken for brick in 3.5 %\n"),
+            std::string::npos)
+      << store_text(listed);
+  EXPECT_EQ(store_text(listed).find("precision 0.98:"), std::string::npos) << "was not asked for";
+  EXPECT_NE(store_text(listed, 0.98)
+                .find("precision 0.98: score 0.71, recall 0.80; quality 0.66, recall 0.04 (not "
+                      "reached: 0.950 is the best)\n"),
+            std::string::npos)
+      << store_text(listed, 0.98);
+  const OrderedJson practice = store_json(listed, 0.98)["objects"][0]["practice"];
+  EXPECT_EQ(practice["views"], 200);
+  EXPECT_EQ(practice["recall"], 0.75);
+  EXPECT_EQ(practice["taken_for"]["name"], "brick");
+  EXPECT_EQ(practice["at_precision"]["score"]["from"], 0.71);
+  EXPECT_EQ(practice["at_precision"]["quality"]["reached"], false);
+  EXPECT_FALSE(store_json(listed)["objects"][0]["practice"].contains("at_precision"));
+  expect_says(error_of([&] { store_text(listed, 1.0); }), {"precision 1, expected 0 to 0.9999"});
 }
 
 TEST(StoreSummary, FramesAreNamedMovedAndTakenAway) {
@@ -65,19 +99,21 @@ TEST(StoreSummary, FramesAreNamedMovedAndTakenAway) {
 TEST(StoreSummary, SaysWhatATeachingLeavesAndWhatToTypeNext) {
   const std::filesystem::path folder = fresh_folder("store_summary_taught");
   store::fill_store(folder, "brick");
-  const store::ObjectStore taught = store::read_store(folder);
+  store::ObjectStore taught = store::read_store(folder);
   const int id = store::find_object(taught, "brick").id;
-  PracticeCount count;
-  count.shown = 40;
-  count.right = 30;
-  count.wrong = 2;
-  const std::string text = teaching_summary(taught, {id}, {{"brick", count}});
+  taught.objects[1].practice = store::PracticeRecord();
+  EXPECT_NE(teaching_summary(taught, {id}).find("not practised"), std::string::npos);
+  taught.objects[1].practice->shown = 40;
+  taught.objects[1].practice->right = 30;
+  taught.objects[1].practice->wrong = 2;
+  const std::string text = teaching_summary(taught, {id});
   for (const std::string& part :
        {taught.contact_sheet().string(), std::string("found in 75 % of 40 practice views, 2 wrong poses\n"),
         "next: hs-stream --source openni2 --objects " + folder.string() + "\n"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   EXPECT_EQ(text.find("mug"), std::string::npos) << "taught earlier, in\n" << text;
-  EXPECT_NE(teaching_summary(taught, {id}, {}).find("not practised"), std::string::npos);
+  taught.objects[1].practice.reset();
+  EXPECT_NE(teaching_summary(taught, {id}).find("not practised"), std::string::npos);
 }
 
 }  // namespace

@@ -114,7 +114,11 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   EXPECT_EQ(forest_names(options.out), (std::vector<std::string>{"bracket", "grey"}));
   EXPECT_EQ(error_of([&] { teach_meshes(more); }).find((folder / "grey.ply").string()), 0U) << "known already";
 
+  store::ObjectStore confused = both;
+  confused.objects[1].practice->taken_for = {{"bracket", 4}, {"mug", 1}};
+  store::write_store_json(confused);
   remove_from_store(options.out, "bracket");
+  EXPECT_EQ(store::read_store(options.out).objects[0].practice->taken_for, (std::map<std::string, int>{{"mug", 1}}));
   expect_notes(options.out, "remove");
   EXPECT_EQ(forest_names(options.out), std::vector<std::string>{"grey"});
   EXPECT_EQ(store::load_store_meshes(store::read_store(options.out)).count("grey"), 1U);
@@ -154,6 +158,7 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   teach_meshes(options);
   store::ObjectStore before = store::read_store(options.out);
   before.objects[0].shape_symmetry->nearly_round = ContinuousSymmetry{};
+  before.objects[0].practice->taken_for = {{"bracket", 2}, {"mug", 1}};
   store::write_store_json(before);
   const std::string forest = read_text(before.forest_file(1));
   const cv::Mat views = read_colour_image(before.view_image(1));
@@ -165,6 +170,7 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   EXPECT_EQ(after.objects[0].id, before.objects[0].id);
   EXPECT_EQ(after.objects[0].views, before.objects[0].views);
   EXPECT_EQ(after.objects[0].quality, before.objects[0].quality);
+  EXPECT_EQ(after.objects[0].practice->taken_for, (std::map<std::string, int>{{"mug", 1}, {"shelf_support", 2}}));
   EXPECT_TRUE(after.shape_symmetries().at("shelf_support").nearly_round.has_value());
   EXPECT_EQ(after.settings, before.settings);
   EXPECT_EQ(after.tone.max_mean, before.tone.max_mean);
@@ -253,6 +259,10 @@ TEST(TeachJobs, PractisingAnewKeepsTheObjects) {
   EXPECT_EQ(stored_quality(after, {}).count("bracket"), 1U);
   EXPECT_EQ(after.shape_symmetries().count("bracket"), 1U);
   EXPECT_NE(after.objects[0].quality, before.objects[0].quality) << "in other rooms";
+  ASSERT_TRUE(after.objects[0].practice.has_value());
+  EXPECT_GT(after.objects[0].practice->shown, 0);
+  EXPECT_LE(after.objects[0].practice->right, after.objects[0].practice->shown);
+  EXPECT_NE(to_json(*after.objects[0].practice), to_json(*before.objects[0].practice)) << "in other rooms";
   EXPECT_EQ(forest_names(options.out), std::vector<std::string>{"bracket"});
   EXPECT_NE(error_of([&] { calibrate_store(folder / "nowhere", other); }).find("expected an object store"),
             std::string::npos);
@@ -271,6 +281,8 @@ TEST(TeachJobs, PractisingOneLeavesTheOthers) {
   ASSERT_EQ(after.objects.size(), 2U);
   EXPECT_EQ(after.objects[0].quality, before.objects[0].quality);
   EXPECT_NE(after.objects[1].quality, before.objects[1].quality);
+  EXPECT_EQ(to_json(*after.objects[0].practice), to_json(*before.objects[0].practice));
+  EXPECT_NE(to_json(*after.objects[1].practice), to_json(*before.objects[1].practice));
   EXPECT_EQ(error_of([&] { calibrate_store(options.out, other, {"drill"}); }),
             (options.out / "store.json").string() + ": no 'drill', expected one of bracket, grey");
 }
