@@ -155,7 +155,7 @@ TEST(InProcess, AClassIsReportedFromItsOwnScoreOn) {
       EXPECT_EQ(frame.poses->poses[i].detection_index, static_cast<int>(i));
       rings += detection.class_name == "rings" && detection.reported ? 1 : 0;
       stripes += detection.class_name == "stripes" && detection.reported ? 1 : 0;
-      if (detection.class_name == "stripes") EXPECT_FALSE(frame.poses->poses[i].T_camera_object.has_value());
+      EXPECT_FALSE(detection.class_name == "stripes" && frame.poses->poses[i].T_camera_object.has_value());
     }
     EXPECT_EQ(stripes, 0);
     EXPECT_GT(rings, 0);
