@@ -102,7 +102,9 @@ TEST(StreamPlan, APrecisionGoesToDetectionAndPoses) {
   for (const ChildPlan& child : plan_stream(options)) {
     const bool is_for_it = child.name == "detect" || child.name == "pose";
     EXPECT_EQ(std::count(child.command.begin(), child.command.end(), "--precision"), is_for_it ? 1 : 0) << child.name;
-    if (is_for_it) EXPECT_EQ(child.command.back(), "0.98");
+    if (is_for_it) {
+      EXPECT_EQ(child.command.back(), "0.98");
+    }
   }
 }
 
