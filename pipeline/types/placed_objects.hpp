@@ -37,6 +37,14 @@ struct ObjectPlacements {
   std::string world;  ///< as in WorldObjects
   int world_number = 1;
   std::vector<ObjectPlacement> objects;
+
+  /// Returns the object with this number; null where it is not placed.
+  const ObjectPlacement* find(std::int64_t track_id) const {
+    for (const ObjectPlacement& object : objects) {
+      if (object.track_id == track_id) return &object;
+    }
+    return nullptr;
+  }
 };
 
 }  // namespace houghstream

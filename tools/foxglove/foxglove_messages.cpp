@@ -182,14 +182,6 @@ std::string numbered_name(const TrackedObject& object) {
   return fmt::format("{}_{}", object.class_name, object.track_id);
 }
 
-const ObjectPlacement* find_place(const std::optional<ObjectPlacements>& placed, const TrackedObject& object) {
-  if (!placed) return nullptr;
-  for (const ObjectPlacement& place : placed->objects) {
-    if (place.track_id == object.track_id) return &place;
-  }
-  return nullptr;
-}
-
 FoxgloveMessage deletion_message(const std::string& topic, std::int64_t utime) {
   constexpr int kAll = 1;
   ProtobufMessage deletion("foxglove.SceneEntityDeletion");
@@ -286,7 +278,7 @@ std::vector<FoxgloveMessage> FoxgloveMessages::convert_world(const WorldObjects&
     entity.class_name = object.class_name;
     entity.T_world_object = object.T_world_object;
     add_transform(transforms, utime, {world.world, entity.frame}, object.T_world_object);
-    if (const ObjectPlacement* place = is_placed ? find_place(placed, object) : nullptr) {
+    if (const ObjectPlacement* place = is_placed ? placed->find(object.track_id) : nullptr) {
       entity.place = *place;
       for (const PlacedObjectFrame& frame : place->frames)
         add_transform(transforms, utime, {world.world, entity.frame + "/" + frame.name}, frame.T_world_frame);

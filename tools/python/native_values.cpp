@@ -107,15 +107,6 @@ py::dict poses_to_python(const ObjectPoses& poses, const Detections* detections,
   return out;
 }
 
-/// Null where it is not known.
-const ObjectPlacement* find_placed(const PlacedWorld& placed_world, std::int64_t track_id) {
-  if (!placed_world.placed) return nullptr;
-  for (const ObjectPlacement& place : placed_world.placed->objects) {
-    if (place.track_id == track_id) return &place;
-  }
-  return nullptr;
-}
-
 void add_place(const ObjectPlacement* place, py::dict& entry) {
   py::dict frames;
   if (place == nullptr) {
@@ -199,7 +190,7 @@ py::dict to_python(const PlacedWorld& placed_world) {
     entry["seen_utime"] = object.last_seen.utime;
     entry["seen_by"] = object.last_seen.channel;
     entry["reason"] = object.reason;
-    add_place(find_placed(placed_world, object.track_id), entry);
+    add_place(placed_world.placed ? placed_world.placed->find(object.track_id) : nullptr, entry);
     objects.append(entry);
   }
   py::dict out = frame_to_python(world.frame);
