@@ -13,6 +13,7 @@
 #include "detector/training/vote_mass.hpp"
 #include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/freed_memory.hpp"
 #include "pipeline/base/parallel.hpp"
 
 namespace houghstream::training {
@@ -56,6 +57,13 @@ void append_tree(const Forest& tree, Forest& forest) {
   }
   forest.votes.insert(forest.votes.end(), tree.votes.begin(), tree.votes.end());
   forest.leaf_views.insert(forest.leaf_views.end(), tree.leaf_views.begin(), tree.leaf_views.end());
+}
+
+void append_trees(std::vector<Forest> trees, Forest& forest) {
+  for (Forest& tree : trees) {
+    append_tree(tree, forest);
+    tree = {};
+  }
 }
 
 /// Returns whether scores are learnt; where nothing is composed, the score keeps its prior weights.
@@ -163,13 +171,20 @@ TrainingSet make_set(const TrainingSplit& training_split, const Profile& profile
                      std::vector<TrainingView>& views) {
   const bool keep = learns_scores(profile.training);
   const ImageInput input{profile.features, profile.patch, profile.training, scales};
-  return make_training_set(training_split.for_trees, input, [&](const TrainingView* done) {
+  TrainingSet set = make_training_set(training_split.for_trees, input, [&](const TrainingView* done) {
     if (keep) return;
     TrainingView& view = views[static_cast<std::size_t>(done - views.data())];
     view.frame.colour.release();
     view.frame.depth.release();
     view.mask.release();
   });
+  return_freed_memory();
+  return set;
+}
+
+std::string set_summary(const TrainingSet& set) {
+  return fmt::format("{} patches of {} pictures ({:.0f} MB)", set.samples.size(), set.images,
+                     1e-6 * static_cast<double>(set.held_bytes()));
 }
 
 /// Gives the views class numbers that the forest has not used yet. Throws InputError for a name that it knows.
@@ -202,16 +217,15 @@ Forest train_forest(std::vector<TrainingView> views, const Profile& profile, con
   const TrainingSettings& settings = profile.training;
   const TrainingSplit training_split = split_views(views, settings);
   TrainingSet set = make_set(training_split, profile, scales, views);
-  progress(fmt::format("{} patches of {} pictures, {} classes, {} planes", set.samples.size(), set.images.size(),
-                       set.classes.size(), set.layout.planes()));
+  progress(fmt::format("{}, {} classes, {} planes", set_summary(set), set.classes.size(), set.layout.planes()));
   const std::size_t before = set.samples.size();
   add_hard_negatives(profile.patch, settings, set);
   progress(fmt::format("{} background patches added that scout trees mistook", set.samples.size() - before));
 
   Forest forest = without_trees(profile);
   forest.classes = set.classes;
-  forest.views = set.views;
-  for (const Forest& tree : grow_trees(set, profile, nullptr, progress)) append_tree(tree, forest);
+  forest.views = std::move(set.views);
+  append_trees(grow_trees(set, profile, nullptr, progress), forest);
   estimate_nominal_vote_mass(set, settings, profile.detection.voting.vote_sigma, forest);
   if (learns_scores(settings)) learn_scores(training_split, profile, scales, progress, forest);
   return forest;
@@ -225,20 +239,21 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   number_after(old, views);
   const TrainingSplit training_split = split_views(views, profile.training);
   TrainingSet set = make_set(training_split, profile, scales, views);
+  set.negative_pool = {};  // the old trees have learnt what is mistaken
+  drop_unread_pixels(profile.patch, set);
   set.first_class = static_cast<std::uint16_t>(old.classes.size());
   set.first_view = static_cast<std::uint32_t>(old.views.size());
-  progress(fmt::format("{} patches of {} pictures, {} new classes beside {}", set.samples.size(), set.images.size(),
-                       set.classes.size(), old.classes.size()));
+  progress(fmt::format("{}, {} new classes beside {}", set_summary(set), set.classes.size(), old.classes.size()));
   Forest forest = without_trees(profile);
   forest.seed = old.seed;
   forest.classes = old.classes;
   forest.classes.insert(forest.classes.end(), set.classes.begin(), set.classes.end());
   forest.views = old.views;
-  for (ViewTemplate view : set.views) {
+  for (ViewTemplate& view : set.views) {
     view.class_index += set.first_class;
-    forest.views.push_back(view);
+    forest.views.push_back(std::move(view));
   }
-  for (const Forest& tree : grow_trees(set, profile, &old, progress)) append_tree(tree, forest);
+  append_trees(grow_trees(set, profile, &old, progress), forest);
   rescale_nominal_vote_mass(old, forest);
   estimate_nominal_vote_mass(set, profile.training, profile.detection.voting.vote_sigma, forest);
   if (learns_scores(profile.training)) learn_scores(training_split, profile, scales, progress, forest);

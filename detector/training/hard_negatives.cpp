@@ -22,10 +22,9 @@ std::vector<Forest> grow_scouts(const TrainingSet& set, const PatchSettings& pat
 }
 
 float object_probability(const TrainingSet& set, const std::vector<Forest>& scouts, const TrainingSample& sample) {
-  const FeatureImage& image = set.images[static_cast<std::size_t>(sample.image)];
   float sum = 0.0F;
   for (const Forest& scout : scouts) {
-    const auto leaf = static_cast<std::size_t>(find_leaf(scout, 0, image.patch(sample.x, sample.y, sample.scale)));
+    const auto leaf = static_cast<std::size_t>(find_leaf(scout, 0, set.patch(sample)));
     for (std::uint32_t e = scout.leaves[leaf]; e < scout.leaves[leaf + 1]; ++e) {
       sum += scout.leaf_classes[e].probability;
     }
@@ -56,7 +55,8 @@ void add_hard_negatives(const PatchSettings& patch, const TrainingSettings& sett
       set.samples.begin(), set.samples.end(), [](const TrainingSample& sample) { return sample.label == 0; }));
   order.resize(std::min(order.size(), background));
   for (const std::uint32_t i : order) set.samples.push_back(set.negative_pool[i]);
-  set.negative_pool.clear();
+  set.negative_pool = {};
+  drop_unread_pixels(patch, set);
 }
 
 }  // namespace houghstream::training

@@ -99,12 +99,12 @@ void SplitSearch::prepare_tests(std::size_t test_count, int pixel_stride) {
 
 /// Copies the pixels at the node's places side by side. Patches are far apart in memory: the next one is asked for
 /// while this one is looked at.
-void SplitSearch::load_pixels(const PatchView& patch, const PatchView& next) {
+void SplitSearch::load_pixels(const CutoutPatch& patch, const CutoutPatch& next) {
   const auto stride = static_cast<std::size_t>(patch.pixel_stride);
   pixels_.resize(kPlaces * stride);
   for (std::size_t i = 0; i < kPlaces; ++i) {
-    __builtin_prefetch(next.centre + patch_offset(next, places_[i].dx, places_[i].dy));
-    std::memcpy(pixels_.data() + i * stride, patch.centre + patch_offset(patch, places_[i].dx, places_[i].dy), stride);
+    __builtin_prefetch(next.at(places_[i].dx, places_[i].dy));
+    std::memcpy(pixels_.data() + i * stride, patch.at(places_[i].dx, places_[i].dy), stride);
   }
 }
 
@@ -115,10 +115,7 @@ void SplitSearch::evaluate_tests(std::size_t test_count, const std::vector<std::
   const std::size_t count = samples.size();
   values_.resize(test_count * count);
   block_.resize(test_count * kBlock);
-  const auto patch_of = [&](std::size_t s) {
-    const TrainingSample& sample = set_.samples[samples[s]];
-    return set_.images[static_cast<std::size_t>(sample.image)].patch(sample.x, sample.y, sample.scale);
-  };
+  const auto patch_of = [&](std::size_t s) { return set_.patch(set_.samples[samples[s]]); };
   prepare_tests(test_count, patch_of(0).pixel_stride);
   for (std::size_t begin = 0; begin < count; begin += kBlock) {
     const std::size_t size = std::min(kBlock, count - begin);

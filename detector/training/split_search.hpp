@@ -81,7 +81,7 @@ class SplitSearch {
   double single_pixel_fraction(PlaneKind kind) const;
   PixelTest random_test(const Planes& planes, PlacePair& pair, Random& random) const;
   void prepare_tests(std::size_t test_count, int pixel_stride);
-  void load_pixels(const PatchView& patch, const PatchView& next);
+  void load_pixels(const CutoutPatch& patch, const CutoutPatch& next);
   void keep_finalists(const std::vector<Judged>& judged, std::size_t count);
   void load_items(const std::vector<std::uint32_t>& samples);
   void evaluate_tests(std::size_t test_count, const std::vector<std::uint32_t>& samples);

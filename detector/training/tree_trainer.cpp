@@ -125,9 +125,7 @@ class TreeGrower {
   std::pair<Samples, Samples> split(const PixelTest& test, const Samples& samples) const {
     std::pair<Samples, Samples> sides;
     for (const std::uint32_t s : samples) {
-      const TrainingSample& sample = set_.samples[s];
-      const FeatureImage& image = set_.images[static_cast<std::size_t>(sample.image)];
-      const int value = test_value(test, image.patch(sample.x, sample.y, sample.scale));
+      const int value = test_value(test, set_.patch(set_.samples[s]));
       (value >= test.threshold ? sides.second : sides.first).push_back(s);
     }
     return sides;

@@ -36,8 +36,7 @@ std::vector<Tally> out_of_bag_support(const TrainingSet& set, const TrainingSett
   std::vector<Tally> tallies(set.classes.size());
   for (const TrainingSample& sample : set.samples) {
     if (sample.label == 0 || in_bag(settings, tree, sample.image)) continue;
-    const FeatureImage& image = set.images[static_cast<std::size_t>(sample.image)];
-    const std::int32_t leaf = find_leaf(forest, tree, image.patch(sample.x, sample.y, sample.scale));
+    const std::int32_t leaf = find_leaf(forest, tree, set.patch(sample));
     Tally& tally = tallies[sample.label - 1U];
     tally.support += support_at_ground_truth(forest, leaf, sample, set.first_class + sample.label - 1U, vote_sigma);
     tally.count += 1.0;

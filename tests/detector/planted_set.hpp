@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
+#include <vector>
 
+#include "detector/features/feature_image.hpp"
 #include "detector/training/augmentation/training_set.hpp"
 #include "pipeline/base/random.hpp"
 
@@ -11,9 +14,24 @@ constexpr int kClassPlane = 7;   ///< rises across every image of the object and
 constexpr int kOffsetPlane = 8;  ///< rises where the offset is +0.05 m and is flat where it is -0.05 m
 constexpr int kNoisePlane = 20;  ///< not informative
 
-/// Returns a set whose answer is known: 16 images, every other one background, and 50 samples of each.
-inline training::TrainingSet planted_set() {
+/// A set, and the images that its cutouts are made of.
+struct Planted {
+  std::vector<FeatureImage> images;
   training::TrainingSet set;
+};
+
+/// Returns the set of these images as they are now.
+inline training::TrainingSet set_of(Planted planted) {
+  planted.set.cutouts.clear();
+  for (const FeatureImage& image : planted.images)
+    planted.set.cutouts.emplace_back(image, training::spans_of(image.held()));
+  return planted.set;
+}
+
+/// Returns what makes a set whose answer is known: 16 images, every other one background, and 50 samples of each.
+inline Planted plant() {
+  Planted planted;
+  training::TrainingSet& set = planted.set;
   set.classes.resize(1);
   set.views.resize(1);
   Random random(3);
@@ -28,10 +46,11 @@ inline training::TrainingSet planted_set() {
       }
     }
     image.replicate_border();
-    set.images.push_back(image);
+    planted.images.push_back(image);
     for (int s = 0; s < 50; ++s) {
       training::TrainingSample sample;
       sample.image = i;
+      sample.cutout = i;
       sample.x = static_cast<std::int16_t>(random.between(12, 19));
       sample.y = static_cast<std::int16_t>(random.between(12, 19));
       sample.scale = 256;
@@ -40,7 +59,11 @@ inline training::TrainingSet planted_set() {
       set.samples.push_back(sample);
     }
   }
-  return set;
+  return planted;
+}
+
+inline training::TrainingSet planted_set() {
+  return set_of(plant());
 }
 
 }  // namespace houghstream::toy

@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
 #include "detector/training/augmentation/camera_randomisation.hpp"
 #include "detector/training/augmentation/composites.hpp"
+#include "detector/training/augmentation/patch_cover.hpp"
 #include "detector/training/augmentation/sensor_errors.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/freed_memory.hpp"
 #include "pipeline/base/parallel.hpp"
 
 namespace houghstream::training {
@@ -89,16 +92,12 @@ const FeatureImage& all_features(const WorkingFrame& frame, const ImageInput& in
   return workspace.features;
 }
 
-/// Returns the region that the patches of an image read.
-cv::Rect seen_by(const TrainingImage& image, const PatchSettings& patch) {
-  cv::Rect seen;
-  for (const auto* list : {&image.samples, &image.negative_pool}) {
-    for (const TrainingSample& sample : *list) {
-      const int reach = max_offset(patch, sample.scale);
-      seen |= cv::Rect(sample.x - reach, sample.y - reach, 2 * reach + 1, 2 * reach + 1);
-    }
-  }
-  return seen;
+/// Takes what the patches of an image read.
+void take_pixels(const FeatureImage& features, const PatchSettings& patch, TrainingImage& image) {
+  std::vector<TrainingSample*> readers;
+  for (auto* list : {&image.samples, &image.negative_pool})
+    for (TrainingSample& sample : *list) readers.push_back(&sample);
+  image.cutouts = cut_out_patches(features, patch, 0, readers);
 }
 
 /// Draws a part of the background that the level sees something in, or any part where there is none.
@@ -165,7 +164,8 @@ TrainingImage object_image(const LabelledView& taught, const RgbdFrame& backgrou
   }
   const double px = composite->frame.camera.metres_per_px(input.scales.counted_distance(distance));
   image.whole_area = static_cast<float>(composite->whole_px * px * px);
-  image.features = all_features(canvas.frame, input, workspace).cut_out(seen_by(image, input.patch));
+  image.size = canvas.mask.size();
+  take_pixels(all_features(canvas.frame, input, workspace), input.patch, image);
   return image;
 }
 
@@ -189,7 +189,8 @@ TrainingImage background_image(const RgbdFrame& background, const FeatureLevel& 
     auto& list = image.samples.size() < count ? image.samples : image.negative_pool;
     list.push_back(sample_at(at, frame, input));
   }
-  image.features = all_features(frame, input, workspace).cut_out(seen_by(image, input.patch));
+  image.size = frame.colour.size();
+  take_pixels(all_features(frame, input, workspace), input.patch, image);
   return image;
 }
 
@@ -266,25 +267,61 @@ void measure_classes(const std::vector<TrainingImage>& images, TrainingSet& set)
   }
 }
 
-/// Moves the images and their samples to the set.
+/// Moves the images' cutouts and samples to the set.
 void take_samples(std::vector<TrainingImage>& images, TrainingSet& set) {
+  set.images = images.size();
   for (std::size_t i = 0; i < images.size(); ++i) {
-    for (TrainingSample& sample : images[i].samples) {
-      sample.image = static_cast<std::int32_t>(i);
-      set.samples.push_back(sample);
-    }
-    for (TrainingSample& sample : images[i].negative_pool) {
-      sample.image = static_cast<std::int32_t>(i);
-      set.negative_pool.push_back(sample);
-    }
-    set.images.push_back(std::move(images[i].features));
+    const auto take = [&](const std::vector<TrainingSample>& from, std::vector<TrainingSample>& to) {
+      for (TrainingSample sample : from) {
+        sample.image = static_cast<std::int32_t>(i);
+        sample.cutout += static_cast<std::int32_t>(set.cutouts.size());
+        to.push_back(sample);
+      }
+    };
+    take(images[i].samples, set.samples);
+    take(images[i].negative_pool, set.negative_pool);
+    std::move(images[i].cutouts.begin(), images[i].cutouts.end(), std::back_inserter(set.cutouts));
+    images[i] = {};
   }
+}
+
+std::size_t bytes_of(const std::vector<Cutout>& cutouts) {
+  std::size_t bytes = 0;
+  for (const Cutout& cutout : cutouts) bytes += cutout.bytes();
+  return bytes;
 }
 
 }  // namespace
 
+std::size_t TrainingSet::held_bytes() const {
+  return bytes_of(cutouts);
+}
+
+void drop_unread_pixels(const PatchSettings& patch, TrainingSet& set) {
+  constexpr std::size_t kCutoutsPerReturn = 1000;  // they were allocated by other threads, whose memory is not reused
+  std::vector<std::vector<TrainingSample*>> readers(set.cutouts.size());
+  for (auto* list : {&set.samples, &set.negative_pool})
+    for (TrainingSample& sample : *list) readers[static_cast<std::size_t>(sample.cutout)].push_back(&sample);
+  std::vector<Cutout> kept;
+  for (std::size_t c = 0; c < readers.size(); ++c) {
+    Cutout& old = set.cutouts[c];
+    const auto first = static_cast<std::int32_t>(kept.size());
+    std::vector<Cutout> parts = cut_out_patches(old, patch, first, readers[c]);
+    if (bytes_of(parts) < old.bytes()) {
+      std::move(parts.begin(), parts.end(), std::back_inserter(kept));
+      old = {};
+    } else {
+      for (TrainingSample* reader : readers[c]) reader->cutout = first;
+      kept.push_back(std::move(old));
+    }
+    if (c % kCutoutsPerReturn == 0) return_freed_memory();
+  }
+  set.cutouts = std::move(kept);
+}
+
 TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const ImageInput& input,
                               const std::function<void(const TrainingView*)>& is_done) {
+  constexpr int kImagesPerReturn = 500;  // images' memory is reused by none that is larger than a view
   const AugmentationSettings& settings = input.settings;
   TrainingSet set;
   set.layout = FeatureLayout(input.features);
@@ -306,27 +343,31 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
   for (std::size_t v = 0; v < objects.size(); ++v) {
     if (!std::binary_search(imaged.begin(), imaged.end(), v)) is_done(objects[v]);
   }
+  return_freed_memory();
   const int object_count = static_cast<int>(imaged.size()) * copies;
   const int total = object_count + static_cast<int>(backgrounds.size()) * kBackgroundImages;
   std::vector<TrainingImage> images(static_cast<std::size_t>(total));
   PerWorker<ImageWorkspace> workspaces;
   workspaces.resize(settings.threads);
-  parallel_for_workers(settings.threads, total, [&](int worker, int i) {
+  parallel_for_workers(settings.threads, object_count, [&](int worker, int i) {
     Random random = Random::for_item(settings.seed, static_cast<std::uint64_t>(i));
-    auto& image = images[static_cast<std::size_t>(i)];
-    if (i < object_count) {
-      const std::size_t v = imaged[static_cast<std::size_t>(i / copies)];
-      const auto b = static_cast<std::size_t>(random.below(static_cast<int>(backgrounds.size())));
-      image = object_image({*objects[v], labels[v], static_cast<std::uint32_t>(v)}, backgrounds[b]->frame, input,
-                           random, workspaces[worker]);
-      if (copies == 1) is_done(objects[v]);
-    } else {
-      const int b = i - object_count;
-      const RgbdFrame& background = backgrounds[static_cast<std::size_t>(b / kBackgroundImages)]->frame;
-      const std::vector<FeatureLevel> levels = input.scales.levels(input.features, background.camera);
-      const FeatureLevel& level = levels[static_cast<std::size_t>(b) % levels.size()];
-      image = background_image(background, level, input, random, workspaces[worker]);
+    const std::size_t v = imaged[static_cast<std::size_t>(i / copies)];
+    const auto b = static_cast<std::size_t>(random.below(static_cast<int>(backgrounds.size())));
+    images[static_cast<std::size_t>(i)] = object_image({*objects[v], labels[v], static_cast<std::uint32_t>(v)},
+                                                       backgrounds[b]->frame, input, random, workspaces[worker]);
+    if (copies == 1) is_done(objects[v]);
+    if (i % kImagesPerReturn == 0) return_freed_memory();
+  });
+  parallel_for_workers(settings.threads, static_cast<int>(backgrounds.size()), [&](int worker, int b) {
+    const TrainingView* background = backgrounds[static_cast<std::size_t>(b)];
+    const std::vector<FeatureLevel> levels = input.scales.levels(input.features, background->frame.camera);
+    for (int i = b * kBackgroundImages; i < (b + 1) * kBackgroundImages; ++i) {
+      const int item = object_count + i;
+      Random random = Random::for_item(settings.seed, static_cast<std::uint64_t>(item));
+      images[static_cast<std::size_t>(item)] = background_image(
+          background->frame, levels[static_cast<std::size_t>(i) % levels.size()], input, random, workspaces[worker]);
     }
+    is_done(background);
   });
   measure_classes(images, set);
   take_samples(images, set);

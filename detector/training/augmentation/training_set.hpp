@@ -12,27 +12,19 @@
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/forest.hpp"
 #include "detector/training/augmentation/augmentation_settings.hpp"
+#include "detector/training/augmentation/cutout.hpp"
 #include "detector/training/augmentation/scales.hpp"
+#include "detector/training/augmentation/training_sample.hpp"
 #include "pipeline/base/random.hpp"
 #include "pipeline/types/training_view.hpp"
 
 namespace houghstream::training {
 
-/// One patch to learn from.
-struct TrainingSample {
-  std::int32_t image = 0;  ///< index into TrainingSet::images
-  std::int16_t x = 0;      ///< patch centre, working pixels
-  std::int16_t y = 0;
-  std::int32_t scale = 0;                            ///< patch_scale of its depth
-  std::uint32_t view = 0;                            ///< index into TrainingSet::views; meaningless for background
-  std::uint16_t label = 0;                           ///< 0 = background, else class index + 1
-  Eigen::Vector3f offset = Eigen::Vector3f::Zero();  ///< offset to the object's centre in the patch's ray frame, metres
-};
-
 /// Everything the trees see.
 struct TrainingSet {
-  FeatureLayout layout;  ///< layout of the images
-  std::vector<FeatureImage> images;
+  FeatureLayout layout;                       ///< layout of the cutouts
+  std::vector<Cutout> cutouts;                ///< what patches read of the images, see cover_patches
+  std::size_t images = 0;                     ///< number of composed images
   std::vector<TrainingSample> samples;        ///< grouped by image
   std::vector<TrainingSample> negative_pool;  ///< more background patches, from which the hard ones are chosen
   std::vector<ObjectClass> classes;           ///< classes by class id
@@ -40,7 +32,16 @@ struct TrainingSet {
   std::uint16_t first_class = 0;  ///< classes and views that the forest has already
   std::uint32_t first_view = 0;
   std::vector<float> visible_areas;  ///< per class: mean over its images, square metres
+
+  CutoutPatch patch(const TrainingSample& sample) const {
+    return cutouts[static_cast<std::size_t>(sample.cutout)].patch(sample.x, sample.y, sample.scale);
+  }
+  /// Returns the size of all pixels that are held, bytes.
+  std::size_t held_bytes() const;
 };
+
+/// Lets those pixels go that no patch of the set reads any more.
+void drop_unread_pixels(const PatchSettings& patch, TrainingSet& set);
 
 /// Input of the augmentation.
 struct ImageInput {
@@ -52,14 +53,15 @@ struct ImageInput {
 
 /// Puts every view into several backgrounds, computes features and draws patches (paper, Section 4: 250 an image).
 /// Throws InputError when a class or the background is missing or a mask is empty. `is_done` is called, from any
-/// thread, when what an object's view shows is needed no more: it may be let go, as all views together are a third as
-/// large as the set. It is not called for views of several composites.
+/// thread, when what a view shows is needed no more: it may be let go, as all views together are as large as the set.
+/// It is not called for objects' views of several composites.
 TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const ImageInput& input,
                               const std::function<void(const TrainingView*)>& is_done);
 
 /// An image that trees learn from.
 struct TrainingImage {
-  FeatureImage features;
+  cv::Size size;                ///< working pixels
+  std::vector<Cutout> cutouts;  ///< what its patches read; TrainingSample::cutout counts from 0 in each image
   std::vector<TrainingSample> samples;
   std::vector<TrainingSample> negative_pool;
   float whole_area = 0.0F;  ///< area of the object, square metres; 0 in a background image

@@ -18,8 +18,7 @@ std::vector<std::uint32_t> every_sample(const TrainingSet& set) {
 }
 
 bool goes_right(const TrainingSet& set, const PixelTest& test, const TrainingSample& sample) {
-  const FeatureImage& image = set.images[static_cast<std::size_t>(sample.image)];
-  return test_value(test, image.patch(sample.x, sample.y, sample.scale)) >= test.threshold;
+  return test_value(test, set.patch(sample)) >= test.threshold;
 }
 
 std::optional<PixelTest> search(const TrainingSet& set, const std::vector<std::uint32_t>& samples, Objective objective,
@@ -52,8 +51,9 @@ TEST(SplitSearch, FindsThePlaneThatSeparatesTheOffsets) {
 }
 
 TEST(SplitSearch, WhereAllValuesAreEqualThereIsNoTest) {
-  TrainingSet set = toy::planted_set();
-  for (FeatureImage& image : set.images) image = FeatureImage(32, 32, set.layout.pixel_stride());
+  toy::Planted planted = toy::plant();
+  for (FeatureImage& image : planted.images) image = FeatureImage(32, 32, planted.set.layout.pixel_stride());
+  const TrainingSet set = toy::set_of(planted);
   EXPECT_FALSE(search(set, every_sample(set), Objective::kClass, 1));
   EXPECT_FALSE(search(set, every_sample(set), Objective::kOffset, 1));
 }
@@ -99,8 +99,8 @@ TEST(SplitSearch, WithoutTrustInTheLightNoSinglePixelOfIntensityDecides) {
   }
 }
 
-void swap_planes(TrainingSet& set, int one, int other) {
-  for (FeatureImage& image : set.images) {
+void swap_planes(std::vector<FeatureImage>& images, int one, int other) {
+  for (FeatureImage& image : images) {
     for (int y = 0; y < 32; ++y) {
       for (int x = 0; x < 32; ++x) std::swap(image.at(x, y)[one], image.at(x, y)[other]);
     }
@@ -110,9 +110,10 @@ void swap_planes(TrainingSet& set, int one, int other) {
 
 /// Returns in how many of ten searches the best test reads one pixel, where `plane` alone separates the labels.
 int alone_of_ten(const FeatureLayout& layout, int plane, double shape_single_pixel_fraction) {
-  TrainingSet set = toy::planted_set();
-  set.layout = layout;
-  swap_planes(set, toy::kClassPlane, plane);
+  toy::Planted planted = toy::plant();
+  planted.set.layout = layout;
+  swap_planes(planted.images, toy::kClassPlane, plane);
+  const TrainingSet set = toy::set_of(planted);
   TrainingSettings settings;
   settings.tests_per_node = 800;
   settings.single_pixel_fraction = 0.0;
@@ -146,11 +147,11 @@ TEST(SplitSearch, TestsOnShapeLookAtOnePixelAsOftenAsAskedAndThoseOnLightDoNot) 
 TEST(SplitSearch, ANodeLooksAtPointHistogramsOrAtTheRestAsOftenAsAsked) {
   FeatureSettings features;
   features.families = kIntensity | kFastHistogram;
-  TrainingSet set = toy::planted_set();
-  set.layout = FeatureLayout(features);
-  const int first = set.layout.block(kFastHistogram).first;
-  for (FeatureImage& image : set.images) {
-    FeatureImage wide(32, 32, set.layout.pixel_stride());
+  toy::Planted planted = toy::plant();
+  planted.set.layout = FeatureLayout(features);
+  const int first = planted.set.layout.block(kFastHistogram).first;
+  for (FeatureImage& image : planted.images) {
+    FeatureImage wide(32, 32, planted.set.layout.pixel_stride());
     for (int y = 0; y < 32; ++y) {
       for (int x = 0; x < 32; ++x) {
         wide.at(x, y)[toy::kClassPlane] = image.at(x, y)[toy::kClassPlane];
@@ -160,6 +161,7 @@ TEST(SplitSearch, ANodeLooksAtPointHistogramsOrAtTheRestAsOftenAsAsked) {
     wide.replicate_border();
     image = wide;
   }
+  const TrainingSet set = toy::set_of(planted);
   TrainingSettings settings;
   const PatchSettings patch;
   for (const auto& [fraction, minimum, maximum] : {std::tuple{0.0, 0, 0}, {0.3, 5, 27}, {1.0, 50, 50}}) {
@@ -209,11 +211,13 @@ TEST(SplitSearch, ADifferenceSeparatesAsTestValueDoesAtEveryPatchScale) {
 }
 
 TEST(SplitSearch, OnePixelAloneSeparatesByASingleStepOfGrey) {
-  TrainingSet set = toy::planted_set();
-  for (std::size_t i = 0; i < set.images.size(); ++i) {
-    for (int p = 0; p < 32 * 32; ++p) set.images[i].at(p % 32, p / 32)[toy::kClassPlane] = i % 2 == 1 ? 101 : 100;
-    set.images[i].replicate_border();
+  toy::Planted planted = toy::plant();
+  for (std::size_t i = 0; i < planted.images.size(); ++i) {
+    FeatureImage& image = planted.images[i];
+    for (int p = 0; p < 32 * 32; ++p) image.at(p % 32, p / 32)[toy::kClassPlane] = i % 2 == 1 ? 101 : 100;
+    image.replicate_border();
   }
+  const TrainingSet set = toy::set_of(planted);
   const auto test = search_for_class(set, 1.0);
   ASSERT_TRUE(test);
   EXPECT_EQ(test->plane, toy::kClassPlane);
@@ -223,12 +227,12 @@ TEST(SplitSearch, OnePixelAloneSeparatesByASingleStepOfGrey) {
 }
 
 TEST(SplitSearch, DepthIsComparedModulo256) {
-  TrainingSet set = toy::planted_set();
+  toy::Planted planted = toy::plant();
   FeatureSettings features;
   features.families = kDepthValue;
-  set.layout = FeatureLayout(features);
-  for (std::size_t i = 0; i < set.images.size(); ++i) {
-    FeatureImage image(32, 32, set.layout.pixel_stride());
+  planted.set.layout = FeatureLayout(features);
+  for (std::size_t i = 0; i < planted.images.size(); ++i) {
+    FeatureImage image(32, 32, planted.set.layout.pixel_stride());
     for (int y = 0; y < 32; ++y) {
       for (int x = 0; x < 32; ++x) {  // the object's ramp runs over 256 in the middle of the samples
         const int value = i % 2 == 1 ? 256 - 48 + 3 * x : 60;
@@ -236,8 +240,9 @@ TEST(SplitSearch, DepthIsComparedModulo256) {
       }
     }
     image.replicate_border();
-    set.images[i] = image;
+    planted.images[i] = image;
   }
+  const TrainingSet set = toy::set_of(planted);
   for (const std::uint64_t seed : {1, 2, 3}) {
     const auto test = search(set, every_sample(set), Objective::kClass, seed);
     ASSERT_TRUE(test);

@@ -53,8 +53,7 @@ TEST(TreeTrainer, ATreeTellsHeldOutImagesApart) {
   for (const TrainingSample& sample : set.samples) {
     if (in_bag(settings, 0, sample.image)) continue;
     ++held_out;
-    const FeatureImage& image = set.images[static_cast<std::size_t>(sample.image)];
-    const auto leaf = static_cast<std::size_t>(find_leaf(tree, 0, image.patch(sample.x, sample.y, sample.scale)));
+    const auto leaf = static_cast<std::size_t>(find_leaf(tree, 0, set.patch(sample)));
     const bool is_object = tree.leaves[leaf] < tree.leaves[leaf + 1];
     ASSERT_EQ(is_object, sample.label != 0);
     if (!is_object) continue;

@@ -17,9 +17,11 @@ TrainingSet set_of(int images) {
   set.classes.resize(2);
   set.visible_areas = {kArea, 0.5F};
   for (int i = 0; i < images; ++i) {
-    set.images.emplace_back(2, 2, set.layout.pixel_stride());
+    const FeatureImage image(2, 2, set.layout.pixel_stride());
+    set.cutouts.emplace_back(image, spans_of(image.held()));
     TrainingSample sample;
     sample.image = i;
+    sample.cutout = i;
     sample.label = 1;
     sample.offset = {0.05F, 0, 0};
     set.samples.push_back(sample);

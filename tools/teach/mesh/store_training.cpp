@@ -12,6 +12,7 @@
 #include "drivers/datasets/object_pixels.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/freed_memory.hpp"
 #include "pipeline/base/parallel.hpp"
 #include "pose/model/symmetry_search.hpp"
 #include "tools/common/progress_line.hpp"
@@ -162,8 +163,10 @@ Forest train_store_forest(std::vector<TrainingView> views, const Forest* old, co
   profile.training.min_samples = kMinOfLeaf;
   profile.training.seed = options.seed;
   profile.training.threads = options.threads;
-  return old ? training::add_objects(*old, std::move(views), profile, report)
-             : training::train_forest(std::move(views), profile, report);
+  Forest forest = old ? training::add_objects(*old, std::move(views), profile, report)
+                      : training::train_forest(std::move(views), profile, report);
+  return_freed_memory();
+  return forest;
 }
 
 }  // namespace houghstream::teach

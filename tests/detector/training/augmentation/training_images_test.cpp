@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <set>
+#include <stdexcept>
+#include <utility>
 
 #include "detector/baseline/baseline_scales.hpp"
 #include "detector/baseline/gall_profile.hpp"
@@ -50,7 +53,7 @@ TrainingImage image_of(const TrainingView& view, const Profile& profile, std::ui
 
 /// Returns the scale of the object in the image relative to the view, without `image_scale`.
 double size_of(const TrainingImage& image, double image_scale) {
-  return (image.features.width() / image_scale - 2 * kMargin) / (2 * kRadius + 1);
+  return (image.size.width / image_scale - 2 * kMargin) / (2 * kRadius + 1);
 }
 
 TEST(TrainingImages, OffsetsOfAScaleSpaceLeadToTheCentresPixel) {
@@ -62,8 +65,8 @@ TEST(TrainingImages, OffsetsOfAScaleSpaceLeadToTheCentresPixel) {
       const TrainingImage image = image_of(view, profile, seed);
       const double size = size_of(image, image_scale);
       // the mask's middle is the image's; the object's centre lies half a pixel of the view beside it
-      const double x = 0.5 * (image.features.width() - 1) - 0.5 * size * image_scale;
-      const double y = 0.5 * (image.features.height() - 1) - 0.5 * size * image_scale;
+      const double x = 0.5 * (image.size.width - 1) - 0.5 * size * image_scale;
+      const double y = 0.5 * (image.size.height - 1) - 0.5 * size * image_scale;
       for (const TrainingSample& sample : image.samples) {
         if (sample.label == 0) continue;
         ASSERT_NEAR(sample.x + sample.offset.x() * kFocal * image_scale, x, 0.6) << "size " << size;
@@ -84,7 +87,7 @@ TEST(TrainingImages, SamplesOfTheObjectLieOnItsMaskAndTheOthersBeside) {
     int beside = 0;
     for (const TrainingSample& sample : image.samples) {
       const double distance =
-          std::hypot(sample.x - 0.5 * (image.features.width() - 1), sample.y - 0.5 * (image.features.height() - 1));
+          std::hypot(sample.x - 0.5 * (image.size.width - 1), sample.y - 0.5 * (image.size.height - 1));
       if (sample.label == 0) {
         ASSERT_GT(distance, radius - 2.0);
         ++beside;
@@ -101,14 +104,21 @@ TEST(TrainingImages, SamplesOfTheObjectLieOnItsMaskAndTheOthersBeside) {
   }
 }
 
+const std::uint8_t* pixel_of(const TrainingImage& image, cv::Point at) {
+  for (const Cutout& cutout : image.cutouts) {
+    if (contains(cutout.held(), {at.x, at.y, 1, 1})) return cutout.at(at.x, at.y);
+  }
+  throw std::runtime_error("no patch reads this pixel");
+}
+
 /// Returns the deviation of the slope at the object's centre, 0 to 127; the derivatives are the first planes.
 double unevenness(const TrainingImage& image) {
   constexpr int kReach = 8;  // pixels
-  const cv::Point middle(image.features.width() / 2, image.features.height() / 2);
+  const cv::Point middle(image.size.width / 2, image.size.height / 2);
   std::vector<double> slopes;
   for (int y = -kReach; y <= kReach; ++y) {
     for (int x = -kReach; x <= kReach; ++x) {
-      slopes.push_back(image.features.at(middle.x + x, middle.y + y)[0]);
+      slopes.push_back(pixel_of(image, middle + cv::Point(x, y))[0]);
     }
   }
   cv::Scalar mean;
@@ -133,19 +143,23 @@ TEST(TrainingImages, AScaleSpaceIsTaughtTheNoiseOfTheDistancesItSearches) {
 
 /// Checks that an image holds all pixels that its patches read, and few more.
 void expect_held(const TrainingImage& image, const PatchSettings& patch) {
-  const cv::Rect held = image.features.held();
+  std::set<std::pair<int, int>> read;
   for (const auto* list : {&image.samples, &image.negative_pool}) {
     for (const TrainingSample& sample : *list) {
       const int reach = max_offset(patch, sample.scale);
       const cv::Rect seen(sample.x - reach, sample.y - reach, 2 * reach + 1, 2 * reach + 1);
-      ASSERT_EQ(seen & held, seen) << sample.x << " " << sample.y;
+      ASSERT_TRUE(contains(image.cutouts.at(static_cast<std::size_t>(sample.cutout)).held(), seen)) << sample.x;
+      for (int y = seen.y; y < seen.br().y; ++y)
+        for (int x = seen.x; x < seen.br().x; ++x) read.emplace(x, y);
     }
   }
-  EXPECT_LT(held.width, image.features.width() + 2 * FeatureImage::kPad);
-  EXPECT_LT(held.height, image.features.height() + 2 * FeatureImage::kPad);
+  std::size_t held = 0;
+  for (const Cutout& cutout : image.cutouts) held += cutout.held().pixels();
+  EXPECT_GE(held, read.size());
+  EXPECT_LE(static_cast<double>(held), 1.1 * static_cast<double>(read.size()));
 }
 
-TEST(TrainingImages, ImagesHoldWhatTheirPatchesLookAtOnly) {
+TEST(TrainingImages, ImagesHoldWhatTheirPatchesReadOnly) {
   const Profile profile = open_profile("realtime");
   ImageWorkspace workspace;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {

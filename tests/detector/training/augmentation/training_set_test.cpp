@@ -6,6 +6,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 #include <set>
+#include <tuple>
 
 #include "pipeline/base/checks.hpp"
 #include "tests/detector/toy_data.hpp"
@@ -41,6 +42,8 @@ TrainingSet teach(const std::vector<TrainingView>& views, float distance, int th
 }
 
 TEST(TrainingSet, OffsetsPointFromTheSurfaceToTheCentre) {
+  constexpr int kMargins = 96;  // frame pixels, of a composite
+  const cv::Rect tile = cv::boundingRect(flat_tile()[0].mask);
   const TrainingSet set = teach(flat_tile(), 0.7F);
   int objects = 0;
   for (const TrainingSample& sample : set.samples) {
@@ -49,9 +52,8 @@ TEST(TrainingSet, OffsetsPointFromTheSurfaceToTheCentre) {
     ASSERT_EQ(sample.label, 1);
     // The image is the tile with equal margins, at its own size, as its lens is half as long as the usual one: its
     // middle shows the view's principal point.
-    const FeatureImage& image = set.images[static_cast<std::size_t>(sample.image)];
-    const double right_px = sample.x - 0.5 * (image.width() - 1);
-    const double down_px = sample.y - 0.5 * (image.height() - 1);
+    const double right_px = sample.x - 0.5 * (tile.width + kMargins - 1);
+    const double down_px = sample.y - 0.5 * (tile.height + kMargins - 1);
     const Eigen::Vector3f point = Eigen::Vector3d(right_px / 262.5 * 0.7, down_px / 262.5 * 0.7, 0.7).cast<float>();
     const Eigen::Vector3f centre = point + ray_rotation(point) * sample.offset;
     ASSERT_LT((centre - Eigen::Vector3f(0, 0, 0.7F)).norm(), 0.001F) << sample.x << " " << sample.y;
@@ -157,15 +159,38 @@ TEST(TrainingSet, ViewsThatAreDoneMayLetTheirImagesGo) {
   const TrainingSet kept = make_training_set(pointers, set_input(profile), kKeepAll);
   const TrainingSet let_go = make_training_set(pointers, set_input(profile), [&](const TrainingView* done) {
     TrainingView& view = views[static_cast<std::size_t>(done - views.data())];
-    EXPECT_GT(view.class_id, 0) << "a room, which other pictures want too";
-    EXPECT_FALSE(view.mask.empty()) << "done twice";
+    EXPECT_FALSE(view.frame.colour.empty()) << "done twice";
     view.frame = {};
     view.mask.release();
   });
-  for (const TrainingView& view : views) EXPECT_EQ(view.mask.empty(), true) << view.source;
+  for (const TrainingView& view : views) EXPECT_TRUE(view.frame.colour.empty()) << view.source;
   ASSERT_EQ(kept.samples.size(), let_go.samples.size());
   for (std::size_t i = 0; i < kept.samples.size(); ++i)
     EXPECT_EQ(kept.samples[i].offset, let_go.samples[i].offset) << "sample " << i;
+}
+
+/// Returns the bytes of all pixels that patches of the set read, each counted once.
+std::size_t read_bytes(const TrainingSet& set) {
+  std::set<std::tuple<int, int, int>> read;
+  for (const auto* list : {&set.samples, &set.negative_pool}) {
+    for (const TrainingSample& sample : *list) {
+      const int reach = max_offset({}, sample.scale);
+      for (int y = sample.y - reach; y <= sample.y + reach; ++y)
+        for (int x = sample.x - reach; x <= sample.x + reach; ++x) read.emplace(sample.image, x, y);
+    }
+  }
+  return read.size() * static_cast<std::size_t>(set.layout.pixel_stride());
+}
+
+TEST(TrainingSet, PatchesShareThePixelsThatTheyReadAndNothingElseIsHeld) {
+  TrainingSet set = teach(toy::training_views(), 0.8F);
+  EXPECT_GE(set.held_bytes(), read_bytes(set));
+  EXPECT_LT(static_cast<double>(set.held_bytes()), 1.1 * static_cast<double>(read_bytes(set)));
+  const std::size_t with_pool = set.held_bytes();
+  set.negative_pool.clear();
+  drop_unread_pixels({}, set);
+  EXPECT_LT(set.held_bytes(), with_pool);
+  EXPECT_LT(static_cast<double>(set.held_bytes()), 1.1 * static_cast<double>(read_bytes(set)));
 }
 
 TEST(TrainingSet, WhatCannotBeTaughtIsRefused) {
