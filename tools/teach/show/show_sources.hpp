@@ -8,8 +8,8 @@
 namespace houghstream::teach {
 
 /// Opens the frames of a camera (openni2...), which end after `options.longest_s` or with a stop signal, or of a
-/// recording: log:FILE or FILE of any kind that hs-log import reads, bop:DIR, uw:DIR, tum:DIR, bag:FILE. Throws InputError where
-/// it cannot be opened.
+/// recording: log:FILE or FILE of any kind that hs-log import reads, bop:DIR, uw:DIR, tum:DIR, bag:FILE. Throws
+/// InputError where it cannot be opened.
 ShownFrames open_shown(const std::string& source, const ShowOptions& options);
 
 /// Returns whether a source's frames arrive in real time: openni2 or openni2:CAMERA, or a stream's, stream:CHANNEL.

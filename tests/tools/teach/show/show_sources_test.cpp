@@ -49,7 +49,8 @@ TEST(CameraTake, EndsWhenEnoughWasSeenAndLetsTheProgramBeInterrupted) {
 
 TEST(CameraTake, OnlyCamerasAreLive) {
   for (const char* source : {"openni2", "openni2:#2", "stream:OPENNI_FRAME"}) EXPECT_TRUE(is_live(source)) << source;
-  for (const char* source : {"log:take.lcmlog", "bop:take", "bag:take.bag", "take.oni", ""}) EXPECT_FALSE(is_live(source)) << source;
+  for (const char* source : {"log:take.lcmlog", "bop:take", "bag:take.bag", "take.oni", ""})
+    EXPECT_FALSE(is_live(source)) << source;
 }
 
 }  // namespace
