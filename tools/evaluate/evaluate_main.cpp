@@ -218,8 +218,7 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
       .description("in-process: poses of lower quality are withheld; default: as by hs-pose");
   add_precision_option(
       app, options.rules.precision,
-      "in-process, with --objects: score and quality of each object are those that its practice needed "
-      "for this precision, as of hs-detect and hs-pose")
+      "in-process, with --objects: each object's score and quality are what its practice needed for this precision")
       .excludes(app.get_option("--operating-score"))
       .excludes(app.get_option("--min-quality"));
   app.add_flag("--processed-only", rules.processed_only, "skipped frames are left out, not missed");
