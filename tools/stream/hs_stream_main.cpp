@@ -38,9 +38,7 @@ void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
   app.add_option("-c,--channel", options.channel, "channel of the frames").capture_default_str();
   app.add_option("--threshold", options.threshold, "smallest score that is reported").range(0.0, 1.0);
   app.add_option("--min-quality", options.min_quality, "smallest quality of a valid pose").range(0.0, 1.0);
-  app.add_option("--precision", options.precision,
-                 "with --objects: what is reported shall be right in this fraction of the cases; each object has the "
-                 "least score and quality that its practice needed for it")
+  app.add_option("--precision", options.precision, "with --objects: fraction that shall be right")
       .range(0.0, store::kMaxPrecision)
       .excludes(app.get_option("--threshold"))
       .excludes(app.get_option("--min-quality"));
@@ -60,9 +58,7 @@ void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
                  "seconds in which to end; who says that it writes the end of a file gets ten minutes")
       .range(0.1, 600.0)
       .capture_default_str();
-  app.add_option(
-         "--hang-patience", pace.hang_timeout,
-         "seconds without a status (each process sends one a second) after which one counts as hung: started again")
+  app.add_option("--hang-patience", pace.hang_timeout, "seconds without a status until it is restarted")
       .range(2.0, 3600.0)
       .capture_default_str();
   app.add_option("--start-patience", pace.start_patience, "the same for one that has sent none so far")
@@ -157,7 +153,7 @@ int main(int argc, char** argv) {
   using namespace houghstream::stream;
   CommandLine app(
       "Starts capture, detection, poses and view, shows their state, starts again what dies or hangs. Ends on Ctrl-C, "
-      "at the source's end, and when the window is closed.",
+      "at the source's end, when the window closes.",
       "hs-stream");
   StreamOptions options;
   Pace pace;
