@@ -214,8 +214,7 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
          "score from which precision and false detections count; in-process, weaker ones are no candidates either; "
          "default: as hs-detect reports them, and candidates that have a pose")
       .range(range_of(&EvidenceSettings::threshold));
-  add_min_quality_option(app, options.min_quality)
-      .description("in-process: poses of lower quality are withheld; default: as by hs-pose");
+  add_min_quality_option(app, options.min_quality).description("in-process: least of a pose; default: hs-pose's");
   add_precision_option(
       app, options.rules.precision,
       "in-process, with --objects: each object's score and quality are what its practice needed for this precision")
