@@ -32,19 +32,4 @@ void FeatureImage::replicate_border(cv::Rect part) {
   }
 }
 
-FeatureImage FeatureImage::cut_out(cv::Rect kept) const {
-  FeatureImage out;
-  out.width_ = width_;
-  out.height_ = height_;
-  out.pixel_stride_ = pixel_stride_;
-  out.held_ = kept & held_;
-  const auto row_bytes = static_cast<std::size_t>(out.row_stride());
-  out.data_.reserve(static_cast<std::size_t>(out.held_.height) * row_bytes + kSpare);  // never cleared, only written
-  for (int y = out.held_.y; y < out.held_.br().y; ++y) {
-    out.data_.insert(out.data_.end(), at(out.held_.x, y), at(out.held_.x, y) + row_bytes);
-  }
-  out.data_.resize(out.data_.size() + kSpare);
-  return out;
-}
-
 }  // namespace houghstream

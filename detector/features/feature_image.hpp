@@ -36,7 +36,7 @@ class FeatureImage {
   int pixel_stride() const { return pixel_stride_; }
   int row_stride() const { return held_.width * pixel_stride_; }
 
-  /// Returns the pixels that there are: the image and its border, or what cut_out() has kept.
+  /// Returns the pixels that there are: the image and its border.
   const cv::Rect& held() const { return held_; }
 
   /// Returns the values of pixel (x,y), which must be one of held().
@@ -49,9 +49,6 @@ class FeatureImage {
   void replicate_border() { replicate_border({0, 0, width_, height_}); }
   /// Replicates the border beside a part of the image; does nothing where the part lies inside.
   void replicate_border(cv::Rect part);
-
-  /// Returns a copy that holds these pixels alone, under the same x and y.
-  FeatureImage cut_out(cv::Rect kept) const;
 
  private:
   std::size_t offset(int x, int y) const {

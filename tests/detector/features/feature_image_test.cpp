@@ -31,29 +31,6 @@ TEST(FeatureImage, TheBorderRepeatsTheNearestInnerPixelInEveryPlane) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(FeatureImage, WhatIsCutOutKeepsItsPlaceAndNothingElse) {
-  constexpr int kStride = 32;
-  FeatureImage image(40, 30, kStride);
-  for (int y = -FeatureImage::kPad; y < 30 + FeatureImage::kPad; ++y) {
-    for (int x = -FeatureImage::kPad; x < 40 + FeatureImage::kPad; ++x) {
-      for (int c = 0; c < kStride; ++c) image.at(x, y)[c] = static_cast<std::uint8_t>(3 * x + 5 * y + c);
-    }
-  }
-  const cv::Rect wanted(-FeatureImage::kPad - 1, 7, 50, 9);  // a column more than there is
-  const FeatureImage part = image.cut_out(wanted);
-  EXPECT_EQ(part.held(), cv::Rect(-FeatureImage::kPad, 7, 49, 9));
-  EXPECT_EQ(part.row_stride(), 49 * kStride);
-  EXPECT_EQ(part.width(), 40);
-  EXPECT_EQ(part.height(), 30);
-  int wrong = 0;
-  for (int y = 7; y < 16; ++y) {
-    for (int x = -FeatureImage::kPad; x < 25; ++x) {
-      for (int c = 0; c < kStride; ++c) wrong += part.at(x, y)[c] != image.at(x, y)[c] ? 1 : 0;
-    }
-  }
-  EXPECT_EQ(wrong, 0);
-}
-
 TEST(FeatureImage, TheRowStrideLeadsToThePixelBelow) {
   const FeatureImage image(7, 5, 96);
   EXPECT_EQ(image.at(3, 1) + image.row_stride(), image.at(3, 2));
