@@ -49,11 +49,13 @@ bool has_depth(const ObjectObservation& observation, const FollowerInput& input)
   return observation.region.points >= input.pose.region.min_points;
 }
 
-/// Returns whether any depth is measured where the object should be, at whatever distance.
-bool is_depth_measured(const ObjectObservation& observation, const FollowerInput& input) {
+/// Returns whether nothing but colours can show the object: it should be in the image, and no depth is measured there,
+/// at whatever distance.
+bool is_without_depth(const ObjectObservation& observation, const FollowerInput& input) {
+  if (observation.region.box_px.empty()) return false;
   const cv::Mat part = observation.frame.depth(observation.region.box_px);
   // Counts measured pixels: NaN differs from itself.
-  return cv::countNonZero(part == part) >= input.pose.region.min_points;
+  return cv::countNonZero(part == part) < input.pose.region.min_points;
 }
 
 /// Returns the refinement that moves the pose a little by texture, where depth and silhouette leave it free.
@@ -156,7 +158,7 @@ FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, co
   followed.T_camera_object = start;
   const ObjectObservation observation = see_expected(frame, model, start, settings);
   followed.has_depth = has_depth(observation, input);
-  if (!followed.has_depth && (is_depth_measured(observation, input) || !expected.appearance.colours)) {
+  if (!followed.has_depth && !(is_without_depth(observation, input) && expected.appearance.colours)) {
     pose.status = PoseStatus::kTooFewPoints;
     return followed;
   }

@@ -167,6 +167,18 @@ TEST(ObjectFollower, DepthThatCameBeforeIsNotMeasuredTwice) {
   EXPECT_LT(error_with_repeated_depth(), 0.0007);
 }
 
+TEST(ObjectFollower, WhatIsExpectedOutsideTheImageCostsNoFrame) {
+  Following it(Film().with("box", cereal_box(), -0.28, 0.13));
+  for (int i = 1; i < 9; ++i) {
+    it.film.T_camera_table = Eigen::Translation3d(-std::min(0.03, 0.008 * i), 0.0, 0.0) * it.film.T_camera_table;
+    ASSERT_EQ(valid_ones(it.next()), 1) << i;
+  }
+  it.film.utime += 13 * kPeriod;  // at the speed until now the box would have left the image; the camera has stopped
+  ObjectPoses poses;
+  ASSERT_NO_THROW(poses = it.next());
+  EXPECT_EQ(valid_ones(poses), 1) << "found where it was";
+}
+
 TEST(ObjectFollower, WhatIsTakenAwayIsNoticedAtOnceAndGoneSoon) {
   Following it(box_and_mug());
   it.next();
