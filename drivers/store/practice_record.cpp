@@ -24,65 +24,67 @@ PracticeStep pooled(const PracticeStep& upper, const PracticeStep& lower) {
   return {lower.from, upper.right + lower.right, upper.wrong + lower.wrong};
 }
 
-OrderedJson columns_of(const PracticeCurve& curve) {
-  OrderedJson from = OrderedJson::array();
-  OrderedJson right = OrderedJson::array();
-  OrderedJson wrong = OrderedJson::array();
-  for (const PracticeStep& step : curve) {
-    from.push_back(step.from);
-    right.push_back(step.right);
-    wrong.push_back(step.wrong);
-  }
-  return {{"from", std::move(from)}, {"right", std::move(right)}, {"wrong", std::move(wrong)}};
-}
+/// A list of values, and where a row has its own.
+template <typename Row, typename Value>
+struct Column {
+  const char* name;
+  Value Row::*value;
+};
 
-OrderedJson columns_of(const std::vector<PracticeBin>& bins) {
-  OrderedJson to = OrderedJson::array();
-  OrderedJson shown = OrderedJson::array();
-  OrderedJson found = OrderedJson::array();
-  for (const PracticeBin& bin : bins) {
-    to.push_back(bin.to);
-    shown.push_back(bin.shown);
-    found.push_back(bin.found);
-  }
-  return {{"to", std::move(to)}, {"shown", std::move(shown)}, {"found", std::move(found)}};
-}
-
-/// Three lists of one length, by name.
+/// The three lists of one length that hold rows.
+template <typename Row>
 struct Columns {
-  std::vector<double> bounds;
-  std::vector<double> first;   ///< counts
-  std::vector<double> second;  ///< counts
+  Column<Row, double> bound;
+  Column<Row, int> first;   ///< counts
+  Column<Row, int> second;  ///< counts
 };
 
-struct ColumnNames {
-  const char* bounds;
-  const char* first;
-  const char* second;
-};
+constexpr Columns<PracticeStep> kSteps{
+    {"from", &PracticeStep::from}, {"right", &PracticeStep::right}, {"wrong", &PracticeStep::wrong}};
+constexpr Columns<PracticeBin> kBins{
+    {"to", &PracticeBin::to}, {"shown", &PracticeBin::shown}, {"found", &PracticeBin::found}};
 
-Columns read_columns(const nlohmann::json& json, const char* key, const ColumnNames& names, const std::string& where) {
+template <typename Row>
+OrderedJson columns_of(const std::vector<Row>& rows, const Columns<Row>& columns) {
+  const auto values_of = [&](const auto& column) {
+    OrderedJson values = OrderedJson::array();
+    for (const Row& row : rows) values.push_back(row.*column.value);
+    return values;
+  };
+  OrderedJson json;
+  json[columns.bound.name] = values_of(columns.bound);
+  json[columns.first.name] = values_of(columns.first);
+  json[columns.second.name] = values_of(columns.second);
+  return json;
+}
+
+template <typename Row>
+std::vector<Row> read_columns(const nlohmann::json& json, const char* key, const Columns<Row>& columns,
+                              const std::string& where) {
   const std::string place = fmt::format("{} '{}'", where, key);
   require(json.contains(key) && json.at(key).is_object(), "{} is missing, expected lists of counts", place);
   const nlohmann::json& lists = json.at(key);
-  require_known_names(lists, {names.bounds, names.first, names.second}, place);
-  const auto list = lists.find(names.bounds);
-  require(list != lists.end() && list->is_array(), "{}: no '{}', expected a list of numbers", place, names.bounds);
-  const std::size_t length = list->size();
-  Columns columns{json_numbers(lists, names.bounds, length, place), json_numbers(lists, names.first, length, place),
-                  json_numbers(lists, names.second, length, place)};
-  for (std::size_t i = 0; i < length; ++i) {
-    for (const double count : {columns.first[i], columns.second[i]})
-      require(count >= 0.0 && count < 1e9 && count == std::floor(count), "{}: {}, expected a count", place, count);
+  require_known_names(lists, {columns.bound.name, columns.first.name, columns.second.name}, place);
+  const auto list = lists.find(columns.bound.name);
+  require(list != lists.end() && list->is_array(), "{}: no '{}', expected a list of numbers", place,
+          columns.bound.name);
+  const std::vector<double> bounds = json_numbers(lists, columns.bound.name, list->size(), place);
+  std::vector<Row> rows(bounds.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].*columns.bound.value = bounds[i];
+  for (const Column<Row, int>& column : {columns.first, columns.second}) {
+    const std::vector<double> counts = json_numbers(lists, column.name, rows.size(), place);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      require(counts[i] >= 0.0 && counts[i] < 1e9 && counts[i] == std::floor(counts[i]), "{}: {}, expected a count",
+              place, counts[i]);
+      rows[i].*column.value = static_cast<int>(counts[i]);
+    }
   }
-  return columns;
+  return rows;
 }
 
 PracticeCurve read_curve(const nlohmann::json& json, const char* key, const std::string& where) {
-  const Columns columns = read_columns(json, key, {"from", "right", "wrong"}, where);
   PracticeCurve curve;
-  for (std::size_t i = 0; i < columns.bounds.size(); ++i) {
-    const PracticeStep step{columns.bounds[i], static_cast<int>(columns.first[i]), static_cast<int>(columns.second[i])};
+  for (const PracticeStep& step : read_columns(json, key, kSteps, where)) {
     const bool falls = curve.empty() ? step.from <= 1.0 : step.from < curve.back().from;
     const bool grows = curve.empty() || (step.right >= curve.back().right && step.wrong >= curve.back().wrong);
     require(step.from >= 0.0 && falls && grows && step.right + step.wrong > 0,
@@ -94,10 +96,8 @@ PracticeCurve read_curve(const nlohmann::json& json, const char* key, const std:
 }
 
 std::vector<PracticeBin> read_bins(const nlohmann::json& json, const char* key, const std::string& where) {
-  const Columns columns = read_columns(json, key, {"to", "shown", "found"}, where);
   std::vector<PracticeBin> bins;
-  for (std::size_t i = 0; i < columns.bounds.size(); ++i) {
-    const PracticeBin bin{columns.bounds[i], static_cast<int>(columns.first[i]), static_cast<int>(columns.second[i])};
+  for (const PracticeBin& bin : read_columns(json, key, kBins, where)) {
     require(bin.to > (bins.empty() ? 0.0 : bins.back().to) && bin.found <= bin.shown,
             "{} '{}': {} of {} found up to {}, expected ends that grow and at most as many found as shown", where, key,
             bin.found, bin.shown, bin.to);
@@ -171,12 +171,12 @@ OrderedJson to_json(const PracticeRecord& record) {
   json["shown"] = record.shown;
   json["right"] = record.right;
   json["wrong"] = record.wrong;
-  json["score"] = columns_of(record.scores);
-  json["quality"] = columns_of(record.qualities);
+  json["score"] = columns_of(record.scores, kSteps);
+  json["quality"] = columns_of(record.qualities, kSteps);
   json["taken_for"] = OrderedJson::object();
   for (const auto& [name, times] : record.taken_for) json["taken_for"][name] = times;
-  json["by_distance_m"] = columns_of(record.by_distance);
-  json["by_visible"] = columns_of(record.by_visible);
+  json["by_distance_m"] = columns_of(record.by_distance, kBins);
+  json["by_visible"] = columns_of(record.by_visible, kBins);
   return json;
 }
 
