@@ -1,5 +1,6 @@
 """Frames of the demo's recording, with other times and numbers than they had."""
 
+import itertools
 import struct
 import time
 
@@ -22,9 +23,19 @@ def with_metadata(payload, key, value):
     return payload[:at] + struct.pack(">i", len(text)) + text + payload[at + 4 + size :]
 
 
+def frames_of(recording):
+    """Yields the encoded frames of a recording, in their order."""
+    return (payload for _, channel, payload in read_log(recording) if channel == FRAME)
+
+
+def taken_at(payload, utime, number):
+    """The frame as a camera sends it that takes it at this time, as its frame of this number."""
+    return with_metadata(with_utime(payload, utime), SEQUENCE, number)
+
+
 def with_number(payload, number):
     """Another frame, that its sender says has this number."""
-    return with_metadata(with_utime(payload, utime_of(payload) + 1), SEQUENCE, number)
+    return taken_at(payload, utime_of(payload) + 1, number)
 
 
 class FrameSender:
@@ -34,12 +45,7 @@ class FrameSender:
 
     def __init__(self, recording, port):
         self.sender = Sender(port)
-        self.frames = []
-        for _, channel, data in read_log(recording):
-            if channel == FRAME:
-                self.frames.append(data)
-            if len(self.frames) == self.KEPT:
-                break
+        self.frames = list(itertools.islice(frames_of(recording), self.KEPT))
 
     def send(self, times, channels=(FRAME,), rate=30.0):
         """A frame for each of `times`, microseconds since the epoch, on each channel."""
@@ -53,6 +59,6 @@ class FrameSender:
             self.send_one(number, utime, channels)
 
     def send_one(self, number, utime, channels=(FRAME,)):
-        payload = with_metadata(with_utime(self.frames[number % len(self.frames)], utime), SEQUENCE, number)
+        payload = taken_at(self.frames[number % len(self.frames)], utime, number)
         for channel in channels:
             self.sender.send(channel, payload)

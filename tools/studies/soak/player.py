@@ -7,10 +7,8 @@ import signal
 import sys
 import time
 
-from houghstream.event_log import read_log
-from studies.soak.frames import FRAME, SEQUENCE, with_metadata
+from studies.soak.frames import FRAME, frames_of, taken_at
 from studies.soak.wire import Sender
-from studies.wire_patch import with_utime
 
 
 def play(payloads, sender, rate, stopped):
@@ -20,13 +18,12 @@ def play(payloads, sender, rate, stopped):
         time.sleep(max(0.0, start + number / rate - time.monotonic()))
         if stopped():
             return number
-        now = with_utime(payload, time.time_ns() // 1000)
-        sender.send(FRAME, with_metadata(now, SEQUENCE, number))
+        sender.send(FRAME, taken_at(payload, time.time_ns() // 1000, number))
 
 
 def main():
     recording, port, rate = sys.argv[1], int(sys.argv[2]), float(sys.argv[3])
-    payloads = [payload for _, channel, payload in read_log(recording) if channel == FRAME]
+    payloads = list(frames_of(recording))
     if not payloads:
         sys.exit(f"{recording}: no message on {FRAME}, expected frames")
     signals = []
