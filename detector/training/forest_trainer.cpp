@@ -13,7 +13,7 @@
 #include "detector/training/vote_mass.hpp"
 #include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/freed_memory.hpp"
+#include "pipeline/base/heap_memory.hpp"
 #include "pipeline/base/parallel.hpp"
 
 namespace houghstream::training {

@@ -9,6 +9,7 @@
 #include "drivers/store/store_watcher.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/base/heap_memory.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/process/detect_process.hpp"
 #include "pipeline/process/warm_up.hpp"
@@ -151,6 +152,7 @@ int main(int argc, char** argv) {
   app.add_example("hs-detect --forest out/demo/data/forest -l file://IN.lcmlog --output-log OUT.lcmlog");
 
   return run_tool(app, argc, argv, [&] {
+    share_one_heap();
     if (!camera.empty()) options.process.camera = camera_of_option(camera);
     if (options.process.max_rate_hz > 0.0) give_way();
     require(options.forest_file.empty() != options.objects.empty(), "expected either --objects STORE or --forest FILE");

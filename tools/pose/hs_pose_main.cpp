@@ -7,6 +7,7 @@
 #include "pipeline/base/cache_folder.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/base/heap_memory.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/process/pose_process.hpp"
 #include "pipeline/process/warm_up.hpp"
@@ -230,6 +231,7 @@ int main(int argc, char** argv) {
   app.add_example("hs-pose --models out/demo/data/training/models");
 
   return run_tool(app, argc, argv, [&] {
+    share_one_heap();
     if (!camera.empty()) options.process.camera = camera_of_option(camera);
     require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
     require(!options.precision || !options.objects.empty(), "--precision goes with --objects, whose practice it reads");

@@ -12,7 +12,7 @@
 #include "detector/training/augmentation/patch_cover.hpp"
 #include "detector/training/augmentation/sensor_errors.hpp"
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/freed_memory.hpp"
+#include "pipeline/base/heap_memory.hpp"
 #include "pipeline/base/parallel.hpp"
 
 namespace houghstream::training {

@@ -12,7 +12,7 @@
 #include "drivers/datasets/object_pixels.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/freed_memory.hpp"
+#include "pipeline/base/heap_memory.hpp"
 #include "pipeline/base/parallel.hpp"
 #include "pose/model/symmetry_search.hpp"
 #include "tools/common/progress_line.hpp"
