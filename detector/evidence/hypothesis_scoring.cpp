@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace houghstream {
@@ -20,7 +21,7 @@ using WeightedViews = std::vector<std::pair<std::uint32_t, float>>;
 
 /// Templates from which the best match is searched; it needs no memory of its own, as a frame has many of them.
 struct SeedTemplates {
-  std::array<PlacedTemplate, kMaxAttitudes> templates;
+  std::array<PlacedTemplate, kMaxAttitudes + 1> templates;
   std::size_t count = 0;
 
   const PlacedTemplate* begin() const { return templates.data(); }
@@ -34,6 +35,7 @@ struct ScoringTask {
   float spread = 1.0F;  ///< attitude_spread() of its class
   std::size_t group = 0;
   ScoredHypothesis scored;
+  std::optional<PlacedTemplate> spread_best;  ///< see compare_spread_views()
   bool is_refined = false;
 };
 
@@ -48,10 +50,12 @@ class HypothesisScorer {
         object_(forest_.classes[hypothesis_.class_index]),
         views_(forest_.views),
         scored_(task.scored),
+        spread_best_(task.spread_best),
         compared_(compared),
         workspace_(workspace) {}
 
-  /// Compares the first templates that most votes remember with the frame.
+  /// Compares the first templates that most votes remember with the frame, and those of all attitudes where it is worth
+  /// it.
   void compare();
   void refine();
   /// Adds the box, and the rotations of a candidate.
@@ -60,6 +64,8 @@ class HypothesisScorer {
  private:
   void compare_templates(std::size_t count);
   void set_match(const PlacedTemplate& placed, Evidence& evidence) const;
+  void compare_spread_views();
+  const PlacedTemplate* best_compared() const;
   SeedTemplates find_seeds(std::size_t count);
   PlacedTemplate refine_over_neighbours(PlacedTemplate best);
   static cv::Rect2f visible_box_between(const cv::Rect2f& voted, const cv::Rect2f& fitted, const Camera& camera);
@@ -78,6 +84,7 @@ class HypothesisScorer {
   const ObjectClass& object_;
   const std::vector<ViewTemplate>& views_;
   ScoredHypothesis& scored_;
+  std::optional<PlacedTemplate>& spread_best_;
   std::vector<PlacedTemplate>& compared_;
   ScoringWorkspace::Worker& workspace_;
 };
@@ -210,7 +217,8 @@ void HypothesisScorer::compare() {
   compared_.clear();
   if (forest_.scoring != Scoring::kEvidence) return;
   compare_templates(kTemplates);
-  if (!compared_.empty()) set_match(best_match(compared_), scored_.evidence);
+  compare_spread_views();
+  if (const PlacedTemplate* best = best_compared()) set_match(*best, scored_.evidence);
   detection.score = score(object_.score_model, scored_.evidence);
 }
 
@@ -226,6 +234,29 @@ void HypothesisScorer::compare_templates(std::size_t count) {
       compared_.push_back({view, centre, match_template(views_[view], centre, input_.frame)});
     ++place;
   }
+}
+
+/// Finds the template that matches best among views of all attitudes, where a class has many and the votes are many. In
+/// real images votes remember other views than in rendered ones: those of a plain or symmetric object are often not of
+/// its attitude.
+void HypothesisScorer::compare_spread_views() {
+  constexpr float kManyVotes = 0.3F;  // of the nominal vote mass: a third of the object, seen as well as in training
+  if (spread_ == 1.0F || scored_.evidence.relative_vote_mass < kManyVotes) return;
+  std::vector<PlacedTemplate>& spread = workspace_.spread;
+  spread.clear();
+  for (const std::uint32_t view : input_.index.spread_views(hypothesis_.class_index)) {
+    const Eigen::Vector3f& centre = hypothesis_.centre_camera;
+    if (!is_excluded(view)) spread.push_back({view, centre, match_template(views_[view], centre, input_.frame)});
+  }
+  if (!spread.empty()) spread_best_ = align_best_templates(views_, input_.frame, spread);
+}
+
+/// Returns the best of what was compared, nothing where nothing was.
+const PlacedTemplate* HypothesisScorer::best_compared() const {
+  const PlacedTemplate* best = compared_.empty() ? nullptr : &best_match(compared_);
+  if (spread_best_ && (best == nullptr || match_quality(spread_best_->fit) > match_quality(best->fit)))
+    return &*spread_best_;
+  return best;
 }
 
 /// Writes into the evidence how a template matches the frame, within its outline and across it.
@@ -262,14 +293,14 @@ void HypothesisScorer::refine() {
 }
 
 /// Returns the template that matches best, and up to `count` in all of those that match next best in attitudes unlike
-/// these; at most kMaxAttitudes. Sorts `compared` by how they match.
+/// these, at most kMaxAttitudes; then the best of the spread views. Sorts `compared` by how they match.
 SeedTemplates HypothesisScorer::find_seeds(std::size_t count) {
   constexpr float kUnlike_rad = 0.6F;
   const auto rotation = [&](const PlacedTemplate& placed) {
     return Eigen::Quaternionf(views_[placed.view].R_ray_object);
   };
   SeedTemplates seeds;
-  seeds.templates[seeds.count++] = align_best_templates(views_, input_.frame, compared_);
+  if (!compared_.empty()) seeds.templates[seeds.count++] = align_best_templates(views_, input_.frame, compared_);
   for (const PlacedTemplate& next : compared_) {
     if (seeds.count == count) break;
     const auto is_like = [&](const PlacedTemplate& seed) {
@@ -277,6 +308,7 @@ SeedTemplates HypothesisScorer::find_seeds(std::size_t count) {
     };
     if (std::none_of(seeds.begin(), seeds.end(), is_like)) seeds.templates[seeds.count++] = next;
   }
+  if (spread_best_) seeds.templates[seeds.count++] = *spread_best_;
   return seeds;
 }
 

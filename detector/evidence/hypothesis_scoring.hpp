@@ -43,6 +43,7 @@ using GroupCandidates = std::vector<std::vector<ScoredHypothesis>>;
 /// Workspace of score_by_group(), used again from frame to frame.
 struct ScoringWorkspace {
   struct Worker {
+    std::vector<PlacedTemplate> spread;        ///< templates of all attitudes that were compared
     std::vector<PlacedTemplate> visited;       ///< templates that were compared while one was refined
     std::vector<PlacedTemplate> best_visited;  ///< templates of the refinement that led to the best match
     std::vector<std::pair<std::uint32_t, float>> weighted_views;  ///< views with the weight of their rotation

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace houghstream {
@@ -20,20 +21,29 @@ std::vector<LeafSummary> make_leaf_heads(const Forest& forest) {
   return heads;
 }
 
-/// Finds the neighbours by the angle between the views' R_ray_object.
-std::vector<ViewNeighbours> find_view_neighbours(const Forest& forest) {
+/// Lists the views of each class.
+std::vector<std::vector<std::uint32_t>> views_by_class(const Forest& forest) {
   std::vector<std::vector<std::uint32_t>> by_class(forest.classes.size());
   for (std::uint32_t view = 0; view < forest.views.size(); ++view)
     by_class.at(forest.views[view].class_index).push_back(view);
+  return by_class;
+}
+
+/// Returns a measure of how near two views' R_ray_object are: the cosine of half the angle between them.
+float nearness(const ViewTemplate& a, const ViewTemplate& b) {
+  return std::abs(a.R_ray_object.coeffs().dot(b.R_ray_object.coeffs()));
+}
+
+/// Finds the neighbours by the angle between the views' R_ray_object.
+std::vector<ViewNeighbours> find_view_neighbours(const Forest& forest) {
   std::vector<ViewNeighbours> neighbours(forest.views.size());
   std::vector<std::pair<float, std::uint32_t>> others;
-  for (const std::vector<std::uint32_t>& views : by_class) {
+  for (const std::vector<std::uint32_t>& views : views_by_class(forest)) {
     for (const std::uint32_t view : views) {
-      const auto R = forest.views[view].R_ray_object.coeffs();
       others.clear();
       for (const std::uint32_t other : views) {
         if (other == view) continue;
-        others.emplace_back(-std::abs(R.dot(forest.views[other].R_ray_object.coeffs())), other);
+        others.emplace_back(-nearness(forest.views[view], forest.views[other]), other);
       }
       ViewNeighbours& nearest = neighbours[view];
       nearest.fill(view);
@@ -45,12 +55,32 @@ std::vector<ViewNeighbours> find_view_neighbours(const Forest& forest) {
   return neighbours;
 }
 
+/// Chooses of each class's views the next one as far as can be from those chosen before it.
+std::vector<std::vector<std::uint32_t>> choose_spread_views(const Forest& forest) {
+  std::vector<std::vector<std::uint32_t>> chosen;
+  std::vector<float> nearest;  // of each view: how near the nearest chosen one is
+  for (const std::vector<std::uint32_t>& views : views_by_class(forest)) {
+    std::vector<std::uint32_t>& spread = chosen.emplace_back();
+    nearest.assign(views.size(), 0.0F);
+    std::size_t next = 0;
+    while (spread.size() < std::min(views.size(), kSpreadViews)) {
+      spread.push_back(views[next]);
+      nearest[next] = std::numeric_limits<float>::infinity();
+      for (std::size_t i = 0; i < views.size(); ++i)
+        nearest[i] = std::max(nearest[i], nearness(forest.views[views[next]], forest.views[views[i]]));
+      next = static_cast<std::size_t>(std::min_element(nearest.begin(), nearest.end()) - nearest.begin());
+    }
+  }
+  return chosen;
+}
+
 }  // namespace
 
 ForestIndex::ForestIndex(const Forest& forest)
     : forest_(&forest),
       leaf_heads_(make_leaf_heads(forest)),
       packed_(pack_trees(forest)),
-      view_neighbours_(find_view_neighbours(forest)) {}
+      view_neighbours_(find_view_neighbours(forest)),
+      spread_views_(choose_spread_views(forest)) {}
 
 }  // namespace houghstream

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/heap_memory.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/parallel.hpp"
 #include "pipeline/base/service_notice.hpp"
@@ -19,6 +20,9 @@ using std::chrono::milliseconds;
 
 // Interval at which stop signals are polled.
 constexpr milliseconds kTimeout(100);
+
+// Interval at which freed memory is given back to the system. It takes some milliseconds, in which no thread allocates.
+constexpr std::chrono::seconds kMemoryInterval(60);
 
 void play_log(LcmBus& bus, const WorkStep& work, const WorkStep& background) {
   constexpr milliseconds kNow(0);
@@ -59,7 +63,9 @@ class Receiver {
       while (running_) {
         bus_.handle(kTimeout);
         // A hung process publishes no status.
-        if (work_.is_beating() && status_.publish_if_due(bus_)) notify_service("WATCHDOG=1");
+        if (!work_.is_beating() || !status_.publish_if_due(bus_)) continue;
+        notify_service("WATCHDOG=1");
+        return_memory_if_due();
       }
     } catch (...) {
       failure_ = std::current_exception();
@@ -67,9 +73,21 @@ class Receiver {
     }
   }
 
+  /// Blocks that are still in use at the end of the heap keep what was freed before them: each peak of what is in use
+  /// at once, and rarer ones are higher, would stay for good.
+  void return_memory_if_due() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - memory_returned_ < kMemoryInterval) return;
+    memory_returned_ = now;
+    return_freed_memory();
+    log_debug("freed memory returned in {:.1f} ms",
+              std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - now).count());
+  }
+
   LcmBus& bus_;
   StatusReporter& status_;
   const Heartbeat& work_;
+  std::chrono::steady_clock::time_point memory_returned_ = std::chrono::steady_clock::now();
   std::atomic<bool> running_{true};
   std::exception_ptr failure_;
   std::thread thread_;

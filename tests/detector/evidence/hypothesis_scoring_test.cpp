@@ -113,21 +113,28 @@ ViewTemplate middle_part() {
   return view;
 }
 
-/// Returns the evidence at the toy view's position from its template and that of its middle part, for a class of so
-/// many views.
-Evidence evidence_among(std::size_t views, const RgbdFrame& frame) {
+/// Holds what the votes at the toy view's position say.
+struct ToyVotes {
+  std::vector<std::pair<std::uint32_t, float>> views;
+  float mass = 1.0F;  ///< over the nominal one
+};
+
+/// Returns the evidence at the toy view's position from its template, view 0, and that of its middle part, view 1, for
+/// a class of so many views. The others, which show nothing, are the neighbours of both.
+Evidence evidence_among(std::size_t views, const RgbdFrame& frame, const ToyVotes& votes = {{{0, 0.5F}, {1, 0.5F}}}) {
   Forest forest;
   forest.classes.emplace_back().radius = 0.08F;
   forest.views = {toy::template_view(), middle_part()};
-  forest.views.resize(views);
+  for (std::size_t i = 2; i < views; ++i)
+    forest.views.emplace_back().R_ray_object = ViewTemplate(forest.views[i % 2]).R_ray_object;
   std::vector<std::uint32_t> without_appearance(views - 2);
   std::iota(without_appearance.begin(), without_appearance.end(), 2U);
   const ForestIndex index(forest);
   Hypothesis hypothesis;
   hypothesis.centre_camera = {0.0F, 0.0F, toy::kDistance};
-  hypothesis.vote_mass = 1.0F;
+  hypothesis.vote_mass = votes.mass * forest.classes.front().nominal_vote_mass;
   hypothesis.weight = 1.0F;
-  hypothesis.views = {{0, 0.5F}, {1, 0.5F}};
+  hypothesis.views = votes.views;
   ScoringWorkspace workspace;
   const ScoringInput input{index, toy::lab_frame(frame, frame.colour, 1.0F), {}, {}, without_appearance};
   const std::vector<Hypothesis> hypotheses = {hypothesis};
@@ -144,6 +151,12 @@ TEST(Candidates, APartThatAgreesBetterIsNotTakenForTheWholeInAnotherAttitude) {
   EXPECT_LT(evidence_among(2, seen.frame).fit.visible_box_px.width, 0.6F * static_cast<float>(box.width))
       << "of one attitude's views the best is climbed from";
   EXPECT_GT(evidence_among(400, seen.frame).fit.visible_box_px.width, 0.9F * static_cast<float>(box.width));
+}
+
+TEST(Candidates, AnAttitudeThatNoVoteRemembersIsFoundWhereTheVotesAreMany) {
+  const TrainingView seen = toy::training_views().front();
+  EXPECT_EQ(evidence_among(400, seen.frame, {{{1, 1.0F}}, 0.5F}).view, 0U);
+  EXPECT_EQ(evidence_among(400, seen.frame, {{{1, 1.0F}}, 0.2F}).view, 1U) << "most maxima have few votes";
 }
 
 TEST(AttitudeSpread, GrowsWithTheViewsOfTheClass) {

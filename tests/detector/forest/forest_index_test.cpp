@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <vector>
+
 namespace houghstream {
 namespace {
 
@@ -44,6 +47,28 @@ TEST(ForestIndex, ViewsHaveTheNearestOfTheirClassAsNeighbours) {
   EXPECT_EQ(neighbours[0], (ViewNeighbours{2, 1, 0, 0, 0, 0}));
   EXPECT_EQ(neighbours[1], (ViewNeighbours{2, 0, 1, 1, 1, 1}));
   EXPECT_EQ(neighbours[3], (ViewNeighbours{3, 3, 3, 3, 3, 3}));
+}
+
+TEST(ForestIndex, ViewsThatStandForAllAttitudesLieFarApart) {
+  Forest forest;
+  forest.classes.resize(3);
+  for (const float angle_rad : {0.0F, 0.1F, 0.9F, 0.5F}) forest.views.push_back(rotated_view(0, angle_rad));
+  forest.views.push_back(rotated_view(1, 0.1F));
+  const ForestIndex index(forest);
+  EXPECT_EQ(index.spread_views(0), (std::vector<std::uint32_t>{0, 2, 3, 1}));
+  EXPECT_EQ(index.spread_views(1), std::vector<std::uint32_t>{4});
+  EXPECT_TRUE(index.spread_views(2).empty());
+}
+
+TEST(ForestIndex, OnlySoManyViewsStandForAllAttitudes) {
+  Forest forest;
+  forest.classes.resize(1);
+  for (std::size_t i = 0; i < 2 * kSpreadViews; ++i)
+    forest.views.push_back(rotated_view(0, 0.002F * static_cast<float>(i)));
+  const ForestIndex index(forest);
+  const std::vector<std::uint32_t>& spread = index.spread_views(0);
+  EXPECT_EQ(spread.size(), kSpreadViews);
+  EXPECT_EQ(std::set<std::uint32_t>(spread.begin(), spread.end()).size(), kSpreadViews) << "each once";
 }
 
 TEST(ForestIndex, AForestWithoutLeavesHasNoHeads) {
