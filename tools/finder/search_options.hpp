@@ -11,9 +11,9 @@
 
 namespace houghstream {
 
-/// From which score on weaker detections are handed to hs-pose as candidates. In the development rooms poses that are
-/// right in 98 % of the cases confirm half of the objects among them; from 0.1 on they bring as many that are wrong.
-constexpr float kCandidatesFrom = 0.2F;
+/// From which score on weaker detections are handed to hs-pose as candidates. In 88 images of furnished rooms with 21
+/// objects, poses from 0.1 on publish 251 of them, 10 of them wrong; from 0.2 on 246, 10 of them wrong as well.
+constexpr float kCandidatesFrom = 0.1F;
 
 /// Options of a command line that override a forest's detection settings.
 struct SearchOptions {
