@@ -1,8 +1,10 @@
 #include "pose/registration/pose_selection.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "pipeline/base/logit.hpp"
 #include "pose/model/angles.hpp"
 #include "pose/registration/rotation_search.hpp"
 
@@ -115,17 +117,29 @@ RegistrationResult refine_pose(const ObjectObservation& observation, const Eigen
   return refine_fully(PoseSelector(observation, votes, settings), observation, registered, settings);
 }
 
-std::vector<RegistrationResult> select_poses(const ObjectObservation& observation,
-                                             const std::vector<RegistrationResult>& registered,
+RegistrationResult best_registered(const ObjectObservation& observation,
+                                   const std::vector<RegistrationResult>& registered,
+                                   const std::vector<RotationCandidate>& votes, const PoseSelectionSettings& settings) {
+  const RegistrationResult best = PoseSelector(observation, votes, settings).best_of(registered);
+  return best.inliers == 0 ? best : register_finely(observation, best, settings.registration);
+}
+
+double publication_probability(const ObjectObservation& observation, const RegistrationResult& best,
+                               float detection_score, const PoseSelectionSettings& settings) {
+  constexpr float kMinScore = 0.01F;  // whose logarithm means something
+  const DepthTolerance tolerance{settings.tolerance_m, observation.noise};
+  const float joint =
+      score_pose_jointly(observation, best.T_camera_object, settings.registration.fine_points, tolerance).score;
+  return logistic(0.91 + 1.72 * std::log(std::max(joint, kMinScore)) + 1.18 * logit(detection_score));
+}
+
+std::vector<RegistrationResult> select_poses(const ObjectObservation& observation, const RegistrationResult& best,
                                              const std::vector<RotationCandidate>& votes,
                                              const PoseSelectionSettings& settings) {
   const PoseSelector selector(observation, votes, settings);
   const RotationSearchSettings& search = settings.rotation_search;
   const RegistrationSettings& registration = settings.registration;
-  RegistrationResult best = selector.best_of(registered);
-  if (best.inliers == 0) return {best};
-  const RegistrationResult settled = register_finely(observation, best, registration);
-  const std::vector<Scored> flips = selector.flips_of(settled);
+  const std::vector<Scored> flips = selector.flips_of(best);
   const RegistrationResult rotated =
       selector.best_rotation(flips.front().result, search.step_deg, 180.0, search.registered);
   std::vector<RegistrationResult> fine = {register_finely(observation, rotated, registration)};

@@ -186,6 +186,23 @@ TEST(PoseEstimator, WhatIsHardlyAnObjectIsNotLookedAt) {
   EXPECT_EQ(found.status, PoseStatus::kValid);
 }
 
+TEST(PoseEstimator, ACandidateWhoseRegistrationExplainsLittleIsGivenUp) {
+  const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
+  Detection wrong = detection_of("box", cereal_box(), scene.truth, 5);  // a box four times the size of what is there
+  wrong.score = 0.15F;
+  wrong.reported = false;
+  PoseSettings settings;
+  const auto status = [&] {
+    return estimator_for("box", cereal_box(), settings).estimate(scene.frame, only(wrong)).poses.at(0).status;
+  };
+  EXPECT_EQ(status(), PoseStatus::kLowScore);
+  settings.min_publication_probability = 0.0F;
+  EXPECT_NE(status(), PoseStatus::kLowScore) << "is judged by what was measured";
+  settings = PoseSettings();
+  wrong.reported = true;
+  EXPECT_NE(status(), PoseStatus::kLowScore) << "who published it wants to know why it is not there";
+}
+
 TEST(PoseEstimator, AClassThatHasAQualityOfItsOwnIsJudgedByThat) {
   const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
   const Detections seen = only(detection_of("mug", scene.object, scene.truth, 5));

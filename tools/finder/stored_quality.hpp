@@ -34,6 +34,7 @@ PoseSettings pose_settings_of(PoseSettings common, const std::optional<store::Ob
 /// Makes settings with which every pose is published, for an evaluation of all poses.
 inline PoseSettings without_rejection(PoseSettings settings) {
   set_min_quality(0.0F, settings);
+  settings.min_publication_probability = 0.0F;
   return settings;
 }
 

@@ -24,7 +24,10 @@ struct Boxed {
     observation.centre_camera = centre;
     observation.region = region;
     observation.colours = lab_region(frame, region.box_px, {});
-    return select_poses(observation, register_candidates(observation, candidates, {}), {}, {});
+    const RegistrationResult best =
+        best_registered(observation, register_candidates(observation, candidates, {}), {}, {});
+    if (best.inliers == 0) return {best};
+    return select_poses(observation, best, {}, {});
   }
 
   RegistrationResult choose(const std::vector<PoseCandidate>& candidates, const Eigen::Vector3f& centre) const {
