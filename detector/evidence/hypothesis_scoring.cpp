@@ -241,14 +241,30 @@ void HypothesisScorer::compare_templates(std::size_t count) {
 /// its attitude.
 void HypothesisScorer::compare_spread_views() {
   constexpr float kManyVotes = 0.3F;  // of the nominal vote mass: a third of the object, seen as well as in training
+  constexpr std::size_t kBestCoarse = 8;  // coarse views whose surroundings are compared too
   if (spread_ == 1.0F || scored_.evidence.relative_vote_mass < kManyVotes) return;
-  std::vector<PlacedTemplate>& spread = workspace_.spread;
-  spread.clear();
-  for (const std::uint32_t view : input_.index.spread_views(hypothesis_.class_index)) {
+  const SpreadViews& spread = input_.index.spread_views(hypothesis_.class_index);
+  const std::size_t coarse = std::min(spread.views.size(), SpreadViews::kCoarse);
+  std::vector<PlacedTemplate>& compared = workspace_.spread;
+  compared.clear();
+  const auto compare_view = [&](std::uint32_t view) {
     const Eigen::Vector3f& centre = hypothesis_.centre_camera;
-    if (!is_excluded(view)) spread.push_back({view, centre, match_template(views_[view], centre, input_.frame)});
+    if (!is_excluded(view)) compared.push_back({view, centre, match_template(views_[view], centre, input_.frame)});
+  };
+  std::for_each_n(spread.views.begin(), coarse, compare_view);
+  if (compared.empty()) return;
+  std::stable_sort(compared.begin(), compared.end(), [](const PlacedTemplate& a, const PlacedTemplate& b) {
+    return match_quality(a.fit) > match_quality(b.fit);
+  });
+  const std::size_t best = std::min(kBestCoarse, compared.size());
+  const auto is_among_best = [&](std::uint32_t view) {
+    return std::any_of(compared.begin(), compared.begin() + static_cast<std::ptrdiff_t>(best),
+                       [&](const PlacedTemplate& placed) { return placed.view == view; });
+  };
+  for (std::size_t i = coarse; i < spread.views.size(); ++i) {
+    if (is_among_best(spread.views[spread.nearest[i]])) compare_view(spread.views[i]);
   }
-  if (!spread.empty()) spread_best_ = align_best_templates(views_, input_.frame, spread);
+  spread_best_ = align_best_templates(views_, input_.frame, compared);
 }
 
 /// Returns the best of what was compared, nothing where nothing was.

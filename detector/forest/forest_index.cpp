@@ -55,23 +55,36 @@ std::vector<ViewNeighbours> find_view_neighbours(const Forest& forest) {
   return neighbours;
 }
 
-/// Chooses of each class's views the next one as far as can be from those chosen before it.
-std::vector<std::vector<std::uint32_t>> choose_spread_views(const Forest& forest) {
-  std::vector<std::vector<std::uint32_t>> chosen;
-  std::vector<float> nearest;  // of each view: how near the nearest chosen one is
-  for (const std::vector<std::uint32_t>& views : views_by_class(forest)) {
-    std::vector<std::uint32_t>& spread = chosen.emplace_back();
-    nearest.assign(views.size(), 0.0F);
-    std::size_t next = 0;
-    while (spread.size() < std::min(views.size(), kSpreadViews)) {
-      spread.push_back(views[next]);
-      nearest[next] = std::numeric_limits<float>::infinity();
-      for (std::size_t i = 0; i < views.size(); ++i)
-        nearest[i] = std::max(nearest[i], nearness(forest.views[views[next]], forest.views[views[i]]));
-      next = static_cast<std::size_t>(std::min_element(nearest.begin(), nearest.end()) - nearest.begin());
-    }
+/// Chooses of a class's views the next one as far as can be from those chosen before it.
+SpreadViews choose_spread_views(const Forest& forest, const std::vector<std::uint32_t>& views) {
+  SpreadViews spread;
+  std::vector<float> nearness_to_chosen(views.size(), 0.0F);  // of the nearest one
+  std::size_t next = 0;
+  while (spread.views.size() < std::min(views.size(), SpreadViews::kCount)) {
+    const ViewTemplate& chosen = forest.views[views[next]];
+    spread.views.push_back(views[next]);
+    nearness_to_chosen[next] = std::numeric_limits<float>::infinity();
+    for (std::size_t i = 0; i < views.size(); ++i)
+      nearness_to_chosen[i] = std::max(nearness_to_chosen[i], nearness(chosen, forest.views[views[i]]));
+    const auto farthest = std::min_element(nearness_to_chosen.begin(), nearness_to_chosen.end());
+    next = static_cast<std::size_t>(farthest - nearness_to_chosen.begin());
   }
-  return chosen;
+  const auto coarse_end = spread.views.begin() + std::min(spread.views.size(), SpreadViews::kCoarse);
+  for (const std::uint32_t view : spread.views) {
+    const auto is_farther = [&](std::uint32_t a, std::uint32_t b) {
+      return nearness(forest.views[view], forest.views[a]) < nearness(forest.views[view], forest.views[b]);
+    };
+    const auto nearest = std::max_element(spread.views.begin(), coarse_end, is_farther);
+    spread.nearest.push_back(static_cast<std::uint32_t>(nearest - spread.views.begin()));
+  }
+  return spread;
+}
+
+std::vector<SpreadViews> choose_spread_views(const Forest& forest) {
+  std::vector<SpreadViews> spread;
+  for (const std::vector<std::uint32_t>& views : views_by_class(forest))
+    spread.push_back(choose_spread_views(forest, views));
+  return spread;
 }
 
 }  // namespace

@@ -18,8 +18,15 @@ struct LeafSummary {
 /// The views of the same class that look at it from nearest by, nearest first; itself where there are no more.
 using ViewNeighbours = std::array<std::uint32_t, 6>;
 
-/// Number of views that stand for all attitudes in which a class was taught.
-constexpr std::size_t kSpreadViews = 200;
+/// Views of a class that stand for all attitudes in which it was taught, as far apart as they can be chosen one after
+/// another (farthest-point sampling, Gonzalez 1985).
+struct SpreadViews {
+  static constexpr std::size_t kCount = 200;  ///< maximum
+  static constexpr std::size_t kCoarse = 48;  ///< number of the first that stand for the others
+
+  std::vector<std::uint32_t> views;    ///< in the order of the choice, the class's first view first
+  std::vector<std::uint32_t> nearest;  ///< of each view: the index into `views` of the nearest coarse one
+};
 
 /// A forest with what a search needs of it beyond its file, which the constructor derives. The forest must outlive the
 /// index and stay as it is: a forest that was changed gets another index.
@@ -32,16 +39,14 @@ class ForestIndex {
   const std::vector<LeafSummary>& leaf_summaries() const { return leaf_heads_; }  ///< number of leaves + 1
   const PackedTrees& packed() const { return packed_; }
   const std::vector<ViewNeighbours>& view_neighbours() const { return view_neighbours_; }  ///< per view
-  /// Returns up to kSpreadViews of the class's views, as far apart in attitude as they can be chosen one after another
-  /// (farthest-point sampling, Gonzalez 1985), its first view first.
-  const std::vector<std::uint32_t>& spread_views(std::size_t class_index) const { return spread_views_[class_index]; }
+  const SpreadViews& spread_views(std::size_t class_index) const { return spread_views_[class_index]; }
 
  private:
   const Forest* forest_;
   std::vector<LeafSummary> leaf_heads_;
   PackedTrees packed_;
   std::vector<ViewNeighbours> view_neighbours_;
-  std::vector<std::vector<std::uint32_t>> spread_views_;  // per class
+  std::vector<SpreadViews> spread_views_;  // per class
 };
 
 }  // namespace houghstream
