@@ -61,7 +61,7 @@ void find_posteriors(const SearchContext& search, DetectorWorkspace& workspace);
 /// hypotheses.
 std::vector<Hypothesis> find_hypotheses(const SearchContext& search, DetectorWorkspace& workspace);
 
-/// Compares view templates with the frame at each hypothesis and scores it: evidence/candidates.
+/// Compares view templates with the frame at each hypothesis and scores it: evidence/hypothesis_scoring.
 std::vector<ScoredHypothesis> score_hypotheses(const SearchContext& search, const RgbdFrame& frame,
                                                const std::vector<Hypothesis>& hypotheses, DetectorWorkspace& workspace);
 

@@ -42,9 +42,9 @@ class PoseEstimator {
   const PoseSettings& settings() const;
 
   /// Returns one ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
-  /// pose.registration, pose.choice and pose.verification are appended to those of the detections. The detections must
-  /// be of this frame (same name). Of two poses of one object (is_same_object) the less probable one is withheld
-  /// (withhold_duplicate). Throws std::logic_error for another frame, and InputError for an invalid frame.
+  /// pose.registration, pose.choice, pose.verification and pose.print are appended to those of the detections. The
+  /// detections must be of this frame (same name). Of two poses of one object (is_same_object) the less probable one is
+  /// withheld (withhold_duplicate). Throws std::logic_error for another frame, and InputError for an invalid frame.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 
   /// Estimates with the poses of an earlier frame as a warm start: they are candidates beside those of the votes, never

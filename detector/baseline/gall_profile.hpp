@@ -29,7 +29,7 @@ Profile profile_of(const Forest& forest);
 /// set_scale_handling.
 void set_image_scale(Profile& profile, float image_scale);
 
-/// Returns the handling of distances: "five" (scales, Gall et al. 2011), "single" (scale 1 only) or "normalised" (by
+/// Sets the handling of distances: "five" (scales, Gall et al. 2011), "single" (scale 1 only) or "normalised" (by
 /// depth, Section 5.1.2; patches as large as at 1 m, about where turntables stand). Throws InputError for another word.
 void set_scale_handling(Profile& profile, const std::string& handling);
 

@@ -27,7 +27,8 @@ std::vector<cv::Point2f> disk(int count) {
   return places;
 }
 
-/// Returns the points of the cloud that these places fall on, nearest first.
+/// Returns the pixels that these places of a unit disk fall on in a disk of radius `reach` pixels, each once, nearest
+/// first.
 std::vector<cv::Point> shifts_of(const std::vector<cv::Point2f>& places, float reach) {
   std::vector<cv::Point> shifts;
   shifts.reserve(places.size());

@@ -23,7 +23,7 @@ int surface_window_radius(int neighbours);
 /// that the sensor's noise does not split a surface. NaN for NaN.
 float same_surface_limit(const Camera& camera, float depth, int radius_px);
 
-/// Returns the window of a support with this radius, metres.
+/// Returns the limit for a support of this radius, metres.
 float same_surface_limit(double radius_m);
 
 /// One 3-vector per pixel of an image.

@@ -51,7 +51,7 @@ HWY_INLINE Ints cell_numbers(std::size_t row, std::size_t column) {
   return hn::Or(hn::Or(index, hn::Set(d, static_cast<std::int32_t>(row << 16U))), hn::ShiftLeft<24>(columns));
 }
 
-/// Returns how much farther the surface is than remembered; NaN where nothing is remembered.
+/// Returns measured minus template depth, metres; NaN where the template has no depth.
 HWY_INLINE Floats excess_over(Floats beyond_centre, Ints remembered_mm, float metres_per_mm) {
   const Float d;
   const Floats remembered = hn::Mul(hn::Set(d, metres_per_mm), hn::ConvertTo(d, remembered_mm));

@@ -27,13 +27,13 @@ using PerCell = std::array<T, kTemplateCells + 8>;
 struct CellPlaces {
   std::array<int, kTemplateSide> column_px{};  ///< frame pixels that the cells' centres lie in; may lie outside
   std::array<int, kTemplateSide> row_px{};
-  std::array<float, kTemplateSide> row_depth{};     ///< metres, in a row at the centre's column
-  std::array<float, kTemplateSide> column_depth{};  ///< metres more in a column
-  float metres_per_mm = 0.001F;                     ///< of the template
+  std::array<float, kTemplateSide> row_depth{};     ///< depth of the template's zero in each row, metres
+  std::array<float, kTemplateSide> column_depth{};  ///< amount added to row_depth in each column, metres
+  float metres_per_mm = 0.001F;                     ///< metres per millimetre of template depth
 };
 
-/// How much farther than remembered the frame's surface is at the cells of a template, metres; NaN where depth is not
-/// measured or not remembered. Only cells within the frame, row by row.
+/// Measured minus template depth at the template's cells inside the frame, row by row, metres; NaN where either is
+/// missing.
 struct CellDepths {
   std::size_t object_cells = 0;
   PerCell<TemplateCell> cells;  ///< the first object_cells: those on the object

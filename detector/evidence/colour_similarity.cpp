@@ -52,7 +52,7 @@ MeanColours ColourSimilarity::means() const {
 
 float ColourSimilarity::mean_chroma_distance() const {
   constexpr double kPlain = 100.0;  // variance of a and b that plain surfaces have in changing light
-  constexpr double kPalest = 0.5;   // strengths over the remembered one
+  constexpr double kPalest = 0.5;   // strengths over the expected one
   constexpr double kStrongest = 2.5;
   if (count_ < kMin) return 0.0F;
   const double count = count_;
@@ -90,7 +90,7 @@ float ColourSimilarity::hue_mismatch() const {
 }
 
 float ColourSimilarity::chroma_deficit() const {
-  constexpr double kDarkest = 0.1;  // brightness over the remembered one
+  constexpr double kDarkest = 0.1;  // brightness over the expected one
   constexpr double kBrightest = 4.0;
   if (count_ < kMin) return 0.0F;
   const Strengths sum = strengths();

@@ -20,7 +20,7 @@ struct MeanColours {
 struct ColourPairs {
   using Values = PerCell<std::int16_t>;
 
-  std::size_t count = 0;  ///< of the first values, which are meant
+  std::size_t count = 0;  ///< number of valid values at the front of each array
   std::array<Values, 3> expected;
   std::array<Values, 3> observed;
 };

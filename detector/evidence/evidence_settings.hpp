@@ -12,14 +12,14 @@ struct EvidenceSettings {
   /// Smallest score that is reported. In development_world_20 to 67 95 % of the detections from 0.60 on are true.
   float threshold = 0.65F;
   std::map<std::string, float> class_thresholds{};  ///< threshold of one class, by name; of the others: `threshold`
-  /// Weaker ones from here on are found as candidates (Detection::reported), for a pose to confirm; 1: none are.
+  /// Minimum score of a candidate (a detection for a pose to confirm, Detection::reported); 1: no candidates.
   float candidates_from = 1.0F;
   int max_candidates = 16;  ///< the strongest; a frame full of weak maxima must not hold up the poses of the others
   /// Hypotheses of a frame that are compared with view templates: those whose votes promise most (vote_promise()). Up
   /// to 13 objects never have more. Chosen on 88 images of furnished rooms: of 21 objects' hypotheses the first 80
   /// held 257 of 260 objects, the first 160 all.
   int max_compared = 160;
-  int max_refined = 64;    ///< ... whose templates are refined: those that then have the highest scores
+  int max_refined = 64;    ///< maximum number of compared hypotheses whose templates are refined, highest scores first
   int max_rotations = 48;  ///< rotations handed to the pose process
   /// Views are brought to the colours of the camera (camera_chroma.hpp). Scores are learnt without: rendered images
   /// have the models' own colours, and what a map leaves of them is less than what it leaves of a real camera's.

@@ -11,10 +11,11 @@
 namespace houghstream {
 namespace {
 
-// Maximum number of attitudes that are refined, however many a class was taught in.
+// Maximum number of attitudes (ways of standing or lying) that are refined for a hypothesis, however many its class was
+// taught in.
 constexpr std::size_t kMaxAttitudes = 3;
 
-/// Templates that are compared of a class that was taught in one attitude: the first that most votes remember.
+/// Number of templates that are compared of a class that was taught in one attitude: those that most votes support.
 constexpr std::size_t kTemplates = 8;
 
 using WeightedViews = std::vector<std::pair<std::uint32_t, float>>;
@@ -54,7 +55,7 @@ class HypothesisScorer {
         compared_(compared),
         workspace_(workspace) {}
 
-  /// Compares the first templates that most votes remember with the frame, and those of all attitudes where it is worth
+  /// Compares the templates that most votes support with the frame, and templates of all attitudes where it is worth
   /// it.
   void compare();
   void refine();
@@ -222,8 +223,8 @@ void HypothesisScorer::compare() {
   detection.score = score(object_.score_model, scored_.evidence);
 }
 
-/// Compares the first `count` templates that most votes remember with the frame, but for those that stand in
-/// `compared` already: they come first.
+/// Compares the `count` templates that most votes support with the frame, but for those that stand in `compared_`
+/// already: they come first.
 void HypothesisScorer::compare_templates(std::size_t count) {
   const Eigen::Vector3f& centre = hypothesis_.centre_camera;
   std::size_t place = 0;
@@ -236,9 +237,9 @@ void HypothesisScorer::compare_templates(std::size_t count) {
   }
 }
 
-/// Finds the template that matches best among views of all attitudes, where a class has many and the votes are many. In
-/// real images votes remember other views than in rendered ones: those of a plain or symmetric object are often not of
-/// its attitude.
+/// Compares templates sampled from all attitudes (ForestIndex::spread_views) and aligns the best. It does so only for
+/// classes with many views and hypotheses with many votes. In real images votes support other views than in rendered
+/// ones: those of a plain or symmetric object are often not of its attitude.
 void HypothesisScorer::compare_spread_views() {
   constexpr float kManyVotes = 0.3F;  // of the nominal vote mass: a third of the object, seen as well as in training
   constexpr std::size_t kBestCoarse = 8;  // coarse views whose surroundings are compared too
@@ -309,7 +310,7 @@ void HypothesisScorer::refine() {
 }
 
 /// Returns the template that matches best, and up to `count` in all of those that match next best in attitudes unlike
-/// these, at most kMaxAttitudes; then the best of the spread views. Sorts `compared` by how they match.
+/// these, at most kMaxAttitudes; then the best of the spread views. Sorts `compared_` by how they match.
 SeedTemplates HypothesisScorer::find_seeds(std::size_t count) {
   constexpr float kUnlike_rad = 0.6F;
   const auto rotation = [&](const PlacedTemplate& placed) {
@@ -329,7 +330,7 @@ SeedTemplates HypothesisScorer::find_seeds(std::size_t count) {
 }
 
 /// Goes from a template to the best of its neighbours in viewing direction, and aligns it, as long as one matches
-/// better: votes remember few of the templates that would match. Writes all that were compared into `way`.
+/// better: votes support few of the templates that would match. Writes all compared templates to workspace_.visited.
 PlacedTemplate HypothesisScorer::refine_over_neighbours(PlacedTemplate best) {
   constexpr int kSteps = 6;
   std::vector<PlacedTemplate>& visited = workspace_.visited;
@@ -371,8 +372,8 @@ cv::Rect2f HypothesisScorer::visible_box_between(const cv::Rect2f& voted, const 
           0.5F * (voted.height + inside.height)};
 }
 
-/// Returns views with the weight of their rotation, heaviest first: the votes that remember them. Of a class that was
-/// taught in many attitudes the views lie far apart, and how their templates match the frame says more.
+/// Returns views with the weight of their rotation, heaviest first: that of the votes that support them. Of a class
+/// that was taught in many attitudes the views lie far apart, and how their templates match the frame says more.
 const WeightedViews& HypothesisScorer::weight_views() {
   constexpr float kSharpness = 4.0F;
   if (spread_ == 1.0F || compared_.empty()) return hypothesis_.views;

@@ -34,7 +34,8 @@ int thinnings_survived(int column, int row) {
   return std::min(kThinnings, 2 * halvings + (black ? 1 : 0));
 }
 
-/// Returns how often places are thinned out at a depth.
+/// Decides by depth how often the grid's places are thinned out: as often as patches on a surface that faces the camera
+/// then stand at most PatchSpacing::metres apart.
 class Thinning {
  public:
   Thinning(const PatchSpacing& spacing, const Camera& camera) {

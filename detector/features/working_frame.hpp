@@ -35,9 +35,9 @@ constexpr float kReferenceFocal_px = 525.0F;
 /// Returns the levels of a depth-normalised search, for cameras with the focal length for which supports in pixels were
 /// chosen.
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings);
-/// Returns the scale for a camera: with a longer focal length an object has more pixels, and supports in pixels would
-/// cover less of it. Images are an octave smaller, or larger, for each octave of a longer, or shorter, focal length.
-/// The paper's cameras have equal focal lengths.
+/// Returns the levels for a camera, scaled by focal_octave_scale(): with a longer focal length an object has more
+/// pixels, and supports in pixels would cover less of it. Images are an octave smaller, or larger, for each octave of a
+/// longer, or shorter, focal length. The paper's cameras have equal focal lengths.
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings, const Camera& camera);
 
 /// Returns the power of two that brings a camera's focal length nearest to kReferenceFocal_px.
@@ -48,7 +48,7 @@ float focal_octave_scale(const Camera& camera);
 /// there.
 WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings);
 
-/// Returns the scale of a level of a scale space.
+/// Makes the working frame of one level of a scale space.
 WorkingFrame make_working_frame(const RgbdFrame& frame, const FeatureLevel& level, const FeatureSettings& settings);
 
 /// An image, and this at half the size, a quarter and an eighth.

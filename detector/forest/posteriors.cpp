@@ -18,7 +18,7 @@ void sum_certainties(const ForestIndex& index, const RunLeaves& seen, std::vecto
   }
 }
 
-/// Adds the statistics of a leaf, which has few classes even where the forest has many.
+/// Range of the class entries of a leaf; a leaf has few classes even in a large forest.
 struct Known {
   const LeafClass* begin;
   const LeafClass* end;
@@ -47,7 +47,8 @@ void sum_by_class(const ForestIndex& index, const std::vector<std::uint32_t>& so
   }
 }
 
-/// Returns the posterior of a class at the leaves of a run's patch number `i`.
+/// Appends the indices, into Forest::leaf_classes, of the class's entries in the leaves that the run's patch number `i`
+/// reached, tree by tree.
 void append_entries(const ForestIndex& index, std::size_t class_index, std::size_t i, const RunLeaves& seen,
                     std::vector<std::uint32_t>& entries) {
   for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree) {

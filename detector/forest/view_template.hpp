@@ -16,8 +16,9 @@ struct OutlineCells {
   };
   static constexpr int kApart = 3;  ///< cells
   Cell inside;                      ///< the object's, one cell in from its outline
-  Cell beyond;  ///< two cells out Expected change of depth from one to the other where the object's surface continues
-                ///< straight, millimetres, relative as TemplateGrid::mm; TemplateGrid::kNoDepth where it is unknown.
+  Cell beyond;                      ///< cell two cells outside the outline
+  /// Expected change of depth from the inner to the outer cell if the object's surface continues straight, millimetres,
+  /// relative as TemplateGrid::mm; TemplateGrid::kNoDepth where it is unknown.
   std::int16_t gained_mm = 0;
 };
 

@@ -28,7 +28,7 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
 
 /// Returns the profile by which a forest was trained, as add_objects wants it; seed and threads are the profile's.
 Profile profile_of(const Forest& forest);
-/// Trains the forest where the profile of its name is `named`.
+/// Returns the profile of a forest, with what the forest does not hold taken from `named`, the profile of its name.
 Profile profile_of(const Forest& forest, Profile named);
 
 }  // namespace houghstream::training

@@ -32,7 +32,7 @@ struct TrainingSettings : AugmentationSettings {
   float max_background_weight = 4.0F;
   double in_bag = 0.75;         ///< share of the images that a tree sees
   int max_leaf_votes = 12;      ///< offsets kept per leaf and class after merging
-  int max_leaf_views = 12;      ///< remembered training views per leaf and class
+  int max_leaf_views = 12;      ///< maximum number of views per leaf and class that its votes support
   float merge_radius = 0.008F;  ///< offsets nearer than this to each other become one vote, metres
   Scoring scoring = Scoring::kEvidence;
   int validation_frames = 300;  ///< composed images on which the score learns what it is worth

@@ -17,7 +17,7 @@ struct Hypothesis {
   float weight = 0.0F;     ///< votes' weight
   int vote_count = 0;
   std::vector<std::pair<std::uint32_t, float>> patches;  ///< supporting patch and its weight, by patch
-  std::vector<std::pair<std::uint32_t, float>> views;    ///< remembered training view and its weight, heaviest first
+  std::vector<std::pair<std::uint32_t, float>> views;    ///< supported view template and its weight, heaviest first
 };
 
 /// Sums by index that are 0 where nothing was added, kept so from use to use.

@@ -36,13 +36,15 @@ bool has_images(const std::filesystem::path& scene_folder);
 /// Removes them. Throws InputError where it cannot.
 void remove_images(const std::filesystem::path& scene_folder);
 
-/// Writes models/obj_NNNNNN.ply, models/models_info.json (diameter, min, size and symmetries) and models/names.json.
+/// A model with its object id and name.
 struct NamedModel {
   int object_id = 0;
   std::string name;
   Mesh mesh;
   Symmetries symmetries;
 };
+
+/// Writes models/obj_NNNNNN.ply, models/models_info.json (diameter, min, size and symmetries) and models/names.json.
 void write_bop_models(const std::vector<NamedModel>& models, const std::filesystem::path& models_folder);
 
 /// Returns whether a folder holds models, in BOP's format or as NAME.ply or NAME.obj.

@@ -36,7 +36,7 @@ void require_writable(const std::filesystem::path& file);
 /// Throws InputError where the folder could not be written; it and its parents may be missing. Makes no folder.
 void require_writable_folder(const std::filesystem::path& folder);
 
-/// Returns when the file's data, or the names in the folder, are on the disk, so that they survive a power cut. Throws
+/// Waits until the file's data, or the names in the folder, are on the disk, so that they survive a power cut. Throws
 /// InputError where the disk fails; a file system that cannot synchronise is accepted as it is.
 void sync_to_disk(const std::filesystem::path& path);
 

@@ -24,7 +24,7 @@ void require_exchangeable(const std::filesystem::path& folder, const IsOwnEntry&
 /// restore_replaced() brings it back after a crash in that moment. Throws InputError where the place is left unchanged.
 void exchange_folder(const std::filesystem::path& made, const std::filesystem::path& place, const IsOwnEntry& is_own);
 
-/// Returns when all files in the folder, at any depth, and their names are on the disk. Throws InputError where the
+/// Waits until all files in the folder, at any depth, and their names are on the disk. Throws InputError where the
 /// disk fails.
 void sync_folder_to_disk(const std::filesystem::path& folder);
 

@@ -70,7 +70,7 @@ class Helper {
     changed_.notify_all();
   }
 
-  /// Returns when the items given are not touched any more. A helper that has not woken up yet is spared the way.
+  /// Waits until the helper does not touch the items any more. One that has not woken up yet need not work on them.
   void finish() {
     std::unique_lock lock(mutex_);
     if (!working_) items_ = nullptr;

@@ -123,7 +123,7 @@ bool subscribe_at(lcm_t* lcm, Subscription& subscription) {
   return true;
 }
 
-/// Returns the number of messages of each channel of a log, as text for people.
+/// Counts the messages of each channel of a log, for error texts.
 class ChannelCounts {
  public:
   void note(const std::string& channel) {

@@ -32,7 +32,7 @@ class StatusReporter {
   /// (SequenceTracker). Each source (a camera's channel) is counted separately. A duplicate is to be dropped, and
   /// counts as a duplicate only.
   FrameOrder note_number(const FrameNumber& number, const std::string& source = "");
-  /// Another message than a frame that has come before.
+  /// Counts a duplicate of a message that is not a frame.
   void note_duplicate();
   void count_skipped(std::int64_t frames);
   /// Counts a processed frame; `latency` is from its arrival in this process until its result was published.

@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxFrameBytes = std::size_t{64} << 20U;
 inline constexpr std::size_t kMaxStages = 256;
 inline constexpr std::size_t kMaxNameLength = 255;
 
-/// Returns the identity of a frame, read without decoding its images.
+/// Time, counter and run of a frame, readable without decoding its images.
 struct FrameHeader {
   std::int64_t utime = 0;
   std::optional<std::int64_t> sequence;  ///< the source's frame counter, if the message carries one
@@ -50,8 +50,8 @@ void check_stage_time(std::int64_t duration_us, const std::string& source);
 
 /// Throws InputError unless the bytes are one whole message of the type with this fingerprint, no larger than one of it
 /// may be. Types known here:
-/// images_t, detections_t, object_poses_t, pose_probabilities_t, objects_t, placed_objects_t, status_t,
-/// known_objects_t, teaching_t, rigid_transform_t.
+/// images_t, detections_t, object_poses_t, pose_probabilities_t, camera_colours_t, camera_timing_t, objects_t,
+/// placed_objects_t, status_t, known_objects_t, teaching_t, rigid_transform_t.
 void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& type);
 
 /// Decodes one whole message. Throws InputError.

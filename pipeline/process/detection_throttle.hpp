@@ -28,8 +28,8 @@ class DetectionThrottle {
   /// results may name any camera.
   void expedite(const std::string& channel);
 
-  /// So many of a camera's followed poses are doubtful: where they are more than the last time, the next look comes
-  /// forward as after hurry(). What stays doubtful, an object without colours, hurries nobody.
+  /// Reports the number of doubtful followed poses of a camera. If it has grown, the next interval is shortened as by
+  /// expedite(); poses that stay doubtful, such as those of an object without colours, have no effect.
   void note_doubts(const std::string& channel, int doubtful);
 
  private:

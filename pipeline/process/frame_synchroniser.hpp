@@ -83,11 +83,11 @@ class FrameSynchroniser {
   /// Adds the detections of frame `id`. Throws InputError for one camera too many.
   void add_detections(const FrameId& id, std::vector<std::uint8_t> bytes);
 
-  /// The next pair that the gate lets go, waiting for one up to `timeout`, or, with `newest_first`, until a frame
+  /// Pops the next pair that the gate accepts; waits for one up to `timeout`, or, with `newest_first`, until a frame
   /// comes.
   std::optional<SynchronisedMessages> pop(std::chrono::milliseconds timeout);
 
-  /// Has the gate asked at once: what it waits for may have come.
+  /// Lets pop() ask the gate again at once, since the awaited data may have arrived.
   void recheck_gate();
 
   /// Returns the newest frame of a camera, where `newest_first`, and where neither it nor its pair has been popped:

@@ -39,7 +39,8 @@ class LatestPerChannel {
     return !is_first;
   }
 
-  /// An item that newer ones have overtaken: it is taken where none waits. Returns whether it was passed over.
+  /// Pushes an overtaken item; it is dropped if the channel has an item already, or where too many wait. Returns
+  /// whether it was dropped.
   bool push_late(const std::string& channel, T item, std::size_t bytes = 0) {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -51,7 +52,7 @@ class LatestPerChannel {
     return false;
   }
 
-  /// The item of the channel that has waited longest; waits up to `timeout` for one.
+  /// Pops the item of the channel that has waited longest; waits up to `timeout` for one.
   std::optional<T> pop(std::chrono::milliseconds timeout) {
     std::unique_lock<std::mutex> lock(mutex_);
     if (!filled_.wait_for(lock, timeout, [this] { return !turns_.empty(); })) return std::nullopt;

@@ -296,7 +296,7 @@ class PoseProcess {
   TransformPublisher transforms_;
   std::map<std::string, std::int64_t> camera_sent_us_;  // frame time by camera
   std::int64_t without_frame_ = 0;                      // detections
-  std::int64_t answered_ = 0;                           // detections, by who follows
+  std::int64_t answered_ = 0;                           // detections processed while following
   std::int64_t overtaken_ = 0;                          // passed over for newer ones, before they were answered
   // These are set by the receiving thread.
   std::set<std::string> cameras_;            // cameras that detections name

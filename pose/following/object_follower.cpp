@@ -316,9 +316,8 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
   return poses;
 }
 
-/// Returns whether an object without a valid pose in this frame is tried once more: in the frame that loses it and
-/// while nothing shows it, after which it is lost; one that is hidden or withheld may be without for a while, and is
-/// tried now and then.
+/// Returns whether an object without a valid pose is registered a second time in this frame: always when it was valid
+/// in the previous frame or failed there (FollowedObject::failures), else every retry_interval_s.
 bool ObjectFollower::is_retried(const FollowedObject& object, std::int64_t clock_us) const {
   return object.valid_us == object.clock_us || object.failures > 0 ||
          seconds_between(object.retry_us, clock_us) >= settings_.retry_interval_s;

@@ -75,7 +75,7 @@ struct FollowedObject {
   /// PoseEvidence::texture_probability of the detection's pose that it continues.
   float texture_probability = 1.0F;
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres
-  std::int64_t clock_us = 0;                                          ///< time of the frame in which it was found
+  std::int64_t clock_us = 0;                                          ///< time of the frame of T_camera_object
   SmoothedVelocity velocity;
   std::int64_t valid_us = 0;    ///< time of its last valid pose
   std::int64_t found_us = 0;    ///< time of its last detection

@@ -16,13 +16,13 @@ struct AlignmentSettings {
   int threads = 1;             ///< any number gives the same result
 };
 
-/// Measures the point-to-plane error of views, over all compared points.
+/// Point-to-plane error of views over all compared points.
 struct AlignmentError {
   int pairs = 0;
   double median_m = 0.0;  ///< median of the absolute distances; 0 without pairs
 };
 
-/// Distances between each view's points and its neighbours' surfaces.
+/// Measures the distances between each view's points and its neighbours' surfaces.
 AlignmentError measure_alignment_error(const std::vector<DepthView>& views, const AlignmentSettings& settings);
 
 /// Corrects T_camera_object of the views in place by one motion of the object frame in the camera's, common to all

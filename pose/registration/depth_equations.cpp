@@ -19,6 +19,7 @@ struct Visible {
   }
 };
 
+/// Returns the row of the point-to-plane Jacobian, (arm x normal, normal), followed by the residual along the normal.
 ResidualRow across_row(const Eigen::Vector3f& a, const Eigen::Vector3f& n, float apart) {
   return {{a.y() * n.z() - a.z() * n.y(), a.z() * n.x() - a.x() * n.z(), a.x() * n.y() - a.y() * n.x(), n.x(), n.y(),
            n.z(), apart, 0.0F}};

@@ -31,7 +31,7 @@ struct ProjectedView {
 ProjectedView project_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                            int points);
 
-/// Scores a pose by the measured depth at the visible points of the model.
+/// Score of a pose by the measured depth at the visible points of the model.
 struct DepthScore {
   float inlier_fraction = 0.0F;       ///< fraction of the points where measured and model depth agree
   float free_space_violation = 0.0F;  ///< fraction in front of what was measured: the camera saw through them
@@ -52,7 +52,7 @@ struct DepthShift {
   DepthScore score;  ///< score_pose's result there, but for the small change of scale
 };
 
-/// Limits the search for such a move.
+/// Limits of the search for a depth shift.
 struct ShiftSearch {
   int points = 0;        ///< number of first points of the nearest view
   double reach_m = 0.0;  ///< distance to each side

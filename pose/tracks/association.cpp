@@ -22,7 +22,7 @@ ClassGroup group_by_class(const std::string& class_name, const std::vector<PoseO
 }
 
 std::vector<int> assign_poses(const ClassGroup& group, const AssociationSettings& settings) {
-  constexpr double kUnconfirmed = 0.3;  // rather one that is known
+  constexpr double kUnconfirmed = 0.3;  // extra cost of an unconfirmed track, so that confirmed ones are preferred
   Eigen::MatrixXd costs(group.objects.size(), group.measured.size());
   for (std::size_t i = 0; i < group.objects.size(); ++i) {
     const Track& track = *group.objects[i];

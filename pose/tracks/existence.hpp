@@ -43,7 +43,7 @@ void fields(const ExistenceSettings& /*settings*/, const Visit& visit) {
   visit(number("tentative_rate", &S::tentative_rate, 0, 1e6, "1/s"));
 }
 
-/// A result of a frame, as the tracks see it that it has no pose of.
+/// Inputs for updating tracks without a pose in one result.
 struct UnobservedContext {
   const FrameObservation& observation;
   const std::vector<PoseObservation>& poses;  ///< poses that are new in this result
@@ -52,11 +52,11 @@ struct UnobservedContext {
   double coast_s = 0.0;  ///< MotionSettings::coast_s
 };
 
-/// Weight of a result for a track that it has no pose of.
+/// Kinds of evidence that one result gives against an unobserved track, and the time that they stand for.
 struct MissedDetection {
-  double seconds = 0.0;         ///< since the camera's frame before
-  bool by_depth = false;        ///< it is the first one of its frame
-  bool by_recognition = false;  ///< it is the first result of its frame with this class
+  double seconds = 0.0;         ///< CameraClock::seconds: time since the camera's previous frame, as far as it counts
+  bool by_depth = false;        ///< whether depth counts: only for the first result of a frame
+  bool by_recognition = false;  ///< whether the missing pose counts: only for the first result that searched the class
 };
 
 /// Updates a track that received no measurement in this frame: lowers the log odds of its existence and deletes it

@@ -180,8 +180,9 @@ void Tracker::confirm_tracks(std::int64_t utime) {
   }
 }
 
-/// Returns the object that a candidate was before it was carried or taken away: one of its class that is gone, that is
-/// not in its place, or that a hand occludes while no more of its class have ever been seen together.
+/// Returns the earlier object that a candidate re-identifies: one of its class that is deleted, moving or contradicted
+/// by depth, or one that a hand may occlude, if no more of its class are visible now, the candidate included, than have
+/// been at once before.
 Track* Tracker::find_reidentified(const Track& candidate, std::int64_t utime) {
   int visible = 1;
   for (const Track& track : tracks_) {

@@ -105,7 +105,8 @@ class WorldClock {
   void warn(const std::string& line);
 
   std::map<std::string, Camera> cameras_;        // cameras by channel name
-  std::map<std::string, std::int64_t> doubted_;  // time far from the camera's last one, by channel
+  std::map<std::string, std::int64_t> doubted_;  // time, on the world's clock, of the last frame far from its camera's
+                                                 // last one and not yet confirmed, by channel
   std::optional<FrameId> newest_;                // newest frame of all cameras, on the world's clock
   std::int64_t ahead_us_ = 0;
   int behind_ = 0;  // frames one after the other that were refused as too old

@@ -226,7 +226,7 @@ double best_log_likelihood(const TextureBands& model, const std::vector<TextureB
   return best;
 }
 
-/// Counts how the part that breaks a nearly round shape, such as a handle, is seen at a pose.
+/// Counts of points of the part that breaks a nearly round shape, such as a handle, by how they are observed at a pose.
 struct HandleCounts {
   int depth_inliers = 0;
   int free_space_violations = 0;

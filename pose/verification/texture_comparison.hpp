@@ -8,7 +8,7 @@
 
 namespace houghstream {
 
-/// Compares a pose's texture with that of its alternatives (ObjectModel::alternatives).
+/// Result of comparing a pose's texture with that of its alternatives (ObjectModel::alternatives).
 struct TextureComparison {
   /// Log odds of the pose against all alternatives, given the image. It is about minus the logarithm of their number
   /// where the texture is not informative: the model has no colours, is untextured, or is hardly visible.

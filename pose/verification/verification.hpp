@@ -23,7 +23,7 @@ void fields(const VerificationSettings& /*settings*/, const Visit& visit) {
   visit(number("points", &S::points, 1, 100000));
 }
 
-/// Compares the rendered model with the measured depth, pixel by pixel.
+/// Counts from the comparison of the rendered model with the measured depth, pixel by pixel.
 struct Verification {
   int rendered = 0;                     ///< pixels of the model inside the image
   int depth_inliers = 0;                ///< measured within the tolerance
@@ -31,8 +31,8 @@ struct Verification {
   int occluded = 0;                     ///< measured in front of the model; neutral for the pose
   int boundary_samples = 0;             ///< places where the model's outline was looked across
   float boundary_continuations = 0.0F;  ///< samples where the scene continues across it, see BoundarySample
-  float visible_fraction() const;       ///< agreeing of rendered, 0 if nothing is rendered
-  float free_space_violation() const;   ///< violating of rendered, 0 if nothing is rendered
+  float visible_fraction() const;       ///< depth inliers over rendered pixels; 0 if nothing is rendered
+  float free_space_violation() const;   ///< free-space violations over rendered pixels; 0 if nothing is rendered
 };
 
 /// Returns the counts, without the boundary's, at the projected points instead of the rendered pixels, which cover the

@@ -15,7 +15,7 @@ namespace {
 
 using namespace test_scene;
 
-/// Renders the object standing on a table at z = `foot` of its own frame.
+/// A rendered frame of an object that stands on a table at z = `foot` of its own frame.
 struct StandingScene {
   Mesh object;
   Mesh ground = table();

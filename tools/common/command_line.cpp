@@ -39,7 +39,7 @@ std::string said(const std::string& word) {
   return word.empty() ? "nothing" : word;
 }
 
-/// Returns the value of an option when it has one.
+/// Type of an option's value, also where the option may have none.
 template <typename T>
 struct Held {
   using Type = T;

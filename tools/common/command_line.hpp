@@ -40,7 +40,7 @@ class CommandOption {
 };
 
 /// A command line, or a subcommand of one, as CLI11 understands it; copies are the same command line. Only
-/// command_line.cpp and command_faults.cpp include CLI11: each source that did would hold much of it again, and take
+/// command_line.cpp and command_errors.cpp include CLI11: each source that did would hold much of it again, and take
 /// four seconds longer to compile.
 class CommandLine {
  public:

@@ -41,7 +41,7 @@ bool is_frame_source(const std::string& source) {
   return source.find(':') != std::string::npos && !std::filesystem::exists(source);
 }
 
-/// Returns the name of a file format that users take for a readable recording, by its first bytes.
+/// A format that users take for a readable recording: its first bytes and its name.
 struct OtherKind {
   std::string_view begin;
   const char* name;

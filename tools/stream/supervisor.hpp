@@ -37,12 +37,13 @@ struct SupervisorSettings {
 
 /// Keeps the processes of a stream running: one that dies is started again, at once the first time, after a pause that
 /// grows with each failure that follows, until it has failed `max_failures` times in a row. One that fails before it
-/// has ever run is not: it would fail again for the same reason. One that awaits the others starts when each of them
-/// has spoken, or `others_timeout` after them. One that hangs, as its silence tells, is asked to end (SIGTERM), killed
-/// where it does not (SIGKILL after `stop_timeout`, or `finishing` where it says that it is still writing), and started
-/// again likewise. A process that is started again replaces no file that is there, whatever --replace said: it may be
-/// what it has recorded before. Only silence that was listened to counts:
-/// where this process has stood still itself, or its bus was gone, its children have not. Call it from one thread.
+/// has ever run is not restarted: it would fail again for the same reason. One that is started last starts when each of
+/// the others has sent a heartbeat, or `others_timeout` after them. A process without a heartbeat for
+/// `heartbeat_timeout` counts as hung: it is asked to end (SIGTERM), killed where it does not (SIGKILL after
+/// `stop_timeout`, or `finishing` where it reports that it is still writing), and started again likewise. A process
+/// that is started again replaces no existing file, whatever --replace said: it may be what it has recorded before.
+/// Only time during which this process received messages counts: where it has stood still itself, or its bus was gone,
+/// its children have not. Call it from one thread.
 class Supervisor {
  public:
   using Clock = std::chrono::steady_clock;
@@ -57,14 +58,14 @@ class Supervisor {
   /// when one has failed at its start or too often.
   bool step();
 
-  /// The process has shown that it runs; expected of each one every second. False where it is none of these.
+  /// Records a heartbeat, expected from each process every second. Returns false for an unknown pid.
   bool on_heartbeat(pid_t pid);
 
   /// Returns the processes that the source's last frames go through, in their order, once step() has returned that the
   /// stream ends because its source has. Returns none where another cause has ended it.
   std::vector<pid_t> downstream_pids() const;
 
-  /// Since the last step nothing could have been heard of any.
+  /// Excludes the time since the last step from all heartbeat timeouts.
   void pause_watchdog();
 
   /// Asks all to end, waits, and kills after `stop_timeout`, or after `finishing` for a process that reports that it

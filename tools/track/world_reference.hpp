@@ -20,7 +20,7 @@ class WorldReference {
   /// `fixed` holds the poses of static cameras, T_world_camera by the channels of their frames.
   explicit WorldReference(const std::map<std::string, Eigen::Isometry3d>& fixed);
 
-  /// A transform of a camera that moves, as CameraExtrinsics::add() takes it. Throws InputError for one camera too
+  /// Adds a transform of a moving camera, see CameraExtrinsics::add_transform(). Throws InputError for one camera too
   /// many.
   void add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera);
 

@@ -11,7 +11,7 @@ struct AugmentationSettings {
   int patches_per_view = 250;        ///< patches of a training view
   int patches_per_background = 250;  ///< patches of a background frame
   int composites_per_view = 3;       ///< images made of one view: other background, distance and light
-  int views_per_image = 1;         ///< trees see one of so many views; the others are only remembered, for the evidence
+  int views_per_image = 1;           ///< trees see one of so many views; the others are view templates only
   int negative_pool = 10;          ///< background patches looked through for each one drawn blindly, see hard_negatives
   float min_distance = 0.3F;       ///< nearest distance taught, metres
   float max_distance = 2.6F;       ///< farthest distance taught, metres

@@ -110,7 +110,7 @@ Patchwork resized_object(const TrainingView& view, double scale, double sharpnes
   return part;
 }
 
-/// Returns the part of the object that is pasted into `out`, whose position is known.
+/// Returns the change of depth that moves the view to its place in `out`.
 DepthChange depth_change(const TrainingView& view, double distance, const Composite& out) {
   const Eigen::Vector3d centre = view.T_camera_object.translation();
   const Eigen::Vector2d view_px = view.frame.camera.project(centre);

@@ -16,7 +16,7 @@ struct ReconstructedModel {
   std::vector<bool> seen;  ///< per vertex: some view shows it; the others close the surface
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();  ///< world: of the take
   std::vector<MaskedKeyframe> views;                                 ///< keyframes that show it, in their order
-  double agreement_m = 0.0;           ///< see disagreement(), of all views that the model is made of
+  double agreement_m = 0.0;           ///< surface_deviation() over all views of the model, metres
   double free_space_violation = 0.0;  ///< see free_space_violation()
 };
 

@@ -7,7 +7,7 @@
 namespace houghstream {
 namespace {
 
-/// Returns the lines that are logged, and when, over some seconds in which frames arrive on some channels.
+/// Records the lines that are logged, and when, over some seconds in which frames arrive on some channels.
 struct Watched {
   explicit Watched(const std::string& wanted) : silence(wanted, now) {}
 

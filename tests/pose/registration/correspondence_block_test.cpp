@@ -49,7 +49,7 @@ struct PointLattice {
   int stride = 1;
 };
 
-/// Returns the values of point `k`.
+/// Finds the measured partner of point `k` and writes its values to the block.
 void find_one(const RgbdFrame& frame, const CorrespondenceSearch& search, const PointLattice& at, std::size_t k,
               CorrespondenceBlock& block) {
   const PixelRays rays(frame);

@@ -86,10 +86,11 @@ std::vector<PosePrediction> pose_predictions(const std::vector<EvaluatedFrame>& 
 /// detection without a pose has none. NaN where there is no such detection.
 double strict_recall(const std::vector<JudgedPose>& poses, double diameter, double min_visible);
 
-/// Returns whether a pose is correct by ADD-S: up to the ambiguity of the shape.
+/// Returns the recall of poses that are correct by ADD-S (up to the ambiguity of the shape), as strict_recall() does.
 double add_s_recall(const std::vector<JudgedPose>& poses, double diameter, double min_visible);
 
-/// Returns whether a pose is correct by ADD(-S) (Hinterstoisser et al. 2012): ADD, but ADD-S for symmetric objects.
+/// Returns the recall of poses that are correct by ADD(-S): ADD, but ADD-S for symmetric objects (Hinterstoisser et al.
+/// 2012).
 double add_or_add_s_recall(const std::vector<JudgedPose>& poses, const PoseModel& model, double min_visible);
 
 }  // namespace houghstream

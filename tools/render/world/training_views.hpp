@@ -24,7 +24,7 @@ class TurntableWorld {
  public:
   TurntableWorld(const TurntableSettings& settings, std::uint64_t seed);
 
-  /// Returns the stable poses of an object with these attitudes; may be null where none of them is lying.
+  /// Returns the number of views over all attitudes; `choice` may be null if none of them is lying.
   int view_count(const AttitudeChoice* choice) const;
 
   /// Renders view `index` (attitude by attitude, pitch by pitch, azimuth by azimuth) of an object, with its ground

@@ -19,7 +19,7 @@ struct Spread {
   double maximum = 0.0;
 };
 
-/// Compares the reconstruction of a shown object with the ground truth.
+/// Result of comparing the reconstruction of a shown object with the ground truth.
 struct ShownComparison {
   /// Pose of the taught model's frame in that of the ground-truth mesh: the mean over the poses of the first take's
   /// frames, then registered by shape.

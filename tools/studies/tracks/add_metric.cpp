@@ -17,7 +17,7 @@ double mean_distance(const AddModel& model, const Eigen::Isometry3d& a, const Ei
   return sum / static_cast<double>(model.points.size());
 }
 
-/// Counts the results of a class.
+/// Counts and errors of the results of a class.
 struct AddCount {
   int frames = 0;  // in which an object is there
   int right = 0;

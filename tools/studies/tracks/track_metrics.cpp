@@ -335,7 +335,7 @@ class Comparison {
     if (!stands || object == nullptr) life.window.clear();
   }
 
-  /// Returns the rest flag since the frame before: several publications may be of one frame.
+  /// Returns whether the object has not moved since the frame before: several publications may be of one frame.
   bool stood(const TrueInstance& truth, std::size_t index) const {
     if (!truth.T_world_object || index == 0) return false;
     const std::vector<TrueInstance>& before = sequence_.frames[index - 1];

@@ -7,7 +7,7 @@
 
 namespace houghstream::teach {
 
-/// Opens the frames of a camera (openni2...), which end after `options.longest_s` or with a stop signal, or of a
+/// Opens the frames of a camera (openni2...), which end after `options.max_duration_s` or with a stop signal, or of a
 /// recording: log:FILE or FILE of any kind that hs-log import reads, bop:DIR, uw:DIR, tum:DIR, bag:FILE. Throws
 /// InputError where it cannot be opened.
 ShownFrames open_shown(const std::string& source, const ShowOptions& options);
