@@ -20,7 +20,7 @@ std::vector<ScoredHypothesis> score_in_colours(const SearchContext& search, cons
   const DetectionSettings& settings = search.settings;
   const bool is_coloured = search.forest().scoring == Scoring::kEvidence && settings.evidence.learn_camera_colours;
   return is_coloured
-             ? weigh_in_camera_colours(groups, search.remembered_colours, settings.threads, workspace.scoring_workspace)
+             ? score_in_camera_colours(groups, search.remembered_colours, settings.threads, workspace.scoring_workspace)
              : score_groups(groups, settings.threads, workspace.scoring_workspace);
 }
 

@@ -13,8 +13,8 @@ namespace {
 /// The camera's rendering of the colours of each class of each group.
 using GroupCameras = std::vector<std::vector<ChromaMap>>;
 
-/// A candidate that says something of the camera's colours.
-struct Witness {
+/// A candidate from whose colours the camera's chroma map is learnt.
+struct ChromaSample {
   const ScoredHypothesis* candidate = nullptr;
   const ObjectClass* object = nullptr;
   float probability = 0.0F;  ///< probability that it is an object of its class, whatever the camera's colours
@@ -33,9 +33,9 @@ bool is_beside(const ScoredHypothesis& a, const ScoredHypothesis& b, float radiu
   return (a.detection.centre_camera - b.detection.centre_camera).norm() < radius;
 }
 
-using WitnessesByClass = std::map<std::string, std::vector<Witness>>;
+using SamplesByClass = std::map<std::string, std::vector<ChromaSample>>;
 
-void add_witnesses(const Forest& forest, const std::vector<ScoredHypothesis>& candidates, WitnessesByClass& by_class) {
+void add_samples(const Forest& forest, const std::vector<ScoredHypothesis>& candidates, SamplesByClass& by_class) {
   constexpr float kMinProbability = 0.05F;
   for (const ScoredHypothesis& candidate : candidates) {
     if (candidate.evidence.view == Evidence::kNoView || !candidate.evidence.fit.colours.is_known) continue;
@@ -47,53 +47,53 @@ void add_witnesses(const Forest& forest, const std::vector<ScoredHypothesis>& ca
 }
 
 /// Returns the likeliest candidate of each class, and of maxima that lie within one object the likeliest alone.
-std::vector<Witness> find_likeliest(const std::vector<GroupHypotheses>& groups, const GroupCandidates& candidates) {
+std::vector<ChromaSample> find_likeliest(const std::vector<GroupHypotheses>& groups,
+                                         const GroupCandidates& candidates) {
   constexpr std::size_t kMaxPerClass = 3;
-  WitnessesByClass by_class;
-  for (std::size_t i = 0; i < groups.size(); ++i)
-    add_witnesses(groups[i].input.index.forest(), candidates[i], by_class);
-  std::vector<Witness> likeliest;
-  for (auto& [name, witnesses] : by_class) {
-    std::stable_sort(witnesses.begin(), witnesses.end(),
-                     [](const Witness& a, const Witness& b) { return a.probability > b.probability; });
-    std::vector<Witness> kept;
-    for (const Witness& witness : witnesses) {
-      const float radius = witness.object->radius;
-      const bool is_known = std::any_of(kept.begin(), kept.end(), [&](const Witness& other) {
-        return is_beside(*witness.candidate, *other.candidate, radius);
+  SamplesByClass by_class;
+  for (std::size_t i = 0; i < groups.size(); ++i) add_samples(groups[i].input.index.forest(), candidates[i], by_class);
+  std::vector<ChromaSample> likeliest;
+  for (auto& [name, samples] : by_class) {
+    std::stable_sort(samples.begin(), samples.end(),
+                     [](const ChromaSample& a, const ChromaSample& b) { return a.probability > b.probability; });
+    std::vector<ChromaSample> kept;
+    for (const ChromaSample& sample : samples) {
+      const float radius = sample.object->radius;
+      const bool is_known = std::any_of(kept.begin(), kept.end(), [&](const ChromaSample& other) {
+        return is_beside(*sample.candidate, *other.candidate, radius);
       });
-      if (!is_known && kept.size() < kMaxPerClass) kept.push_back(witness);
+      if (!is_known && kept.size() < kMaxPerClass) kept.push_back(sample);
     }
     likeliest.insert(likeliest.end(), kept.begin(), kept.end());
   }
   return likeliest;
 }
 
-/// Divides certainty among the witnesses of one place: only one object stands there, of whichever class, or none, so
+/// Divides certainty among the samples of one place: only one object stands there, of whichever class, or none, so
 /// that the odds of all of them share it.
-void share_places(std::vector<Witness>& witnesses) {
+void share_places(std::vector<ChromaSample>& samples) {
   std::vector<float> odds;
-  odds.reserve(witnesses.size());
-  for (const Witness& witness : witnesses) odds.push_back(witness.probability / (1.0F - witness.probability));
-  for (std::size_t i = 0; i < witnesses.size(); ++i) {
-    const float radius = witnesses[i].object->radius;
+  odds.reserve(samples.size());
+  for (const ChromaSample& sample : samples) odds.push_back(sample.probability / (1.0F - sample.probability));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const float radius = samples[i].object->radius;
     float all = 1.0F;
-    for (std::size_t k = 0; k < witnesses.size(); ++k) {
-      const float reach = 0.5F * (radius + witnesses[k].object->radius);
-      if (is_beside(*witnesses[i].candidate, *witnesses[k].candidate, reach)) all += odds[k];
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      const float reach = 0.5F * (radius + samples[k].object->radius);
+      if (is_beside(*samples[i].candidate, *samples[k].candidate, reach)) all += odds[k];
     }
-    witnesses[i].probability = odds[i] / all;
+    samples[i].probability = odds[i] / all;
   }
 }
 
-ChromaPair to_pair(const Witness& witness) {
-  const MeanColours& colours = witness.candidate->evidence.fit.colours;
+ChromaPair to_pair(const ChromaSample& sample) {
+  const MeanColours& colours = sample.candidate->evidence.fit.colours;
   ChromaPair pair;
-  pair.class_name = witness.candidate->detection.class_name;
-  pair.model = {colours.remembered_ab[0], colours.remembered_ab[1]};
+  pair.class_name = sample.candidate->detection.class_name;
+  pair.model = {colours.template_ab[0], colours.template_ab[1]};
   pair.measured = {colours.measured_ab[0], colours.measured_ab[1]};
   pair.lightness = colours.measured_lightness;
-  pair.probability = witness.probability;
+  pair.probability = sample.probability;
   return pair;
 }
 
@@ -111,9 +111,9 @@ GroupCameras learn_cameras(const std::vector<GroupHypotheses>& groups, const std
 /// Returns the pairs of earlier frames and those of the frame's candidates.
 std::vector<ChromaPair> all_pairs(const std::vector<GroupHypotheses>& groups, std::vector<ChromaPair> pairs,
                                   const GroupCandidates& candidates) {
-  std::vector<Witness> witnesses = find_likeliest(groups, candidates);
-  share_places(witnesses);
-  std::transform(witnesses.begin(), witnesses.end(), std::back_inserter(pairs), to_pair);
+  std::vector<ChromaSample> samples = find_likeliest(groups, candidates);
+  share_places(samples);
+  std::transform(samples.begin(), samples.end(), std::back_inserter(pairs), to_pair);
   return pairs;
 }
 
@@ -148,8 +148,8 @@ std::vector<ScoredHypothesis> joined(GroupCandidates by_group) {
   return all;
 }
 
-/// Compares the views where they stand once more.
-void judge_again(const ScoringInput& input, int threads, std::vector<ScoredHypothesis>& candidates) {
+/// Matches each candidate's best template again, at its place, in the camera's colours.
+void rescore(const ScoringInput& input, int threads, std::vector<ScoredHypothesis>& candidates) {
   constexpr float kHopeless = 0.02F;  // score, if the colours were as usual
   const Forest& forest = input.index.forest();
   parallel_for(threads, static_cast<int>(candidates.size()), [&](int i) {
@@ -174,7 +174,7 @@ std::vector<ScoredHypothesis> score_groups(const std::vector<GroupHypotheses>& g
   return joined(score_by_group(groups, threads, workspace));
 }
 
-std::vector<ScoredHypothesis> weigh_in_camera_colours(const std::vector<GroupHypotheses>& groups,
+std::vector<ScoredHypothesis> score_in_camera_colours(const std::vector<GroupHypotheses>& groups,
                                                       const std::vector<ChromaPair>& colours, int threads,
                                                       ScoringWorkspace& workspace) {
   std::vector<LabFrame> frames;
@@ -193,7 +193,7 @@ std::vector<ScoredHypothesis> weigh_in_camera_colours(const std::vector<GroupHyp
   GroupCandidates candidates = score_by_group(in_camera, threads, workspace);
   if (bring_into_cameras(learn_cameras(groups, all_pairs(groups, colours, candidates)), frames))
     return score_groups(in_camera, threads, workspace);
-  for (std::size_t i = 0; i < groups.size(); ++i) judge_again(in_camera[i].input, threads, candidates[i]);
+  for (std::size_t i = 0; i < groups.size(); ++i) rescore(in_camera[i].input, threads, candidates[i]);
   return joined(std::move(candidates));
 }
 

@@ -19,7 +19,7 @@ std::vector<ScoredHypothesis> score_groups(const std::vector<GroupHypotheses>& g
 /// from what was remembered of it, or from what was taught if nothing was, all candidates are scored again. Where no
 /// other class is known or likely, scores are as taught; in an image without colours chroma speaks neither for a
 /// candidate nor against it. The result is the same for any number of threads.
-std::vector<ScoredHypothesis> weigh_in_camera_colours(const std::vector<GroupHypotheses>& groups,
+std::vector<ScoredHypothesis> score_in_camera_colours(const std::vector<GroupHypotheses>& groups,
                                                       const std::vector<ChromaPair>& colours, int threads,
                                                       ScoringWorkspace& workspace);
 

@@ -52,12 +52,12 @@ HWY_INLINE Ints cell_numbers(std::size_t row, std::size_t column) {
 }
 
 /// Returns measured minus template depth, metres; NaN where the template has no depth.
-HWY_INLINE Floats excess_over(Floats beyond_centre, Ints remembered_mm, float metres_per_mm) {
+HWY_INLINE Floats excess_over(Floats beyond_centre, Ints template_mm, float metres_per_mm) {
   const Float d;
-  const Floats remembered = hn::Mul(hn::Set(d, metres_per_mm), hn::ConvertTo(d, remembered_mm));
-  const auto is_known = hn::RebindMask(d, hn::Gt(remembered_mm, hn::Set(Int(), TemplateGrid::kNoDepth)));
+  const Floats template_depth = hn::Mul(hn::Set(d, metres_per_mm), hn::ConvertTo(d, template_mm));
+  const auto is_known = hn::RebindMask(d, hn::Gt(template_mm, hn::Set(Int(), TemplateGrid::kNoDepth)));
   const Floats nothing = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
-  return hn::IfThenElse(is_known, hn::Sub(beyond_centre, remembered), nothing);
+  return hn::IfThenElse(is_known, hn::Sub(beyond_centre, template_depth), nothing);
 }
 
 void compare_in_vectors(const TemplateGrid& grid, const CellPlaces& places, const cv::Mat& depth, CellDepths& out) {

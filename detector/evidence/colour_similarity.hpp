@@ -10,7 +10,7 @@ namespace houghstream {
 
 /// Mean colours of a view and of the frame over the same cells, CIE L*a*b*.
 struct MeanColours {
-  std::array<float, 2> remembered_ab{};
+  std::array<float, 2> template_ab{};
   std::array<float, 2> measured_ab{};
   float measured_lightness = 0.0F;  ///< 0 to 100
   bool is_known = false;            ///< false for fewer than a dozen pairs

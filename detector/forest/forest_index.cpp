@@ -8,7 +8,7 @@
 namespace houghstream {
 namespace {
 
-std::vector<LeafSummary> make_leaf_heads(const Forest& forest) {
+std::vector<LeafSummary> build_leaf_summaries(const Forest& forest) {
   std::vector<LeafSummary> heads(forest.leaves.size());
   for (std::size_t leaf = 0; leaf + 1 < forest.leaves.size(); ++leaf) {
     LeafSummary& head = heads[leaf];
@@ -91,7 +91,7 @@ std::vector<SpreadViews> choose_spread_views(const Forest& forest) {
 
 ForestIndex::ForestIndex(const Forest& forest)
     : forest_(&forest),
-      leaf_heads_(make_leaf_heads(forest)),
+      leaf_summaries_(build_leaf_summaries(forest)),
       packed_(pack_trees(forest)),
       view_neighbours_(find_view_neighbours(forest)),
       spread_views_(choose_spread_views(forest)) {}

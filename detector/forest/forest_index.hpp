@@ -36,14 +36,14 @@ class ForestIndex {
   explicit ForestIndex(Forest&&) = delete;
 
   const Forest& forest() const { return *forest_; }
-  const std::vector<LeafSummary>& leaf_summaries() const { return leaf_heads_; }  ///< number of leaves + 1
+  const std::vector<LeafSummary>& leaf_summaries() const { return leaf_summaries_; }  ///< number of leaves + 1
   const PackedTrees& packed() const { return packed_; }
   const std::vector<ViewNeighbours>& view_neighbours() const { return view_neighbours_; }  ///< per view
   const SpreadViews& spread_views(std::size_t class_index) const { return spread_views_[class_index]; }
 
  private:
   const Forest* forest_;
-  std::vector<LeafSummary> leaf_heads_;
+  std::vector<LeafSummary> leaf_summaries_;
   PackedTrees packed_;
   std::vector<ViewNeighbours> view_neighbours_;
   std::vector<SpreadViews> spread_views_;  // per class

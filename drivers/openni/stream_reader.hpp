@@ -11,8 +11,8 @@
 #include <optional>
 #include <utility>
 
-#include "drivers/openni/lasting_thread.hpp"
 #include "drivers/openni/openni_parts.hpp"
+#include "drivers/openni/persistent_thread.hpp"
 
 // Only the .cpp files of this folder include this header.
 
@@ -54,7 +54,7 @@ class StreamReader {
  public:
   /// Begins; the streams must run, and be stopped only after this has ended.
   StreamReader(::openni::VideoStream& depth, ::openni::VideoStream& colour, ImageQueue& to)
-      : depth_(depth), colour_(colour), inbox_(to), thread_([this] { run(); }) {}
+      : depth_(depth), colour_(colour), queue_(to), thread_([this] { run(); }) {}
   StreamReader(const StreamReader&) = delete;
   StreamReader& operator=(const StreamReader&) = delete;
 
@@ -72,13 +72,13 @@ class StreamReader {
       const std::optional<SensorImage::Sensor> sensor = wait_for_image(depth_, colour_, kTimeout);
       if (!sensor) continue;
       std::optional<SensorImage> image = read_image(*sensor == SensorImage::Sensor::kDepth ? depth_ : colour_, *sensor);
-      if (image) inbox_.put(std::move(*image));
+      if (image) queue_.put(std::move(*image));
     }
   }
 
   ::openni::VideoStream& depth_;
   ::openni::VideoStream& colour_;
-  ImageQueue& inbox_;
+  ImageQueue& queue_;
   std::atomic<bool> running_{true};
   PersistentThread thread_;  // last, so that it is waited for first: it uses the others
 };

@@ -160,7 +160,7 @@ void work_with_helpers(Items& items, int helpers) {
 }  // namespace
 
 SerialScope::SerialScope(std::function<bool()> is_cancelled)
-    : is_over_(std::move(is_cancelled)), outer_(working_alone()) {
+    : is_cancelled_(std::move(is_cancelled)), outer_(working_alone()) {
   working_alone() = this;
 }
 
@@ -169,7 +169,7 @@ SerialScope::~SerialScope() {
 }
 
 void SerialScope::throw_if_cancelled() const {
-  if (is_over_ && is_over_()) throw WorkCancelled("work that nobody waits for any more");
+  if (is_cancelled_ && is_cancelled_()) throw WorkCancelled("work that nobody waits for any more");
 }
 
 void parallel_for(int threads, int count, const ItemFunction& work) {

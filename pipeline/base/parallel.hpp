@@ -55,7 +55,7 @@ class SerialScope {
   void throw_if_cancelled() const;
 
  private:
-  std::function<bool()> is_over_;
+  std::function<bool()> is_cancelled_;
   const SerialScope* outer_;
 };
 

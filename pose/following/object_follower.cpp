@@ -145,17 +145,17 @@ std::vector<int> match_detections(const PoseEstimator& estimator, const Detectio
 }
 
 /// Updates the scores of the objects that were followed: each is found with a score, or is missed though in full view.
-void update_from_detections(const Detections& detections, const DetectionAssociation& look,
+void update_from_detections(const Detections& detections, const DetectionAssociation& association,
                             const FollowerSettings& settings, FollowedCamera& camera) {
   constexpr float kFullView = 0.7F;  // visible fraction
-  const FollowedFrame& followed_frame = look.followed_frame;
+  const FollowedFrame& followed_frame = association.followed_frame;
   for (std::size_t p = 0; p < followed_frame.poses.size(); ++p) {
     FollowedObject* object = find_followed(followed_frame.numbers[p], camera);
     if (object == nullptr) continue;
-    const auto found = std::find(look.matches.begin(), look.matches.end(), static_cast<int>(p));
+    const auto found = std::find(association.matches.begin(), association.matches.end(), static_cast<int>(p));
     double score = settings.miss_score;
-    if (found != look.matches.end()) {
-      score = detections.detections[static_cast<std::size_t>(found - look.matches.begin())].score;
+    if (found != association.matches.end()) {
+      score = detections.detections[static_cast<std::size_t>(found - association.matches.begin())].score;
       object->found_us = followed_frame.clock_us;
     } else if (followed_frame.poses[p].pose.visible_fraction < kFullView ||
                seconds_between(object->found_us, followed_frame.clock_us) < settings.missed_after_s) {
@@ -167,11 +167,11 @@ void update_from_detections(const Detections& detections, const DetectionAssocia
 
 /// Returns the index into `followed_frame` of the detected object whose last recheck lies farthest back, if one is due
 /// or its pose is doubtful; else -1.
-int choose_recheck(const DetectionAssociation& look, const FollowerSettings& settings, FollowedCamera& camera) {
-  const FollowedFrame& followed_frame = look.followed_frame;
+int choose_recheck(const DetectionAssociation& association, const FollowerSettings& settings, FollowedCamera& camera) {
+  const FollowedFrame& followed_frame = association.followed_frame;
   FollowedObject* selected = nullptr;
   int place = -1;
-  for (const int match : look.matches) {
+  for (const int match : association.matches) {
     FollowedObject* object =
         match >= 0 ? find_followed(followed_frame.numbers[static_cast<std::size_t>(match)], camera) : nullptr;
     if (object == nullptr) continue;
@@ -200,15 +200,16 @@ void withhold_where_followed(const PoseEstimator& estimator, const FollowedFrame
 /// (update_from_detections), and notes the one that is rechecked.
 DetectionAssociation associate_detections(const PoseEstimator& estimator, const Detections& detections,
                                           const FollowerSettings& settings, FollowedCamera& camera) {
-  DetectionAssociation look{{}, std::vector<int>(detections.detections.size(), -1), -1};
-  const auto then = std::find_if(camera.recent_frames.rbegin(), camera.recent_frames.rend(),
-                                 [&](const FollowedFrame& one) { return one.utime == detections.frame.utime; });
-  if (then == camera.recent_frames.rend()) return look;
-  look.followed_frame = *then;
-  look.matches = match_detections(estimator, detections, look.followed_frame, settings.reach_m);
-  update_from_detections(detections, look, settings, camera);
-  look.recheck = choose_recheck(look, settings, camera);
-  return look;
+  DetectionAssociation association{{}, std::vector<int>(detections.detections.size(), -1), -1};
+  const auto earlier_frame =
+      std::find_if(camera.recent_frames.rbegin(), camera.recent_frames.rend(),
+                   [&](const FollowedFrame& one) { return one.utime == detections.frame.utime; });
+  if (earlier_frame == camera.recent_frames.rend()) return association;
+  association.followed_frame = *earlier_frame;
+  association.matches = match_detections(estimator, detections, association.followed_frame, settings.reach_m);
+  update_from_detections(detections, association, settings, camera);
+  association.recheck = choose_recheck(association, settings, camera);
+  return association;
 }
 
 /// Returns the texture's verdict on a detection's pose, which following does not examine again.
@@ -449,17 +450,17 @@ void ObjectFollower::remove_lost(const PoseEstimator& estimator, const RgbdFrame
 
 ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, const RgbdFrame& frame,
                                                const Detections& detections) {
-  DetectionAssociation look;
+  DetectionAssociation association;
   std::vector<ChromaPair> remembered;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     FollowedCamera& camera = cameras_[detections.frame.channel];
-    look = associate_detections(estimator, detections, settings_, camera);
+    association = associate_detections(estimator, detections, settings_, camera);
     remembered = camera.colours.pairs();
   }
   Detections looked_for{detections.frame, {}, detections.stages};
   for (std::size_t i = 0; i < detections.detections.size(); ++i) {
-    if (look.needs_estimate(i)) looked_for.detections.push_back(detections.detections[i]);
+    if (association.needs_estimate(i)) looked_for.detections.push_back(detections.detections[i]);
   }
   ObjectPoses found = estimator.estimate(frame, looked_for, {}, remembered);
   ObjectPoses result{detections.frame, {}, found.stages};
@@ -467,14 +468,15 @@ ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, c
   FollowedCamera& camera = cameras_[detections.frame.channel];
   std::size_t next = 0;
   for (std::size_t i = 0; i < detections.detections.size(); ++i) {
-    ObjectPose pose = look.needs_estimate(i) ? std::move(found.poses[next++]) : ObjectPose();
-    if (pose.T_camera_object && look.matches[i] < 0) withhold_where_followed(estimator, look.followed_frame, pose);
-    if (look.matches[i] >= 0) {
-      const auto place = static_cast<std::size_t>(look.matches[i]);
-      FollowedObject* object = find_followed(look.followed_frame.numbers[place], camera);
+    ObjectPose pose = association.needs_estimate(i) ? std::move(found.poses[next++]) : ObjectPose();
+    if (pose.T_camera_object && association.matches[i] < 0)
+      withhold_where_followed(estimator, association.followed_frame, pose);
+    if (association.matches[i] >= 0) {
+      const auto place = static_cast<std::size_t>(association.matches[i]);
+      FollowedObject* object = find_followed(association.followed_frame.numbers[place], camera);
       if (pose.T_camera_object && object != nullptr)
-        adopt_better_pose(pose, look.followed_frame.poses[place], settings_, *object);
-      pose = look.followed_frame.poses[place].pose;
+        adopt_better_pose(pose, association.followed_frame.poses[place], settings_, *object);
+      pose = association.followed_frame.poses[place].pose;
     } else if (pose.T_camera_object) {
       add_object(estimator, frame, pose, camera);
     }
@@ -496,10 +498,11 @@ void ObjectFollower::add_object(const PoseEstimator& estimator, const RgbdFrame&
   found.score_logit = logit(pose.detection_score);
   found.texture_probability = texture_probability_of(pose);
   found.T_camera_object = *pose.T_camera_object;
-  const auto then =
+  const auto earlier_frame =
       std::find_if(camera.recent_frames.rbegin(), camera.recent_frames.rend(),
                    [&](const FollowedFrame& followed_frame) { return followed_frame.utime == frame.id.utime; });
-  found.clock_us = then == camera.recent_frames.rend() ? clock_of(frame.id.utime, camera) : then->clock_us;
+  found.clock_us =
+      earlier_frame == camera.recent_frames.rend() ? clock_of(frame.id.utime, camera) : earlier_frame->clock_us;
   found.valid_us = found.found_us = found.recheck_us = found.clock_us;
   found.shape_quality = pose.shape_quality;
   learn_appearance(estimator, frame, true, found);
@@ -518,15 +521,15 @@ void ObjectFollower::add_object(const PoseEstimator& estimator, const RgbdFrame&
 
 /// Moves an object that was found in an earlier frame as the camera has moved since, as far as that is known.
 void ObjectFollower::propagate_to_latest(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found) {
-  const auto then = std::find_if(camera.recent_frames.rbegin(), camera.recent_frames.rend(),
-                                 [&](const FollowedFrame& one) { return one.utime == utime; });
-  if (then == camera.recent_frames.rend() || then == camera.recent_frames.rbegin()) return;
+  const auto earlier_frame = std::find_if(camera.recent_frames.rbegin(), camera.recent_frames.rend(),
+                                          [&](const FollowedFrame& one) { return one.utime == utime; });
+  if (earlier_frame == camera.recent_frames.rend() || earlier_frame == camera.recent_frames.rbegin()) return;
   const FollowedFrame& now = camera.recent_frames.back();
   std::vector<Eigen::Isometry3d> motions;
   for (std::size_t i = 0; i < now.poses.size(); ++i) {
-    const auto place = std::find(then->numbers.begin(), then->numbers.end(), now.numbers[i]);
-    if (place == then->numbers.end()) continue;
-    const FollowedPose& before = then->poses[static_cast<std::size_t>(place - then->numbers.begin())];
+    const auto place = std::find(earlier_frame->numbers.begin(), earlier_frame->numbers.end(), now.numbers[i]);
+    if (place == earlier_frame->numbers.end()) continue;
+    const FollowedPose& before = earlier_frame->poses[static_cast<std::size_t>(place - earlier_frame->numbers.begin())];
     if (!before.pose.T_camera_object || !now.poses[i].pose.T_camera_object) continue;
     motions.push_back(now.poses[i].T_camera_object * before.T_camera_object.inverse());
   }

@@ -30,18 +30,18 @@ std::array<float, kFunctionSegments> step_function() {
 }
 
 /// A point of the silhouette in a frame.
-struct ProjectedPoint {
+struct ProjectedSilhouettePoint {
   const SilhouettePoint& at;
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();
   Eigen::Vector2f normal = Eigen::Vector2f::Zero();  // unit vector out of the model
   float z = 0.0F;                                    // metres
 };
 
-std::optional<ProjectedPoint> project_point(const RegionView& view, const SilhouettePoint& at,
-                                            const Eigen::Isometry3f& T) {
+std::optional<ProjectedSilhouettePoint> project_point(const RegionView& view, const SilhouettePoint& at,
+                                                      const Eigen::Isometry3f& T) {
   const Eigen::Vector3f point = T * at.point;
   if (!(point.z() > 0.0F)) return std::nullopt;
-  ProjectedPoint projected{at};
+  ProjectedSilhouettePoint projected{at};
   projected.pixel = view.frame.camera.project_single(point);
   projected.normal = (T.linear() * at.normal).head<2>();
   const float length = projected.normal.norm();
@@ -62,7 +62,8 @@ cv::Point nearest_pixel(const Eigen::Vector2f& pixel) {
 
 /// Returns whether depth beside the point, from `first_px` to `last_px` along the normal, is nearer than the model can
 /// be.
-bool is_covered(const RegionView& view, const ProjectedPoint& point, const cv::Range& along_px, double occlusion_m) {
+bool is_covered(const RegionView& view, const ProjectedSilhouettePoint& point, const cv::Range& along_px,
+                double occlusion_m) {
   const double margin = occlusion_m + 3.0 * view.noise.sigma(point.z);
   const auto limit = static_cast<float>(point.z - point.at.nearer_m - margin);
   for (int step = along_px.start; step < along_px.end; ++step) {
@@ -87,7 +88,7 @@ struct LineOfPixels {
 };
 
 /// Segments begin and end between pixels of the axis that is nearer to the normal.
-LineOfPixels line_through(const ProjectedPoint& point, int segment_px) {
+LineOfPixels line_through(const ProjectedSilhouettePoint& point, int segment_px) {
   LineOfPixels line;
   line.step = point.normal / point.normal.cwiseAbs().maxCoeff();
   const bool is_flat = std::abs(line.step.x()) >= std::abs(line.step.y());
@@ -223,7 +224,7 @@ RegionLines find_region_lines(const RegionView& view, const Silhouette& silhouet
   const auto focal = static_cast<float>(view.frame.camera.fx);
   for (std::size_t i = 0; i < silhouette.points.size(); i += static_cast<std::size_t>(scale.every)) {
     const SilhouettePoint& at = silhouette.points[i];
-    const std::optional<ProjectedPoint> point = project_point(view, at, T);
+    const std::optional<ProjectedSilhouettePoint> point = project_point(view, at, T);
     if (!point) continue;
     const LineOfPixels pixels = line_through(*point, scale.segment_px);
     const float segments_per_px = 1.0F / (pixels.step.norm() * static_cast<float>(scale.segment_px));
@@ -294,7 +295,7 @@ void learn_colours(const RegionView& view, const Silhouette& silhouette, const E
   const auto focal = static_cast<float>(view.frame.camera.fx);
   for (std::size_t i = 0; i < silhouette.points.size(); i += kEvery) {
     const SilhouettePoint& at = silhouette.points[i];
-    const std::optional<ProjectedPoint> point = project_point(view, at, T);
+    const std::optional<ProjectedSilhouettePoint> point = project_point(view, at, T);
     if (!point) continue;
     const auto take = [&](float side, float clear_m, std::vector<cv::Vec3b>& pixels) {
       const int clear_px = static_cast<int>(std::min<float>(clear_m * focal / point->z, kReach_px));
@@ -316,7 +317,7 @@ cv::Rect silhouette_box(const RegionView& view, const Silhouette& silhouette,
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   Eigen::AlignedBox2f box;
   for (const SilhouettePoint& at : silhouette.points) {
-    const std::optional<ProjectedPoint> point = project_point(view, at, T);
+    const std::optional<ProjectedSilhouettePoint> point = project_point(view, at, T);
     if (point) box.extend(point->pixel);
   }
   if (box.isEmpty()) return {};

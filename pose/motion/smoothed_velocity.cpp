@@ -15,23 +15,23 @@ bool is_near(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 }  // namespace
 
 Eigen::Isometry3d SmoothedVelocity::predict(const Eigen::Isometry3d& T_camera_object, double seconds) const {
-  return retract_about_point(T_camera_object, seconds * speed_, seconds * angular_velocity_);
+  return retract_about_point(T_camera_object, seconds * linear_velocity_, seconds * angular_velocity_);
 }
 
 void SmoothedVelocity::update(const Eigen::Isometry3d& T_before, const Eigen::Isometry3d& T_after, double seconds,
                               double gain) {
   const Eigen::Vector3d speed = (T_after.translation() - T_before.translation()) / seconds;
   const Eigen::Vector3d angular_velocity = rotation_vector(T_after.linear() * T_before.linear().transpose()) / seconds;
-  speed_ += gain * (speed - speed_);
+  linear_velocity_ += gain * (speed - linear_velocity_);
   angular_velocity_ += gain * (angular_velocity - angular_velocity_);
 }
 
 void SmoothedVelocity::reset() {
-  speed_ = angular_velocity_ = Eigen::Vector3d::Zero();
+  linear_velocity_ = angular_velocity_ = Eigen::Vector3d::Zero();
 }
 
 bool SmoothedVelocity::is_zero() const {
-  return speed_.isZero(0.0) && angular_velocity_.isZero(0.0);
+  return linear_velocity_.isZero(0.0) && angular_velocity_.isZero(0.0);
 }
 
 std::optional<Eigen::Isometry3d> predict_by_camera_motion(const Eigen::Isometry3d& T_camera_object,

@@ -26,11 +26,11 @@ class SmoothedVelocity {
 
   bool is_zero() const;
 
-  const Eigen::Vector3d& linear_velocity() const { return speed_; }              ///< velocity of the origin, m/s
+  const Eigen::Vector3d& linear_velocity() const { return linear_velocity_; }    ///< velocity of the origin, m/s
   const Eigen::Vector3d& angular_velocity() const { return angular_velocity_; }  ///< rad/s
 
  private:
-  Eigen::Vector3d speed_ = Eigen::Vector3d::Zero();             // m/s
+  Eigen::Vector3d linear_velocity_ = Eigen::Vector3d::Zero();   // m/s
   Eigen::Vector3d angular_velocity_ = Eigen::Vector3d::Zero();  // rad/s
 };
 

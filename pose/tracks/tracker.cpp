@@ -290,7 +290,7 @@ bool has_risen(const FrameNumber& before, const FrameNumber& after) {
 }  // namespace
 
 TimeOrder WorldClock::order_of(const StampedFrame& frame) {
-  constexpr int kGone = 30;
+  constexpr int kMaxStaleResults = 30;  // consecutive results older than another camera's before a new world begins
   if (seconds_between(frame.newest_utime, frame.id.utime) > kMaxOvertakenS) return TimeOrder::kLate;
   const std::int64_t utime = shifted(frame.id.utime, ahead_us_);
   const auto known = cameras_.find(frame.id.channel);
@@ -304,11 +304,11 @@ TimeOrder WorldClock::order_of(const StampedFrame& frame) {
   if (!newest_ || seconds_between(now, newest_->utime) <= kMaxOvertakenS) return TimeOrder::kNext;
   ++behind_;
   require(
-      behind_ >= kGone,
+      behind_ >= kMaxStaleResults,
       "frame {} is {:.1f} s older than the last one of {}, expected cameras whose clocks, and results, are within {} "
       "s of one another",
       to_string(frame.id), seconds_between(now, newest_->utime), newest_->channel, kMaxOvertakenS);
-  tell_new_world(frame.id, newest_->utime);
+  log_new_world(frame.id, newest_->utime);
   return TimeOrder::kReset;
 }
 
@@ -319,7 +319,7 @@ TimeOrder WorldClock::order_after(const Camera& camera, const StampedFrame& fram
     return order_behind(camera, frame, utime);
   const bool other_run = frame.number.run != camera.number.run && frame.number.run != 0 && camera.number.run != 0;
   if (utime <= last_utime && other_run) {
-    tell_new_world(frame.id, last_utime);
+    log_new_world(frame.id, last_utime);
     return TimeOrder::kReset;
   }
   if (utime < last_utime) return TimeOrder::kLate;
@@ -345,15 +345,15 @@ TimeOrder WorldClock::order_behind(const Camera& camera, const StampedFrame& fra
       return TimeOrder::kNext;
     }
   }
-  tell_new_world(frame.id, last_utime);
+  log_new_world(frame.id, last_utime);
   return TimeOrder::kReset;
 }
 
 TimeOrder WorldClock::order_ahead(std::int64_t last_utime, const StampedFrame& frame, std::int64_t utime) {
   constexpr std::int64_t kMaxDurationUs = 60'000'000;
   if (seconds_between(last_utime, utime) <= kMaxOvertakenS) return TimeOrder::kNext;
-  const bool is_told_by_another = std::abs(seconds_between(newest_->utime, utime)) <= kMaxOvertakenS;
-  if (!is_told_by_another && !is_confirmed(last_utime, frame.id, utime)) return TimeOrder::kLate;
+  const bool is_confirmed_by_another_camera = std::abs(seconds_between(newest_->utime, utime)) <= kMaxOvertakenS;
+  if (!is_confirmed_by_another_camera && !is_confirmed(last_utime, frame.id, utime)) return TimeOrder::kLate;
   if (microseconds_between(newest_->utime, utime) > kMaxDurationUs)
     move_to(shifted(newest_->utime, kMaxDurationUs), frame.id);
   return TimeOrder::kNext;
@@ -404,7 +404,7 @@ void WorldClock::reset() {
   ahead_us_ = 0;
 }
 
-void WorldClock::tell_new_world(const FrameId& frame, std::int64_t last_utime) {
+void WorldClock::log_new_world(const FrameId& frame, std::int64_t last_utime) {
   warn(fmt::format("frame {} is {:.1f} s older than the last one: a new world begins", to_string(frame),
                    seconds_between(shifted(frame.utime, ahead_us_), last_utime)));
 }

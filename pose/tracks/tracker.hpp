@@ -101,7 +101,7 @@ class WorldClock {
   TimeOrder order_ahead(std::int64_t last_utime, const StampedFrame& frame, std::int64_t utime);
   bool is_confirmed(std::int64_t last_utime, const FrameId& frame, std::int64_t utime);
   void move_to(std::int64_t world_utime, const FrameId& frame);
-  void tell_new_world(const FrameId& frame, std::int64_t last_utime);
+  void log_new_world(const FrameId& frame, std::int64_t last_utime);
   void warn(const std::string& line);
 
   std::map<std::string, Camera> cameras_;        // cameras by channel name

@@ -17,7 +17,7 @@ TOP = ("pipeline", "drivers", "detector", "pose", "tools")
 ALLOWED = {
     "pipeline/base/stop_signal.cpp": "a signal handler has no arguments",
     "pipeline/base/parallel.cpp": "the process' idle threads",
-    "drivers/openni/lasting_thread.cpp": "OpenNI2 is one a process, and its thread outlives every source",
+    "drivers/openni/persistent_thread.cpp": "OpenNI2 is one a process, and its thread outlives every source",
 }
 NAMESPACE = re.compile(r"(?:inline\s+)?namespace(?:\s+[\w:]+)?$")
 CONSTANT = re.compile(r"\b(?:const|constexpr)\b")

@@ -121,21 +121,22 @@ TrainingView painted(const TrainingView& shape, const TrainingView& paint) {
 }
 
 /// Adds distractors to a frame without objects.
-class Others {
+class DistractorComposer {
  public:
-  Others(const std::vector<const TrainingView*>& objects, Stage& stage) : objects_(objects), stage_(stage) {}
+  DistractorComposer(const std::vector<const TrainingView*>& objects, Stage& stage)
+      : objects_(objects), stage_(stage) {}
 
   void add_near_duplicate(bool in_other_colours) {
     const TrainingView& view = draw();
-    put_none(in_other_colours ? recoloured(view, stage_.random) : resized(view, stage_.random));
+    put_distractor(in_other_colours ? recoloured(view, stage_.random) : resized(view, stage_.random));
   }
 
   void add_hard_negative(bool in_other_paint) {
     const TrainingView& view = draw();
-    if (!in_other_paint) return put_none(squeezed(view, stage_.random));
+    if (!in_other_paint) return put_distractor(squeezed(view, stage_.random));
     const TrainingView& paint = draw();
     // Another view of the same object has no other paint to give.
-    put_none(paint.class_id == view.class_id ? squeezed(view, stage_.random) : painted(view, paint));
+    put_distractor(paint.class_id == view.class_id ? squeezed(view, stage_.random) : painted(view, paint));
   }
 
   /// Returns the views that they were made of.
@@ -147,7 +148,9 @@ class Others {
     return *objects_[views_.back()];
   }
 
-  void put_none(const TrainingView& thing) { put(thing, draw_distance(stage_.settings, stage_.random), 0, stage_); }
+  void put_distractor(const TrainingView& thing) {
+    put(thing, draw_distance(stage_.settings, stage_.random), 0, stage_);
+  }
 
   const std::vector<const TrainingView*>& objects_;
   Stage& stage_;
@@ -169,10 +172,10 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   out.frame.depth = background.depth.clone();
   Stage stage{out.frame, cv::Mat::zeros(background.colour.size(), CV_8UC1), even_light, random};
   std::vector<int> whole_px;
-  Others others(objects, stage);
-  for (int i = 0; i < 2 * things.near_duplicates; ++i) others.add_near_duplicate(i % 2 == 0);
-  for (int i = 0; i < 2 * things.hard_negatives; ++i) others.add_hard_negative(i % 2 == 0);
-  out.distractor_views = std::move(others).views();
+  DistractorComposer distractors(objects, stage);
+  for (int i = 0; i < 2 * things.near_duplicates; ++i) distractors.add_near_duplicate(i % 2 == 0);
+  for (int i = 0; i < 2 * things.hard_negatives; ++i) distractors.add_hard_negative(i % 2 == 0);
+  out.distractor_views = std::move(distractors).views();
   for (int label = 1; label <= things.objects; ++label) {
     const std::uint32_t index = draw_view(objects, random);
     const TrainingView& view = *objects[index];

@@ -50,7 +50,7 @@ std::optional<Alignment> relocalise_by_neighbours(const KeyframeMap& map, const 
   const std::vector<std::pair<double, int>> by_distance = keyframes_by_distance(map, last.T_camera_world);
   for (std::size_t i = 0; i < std::min(kTried, by_distance.size()); ++i) {
     const auto [distance, k] = by_distance[i];
-    if (distance > last.farthest) break;
+    if (distance > last.max_view_angle) break;
     const Eigen::Isometry3d& T_start = map.keyframes()[static_cast<std::size_t>(k)].T_camera_world;
     if (std::optional<Alignment> found = register_to_keyframe(map, k, levels, T_start)) return found;
   }
@@ -75,7 +75,7 @@ std::optional<Alignment> Relocaliser::find(const KeyframeMap& map, const FrameLe
   }
   if (best_keyframe < 0 || best.corners < map.settings().sure_corners) return std::nullopt;
   const Eigen::Isometry3d T = best.T_frame_keyframe * keyframes[static_cast<std::size_t>(best_keyframe)].T_camera_world;
-  if (map.view_angle(T, last.T_camera_world) > last.farthest) return std::nullopt;
+  if (map.view_angle(T, last.T_camera_world) > last.max_view_angle) return std::nullopt;
   return register_to_keyframe(map, best_keyframe, levels, T);
 }
 

@@ -28,8 +28,8 @@ struct LostFrame {
 
 /// Gives the last known pose, from which a lost frame is searched.
 struct LastPlace {
-  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< the last that is known, metres
-  double farthest = 1e9;                                             ///< radians, as KeyframeMap::difference has it
+  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< last known pose, metres
+  double max_view_angle = 1e9;  ///< maximum KeyframeMap::view_angle() to that pose, radians
 };
 
 /// Lays a frame on the keyframes nearest to the last place, one by one, with its view taken for theirs.

@@ -62,7 +62,7 @@ std::vector<ScoredHypothesis> weighed(const std::vector<Forest>& forests, const 
   for (std::size_t i = 0; i < forests.size(); ++i)
     groups.push_back({{indices[i], in_lab, patches, settings, excluded}, hypotheses[i]});
   ScoringWorkspace workspace;
-  return weigh_in_camera_colours(groups, reference, 2, workspace);
+  return score_in_camera_colours(groups, reference, 2, workspace);
 }
 
 std::vector<ScoredHypothesis> weighed(const Forest& forest, const RgbdFrame& frame,

@@ -1,4 +1,4 @@
-#include "drivers/openni/lasting_thread.hpp"
+#include "drivers/openni/persistent_thread.hpp"
 
 #include <condition_variable>
 #include <mutex>
