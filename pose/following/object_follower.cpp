@@ -17,22 +17,6 @@ namespace {
 constexpr std::int64_t kJumpUs = 10'000'000;        // interval to a later frame; a camera may be away for a moment
 constexpr std::int64_t kMaxIntervalUs = 1'000'000;  // interval between frames of which one follows the other
 
-float probability(double odds) {
-  return static_cast<float>(logistic(odds));
-}
-
-ExpectedObject expected_at(const Eigen::Isometry3d& T_camera_object, const FollowedObject& object) {
-  ExpectedObject expected;
-  expected.class_id = object.class_id;
-  expected.class_name = object.class_name;
-  expected.score = probability(object.score_logit);
-  expected.initial_poses = {T_camera_object};
-  expected.texture_probability = object.texture_probability;
-  expected.shape_quality = object.shape_quality;
-  expected.appearance = object.appearance;
-  return expected;
-}
-
 /// Returns whether newer frames have overtaken this one on its way. Where the frame before it seemed overtaken too, and
 /// was older, the clock was set back.
 bool is_overtaken(std::int64_t utime, FollowedCamera& camera) {
@@ -45,10 +29,6 @@ bool is_overtaken(std::int64_t utime, FollowedCamera& camera) {
   return camera.overtaken_utime.has_value();
 }
 
-std::int64_t clock_of(std::int64_t utime, const FollowedCamera& camera) {
-  return shifted(utime, camera.ahead_us);
-}
-
 /// Advances the camera's clock by the interval of the frame before where utimes jump.
 void follow_clock(std::int64_t utime, FollowedCamera& camera) {
   if (camera.recent_frames.empty()) return;
@@ -59,6 +39,10 @@ void follow_clock(std::int64_t utime, FollowedCamera& camera) {
   } else {
     camera.ahead_us = microseconds_between(utime, shifted(last.clock_us, camera.interval_us));
   }
+}
+
+std::int64_t clock_of(std::int64_t utime, const FollowedCamera& camera) {
+  return shifted(utime, camera.ahead_us);
 }
 
 /// Returns a digest of every fourth row: sensor noise makes those of two measurements differ.
@@ -81,11 +65,34 @@ void note_depth(const RgbdFrame& frame, std::int64_t clock_us, FollowedCamera& c
   camera.depth_digest = digest;
 }
 
+float probability(double odds) {
+  return static_cast<float>(logistic(odds));
+}
+
+ExpectedObject expected_at(const Eigen::Isometry3d& T_camera_object, const FollowedObject& object) {
+  ExpectedObject expected;
+  expected.class_id = object.class_id;
+  expected.class_name = object.class_name;
+  expected.score = probability(object.score_logit);
+  expected.initial_poses = {T_camera_object};
+  expected.texture_probability = object.texture_probability;
+  expected.shape_quality = object.shape_quality;
+  expected.appearance = object.appearance;
+  return expected;
+}
+
 DepthLag depth_lag(double seconds, const SmoothedVelocity& velocity) {
   DepthLag lag;
   lag.rotation_rad = seconds * velocity.angular_velocity();
   lag.shift_m = seconds * velocity.linear_velocity();
   return lag;
+}
+
+/// Returns the map by which the object's colours are judged.
+ChromaMap colours_for(const FollowedObject& object, const PoseEstimator& estimator, const FollowedCamera& camera) {
+  if (!estimator.settings().learn_camera_colours) return {};
+  if (camera.is_colourless) return colourless_camera();
+  return camera.colours.map_without(object.class_name);
 }
 
 /// Learns the lag of poses that are surely right: others are not where colours or depth show the object.
@@ -95,6 +102,202 @@ void learn_lag(const FollowedFrame& followed_frame, double deviation_s, CameraLa
     if (has_pose(followed.pose.status) && followed.pose.shape_quality >= kSure) lag.update(followed.lag, deviation_s);
   }
 }
+
+}  // namespace
+
+ObjectFollower::ObjectFollower(FollowerSettings settings) : settings_(settings) {
+  check_settings(settings_, "settings of a follower");
+}
+
+std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator, const RgbdFrame& frame) {
+  constexpr std::size_t kRecentFrames = 32;  // number of frames; a detector's answer comes a few frames late
+  const std::lock_guard<std::mutex> lock(mutex_);
+  StageClock clock;
+  FollowedCamera& camera = cameras_[frame.id.channel];
+  if (is_overtaken(frame.id.utime, camera)) return std::nullopt;
+  follow_clock(frame.id.utime, camera);
+  const std::int64_t clock_us = clock_of(frame.id.utime, camera);
+  camera.is_colourless = is_colourless(frame.colour);
+  note_depth(frame, clock_us, camera);
+  if (!camera.lag) camera.lag.emplace(settings_.depth_lag_s);
+  FollowedFrame followed_frame{frame.id.utime, clock_us, {}, follow_all(estimator, frame, camera)};
+  for (std::size_t i = 0; i < camera.objects.size(); ++i) {
+    note_result(estimator, followed_frame.poses[i], clock_us, camera.objects[i]);
+    if (has_pose(followed_frame.poses[i].pose.status))
+      learn_appearance(estimator, frame, followed_frame.poses[i].is_refined, camera.objects[i]);
+    followed_frame.numbers.push_back(camera.objects[i].number);
+  }
+  if (camera.depth_us == clock_us) learn_lag(followed_frame, settings_.depth_lag_s, *camera.lag);
+  remove_lost(estimator, frame, camera, followed_frame);
+  ++camera.frames;
+  ObjectPoses result{frame.id, {}, frame.stages};
+  for (const FollowedPose& followed : followed_frame.poses) result.poses.push_back(followed.pose);
+  if (!camera.is_colourless) camera.colours.update(result);
+  camera.recent_frames.push_back(std::move(followed_frame));
+  if (camera.recent_frames.size() > kRecentFrames) camera.recent_frames.pop_front();
+  clock.mark(kFollowingStage);
+  result.stages.push_back(clock.times().front());
+  return result;
+}
+
+/// Follows each object from its pose at constant velocity, and tries those that are not found there once more.
+std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
+                                                     FollowedCamera& camera) const {
+  constexpr double kMaxLength = 0.25;   // seconds; no speed says anything about a later frame
+  constexpr double kMaxDepthAge = 0.1;  // seconds; what repeats longer is an image that stands, colours and all
+  // Refined and rendered in one frame of so many, not all objects in the same one.
+  constexpr std::int64_t kRefineEvery = 4;
+  const std::int64_t clock_us = clock_of(frame.id.utime, camera);
+  const double lag_s = settings_.depth_lag_s + std::min(kMaxDepthAge, seconds_between(camera.depth_us, clock_us));
+  std::vector<ExpectedObject> expected;
+  for (const FollowedObject& object : camera.objects) {
+    const double dt = seconds_between(object.clock_us, clock_us);
+    const double used = dt <= kMaxLength ? dt : 0.0;
+    const bool refine_by_texture = (camera.frames + object.number) % kRefineEvery == 0;
+    ExpectedObject& it =
+        expected.emplace_back(expected_at(object.velocity.predict(object.T_camera_object, used), object));
+    it.refine_by_texture = refine_by_texture;
+    it.depth_lag = depth_lag(lag_s, object.velocity);
+    if (!refine_by_texture) it.verified = object.verified;
+    it.camera_colours = colours_for(object, estimator, camera);
+  }
+  std::vector<FollowedPose> poses = follow_objects(estimator, settings_.follow, frame, expected);
+  retry_lost(estimator, frame, camera, poses);
+  return poses;
+}
+
+/// Retries objects without a valid pose from their last place, and from where the camera's motion has brought them.
+void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
+                                std::vector<FollowedPose>& poses) const {
+  const std::int64_t clock_us = clock_of(frame.id.utime, camera);
+  std::vector<Eigen::Isometry3d> motions;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (has_pose(poses[i].pose.status))
+      motions.push_back(poses[i].T_camera_object * camera.objects[i].T_camera_object.inverse());
+  }
+  std::vector<std::size_t> retried;
+  std::vector<ExpectedObject> expected;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (has_pose(poses[i].pose.status)) continue;
+    FollowedObject& object = camera.objects[i];
+    const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(object.T_camera_object, motions);
+    if (!is_retried(object, clock_us)) {
+      if (poses[i].pose.shape_quality < settings_.min_kept_quality)
+        poses[i].T_camera_object = carried.value_or(object.T_camera_object);
+      continue;
+    }
+    object.retry_us = clock_us;
+    ExpectedObject again = expected_at(object.T_camera_object, object);
+    again.refine_by_texture = true;
+    again.is_lost = true;
+    again.camera_colours = colours_for(object, estimator, camera);
+    if (carried) again.initial_poses.insert(again.initial_poses.begin(), *carried);
+    // An object that stands was expected there the first time too, which has tested its occlusion.
+    again.check_occlusion = carried || !object.velocity.is_zero();
+    retried.push_back(i);
+    expected.push_back(std::move(again));
+  }
+  if (retried.empty()) return;
+  std::vector<FollowedPose> found = follow_objects(estimator, settings_.follow, frame, expected);
+  for (std::size_t k = 0; k < retried.size(); ++k) merge_retried(expected[k], std::move(found[k]), poses[retried[k]]);
+}
+
+/// Returns whether an object without a valid pose is registered a second time in this frame: always when it was valid
+/// in the previous frame or failed there (FollowedObject::failures), else every retry_interval_s.
+bool ObjectFollower::is_retried(const FollowedObject& object, std::int64_t clock_us) const {
+  return object.valid_us == object.clock_us || object.failures > 0 ||
+         seconds_between(object.retry_us, clock_us) >= settings_.retry_interval_s;
+}
+
+/// Takes the result of the second try where that is better.
+void ObjectFollower::merge_retried(const ExpectedObject& expected, FollowedPose found, FollowedPose& pose) const {
+  const PoseStatus before = pose.pose.status;
+  const PoseStatus after = found.pose.status;
+  const bool better = found.pose.shape_quality > pose.pose.shape_quality;
+  if (better) pose = std::move(found);
+  if (has_pose(pose.pose.status)) return;
+  if (before == PoseStatus::kOccluded || (!better && after == PoseStatus::kOccluded))
+    pose.pose.status = PoseStatus::kOccluded;
+  if (pose.pose.shape_quality < settings_.min_kept_quality) pose.T_camera_object = expected.initial_poses.front();
+}
+
+/// Continues from the result; without evidence the object stays where it was, or where the camera's motion has brought
+/// it.
+void ObjectFollower::note_result(const PoseEstimator& estimator, const FollowedPose& result, std::int64_t clock_us,
+                                 FollowedObject& object) const {
+  const bool valid = has_pose(result.pose.status);
+  const bool kept = valid || result.pose.shape_quality >= settings_.min_kept_quality;
+  const double dt = seconds_between(object.clock_us, clock_us);
+  if (valid && dt > 0.0)
+    object.velocity.update(object.T_camera_object, result.T_camera_object, dt, settings_.velocity_gain);
+  if (!kept) object.velocity.reset();
+  const auto model = estimator.models().find(object.class_name);
+  if (valid && model != estimator.models().end()) {
+    object.velocity.limit_rotation(observed_rotation(result.information, model->second.radius, settings_.follow.joint));
+  }
+  object.failures = kept || result.pose.status == PoseStatus::kOccluded ? 0 : object.failures + 1;
+  object.T_camera_object = orthonormalised(result.T_camera_object);
+  object.verified = result.verified;
+  object.clock_us = clock_us;
+  if (valid) object.valid_us = clock_us;
+  if (valid && result.has_depth) object.shape_quality = result.pose.shape_quality;
+  if (result.silhouette) object.appearance.silhouette = result.silhouette;
+}
+
+/// Learns colours and texture at the object's pose. Texture is kept from one refined frame to the next, so that it does
+/// not drift in between.
+void ObjectFollower::learn_appearance(const PoseEstimator& estimator, const RgbdFrame& frame, bool is_refined,
+                                      FollowedObject& object) const {
+  const JointSettings& settings = settings_.follow.joint;
+  const auto found = estimator.models().find(object.class_name);
+  if (found == estimator.models().end() || settings.region.lines == 0) return;
+  const ObjectModel& model = found->second;
+  const RegionView view{frame, model, estimator.settings().noise};
+  const Eigen::Isometry3d& T = object.T_camera_object;
+  FollowedAppearance& known = object.appearance;
+  if (!known.silhouette || !is_silhouette_of(*known.silhouette, model, T))
+    known.silhouette = std::make_shared<const Silhouette>(make_silhouette(model, T, settings.region.lines));
+  auto colours =
+      known.colours ? std::make_shared<ColourStatistics>(*known.colours) : std::make_shared<ColourStatistics>();
+  learn_colours(view, *known.silhouette, T, settings.region, *colours);
+  if (!colours->empty()) known.colours = std::move(colours);
+  if (settings.texture.points == 0 || (known.texture && !is_refined)) return;
+  const BrightnessImage image = make_brightness(frame, silhouette_box(view, *known.silhouette, T));
+  known.texture = std::make_shared<const TextureKeyframe>(make_texture_keyframe(view, image, T, settings.texture));
+}
+
+/// Removes lost objects, and the weaker of two that have become one.
+void ObjectFollower::remove_lost(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
+                                 FollowedFrame& followed_frame) const {
+  std::vector<bool> lost(camera.objects.size());
+  for (std::size_t i = 0; i < lost.size(); ++i)
+    lost[i] = is_lost(camera.objects[i], followed_frame.poses[i], followed_frame.clock_us);
+  for (std::size_t i = 0; i < lost.size(); ++i) {
+    for (std::size_t j = i + 1; j < lost.size(); ++j) {
+      const FollowedPose& a = followed_frame.poses[i];
+      const FollowedPose& b = followed_frame.poses[j];
+      if (lost[i] || lost[j] || !a.pose.T_camera_object || !b.pose.T_camera_object) continue;
+      const PlacedObject here{a.pose.class_name, a.T_camera_object};
+      if (!estimator.is_same_object(frame, here, {b.pose.class_name, b.T_camera_object})) continue;
+      const bool is_first_weaker = a.pose.shape_quality < b.pose.shape_quality;
+      const std::size_t weaker = is_first_weaker ? i : j;
+      lost[weaker] = true;
+      withhold_duplicate(is_first_weaker ? b.pose : a.pose, followed_frame.poses[weaker].pose);
+    }
+  }
+  for (std::size_t i = lost.size(); i-- > 0;) {
+    if (lost[i]) camera.objects.erase(camera.objects.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
+bool ObjectFollower::is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const {
+  const bool hidden = result.pose.status == PoseStatus::kOccluded;
+  const double max_length = hidden ? settings_.max_hidden_s : settings_.max_rejected_s;
+  return object.failures >= settings_.max_failures || result.pose.status == PoseStatus::kNoModel ||
+         seconds_between(object.valid_us, clock_us) > max_length;
+}
+
+namespace {
 
 /// A frame's detections, associated with the objects that were followed in it.
 struct DetectionAssociation {
@@ -186,16 +389,6 @@ int choose_recheck(const DetectionAssociation& association, const FollowerSettin
   return place;
 }
 
-/// Withholds the pose of a detection where an object of its class was followed already, which has a pose.
-void withhold_where_followed(const PoseEstimator& estimator, const FollowedFrame& followed_frame, ObjectPose& pose) {
-  const PlacedObject here{pose.class_name, *pose.T_camera_object};
-  for (const FollowedPose& followed : followed_frame.poses) {
-    if (!followed.pose.T_camera_object || followed.pose.class_name != pose.class_name) continue;
-    if (estimator.is_duplicate(here, {pose.class_name, *followed.pose.T_camera_object}))
-      return withhold_duplicate(followed.pose, pose);
-  }
-}
-
 /// Associates the detections of a frame with the objects that were followed in it. Updates their scores
 /// (update_from_detections), and notes the one that is rechecked.
 DetectionAssociation associate_detections(const PoseEstimator& estimator, const Detections& detections,
@@ -210,6 +403,16 @@ DetectionAssociation associate_detections(const PoseEstimator& estimator, const 
   update_from_detections(detections, association, settings, camera);
   association.recheck = choose_recheck(association, settings, camera);
   return association;
+}
+
+/// Withholds the pose of a detection where an object of its class was followed already, which has a pose.
+void withhold_where_followed(const PoseEstimator& estimator, const FollowedFrame& followed_frame, ObjectPose& pose) {
+  const PlacedObject here{pose.class_name, *pose.T_camera_object};
+  for (const FollowedPose& followed : followed_frame.poses) {
+    if (!followed.pose.T_camera_object || followed.pose.class_name != pose.class_name) continue;
+    if (estimator.is_duplicate(here, {pose.class_name, *followed.pose.T_camera_object}))
+      return withhold_duplicate(followed.pose, pose);
+  }
 }
 
 /// Returns the texture's verdict on a detection's pose, which following does not examine again.
@@ -232,221 +435,7 @@ void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, con
   object.appearance.texture.reset();  // the keyframe was made at the wrong pose
 }
 
-/// Returns the map by which the object's colours are judged.
-ChromaMap colours_for(const FollowedObject& object, const PoseEstimator& estimator, const FollowedCamera& camera) {
-  if (!estimator.settings().learn_camera_colours) return {};
-  if (camera.is_colourless) return colourless_camera();
-  return camera.colours.map_without(object.class_name);
-}
-
 }  // namespace
-
-ObjectFollower::ObjectFollower(FollowerSettings settings) : settings_(settings) {
-  check_settings(settings_, "settings of a follower");
-}
-
-CameraChroma ObjectFollower::camera_colours(const std::string& channel) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  const auto camera = cameras_.find(channel);
-  return camera == cameras_.end() ? CameraChroma{} : camera->second.colours.chroma();
-}
-
-std::optional<CameraTiming> ObjectFollower::camera_timing(const std::string& channel) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  const auto found = cameras_.find(channel);
-  if (found == cameras_.end() || found->second.recent_frames.empty()) return std::nullopt;
-  const CameraLag& lag = *found->second.lag;
-  if (!lag.is_known()) return std::nullopt;
-  return CameraTiming{{channel, found->second.recent_frames.back().utime}, lag.seconds(), lag.sigma_s()};
-}
-
-std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator, const RgbdFrame& frame) {
-  constexpr std::size_t kRecentFrames = 32;  // number of frames; a detector's answer comes a few frames late
-  const std::lock_guard<std::mutex> lock(mutex_);
-  StageClock clock;
-  FollowedCamera& camera = cameras_[frame.id.channel];
-  if (is_overtaken(frame.id.utime, camera)) return std::nullopt;
-  follow_clock(frame.id.utime, camera);
-  const std::int64_t clock_us = clock_of(frame.id.utime, camera);
-  camera.is_colourless = is_colourless(frame.colour);
-  note_depth(frame, clock_us, camera);
-  if (!camera.lag) camera.lag.emplace(settings_.depth_lag_s);
-  FollowedFrame followed_frame{frame.id.utime, clock_us, {}, follow_all(estimator, frame, camera)};
-  for (std::size_t i = 0; i < camera.objects.size(); ++i) {
-    note_result(estimator, followed_frame.poses[i], clock_us, camera.objects[i]);
-    if (has_pose(followed_frame.poses[i].pose.status))
-      learn_appearance(estimator, frame, followed_frame.poses[i].is_refined, camera.objects[i]);
-    followed_frame.numbers.push_back(camera.objects[i].number);
-  }
-  if (camera.depth_us == clock_us) learn_lag(followed_frame, settings_.depth_lag_s, *camera.lag);
-  remove_lost(estimator, frame, camera, followed_frame);
-  ++camera.frames;
-  ObjectPoses result{frame.id, {}, frame.stages};
-  for (const FollowedPose& followed : followed_frame.poses) result.poses.push_back(followed.pose);
-  if (!camera.is_colourless) camera.colours.update(result);
-  camera.recent_frames.push_back(std::move(followed_frame));
-  if (camera.recent_frames.size() > kRecentFrames) camera.recent_frames.pop_front();
-  clock.mark(kFollowingStage);
-  result.stages.push_back(clock.times().front());
-  return result;
-}
-
-/// Follows each object from its pose at constant velocity, and tries those that are not found there once more.
-std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
-                                                     FollowedCamera& camera) const {
-  constexpr double kMaxLength = 0.25;   // seconds; no speed says anything about a later frame
-  constexpr double kMaxDepthAge = 0.1;  // seconds; what repeats longer is an image that stands, colours and all
-  // Refined and rendered in one frame of so many, not all objects in the same one.
-  constexpr std::int64_t kRefineEvery = 4;
-  const std::int64_t clock_us = clock_of(frame.id.utime, camera);
-  const double lag_s = settings_.depth_lag_s + std::min(kMaxDepthAge, seconds_between(camera.depth_us, clock_us));
-  std::vector<ExpectedObject> expected;
-  for (const FollowedObject& object : camera.objects) {
-    const double dt = seconds_between(object.clock_us, clock_us);
-    const double used = dt <= kMaxLength ? dt : 0.0;
-    const bool refine_by_texture = (camera.frames + object.number) % kRefineEvery == 0;
-    ExpectedObject& it =
-        expected.emplace_back(expected_at(object.velocity.predict(object.T_camera_object, used), object));
-    it.refine_by_texture = refine_by_texture;
-    it.depth_lag = depth_lag(lag_s, object.velocity);
-    if (!refine_by_texture) it.verified = object.verified;
-    it.camera_colours = colours_for(object, estimator, camera);
-  }
-  std::vector<FollowedPose> poses = follow_objects(estimator, settings_.follow, frame, expected);
-  retry_lost(estimator, frame, camera, poses);
-  return poses;
-}
-
-/// Returns whether an object without a valid pose is registered a second time in this frame: always when it was valid
-/// in the previous frame or failed there (FollowedObject::failures), else every retry_interval_s.
-bool ObjectFollower::is_retried(const FollowedObject& object, std::int64_t clock_us) const {
-  return object.valid_us == object.clock_us || object.failures > 0 ||
-         seconds_between(object.retry_us, clock_us) >= settings_.retry_interval_s;
-}
-
-/// Retries objects without a valid pose from their last place, and from where the camera's motion has brought them.
-void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
-                                std::vector<FollowedPose>& poses) const {
-  const std::int64_t clock_us = clock_of(frame.id.utime, camera);
-  std::vector<Eigen::Isometry3d> motions;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (has_pose(poses[i].pose.status))
-      motions.push_back(poses[i].T_camera_object * camera.objects[i].T_camera_object.inverse());
-  }
-  std::vector<std::size_t> retried;
-  std::vector<ExpectedObject> expected;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (has_pose(poses[i].pose.status)) continue;
-    FollowedObject& object = camera.objects[i];
-    const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(object.T_camera_object, motions);
-    if (!is_retried(object, clock_us)) {
-      if (poses[i].pose.shape_quality < settings_.min_kept_quality)
-        poses[i].T_camera_object = carried.value_or(object.T_camera_object);
-      continue;
-    }
-    object.retry_us = clock_us;
-    ExpectedObject again = expected_at(object.T_camera_object, object);
-    again.refine_by_texture = true;
-    again.is_lost = true;
-    again.camera_colours = colours_for(object, estimator, camera);
-    if (carried) again.initial_poses.insert(again.initial_poses.begin(), *carried);
-    // An object that stands was expected there the first time too, which has tested its occlusion.
-    again.check_occlusion = carried || !object.velocity.is_zero();
-    retried.push_back(i);
-    expected.push_back(std::move(again));
-  }
-  if (retried.empty()) return;
-  std::vector<FollowedPose> found = follow_objects(estimator, settings_.follow, frame, expected);
-  for (std::size_t k = 0; k < retried.size(); ++k) merge_retried(expected[k], std::move(found[k]), poses[retried[k]]);
-}
-
-/// Takes the result of the second try where that is better.
-void ObjectFollower::merge_retried(const ExpectedObject& expected, FollowedPose found, FollowedPose& pose) const {
-  const PoseStatus before = pose.pose.status;
-  const PoseStatus after = found.pose.status;
-  const bool better = found.pose.shape_quality > pose.pose.shape_quality;
-  if (better) pose = std::move(found);
-  if (has_pose(pose.pose.status)) return;
-  if (before == PoseStatus::kOccluded || (!better && after == PoseStatus::kOccluded))
-    pose.pose.status = PoseStatus::kOccluded;
-  if (pose.pose.shape_quality < settings_.min_kept_quality) pose.T_camera_object = expected.initial_poses.front();
-}
-
-/// Continues from the result; without evidence the object stays where it was, or where the camera's motion has brought
-/// it.
-void ObjectFollower::note_result(const PoseEstimator& estimator, const FollowedPose& result, std::int64_t clock_us,
-                                 FollowedObject& object) const {
-  const bool valid = has_pose(result.pose.status);
-  const bool kept = valid || result.pose.shape_quality >= settings_.min_kept_quality;
-  const double dt = seconds_between(object.clock_us, clock_us);
-  if (valid && dt > 0.0)
-    object.velocity.update(object.T_camera_object, result.T_camera_object, dt, settings_.velocity_gain);
-  if (!kept) object.velocity.reset();
-  const auto model = estimator.models().find(object.class_name);
-  if (valid && model != estimator.models().end()) {
-    object.velocity.limit_rotation(observed_rotation(result.information, model->second.radius, settings_.follow.joint));
-  }
-  object.failures = kept || result.pose.status == PoseStatus::kOccluded ? 0 : object.failures + 1;
-  object.T_camera_object = orthonormalised(result.T_camera_object);
-  object.verified = result.verified;
-  object.clock_us = clock_us;
-  if (valid) object.valid_us = clock_us;
-  if (valid && result.has_depth) object.shape_quality = result.pose.shape_quality;
-  if (result.silhouette) object.appearance.silhouette = result.silhouette;
-}
-
-/// Learns colours and texture at the object's pose. Texture is kept from one refined frame to the next, so that it does
-/// not drift in between.
-void ObjectFollower::learn_appearance(const PoseEstimator& estimator, const RgbdFrame& frame, bool is_refined,
-                                      FollowedObject& object) const {
-  const JointSettings& settings = settings_.follow.joint;
-  const auto found = estimator.models().find(object.class_name);
-  if (found == estimator.models().end() || settings.region.lines == 0) return;
-  const ObjectModel& model = found->second;
-  const RegionView view{frame, model, estimator.settings().noise};
-  const Eigen::Isometry3d& T = object.T_camera_object;
-  FollowedAppearance& known = object.appearance;
-  if (!known.silhouette || !is_silhouette_of(*known.silhouette, model, T))
-    known.silhouette = std::make_shared<const Silhouette>(make_silhouette(model, T, settings.region.lines));
-  auto colours =
-      known.colours ? std::make_shared<ColourStatistics>(*known.colours) : std::make_shared<ColourStatistics>();
-  learn_colours(view, *known.silhouette, T, settings.region, *colours);
-  if (!colours->empty()) known.colours = std::move(colours);
-  if (settings.texture.points == 0 || (known.texture && !is_refined)) return;
-  const BrightnessImage image = make_brightness(frame, silhouette_box(view, *known.silhouette, T));
-  known.texture = std::make_shared<const TextureKeyframe>(make_texture_keyframe(view, image, T, settings.texture));
-}
-
-bool ObjectFollower::is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const {
-  const bool hidden = result.pose.status == PoseStatus::kOccluded;
-  const double max_length = hidden ? settings_.max_hidden_s : settings_.max_rejected_s;
-  return object.failures >= settings_.max_failures || result.pose.status == PoseStatus::kNoModel ||
-         seconds_between(object.valid_us, clock_us) > max_length;
-}
-
-/// Removes lost objects, and the weaker of two that have become one.
-void ObjectFollower::remove_lost(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
-                                 FollowedFrame& followed_frame) const {
-  std::vector<bool> lost(camera.objects.size());
-  for (std::size_t i = 0; i < lost.size(); ++i)
-    lost[i] = is_lost(camera.objects[i], followed_frame.poses[i], followed_frame.clock_us);
-  for (std::size_t i = 0; i < lost.size(); ++i) {
-    for (std::size_t j = i + 1; j < lost.size(); ++j) {
-      const FollowedPose& a = followed_frame.poses[i];
-      const FollowedPose& b = followed_frame.poses[j];
-      if (lost[i] || lost[j] || !a.pose.T_camera_object || !b.pose.T_camera_object) continue;
-      const PlacedObject here{a.pose.class_name, a.T_camera_object};
-      if (!estimator.is_same_object(frame, here, {b.pose.class_name, b.T_camera_object})) continue;
-      const bool is_first_weaker = a.pose.shape_quality < b.pose.shape_quality;
-      const std::size_t weaker = is_first_weaker ? i : j;
-      lost[weaker] = true;
-      withhold_duplicate(is_first_weaker ? b.pose : a.pose, followed_frame.poses[weaker].pose);
-    }
-  }
-  for (std::size_t i = lost.size(); i-- > 0;) {
-    if (lost[i]) camera.objects.erase(camera.objects.begin() + static_cast<std::ptrdiff_t>(i));
-  }
-}
 
 ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, const RgbdFrame& frame,
                                                const Detections& detections) {
@@ -537,6 +526,21 @@ void ObjectFollower::propagate_to_latest(std::int64_t utime, const FollowedCamer
   if (!carried) return;
   found.T_camera_object = *carried;
   found.clock_us = found.valid_us = now.clock_us;
+}
+
+CameraChroma ObjectFollower::camera_colours(const std::string& channel) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto camera = cameras_.find(channel);
+  return camera == cameras_.end() ? CameraChroma{} : camera->second.colours.chroma();
+}
+
+std::optional<CameraTiming> ObjectFollower::camera_timing(const std::string& channel) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = cameras_.find(channel);
+  if (found == cameras_.end() || found->second.recent_frames.empty()) return std::nullopt;
+  const CameraLag& lag = *found->second.lag;
+  if (!lag.is_known()) return std::nullopt;
+  return CameraTiming{{channel, found->second.recent_frames.back().utime}, lag.seconds(), lag.sigma_s()};
 }
 
 }  // namespace houghstream

@@ -145,17 +145,17 @@ class ObjectFollower {
  private:
   std::vector<FollowedPose> follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                        FollowedCamera& camera) const;
-  bool is_retried(const FollowedObject& object, std::int64_t clock_us) const;
   void retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
                   std::vector<FollowedPose>& poses) const;
+  bool is_retried(const FollowedObject& object, std::int64_t clock_us) const;
   void merge_retried(const ExpectedObject& expected, FollowedPose found, FollowedPose& pose) const;
   void note_result(const PoseEstimator& estimator, const FollowedPose& result, std::int64_t clock_us,
                    FollowedObject& object) const;
   void learn_appearance(const PoseEstimator& estimator, const RgbdFrame& frame, bool is_refined,
                         FollowedObject& object) const;
-  bool is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const;
   void remove_lost(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
                    FollowedFrame& followed_frame) const;
+  bool is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const;
   void add_object(const PoseEstimator& estimator, const RgbdFrame& frame, const ObjectPose& pose,
                   FollowedCamera& camera);
   static void propagate_to_latest(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found);

@@ -55,226 +55,6 @@ CameraClock* Tracker::begin_frame(const FrameObservation& received) {
   return &clock_.set(frame);
 }
 
-/// Returns the poses of classes that no earlier result of this frame has had.
-std::vector<PoseObservation> Tracker::observe_new_poses(const FrameObservation& observation,
-                                                        CameraClock& camera) const {
-  std::vector<PoseObservation> poses = observe_poses(observation.poses, observation.T_world_camera, models_);
-  std::set<std::string>& known = camera.classes;
-  poses.erase(std::remove_if(poses.begin(), poses.end(),
-                             [&](const PoseObservation& pose) { return known.count(pose.class_name) > 0; }),
-              poses.end());
-  for (const PoseObservation& pose : poses) known.insert(pose.class_name);
-  return poses;
-}
-
-/// Gives each class' poses to its objects; returns those that no object is near.
-std::vector<PoseObservation> Tracker::associate(const std::vector<PoseObservation>& poses, double seconds) {
-  std::set<std::string> classes;
-  for (const PoseObservation& pose : poses) classes.insert(pose.class_name);
-  std::vector<PoseObservation> unassigned;
-  for (const std::string& class_name : classes) {
-    const ClassGroup group = group_by_class(class_name, poses, models_, tracks_);
-    const std::vector<int> assigned = assign_poses(group, settings_.association);
-    std::vector<bool> is_assigned(group.measured.size(), false);
-    for (std::size_t i = 0; i < group.objects.size(); ++i) {
-      if (assigned[i] < 0) continue;
-      is_assigned[assigned[i]] = true;
-      update_track(*group.objects[i], *group.measured[assigned[i]], seconds);
-    }
-    const int together =
-        static_cast<int>(std::count_if(group.objects.begin(), group.objects.end(),
-                                       [](const Track* track) { return track->id != 0 && track->is_observed; }));
-    max_instances_[class_name] = std::max(max_instances_[class_name], together);
-    for (std::size_t j = 0; j < group.measured.size(); ++j) {
-      const PoseObservation& pose = *group.measured[j];
-      if (!is_assigned[j] && !is_space_occupied(pose.measured, group, settings_.association))
-        unassigned.push_back(pose);
-    }
-  }
-  return unassigned;
-}
-
-void Tracker::update_track(Track& track, const PoseObservation& pose, double seconds) {
-  constexpr double kRateHz = 30.0;
-  constexpr double kMax = 4.0;
-  const double fraction = std::clamp(seconds * kRateHz, 0.5, 1.5);
-  track.pose.update(pose, symmetries_of(models_, track.class_name), track.free_space_violation_s > 0.0);
-  track.log_odds = std::min(
-      settings_.existence.max_log_odds,
-      track.log_odds + fraction * settings_.existence.gain * std::clamp(quality_logit(pose.quality), 0.3, kMax));
-  ++track.seen;
-  track.is_observed = true;
-  track.free_space_violation_s = 0.0;
-  track.last_seen = pose.frame;
-  track.state = TrackState::kVisible;
-  track.reason = fmt::format("seen by {}", pose.frame.channel);
-}
-
-/// Updates the tracks without a pose; each is missed once a frame, however many results the frame has.
-void Tracker::update_unobserved_tracks(const FrameObservation& observation, const std::vector<PoseObservation>& poses,
-                                       CameraClock& camera) {
-  searched_classes_.note(observation.poses);
-  UnobservedContext context{observation, poses, models_};
-  context.reach_m = settings_.association.reach_m;
-  context.coast_s = settings_.pose.motion.coast_s;
-  std::set<std::string> missed_now;
-  for (Track& track : tracks_) {
-    if (!track.is_present() || track.is_observed) continue;
-    const MissedDetection missed{camera.seconds, camera.results == 1,
-                                 camera.missed.count(track.class_name) == 0 &&
-                                     searched_classes_.has_searched(observation.poses, track.class_name)};
-    if (missed.by_recognition) missed_now.insert(track.class_name);
-    if (missed.by_depth || missed.by_recognition) update_unobserved(context, missed, settings_.existence, track);
-  }
-  camera.missed.insert(missed_now.begin(), missed_now.end());
-}
-
-void Tracker::begin_track(const PoseObservation& pose) {
-  if (!make_room()) {
-    ++refused_;
-    return;
-  }
-  Track track{PoseTrack(pose, settings_.pose)};
-  track.class_id = pose.class_id;
-  track.class_name = pose.class_name;
-  track.seen = 1;
-  track.first_utime = pose.frame.utime;
-  track.last_seen = pose.frame;
-  track.reason = fmt::format("seen by {}", pose.frame.channel);
-  track.log_odds = settings_.existence.prior + settings_.existence.gain * quality_logit(pose.quality);
-  track.is_observed = true;
-  tracks_.push_back(std::move(track));
-}
-
-/// Frees a place for one more object by removing the one that has been gone longest; returns false where none is gone.
-bool Tracker::make_room() {
-  if (tracks_.size() < settings_.max_objects) return true;
-  auto oldest = tracks_.end();
-  for (auto it = tracks_.begin(); it != tracks_.end(); ++it) {
-    if (!it->is_present() && (oldest == tracks_.end() || it->deleted_utime < oldest->deleted_utime)) oldest = it;
-  }
-  if (oldest == tracks_.end()) return false;
-  tracks_.erase(oldest);
-  return true;
-}
-
-/// Candidates that have been observed enough become objects, or are found to be earlier ones.
-void Tracker::confirm_tracks(std::int64_t utime) {
-  const ExistenceSettings& existence = settings_.existence;
-  for (Track& candidate : tracks_) {
-    const double spread_s = seconds_between(candidate.first_utime, candidate.last_seen.utime);
-    if (candidate.id != 0 || !candidate.is_present() || candidate.log_odds < existence.confirm_log_odds ||
-        candidate.seen < existence.min_frames || spread_s < existence.min_duration_s)
-      continue;
-    if (Track* earlier = find_reidentified(candidate, utime)) {
-      const std::int64_t id = earlier->id;
-      candidate.id = id;
-      candidate.first_utime = earlier->first_utime;
-      candidate.seen += earlier->seen;
-      earlier->id = -1;  // marks it for forget_tracks()
-      log_info("{} #{} re-identified at a new pose", candidate.class_name, id);
-    } else {
-      candidate.id = next_id_++;
-      log_info("{} #{} is there, seen by {}", candidate.class_name, candidate.id, candidate.last_seen.channel);
-    }
-  }
-}
-
-/// Returns the earlier object that a candidate re-identifies: one of its class that is deleted, moving or contradicted
-/// by depth, or one that a hand may occlude, if no more of its class are visible now, the candidate included, than have
-/// been at once before.
-Track* Tracker::find_reidentified(const Track& candidate, std::int64_t utime) {
-  int visible = 1;
-  for (const Track& track : tracks_) {
-    if (track.id != 0 && track.class_name == candidate.class_name && track.is_observed) ++visible;
-  }
-  Track* best = nullptr;
-  double best_rank = 0.0;
-  for (Track& track : tracks_) {
-    // A track whose number another candidate has got in this frame is no object any more.
-    if (track.id <= 0 || track.class_name != candidate.class_name || track.is_observed) continue;
-    const double unseen_s = seconds_between(track.last_seen.utime, utime);
-    const bool handled = track.state == TrackState::kHidden && unseen_s < settings_.hand_occlusion_s;
-    const bool lost = track.pose.filter().moving() || track.free_space_violation_s > 0.0;
-    const bool free = !track.is_present() || lost || (handled && visible <= max_instances_[candidate.class_name]);
-    if (!free || track.last_seen.utime > candidate.last_seen.utime) continue;
-    const double rank =
-        unseen_s + (track.is_present() ? 0.0 : 5.0) +
-        track.pose.distance({utime, candidate.pose.filter().T_world_object(), Covariance6::Identity()},
-                            symmetries_of(models_, track.class_name), centre_of(models_, track.class_name));
-    if (best != nullptr && rank >= best_rank) continue;
-    best = &track;
-    best_rank = rank;
-  }
-  return best;
-}
-
-void Tracker::forget_tracks(std::int64_t utime) {
-  const auto over = [&](const Track& track) {
-    if (track.id < 0) return true;
-    if (track.is_present()) return false;
-    return track.id == 0 || seconds_between(track.deleted_utime, utime) > settings_.reidentification_s;
-  };
-  tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(), over), tracks_.end());
-  // An untrusted sender may make up names of classes without end.
-  std::set<std::string> known;
-  for (const Track& track : tracks_) known.insert(track.class_name);
-  for (auto it = max_instances_.begin(); it != max_instances_.end();)
-    it = known.count(it->first) > 0 ? std::next(it) : max_instances_.erase(it);
-  searched_classes_.keep_only(known);
-}
-
-/// Returns the objects that are published, with times of the frames' own clocks.
-WorldObjects Tracker::report(const FrameObservation& received, std::int64_t utime) const {
-  WorldObjects out;
-  out.frame = received.poses.frame;
-  out.world_number = world_number_;
-  out.T_world_camera = received.T_world_camera;
-  out.stages = received.poses.stages;
-  for (const Track& track : tracks_) {
-    if (track.id == 0) continue;
-    if (!track.is_present() && seconds_between(track.deleted_utime, utime) > settings_.gone_report_s) continue;
-    const MotionFilter& filter = track.pose.filter();
-    TrackedObject object;
-    object.track_id = track.id;
-    object.class_id = track.class_id;
-    object.class_name = track.class_name;
-    object.state = track.state;
-    object.probability = static_cast<float>(logistic(track.log_odds));
-    object.moving = filter.moving();
-    object.T_world_object = filter.T_world_object();
-    object.covariance = filter.covariance();
-    object.velocity = filter.velocity();
-    object.seen = track.seen;
-    object.first_utime = microseconds_between(clock_.ahead_us(), track.first_utime);
-    object.last_seen = track.last_seen;
-    object.last_seen.utime = microseconds_between(clock_.ahead_us(), track.last_seen.utime);
-    object.reason = track.reason;
-    out.objects.push_back(std::move(object));
-  }
-  std::sort(out.objects.begin(), out.objects.end(),
-            [](const TrackedObject& a, const TrackedObject& b) { return a.track_id < b.track_id; });
-  return out;
-}
-
-void Tracker::reset() {
-  tracks_.clear();
-  clock_.reset();
-  searched_classes_ = {};
-  max_instances_.clear();
-  next_id_ = 1;
-  ++world_number_;
-}
-
-void Tracker::set_models(TrackModels models) {
-  const ModelChange change = find_model_change(models_, models);
-  models_ = std::move(models);
-  names_.update(change, models_);
-  retire_tracks(change.removed, settings_.existence.delete_log_odds, tracks_);
-  rename_tracks(change.renamed, models_, tracks_);
-  rename_counts(change.renamed, max_instances_);
-}
-
 namespace {
 
 /// Returns whether the numbers show that the source, or its log, was restarted: they fall, or are of another run.
@@ -374,6 +154,16 @@ void WorldClock::move_to(std::int64_t world_utime, const FrameId& frame) {
   ahead_us_ = microseconds_between(frame.utime, world_utime);
 }
 
+void WorldClock::log_new_world(const FrameId& frame, std::int64_t last_utime) {
+  warn(fmt::format("frame {} is {:.1f} s older than the last one: a new world begins", to_string(frame),
+                   seconds_between(shifted(frame.utime, ahead_us_), last_utime)));
+}
+
+void WorldClock::warn(const std::string& line) {
+  const auto admitted = lines_.admit("world", line, LogThrottle::Clock::now());
+  if (admitted) log_warning("{}", *admitted);
+}
+
 CameraClock& WorldClock::set(const StampedFrame& frame) {
   constexpr double kUsualS = 1.0 / 30.0;
   constexpr double kMaxS = 0.1;
@@ -396,22 +186,78 @@ CameraClock& WorldClock::set(const StampedFrame& frame) {
   return clock;
 }
 
-void WorldClock::reset() {
-  cameras_.clear();
-  doubted_.clear();
-  newest_.reset();
-  behind_ = 0;
-  ahead_us_ = 0;
+/// Returns the poses of classes that no earlier result of this frame has had.
+std::vector<PoseObservation> Tracker::observe_new_poses(const FrameObservation& observation,
+                                                        CameraClock& camera) const {
+  std::vector<PoseObservation> poses = observe_poses(observation.poses, observation.T_world_camera, models_);
+  std::set<std::string>& known = camera.classes;
+  poses.erase(std::remove_if(poses.begin(), poses.end(),
+                             [&](const PoseObservation& pose) { return known.count(pose.class_name) > 0; }),
+              poses.end());
+  for (const PoseObservation& pose : poses) known.insert(pose.class_name);
+  return poses;
 }
 
-void WorldClock::log_new_world(const FrameId& frame, std::int64_t last_utime) {
-  warn(fmt::format("frame {} is {:.1f} s older than the last one: a new world begins", to_string(frame),
-                   seconds_between(shifted(frame.utime, ahead_us_), last_utime)));
+/// Gives each class' poses to its objects; returns those that no object is near.
+std::vector<PoseObservation> Tracker::associate(const std::vector<PoseObservation>& poses, double seconds) {
+  std::set<std::string> classes;
+  for (const PoseObservation& pose : poses) classes.insert(pose.class_name);
+  std::vector<PoseObservation> unassigned;
+  for (const std::string& class_name : classes) {
+    const ClassGroup group = group_by_class(class_name, poses, models_, tracks_);
+    const std::vector<int> assigned = assign_poses(group, settings_.association);
+    std::vector<bool> is_assigned(group.measured.size(), false);
+    for (std::size_t i = 0; i < group.objects.size(); ++i) {
+      if (assigned[i] < 0) continue;
+      is_assigned[assigned[i]] = true;
+      update_track(*group.objects[i], *group.measured[assigned[i]], seconds);
+    }
+    const int together =
+        static_cast<int>(std::count_if(group.objects.begin(), group.objects.end(),
+                                       [](const Track* track) { return track->id != 0 && track->is_observed; }));
+    max_instances_[class_name] = std::max(max_instances_[class_name], together);
+    for (std::size_t j = 0; j < group.measured.size(); ++j) {
+      const PoseObservation& pose = *group.measured[j];
+      if (!is_assigned[j] && !is_space_occupied(pose.measured, group, settings_.association))
+        unassigned.push_back(pose);
+    }
+  }
+  return unassigned;
 }
 
-void WorldClock::warn(const std::string& line) {
-  const auto admitted = lines_.admit("world", line, LogThrottle::Clock::now());
-  if (admitted) log_warning("{}", *admitted);
+void Tracker::update_track(Track& track, const PoseObservation& pose, double seconds) {
+  constexpr double kRateHz = 30.0;
+  constexpr double kMax = 4.0;
+  const double fraction = std::clamp(seconds * kRateHz, 0.5, 1.5);
+  track.pose.update(pose, symmetries_of(models_, track.class_name), track.free_space_violation_s > 0.0);
+  track.log_odds = std::min(
+      settings_.existence.max_log_odds,
+      track.log_odds + fraction * settings_.existence.gain * std::clamp(quality_logit(pose.quality), 0.3, kMax));
+  ++track.seen;
+  track.is_observed = true;
+  track.free_space_violation_s = 0.0;
+  track.last_seen = pose.frame;
+  track.state = TrackState::kVisible;
+  track.reason = fmt::format("seen by {}", pose.frame.channel);
+}
+
+/// Updates the tracks without a pose; each is missed once a frame, however many results the frame has.
+void Tracker::update_unobserved_tracks(const FrameObservation& observation, const std::vector<PoseObservation>& poses,
+                                       CameraClock& camera) {
+  searched_classes_.note(observation.poses);
+  UnobservedContext context{observation, poses, models_};
+  context.reach_m = settings_.association.reach_m;
+  context.coast_s = settings_.pose.motion.coast_s;
+  std::set<std::string> missed_now;
+  for (Track& track : tracks_) {
+    if (!track.is_present() || track.is_observed) continue;
+    const MissedDetection missed{camera.seconds, camera.results == 1,
+                                 camera.missed.count(track.class_name) == 0 &&
+                                     searched_classes_.has_searched(observation.poses, track.class_name)};
+    if (missed.by_recognition) missed_now.insert(track.class_name);
+    if (missed.by_depth || missed.by_recognition) update_unobserved(context, missed, settings_.existence, track);
+  }
+  camera.missed.insert(missed_now.begin(), missed_now.end());
 }
 
 namespace {
@@ -463,9 +309,163 @@ bool SearchedClasses::is_reporting(const std::string& class_name, std::int64_t u
   });
 }
 
+void Tracker::begin_track(const PoseObservation& pose) {
+  if (!make_room()) {
+    ++refused_;
+    return;
+  }
+  Track track{PoseTrack(pose, settings_.pose)};
+  track.class_id = pose.class_id;
+  track.class_name = pose.class_name;
+  track.seen = 1;
+  track.first_utime = pose.frame.utime;
+  track.last_seen = pose.frame;
+  track.reason = fmt::format("seen by {}", pose.frame.channel);
+  track.log_odds = settings_.existence.prior + settings_.existence.gain * quality_logit(pose.quality);
+  track.is_observed = true;
+  tracks_.push_back(std::move(track));
+}
+
+/// Frees a place for one more object by removing the one that has been gone longest; returns false where none is gone.
+bool Tracker::make_room() {
+  if (tracks_.size() < settings_.max_objects) return true;
+  auto oldest = tracks_.end();
+  for (auto it = tracks_.begin(); it != tracks_.end(); ++it) {
+    if (!it->is_present() && (oldest == tracks_.end() || it->deleted_utime < oldest->deleted_utime)) oldest = it;
+  }
+  if (oldest == tracks_.end()) return false;
+  tracks_.erase(oldest);
+  return true;
+}
+
+/// Candidates that have been observed enough become objects, or are found to be earlier ones.
+void Tracker::confirm_tracks(std::int64_t utime) {
+  const ExistenceSettings& existence = settings_.existence;
+  for (Track& candidate : tracks_) {
+    const double spread_s = seconds_between(candidate.first_utime, candidate.last_seen.utime);
+    if (candidate.id != 0 || !candidate.is_present() || candidate.log_odds < existence.confirm_log_odds ||
+        candidate.seen < existence.min_frames || spread_s < existence.min_duration_s)
+      continue;
+    if (Track* earlier = find_reidentified(candidate, utime)) {
+      const std::int64_t id = earlier->id;
+      candidate.id = id;
+      candidate.first_utime = earlier->first_utime;
+      candidate.seen += earlier->seen;
+      earlier->id = -1;  // marks it for forget_tracks()
+      log_info("{} #{} re-identified at a new pose", candidate.class_name, id);
+    } else {
+      candidate.id = next_id_++;
+      log_info("{} #{} is there, seen by {}", candidate.class_name, candidate.id, candidate.last_seen.channel);
+    }
+  }
+}
+
+/// Returns the earlier object that a candidate re-identifies: one of its class that is deleted, moving or contradicted
+/// by depth, or one that a hand may occlude, if no more of its class are visible now, the candidate included, than have
+/// been at once before.
+Track* Tracker::find_reidentified(const Track& candidate, std::int64_t utime) {
+  int visible = 1;
+  for (const Track& track : tracks_) {
+    if (track.id != 0 && track.class_name == candidate.class_name && track.is_observed) ++visible;
+  }
+  Track* best = nullptr;
+  double best_rank = 0.0;
+  for (Track& track : tracks_) {
+    // A track whose number another candidate has got in this frame is no object any more.
+    if (track.id <= 0 || track.class_name != candidate.class_name || track.is_observed) continue;
+    const double unseen_s = seconds_between(track.last_seen.utime, utime);
+    const bool handled = track.state == TrackState::kHidden && unseen_s < settings_.hand_occlusion_s;
+    const bool lost = track.pose.filter().moving() || track.free_space_violation_s > 0.0;
+    const bool free = !track.is_present() || lost || (handled && visible <= max_instances_[candidate.class_name]);
+    if (!free || track.last_seen.utime > candidate.last_seen.utime) continue;
+    const double rank =
+        unseen_s + (track.is_present() ? 0.0 : 5.0) +
+        track.pose.distance({utime, candidate.pose.filter().T_world_object(), Covariance6::Identity()},
+                            symmetries_of(models_, track.class_name), centre_of(models_, track.class_name));
+    if (best != nullptr && rank >= best_rank) continue;
+    best = &track;
+    best_rank = rank;
+  }
+  return best;
+}
+
+void Tracker::forget_tracks(std::int64_t utime) {
+  const auto over = [&](const Track& track) {
+    if (track.id < 0) return true;
+    if (track.is_present()) return false;
+    return track.id == 0 || seconds_between(track.deleted_utime, utime) > settings_.reidentification_s;
+  };
+  tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(), over), tracks_.end());
+  // An untrusted sender may make up names of classes without end.
+  std::set<std::string> known;
+  for (const Track& track : tracks_) known.insert(track.class_name);
+  for (auto it = max_instances_.begin(); it != max_instances_.end();)
+    it = known.count(it->first) > 0 ? std::next(it) : max_instances_.erase(it);
+  searched_classes_.keep_only(known);
+}
+
 void SearchedClasses::keep_only(const std::set<std::string>& classes) {
   for (auto it = coverage_.begin(); it != coverage_.end();)
     it = classes.count(it->first) > 0 ? std::next(it) : coverage_.erase(it);
+}
+
+/// Returns the objects that are published, with times of the frames' own clocks.
+WorldObjects Tracker::report(const FrameObservation& received, std::int64_t utime) const {
+  WorldObjects out;
+  out.frame = received.poses.frame;
+  out.world_number = world_number_;
+  out.T_world_camera = received.T_world_camera;
+  out.stages = received.poses.stages;
+  for (const Track& track : tracks_) {
+    if (track.id == 0) continue;
+    if (!track.is_present() && seconds_between(track.deleted_utime, utime) > settings_.gone_report_s) continue;
+    const MotionFilter& filter = track.pose.filter();
+    TrackedObject object;
+    object.track_id = track.id;
+    object.class_id = track.class_id;
+    object.class_name = track.class_name;
+    object.state = track.state;
+    object.probability = static_cast<float>(logistic(track.log_odds));
+    object.moving = filter.moving();
+    object.T_world_object = filter.T_world_object();
+    object.covariance = filter.covariance();
+    object.velocity = filter.velocity();
+    object.seen = track.seen;
+    object.first_utime = microseconds_between(clock_.ahead_us(), track.first_utime);
+    object.last_seen = track.last_seen;
+    object.last_seen.utime = microseconds_between(clock_.ahead_us(), track.last_seen.utime);
+    object.reason = track.reason;
+    out.objects.push_back(std::move(object));
+  }
+  std::sort(out.objects.begin(), out.objects.end(),
+            [](const TrackedObject& a, const TrackedObject& b) { return a.track_id < b.track_id; });
+  return out;
+}
+
+void Tracker::reset() {
+  tracks_.clear();
+  clock_.reset();
+  searched_classes_ = {};
+  max_instances_.clear();
+  next_id_ = 1;
+  ++world_number_;
+}
+
+void WorldClock::reset() {
+  cameras_.clear();
+  doubted_.clear();
+  newest_.reset();
+  behind_ = 0;
+  ahead_us_ = 0;
+}
+
+void Tracker::set_models(TrackModels models) {
+  const ModelChange change = find_model_change(models_, models);
+  models_ = std::move(models);
+  names_.update(change, models_);
+  retire_tracks(change.removed, settings_.existence.delete_log_odds, tracks_);
+  rename_tracks(change.renamed, models_, tracks_);
+  rename_counts(change.renamed, max_instances_);
 }
 
 }  // namespace houghstream::tracks
