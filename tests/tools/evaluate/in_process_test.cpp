@@ -125,6 +125,7 @@ TEST(InProcess, CandidatesHavePosesThatArePublishedByALimitOfTheirOwn) {
   const BopScene scene = two_tiles("in_process_candidates");
   PublishingRules rules{0.5F, 0.0F, {}};
   rules.pose.min_score = 0.0F;
+  rules.pose.min_publication_probability = 0.0F;
   set_min_quality(0.0F, rules.pose);
   const std::vector<EvaluatedFrame> all = run(scene, 0.5F, rules);
   rules.pose.quality.min_candidate_quality = 1.0F;

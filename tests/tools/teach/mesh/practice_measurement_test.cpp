@@ -54,7 +54,7 @@ TEST(PracticeMeasurement, CountsWhatWouldBePublishedByDefault) {
   quality::FoundPoses found = three_frames();
   const std::vector<quality::Example> examples = {pose_of(0, 0.9F, true), pose_of(1, 0.3F, true),
                                                   pose_of(1, 0.5F, false), pose_of(2, 0.7F, false),
-                                                  pose_of(2, 0.15F, true)};
+                                                  pose_of(2, 0.05F, true)};
   const std::vector<float> qualities = {0.62F, 0.7F, 0.8F, 0.3F, 0.99F};
   const store::PracticeRecord record =
       measure_practice({"mug", {0.0F, 0.0F, 0.3F}}, found, examples, qualities, kReportedFrom);
