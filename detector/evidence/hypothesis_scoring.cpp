@@ -238,8 +238,8 @@ void HypothesisScorer::compare_templates(std::size_t count) {
 }
 
 /// Compares templates sampled from all attitudes (ForestIndex::spread_views), coarse ones first and then those around
-/// the best of these, and aligns the best: comparing all of them found no more in 88 development images. It does so only
-/// for classes with many views and hypotheses with many votes. In real images votes support other views than in
+/// the best of these, and aligns the best: comparing all of them found no more in 88 development images. It does so
+/// only for classes with many views and hypotheses with many votes. In real images votes support other views than in
 /// rendered ones: those of a plain or symmetric object are often not of its attitude.
 void HypothesisScorer::compare_spread_views() {
   constexpr float kManyVotes = 0.3F;  // of the nominal vote mass: a third of the object, seen as well as in training
