@@ -89,7 +89,6 @@ void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, E
 void choose_one(const PoseSettings& settings, Estimation& it) {
   const PoseSelectionSettings selection = pose_selection_settings(settings);
   const RegistrationResult best = best_registered(*it.observation, it.registered, it.rotations, selection);
-  copy_registration_evidence(best, it.pose);
   if (best.inliers == 0) {
     it.pose.status = PoseStatus::kNotConverged;
   } else if (!it.detection.reported && publication_probability(*it.observation, best, it.detection.score, selection) <
@@ -97,8 +96,8 @@ void choose_one(const PoseSettings& settings, Estimation& it) {
     it.pose.status = PoseStatus::kLowScore;
   } else {
     it.selected = select_poses(*it.observation, best, it.rotations, selection);
-    copy_registration_evidence(it.selected.front(), it.pose);
   }
+  copy_registration_evidence(it.selected.empty() ? best : it.selected.front(), it.pose);
 }
 
 void gather_one(const PoseSettings& settings, Estimation& it) {

@@ -255,9 +255,7 @@ void HypothesisScorer::compare_spread_views() {
   };
   std::for_each_n(spread.views.begin(), coarse, compare_view);
   if (compared.empty()) return;
-  std::stable_sort(compared.begin(), compared.end(), [](const PlacedTemplate& a, const PlacedTemplate& b) {
-    return match_quality(a.fit) > match_quality(b.fit);
-  });
+  std::stable_sort(compared.begin(), compared.end(), matches_better);
   const std::size_t best = std::min(kBestCoarse, compared.size());
   const auto is_among_best = [&](std::uint32_t view) {
     return std::any_of(compared.begin(), compared.begin() + static_cast<std::ptrdiff_t>(best),
@@ -272,8 +270,7 @@ void HypothesisScorer::compare_spread_views() {
 /// Returns the best of what was compared, nothing where nothing was.
 const PlacedTemplate* HypothesisScorer::best_compared() const {
   const PlacedTemplate* best = compared_.empty() ? nullptr : &best_match(compared_);
-  if (spread_best_ && (best == nullptr || match_quality(spread_best_->fit) > match_quality(best->fit)))
-    return &*spread_best_;
+  if (spread_best_ && (best == nullptr || matches_better(*spread_best_, *best))) return &*spread_best_;
   return best;
 }
 
@@ -342,7 +339,7 @@ PlacedTemplate HypothesisScorer::refine_over_neighbours(PlacedTemplate best) {
     for (const std::uint32_t view : input_.index.view_neighbours()[from]) {
       if (view == from || is_excluded(view)) continue;
       visited.push_back({view, centre, match_template(views_[view], centre, input_.frame)});
-      if (match_quality(visited.back().fit) > match_quality(best.fit)) best = visited.back();
+      if (matches_better(visited.back(), best)) best = visited.back();
     }
     if (best.view == from) break;
     best = align_template(views_, best, input_.frame);

@@ -36,23 +36,17 @@ PlacedTemplate align_template(const std::vector<ViewTemplate>& views, PlacedTemp
 }
 
 const PlacedTemplate& best_match(const std::vector<PlacedTemplate>& compared) {
-  const auto worse = [](const PlacedTemplate& a, const PlacedTemplate& b) {
-    return match_quality(a.fit) < match_quality(b.fit);
-  };
-  return *std::max_element(compared.begin(), compared.end(), worse);
+  return *std::min_element(compared.begin(), compared.end(), matches_better);
 }
 
 PlacedTemplate align_best_templates(const std::vector<ViewTemplate>& views, const LabFrame& frame,
                                     std::vector<PlacedTemplate>& compared) {
   constexpr std::size_t kFew = 4;
-  const auto better = [](const PlacedTemplate& a, const PlacedTemplate& b) {
-    return match_quality(a.fit) > match_quality(b.fit);
-  };
-  std::stable_sort(compared.begin(), compared.end(), better);
+  std::stable_sort(compared.begin(), compared.end(), matches_better);
   PlacedTemplate best = compared.front();
   for (std::size_t i = 0; i < std::min(kFew, compared.size()); ++i) {
     compared[i] = align_template(views, compared[i], frame);
-    if (match_quality(compared[i].fit) > match_quality(best.fit)) best = compared[i];
+    if (matches_better(compared[i], best)) best = compared[i];
   }
   return best;
 }

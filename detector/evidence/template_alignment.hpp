@@ -17,6 +17,11 @@ struct PlacedTemplate {
   TemplateMatch fit;
 };
 
+/// Returns whether `a` matches the frame better where it is than `b` does.
+inline bool matches_better(const PlacedTemplate& a, const PlacedTemplate& b) {
+  return match_quality(a.fit) > match_quality(b.fit);
+}
+
 /// Moves the template sideways, by cells or parts of them and at most a few times, to where it matches best: votes meet
 /// within a few centimetres only. The result matches at least as well.
 PlacedTemplate align_template(const std::vector<ViewTemplate>& views, PlacedTemplate placed, const LabFrame& frame,

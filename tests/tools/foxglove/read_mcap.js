@@ -54,7 +54,8 @@ async function main(file) {
   const streamed = countFromTheBeginning(file);
   if (counted !== messages.length || streamed !== messages.length)
     throw new Error(`${messages.length} messages by the index, ${streamed} from the beginning, ${counted} in the statistics`);
-  process.stdout.write(JSON.stringify({ library: reader.header.library, chunks: reader.chunkIndexes.length, messages }));
+  const { library } = reader.header;
+  process.stdout.write(JSON.stringify({ library, chunks: reader.chunkIndexes.length, messages }));
 }
 
 main(process.argv[2]).catch((error) => {
