@@ -86,17 +86,27 @@ void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, E
   if (it.candidates.empty()) it.pose.status = PoseStatus::kNoInitialPose;
 }
 
-void choose_one(const PoseSettings& settings, Estimation& it) {
+/// Returns the reason to give a candidate up after its first registration, or kInvalid.
+PoseStatus reason_to_give_up(const PoseSettings& settings, const ExplainedSurface& explained, const Estimation& it,
+                             const RegistrationResult& best) {
+  if (publication_probability(*it.observation, best, it.detection.score, pose_selection_settings(settings)) <
+      settings.min_publication_probability)
+    return PoseStatus::kLowScore;
+  if (!explained.is_empty() && explained.fraction_of({it.model, best.T_camera_object}) > settings.max_explained_surface)
+    return PoseStatus::kRefuted;
+  return PoseStatus::kInvalid;
+}
+
+void choose_one(const PoseSettings& settings, const ExplainedSurface& explained, Estimation& it) {
   const PoseSelectionSettings selection = pose_selection_settings(settings);
   const RegistrationResult best = best_registered(*it.observation, it.registered, it.rotations, selection);
   if (best.inliers == 0) {
     it.pose.status = PoseStatus::kNotConverged;
-  } else if (!it.detection.reported && publication_probability(*it.observation, best, it.detection.score, selection) <
-                                           settings.min_publication_probability) {
-    it.pose.status = PoseStatus::kLowScore;
-  } else {
-    it.selected = select_poses(*it.observation, best, it.rotations, selection);
+  } else if (!it.detection.reported) {
+    it.pose.status = reason_to_give_up(settings, explained, it, best);
   }
+  if (it.pose.status == PoseStatus::kInvalid)
+    it.selected = select_poses(*it.observation, best, it.rotations, selection);
   copy_registration_evidence(it.selected.empty() ? best : it.selected.front(), it.pose);
 }
 
@@ -110,7 +120,7 @@ void gather_one(const PoseSettings& settings, Estimation& it) {
   }
 }
 
-/// Learns of all objects together how the camera renders colours, for each object without its class.
+/// Learns of all objects together how the camera renders colours, for each undecided object without its class.
 void learn_camera_colours(const RgbdFrame& frame, const std::vector<ChromaPair>& remembered,
                           std::vector<Estimation>& estimations) {
   if (is_colourless(frame.colour)) {
@@ -128,7 +138,9 @@ void learn_camera_colours(const RgbdFrame& frame, const std::vector<ChromaPair>&
   const std::vector<ChromaMap> maps = fit_chroma_maps_without_each(pairs);
   auto next = maps.begin();
   for (Estimation& it : estimations) {
-    if (it.pose.chroma) it.pose.camera_colours = *next++;
+    if (!it.pose.chroma) continue;
+    if (it.pose.status == PoseStatus::kInvalid) it.pose.camera_colours = *next;
+    ++next;
   }
 }
 
@@ -188,6 +200,15 @@ void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
     if (other.inliers > 0 && rotated.quality > judged.quality) judged = std::move(rotated);
   }
   it.pose = std::move(judged);
+}
+
+/// Adds the models that have a pose.
+void explain_by(const std::vector<ObjectPose>& poses, const std::map<std::string, ObjectModel>& models,
+                ExplainedSurface& explained) {
+  for (const ObjectPose& pose : poses) {
+    const auto model = models.find(pose.class_name);
+    if (pose.T_camera_object && model != models.end()) explained.add({model->second, *pose.T_camera_object});
+  }
 }
 
 /// Returns whether the centres of two objects are closer than `ratio` times the smaller radius. False without a model.
@@ -273,7 +294,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
 }
 
 ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier,
-                                    const std::vector<ChromaPair>& remembered) const {
+                                    const std::vector<ChromaPair>& remembered, const ObjectPoses& known) const {
   if (frame.id != detections.frame) {
     throw std::logic_error(
         fmt::format("detections of frame {} given with frame {}", to_string(detections.frame), to_string(frame.id)));
@@ -283,29 +304,38 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   StageClock clock;
   ObjectPoses result = undecided_poses(detections);
   std::vector<Estimation> estimations = begin_estimations(detections, state_->models, settings, result.poses);
-  const auto for_each_undecided = [&](const auto& stage) {
-    parallel_for(settings.threads, static_cast<int>(estimations.size()), [&](int i) {
-      if (estimations[i].pose.status == PoseStatus::kInvalid) stage(estimations[i]);
-    });
-  };
-
   const FrameContext context = make_frame_context(frame, settings.region, settings.noise);
-  for_each_undecided([&](Estimation& it) { look_at_region(context, settings, it); });
-  clock.mark("pose.region");
-  for_each_undecided([&](Estimation& it) { find_candidates(earlier, settings, it); });
-  clock.mark("pose.candidates");
-  for_each_undecided([&](Estimation& it) {
-    it.registered = register_candidates(*it.observation, it.candidates, settings.registration);
-  });
-  clock.mark("pose.registration");
-  for_each_undecided([&](Estimation& it) { choose_one(settings, it); });
-  clock.mark("pose.choice");
-  for_each_undecided([&](Estimation& it) { gather_one(settings, it); });
-  if (settings.learn_camera_colours) learn_camera_colours(frame, remembered, estimations);
-  for_each_undecided([&](Estimation& it) { decide_one(settings, it); });
-  clock.mark("pose.verification");
-  parallel_for(settings.threads, static_cast<int>(estimations.size()),
-               [&](int i) { resolve_symmetry(settings, estimations[i]); });
+  ExplainedSurface explained(frame, {settings.verification.tolerance_m, settings.noise});
+  explain_by(known.poses, state_->models, explained);
+  for (const bool are_reported : {true, false}) {
+    const auto for_each = [&](const auto& stage) {
+      parallel_for(settings.threads, static_cast<int>(estimations.size()), [&](int i) {
+        if (estimations[i].detection.reported == are_reported) stage(estimations[i]);
+      });
+    };
+    const auto for_each_undecided = [&](const auto& stage) {
+      for_each([&](Estimation& it) {
+        if (it.pose.status == PoseStatus::kInvalid) stage(it);
+      });
+    };
+    for_each_undecided([&](Estimation& it) { look_at_region(context, settings, it); });
+    clock.mark("pose.region");
+    for_each_undecided([&](Estimation& it) { find_candidates(earlier, settings, it); });
+    clock.mark("pose.candidates");
+    for_each_undecided([&](Estimation& it) {
+      it.registered = register_candidates(*it.observation, it.candidates, settings.registration);
+    });
+    clock.mark("pose.registration");
+    for_each_undecided([&](Estimation& it) { choose_one(settings, explained, it); });
+    clock.mark("pose.choice");
+    for_each_undecided([&](Estimation& it) { gather_one(settings, it); });
+    if (settings.learn_camera_colours) learn_camera_colours(frame, remembered, estimations);
+    for_each_undecided([&](Estimation& it) { decide_one(settings, it); });
+    clock.mark("pose.verification");
+    for_each([&](Estimation& it) { resolve_symmetry(settings, it); });
+    if (are_reported) explain_by(result.poses, state_->models, explained);
+    clock.mark("pose.print");
+  }
   withhold_duplicates(*this, frame, result.poses);
   clock.mark("pose.print");
 

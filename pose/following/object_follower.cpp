@@ -405,6 +405,15 @@ DetectionAssociation associate_detections(const PoseEstimator& estimator, const 
   return association;
 }
 
+/// Returns the followed poses that are not estimated again.
+ObjectPoses known_poses(const DetectionAssociation& association) {
+  ObjectPoses known;
+  for (std::size_t i = 0; i < association.followed_frame.poses.size(); ++i) {
+    if (static_cast<int>(i) != association.recheck) known.poses.push_back(association.followed_frame.poses[i].pose);
+  }
+  return known;
+}
+
 /// Withholds the pose of a detection where an object of its class was followed already, which has a pose.
 void withhold_where_followed(const PoseEstimator& estimator, const FollowedFrame& followed_frame, ObjectPose& pose) {
   const PlacedObject here{pose.class_name, *pose.T_camera_object};
@@ -451,7 +460,7 @@ ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, c
   for (std::size_t i = 0; i < detections.detections.size(); ++i) {
     if (association.needs_estimate(i)) looked_for.detections.push_back(detections.detections[i]);
   }
-  ObjectPoses found = estimator.estimate(frame, looked_for, {}, remembered);
+  ObjectPoses found = estimator.estimate(frame, looked_for, {}, remembered, known_poses(association));
   ObjectPoses result{detections.frame, {}, found.stages};
   const std::lock_guard<std::mutex> lock(mutex_);
   FollowedCamera& camera = cameras_[detections.frame.channel];

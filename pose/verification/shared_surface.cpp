@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/geometry/renderer.hpp"
-
 namespace houghstream {
 namespace {
 
@@ -36,6 +34,12 @@ bool may_share(const PlacedModel& a, const PlacedModel& b) {
   return fraction_inside(a, b) >= kLeast || fraction_inside(b, a) >= kLeast;
 }
 
+/// Returns the rendered depth at a pixel of the frame, metres; NaN beside the model.
+float depth_at(const RenderedRegion& part, const cv::Point& pixel) {
+  return part.region_px.contains(pixel) ? part.depth.at<float>(pixel - part.region_px.tl())
+                                        : std::numeric_limits<float>::quiet_NaN();
+}
+
 }  // namespace
 
 float shared_surface(const RgbdFrame& frame, const PlacedModel& a, const PlacedModel& b,
@@ -47,10 +51,6 @@ float shared_surface(const RgbdFrame& frame, const PlacedModel& a, const PlacedM
   int explained_first = 0;
   int explained_second = 0;
   int shared = 0;
-  const auto depth_at = [](const RenderedRegion& part, const cv::Point& pixel) {
-    return part.region_px.contains(pixel) ? part.depth.at<float>(pixel - part.region_px.tl())
-                                          : std::numeric_limits<float>::quiet_NaN();
-  };
   for (int y = both.y; y < both.br().y; ++y) {
     for (int x = both.x; x < both.br().x; ++x) {
       const float measured = frame.depth.at<float>(y, x);
@@ -66,6 +66,31 @@ float shared_surface(const RgbdFrame& frame, const PlacedModel& a, const PlacedM
   }
   const int fewer = std::min(explained_first, explained_second);
   return fewer == 0 ? 0.0F : static_cast<float>(shared) / static_cast<float>(fewer);
+}
+
+void ExplainedSurface::add(const PlacedModel& placed) {
+  parts_.push_back(render_depth_region(placed.model.mesh, placed.T_camera_object, frame_.camera));
+}
+
+float ExplainedSurface::fraction_of(const PlacedModel& placed) const {
+  constexpr int kPoints = 250;
+  // Wider than kCoincident: the pose is a first one.
+  constexpr float kNear = 0.5F;  // fraction of the tolerance
+  const ProjectedView projected = project_view(frame_, placed.model, placed.T_camera_object, kPoints);
+  int agreeing = 0;
+  int shared = 0;
+  for (std::size_t i = 0; i < projected.points.size(); ++i) {
+    const ProjectedPoint& point = projected.points[i];
+    const float z = (projected.T * projected.view.points[i]).z();
+    const auto limit = static_cast<float>(tolerance_.at(z));
+    if (!(std::abs(point.depth_difference) <= limit)) continue;  // NaN where nothing was measured
+    ++agreeing;
+    const auto lies_on = [&](const RenderedRegion& part) {
+      return std::abs(depth_at(part, {point.x, point.y}) - z) <= kNear * limit;
+    };
+    shared += std::any_of(parts_.begin(), parts_.end(), lies_on) ? 1 : 0;
+  }
+  return agreeing == 0 ? 0.0F : static_cast<float>(shared) / static_cast<float>(agreeing);
 }
 
 }  // namespace houghstream

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <vector>
 
+#include "pipeline/geometry/renderer.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pose/model/object_model.hpp"
 #include "pose/seen/depth_score.hpp"
@@ -21,5 +23,23 @@ struct PlacedModel {
 /// apart to share much, which is told without rendering them.
 float shared_surface(const RgbdFrame& frame, const PlacedModel& a, const PlacedModel& b,
                      const DepthTolerance& tolerance);
+
+/// The measured surface that models explain at their poses. The frame must outlive it.
+class ExplainedSurface {
+ public:
+  ExplainedSurface(const RgbdFrame& frame, const DepthTolerance& tolerance) : frame_(frame), tolerance_(tolerance) {}
+
+  void add(const PlacedModel& placed);
+  bool is_empty() const { return parts_.empty(); }
+  /// Returns the fraction of the visible points of a model, of those that agree with the measured depth, which lie on
+  /// the surface of one of the added models, 0 to 1. The model itself is not rendered: its points of the nearest view
+  /// tell enough before its pose is exact.
+  float fraction_of(const PlacedModel& placed) const;
+
+ private:
+  const RgbdFrame& frame_;
+  DepthTolerance tolerance_;
+  std::vector<RenderedRegion> parts_;
+};
 
 }  // namespace houghstream

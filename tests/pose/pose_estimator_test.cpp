@@ -203,6 +203,34 @@ TEST(PoseEstimator, ACandidateWhoseRegistrationExplainsLittleIsGivenUp) {
   EXPECT_NE(status(), PoseStatus::kLowScore) << "who published it wants to know why it is not there";
 }
 
+TEST(PoseEstimator, ACandidateOnTheSurfaceOfAPublishedObjectIsGivenUp) {
+  const StandingScene scene(cereal_box(), -0.13, standing(10.0, 20.0, 0.8), 3);
+  Mesh deeper;  // the same front, which hides what lies behind it
+  add_box(deeper, {-0.09F, -0.03F, -0.13F}, {0.09F, 0.05F, 0.13F});
+  PoseSettings settings;
+  settings.max_shared_surface = 1.0F;
+  Detections two = only(detection_of("deeper", deeper, scene.truth, 6));
+  two.detections.push_back(detection_of("box", scene.object, scene.truth, 5));
+  two.detections[0].reported = false;
+  ObjectPoses known;
+  const auto found = [&] {
+    const PoseEstimator estimator({{"box", cereal_box()}, {"deeper", deeper}}, settings);
+    return estimator.estimate(scene.frame, two, {}, {}, known).poses;
+  };
+  const std::vector<ObjectPose> both = found();
+  EXPECT_TRUE(both.at(1).T_camera_object.has_value()) << to_string(both[1].status);
+  EXPECT_EQ(both.at(0).status, PoseStatus::kRefuted) << "the box explains it, though it comes later in the list";
+  settings.max_explained_surface = 1.0F;
+  EXPECT_NE(found().at(0).status, PoseStatus::kRefuted) << "is judged by what was measured";
+  settings.max_explained_surface = PoseSettings().max_explained_surface;
+  two.detections.pop_back();
+  EXPECT_NE(found().at(0).status, PoseStatus::kRefuted) << "nothing explains it";
+  known.poses = {both[1]};
+  EXPECT_EQ(found().at(0).status, PoseStatus::kRefuted) << "what is known otherwise explains it too";
+  two.detections[0].reported = true;
+  EXPECT_NE(found().at(0).status, PoseStatus::kRefuted) << "who published it wants to know why it is not there";
+}
+
 TEST(PoseEstimator, AClassThatHasAQualityOfItsOwnIsJudgedByThat) {
   const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
   const Detections seen = only(detection_of("mug", scene.object, scene.truth, 5));
