@@ -92,7 +92,9 @@ PoseStatus reason_to_give_up(const PoseSettings& settings, const ExplainedSurfac
   if (publication_probability(*it.observation, best, it.detection.score, pose_selection_settings(settings)) <
       settings.min_publication_probability)
     return PoseStatus::kLowScore;
-  if (!explained.is_empty() && explained.fraction_of({it.model, best.T_camera_object}) > settings.max_explained_surface)
+  if (!explained.is_empty() &&
+      explained.fraction_of(it.observation->frame, {it.model, best.T_camera_object},
+                            {settings.verification.tolerance_m, settings.noise}) > settings.max_explained_surface)
     return PoseStatus::kRefuted;
   return PoseStatus::kInvalid;
 }
@@ -305,7 +307,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   ObjectPoses result = undecided_poses(detections);
   std::vector<Estimation> estimations = begin_estimations(detections, state_->models, settings, result.poses);
   const FrameContext context = make_frame_context(frame, settings.region, settings.noise);
-  ExplainedSurface explained(frame, {settings.verification.tolerance_m, settings.noise});
+  ExplainedSurface explained;
   explain_by(known.poses, state_->models, explained);
   for (const bool are_reported : {true, false}) {
     const auto for_each = [&](const auto& stage) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pipeline/geometry/renderer.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -69,28 +71,45 @@ float shared_surface(const RgbdFrame& frame, const PlacedModel& a, const PlacedM
 }
 
 void ExplainedSurface::add(const PlacedModel& placed) {
-  parts_.push_back(render_depth_region(placed.model.mesh, placed.T_camera_object, frame_.camera));
+  const ModelView& view = nearest_view(placed.model, placed.T_camera_object);
+  parts_.push_back({&view, placed.T_camera_object.inverse().cast<float>(), placed.model.centre, placed.model.radius});
 }
 
-float ExplainedSurface::fraction_of(const PlacedModel& placed) const {
+float ExplainedSurface::fraction_of(const RgbdFrame& frame, const PlacedModel& placed,
+                                    const DepthTolerance& tolerance) const {
   constexpr int kPoints = 250;
-  // Wider than kCoincident: the pose is a first one.
-  constexpr float kNear = 0.5F;  // fraction of the tolerance
-  const ProjectedView projected = project_view(frame_, placed.model, placed.T_camera_object, kPoints);
+  constexpr float kNear = 0.5F;  // fraction of the tolerance: wider than kCoincident, since the pose is a first one
+  const ProjectedView projected = project_view(frame, placed.model, placed.T_camera_object, kPoints);
   int agreeing = 0;
   int shared = 0;
   for (std::size_t i = 0; i < projected.points.size(); ++i) {
-    const ProjectedPoint& point = projected.points[i];
-    const float z = (projected.T * projected.view.points[i]).z();
-    const auto limit = static_cast<float>(tolerance_.at(z));
-    if (!(std::abs(point.depth_difference) <= limit)) continue;  // NaN where nothing was measured
+    const Eigen::Vector3f point = projected.T * projected.view.points[i];
+    const auto limit = static_cast<float>(tolerance.at(point.z()));
+    if (!(std::abs(projected.points[i].depth_difference) <= limit)) continue;  // NaN where nothing was measured
     ++agreeing;
-    const auto lies_on = [&](const RenderedRegion& part) {
-      return std::abs(depth_at(part, {point.x, point.y}) - z) <= kNear * limit;
-    };
-    shared += std::any_of(parts_.begin(), parts_.end(), lies_on) ? 1 : 0;
+    const auto contains = [&](const Part& part) { return part.contains(point, kNear * limit); };
+    shared += std::any_of(parts_.begin(), parts_.end(), contains) ? 1 : 0;
   }
   return agreeing == 0 ? 0.0F : static_cast<float>(shared) / static_cast<float>(agreeing);
+}
+
+/// Returns whether a point lies within `limit` metres of the surface, which continues flat about each point of the view
+/// for about as far as it is to the next ones.
+bool ExplainedSurface::Part::contains(const Eigen::Vector3f& point_camera, float limit) const {
+  constexpr float kSpacing = 0.15F;  // radii
+  const Eigen::Vector3f point = T_model_camera * point_camera;
+  if ((point - centre).norm() > radius + limit) return false;
+  float min_sq = std::numeric_limits<float>::infinity();
+  std::size_t nearest = 0;
+  for (std::size_t i = 0; i < view->points.size(); ++i) {
+    const float distance_sq = (view->points[i] - point).squaredNorm();
+    if (distance_sq < min_sq) {
+      min_sq = distance_sq;
+      nearest = i;
+    }
+  }
+  const float reach = kSpacing * radius + limit;
+  return min_sq <= reach * reach && std::abs(view->normals[nearest].dot(point - view->points[nearest])) <= limit;
 }
 
 }  // namespace houghstream

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "pipeline/geometry/renderer.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pose/model/object_model.hpp"
 #include "pose/seen/depth_score.hpp"
@@ -24,22 +23,25 @@ struct PlacedModel {
 float shared_surface(const RgbdFrame& frame, const PlacedModel& a, const PlacedModel& b,
                      const DepthTolerance& tolerance);
 
-/// The measured surface that models explain at their poses. The frame must outlive it.
+/// The surface that models show at their poses, as the points of their nearest views. The models must outlive it.
 class ExplainedSurface {
  public:
-  ExplainedSurface(const RgbdFrame& frame, const DepthTolerance& tolerance) : frame_(frame), tolerance_(tolerance) {}
-
   void add(const PlacedModel& placed);
   bool is_empty() const { return parts_.empty(); }
   /// Returns the fraction of the visible points of a model, of those that agree with the measured depth, which lie on
-  /// the surface of one of the added models, 0 to 1. The model itself is not rendered: its points of the nearest view
-  /// tell enough before its pose is exact.
-  float fraction_of(const PlacedModel& placed) const;
+  /// the surface of one of the added models, 0 to 1. Nothing is rendered: points tell enough before a pose is exact.
+  float fraction_of(const RgbdFrame& frame, const PlacedModel& placed, const DepthTolerance& tolerance) const;
 
  private:
-  const RgbdFrame& frame_;
-  DepthTolerance tolerance_;
-  std::vector<RenderedRegion> parts_;
+  struct Part {
+    const ModelView* view = nullptr;
+    Eigen::Isometry3f T_model_camera = Eigen::Isometry3f::Identity();
+    Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< ObjectModel::centre
+    float radius = 0.0F;                               ///< metres
+
+    bool contains(const Eigen::Vector3f& point_camera, float limit) const;
+  };
+  std::vector<Part> parts_;
 };
 
 }  // namespace houghstream

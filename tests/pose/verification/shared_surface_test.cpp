@@ -84,20 +84,18 @@ TEST(ExplainedSurface, IsThatOfTheModelsAndNotOfWhatLiesOnThem) {
   const Placed inside(block(0.04F, 0.02F, 0.04F), moved(box.T_camera_object, 0.0, -0.01, 0.0));  // in its front
   const Placed before(block(0.04F, 0.02F, 0.04F), moved(box.T_camera_object, 0.0, -0.05, 0.0));
   const RgbdFrame frame = noisy_frame({box.item(1), before.item(2)}, 3);
-  ExplainedSurface explained(frame, {kDepthTolerance_m, {}});
-  const auto fraction = [&](const Placed& placed) {
-    return explained.fraction_of({placed.model, placed.T_camera_object});
+  ExplainedSurface explained;
+  const auto fraction = [&](const Placed& placed, const RgbdFrame& in) {
+    return explained.fraction_of(in, {placed.model, placed.T_camera_object}, {kDepthTolerance_m, {}});
   };
   EXPECT_TRUE(explained.is_empty());
-  EXPECT_EQ(fraction(box), 0.0F);
+  EXPECT_EQ(fraction(box, frame), 0.0F);
   explained.add({box.model, box.T_camera_object});
   EXPECT_FALSE(explained.is_empty());
-  EXPECT_GT(fraction(box), 0.95F);
-  EXPECT_LT(fraction(before), 0.1F) << "stands before it";
+  EXPECT_GT(fraction(box, frame), 0.95F);
+  EXPECT_LT(fraction(before, frame), 0.1F) << "stands before it";
   const RgbdFrame alone = noisy_frame({box.item(1)}, 3);
-  ExplainedSurface by_box(alone, {kDepthTolerance_m, {}});
-  by_box.add({box.model, box.T_camera_object});
-  EXPECT_GT(by_box.fraction_of({inside.model, inside.T_camera_object}), 0.6F) << "its front is the box's";
+  EXPECT_GT(fraction(inside, alone), 0.6F) << "its front is the box's";
 }
 
 }  // namespace
