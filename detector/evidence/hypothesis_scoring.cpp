@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -37,8 +38,10 @@ struct ScoringTask {
   std::size_t group = 0;
   ScoredHypothesis scored;
   std::optional<PlacedTemplate> spread_best;  ///< see compare_spread_views()
-  bool is_refined = false;
 };
+
+/// Some of the tasks, in ascending order.
+using TaskIndices = std::vector<std::size_t>;
 
 /// Scores one hypothesis, in one thread. Its functions stand below in the order of their calls.
 class HypothesisScorer {
@@ -55,9 +58,8 @@ class HypothesisScorer {
         compared_(compared),
         workspace_(workspace) {}
 
-  /// Compares the templates that most votes support with the frame, and templates of all attitudes where it is worth
-  /// it.
   void compare();
+  void compare_spread_views();
   void refine();
   /// Adds the box, and the rotations of a candidate.
   void complete();
@@ -65,7 +67,6 @@ class HypothesisScorer {
  private:
   void compare_templates(std::size_t count);
   void set_match(const PlacedTemplate& placed, Evidence& evidence) const;
-  void compare_spread_views();
   const PlacedTemplate* best_compared() const;
   SeedTemplates find_seeds(std::size_t count);
   PlacedTemplate refine_over_neighbours(PlacedTemplate best);
@@ -94,7 +95,12 @@ class HypothesisScorer {
 std::vector<ScoringTask> list_tasks(const std::vector<GroupHypotheses>& groups);
 Evidence evidence_of_votes(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera);
 void keep_most_promising(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks);
-void choose_refined(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks);
+TaskIndices all_of(const std::vector<ScoringTask>& tasks);
+TaskIndices find_likely(const std::vector<ScoringTask>& tasks);
+TaskIndices choose_spread(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum);
+TaskIndices choose_refined(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum);
+TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIndices& likely, float explains_from);
+bool may_touch(const ScoringTask& a, const ScoringTask& b);
 
 }  // namespace
 
@@ -104,21 +110,28 @@ GroupCandidates score_by_group(const std::vector<GroupHypotheses>& groups, int t
   keep_most_promising(settings, tasks);
   workspace.workers.resize(threads);
   workspace.compared.resize(std::max(workspace.compared.size(), tasks.size()));
-  const auto for_each_task = [&](const auto& step) {
-    parallel_for_workers(threads, static_cast<int>(tasks.size()), [&](int worker, int i) {
-      ScoringTask& task = tasks[static_cast<std::size_t>(i)];
-      HypothesisScorer scorer(task, workspace.compared[static_cast<std::size_t>(i)], workspace.workers[worker]);
-      step(task, scorer);
+  const auto for_each = [&](const TaskIndices& some, void (HypothesisScorer::*step)()) {
+    parallel_for_workers(threads, static_cast<int>(some.size()), [&](int worker, int i) {
+      const std::size_t task = some[static_cast<std::size_t>(i)];
+      HypothesisScorer scorer(tasks[task], workspace.compared[task], workspace.workers[worker]);
+      (scorer.*step)();
     });
   };
-  for_each_task([](const ScoringTask& /*task*/, HypothesisScorer& scorer) { scorer.compare(); });
-  choose_refined(settings, tasks);
-  for_each_task([](const ScoringTask& task, HypothesisScorer& scorer) {
-    if (task.is_refined) scorer.refine();
-    scorer.complete();
-  });
+  const auto search = [&](const TaskIndices& some, int max_spread, int max_refined) {
+    for_each(choose_spread(tasks, some, max_spread), &HypothesisScorer::compare_spread_views);
+    for_each(choose_refined(tasks, some, max_refined), &HypothesisScorer::refine);
+    for_each(some, &HypothesisScorer::complete);
+  };
+  for_each(all_of(tasks), &HypothesisScorer::compare);
+  const TaskIndices likely = find_likely(tasks);
+  const auto likely_count = static_cast<int>(likely.size());
+  search(likely, likely_count, settings.max_refined);
+  const TaskIndices others = find_unexplained(tasks, likely, settings.explains_from);
+  search(others, settings.max_spread, std::max(0, settings.max_refined - likely_count));
+  TaskIndices searched;
+  std::merge(likely.begin(), likely.end(), others.begin(), others.end(), std::back_inserter(searched));
   GroupCandidates candidates(groups.size());
-  for (ScoringTask& task : tasks) candidates[task.group].push_back(std::move(task.scored));
+  for (const std::size_t i : searched) candidates[tasks[i].group].push_back(std::move(tasks[i].scored));
   return candidates;
 }
 
@@ -165,15 +178,18 @@ Evidence evidence_of_votes(const Forest& forest, const Hypothesis& hypothesis, c
   return evidence;
 }
 
-/// Returns the indices of the `count` largest values, of equal ones the first, in ascending order.
-std::vector<std::size_t> largest(const std::vector<double>& values, int count) {
-  std::vector<std::size_t> order(values.size());
+/// Returns those of the indices whose values are the `count` largest, of equal ones the first.
+TaskIndices largest(const TaskIndices& some, const std::vector<double>& values, int count) {
+  if (some.size() <= static_cast<std::size_t>(count)) return some;
+  std::vector<std::size_t> order(some.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  if (values.size() <= static_cast<std::size_t>(count)) return order;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
   order.resize(static_cast<std::size_t>(count));
   std::sort(order.begin(), order.end());
-  return order;
+  TaskIndices kept;
+  kept.reserve(order.size());
+  for (const std::size_t i : order) kept.push_back(some[i]);
+  return kept;
 }
 
 /// Drops the hypotheses that are not compared with the frame.
@@ -183,30 +199,97 @@ void keep_most_promising(const EvidenceSettings& settings, std::vector<ScoringTa
   promises.reserve(tasks.size());
   for (const ScoringTask& task : tasks) promises.push_back(vote_promise(task.scored.evidence));
   std::vector<ScoringTask> kept;
-  for (const std::size_t i : largest(promises, settings.max_compared)) kept.push_back(std::move(tasks[i]));
+  for (const std::size_t i : largest(all_of(tasks), promises, settings.max_compared))
+    kept.push_back(std::move(tasks[i]));
   tasks.swap(kept);
 }
 
-/// Chooses the hypotheses that are refined. One that is hopeless is not: most maxima are, and refinement takes longer
-/// than everything else about them.
-void choose_refined(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks) {
-  constexpr float kHopeless = 0.02F;  // score: votes bring occluded objects templates that hardly match
-  std::size_t count = 0;
-  for (ScoringTask& task : tasks) {
-    const bool is_compared = task.scored.evidence.view != Evidence::kNoView;
-    task.is_refined = is_compared && task.scored.detection.score >= kHopeless;
-    count += task.is_refined ? 1 : 0;
-  }
-  if (count <= static_cast<std::size_t>(settings.max_refined)) return;
-  std::vector<double> scores;
-  scores.reserve(tasks.size());
-  for (ScoringTask& task : tasks) {
-    scores.push_back(task.is_refined ? task.scored.detection.score : -1.0F);
-    task.is_refined = false;
-  }
-  for (const std::size_t i : largest(scores, settings.max_refined)) tasks[i].is_refined = true;
+TaskIndices all_of(const std::vector<ScoringTask>& tasks) {
+  TaskIndices all(tasks.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
 }
 
+/// Returns those that are likely by their first comparison.
+TaskIndices find_likely(const std::vector<ScoringTask>& tasks) {
+  constexpr float kLikely = 0.5F;  // score
+  TaskIndices likely;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const ScoredHypothesis& scored = tasks[i].scored;
+    if (scored.evidence.view != Evidence::kNoView && scored.detection.score >= kLikely) likely.push_back(i);
+  }
+  return likely;
+}
+
+/// Chooses those of some that are compared with views of all attitudes: of classes with many views, with many votes,
+/// and of these the `maximum` whose votes promise most.
+TaskIndices choose_spread(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum) {
+  constexpr float kManyVotes = 0.3F;  // of the nominal vote mass: a third of the object, seen as well as in training
+  TaskIndices worthy;
+  std::vector<double> promises;
+  for (const std::size_t i : some) {
+    const ScoringTask& task = tasks[i];
+    const bool has_templates = task.input->index.forest().scoring == Scoring::kEvidence;
+    if (!has_templates || task.spread == 1.0F || task.scored.evidence.relative_vote_mass < kManyVotes) continue;
+    worthy.push_back(i);
+    promises.push_back(vote_promise(task.scored.evidence));
+  }
+  return largest(worthy, promises, maximum);
+}
+
+/// Chooses those of some that are refined, the `maximum` with the highest scores. One that is hopeless is not: most
+/// maxima are, and refinement takes longer than everything else about them.
+TaskIndices choose_refined(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum) {
+  constexpr float kHopeless = 0.02F;  // score: votes bring occluded objects templates that hardly match
+  TaskIndices worthy;
+  std::vector<double> scores;
+  for (const std::size_t i : some) {
+    const ScoredHypothesis& scored = tasks[i].scored;
+    if (scored.evidence.view == Evidence::kNoView || scored.detection.score < kHopeless) continue;
+    worthy.push_back(i);
+    scores.push_back(scored.detection.score);
+  }
+  return largest(worthy, scores, maximum);
+}
+
+/// Returns those that are not likely, but for what lies on the surface that a likely one shows whose score is
+/// `explains_from` or more.
+TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIndices& likely, float explains_from) {
+  constexpr float kExplained = 0.6F;  // fraction of the surface that is seen
+  const auto cells_of = [&](std::size_t i) {
+    const Evidence& evidence = tasks[i].scored.evidence;
+    const ScoringInput& input = *tasks[i].input;
+    return UnoccludedCells(input.index.forest().views[evidence.view], evidence.view_centre, input.frame.frame);
+  };
+  std::vector<std::pair<std::size_t, UnoccludedCells>> sure;
+  for (const std::size_t i : likely) {
+    if (tasks[i].scored.detection.score >= explains_from) sure.emplace_back(i, cells_of(i));
+  }
+  const auto is_explained = [&](std::size_t i) {
+    if (tasks[i].scored.evidence.view == Evidence::kNoView) return false;
+    std::optional<UnoccludedCells> cells;
+    return std::any_of(sure.begin(), sure.end(), [&](const auto& other) {
+      if (!may_touch(tasks[i], tasks[other.first])) return false;
+      if (!cells) cells = cells_of(i);
+      return cells->fraction_in(other.second) > kExplained;
+    });
+  };
+  TaskIndices left;
+  for (const std::size_t i : all_of(tasks)) {
+    if (!std::binary_search(likely.begin(), likely.end(), i) && !is_explained(i)) left.push_back(i);
+  }
+  return left;
+}
+
+/// Returns whether the spheres about two objects meet.
+bool may_touch(const ScoringTask& a, const ScoringTask& b) {
+  const auto radius = [](const ScoringTask& task) {
+    return task.input->index.forest().classes[task.hypothesis->class_index].radius;
+  };
+  return (a.hypothesis->centre_camera - b.hypothesis->centre_camera).norm() < radius(a) + radius(b);
+}
+
+/// Compares the templates that most votes support with the frame.
 void HypothesisScorer::compare() {
   Detection& detection = scored_.detection;
   detection.class_id = object_.class_id;
@@ -218,7 +301,6 @@ void HypothesisScorer::compare() {
   compared_.clear();
   if (forest_.scoring != Scoring::kEvidence) return;
   compare_templates(kTemplates);
-  compare_spread_views();
   if (const PlacedTemplate* best = best_compared()) set_match(*best, scored_.evidence);
   detection.score = score(object_.score_model, scored_.evidence);
 }
@@ -238,13 +320,10 @@ void HypothesisScorer::compare_templates(std::size_t count) {
 }
 
 /// Compares templates sampled from all attitudes (ForestIndex::spread_views), coarse ones first and then those around
-/// the best of these, and aligns the best: comparing all of them found no more in 88 development images. It does so
-/// only for classes with many views and hypotheses with many votes. In real images votes support other views than in
-/// rendered ones: those of a plain or symmetric object are often not of its attitude.
+/// the best of these, and aligns the best: comparing all of them found no more in 88 development images. In real images
+/// votes support other views than in rendered ones: those of a plain or symmetric object are often not of its attitude.
 void HypothesisScorer::compare_spread_views() {
-  constexpr float kManyVotes = 0.3F;  // of the nominal vote mass: a third of the object, seen as well as in training
   constexpr std::size_t kBestCoarse = 8;  // coarse views whose surroundings are compared too
-  if (spread_ == 1.0F || scored_.evidence.relative_vote_mass < kManyVotes) return;
   const SpreadViews& spread = input_.index.spread_views(hypothesis_.class_index);
   const std::size_t coarse = std::min(spread.views.size(), SpreadViews::kCoarse);
   std::vector<PlacedTemplate>& compared = workspace_.spread;
@@ -265,6 +344,8 @@ void HypothesisScorer::compare_spread_views() {
     if (is_among_best(spread.views[spread.nearest[i]])) compare_view(spread.views[i]);
   }
   spread_best_ = align_best_templates(views_, input_.frame, compared);
+  set_match(*best_compared(), scored_.evidence);
+  scored_.detection.score = score(object_.score_model, scored_.evidence);
 }
 
 /// Returns the best of what was compared, nothing where nothing was.

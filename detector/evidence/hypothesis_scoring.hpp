@@ -56,8 +56,10 @@ struct ScoringWorkspace {
 /// Scores the hypotheses of all groups: how templates match the frame at each centre, the score that follows, the box.
 /// Time is spent where it may matter, whatever the number of groups: EvidenceSettings::max_compared hypotheses, those
 /// whose votes promise most, are compared with the frame, and max_refined of them, those that then score highest, are
-/// refined; settings are those of the first group. Hypotheses that are not compared have no candidate; the others keep
-/// their order. The result is the same for any number of threads.
+/// refined; settings are those of the first group. The likely ones come first: what lies on the surface that one of
+/// them explains (EvidenceSettings::explains_from) is dropped, since a part of an object easily looks like another one,
+/// the more so the more objects are known. Hypotheses that are not compared or dropped have no candidate; the others
+/// keep their order. The result is the same for any number of threads.
 GroupCandidates score_by_group(const std::vector<GroupHypotheses>& groups, int threads, ScoringWorkspace& workspace);
 
 /// Returns how many times as many views a class has as one that was taught in one attitude, 1 to 3.

@@ -110,6 +110,39 @@ TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& ce
   return fit;
 }
 
+UnoccludedCells::UnoccludedCells(const ViewTemplate& view, const Eigen::Vector3f& centre_camera,
+                                 const RgbdFrame& frame) {
+  Comparison comparison;
+  compare(view, centre_camera, frame, 1.0F, comparison);
+  CellTally tally;
+  tally_cells(comparison.depths, common_shift(comparison.depths), tolerance_at(centre_camera.z()), tally);
+  cell_px_ = {comparison.left, comparison.top, comparison.cell_width, comparison.cell_height};
+  for (std::size_t i = 0; i < tally.unoccluded; ++i)
+    rows_[tally.unoccluded_cells[i].row] |= 1U << tally.unoccluded_cells[i].column;
+}
+
+float UnoccludedCells::fraction_in(const UnoccludedCells& other) const {
+  int cells = 0;
+  int shared = 0;
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) {
+      if ((rows_[static_cast<std::size_t>(row)] >> column & 1U) == 0) continue;
+      ++cells;
+      const cv::Point2f middle(cell_px_.x + (static_cast<float>(column) + 0.5F) * cell_px_.width,
+                               cell_px_.y + (static_cast<float>(row) + 0.5F) * cell_px_.height);
+      shared += other.contains(middle) ? 1 : 0;
+    }
+  }
+  return static_cast<float>(shared) / static_cast<float>(std::max(cells, 1));
+}
+
+bool UnoccludedCells::contains(const cv::Point2f& px) const {
+  const float column = (px.x - cell_px_.x) / cell_px_.width;
+  const float row = (px.y - cell_px_.y) / cell_px_.height;
+  if (!(column >= 0.0F && row >= 0.0F && column < kSide && row < kSide)) return false;
+  return (rows_[static_cast<std::size_t>(row)] >> static_cast<int>(column) & 1U) != 0;
+}
+
 BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, const Eigen::Vector3f& centre_camera,
                                                    const LabFrame& frame) {
   Comparison comparison;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "detector/evidence/colour_similarity.hpp"
@@ -68,6 +70,21 @@ class BoundaryContinuation {
   float surface_ = 0.0F;
   float colour_ = 0.0F;
   float both_ = 0.0F;
+};
+
+/// The cells of a template at its place in a frame in which the measured surface is the template's, or is not known.
+class UnoccludedCells {
+ public:
+  UnoccludedCells(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const RgbdFrame& frame);
+
+  /// Returns the fraction of these cells whose middle lies in one of the others, 0 to 1.
+  float fraction_in(const UnoccludedCells& other) const;
+
+ private:
+  bool contains(const cv::Point2f& px) const;
+
+  cv::Rect2f cell_px_;                                     ///< the first cell, frame pixels
+  std::array<std::uint32_t, TemplateGrid::kSide> rows_{};  ///< a bit for each column
 };
 
 /// Compares a template with the frame, cell by cell, after moving it along the ray by at most a few centimetres to

@@ -137,9 +137,11 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
   DetectionSettings detection = profile.detection;
   detection.threads = 1;
   detection.evidence.learn_camera_colours = false;
-  detection.evidence.max_compared =
-      std::numeric_limits<int>::max();  // of what a frame has no time for, scores learn too
+  // Of what a frame has no time for, scores learn too.
+  detection.evidence.max_compared = std::numeric_limits<int>::max();
+  detection.evidence.max_spread = std::numeric_limits<int>::max();
   detection.evidence.max_refined = std::numeric_limits<int>::max();
+  detection.evidence.explains_from = 2.0F;
   const ForestIndex index(forest);
   const int threads = profile.training.threads;
   std::vector<ScoreExamples> by_frame(static_cast<std::size_t>(source.count));

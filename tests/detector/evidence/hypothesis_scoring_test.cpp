@@ -159,6 +159,40 @@ TEST(Candidates, AnAttitudeThatNoVoteRemembersIsFoundWhereTheVotesAreMany) {
   EXPECT_EQ(evidence_among(400, seen.frame, {{{1, 1.0F}}, 0.2F}).view, 1U) << "most maxima have few votes";
 }
 
+TEST(Candidates, WhatLiesOnTheSurfaceOfASureOneIsDropped) {
+  Forest forest;
+  forest.classes = {ObjectClass(), ObjectClass()};
+  for (ObjectClass& object : forest.classes) object.radius = 0.08F;
+  forest.views = {toy::template_view(), middle_part()};
+  forest.views[1].class_index = 1;
+  const ForestIndex index(forest);
+  std::vector<Hypothesis> hypotheses(2);  // an object, and another one with few votes that looks like its middle
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    hypotheses[i].class_index = i;
+    hypotheses[i].centre_camera = {0.0F, 0.0F, toy::kDistance};
+    hypotheses[i].vote_mass = (i == 0 ? 2.0F : 0.01F) * forest.classes[i].nominal_vote_mass;
+    hypotheses[i].weight = 1.0F;
+    hypotheses[i].views = {{static_cast<std::uint32_t>(i), 1.0F}};
+  }
+  const RgbdFrame frame = toy::training_views().front().frame;
+  const auto scores = [&](float explains_from) {
+    EvidenceSettings settings;
+    settings.explains_from = explains_from;
+    ScoringWorkspace workspace;
+    const ScoringInput input{index, toy::lab_frame(frame, frame.colour, 1.0F), {}, settings, {}};
+    std::vector<float> found;
+    const GroupCandidates by_group = score_by_group({{input, hypotheses}}, 1, workspace);
+    for (const ScoredHypothesis& one : by_group.front()) found.push_back(one.detection.score);
+    return found;
+  };
+  const std::vector<float> both = scores(2.0F);
+  ASSERT_EQ(both.size(), 2U);
+  ASSERT_GT(both[0], 0.5F);
+  ASSERT_LT(both[1], 0.5F);
+  EXPECT_EQ(scores(both[0]), std::vector<float>{both[0]});
+  EXPECT_EQ(scores(both[0] + 0.01F), both) << "it is not sure enough";
+}
+
 TEST(AttitudeSpread, GrowsWithTheViewsOfTheClass) {
   Forest forest;
   const auto add = [&](std::uint32_t class_index, std::size_t views) {

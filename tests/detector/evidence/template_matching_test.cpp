@@ -64,6 +64,22 @@ TEST(TemplateMatch, AnOccluderHidesItsPartOfTheBox) {
 }
 
 /// All but a strip at the left and one at the top is hidden, each narrower than a fifth of the object.
+TEST(UnoccludedCells, LieInThoseOfAnotherTemplateOnTheSameSurface) {
+  const RgbdFrame frame = tile_frame();
+  const ViewTemplate whole = toy::template_view();
+  ViewTemplate part = whole;  // what is half as large
+  for (float& side : part.box) side *= 0.5F;
+  const UnoccludedCells all(whole, kCentre, frame);
+  EXPECT_EQ(all.fraction_in(all), 1.0F);
+  EXPECT_GT(UnoccludedCells(part, kCentre, frame).fraction_in(all), 0.95F);
+  EXPECT_NEAR(all.fraction_in(UnoccludedCells(part, kCentre, frame)), 0.25F, 0.08F);
+  RgbdFrame hidden = frame;  // in its left half
+  hidden.depth = frame.depth.clone();
+  const cv::Rect seen = cv::boundingRect(toy::training_views().front().mask);
+  hidden.depth(cv::Rect(0, 0, seen.x + seen.width / 2, 240)).setTo(0.5F);
+  EXPECT_NEAR(UnoccludedCells(whole, kCentre, frame).fraction_in(UnoccludedCells(whole, kCentre, hidden)), 0.5F, 0.06F);
+}
+
 TEST(TemplateMatch, TheVisibleBoxEnclosesWhatLittleIsSeen) {
   RgbdFrame frame = tile_frame();
   const cv::Rect whole = cv::boundingRect(toy::training_views().front().mask);
