@@ -1,5 +1,6 @@
 #include "detector/detector.hpp"
 
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -7,6 +8,7 @@
 #include "detector/stages.hpp"
 #include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 
@@ -35,11 +37,22 @@ void require_searchable_together(const std::vector<Forest>& groups) {
   }
 }
 
+using ForestIndices = std::vector<std::unique_ptr<const ForestIndex>>;
+
+ForestIndices make_indices(const std::vector<Forest>& groups, int threads) {
+  ForestIndices indices(groups.size());
+  parallel_for(threads, static_cast<int>(groups.size()), [&](int i) {
+    const auto place = static_cast<std::size_t>(i);
+    indices[place] = std::make_unique<const ForestIndex>(groups[place]);
+  });
+  return indices;
+}
+
 }  // namespace
 
 struct Detector::State {
   State(std::vector<Forest> given, const DetectionSettings& how)
-      : groups(std::move(given)), indices(groups.begin(), groups.end()), settings(how) {}
+      : groups(std::move(given)), indices(make_indices(groups, how.threads)), settings(how) {}
 
   /// Returns the search of each group.
   std::vector<SearchContext> searches(const std::vector<ChromaPair>& camera_colours) const {
@@ -47,8 +60,8 @@ struct Detector::State {
     all.reserve(indices.size());
     std::size_t classes = 0;
     for (const Forest& forest : groups) classes += forest.classes.size();
-    for (const ForestIndex& index : indices) {
-      SearchContext& search = all.emplace_back(SearchContext{index, settings});
+    for (const std::unique_ptr<const ForestIndex>& index : indices) {
+      SearchContext& search = all.emplace_back(SearchContext{*index, settings});
       search.remembered_colours = camera_colours;
       search.searched_classes = classes;
     }
@@ -56,7 +69,7 @@ struct Detector::State {
   }
 
   std::vector<Forest> groups;
-  std::vector<ForestIndex> indices;
+  ForestIndices indices;
   DetectionSettings settings;
 };
 

@@ -56,7 +56,8 @@ struct DetectOptions {
 std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& store, const DetectOptions& options,
                                                    const RgbdFrame& made_up) {
   const SearchOptions search = with_precision(options.search, store, options.precision);
-  return std::make_shared<const ReadyDetector>(make_detector(load_store_forests(store), search), made_up);
+  return std::make_shared<const ReadyDetector>(make_detector(load_store_forests(store, search.threads), search),
+                                               made_up);
 }
 
 /// Looks by a budget come at leisure: who follows objects from frame to frame goes first. Of all threads that are
@@ -90,8 +91,9 @@ class KnownColours {
 /// A forest stays what it is.
 void run_with_forest(const DetectOptions& options, const KnownColours& colours) {
   const std::shared_future<RgbdFrame> made_up = start_warm_up();
-  const ReadyDetector ready(make_detector(load_named_forests({{}, options.forest_file, {}}), options.search),
-                            made_up.get());
+  const ReadyDetector ready(
+      make_detector(load_named_forests({{}, options.forest_file, {}}, options.search.threads), options.search),
+      made_up.get());
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
     return ready.detector.detect(frame, ready.workspace, colours.objects_seen_by(frame.id.channel));

@@ -159,7 +159,7 @@ void run(EvaluateOptions options) {
   if (!options.latency.empty()) latencies = read_latencies(options.latency);
   std::vector<OpenScene> scenes = open_scenes(options);
   std::vector<Forest> groups;
-  if (!options.known.forest.empty()) groups = load_named_forests(options.known);
+  if (!options.known.forest.empty()) groups = load_named_forests(options.known, options.search.threads);
   const std::map<std::string, Mesh> meshes =
       options.known.models.empty() ? std::map<std::string, Mesh>() : load_class_models(options.known.models);
   const NamedSide truth = ground_truth_side(options, scenes);

@@ -21,7 +21,7 @@ Detector make_detector(const store::ObjectStore& store, const FinderOptions& opt
   search.threads = options.threads;
   search.threshold = options.threshold;
   search.candidates_from = kCandidatesFrom;
-  return detector_of(load_store_forests(store), with_precision(search, store, options.precision));
+  return detector_of(load_store_forests(store, options.threads), with_precision(search, store, options.precision));
 }
 
 PoseEstimator make_estimator(const store::ObjectStore& store, const FinderOptions& options) {

@@ -5,6 +5,7 @@
 
 #include "detector/forest/forest_file.hpp"
 #include "drivers/store/object_store.hpp"
+#include "pipeline/base/parallel.hpp"
 #include "tools/finder/searched_objects.hpp"
 
 namespace houghstream {
@@ -20,16 +21,21 @@ inline Forest load_group_forest(const store::ObjectStore& store, int group) {
   return forest;
 }
 
-/// The forests of all groups, in order of their numbers.
-inline std::vector<Forest> load_store_forests(const store::ObjectStore& store) {
-  std::vector<Forest> forests;
-  for (const int group : store.groups()) forests.push_back(load_group_forest(store, group));
+/// The forests of all groups, in order of their numbers; several are read at once. Of those that cannot be read the
+/// first is named.
+inline std::vector<Forest> load_store_forests(const store::ObjectStore& store, int threads) {
+  const std::vector<int> groups = store.groups();
+  std::vector<Forest> forests(groups.size());
+  parallel_for(threads, static_cast<int>(groups.size()), [&](int i) {
+    const auto place = static_cast<std::size_t>(i);
+    forests[place] = load_group_forest(store, groups[place]);
+  });
   return forests;
 }
 
 /// The forests of the store that a command line names, or the one of its forest file.
-inline std::vector<Forest> load_named_forests(const ObjectArguments& objects) {
-  if (!objects.store.empty()) return load_store_forests(store::read_store(objects.store));
+inline std::vector<Forest> load_named_forests(const ObjectArguments& objects, int threads) {
+  if (!objects.store.empty()) return load_store_forests(store::read_store(objects.store), threads);
   std::vector<Forest> forests;
   forests.push_back(load_forest(objects.forest));
   return forests;

@@ -115,7 +115,7 @@ class Study {
     options.threads = 1;
     options.threshold = PoseSettings{}.min_score;
     options.learn_camera_colours = learn;
-    return detector_of(load_store_forests(store_), options);
+    return detector_of(load_store_forests(store_, options.threads), options);
   }
 
   /// Detects and estimates poses as hs-detect and hs-pose do, except that no pose is rejected.

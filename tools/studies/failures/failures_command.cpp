@@ -53,7 +53,7 @@ std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& dete
 }
 
 void run(const FailureOptions& options) {
-  const Detector detector = detector_of(load_named_forests(options.known), options.search);
+  const Detector detector = detector_of(load_named_forests(options.known, options.search.threads), options.search);
   std::vector<cv::Mat> tiles;
   for (const std::string& scene : options.scenes) {
     for (const cv::Mat& tile : failures_in(scene, detector, options)) tiles.push_back(tile);

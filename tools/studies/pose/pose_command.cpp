@@ -71,7 +71,7 @@ void run(const BenchOptions& options) {
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   // A thread's CPU time is all of a pose's only where OpenCV starts no threads of its own.
   cv::setNumThreads(1);
-  const Detector detector = detector_of(load_named_forests(options.known), options.search);
+  const Detector detector = detector_of(load_named_forests(options.known, options.search.threads), options.search);
   std::set<std::string> classes;
   for (const Forest& forest : detector.groups()) {
     for (const ObjectClass& known : forest.classes) classes.insert(known.name);

@@ -121,7 +121,7 @@ TEST(StoreMerge, TheStoreHoldsWhatItsPartsHold) {
     EXPECT_EQ(meshes.at(object).vertices, store::load_store_meshes(part).at(object).vertices) << object;
   }
   std::vector<int> ids;
-  for (const Forest& forest : load_store_forests(all)) ids.push_back(forest.classes.front().class_id);
+  for (const Forest& forest : load_store_forests(all, 2)) ids.push_back(forest.classes.front().class_id);
   EXPECT_EQ(ids, (std::vector<int>{1, 2, 3})) << "the store's, whatever the forests' files say";
   std::error_code error;
   fs::remove_all(in / "all", error);
