@@ -25,7 +25,7 @@ void FrameSynchroniser::add_frame(const FrameId& id, SharedBytes bytes) {
   if (is_awaited) changed_.notify_one();
 }
 
-void FrameSynchroniser::add_detections(const FrameId& id, std::vector<std::uint8_t> bytes) {
+void FrameSynchroniser::add_result(const FrameId& id, std::vector<std::uint8_t> bytes) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     Camera& camera = camera_of(id.channel);
@@ -95,7 +95,7 @@ std::optional<SynchronisedMessages> FrameSynchroniser::pop(std::chrono::millisec
 
 std::optional<SynchronisedMessages> FrameSynchroniser::next_pair() {
   for (auto it = held_back_.begin(); it != held_back_.end();) {
-    const FrameGate::Answer answer = ask_gate(it->pair.id, it->since_us);
+    const FrameGate::Answer answer = decide_by_gate(it->pair.id, it->since_us);
     if (answer == FrameGate::Answer::kWait) {
       ++it;
       continue;
@@ -107,16 +107,16 @@ std::optional<SynchronisedMessages> FrameSynchroniser::next_pair() {
   while (Camera* camera = next_camera()) {
     SynchronisedMessages pair = pop_pair(*camera);
     const std::int64_t now_us = gate_.now_us ? gate_.now_us() : 0;
-    const FrameGate::Answer answer = ask_gate(pair.id, now_us);
+    const FrameGate::Answer answer = decide_by_gate(pair.id, now_us);
     if (answer == FrameGate::Answer::kGo) return pair;
     if (answer == FrameGate::Answer::kWait) hold_back(std::move(pair), now_us);
   }
   return std::nullopt;
 }
 
-FrameGate::Answer FrameSynchroniser::ask_gate(const FrameId& id, std::int64_t since_us) {
-  if (!gate_.ask) return FrameGate::Answer::kGo;
-  const FrameGate::Decision decision = gate_.ask(id, static_cast<double>(gate_.now_us() - since_us) * 1e-6);
+FrameGate::Answer FrameSynchroniser::decide_by_gate(const FrameId& id, std::int64_t since_us) {
+  if (!gate_.decide) return FrameGate::Answer::kGo;
+  const FrameGate::Decision decision = gate_.decide(id, static_cast<double>(gate_.now_us() - since_us) * 1e-6);
   if (decision.answer == FrameGate::Answer::kRefuse) dropped_.refused.push_back({id, decision.reason});
   return decision.answer;
 }
@@ -230,7 +230,7 @@ SynchronisedMessages FrameSynchroniser::pop_pair(Camera& camera) {
   pair.id = selected->id;
   pair.frame = kept.frame.bytes;
   pair.frame_number = kept.number;
-  pair.detections = std::move(selected->bytes);
+  pair.result = std::move(selected->bytes);
   pair.arrival = selected->arrival;
   camera.turn = ++turns_;
   camera.waiting.erase(selected);

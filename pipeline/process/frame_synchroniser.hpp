@@ -26,17 +26,17 @@ struct ArrivedFrame {
   SharedBytes bytes;
 };
 
-/// Encoded detections with the encoded frame that they were found in.
+/// An encoded result of a frame (detections, or poses), with the encoded frame itself.
 struct SynchronisedMessages {
   FrameId id;
   SharedBytes frame;
   std::int64_t frame_number = 0;  ///< number of the frame in order of arrival, since a name may come again
-  std::vector<std::uint8_t> detections;
-  std::chrono::steady_clock::time_point arrival;  ///< arrival of the detections
+  std::vector<std::uint8_t> result;
+  std::chrono::steady_clock::time_point arrival;  ///< arrival of the result
 };
 
-/// Decides over each pair before it is handed out; without `ask` every pair goes at once. `ask` is called with the
-/// synchroniser locked, in the thread that pops, for the oldest pairs first and again for those that must wait.
+/// Decides over each pair before it is handed out; without `decide` every pair goes at once. `decide` is called with
+/// the synchroniser locked, in the thread that pops, for the oldest pairs first and again for those that must wait.
 struct FrameGate {
   enum class Answer { kGo, kWait, kRefuse };
   struct Decision {
@@ -44,24 +44,24 @@ struct FrameGate {
     std::string reason;  ///< reason of a refusal
   };
   /// The age, in seconds, is that of the pair since it was asked for first.
-  std::function<Decision(const FrameId&, double age_s)> ask;
+  std::function<Decision(const FrameId&, double age_s)> decide;
   std::function<std::int64_t()> now_us;  ///< the clock of the ages, microseconds; it may be a log's
   std::string awaited;                   ///< names, in a sentence, what pairs wait for
 };
 
-/// Brings detections together with their own frame, whichever comes first, for any number of cameras and of detectors
-/// on each. Nothing is decoded. Ages are counted in frames of the camera, not in seconds, so that a log gives the same
-/// pairs at any speed. May be used from any thread.
+/// Matches results with their frames, whichever of the two comes first, for any number of cameras and of senders on
+/// each (as message_filters of ROS does by exact time). Nothing is decoded. Ages are counted in frames of the camera,
+/// not in seconds, so that a log gives the same pairs at any speed. May be used from any thread.
 class FrameSynchroniser {
  public:
-  /// Frames of each camera that are kept for detections still to come: 64, and fewer where those of all cameras have
+  /// Frames of each camera that are kept for results still to come: 64, and fewer where those of all cameras have
   /// more bytes than this. First the camera with the most frames drops its oldest; where each has one left, the
   /// earliest goes. The last frame that has come stays, however large it is.
   static constexpr std::size_t kHistory = 64;
   static constexpr std::size_t kHistoryBytes = std::size_t{192} << 20U;
-  /// Detections of each camera that wait, for their frame or their turn; the oldest go.
+  /// Maximum number of results of each camera that wait, for their frame or their turn; the oldest are dropped.
   static constexpr std::size_t kWaiting = 128;
-  /// Bytes of the waiting detections of all cameras; above this, the camera with the most drops its oldest.
+  /// Bytes of the waiting results of all cameras; above this, the camera with the most drops its oldest.
   static constexpr std::size_t kAllWaitingBytes = std::size_t{128} << 20U;
   /// Frames on more channels are refused: a sender of rubbish may make up channels without end.
   static constexpr std::size_t kCameras = 64;
@@ -69,19 +69,19 @@ class FrameSynchroniser {
   /// refused.
   static constexpr std::size_t kHeldBack = 1024;
   static constexpr std::size_t kHeldBackBytes = kHistoryBytes;
-  /// Detections without their frame wait for this many further frames of the camera, then are dropped.
+  /// Results without their frame wait for this many further frames of the camera, then are dropped.
   static constexpr std::int64_t kMaxLagFrames = 30;
 
-  /// With `newest_first`, pop() serves the cameras in turn, and drops older detections of a camera: one result of each
-  /// of its detectors stays. Otherwise everything is processed in the order of arrival. `ahead` enables
+  /// With `newest_first`, pop() serves the cameras in turn, and drops older results of a camera: one of each of
+  /// its detectors stays. Otherwise everything is processed in the order of arrival. `ahead` enables
   /// pop_unmatched_frame().
   explicit FrameSynchroniser(bool newest_first, bool ahead = true, FrameGate gate = {})
       : newest_first_(newest_first), ahead_(ahead), gate_(std::move(gate)) {}
 
   /// Throws InputError for one camera too many.
   void add_frame(const FrameId& id, SharedBytes bytes);
-  /// Adds the detections of frame `id`. Throws InputError for one camera too many.
-  void add_detections(const FrameId& id, std::vector<std::uint8_t> bytes);
+  /// Adds a result of frame `id`. Throws InputError for one camera too many.
+  void add_result(const FrameId& id, std::vector<std::uint8_t> bytes);
 
   /// Pops the next pair that the gate accepts; waits for one up to `timeout`, or, with `newest_first`, until a frame
   /// comes.
@@ -91,22 +91,22 @@ class FrameSynchroniser {
   void recheck_gate();
 
   /// Returns the newest frame of a camera, where `newest_first`, and where neither it nor its pair has been popped:
-  /// there is time to decode it while its detections are on the way. It stays here for them.
+  /// there is time to decode it while its result is on the way. It stays here for it.
   std::optional<ArrivedFrame> pop_unmatched_frame();
 
-  /// Frames and detections that were dropped since the last call.
+  /// Frames and results that were dropped since the last call.
   struct Refused {
     FrameId id;
     std::string reason;
   };
   struct Dropped {
     std::int64_t skipped = 0;            ///< passed over for newer ones, or for too many
-    std::vector<FrameId> without_frame;  ///< detections whose frame never came
+    std::vector<FrameId> without_frame;  ///< results whose frame never came, by its id
     std::vector<Refused> refused;        ///< refused by the gate, or while they waited for it
   };
   Dropped pop_dropped();
 
-  /// Drops all detections that still wait, for their frame or for the gate.
+  /// Drops all results that still wait, for their frame or for the gate.
   void flush();
 
  private:
@@ -130,7 +130,7 @@ class FrameSynchroniser {
   };
   struct Camera {
     std::deque<Kept> frames;      // the last ones
-    std::deque<Waiting> waiting;  // detections in the order of arrival
+    std::deque<Waiting> waiting;  // results in the order of arrival
     std::int64_t frames_seen = 0;
     bool fresh = false;     // the last frame may be taken ahead
     std::int64_t turn = 0;  // when it was served last
@@ -149,7 +149,7 @@ class FrameSynchroniser {
   void drop_unmatchable(Camera& camera);
   SynchronisedMessages pop_pair(Camera& camera);
   std::optional<SynchronisedMessages> next_pair();
-  FrameGate::Answer ask_gate(const FrameId& id, std::int64_t since_us);
+  FrameGate::Answer decide_by_gate(const FrameId& id, std::int64_t since_us);
   void hold_back(SynchronisedMessages pair, std::int64_t since_us);
   bool any_fresh() const;
 
@@ -159,12 +159,12 @@ class FrameSynchroniser {
   std::mutex mutex_;
   std::condition_variable changed_;
   ByteBudget frame_bytes_;                 // frames of all cameras
-  ByteBudget waiting_bytes_;               // detections of all cameras
+  ByteBudget waiting_bytes_;               // results of all cameras
   ByteBudget held_back_bytes_;             // frames of pairs that wait for the gate
   std::map<std::string, Camera> cameras_;  // by channel name
   std::deque<HeldBack> held_back_;         // oldest first
   DetectorCount detectors_;
-  std::int64_t arrivals_ = 0;  // detections that have arrived
+  std::int64_t arrivals_ = 0;  // results that have arrived
   std::int64_t frames_ = 0;    // frames that have arrived
   std::int64_t turns_ = 0;
   Dropped dropped_;

@@ -130,7 +130,7 @@ class PoseProcess {
   void add_detections(const ReceivedResult& detections) {
     note_camera(detections.id);
     ++detections_;
-    synchroniser_.add_detections(detections.id, {detections.bytes.data, detections.bytes.data + detections.bytes.size});
+    synchroniser_.add_result(detections.id, {detections.bytes.data, detections.bytes.data + detections.bytes.size});
   }
 
   void note_other_camera(const FrameId& frame) {
@@ -218,7 +218,7 @@ class PoseProcess {
 
   ObjectPoses poses_of(const SynchronisedMessages& pair) {
     Detections detections =
-        detections_from_message(decode_message<detections_t>({pair.detections.data(), pair.detections.size()}));
+        detections_from_message(decode_message<detections_t>({pair.result.data(), pair.result.size()}));
     if (!bus_.is_log()) require_max_detections(detections);
     if (!follow_ && detections.detections.empty()) return {detections.frame, {}, detections.stages};
     const DecodedFrames::Decoded frame = decoded_.decode(pair.frame, pair.id.channel);

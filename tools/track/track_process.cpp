@@ -30,7 +30,7 @@ class TrackProcess {
         models_(models),
         status_(options.process),
         reception_(bus, status_, options.frame_channels),
-        synchroniser_(false, false, place_gate()),
+        synchroniser_(false, false, extrinsics_gate()),
         used_models_(models()),
         tracker_(*used_models_, {}),
         output_(bus, options.output),
@@ -81,7 +81,7 @@ class TrackProcess {
   }
 
   void add_poses(const ReceivedResult& result) {
-    synchroniser_.add_detections(result.id, {result.bytes.data, result.bytes.data + result.bytes.size});
+    synchroniser_.add_result(result.id, {result.bytes.data, result.bytes.data + result.bytes.size});
     ++poses_;
   }
 
@@ -93,9 +93,9 @@ class TrackProcess {
 
   /// Poses go when it is known where their camera was, wait while that may come, and are refused otherwise: they are
   /// never put at the origin.
-  FrameGate place_gate() {
+  FrameGate extrinsics_gate() {
     FrameGate gate;
-    gate.ask = [this](const FrameId& frame, double age_s) -> FrameGate::Decision {
+    gate.decide = [this](const FrameId& frame, double age_s) -> FrameGate::Decision {
       const tracks::CameraPose place = world_.camera_pose(frame, age_s < options_.wait_s);
       if (!place.T_world_camera && place.may_come) return {FrameGate::Answer::kWait, ""};
       if (!place.T_world_camera) return {FrameGate::Answer::kRefuse, place.reason};
@@ -113,18 +113,18 @@ class TrackProcess {
     if (!bus_.is_log()) heartbeats_->log_timed_out(reception_.now_us());
     if (!pair) return false;
     if (world_.consume_reset()) tracker_.reset();
-    work_on(*pair);
+    process(*pair);
     return true;
   }
 
-  void work_on(const SynchronisedMessages& pair) {
+  void process(const SynchronisedMessages& pair) {
     try {
       StageClock clock;
-      const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(view(pair.detections)));
+      const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(view(pair.result)));
       check_.add(poses, T_world_camera_, *used_models_);
       if (options_.check || publish_objects(*pair.frame, poses, clock))
         status_.count_processed(std::chrono::steady_clock::now() - pair.arrival);
-      tell_contradictions();
+      report_inconsistencies();
     } catch (const std::exception& error) {
       status_.count_refused(error.what(), "work");
     }
@@ -183,7 +183,7 @@ class TrackProcess {
     for (const FrameSynchroniser::Refused& pair : dropped.refused) refuse(pair.id, pair.reason);
   }
 
-  void tell_contradictions() {
+  void report_inconsistencies() {
     for (const tracks::ExtrinsicInconsistency& pair : check_.inconsistencies()) {
       const std::string line =
           fmt::format("{} sees objects {:.1f} cm from where {} sees them: one of their places is wrong", pair.second,
