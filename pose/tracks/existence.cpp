@@ -11,49 +11,49 @@ namespace houghstream::tracks {
 namespace {
 
 /// Returns whether an object of another class is recognised in its place.
-bool is_displaced(const UnobservedContext& frame, const Track& track) {
-  const Eigen::Vector3d place = track.pose.filter().T_world_object() * centre_of(frame.models, track.class_name);
-  return std::any_of(frame.poses.begin(), frame.poses.end(), [&](const PoseObservation& pose) {
+bool is_displaced(const UnobservedContext& context, const Track& track) {
+  const Eigen::Vector3d place = track.pose.filter().T_world_object() * centre_of(context.models, track.class_name);
+  return std::any_of(context.poses.begin(), context.poses.end(), [&](const PoseObservation& pose) {
     return pose.class_name != track.class_name &&
-           (pose.measured.T_world_object * centre_of(frame.models, pose.class_name) - place).norm() <
-               0.5 * std::min(radius_of(frame.models, pose.class_name), radius_of(frame.models, track.class_name));
+           (pose.measured.T_world_object * centre_of(context.models, pose.class_name) - place).norm() <
+               0.5 * std::min(radius_of(context.models, pose.class_name), radius_of(context.models, track.class_name));
   });
 }
 
 /// Returns whether the class is detected at a position, camera frame, metres.
-bool is_detected(const UnobservedContext& frame, const std::string& class_name,
+bool is_detected(const UnobservedContext& context, const std::string& class_name,
                  const Eigen::Vector3d& expected_centre) {
-  const Detections* detections = frame.observation.detections;
+  const Detections* detections = context.observation.detections;
   return detections != nullptr &&
          std::any_of(detections->detections.begin(), detections->detections.end(), [&](const Detection& detection) {
            return detection.class_name == class_name &&
-                  (detection.centre_camera.cast<double>() - expected_centre).norm() < frame.reach_m;
+                  (detection.centre_camera.cast<double>() - expected_centre).norm() < context.reach_m;
          });
 }
 
 }  // namespace
 
-void update_unobserved(const UnobservedContext& frame, const MissedDetection& missed, const ExistenceSettings& settings,
-                       Track& track) {
-  const FrameObservation& observation = frame.observation;
-  const auto known = frame.models.find(track.class_name);
-  const TrackModel* model = known == frame.models.end() ? nullptr : &known->second;
+void update_unobserved(const UnobservedContext& context, const AbsenceEvidence& absence,
+                       const ExistenceSettings& settings, Track& track) {
+  const FrameObservation& observation = context.observation;
+  const auto known = context.models.find(track.class_name);
+  const TrackModel* model = known == context.models.end() ? nullptr : &known->second;
   const RgbdFrame* image = model != nullptr && observation.image ? observation.image() : nullptr;
   const Eigen::Isometry3d T_camera_object = observation.T_world_camera.inverse() * track.pose.filter().T_world_object();
   const VisibilityCheck visibility =
       image != nullptr ? check_visibility(*image, *model, T_camera_object) : VisibilityCheck{};
   const double unseen_s = seconds_between(track.last_seen.utime, observation.poses.frame.utime);
-  const bool displaced = is_displaced(frame, track);
+  const bool displaced = is_displaced(context, track);
   const Eigen::Vector3d expected_centre =
       T_camera_object * (model != nullptr ? model->vote_centre : Eigen::Vector3d::Zero());
-  const bool detected = is_detected(frame, track.class_name, expected_centre);
+  const bool detected = is_detected(context, track.class_name, expected_centre);
   double rate = 0.0;
   std::string reason;
   switch (visibility.state) {
     case TrackState::kGone:
-      if (missed.by_depth) {
+      if (absence.by_depth) {
         rate = settings.free_space_rate * visibility.free_space_violation;
-        track.free_space_violation_s += missed.seconds;
+        track.free_space_violation_s += absence.dt_s;
       }
       reason = fmt::format("{}: free-space violation {:.0f} %", observation.poses.frame.channel,
                            100.0 * visibility.free_space_violation);
@@ -65,26 +65,26 @@ void update_unobserved(const UnobservedContext& frame, const MissedDetection& mi
       reason = fmt::format("not in view of {}, or without depth", observation.poses.frame.channel);
       break;
     default:
-      if (missed.by_recognition)
+      if (absence.by_recognition)
         rate = visibility.is_boundary_continued ? settings.continuation_rate : detected ? 0.0 : settings.missed_rate;
       reason = fmt::format("not recognised by {}, whose depth agrees", observation.poses.frame.channel);
   }
   if (displaced && visibility.state != TrackState::kOutOfView) {
-    if (missed.by_depth) rate += settings.displaced_rate;
+    if (absence.by_depth) rate += settings.displaced_rate;
     reason += ", where something else is";
   }
-  if (track.pose.filter().moving() && unseen_s > frame.coast_s) {
-    if (missed.by_recognition)
+  if (track.pose.filter().moving() && unseen_s > context.coast_s) {
+    if (absence.by_recognition)
       rate +=
           visibility.state == TrackState::kHidden ? 0.25 * settings.moving_missed_rate : settings.moving_missed_rate;
     reason += "; it moved when it was seen last";
   }
-  if (track.id == 0 && missed.by_recognition) rate += settings.tentative_rate;
-  track.log_odds -= missed.seconds * rate;
+  if (track.id == 0 && absence.by_recognition) rate += settings.tentative_rate;
+  track.log_odds -= absence.dt_s * rate;
   // The last observer sets the state for a short time after its observation, where several cameras see the place.
   constexpr double kLastObserverHold_s = 0.1;
-  const bool says_anything = missed.by_recognition || visibility.state != TrackState::kUnrecognised;
-  if (says_anything && (track.last_seen.channel == observation.poses.frame.channel || unseen_s > kLastObserverHold_s)) {
+  const bool has_evidence = absence.by_recognition || visibility.state != TrackState::kUnrecognised;
+  if (has_evidence && (track.last_seen.channel == observation.poses.frame.channel || unseen_s > kLastObserverHold_s)) {
     track.state = visibility.state == TrackState::kGone ? TrackState::kUnrecognised : visibility.state;
     track.reason = reason;
   }

@@ -53,8 +53,8 @@ struct UnobservedContext {
 };
 
 /// Kinds of evidence that one result gives against an unobserved track, and the time that they stand for.
-struct MissedDetection {
-  double seconds = 0.0;         ///< CameraClock::seconds: time since the camera's previous frame, as far as it counts
+struct AbsenceEvidence {
+  double dt_s = 0.0;            ///< CameraClock::dt_s: time since the camera's previous frame, as far as it counts
   bool by_depth = false;        ///< whether depth counts: only for the first result of a frame
   bool by_recognition = false;  ///< whether the missing pose counts: only for the first result that searched the class
 };
@@ -62,7 +62,7 @@ struct MissedDetection {
 /// Updates a track that received no measurement in this frame: lowers the log odds of its existence and deletes it
 /// below the threshold. State and reason change only if this camera observed the object last, or no camera has for 0.1
 /// s.
-void update_unobserved(const UnobservedContext& frame, const MissedDetection& missed, const ExistenceSettings& settings,
-                       Track& track);
+void update_unobserved(const UnobservedContext& context, const AbsenceEvidence& absence,
+                       const ExistenceSettings& settings, Track& track);
 
 }  // namespace houghstream::tracks

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kHypotheses = 3;
 constexpr double kMaxWeight = 6.0;
-constexpr double kForget_s = 3.0;
+constexpr double kWeightDecay_s = 3.0;
 
 }  // namespace
 
@@ -102,9 +102,9 @@ VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model
   constexpr double kToleranceM = 0.012;
   constexpr double kNearestM = 0.05;
   constexpr int kMinPx = 30;
-  constexpr double kMeasured = 0.2;  // minimum fraction of the pixels with depth
-  constexpr double kHidden = 0.6;
-  constexpr double kThrough = 0.35;
+  constexpr double kMinMeasured = 0.2;  // minimum fraction of the pixels with depth
+  constexpr double kMaxOccluded = 0.6;
+  constexpr double kMaxFreeSpaceViolation = 0.35;
   const Eigen::Vector3d centre = T_camera_object * model.centre;
   if (centre.z() < kNearestM) return {};
   const Eigen::Vector2d pixel = frame.camera.project(centre);
@@ -112,22 +112,22 @@ VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model
     return {};
   const Verification verification = verify_pose(frame, model.mesh, T_camera_object, {kToleranceM, DepthNoise{}});
   const int judged = verification.depth_inliers + verification.free_space_violations + verification.occluded;
-  if (verification.rendered < kMinPx || judged < kMeasured * verification.rendered) return {};
+  if (verification.rendered < kMinPx || judged < kMinMeasured * verification.rendered) return {};
   VisibilityCheck visibility;
   visibility.free_space_violation = static_cast<double>(verification.free_space_violations) /
                                     std::max(1, verification.depth_inliers + verification.free_space_violations);
   visibility.is_boundary_continued =
       verification.boundary_continuations > 0.5F * static_cast<float>(verification.boundary_samples);
   visibility.state = TrackState::kUnrecognised;
-  if (visibility.free_space_violation > kThrough) visibility.state = TrackState::kGone;
-  if (verification.occluded > kHidden * judged) visibility.state = TrackState::kHidden;
+  if (visibility.free_space_violation > kMaxFreeSpaceViolation) visibility.state = TrackState::kGone;
+  if (verification.occluded > kMaxOccluded * judged) visibility.state = TrackState::kHidden;
   return visibility;
 }
 
 PoseTrack::PoseTrack(const PoseObservation& first, const PoseTrackSettings& settings)
     : settings_(settings),
       hypotheses_{{MotionFilter(first.measured, settings.motion), quality_logit(first.quality)}},
-      weighed_utime_(first.frame.utime) {
+      weights_utime_(first.frame.utime) {
   observers_[first.frame.channel].agreed_utime = first.frame.utime;
 }
 
@@ -136,10 +136,10 @@ void PoseTrack::predict(std::int64_t utime) {
 }
 
 void PoseTrack::update(const PoseObservation& pose, const Symmetries& symmetries, bool has_contrary_depth) {
-  constexpr double kLead = 1.0;  // margin of log odds by which another hypothesis must lead
-  const double passed = std::max(0.0, seconds_between(weighed_utime_, pose.frame.utime));
-  weighed_utime_ = std::max(weighed_utime_, pose.frame.utime);
-  for (Hypothesis& hypothesis : hypotheses_) hypothesis.weight *= std::exp(-passed / kForget_s);
+  constexpr double kMinLead = 1.0;  // margin of log odds by which another hypothesis must lead
+  const double passed = std::max(0.0, seconds_between(weights_utime_, pose.frame.utime));
+  weights_utime_ = std::max(weights_utime_, pose.frame.utime);
+  for (Hypothesis& hypothesis : hypotheses_) hypothesis.weight *= std::exp(-passed / kWeightDecay_s);
   const std::size_t index = hypothesis_for(pose.measured, symmetries);
   Hypothesis& hypothesis = hypotheses_[index];
   hypothesis.weight = std::min(kMaxWeight, hypothesis.weight + std::max(0.1, quality_logit(pose.quality)));
@@ -150,9 +150,9 @@ void PoseTrack::update(const PoseObservation& pose, const Symmetries& symmetries
   if (hypothesis.filter.moving()) {
     update_moving(rotated.measured, hypothesis);
   } else {
-    update_standing(rotated, has_contrary_depth, hypothesis);
+    update_static(rotated, has_contrary_depth, hypothesis);
   }
-  if (hypothesis.weight > hypotheses_[best_].weight + kLead) best_ = index;
+  if (hypothesis.weight > hypotheses_[best_].weight + kMinLead) best_ = index;
   if (hypothesis.filter.moving() && index == best_ && hypotheses_.size() > 1) {
     hypotheses_ = {hypothesis};  // hypotheses from before the motion are obsolete
     best_ = 0;
@@ -186,33 +186,35 @@ std::size_t PoseTrack::hypothesis_for(const PoseMeasurement& measured, const Sym
   return weakest;
 }
 
-void PoseTrack::update_standing(const PoseObservation& pose, bool has_contrary_depth, Hypothesis& hypothesis) {
+void PoseTrack::update_static(const PoseObservation& pose, bool has_contrary_depth, Hypothesis& hypothesis) {
   constexpr double kWithinS = 0.4;
-  constexpr std::size_t kPlaces = 3;     // measured apart from where it stands
-  constexpr std::size_t kRotations = 8;  // measurements whose rotation alone changed
-  const Vector6 apart = local_coordinates_about_world(pose.measured.T_world_object, hypothesis.filter.T_world_object());
+  constexpr std::size_t kMinPositions = 3;  // measured apart from where it stands
+  constexpr std::size_t kMinRotations = 8;  // measurements whose rotation alone changed
+  const Vector6 innovation =
+      local_coordinates_about_world(pose.measured.T_world_object, hypothesis.filter.T_world_object());
   const Covariance6& noise = pose.measured.covariance;
   const double place_gate =
       std::max(settings_.static_gate_m, 4.0 * std::sqrt(noise.topLeftCorner<3, 3>().trace() / 3.0));
   const double rotation_gate = std::max(settings_.static_gate_rad, 4.0 * std::sqrt(noise(5, 5)));
-  const bool in_place = apart.head<3>().norm() < place_gate;
+  const bool in_place = innovation.head<3>().norm() < place_gate;
   ObserverHistory& observer = observers_[pose.frame.channel];
-  if (in_place && apart.tail<3>().norm() < rotation_gate) {
+  if (in_place && innovation.tail<3>().norm() < rotation_gate) {
     hypothesis.filter.update(pose.measured);
-    observer.apart.clear();
+    observer.outside_gates.clear();
     observer.agreed_utime = pose.frame.utime;
     return;
   }
-  observer.apart.push_back(pose.measured);
-  while (seconds_between(observer.apart.front().utime, pose.frame.utime) > kWithinS) observer.apart.pop_front();
-  const std::size_t needed = in_place ? kRotations : has_contrary_depth ? 1 : kPlaces;
-  if (observer.apart.size() < needed || !can_trigger_motion(pose.frame.channel, pose.frame.utime)) return;
-  const PoseMeasurement& first = observer.apart.front();
+  observer.outside_gates.push_back(pose.measured);
+  while (seconds_between(observer.outside_gates.front().utime, pose.frame.utime) > kWithinS)
+    observer.outside_gates.pop_front();
+  const std::size_t needed = in_place ? kMinRotations : has_contrary_depth ? 1 : kMinPositions;
+  if (observer.outside_gates.size() < needed || !can_trigger_motion(pose.frame.channel, pose.frame.utime)) return;
+  const PoseMeasurement& first = observer.outside_gates.front();
   const double seconds = std::max(0.02, seconds_between(first.utime, pose.frame.utime));
-  Vector6 way = local_coordinates_about_world(pose.measured.T_world_object, first.T_world_object);
+  Vector6 motion = local_coordinates_about_world(pose.measured.T_world_object, first.T_world_object);
   // The first may have been measured in the rotation of another hypothesis: between the two nothing has rotated.
-  if (way.tail<3>().norm() > settings_.same_rotation_rad) way.tail<3>().setZero();
-  hypothesis.filter.start_moving(pose.measured, way / seconds);
+  if (motion.tail<3>().norm() > settings_.same_rotation_rad) motion.tail<3>().setZero();
+  hypothesis.filter.start_moving(pose.measured, motion / seconds);
   recent_ = {pose.measured};
   observers_.clear();
   observers_[pose.frame.channel].agreed_utime = pose.frame.utime;

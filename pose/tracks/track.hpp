@@ -143,20 +143,20 @@ class PoseTrack {
     double weight = 0.0;  ///< accumulated log odds of its measurements, which decay over seconds
   };
   struct ObserverHistory {
-    std::deque<PoseMeasurement> apart;  ///< recent measurements that lie outside the gates
-    std::int64_t agreed_utime = 0;      ///< time of its last measurement within the gates; 0 for none
+    std::deque<PoseMeasurement> outside_gates;  ///< recent measurements that lie outside the gates
+    std::int64_t agreed_utime = 0;              ///< time of its last measurement within the gates; 0 for none
   };
 
   // These are the steps of update() in the order of their calls.
   std::size_t hypothesis_for(const PoseMeasurement& measured, const Symmetries& symmetries);
-  void update_standing(const PoseObservation& pose, bool has_contrary_depth, Hypothesis& hypothesis);
+  void update_static(const PoseObservation& pose, bool has_contrary_depth, Hypothesis& hypothesis);
   bool can_trigger_motion(const std::string& channel, std::int64_t utime) const;
   void update_moving(const PoseMeasurement& measured, Hypothesis& hypothesis);
 
   PoseTrackSettings settings_;
   std::vector<Hypothesis> hypotheses_;
   std::size_t best_ = 0;
-  std::int64_t weighed_utime_ = 0;
+  std::int64_t weights_utime_ = 0;
   std::map<std::string, ObserverHistory> observers_;  // observers by camera channel
   std::deque<PoseMeasurement> recent_;                // while it moves
 };
@@ -167,8 +167,8 @@ struct Track {
   std::int64_t id = 0;  ///< 0: not confirmed
   int class_id = 0;
   std::string class_name = {};
-  double log_odds = 0.0;  ///< log odds of its existence
-  int seen = 0;           ///< frames with a pose of it
+  double log_odds = 0.0;    ///< log odds of its existence
+  int observed_frames = 0;  ///< number of frames with a pose of it
   std::int64_t first_utime = 0;
   FrameId last_seen = {};
   TrackState state = TrackState::kVisible;

@@ -37,7 +37,7 @@ std::optional<WorldObjects> Tracker::update(const FrameObservation& received) {
   observation.T_world_camera = received.T_world_camera;
   observation.image = received.image;
   const std::vector<PoseObservation> observed = observe_new_poses(observation, *camera);
-  const std::vector<PoseObservation> unassigned = associate(observed, camera->seconds);
+  const std::vector<PoseObservation> unassigned = associate(observed, camera->dt_s);
   update_unobserved_tracks(observation, observed, *camera);
   for (const PoseObservation& pose : unassigned) begin_track(pose);
   confirm_tracks(frame.utime);
@@ -49,7 +49,7 @@ std::optional<WorldObjects> Tracker::update(const FrameObservation& received) {
 CameraClock* Tracker::begin_frame(const FrameObservation& received) {
   const FrameId& id = received.poses.frame;
   const StampedFrame frame{id, received.number, received.newest_utime.value_or(id.utime)};
-  const TimeOrder order = clock_.order_of(frame);
+  const TimeOrder order = clock_.classify(frame);
   if (order == TimeOrder::kLate) return nullptr;
   if (order == TimeOrder::kReset) reset();
   return &clock_.set(frame);
@@ -69,22 +69,22 @@ bool has_risen(const FrameNumber& before, const FrameNumber& after) {
 
 }  // namespace
 
-TimeOrder WorldClock::order_of(const StampedFrame& frame) {
+TimeOrder WorldClock::classify(const StampedFrame& frame) {
   constexpr int kMaxStaleResults = 30;  // consecutive results older than another camera's before a new world begins
   if (seconds_between(frame.newest_utime, frame.id.utime) > kMaxOvertakenS) return TimeOrder::kLate;
-  const std::int64_t utime = shifted(frame.id.utime, ahead_us_);
+  const std::int64_t utime = shifted(frame.id.utime, offset_us_);
   const auto known = cameras_.find(frame.id.channel);
   if (known != cameras_.end()) {
-    const TimeOrder order = order_after(known->second, frame, utime);
+    const TimeOrder order = classify_known_camera(known->second, frame, utime);
     if (order != TimeOrder::kNext) return order;
-  } else if (newest_ && order_ahead(newest_->utime, frame, utime) == TimeOrder::kLate) {
+  } else if (newest_ && classify_forward_jump(newest_->utime, frame, utime) == TimeOrder::kLate) {
     return TimeOrder::kLate;
   }
-  const std::int64_t now = shifted(frame.id.utime, ahead_us_);
+  const std::int64_t now = shifted(frame.id.utime, offset_us_);
   if (!newest_ || seconds_between(now, newest_->utime) <= kMaxOvertakenS) return TimeOrder::kNext;
-  ++behind_;
+  ++stale_results_;
   require(
-      behind_ >= kMaxStaleResults,
+      stale_results_ >= kMaxStaleResults,
       "frame {} is {:.1f} s older than the last one of {}, expected cameras whose clocks, and results, are within {} "
       "s of one another",
       to_string(frame.id), seconds_between(now, newest_->utime), newest_->channel, kMaxOvertakenS);
@@ -92,11 +92,11 @@ TimeOrder WorldClock::order_of(const StampedFrame& frame) {
   return TimeOrder::kReset;
 }
 
-TimeOrder WorldClock::order_after(const Camera& camera, const StampedFrame& frame, std::int64_t utime) {
+TimeOrder WorldClock::classify_known_camera(const Camera& camera, const StampedFrame& frame, std::int64_t utime) {
   constexpr double kIntervals = 3.0;  // results may come seldom
   const std::int64_t last_utime = camera.clock.utime;
-  if (seconds_between(shifted(frame.newest_utime, ahead_us_), last_utime) > kMaxOvertakenS)
-    return order_behind(camera, frame, utime);
+  if (seconds_between(shifted(frame.newest_utime, offset_us_), last_utime) > kMaxOvertakenS)
+    return classify_backward_jump(camera, frame, utime);
   const bool other_run = frame.number.run != camera.number.run && frame.number.run != 0 && camera.number.run != 0;
   if (utime <= last_utime && other_run) {
     log_new_world(frame.id, last_utime);
@@ -105,23 +105,23 @@ TimeOrder WorldClock::order_after(const Camera& camera, const StampedFrame& fram
   if (utime < last_utime) return TimeOrder::kLate;
   const double passed_s = seconds_between(last_utime, utime);
   if (passed_s <= std::max(kMaxOvertakenS, kIntervals * camera.interval_s)) return TimeOrder::kNext;
-  return order_ahead(last_utime, frame, utime);
+  return classify_forward_jump(last_utime, frame, utime);
 }
 
 /// Decides on a result of a camera whose frames have gone back in time.
-TimeOrder WorldClock::order_behind(const Camera& camera, const StampedFrame& frame, std::int64_t utime) {
+TimeOrder WorldClock::classify_backward_jump(const Camera& camera, const StampedFrame& frame, std::int64_t utime) {
   const std::int64_t last_utime = camera.clock.utime;
   if (!is_started_again(camera.number, frame.number)) {
-    const auto doubted = doubted_.find(frame.id.channel);
-    const std::int64_t first = doubted == doubted_.end() ? utime : doubted->second;
-    if (!is_confirmed(last_utime, frame.id, utime)) return TimeOrder::kLate;
+    const auto doubted = unconfirmed_.find(frame.id.channel);
+    const std::int64_t first = doubted == unconfirmed_.end() ? utime : doubted->second;
+    if (!confirm_jump(last_utime, frame.id, utime)) return TimeOrder::kLate;
     if (has_risen(camera.number, frame.number)) {
       warn(
           fmt::format("frame {} is {:.1f} s older than the last one, though its number is higher: the camera's clock "
                       "was set back, and the world goes on",
                       to_string(frame.id), seconds_between(utime, last_utime)));
       const std::int64_t apart_us = microseconds_between(std::min(first, utime), std::max(first, utime));
-      move_to(shifted(last_utime, 2 * std::min<std::int64_t>(apart_us, 1'000'000)), frame.id);
+      set_offset(shifted(last_utime, 2 * std::min<std::int64_t>(apart_us, 1'000'000)), frame.id);
       return TimeOrder::kNext;
     }
   }
@@ -129,20 +129,20 @@ TimeOrder WorldClock::order_behind(const Camera& camera, const StampedFrame& fra
   return TimeOrder::kReset;
 }
 
-TimeOrder WorldClock::order_ahead(std::int64_t last_utime, const StampedFrame& frame, std::int64_t utime) {
+TimeOrder WorldClock::classify_forward_jump(std::int64_t last_utime, const StampedFrame& frame, std::int64_t utime) {
   constexpr std::int64_t kMaxDurationUs = 60'000'000;
   if (seconds_between(last_utime, utime) <= kMaxOvertakenS) return TimeOrder::kNext;
   const bool is_confirmed_by_another_camera = std::abs(seconds_between(newest_->utime, utime)) <= kMaxOvertakenS;
-  if (!is_confirmed_by_another_camera && !is_confirmed(last_utime, frame.id, utime)) return TimeOrder::kLate;
+  if (!is_confirmed_by_another_camera && !confirm_jump(last_utime, frame.id, utime)) return TimeOrder::kLate;
   if (microseconds_between(newest_->utime, utime) > kMaxDurationUs)
-    move_to(shifted(newest_->utime, kMaxDurationUs), frame.id);
+    set_offset(shifted(newest_->utime, kMaxDurationUs), frame.id);
   return TimeOrder::kNext;
 }
 
 /// Returns whether the camera's previous doubted frame lay beside this one, far from its last one. Another result of
 /// the same frame confirms nothing.
-bool WorldClock::is_confirmed(std::int64_t last_utime, const FrameId& frame, std::int64_t utime) {
-  const auto [doubted, is_first] = doubted_.emplace(frame.channel, utime);
+bool WorldClock::confirm_jump(std::int64_t last_utime, const FrameId& frame, std::int64_t utime) {
+  const auto [doubted, is_first] = unconfirmed_.emplace(frame.channel, utime);
   if (is_first || doubted->second == utime) return false;
   const double beside_s = std::abs(seconds_between(doubted->second, utime));
   const bool confirmed = beside_s < std::abs(seconds_between(last_utime, utime));
@@ -150,26 +150,26 @@ bool WorldClock::is_confirmed(std::int64_t last_utime, const FrameId& frame, std
   return confirmed;
 }
 
-void WorldClock::move_to(std::int64_t world_utime, const FrameId& frame) {
-  ahead_us_ = microseconds_between(frame.utime, world_utime);
+void WorldClock::set_offset(std::int64_t world_utime, const FrameId& frame) {
+  offset_us_ = microseconds_between(frame.utime, world_utime);
 }
 
 void WorldClock::log_new_world(const FrameId& frame, std::int64_t last_utime) {
   warn(fmt::format("frame {} is {:.1f} s older than the last one: a new world begins", to_string(frame),
-                   seconds_between(shifted(frame.utime, ahead_us_), last_utime)));
+                   seconds_between(shifted(frame.utime, offset_us_), last_utime)));
 }
 
 void WorldClock::warn(const std::string& line) {
-  const auto admitted = lines_.admit("world", line, LogThrottle::Clock::now());
+  const auto admitted = throttle_.admit("world", line, LogThrottle::Clock::now());
   if (admitted) log_warning("{}", *admitted);
 }
 
 CameraClock& WorldClock::set(const StampedFrame& frame) {
   constexpr double kUsualS = 1.0 / 30.0;
   constexpr double kMaxS = 0.1;
-  behind_ = 0;
-  const FrameId now{frame.id.channel, shifted(frame.id.utime, ahead_us_)};
-  doubted_.erase(now.channel);
+  stale_results_ = 0;
+  const FrameId now{frame.id.channel, shifted(frame.id.utime, offset_us_)};
+  unconfirmed_.erase(now.channel);
   if (!newest_ || now.utime > newest_->utime) newest_ = now;
   Camera& camera = cameras_[now.channel];
   CameraClock& clock = camera.clock;
@@ -179,7 +179,7 @@ CameraClock& WorldClock::set(const StampedFrame& frame) {
   if (clock.results == 0 || now.utime != clock.utime) {
     clock = CameraClock();
     clock.utime = now.utime;
-    clock.seconds = seconds;
+    clock.dt_s = seconds;
   }
   camera.number = frame.number;
   ++clock.results;
@@ -212,10 +212,10 @@ std::vector<PoseObservation> Tracker::associate(const std::vector<PoseObservatio
       is_assigned[assigned[i]] = true;
       update_track(*group.objects[i], *group.measured[assigned[i]], seconds);
     }
-    const int together =
+    const int instances =
         static_cast<int>(std::count_if(group.objects.begin(), group.objects.end(),
                                        [](const Track* track) { return track->id != 0 && track->is_observed; }));
-    max_instances_[class_name] = std::max(max_instances_[class_name], together);
+    max_instances_[class_name] = std::max(max_instances_[class_name], instances);
     for (std::size_t j = 0; j < group.measured.size(); ++j) {
       const PoseObservation& pose = *group.measured[j];
       if (!is_assigned[j] && !is_space_occupied(pose.measured, group, settings_.association))
@@ -233,7 +233,7 @@ void Tracker::update_track(Track& track, const PoseObservation& pose, double sec
   track.log_odds = std::min(
       settings_.existence.max_log_odds,
       track.log_odds + fraction * settings_.existence.gain * std::clamp(quality_logit(pose.quality), 0.3, kMax));
-  ++track.seen;
+  ++track.observed_frames;
   track.is_observed = true;
   track.free_space_violation_s = 0.0;
   track.last_seen = pose.frame;
@@ -251,11 +251,11 @@ void Tracker::update_unobserved_tracks(const FrameObservation& observation, cons
   std::set<std::string> missed_now;
   for (Track& track : tracks_) {
     if (!track.is_present() || track.is_observed) continue;
-    const MissedDetection missed{camera.seconds, camera.results == 1,
-                                 camera.missed.count(track.class_name) == 0 &&
-                                     searched_classes_.has_searched(observation.poses, track.class_name)};
-    if (missed.by_recognition) missed_now.insert(track.class_name);
-    if (missed.by_depth || missed.by_recognition) update_unobserved(context, missed, settings_.existence, track);
+    const AbsenceEvidence absence{camera.dt_s, camera.results == 1,
+                                  camera.missed.count(track.class_name) == 0 &&
+                                      searched_classes_.has_searched(observation.poses, track.class_name)};
+    if (absence.by_recognition) missed_now.insert(track.class_name);
+    if (absence.by_depth || absence.by_recognition) update_unobserved(context, absence, settings_.existence, track);
   }
   camera.missed.insert(missed_now.begin(), missed_now.end());
 }
@@ -302,8 +302,8 @@ bool SearchedClasses::has_searched(const ObjectPoses& poses, const std::string& 
 /// Returns whether its detector has reported anything within the last second.
 bool SearchedClasses::is_reporting(const std::string& class_name, std::int64_t utime) const {
   constexpr double kSilentS = 1.0;
-  const std::set<std::string>& together = coverage_.at(class_name).classes;
-  return std::any_of(together.begin(), together.end(), [&](const std::string& name) {
+  const std::set<std::string>& classes = coverage_.at(class_name).classes;
+  return std::any_of(classes.begin(), classes.end(), [&](const std::string& name) {
     const auto reported = coverage_.find(name);
     return reported != coverage_.end() && seconds_between(reported->second.utime, utime) <= kSilentS;
   });
@@ -317,7 +317,7 @@ void Tracker::begin_track(const PoseObservation& pose) {
   Track track{PoseTrack(pose, settings_.pose)};
   track.class_id = pose.class_id;
   track.class_name = pose.class_name;
-  track.seen = 1;
+  track.observed_frames = 1;
   track.first_utime = pose.frame.utime;
   track.last_seen = pose.frame;
   track.reason = fmt::format("seen by {}", pose.frame.channel);
@@ -342,15 +342,15 @@ bool Tracker::make_room() {
 void Tracker::confirm_tracks(std::int64_t utime) {
   const ExistenceSettings& existence = settings_.existence;
   for (Track& candidate : tracks_) {
-    const double spread_s = seconds_between(candidate.first_utime, candidate.last_seen.utime);
+    const double observed_s = seconds_between(candidate.first_utime, candidate.last_seen.utime);
     if (candidate.id != 0 || !candidate.is_present() || candidate.log_odds < existence.confirm_log_odds ||
-        candidate.seen < existence.min_frames || spread_s < existence.min_duration_s)
+        candidate.observed_frames < existence.min_frames || observed_s < existence.min_duration_s)
       continue;
     if (Track* earlier = find_reidentified(candidate, utime)) {
       const std::int64_t id = earlier->id;
       candidate.id = id;
       candidate.first_utime = earlier->first_utime;
-      candidate.seen += earlier->seen;
+      candidate.observed_frames += earlier->observed_frames;
       earlier->id = -1;  // marks it for forget_tracks()
       log_info("{} #{} re-identified at a new pose", candidate.class_name, id);
     } else {
@@ -369,33 +369,34 @@ Track* Tracker::find_reidentified(const Track& candidate, std::int64_t utime) {
     if (track.id != 0 && track.class_name == candidate.class_name && track.is_observed) ++visible;
   }
   Track* best = nullptr;
-  double best_rank = 0.0;
+  double min_cost = 0.0;
   for (Track& track : tracks_) {
     // A track whose number another candidate has got in this frame is no object any more.
     if (track.id <= 0 || track.class_name != candidate.class_name || track.is_observed) continue;
     const double unseen_s = seconds_between(track.last_seen.utime, utime);
-    const bool handled = track.state == TrackState::kHidden && unseen_s < settings_.hand_occlusion_s;
-    const bool lost = track.pose.filter().moving() || track.free_space_violation_s > 0.0;
-    const bool free = !track.is_present() || lost || (handled && visible <= max_instances_[candidate.class_name]);
-    if (!free || track.last_seen.utime > candidate.last_seen.utime) continue;
-    const double rank =
+    const bool is_hand_occluded = track.state == TrackState::kHidden && unseen_s < settings_.hand_occlusion_s;
+    const bool has_left = track.pose.filter().moving() || track.free_space_violation_s > 0.0;
+    const bool is_available =
+        !track.is_present() || has_left || (is_hand_occluded && visible <= max_instances_[candidate.class_name]);
+    if (!is_available || track.last_seen.utime > candidate.last_seen.utime) continue;
+    const double cost =
         unseen_s + (track.is_present() ? 0.0 : 5.0) +
         track.pose.distance({utime, candidate.pose.filter().T_world_object(), Covariance6::Identity()},
                             symmetries_of(models_, track.class_name), centre_of(models_, track.class_name));
-    if (best != nullptr && rank >= best_rank) continue;
+    if (best != nullptr && cost >= min_cost) continue;
     best = &track;
-    best_rank = rank;
+    min_cost = cost;
   }
   return best;
 }
 
 void Tracker::forget_tracks(std::int64_t utime) {
-  const auto over = [&](const Track& track) {
+  const auto is_expired = [&](const Track& track) {
     if (track.id < 0) return true;
     if (track.is_present()) return false;
     return track.id == 0 || seconds_between(track.deleted_utime, utime) > settings_.reidentification_s;
   };
-  tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(), over), tracks_.end());
+  tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(), is_expired), tracks_.end());
   // An untrusted sender may make up names of classes without end.
   std::set<std::string> known;
   for (const Track& track : tracks_) known.insert(track.class_name);
@@ -430,10 +431,10 @@ WorldObjects Tracker::report(const FrameObservation& received, std::int64_t utim
     object.T_world_object = filter.T_world_object();
     object.covariance = filter.covariance();
     object.velocity = filter.velocity();
-    object.seen = track.seen;
-    object.first_utime = microseconds_between(clock_.ahead_us(), track.first_utime);
+    object.seen = track.observed_frames;
+    object.first_utime = microseconds_between(clock_.offset_us(), track.first_utime);
     object.last_seen = track.last_seen;
-    object.last_seen.utime = microseconds_between(clock_.ahead_us(), track.last_seen.utime);
+    object.last_seen.utime = microseconds_between(clock_.offset_us(), track.last_seen.utime);
     object.reason = track.reason;
     out.objects.push_back(std::move(object));
   }
@@ -453,10 +454,10 @@ void Tracker::reset() {
 
 void WorldClock::reset() {
   cameras_.clear();
-  doubted_.clear();
+  unconfirmed_.clear();
   newest_.reset();
-  behind_ = 0;
-  ahead_us_ = 0;
+  stale_results_ = 0;
+  offset_us_ = 0;
 }
 
 void Tracker::set_models(TrackModels models) {

@@ -46,7 +46,7 @@ void fields(const ObjectTrackerSettings& /*settings*/, const Visit& visit) {
 struct CameraClock {
   std::int64_t utime = 0;         ///< time of the frame on the world's clock
   std::int64_t results = 0;       ///< number of results of this frame; 0 before the first frame
-  double seconds = 0.0;           ///< time since the frame before, as far as it counts
+  double dt_s = 0.0;              ///< time since its frame before, at most 0.1 s; 1/30 s at the first one
   std::set<std::string> classes;  ///< classes that the results of this frame have had
   std::set<std::string> missed;   ///< classes that were searched in it, and of which a track was missed
 };
@@ -78,7 +78,7 @@ class WorldClock {
   /// - It is more than a second older than another camera's last one, as with clocks that disagree: throws InputError.
   ///   After thirty of them in a row the other camera has ended, and the thirtieth begins a new world.
   /// Logs set clocks and new worlds, at most once a second.
-  TimeOrder order_of(const StampedFrame& frame);
+  TimeOrder classify(const StampedFrame& frame);
 
   /// Sets the camera's clock to this frame and returns it.
   CameraClock& set(const StampedFrame& frame);
@@ -87,7 +87,7 @@ class WorldClock {
   void reset();
 
   /// Returns the world's clock minus the frames' utimes: 0 as long as no clock was set.
-  std::int64_t ahead_us() const { return ahead_us_; }
+  std::int64_t offset_us() const { return offset_us_; }
 
  private:
   struct Camera {
@@ -96,21 +96,21 @@ class WorldClock {
     double interval_s = 0.0;  // interval between the last two frames; 0 before the second
   };
 
-  TimeOrder order_after(const Camera& camera, const StampedFrame& frame, std::int64_t utime);
-  TimeOrder order_behind(const Camera& camera, const StampedFrame& frame, std::int64_t utime);
-  TimeOrder order_ahead(std::int64_t last_utime, const StampedFrame& frame, std::int64_t utime);
-  bool is_confirmed(std::int64_t last_utime, const FrameId& frame, std::int64_t utime);
-  void move_to(std::int64_t world_utime, const FrameId& frame);
+  TimeOrder classify_known_camera(const Camera& camera, const StampedFrame& frame, std::int64_t utime);
+  TimeOrder classify_backward_jump(const Camera& camera, const StampedFrame& frame, std::int64_t utime);
+  TimeOrder classify_forward_jump(std::int64_t last_utime, const StampedFrame& frame, std::int64_t utime);
+  bool confirm_jump(std::int64_t last_utime, const FrameId& frame, std::int64_t utime);
+  void set_offset(std::int64_t world_utime, const FrameId& frame);
   void log_new_world(const FrameId& frame, std::int64_t last_utime);
   void warn(const std::string& line);
 
-  std::map<std::string, Camera> cameras_;        // cameras by channel name
-  std::map<std::string, std::int64_t> doubted_;  // time, on the world's clock, of the last frame far from its camera's
-                                                 // last one and not yet confirmed, by channel
-  std::optional<FrameId> newest_;                // newest frame of all cameras, on the world's clock
-  std::int64_t ahead_us_ = 0;
-  int behind_ = 0;  // frames one after the other that were refused as too old
-  LogThrottle lines_;
+  std::map<std::string, Camera> cameras_;            // cameras by channel name
+  std::map<std::string, std::int64_t> unconfirmed_;  // time, on the world's clock, of the last frame far from its
+                                                     // camera's last one and not yet confirmed, by channel
+  std::optional<FrameId> newest_;                    // newest frame of all cameras, on the world's clock
+  std::int64_t offset_us_ = 0;
+  int stale_results_ = 0;  // frames one after the other that were refused as too old
+  LogThrottle throttle_;
 };
 
 /// Determines which classes were searched for a result, so that a class without a pose in it was missed; the result

@@ -11,8 +11,8 @@ namespace {
 constexpr std::int64_t kSecondUs = 1000000;
 
 /// Returns the order of a frame that came last.
-TimeOrder tell(WorldClock& clock, const FrameId& frame, const FrameNumber& number = {}) {
-  const TimeOrder order = clock.order_of({frame, number, frame.utime});
+TimeOrder classify_at(WorldClock& clock, const FrameId& frame, const FrameNumber& number = {}) {
+  const TimeOrder order = clock.classify({frame, number, frame.utime});
   if (order == TimeOrder::kReset) clock.reset();
   if (order != TimeOrder::kLate) clock.set({frame, number, frame.utime});
   return order;
@@ -29,35 +29,35 @@ struct Source {
     utime += 33333;
     return {number++, utime, run};
   }
-  TimeOrder tell_next(WorldClock& clock) {
+  TimeOrder classify_frame(WorldClock& clock) {
     const FrameNumber frame = next();
-    return tell(clock, {channel, utime}, frame);
+    return classify_at(clock, {channel, utime}, frame);
   }
 };
 
 TEST(WorldClock, TimeGoesBackWhereACamerasFramesDo) {
   WorldClock clock;
-  EXPECT_EQ(tell(clock, {"LEFT", 100 * kSecondUs}), TimeOrder::kNext);
-  EXPECT_EQ(tell(clock, {"RIGHT", 100 * kSecondUs}), TimeOrder::kNext);
-  EXPECT_EQ(tell(clock, {"LEFT", 100 * kSecondUs - 50000}), TimeOrder::kLate);
-  EXPECT_EQ(clock.order_of({{"LEFT", 90 * kSecondUs}, {}, 100 * kSecondUs}), TimeOrder::kLate)
+  EXPECT_EQ(classify_at(clock, {"LEFT", 100 * kSecondUs}), TimeOrder::kNext);
+  EXPECT_EQ(classify_at(clock, {"RIGHT", 100 * kSecondUs}), TimeOrder::kNext);
+  EXPECT_EQ(classify_at(clock, {"LEFT", 100 * kSecondUs - 50000}), TimeOrder::kLate);
+  EXPECT_EQ(clock.classify({{"LEFT", 90 * kSecondUs}, {}, 100 * kSecondUs}), TimeOrder::kLate)
       << "its result took long";
-  EXPECT_EQ(tell(clock, {"LEFT", 10 * kSecondUs}), TimeOrder::kLate) << "one stamp may be wrong";
-  EXPECT_EQ(tell(clock, {"LEFT", 10 * kSecondUs}), TimeOrder::kLate) << "another result of the same frame";
-  EXPECT_EQ(tell(clock, {"LEFT", 10 * kSecondUs + 33333}), TimeOrder::kReset);
-  EXPECT_EQ(tell(clock, {"RIGHT", 10 * kSecondUs}), TimeOrder::kNext) << "of the same new world";
-  EXPECT_EQ(clock.order_of({{"LEFT", 100 * kSecondUs}, {}, 10 * kSecondUs}), TimeOrder::kLate) << "of the earlier run";
+  EXPECT_EQ(classify_at(clock, {"LEFT", 10 * kSecondUs}), TimeOrder::kLate) << "one stamp may be wrong";
+  EXPECT_EQ(classify_at(clock, {"LEFT", 10 * kSecondUs}), TimeOrder::kLate) << "another result of the same frame";
+  EXPECT_EQ(classify_at(clock, {"LEFT", 10 * kSecondUs + 33333}), TimeOrder::kReset);
+  EXPECT_EQ(classify_at(clock, {"RIGHT", 10 * kSecondUs}), TimeOrder::kNext) << "of the same new world";
+  EXPECT_EQ(clock.classify({{"LEFT", 100 * kSecondUs}, {}, 10 * kSecondUs}), TimeOrder::kLate) << "of the earlier run";
 }
 
 TEST(WorldClock, ALogOrSourceThatBeginsAgainIsANewWorldAtOnce) {
   WorldClock clock;
   for (const std::int64_t other_run : {0, 1}) {
     Source source;
-    for (int i = 0; i < 90; ++i) source.tell_next(clock);
+    for (int i = 0; i < 90; ++i) source.classify_frame(clock);
     Source again;
     again.run += other_run;
-    EXPECT_EQ(again.tell_next(clock), TimeOrder::kReset) << other_run;
-    EXPECT_EQ(again.tell_next(clock), TimeOrder::kNext);
+    EXPECT_EQ(again.classify_frame(clock), TimeOrder::kReset) << other_run;
+    EXPECT_EQ(again.classify_frame(clock), TimeOrder::kNext);
   }
 }
 
@@ -67,7 +67,8 @@ TEST(WorldClock, AShortSourceThatIsStartedAgainWithTheSameStampsIsANewWorld) {
     Source source;
     source.run = run;
     for (int i = 0; i < 4; ++i)
-      EXPECT_EQ(source.tell_next(clock), run > 1 && i == 0 ? TimeOrder::kReset : TimeOrder::kNext) << run << " " << i;
+      EXPECT_EQ(source.classify_frame(clock), run > 1 && i == 0 ? TimeOrder::kReset : TimeOrder::kNext)
+          << run << " " << i;
   }
 }
 
@@ -81,11 +82,11 @@ TEST(WorldClock, AClockThatIsSetLeavesTheWorldGoingOn) {
     for (int i = 0; i < 90; ++i) {
       if (i == 30) left.utime += step;
       if (i == 30) right.utime += step;
-      const TimeOrder of_left = left.tell_next(clock);
-      const TimeOrder of_right = right.tell_next(clock);
+      const TimeOrder of_left = left.classify_frame(clock);
+      const TimeOrder of_right = right.classify_frame(clock);
       EXPECT_EQ(of_left, i == 30 ? TimeOrder::kLate : TimeOrder::kNext) << step << " " << i;
       EXPECT_EQ(of_right, i == 30 ? TimeOrder::kLate : TimeOrder::kNext) << step << " " << i;
-      const std::int64_t now = left.utime + clock.ahead_us();
+      const std::int64_t now = left.utime + clock.offset_us();
       if (i != 30) {
         EXPECT_GT(now, last);
         EXPECT_LE(now, last + 61 * kSecondUs) << "nothing waits for an hour";
@@ -104,10 +105,10 @@ TEST(WorldClock, OneWrongStampIsPassedOver) {
       for (int i = 0; i < 30; ++i) {
         const FrameNumber number = with_numbers ? source.next() : FrameNumber{{}, source.next().utime, 0};
         const bool is_wrong = i == 10 || i == 12;
-        const TimeOrder order = tell(clock, {"LEFT", source.utime + (is_wrong ? wrong : 0)}, number);
+        const TimeOrder order = classify_at(clock, {"LEFT", source.utime + (is_wrong ? wrong : 0)}, number);
         EXPECT_EQ(order, is_wrong ? TimeOrder::kLate : TimeOrder::kNext) << wrong << " " << i;
       }
-      EXPECT_EQ(clock.ahead_us(), 0);
+      EXPECT_EQ(clock.offset_us(), 0);
     }
   }
 }
@@ -116,18 +117,18 @@ TEST(WorldClock, TheFirstFrameOfAnotherCameraMayHaveAWrongStamp) {
   WorldClock clock;
   Source left;
   Source right{"RIGHT"};
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(left.tell_next(clock), TimeOrder::kNext);
-  EXPECT_EQ(tell(clock, {"RIGHT", left.utime + 1000 * kSecondUs}), TimeOrder::kLate);
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(left.tell_next(clock), TimeOrder::kNext);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(left.classify_frame(clock), TimeOrder::kNext);
+  EXPECT_EQ(classify_at(clock, {"RIGHT", left.utime + 1000 * kSecondUs}), TimeOrder::kLate);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(left.classify_frame(clock), TimeOrder::kNext);
   right.utime = left.utime;
-  EXPECT_EQ(right.tell_next(clock), TimeOrder::kNext);
+  EXPECT_EQ(right.classify_frame(clock), TimeOrder::kNext);
 }
 
 TEST(WorldClock, ResultsMayComeSeldom) {
   WorldClock clock;
   int late = 0;
   for (std::int64_t second = 100; second < 160; second += 2)
-    late += tell(clock, {"LEFT", second * kSecondUs}) == TimeOrder::kLate ? 1 : 0;
+    late += classify_at(clock, {"LEFT", second * kSecondUs}) == TimeOrder::kLate ? 1 : 0;
   EXPECT_EQ(late, 1) << "as long as nobody knows how seldom";
 }
 
@@ -136,21 +137,22 @@ TEST(WorldClock, TimesMayBeAny) {
   constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
   WorldClock clock;
   for (const std::int64_t utime : {kFirst, kLast, kLast - 1, kFirst, kFirst + 1, std::int64_t{0}, kLast, kFirst})
-    tell(clock, {"LEFT", utime}, {utime / 2, utime, 1});
+    classify_at(clock, {"LEFT", utime}, {utime / 2, utime, 1});
   Source source;
-  for (int i = 0; i < 3; ++i) source.tell_next(clock);
-  EXPECT_EQ(source.tell_next(clock), TimeOrder::kNext);
+  for (int i = 0; i < 3; ++i) source.classify_frame(clock);
+  EXPECT_EQ(source.classify_frame(clock), TimeOrder::kNext);
 }
 
 TEST(WorldClock, ACameraThatIsBehindIsRefusedAsLongAsTheOtherGoesOn) {
   WorldClock clock;
   for (int i = 0; i < 100; ++i) {
-    EXPECT_EQ(tell(clock, {"AHEAD", 100 * kSecondUs + 33333 * i}), TimeOrder::kNext);
-    EXPECT_THROW(tell(clock, {"BEHIND", 50 * kSecondUs + 33333 * i}), InputError) << i;
+    EXPECT_EQ(classify_at(clock, {"AHEAD", 100 * kSecondUs + 33333 * i}), TimeOrder::kNext);
+    EXPECT_THROW(classify_at(clock, {"BEHIND", 50 * kSecondUs + 33333 * i}), InputError) << i;
   }
-  for (int i = 1; i < 29; ++i) EXPECT_THROW(tell(clock, {"BEHIND", 60 * kSecondUs + 33333 * i}), InputError) << i;
-  EXPECT_EQ(tell(clock, {"BEHIND", 62 * kSecondUs}), TimeOrder::kReset) << "the other is no more";
-  EXPECT_EQ(tell(clock, {"BEHIND", 62 * kSecondUs + 33333}), TimeOrder::kNext);
+  for (int i = 1; i < 29; ++i)
+    EXPECT_THROW(classify_at(clock, {"BEHIND", 60 * kSecondUs + 33333 * i}), InputError) << i;
+  EXPECT_EQ(classify_at(clock, {"BEHIND", 62 * kSecondUs}), TimeOrder::kReset) << "the other is no more";
+  EXPECT_EQ(classify_at(clock, {"BEHIND", 62 * kSecondUs + 33333}), TimeOrder::kNext);
 }
 
 StampedFrame frame_at(const std::string& channel, std::int64_t utime) {
@@ -159,11 +161,11 @@ StampedFrame frame_at(const std::string& channel, std::int64_t utime) {
 
 TEST(WorldClock, SecondsAreThoseBetweenACamerasFramesAsFarAsTheyCount) {
   WorldClock clock;
-  EXPECT_NEAR(clock.set(frame_at("LEFT", 0)).seconds, 1.0 / 30.0, 1e-12);
-  EXPECT_NEAR(clock.set(frame_at("RIGHT", 20000)).seconds, 1.0 / 30.0, 1e-12);
-  EXPECT_NEAR(clock.set(frame_at("LEFT", 50000)).seconds, 0.05, 1e-12);
+  EXPECT_NEAR(clock.set(frame_at("LEFT", 0)).dt_s, 1.0 / 30.0, 1e-12);
+  EXPECT_NEAR(clock.set(frame_at("RIGHT", 20000)).dt_s, 1.0 / 30.0, 1e-12);
+  EXPECT_NEAR(clock.set(frame_at("LEFT", 50000)).dt_s, 0.05, 1e-12);
   EXPECT_EQ(clock.set(frame_at("LEFT", 50000)).results, 2);
-  EXPECT_NEAR(clock.set(frame_at("LEFT", 5 * kSecondUs)).seconds, 0.1, 1e-12);
+  EXPECT_NEAR(clock.set(frame_at("LEFT", 5 * kSecondUs)).dt_s, 0.1, 1e-12);
 }
 
 }  // namespace
