@@ -15,10 +15,10 @@ constexpr double kMaxInformation = 1.0 / (0.0005 * 0.0005);  // 1/s^2; beyond it
 
 void CameraLag::update(const LagEvidence& evidence, double deviation_s) {
   if (!(deviation_s > 0.0) || !(evidence.information > 0.0) || !std::isfinite(evidence.weighted)) return;
-  seen_ += kIndependent * evidence.information / (deviation_s * deviation_s);
+  observed_information_ += kIndependent * evidence.information / (deviation_s * deviation_s);
   weighted_ += kIndependent * evidence.weighted / deviation_s;
-  const double kept = std::min(1.0, kMaxInformation / seen_);
-  seen_ *= kept;
+  const double kept = std::min(1.0, kMaxInformation / observed_information_);
+  observed_information_ *= kept;
   weighted_ *= kept;
 }
 

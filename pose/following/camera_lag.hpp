@@ -22,11 +22,11 @@ class CameraLag {
   bool is_known() const;
 
  private:
-  double information() const { return 1.0 / (prior_s_ * prior_s_) + seen_; }
+  double information() const { return 1.0 / (prior_s_ * prior_s_) + observed_information_; }
 
   double prior_s_;
-  double seen_ = 0.0;      // information, 1/s^2
-  double weighted_ = 0.0;  // information times lag, 1/s
+  double observed_information_ = 0.0;  // information, 1/s^2
+  double weighted_ = 0.0;              // information times lag, 1/s
 };
 
 }  // namespace houghstream

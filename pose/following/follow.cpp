@@ -25,20 +25,20 @@ Eigen::Vector3d middle_of(const ObjectModel& model, const Eigen::Isometry3d& T_c
 /// Returns the box about the points that should be visible; it is empty where none is.
 cv::Rect2f expected_box(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object) {
   constexpr int kPoints = 150;
-  const ProjectedView look = project_view(frame, model, T_camera_object, kPoints);
+  const ProjectedView projected = project_view(frame, model, T_camera_object, kPoints);
   cv::Rect2f box;
-  for (std::size_t i = 0; i < look.points.size(); ++i) {
-    const Eigen::Vector3f point = look.T * look.view.points[i];
+  for (std::size_t i = 0; i < projected.points.size(); ++i) {
+    const Eigen::Vector3f point = projected.T * projected.view.points[i];
     if (!(point.z() > 0.0F)) continue;
     const Eigen::Vector2f pixel = frame.camera.project_single(point);
-    const cv::Rect2f spot(pixel.x(), pixel.y(), 1.0F, 1.0F);
-    box = box.area() > 0.0F ? box | spot : spot;
+    const cv::Rect2f pixel_box(pixel.x(), pixel.y(), 1.0F, 1.0F);
+    box = box.area() > 0.0F ? box | pixel_box : pixel_box;
   }
   return box;
 }
 
-ObjectObservation see_expected(const FrameContext& frame, const ObjectModel& model,
-                               const Eigen::Isometry3d& T_camera_object, const PoseSettings& settings) {
+ObjectObservation observe_expected(const FrameContext& frame, const ObjectModel& model,
+                                   const Eigen::Isometry3d& T_camera_object, const PoseSettings& settings) {
   Detection expected;
   expected.box_px = expected_box(frame.frame, model, T_camera_object);
   expected.centre_camera = T_camera_object.cast<float>() * model.vote_centre;
@@ -92,19 +92,19 @@ JointResult register_near(const ObjectObservation& observation, const Eigen::Iso
 
 /// Judges the pose, of an object that was reported before, by points of the view and the outline of an earlier frame,
 /// where there is one and that suffices; else the model is rendered.
-void decide_followed(const ObjectObservation& observation, const ExpectedObject& expected, const FollowerInput& input,
+void decide_by_depth(const ObjectObservation& observation, const ExpectedObject& expected, const FollowerInput& input,
                      FollowedPose& followed) {
   const PoseSettings& settings = input.pose;
   const DepthTolerance tolerance{settings.verification.tolerance_m, observation.noise};
   const QualitySettings& quality = class_quality_of(settings, followed.pose.class_name);
   const Eigen::Isometry3d& T = followed.T_camera_object;
-  const ProjectedView look = project_view(observation.frame, observation.model, T, settings.verification.points);
+  const ProjectedView projected = project_view(observation.frame, observation.model, T, settings.verification.points);
   PoseEvidence evidence{
-      expected.score, {}, compare_texture(observation, look, tolerance), expected.texture_probability};
+      expected.score, {}, compare_texture(observation, projected, tolerance), expected.texture_probability};
   bring_to_camera(expected.camera_colours, evidence);
   followed.pose.camera_colours = expected.camera_colours;
   if (expected.verified) {
-    evidence.depth = verify_projected_view(look, tolerance);
+    evidence.depth = verify_projected_view(projected, tolerance);
     evidence.depth.boundary_samples = expected.verified->boundary_samples;
     evidence.depth.boundary_continuations = expected.verified->boundary_continuations;
     followed.verified = expected.verified;
@@ -124,8 +124,8 @@ void decide_followed(const ObjectObservation& observation, const ExpectedObject&
 }
 
 /// Judges the pose where no depth is measured: as it was judged last, less what its colours leave unexplained.
-void judge_without_depth(const ExpectedObject& expected, const JointResult& result, const FollowerInput& input,
-                         FollowedPose& followed) {
+void decide_by_colours(const ExpectedObject& expected, const JointResult& result, const FollowerInput& input,
+                       FollowedPose& followed) {
   ObjectPose& pose = followed.pose;
   const int judged = result.edges + result.blank;
   const float explained = judged == 0 ? 0.0F : static_cast<float>(result.edges) / static_cast<float>(judged);
@@ -140,7 +140,7 @@ void judge_without_depth(const ExpectedObject& expected, const JointResult& resu
 }
 
 /// Returns the result for an object that has not been measured in this frame yet.
-FollowedPose unposed(const ExpectedObject& expected) {
+FollowedPose make_unposed(const ExpectedObject& expected) {
   FollowedPose followed;
   followed.pose.class_id = expected.class_id;
   followed.pose.class_name = expected.class_name;
@@ -153,10 +153,10 @@ FollowedPose unposed(const ExpectedObject& expected) {
 FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, const ExpectedObject& expected,
                          const Eigen::Isometry3d& start, const FollowerInput& input) {
   const PoseSettings& settings = input.pose;
-  FollowedPose followed = unposed(expected);
+  FollowedPose followed = make_unposed(expected);
   ObjectPose& pose = followed.pose;
   followed.T_camera_object = start;
-  const ObjectObservation observation = see_expected(frame, model, start, settings);
+  const ObjectObservation observation = observe_expected(frame, model, start, settings);
   followed.has_depth = has_depth(observation, input);
   if (!followed.has_depth && !(is_without_depth(observation, input) && expected.appearance.colours)) {
     pose.status = PoseStatus::kTooFewPoints;
@@ -178,34 +178,34 @@ FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, co
   }
   followed.T_camera_object = registration.T_camera_object;
   if (followed.has_depth) {
-    decide_followed(observation, expected, input, followed);
+    decide_by_depth(observation, expected, input, followed);
   } else {
-    judge_without_depth(expected, result, input, followed);
+    decide_by_colours(expected, result, input, followed);
   }
   return followed;
 }
 
 /// Returns whether something occludes the object, and the rest of it shows no free-space violation.
-bool is_hidden(const FrameContext& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-               const FollowerInput& input) {
+bool is_occluded(const FrameContext& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                 const FollowerInput& input) {
   const DepthTolerance tolerance{input.pose.verification.tolerance_m, frame.noise};
   const Verification verification = verify_pose(frame.frame, model.mesh, T_camera_object, tolerance);
   const auto rendered = static_cast<float>(verification.rendered);
-  const auto hidden = static_cast<float>(verification.occluded);
-  return hidden > input.follow.max_occluded_fraction * rendered &&
+  const auto occluded = static_cast<float>(verification.occluded);
+  return occluded > input.follow.max_occluded_fraction * rendered &&
          static_cast<float>(verification.free_space_violations) <=
-             input.follow.max_free_space_violation * (rendered - hidden);
+             input.follow.max_free_space_violation * (rendered - occluded);
 }
 
 FollowedPose follow_object(const FrameContext& frame, const ObjectModel& model, const ExpectedObject& expected,
                            const FollowerInput& input) {
   FollowedPose best;
   for (std::size_t i = 0; i < expected.initial_poses.size(); ++i) {
-    FollowedPose here = follow_from(frame, model, expected, expected.initial_poses[i], input);
-    if (i == 0 || here.pose.shape_quality > best.pose.shape_quality) best = std::move(here);
+    FollowedPose followed = follow_from(frame, model, expected, expected.initial_poses[i], input);
+    if (i == 0 || followed.pose.shape_quality > best.pose.shape_quality) best = std::move(followed);
     if (has_pose(best.pose.status)) return best;
   }
-  if (expected.check_occlusion && is_hidden(frame, model, expected.initial_poses.front(), input))
+  if (expected.check_occlusion && is_occluded(frame, model, expected.initial_poses.front(), input))
     best.pose.status = PoseStatus::kOccluded;
   return best;
 }
@@ -224,7 +224,7 @@ std::vector<FollowedPose> follow_objects(const PoseEstimator& estimator, const F
     if (model != estimator.models().end()) {
       followed[i] = follow_object(context, model->second, object, input);
     } else {
-      followed[i] = unposed(object);
+      followed[i] = make_unposed(object);
       followed[i].pose.status = PoseStatus::kNoModel;
     }
   });

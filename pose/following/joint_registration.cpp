@@ -34,7 +34,7 @@ class JointRegistration {
  public:
   JointRegistration(const ObjectObservation& observation, const JointStart& start, const JointSettings& settings,
                     const RegistrationSettings& registration)
-      : seen_(observation),
+      : observation_(observation),
         view_{observation.frame, observation.model, observation.noise},
         start_(start),
         settings_(settings),
@@ -55,17 +55,17 @@ class JointRegistration {
         pose() = start_.refine_by_texture(pose());
         brightness_ = {};
       }
-      work_on(kLevels[i], distance_m);
+      register_level(kLevels[i], distance_m);
       distance_m = std::max(end_m_, distance_m * shrink);
     }
-    note_evidence();
+    measure_inliers();
     return std::move(result_);
   }
 
  private:
   Eigen::Isometry3d& pose() { return result_.registration.T_camera_object; }
 
-  void work_on(const JointLevel& level, double distance_m) {
+  void register_level(const JointLevel& level, double distance_m) {
     const RegionLines lines = find_lines(level);
     result_.edges = static_cast<int>(lines.lines.size());
     result_.blank = lines.blank;
@@ -78,15 +78,15 @@ class JointRegistration {
       result_.information = all.hessian;
       const bool has_depth = add_depth(level, distance_m, all);
       if (!has_depth && lines.lines.empty()) return;
-      move(all);
+      apply_step(all);
     }
   }
 
   /// Returns the motion of one deviation of the lag, as MotionEquations have it.
   Vector6d lag_motion() {
-    const Eigen::Vector3d arm = pose().linear() * seen_.model.centre.cast<double>();
+    const Eigen::Vector3d arm = pose().linear() * observation_.model.centre.cast<double>();
     Vector6d motion;
-    motion << seen_.model.radius * start_.depth_lag.rotation_rad,
+    motion << observation_.model.radius * start_.depth_lag.rotation_rad,
         start_.depth_lag.shift_m + start_.depth_lag.rotation_rad.cross(arm);
     return motion;
   }
@@ -94,18 +94,18 @@ class JointRegistration {
   /// Returns the object's pose at the time of the depth measurement, by the estimated lag.
   Eigen::Isometry3d depth_pose() {
     Eigen::Isometry3d T = pose();
-    move_by_step(lag_.deviations * lag_motion(), seen_.model, T);
+    move_by_step(lag_.deviations * lag_motion(), observation_.model, T);
     return T;
   }
 
   /// Marginalises the lag out of depth's equations (Schur complement; its prior is one deviation).
   void marginalise_lag(MotionEquations& equations) {
     const Vector6d motion = lag_motion();
-    lag_.mixed = equations.hessian.selfadjointView<Eigen::Lower>() * motion;
-    lag_.hessian = 1.0 + motion.dot(lag_.mixed);
+    lag_.cross_terms = equations.hessian.selfadjointView<Eigen::Lower>() * motion;
+    lag_.hessian = 1.0 + motion.dot(lag_.cross_terms);
     lag_.gradient = motion.dot(equations.gradient) - lag_.deviations;
-    equations.gradient -= lag_.mixed * (lag_.gradient / lag_.hessian);
-    equations.hessian.selfadjointView<Eigen::Lower>().rankUpdate(lag_.mixed, -1.0 / lag_.hessian);
+    equations.gradient -= lag_.cross_terms * (lag_.gradient / lag_.hessian);
+    equations.hessian.selfadjointView<Eigen::Lower>().rankUpdate(lag_.cross_terms, -1.0 / lag_.hessian);
   }
 
   static void add(const MotionEquations& part, double weight, MotionEquations& all) {
@@ -117,62 +117,63 @@ class JointRegistration {
   bool add_depth(const JointLevel& level, double distance_m, MotionEquations& all) {
     const auto points = static_cast<std::size_t>(std::lround(level.points * settings_.points));
     const CorrespondenceSums pairs =
-        sum_correspondences(seen_, depth_pose(), points, {static_cast<float>(distance_m), level.search_steps});
+        sum_correspondences(observation_, depth_pose(), points, {static_cast<float>(distance_m), level.search_steps});
     if (pairs.count < kMinPairs) return false;
     // A level with fewer pairs weighs as much as the finest one.
     const double weight = 1.0 / (level.points * sigma_m_ * sigma_m_);
     MotionEquations depth;
-    MotionEquations across;
+    MotionEquations point_to_plane;
     add(build_equations(pairs, registration_.point_weight), weight, depth);
-    add(build_equations(pairs, 0.0), weight, across);
+    add(build_equations(pairs, 0.0), weight, point_to_plane);
     lag_.hessian = 0.0;
-    const bool is_told_by_colours = !all.hessian.isZero(0.0);
-    if (is_told_by_colours) {
-      marginalise_lag(across);
+    const bool has_colour_equations = !all.hessian.isZero(0.0);
+    if (has_colour_equations) {
+      marginalise_lag(point_to_plane);
       marginalise_lag(depth);
     }
     add(depth, 1.0, all);
-    result_.information += across.hessian;
+    result_.information += point_to_plane.hessian;
     return true;
   }
 
   RegionLines find_lines(const JointLevel& level) {
     const std::shared_ptr<const ColourStatistics>& colours = start_.appearance.colours;
     if (!colours || settings_.region.lines == 0) return {};
-    if (!result_.silhouette || !is_silhouette_of(*result_.silhouette, seen_.model, pose()))
+    if (!result_.silhouette || !is_silhouette_of(*result_.silhouette, observation_.model, pose()))
       result_.silhouette =
-          std::make_shared<const Silhouette>(make_silhouette(seen_.model, pose(), settings_.region.lines));
+          std::make_shared<const Silhouette>(make_silhouette(observation_.model, pose(), settings_.region.lines));
     return find_region_lines(view_, *result_.silhouette, *colours, pose(), level.scale, settings_.region);
   }
 
-  void move(MotionEquations& all) {
-    const double turn_m = settings_.tikhonov_rad * seen_.model.radius;
-    all.hessian.diagonal().head<3>().array() += 1.0 / (turn_m * turn_m);
+  void apply_step(MotionEquations& all) {
+    const double rotation_m = settings_.tikhonov_rad * observation_.model.radius;
+    all.hessian.diagonal().head<3>().array() += 1.0 / (rotation_m * rotation_m);
     all.hessian.diagonal().tail<3>().array() += 1.0 / (settings_.tikhonov_m * settings_.tikhonov_m);
     const Eigen::LDLT<Matrix6d> solver = all.hessian.selfadjointView<Eigen::Lower>().ldlt();
     const Vector6d step = solver.solve(all.gradient);
     if (lag_.hessian > 0.0) {
-      lag_.deviations += (lag_.gradient - lag_.mixed.dot(step)) / lag_.hessian;
-      note_lag(solver);
+      lag_.deviations += (lag_.gradient - lag_.cross_terms.dot(step)) / lag_.hessian;
+      update_lag_evidence(solver);
     }
     ++result_.registration.iterations;
     result_.registration.converged =
-        step.allFinite() && move_by_step(step, seen_.model, pose()) < registration_.converged_m;
+        step.allFinite() && move_by_step(step, observation_.model, pose()) < registration_.converged_m;
   }
 
   /// Notes what is known of the lag when the pose is free as well, less its prior.
-  void note_lag(const Eigen::LDLT<Matrix6d>& solver) {
-    const double from_pose = lag_.mixed.dot(solver.solve(lag_.mixed)) / (lag_.hessian * lag_.hessian);
+  void update_lag_evidence(const Eigen::LDLT<Matrix6d>& solver) {
+    const double from_pose = lag_.cross_terms.dot(solver.solve(lag_.cross_terms)) / (lag_.hessian * lag_.hessian);
     const double variance = 1.0 / lag_.hessian + from_pose;
     result_.lag.information = std::max(0.0, 1.0 / variance - 1.0);
     result_.lag.weighted = lag_.deviations / variance;
   }
 
-  void note_evidence() {
+  void measure_inliers() {
     RegistrationResult& out = result_.registration;
     const auto points = static_cast<std::size_t>(settings_.points);
-    const CorrespondenceSums last = sum_correspondences(seen_, depth_pose(), points, {static_cast<float>(end_m_), 1});
-    const std::size_t used = std::min(points, nearest_view(seen_.model, pose()).points.size());
+    const CorrespondenceSums last =
+        sum_correspondences(observation_, depth_pose(), points, {static_cast<float>(end_m_), 1});
+    const std::size_t used = std::min(points, nearest_view(observation_.model, pose()).points.size());
     out.inliers = last.count;
     out.inlier_fraction = static_cast<float>(last.count) / static_cast<float>(used);
     out.residual = static_cast<float>(std::sqrt(last.squares / last.count));  // 0/0 is NaN
@@ -182,12 +183,12 @@ class JointRegistration {
   /// equation.
   struct Lag {
     double deviations = 0.0;
-    Vector6d mixed = Vector6d::Zero();  // products with the motion
+    Vector6d cross_terms = Vector6d::Zero();  // products with the motion
     double hessian = 0.0;
     double gradient = 0.0;
   };
 
-  const ObjectObservation& seen_;
+  const ObjectObservation& observation_;
   const RegionView view_;
   const JointStart& start_;
   const JointSettings& settings_;
@@ -210,15 +211,16 @@ Eigen::Matrix3d observed_rotation(const Matrix6d& information, double radius, co
   const Matrix6d full = information.selfadjointView<Eigen::Lower>();
   // A shift may compensate a rotation: this is the information on the rotation that is left when the shift is free as
   // well.
-  constexpr double kAlmostNone = 1.0;  // 1/m^2
-  const Eigen::Matrix3d shift = full.bottomRightCorner<3, 3>() + kAlmostNone * Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d mixed = full.topRightCorner<3, 3>();
-  const Eigen::Matrix3d rotation = full.topLeftCorner<3, 3>() - mixed * shift.ldlt().solve(mixed.transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(rotation);
-  const double held = 1.0 / std::pow(settings.tikhonov_rad * radius, 2.0);
-  const Eigen::Vector3d known = parts.eigenvalues().cwiseMax(0.0);
-  const Eigen::Vector3d gains = known.array() / (known.array() + held);
-  return parts.eigenvectors() * gains.asDiagonal() * parts.eigenvectors().transpose();
+  constexpr double kMinInformation = 1.0;  // 1/m^2
+  const Eigen::Matrix3d shift = full.bottomRightCorner<3, 3>() + kMinInformation * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d cross_terms = full.topRightCorner<3, 3>();
+  const Eigen::Matrix3d rotation =
+      full.topLeftCorner<3, 3>() - cross_terms * shift.ldlt().solve(cross_terms.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(rotation);
+  const double prior = 1.0 / std::pow(settings.tikhonov_rad * radius, 2.0);
+  const Eigen::Vector3d eigenvalues = solver.eigenvalues().cwiseMax(0.0);
+  const Eigen::Vector3d gains = eigenvalues.array() / (eigenvalues.array() + prior);
+  return solver.eigenvectors() * gains.asDiagonal() * solver.eigenvectors().transpose();
 }
 
 }  // namespace houghstream

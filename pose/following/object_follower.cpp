@@ -23,26 +23,26 @@ bool is_overtaken(std::int64_t utime, FollowedCamera& camera) {
   if (camera.recent_frames.empty()) return false;
   const double passed_s = seconds_between(camera.recent_frames.back().utime, utime);
   const bool is_older = passed_s < 0.0 && passed_s >= -kMaxOvertakenS;
-  const bool goes_on = camera.overtaken_utime && *camera.overtaken_utime < utime;
+  const bool is_set_back = camera.overtaken_utime && *camera.overtaken_utime < utime;
   camera.overtaken_utime.reset();
-  if (is_older && !goes_on) camera.overtaken_utime = utime;
+  if (is_older && !is_set_back) camera.overtaken_utime = utime;
   return camera.overtaken_utime.has_value();
 }
 
 /// Advances the camera's clock by the interval of the frame before where utimes jump.
-void follow_clock(std::int64_t utime, FollowedCamera& camera) {
+void advance_clock(std::int64_t utime, FollowedCamera& camera) {
   if (camera.recent_frames.empty()) return;
   const FollowedFrame& last = camera.recent_frames.back();
   const std::int64_t passed_us = microseconds_between(last.utime, utime);
   if (passed_us >= 0 && passed_us <= kJumpUs) {
     camera.interval_us = std::min(passed_us, kMaxIntervalUs);
   } else {
-    camera.ahead_us = microseconds_between(utime, shifted(last.clock_us, camera.interval_us));
+    camera.clock_offset_us = microseconds_between(utime, shifted(last.clock_us, camera.interval_us));
   }
 }
 
-std::int64_t clock_of(std::int64_t utime, const FollowedCamera& camera) {
-  return shifted(utime, camera.ahead_us);
+std::int64_t to_camera_time(std::int64_t utime, const FollowedCamera& camera) {
+  return shifted(utime, camera.clock_offset_us);
 }
 
 /// Returns a digest of every fourth row: sensor noise makes those of two measurements differ.
@@ -58,7 +58,7 @@ std::uint64_t depth_digest(const cv::Mat& depth) {
 }
 
 /// Notes when the depth of this frame came first.
-void note_depth(const RgbdFrame& frame, std::int64_t clock_us, FollowedCamera& camera) {
+void update_depth_time(const RgbdFrame& frame, std::int64_t clock_us, FollowedCamera& camera) {
   const std::uint64_t digest = depth_digest(frame.depth);
   const bool is_repeated = !camera.recent_frames.empty() && digest == camera.depth_digest;
   if (!is_repeated) camera.depth_us = clock_us;
@@ -69,7 +69,7 @@ float probability(double odds) {
   return static_cast<float>(logistic(odds));
 }
 
-ExpectedObject expected_at(const Eigen::Isometry3d& T_camera_object, const FollowedObject& object) {
+ExpectedObject make_expected_object(const Eigen::Isometry3d& T_camera_object, const FollowedObject& object) {
   ExpectedObject expected;
   expected.class_id = object.class_id;
   expected.class_name = object.class_name;
@@ -115,14 +115,14 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
   StageClock clock;
   FollowedCamera& camera = cameras_[frame.id.channel];
   if (is_overtaken(frame.id.utime, camera)) return std::nullopt;
-  follow_clock(frame.id.utime, camera);
-  const std::int64_t clock_us = clock_of(frame.id.utime, camera);
+  advance_clock(frame.id.utime, camera);
+  const std::int64_t clock_us = to_camera_time(frame.id.utime, camera);
   camera.is_colourless = is_colourless(frame.colour);
-  note_depth(frame, clock_us, camera);
+  update_depth_time(frame, clock_us, camera);
   if (!camera.lag) camera.lag.emplace(settings_.depth_lag_s);
   FollowedFrame followed_frame{frame.id.utime, clock_us, {}, follow_all(estimator, frame, camera)};
   for (std::size_t i = 0; i < camera.objects.size(); ++i) {
-    note_result(estimator, followed_frame.poses[i], clock_us, camera.objects[i]);
+    update_object(estimator, followed_frame.poses[i], clock_us, camera.objects[i]);
     if (has_pose(followed_frame.poses[i].pose.status))
       learn_appearance(estimator, frame, followed_frame.poses[i].is_refined, camera.objects[i]);
     followed_frame.numbers.push_back(camera.objects[i].number);
@@ -143,33 +143,33 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
 /// Follows each object from its pose at constant velocity, and tries those that are not found there once more.
 std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                                      FollowedCamera& camera) const {
-  constexpr double kMaxLength = 0.25;   // seconds; no speed says anything about a later frame
-  constexpr double kMaxDepthAge = 0.1;  // seconds; what repeats longer is an image that stands, colours and all
+  constexpr double kMaxPrediction_s = 0.25;  // a velocity predicts nothing beyond this interval
+  constexpr double kMaxDepthAge_s = 0.1;     // an image that repeats for longer is frozen, colours included
   // Refined and rendered in one frame of so many, not all objects in the same one.
   constexpr std::int64_t kRefineEvery = 4;
-  const std::int64_t clock_us = clock_of(frame.id.utime, camera);
-  const double lag_s = settings_.depth_lag_s + std::min(kMaxDepthAge, seconds_between(camera.depth_us, clock_us));
+  const std::int64_t clock_us = to_camera_time(frame.id.utime, camera);
+  const double lag_s = settings_.depth_lag_s + std::min(kMaxDepthAge_s, seconds_between(camera.depth_us, clock_us));
   std::vector<ExpectedObject> expected;
   for (const FollowedObject& object : camera.objects) {
     const double dt = seconds_between(object.clock_us, clock_us);
-    const double used = dt <= kMaxLength ? dt : 0.0;
+    const double predicted_s = dt <= kMaxPrediction_s ? dt : 0.0;
     const bool refine_by_texture = (camera.frames + object.number) % kRefineEvery == 0;
-    ExpectedObject& it =
-        expected.emplace_back(expected_at(object.velocity.predict(object.T_camera_object, used), object));
-    it.refine_by_texture = refine_by_texture;
-    it.depth_lag = depth_lag(lag_s, object.velocity);
-    if (!refine_by_texture) it.verified = object.verified;
-    it.camera_colours = colours_for(object, estimator, camera);
+    ExpectedObject& next = expected.emplace_back(
+        make_expected_object(object.velocity.predict(object.T_camera_object, predicted_s), object));
+    next.refine_by_texture = refine_by_texture;
+    next.depth_lag = depth_lag(lag_s, object.velocity);
+    if (!refine_by_texture) next.verified = object.verified;
+    next.camera_colours = colours_for(object, estimator, camera);
   }
   std::vector<FollowedPose> poses = follow_objects(estimator, settings_.follow, frame, expected);
-  retry_lost(estimator, frame, camera, poses);
+  retry_without_pose(estimator, frame, camera, poses);
   return poses;
 }
 
 /// Retries objects without a valid pose from their last place, and from where the camera's motion has brought them.
-void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
-                                std::vector<FollowedPose>& poses) const {
-  const std::int64_t clock_us = clock_of(frame.id.utime, camera);
+void ObjectFollower::retry_without_pose(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
+                                        std::vector<FollowedPose>& poses) const {
+  const std::int64_t clock_us = to_camera_time(frame.id.utime, camera);
   std::vector<Eigen::Isometry3d> motions;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (has_pose(poses[i].pose.status))
@@ -181,13 +181,13 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
     if (has_pose(poses[i].pose.status)) continue;
     FollowedObject& object = camera.objects[i];
     const std::optional<Eigen::Isometry3d> carried = predict_by_camera_motion(object.T_camera_object, motions);
-    if (!is_retried(object, clock_us)) {
+    if (!is_retry_due(object, clock_us)) {
       if (poses[i].pose.shape_quality < settings_.min_kept_quality)
         poses[i].T_camera_object = carried.value_or(object.T_camera_object);
       continue;
     }
     object.retry_us = clock_us;
-    ExpectedObject again = expected_at(object.T_camera_object, object);
+    ExpectedObject again = make_expected_object(object.T_camera_object, object);
     again.refine_by_texture = true;
     again.is_lost = true;
     again.camera_colours = colours_for(object, estimator, camera);
@@ -199,18 +199,18 @@ void ObjectFollower::retry_lost(const PoseEstimator& estimator, const RgbdFrame&
   }
   if (retried.empty()) return;
   std::vector<FollowedPose> found = follow_objects(estimator, settings_.follow, frame, expected);
-  for (std::size_t k = 0; k < retried.size(); ++k) merge_retried(expected[k], std::move(found[k]), poses[retried[k]]);
+  for (std::size_t k = 0; k < retried.size(); ++k) merge_retry(expected[k], std::move(found[k]), poses[retried[k]]);
 }
 
 /// Returns whether an object without a valid pose is registered a second time in this frame: always when it was valid
 /// in the previous frame or failed there (FollowedObject::failures), else every retry_interval_s.
-bool ObjectFollower::is_retried(const FollowedObject& object, std::int64_t clock_us) const {
+bool ObjectFollower::is_retry_due(const FollowedObject& object, std::int64_t clock_us) const {
   return object.valid_us == object.clock_us || object.failures > 0 ||
          seconds_between(object.retry_us, clock_us) >= settings_.retry_interval_s;
 }
 
 /// Takes the result of the second try where that is better.
-void ObjectFollower::merge_retried(const ExpectedObject& expected, FollowedPose found, FollowedPose& pose) const {
+void ObjectFollower::merge_retry(const ExpectedObject& expected, FollowedPose found, FollowedPose& pose) const {
   const PoseStatus before = pose.pose.status;
   const PoseStatus after = found.pose.status;
   const bool better = found.pose.shape_quality > pose.pose.shape_quality;
@@ -223,8 +223,8 @@ void ObjectFollower::merge_retried(const ExpectedObject& expected, FollowedPose 
 
 /// Continues from the result; without evidence the object stays where it was, or where the camera's motion has brought
 /// it.
-void ObjectFollower::note_result(const PoseEstimator& estimator, const FollowedPose& result, std::int64_t clock_us,
-                                 FollowedObject& object) const {
+void ObjectFollower::update_object(const PoseEstimator& estimator, const FollowedPose& result, std::int64_t clock_us,
+                                   FollowedObject& object) const {
   const bool valid = has_pose(result.pose.status);
   const bool kept = valid || result.pose.shape_quality >= settings_.min_kept_quality;
   const double dt = seconds_between(object.clock_us, clock_us);
@@ -291,10 +291,10 @@ void ObjectFollower::remove_lost(const PoseEstimator& estimator, const RgbdFrame
 }
 
 bool ObjectFollower::is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const {
-  const bool hidden = result.pose.status == PoseStatus::kOccluded;
-  const double max_length = hidden ? settings_.max_hidden_s : settings_.max_rejected_s;
+  const bool is_occluded = result.pose.status == PoseStatus::kOccluded;
+  const double timeout_s = is_occluded ? settings_.max_hidden_s : settings_.max_rejected_s;
   return object.failures >= settings_.max_failures || result.pose.status == PoseStatus::kNoModel ||
-         seconds_between(object.valid_us, clock_us) > max_length;
+         seconds_between(object.valid_us, clock_us) > timeout_s;
 }
 
 namespace {
@@ -456,11 +456,11 @@ ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, c
     association = associate_detections(estimator, detections, settings_, camera);
     remembered = camera.colours.pairs();
   }
-  Detections looked_for{detections.frame, {}, detections.stages};
+  Detections to_estimate{detections.frame, {}, detections.stages};
   for (std::size_t i = 0; i < detections.detections.size(); ++i) {
-    if (association.needs_estimate(i)) looked_for.detections.push_back(detections.detections[i]);
+    if (association.needs_estimate(i)) to_estimate.detections.push_back(detections.detections[i]);
   }
-  ObjectPoses found = estimator.estimate(frame, looked_for, {}, remembered, known_poses(association));
+  ObjectPoses found = estimator.estimate(frame, to_estimate, {}, remembered, known_poses(association));
   ObjectPoses result{detections.frame, {}, found.stages};
   const std::lock_guard<std::mutex> lock(mutex_);
   FollowedCamera& camera = cameras_[detections.frame.channel];
@@ -490,7 +490,7 @@ ObjectPoses ObjectFollower::process_detections(const PoseEstimator& estimator, c
 void ObjectFollower::add_object(const PoseEstimator& estimator, const RgbdFrame& frame, const ObjectPose& pose,
                                 FollowedCamera& camera) {
   FollowedObject found;
-  found.number = found_++;
+  found.number = next_number_++;
   found.class_id = pose.class_id;
   found.class_name = pose.class_name;
   found.score_logit = logit(pose.detection_score);
@@ -500,7 +500,7 @@ void ObjectFollower::add_object(const PoseEstimator& estimator, const RgbdFrame&
       std::find_if(camera.recent_frames.rbegin(), camera.recent_frames.rend(),
                    [&](const FollowedFrame& followed_frame) { return followed_frame.utime == frame.id.utime; });
   found.clock_us =
-      earlier_frame == camera.recent_frames.rend() ? clock_of(frame.id.utime, camera) : earlier_frame->clock_us;
+      earlier_frame == camera.recent_frames.rend() ? to_camera_time(frame.id.utime, camera) : earlier_frame->clock_us;
   found.valid_us = found.found_us = found.recheck_us = found.clock_us;
   found.shape_quality = pose.shape_quality;
   learn_appearance(estimator, frame, true, found);

@@ -66,7 +66,7 @@ void fields(const FollowerSettings& /*settings*/, const Visit& visit) {
 }
 
 /// An object that is followed from frame to frame of one camera. Its times are on the camera's clock
-/// (FollowedCamera::ahead_us).
+/// (FollowedCamera::clock_offset_us).
 struct FollowedObject {
   std::int64_t number = 0;  ///< number in the order in which objects were found
   int class_id = 0;
@@ -107,7 +107,7 @@ struct FollowedCamera {
   std::int64_t frames = 0;
   /// The camera's clock minus its frames' utimes, which jump where the host's clock is set or a stamp is wrong. The
   /// camera's clock does not.
-  std::int64_t ahead_us = 0;
+  std::int64_t clock_offset_us = 0;
   std::int64_t interval_us = 0;  ///< time from the frame before to the last one
   /// Time stamp of the last frame that came, where newer ones had overtaken it.
   std::optional<std::int64_t> overtaken_utime;
@@ -145,12 +145,12 @@ class ObjectFollower {
  private:
   std::vector<FollowedPose> follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                        FollowedCamera& camera) const;
-  void retry_lost(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
-                  std::vector<FollowedPose>& poses) const;
-  bool is_retried(const FollowedObject& object, std::int64_t clock_us) const;
-  void merge_retried(const ExpectedObject& expected, FollowedPose found, FollowedPose& pose) const;
-  void note_result(const PoseEstimator& estimator, const FollowedPose& result, std::int64_t clock_us,
-                   FollowedObject& object) const;
+  void retry_without_pose(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
+                          std::vector<FollowedPose>& poses) const;
+  bool is_retry_due(const FollowedObject& object, std::int64_t clock_us) const;
+  void merge_retry(const ExpectedObject& expected, FollowedPose found, FollowedPose& pose) const;
+  void update_object(const PoseEstimator& estimator, const FollowedPose& result, std::int64_t clock_us,
+                     FollowedObject& object) const;
   void learn_appearance(const PoseEstimator& estimator, const RgbdFrame& frame, bool is_refined,
                         FollowedObject& object) const;
   void remove_lost(const PoseEstimator& estimator, const RgbdFrame& frame, FollowedCamera& camera,
@@ -163,7 +163,7 @@ class ObjectFollower {
   FollowerSettings settings_;
   std::mutex mutex_;
   std::map<std::string, FollowedCamera> cameras_;  // cameras by channel
-  std::int64_t found_ = 0;
+  std::int64_t next_number_ = 0;
 };
 
 }  // namespace houghstream

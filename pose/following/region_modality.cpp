@@ -62,8 +62,8 @@ cv::Point nearest_pixel(const Eigen::Vector2f& pixel) {
 
 /// Returns whether depth beside the point, from `first_px` to `last_px` along the normal, is nearer than the model can
 /// be.
-bool is_covered(const RegionView& view, const ProjectedSilhouettePoint& point, const cv::Range& along_px,
-                double occlusion_m) {
+bool is_point_occluded(const RegionView& view, const ProjectedSilhouettePoint& point, const cv::Range& along_px,
+                       double occlusion_m) {
   const double margin = occlusion_m + 3.0 * view.noise.sigma(point.z);
   const auto limit = static_cast<float>(point.z - point.at.nearer_m - margin);
   for (int step = along_px.start; step < along_px.end; ++step) {
@@ -75,8 +75,8 @@ bool is_covered(const RegionView& view, const ProjectedSilhouettePoint& point, c
 
 /// Products of the pixels' probabilities over each segment, outwards; those of both sides are normalised.
 struct SegmentProbabilities {
-  SegmentValues on{};
-  SegmentValues beside{};
+  SegmentValues foreground{};
+  SegmentValues background{};
   float contrast = 0.0F;  // RegionLine::contrast
 };
 
@@ -91,8 +91,8 @@ struct LineOfPixels {
 LineOfPixels line_through(const ProjectedSilhouettePoint& point, int segment_px) {
   LineOfPixels line;
   line.step = point.normal / point.normal.cwiseAbs().maxCoeff();
-  const bool is_flat = std::abs(line.step.x()) >= std::abs(line.step.y());
-  const float along = is_flat ? point.pixel.x() * line.step.x() : point.pixel.y() * line.step.y();
+  const bool is_horizontal = std::abs(line.step.x()) >= std::abs(line.step.y());
+  const float along = is_horizontal ? point.pixel.x() * line.step.x() : point.pixel.y() * line.step.y();
   const float middle = segment_px % 2 == 1 ? std::round(along) : std::floor(along) + 0.5F;
   line.offset_px = middle - along;
   line.middle = point.pixel + line.offset_px * line.step;
@@ -106,26 +106,27 @@ std::optional<SegmentProbabilities> segment_probabilities(const RgbdFrame& frame
     return std::nullopt;
   SegmentProbabilities out;
   int pixel = 0;
-  int light_on = 0;
-  int light_beside = 0;
+  int intensity_foreground = 0;
+  int intensity_background = 0;
   for (std::size_t segment = 0; segment < kLineSegments; ++segment) {
-    float on = 1.0F;
-    float beside = 1.0F;
+    float foreground = 1.0F;
+    float background = 1.0F;
     for (int i = 0; i < segment_px; ++i, ++pixel) {
       const Eigen::Vector2f at = line.middle + (static_cast<float>(pixel) - reach) * line.step;
       const cv::Vec3b& colour = frame.colour.at<cv::Vec3b>(nearest_pixel(at));
-      const int light = colour[0] + 2 * colour[1] + colour[2];
-      if (segment < kLineSegments / 2) light_on += light;
-      if (segment > kLineSegments / 2) light_beside += light;
+      const int intensity = colour[0] + 2 * colour[1] + colour[2];
+      if (segment < kLineSegments / 2) intensity_foreground += intensity;
+      if (segment > kLineSegments / 2) intensity_background += intensity;
       const float probability = colours.foreground(colour);
-      on *= probability;
-      beside *= 1.0F - probability;
+      foreground *= probability;
+      background *= 1.0F - probability;
     }
-    out.on[segment] = on / (on + beside);
-    out.beside[segment] = beside / (on + beside);
+    out.foreground[segment] = foreground / (foreground + background);
+    out.background[segment] = background / (foreground + background);
   }
-  const int light = light_on + light_beside;
-  if (light > 0) out.contrast = static_cast<float>(light_on - light_beside) / static_cast<float>(light);
+  const int intensity = intensity_foreground + intensity_background;
+  if (intensity > 0)
+    out.contrast = static_cast<float>(intensity_foreground - intensity_background) / static_cast<float>(intensity);
   return out;
 }
 
@@ -139,7 +140,7 @@ bool find_edge(const SegmentProbabilities& segments, RegionLine& line) {
   for (std::size_t i = 0; i < kEdgePositions; ++i) {
     float product = 1.0F;
     for (std::size_t j = 0; j < kFunctionSegments; ++j)
-      product *= step[j] * segments.on[i + j] + (1.0F - step[j]) * segments.beside[i + j];
+      product *= step[j] * segments.foreground[i + j] + (1.0F - step[j]) * segments.background[i + j];
     line.posterior[i] = product;
     sum += product;
   }
@@ -183,10 +184,10 @@ class CommonError {
   }
 
   /// Adds a line of the given row of the motion, weight of its square, weighted pull, and row of the common errors.
-  void add(const Vector6d& row, double weight, double pull, const Eigen::Vector2d& common_row) {
+  void add(const Vector6d& row, double weight, double weighted_gradient, const Eigen::Vector2d& common_row) {
     hessian_ += weight * common_row * common_row.transpose();
     mixed_ += weight * row * common_row.transpose();
-    gradient_ += pull * common_row;
+    gradient_ += weighted_gradient * common_row;
   }
 
   void marginalise(MotionEquations& equations) const {
@@ -230,7 +231,7 @@ RegionLines find_region_lines(const RegionView& view, const Silhouette& silhouet
     const float segments_per_px = 1.0F / (pixels.step.norm() * static_cast<float>(scale.segment_px));
     const float clear = std::min(at.inside_m, at.outside_m) * focal / point->z * segments_per_px;
     if (clear < kMinClear) continue;
-    if (is_covered(view, *point, {-kBeside_px, kBeside_px + 1}, settings.occlusion_m)) {
+    if (is_point_occluded(view, *point, {-kBeside_px, kBeside_px + 1}, settings.occlusion_m)) {
       ++found.covered;
       continue;
     }
@@ -269,13 +270,13 @@ MotionEquations region_equations(const RegionView& view, const std::vector<Regio
     // The edge of a line in which both sides are told apart has the standard deviation of the scale.
     const double weight = static_cast<double>(scale.every) * static_cast<double>(kMinVariance) /
                           (per_px * per_px * scale.sigma_px * scale.sigma_px);
-    const double pull = step == EdgeStep::kToMean
-                            ? (line.mean - position) / line.variance
-                            : static_cast<double>(gradient_at(line, static_cast<float>(position)));
+    const double gradient = step == EdgeStep::kToMean
+                                ? (line.mean - position) / line.variance
+                                : static_cast<double>(gradient_at(line, static_cast<float>(position)));
     const Vector6d row = per_px * image_motion_row(view, point, line.normal.cast<double>(), centre);
     equations.hessian.selfadjointView<Eigen::Lower>().rankUpdate(row, weight / line.variance);
-    equations.gradient += weight * pull * row;
-    common.add(row, weight / line.variance, weight * pull,
+    equations.gradient += weight * gradient * row;
+    common.add(row, weight / line.variance, weight * gradient,
                per_px * Eigen::Vector2d(1.0, std::tanh(kContrastGain * line.contrast)));
   }
   common.marginalise(equations);
@@ -289,15 +290,15 @@ void learn_colours(const RegionView& view, const Silhouette& silhouette, const E
   constexpr int kReach_px = 20;
   constexpr int kBeside_px = 4;
   constexpr std::size_t kEvery = 2;  // every second point: its pixels suffice
-  std::vector<cv::Vec3b> on;
-  std::vector<cv::Vec3b> beside;
+  std::vector<cv::Vec3b> foreground;
+  std::vector<cv::Vec3b> background;
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   const auto focal = static_cast<float>(view.frame.camera.fx);
   for (std::size_t i = 0; i < silhouette.points.size(); i += kEvery) {
     const SilhouettePoint& at = silhouette.points[i];
     const std::optional<ProjectedSilhouettePoint> point = project_point(view, at, T);
     if (!point) continue;
-    const auto take = [&](float side, float clear_m, std::vector<cv::Vec3b>& pixels) {
+    const auto collect = [&](float side, float clear_m, std::vector<cv::Vec3b>& pixels) {
       const int clear_px = static_cast<int>(std::min<float>(clear_m * focal / point->z, kReach_px));
       for (int step = kGap_px; step <= clear_px; ++step) {
         const Eigen::Vector2f pixel = point->pixel + side * static_cast<float>(step) * point->normal;
@@ -305,10 +306,11 @@ void learn_colours(const RegionView& view, const Silhouette& silhouette, const E
         pixels.push_back(view.frame.colour.at<cv::Vec3b>(nearest_pixel(pixel)));
       }
     };
-    take(1.0F, at.outside_m, beside);
-    if (!is_covered(view, *point, {-kBeside_px, 0}, settings.occlusion_m)) take(-1.0F, at.inside_m, on);
+    collect(1.0F, at.outside_m, background);
+    if (!is_point_occluded(view, *point, {-kBeside_px, 0}, settings.occlusion_m))
+      collect(-1.0F, at.inside_m, foreground);
   }
-  colours.learn(on, beside, settings.colour_rate);
+  colours.learn(foreground, background, settings.colour_rate);
 }
 
 cv::Rect silhouette_box(const RegionView& view, const Silhouette& silhouette,
