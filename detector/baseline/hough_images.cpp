@@ -29,8 +29,8 @@ cv::Mat masses_by_cell(const HoughSpace& space, const VotingInput& input) {
     for (std::uint32_t v = space.first_vote[c]; v < space.first_vote[c + 1]; ++v) {
       const Vote& vote = space.votes[v];
       const float distance = vote.centre_camera.z();
-      mass +=
-          vote.weight * input.patches.area[space.voters[space.voter[v]].patch] * kernel_at_1m / (distance * distance);
+      mass += vote.weight * input.patches.area[space.voters[space.voter_of_vote[v]].patch] * kernel_at_1m /
+              (distance * distance);
     }
   }
   const double sigma = static_cast<double>(settings.hough_sigma_px) / space.cell_px;

@@ -22,25 +22,25 @@ void sum_by_cell(const CastVotes& cast, const CellGrid& grid, std::vector<CellSu
 
 /// Lays the votes out cell by cell, those outside the image last, and copies the weights to the image; of each cell
 /// `next` gets the place of its first vote.
-void lay_out(const std::vector<CellSum>& sums, std::vector<std::uint32_t>& next, HoughSpace& space) {
-  next.resize(sums.size());
+void compute_cell_offsets(const std::vector<CellSum>& sums, std::vector<std::uint32_t>& next_slot, HoughSpace& space) {
+  next_slot.resize(sums.size());
   space.image.resize(sums.size() - 1);
   std::uint32_t count = 0;
   for (std::size_t c = 0; c < sums.size(); ++c) {
-    next[c] = count;
+    next_slot[c] = count;
     count += sums[c].votes;
     if (c < space.image.size()) space.image[c] = sums[c].weight;
   }
-  space.first_vote = next;
-  space.votes.resize(count + kSpareVotes);
-  space.voter.resize(count);
+  space.first_vote = next_slot;
+  space.votes.resize(count + kVotePadding);
+  space.voter_of_vote.resize(count);
 }
 
 /// Sorts the votes by cell. The counting sort is stable, so that the order depends on nothing but the votes.
-void sort_by_cell(const CastVotes& cast, std::vector<std::uint32_t>& next, HoughSpace& space) {
-  std::uint32_t* const free = next.data();
+void sort_by_cell(const CastVotes& cast, std::vector<std::uint32_t>& next_slot, HoughSpace& space) {
+  std::uint32_t* const slots = next_slot.data();
   Vote* const votes = space.votes.data();
-  std::uint32_t* const voters = space.voter.data();
+  std::uint32_t* const voters = space.voter_of_vote.data();
   const std::uint32_t* cell = cast.cells.data();
   const std::uint32_t* voter = cast.voters.data();
   const Vote* const end = cast.votes.data() + cast.count;
@@ -48,18 +48,18 @@ void sort_by_cell(const CastVotes& cast, std::vector<std::uint32_t>& next, Hough
   const Vote* const last_ahead = end - std::min(kAhead, cast.count);
   for (const Vote* vote = cast.votes.data(); vote != end; ++vote) {
     if (vote < last_ahead) {
-      const std::uint32_t soon = free[cell[kAhead]];
+      const std::uint32_t soon = slots[cell[kAhead]];
       hwy::Prefetch(votes + soon);
       hwy::Prefetch(voters + soon);
     }
-    const std::uint32_t place = free[*cell++]++;
+    const std::uint32_t place = slots[*cell++]++;
     // four numbers at once, not one by one
     Eigen::Map<Eigen::Array4f>(votes[place].centre_camera.data()) =
         Eigen::Map<const Eigen::Array4f>(vote->centre_camera.data());
     voters[place] = *voter++;
   }
-  space.votes.resize(space.first_vote.back() + kSpareVotes);  // leaves out the votes outside
-  space.voter.resize(space.first_vote.back());
+  space.votes.resize(space.first_vote.back() + kVotePadding);  // leaves out the votes outside
+  space.voter_of_vote.resize(space.first_vote.back());
 }
 
 void smooth(double sigma_px, HoughSpace& space) {
@@ -83,8 +83,8 @@ void cast_votes(const VotingInput& input, int class_index, CastWorkspace& worksp
                                              });
   cast_all({input.forest, input.patches, space.voters, grid}, workspace.cast);
   sum_by_cell(workspace.cast, grid, workspace.sums);
-  lay_out(workspace.sums, workspace.next, space);
-  sort_by_cell(workspace.cast, workspace.next, space);
+  compute_cell_offsets(workspace.sums, workspace.next_slot, space);
+  sort_by_cell(workspace.cast, workspace.next_slot, space);
   smooth(input.settings.hough_sigma_px, space);
 }
 

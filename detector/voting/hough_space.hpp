@@ -33,16 +33,16 @@ struct Voter {
   std::uint32_t leaf_class = 0;  ///< index into Forest::leaf_classes
 };
 
-constexpr std::size_t kSpareVotes = 7;  ///< votes behind the last, so that eight can be read anywhere
+constexpr std::size_t kVotePadding = 7;  ///< votes behind the last, so that eight can be read anywhere
 
 /// The Hough space of one class: its votes in 3-D, sorted by the image cell in which their centre is seen.
 struct HoughSpace {
   int width = 0;  ///< cells
   int height = 0;
   int cell_px = 0;  ///< working pixels per cell
-  /// Votes by cell, row by row; within a cell in order of patch and tree; then kSpareVotes that do not count.
+  /// Votes by cell, row by row; within a cell in order of patch and tree; then kVotePadding that do not count.
   std::vector<Vote> votes;
-  std::vector<std::uint32_t> voter;       ///< per vote, into `voters`: who cast it
+  std::vector<std::uint32_t> voter_of_vote;  ///< per vote, into `voters`: who cast it
   std::vector<Voter> voters;              ///< voters by patch, tree by tree; some may have cast no vote into the image
   std::vector<std::uint32_t> first_vote;  ///< per cell, and one more
   std::vector<float> image;               ///< sum of weights per cell, smoothed; independent of distance, since both
@@ -62,7 +62,7 @@ struct VotingInput {
 
 /// Votes in the order of those who cast them.
 struct CastVotes {
-  static constexpr std::size_t kSlack = 4;  ///< elements behind the last that are written but not meant
+  static constexpr std::size_t kPadding = 4;  ///< elements behind the last that are written but not meant
 
   std::size_t count = 0;  ///< number of elements that count; the vectors may hold more
   std::vector<Vote> votes;
@@ -80,7 +80,7 @@ struct CellSum {
 struct CastWorkspace {
   CastVotes cast;
   std::vector<CellSum> sums;
-  std::vector<std::uint32_t> next;
+  std::vector<std::uint32_t> next_slot;
 };
 
 /// Votes for one class of all patches that support it (paper, Section 2; Gall et al. 2011, Section 3.3, here in 3-D).

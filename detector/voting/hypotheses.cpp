@@ -17,7 +17,7 @@ int sum_by_voter(const VotingInput& input, const Eigen::Vector3f& centre, Voting
   const float vote_sigma = input.settings.vote_sigma;
   SparseSums::Weights& supports = workspace.supports;
   workspace.voter_sums.resize(space.voters.size());
-  ranges_around(space, input.camera, centre, vote_sigma, workspace.ranges);
+  ranges_in_reach(space, input.camera, centre, vote_sigma, workspace.ranges);
   int count = 0;
   for (const VoteRange& range : workspace.ranges) {
     supports.resize(std::max<std::size_t>(supports.size(), range.end - range.begin + 1));
@@ -29,7 +29,7 @@ int sum_by_voter(const VotingInput& input, const Eigen::Vector3f& centre, Voting
       found += k > 0.0F ? 1 : 0;
     }
     for (std::size_t i = 0; i < found; ++i)
-      workspace.voter_sums.add(space.voter[supports[i].first], supports[i].second);
+      workspace.voter_sums.add(space.voter_of_vote[supports[i].first], supports[i].second);
     count += static_cast<int>(found);
   }
   workspace.voter_sums.take(by_voter);
@@ -63,8 +63,8 @@ void sum_by_view(const Forest& forest, const SparseSums::Weights& by_voter, Voti
 }
 
 /// Returns a maximum with its mass, which is the visible part of the object: the weight times the area of the patches.
-Hypothesis score_maximum(const VotingInput& input, const Eigen::Vector3f& centre, VotingWorkspace::Worker& workspace,
-                         SparseSums::Weights& by_voter) {
+Hypothesis measure_maximum(const VotingInput& input, const Eigen::Vector3f& centre, VotingWorkspace::Worker& workspace,
+                           SparseSums::Weights& by_voter) {
   Hypothesis hypothesis;
   hypothesis.centre_camera = centre;
   hypothesis.vote_count = sum_by_voter(input, centre, workspace, by_voter);
@@ -90,7 +90,7 @@ void add_support(const Forest& forest, const SparseSums::Weights& by_voter, Voti
 }
 
 /// Returns the classes, those with the most work first, so that no thread starts one when the others have ended.
-std::vector<std::size_t> by_work(std::size_t classes, const PatchPosteriors& posteriors) {
+std::vector<std::size_t> order_by_work(std::size_t classes, const PatchPosteriors& posteriors) {
   std::vector<std::size_t> work(classes, 0);
   std::vector<std::size_t> order(classes);
   for (std::size_t c = 0; c < classes; ++c) {
@@ -132,25 +132,24 @@ std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t c
   const float min_mass = settings.min_mass_fraction * input.forest.classes[class_index].nominal_vote_mass;
   const std::vector<Eigen::Vector3f> maxima = find_maxima(
       workspace.space, input.camera, settings, per_class_budget(classes, settings.maxima_per_class), workspace.maxima);
-  std::vector<Hypothesis> scored_maxima;
+  std::vector<Hypothesis> measured;
   std::vector<std::size_t> order;
-  scored_maxima.reserve(maxima.size());
+  measured.reserve(maxima.size());
   order.reserve(maxima.size());
   workspace.by_voter.resize(std::max(workspace.by_voter.size(), maxima.size()));
   for (std::size_t i = 0; i < maxima.size(); ++i) {
-    scored_maxima.push_back(score_maximum(input, maxima[i], workspace, workspace.by_voter[i]));
-    if (scored_maxima.back().vote_mass >= min_mass) order.push_back(i);
+    measured.push_back(measure_maximum(input, maxima[i], workspace, workspace.by_voter[i]));
+    if (measured.back().vote_mass >= min_mass) order.push_back(i);
   }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return scored_maxima[a].vote_mass > scored_maxima[b].vote_mass;
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return measured[a].vote_mass > measured[b].vote_mass; });
   const std::size_t sharing = std::max(classes, input.searched_classes);
   const auto maximum = static_cast<std::size_t>(per_class_budget(sharing, settings.candidates_per_class));
   if (order.size() > maximum) order.resize(maximum);
   std::vector<Hypothesis> hypotheses;
   hypotheses.reserve(order.size());
   for (const std::size_t i : order) {
-    hypotheses.push_back(std::move(scored_maxima[i]));
+    hypotheses.push_back(std::move(measured[i]));
     hypotheses.back().class_index = class_index;
     add_support(input.forest, workspace.by_voter[i], workspace, hypotheses.back());
   }
@@ -159,7 +158,7 @@ std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t c
 
 std::vector<Hypothesis> find_hypotheses(const VotingInput& input, int threads, VotingWorkspace& workspaces) {
   const std::vector<ObjectClass>& classes = input.forest.classes;
-  const std::vector<std::size_t> order = by_work(classes.size(), input.posteriors);
+  const std::vector<std::size_t> order = order_by_work(classes.size(), input.posteriors);
   std::vector<std::vector<Hypothesis>> by_class(classes.size());
   workspaces.workers.resize(threads);
   parallel_for_workers(threads, static_cast<int>(order.size()), [&](int worker, int i) {

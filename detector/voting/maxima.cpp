@@ -41,7 +41,7 @@ void list_maxima(const HoughSpace& space, float min_relative_peak, int limit, st
 
 /// Returns the weighted median depth of the votes of a cell's neighbourhood: the start of the mean shift.
 float start_depth(const HoughSpace& space, const HoughCell& cell, MaximaWorkspace& workspace) {
-  ranges_near(space, cell.x, cell.y, 1, workspace.ranges);
+  ranges_of_cells(space, cell.x, cell.y, 1, workspace.ranges);
   workspace.depths.clear();
   for (const VoteRange& range : workspace.ranges) {
     for (std::uint32_t v = range.begin; v < range.end; ++v) {
@@ -72,10 +72,10 @@ std::vector<Eigen::Vector3f> find_maxima(const HoughSpace& space, const Camera& 
     const double v = (cell.y + 0.5) * space.cell_px - 0.5;
     const Eigen::Vector3f start = camera.backproject(u, v, z).cast<float>();
     const Eigen::Vector3f centre = seek_mode(space, camera, start, settings.vote_sigma, workspace.ranges);
-    const auto meets = [&](const Eigen::Vector3f& other) {
+    const auto is_same = [&](const Eigen::Vector3f& other) {
       return (other - centre).norm() < 2.0F * settings.vote_sigma;
     };
-    if (std::none_of(centres.begin(), centres.end(), meets)) centres.push_back(centre);
+    if (std::none_of(centres.begin(), centres.end(), is_same)) centres.push_back(centre);
   }
   return centres;
 }

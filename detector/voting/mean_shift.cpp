@@ -91,7 +91,8 @@ float reach_sq_of(float vote_sigma) {
 
 }  // namespace
 
-void ranges_near(const HoughSpace& space, int cell_x, int cell_y, int radius_cells, std::vector<VoteRange>& ranges) {
+void ranges_of_cells(const HoughSpace& space, int cell_x, int cell_y, int radius_cells,
+                     std::vector<VoteRange>& ranges) {
   ranges.clear();
   const int x0 = std::max(0, cell_x - radius_cells);
   const int x1 = std::min(space.width - 1, cell_x + radius_cells);
@@ -102,13 +103,13 @@ void ranges_near(const HoughSpace& space, int cell_x, int cell_y, int radius_cel
   }
 }
 
-void ranges_around(const HoughSpace& space, const Camera& camera, const Eigen::Vector3f& centre, float vote_sigma,
-                   std::vector<VoteRange>& ranges) {
+void ranges_in_reach(const HoughSpace& space, const Camera& camera, const Eigen::Vector3f& centre, float vote_sigma,
+                     std::vector<VoteRange>& ranges) {
   const Eigen::Vector2d px = camera.project(centre.cast<double>());
   const int x = static_cast<int>(std::floor((px.x() + 0.5) / space.cell_px));
   const int y = static_cast<int>(std::floor((px.y() + 0.5) / space.cell_px));
   const double reach_px = kVoteReach * vote_sigma / camera.metres_per_px(centre.z());
-  ranges_near(space, x, y, static_cast<int>(reach_px / space.cell_px) + 1, ranges);
+  ranges_of_cells(space, x, y, static_cast<int>(reach_px / space.cell_px) + 1, ranges);
 }
 
 VoteSupport sum_support(const HoughSpace& space, const std::vector<VoteRange>& ranges, const Eigen::Vector3f& centre,
@@ -122,15 +123,15 @@ VoteSupport sum_support(const HoughSpace& space, const std::vector<VoteRange>& r
 Eigen::Vector3f seek_mode(const HoughSpace& space, const Camera& camera, Eigen::Vector3f centre, float vote_sigma,
                           std::vector<VoteRange>& ranges) {
   constexpr int kSteps = 8;
-  constexpr float kArrived = 0.0005F;  // metres
+  constexpr float kConverged_m = 0.0005F;
   for (int step = 0; step < kSteps; ++step) {
-    ranges_around(space, camera, centre, vote_sigma, ranges);
+    ranges_in_reach(space, camera, centre, vote_sigma, ranges);
     const VoteSupport support = sum_support(space, ranges, centre, vote_sigma);
     if (support.total <= 0.0F) break;
     const Eigen::Vector3f next = support.moment / support.total;
-    const bool arrived = (next - centre).norm() < kArrived;
+    const bool has_converged = (next - centre).norm() < kConverged_m;
     centre = next;
-    if (arrived) break;
+    if (has_converged) break;
   }
   return centre;
 }

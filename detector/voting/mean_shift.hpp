@@ -15,15 +15,15 @@ struct VoteRange {
 };
 
 /// Lists the votes within `radius_cells` of a cell, row by row. `ranges` is overwritten.
-void ranges_near(const HoughSpace& space, int cell_x, int cell_y, int radius_cells, std::vector<VoteRange>& ranges);
+void ranges_of_cells(const HoughSpace& space, int cell_x, int cell_y, int radius_cells, std::vector<VoteRange>& ranges);
 
 /// Lists the ranges of all votes within reach of a centre (camera frame, metres), and of some beyond it.
-void ranges_around(const HoughSpace& space, const Camera& camera, const Eigen::Vector3f& centre, float vote_sigma,
-                   std::vector<VoteRange>& ranges);
+void ranges_in_reach(const HoughSpace& space, const Camera& camera, const Eigen::Vector3f& centre, float vote_sigma,
+                     std::vector<VoteRange>& ranges);
 
 constexpr std::size_t kSumLanes = 8;  ///< partial sums: the order of a sum is its rounding
 using SumLanes = std::array<std::array<float, kSumLanes>, 4>;
-static_assert(kSpareVotes == kSumLanes - 1);
+static_assert(kVotePadding == kSumLanes - 1);
 
 /// Votes' centres times what each supports a maximum with, and the support itself: both summed.
 struct VoteSupport {

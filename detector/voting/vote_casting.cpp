@@ -60,15 +60,15 @@ HWY_INLINE hn::Vec<Int> cells_of(Floats x, Floats y, Floats z, const CellGrid& g
 
 /// Values that the votes of one voter share.
 struct VoteBatch {
-  float probability;  // p(class | leaf)
-  float fraction;     // fraction of one tree
+  float probability;    // p(class | leaf)
+  float tree_fraction;  // fraction of one tree
   std::uint32_t voter;
   const CellGrid& grid;
 };
 
 /// Writes the votes of one vector's leaf votes to the place `at`.
-HWY_INLINE void cast_some(const float* leaf_votes, const VoteTransform& m, const VoteBatch& ballot, std::size_t at,
-                          CastVotes& cast) {
+HWY_INLINE void cast_vote_vector(const float* leaf_votes, const VoteTransform& m, const VoteBatch& batch,
+                                 std::size_t at, CastVotes& cast) {
   const Float d;
   const Int di;
   Floats x, y, z, weight;
@@ -76,10 +76,10 @@ HWY_INLINE void cast_some(const float* leaf_votes, const VoteTransform& m, const
   const Floats cx = transformed(m.x, x, y, z);
   const Floats cy = transformed(m.y, x, y, z);
   const Floats cz = transformed(m.z, x, y, z);
-  const Floats w = hn::Mul(hn::Mul(hn::Set(d, ballot.probability), weight), hn::Set(d, ballot.fraction));
+  const Floats w = hn::Mul(hn::Mul(hn::Set(d, batch.probability), weight), hn::Set(d, batch.tree_fraction));
   hn::StoreInterleaved4(cx, cy, cz, w, d, cast.votes[at].centre_camera.data());
-  hn::StoreU(cells_of(cx, cy, cz, ballot.grid), di, reinterpret_cast<std::int32_t*>(cast.cells.data() + at));
-  hn::StoreU(hn::Set(di, static_cast<std::int32_t>(ballot.voter)), di,
+  hn::StoreU(cells_of(cx, cy, cz, batch.grid), di, reinterpret_cast<std::int32_t*>(cast.cells.data() + at));
+  hn::StoreU(hn::Set(di, static_cast<std::int32_t>(batch.voter)), di,
              reinterpret_cast<std::int32_t*>(cast.voters.data() + at));
 }
 
@@ -94,23 +94,23 @@ HWY_INLINE void prefetch_ahead(const Forest& forest, const std::vector<Voter>& v
 }
 
 /// Casts the votes of voters from `first` on, as many as there is room for; returns the first who did not vote.
-std::size_t cast_from(const CastInput& input, std::size_t first, CastVotes& cast) {
+std::size_t cast_until_full(const CastInput& input, std::size_t first, CastVotes& cast) {
   const Forest& forest = input.forest;
   const std::vector<Voter>& voters = input.voters;
   constexpr std::size_t kLanes = hn::MaxLanes(Float());
-  static_assert(kLanes <= CastVotes::kSlack);
-  const float fraction = 1.0F / static_cast<float>(forest.roots.size());
+  static_assert(kLanes <= CastVotes::kPadding);
+  const float tree_fraction = 1.0F / static_cast<float>(forest.roots.size());
   std::uint32_t patch = voters[first].patch;
   VoteTransform transform = vote_transform(input.patches.point_camera[patch]);
   std::size_t count = cast.count;
-  const std::size_t room = cast.votes.size() - CastVotes::kSlack;
+  const std::size_t room = cast.votes.size() - CastVotes::kPadding;
   std::size_t i = first;
   for (; i < voters.size(); ++i) {
     prefetch_ahead(forest, voters, i);
     const LeafClass& entry = forest.leaf_classes[voters[i].leaf_class];
     if (count + entry.vote_count > room) break;
     if (voters[i].patch != patch) transform = vote_transform(input.patches.point_camera[patch = voters[i].patch]);
-    const VoteBatch ballot{entry.probability, fraction, static_cast<std::uint32_t>(i), input.grid};
+    const VoteBatch batch{entry.probability, tree_fraction, static_cast<std::uint32_t>(i), input.grid};
     for (std::size_t v = 0; v < entry.vote_count; v += kLanes) {
       const LeafVote* votes = forest.votes.data() + entry.first_vote + v;
       std::array<LeafVote, kLanes> last;
@@ -118,7 +118,7 @@ std::size_t cast_from(const CastInput& input, std::size_t first, CastVotes& cast
         std::copy(votes, forest.votes.data() + forest.votes.size(), last.begin());
         votes = last.data();
       }
-      cast_some(votes->offset.data(), transform, ballot, count + v, cast);
+      cast_vote_vector(votes->offset.data(), transform, batch, count + v, cast);
     }
     count += entry.vote_count;
   }
@@ -132,7 +132,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace houghstream {
 
-HWY_EXPORT(cast_from);
+HWY_EXPORT(cast_until_full);
 
 CellGrid::CellGrid(const Camera& camera, int cell_px)
     : width((camera.width + cell_px - 1) / cell_px),
@@ -146,12 +146,12 @@ void cast_all(const CastInput& input, CastVotes& cast) {
   constexpr std::size_t kMaxPerVoter = UINT8_MAX;
   cast.count = 0;
   for (std::size_t next = 0; next < input.voters.size();) {
-    if (cast.count + kMaxPerVoter + CastVotes::kSlack > cast.votes.size()) {
-      cast.votes.resize(2 * cast.votes.size() + kMaxPerVoter + CastVotes::kSlack);
+    if (cast.count + kMaxPerVoter + CastVotes::kPadding > cast.votes.size()) {
+      cast.votes.resize(2 * cast.votes.size() + kMaxPerVoter + CastVotes::kPadding);
       cast.cells.resize(cast.votes.size());
       cast.voters.resize(cast.votes.size());
     }
-    next = HWY_DYNAMIC_DISPATCH(cast_from)(input, next, cast);
+    next = HWY_DYNAMIC_DISPATCH(cast_until_full)(input, next, cast);
   }
 }
 

@@ -48,7 +48,7 @@ std::size_t cell_of(const HoughSpace& space, std::uint32_t vote) {
 
 TEST(HoughSpace, AVoteLandsWhereItsCentreIsSeen) {
   const HoughSpace space = vote(one_leaf({0.1F, 0.05F, 0.0F}, 0.8F), {{0.0F, 0.0F, 1.0F}});
-  ASSERT_EQ(space.voter.size(), 1U);
+  ASSERT_EQ(space.voter_of_vote.size(), 1U);
   EXPECT_LT((space.votes[0].centre_camera - Eigen::Vector3f(0.1F, 0.05F, 1.0F)).norm(), 1e-6F);
   EXPECT_FLOAT_EQ(space.votes[0].weight, 0.8F);
   EXPECT_EQ(space.width, 50);
@@ -60,7 +60,7 @@ TEST(HoughSpace, AVoteLandsWhereItsCentreIsSeen) {
 TEST(HoughSpace, OffsetsTurnWithTheViewingRay) {
   const Eigen::Vector3f point(0.3F, -0.2F, 1.0F);
   const HoughSpace space = vote(one_leaf({0.0F, 0.0F, 0.05F}, 1.0F), {point});
-  ASSERT_EQ(space.voter.size(), 1U);  // behind the point on its own ray
+  ASSERT_EQ(space.voter_of_vote.size(), 1U);  // behind the point on its own ray
   EXPECT_LT((space.votes[0].centre_camera - point * (1.0F + 0.05F / point.norm())).norm(), 1e-5F);
 }
 
@@ -79,10 +79,10 @@ TEST(HoughSpace, VotesOutsideTheImageOrBehindTheCameraAreDropped) {
 
 TEST(HoughSpace, VotesAreSortedByCellAndKeepTheOrderOfPatches) {
   const HoughSpace space = vote(one_leaf({0, 0, 0}, 1.0F), {{0.3F, 0, 1}, {-0.3F, 0, 1}, {0.3F, 0, 1}});
-  ASSERT_EQ(space.voter.size(), 3U);
-  EXPECT_EQ(space.voters[space.voter[0]].patch, 1U);
-  EXPECT_EQ(space.voters[space.voter[1]].patch, 0U);
-  EXPECT_EQ(space.voters[space.voter[2]].patch, 2U);
+  ASSERT_EQ(space.voter_of_vote.size(), 3U);
+  EXPECT_EQ(space.voters[space.voter_of_vote[0]].patch, 1U);
+  EXPECT_EQ(space.voters[space.voter_of_vote[1]].patch, 0U);
+  EXPECT_EQ(space.voters[space.voter_of_vote[2]].patch, 2U);
   EXPECT_LT(cell_of(space, 0), cell_of(space, 1));
   EXPECT_EQ(cell_of(space, 1), cell_of(space, 2));
   EXPECT_EQ(space.first_vote.size(), 50U * 40U + 1U);
@@ -93,7 +93,7 @@ TEST(HoughSpace, AVoteIsSharedAmongTheTrees) {
   Forest forest = one_leaf({0, 0, 0}, 0.9F);
   forest.roots = {-1, -1, -1};
   const HoughSpace space = vote(forest, {{0, 0, 1}});
-  ASSERT_EQ(space.voter.size(), 3U);
+  ASSERT_EQ(space.voter_of_vote.size(), 3U);
   EXPECT_FLOAT_EQ(space.votes[1].weight, 0.3F);
 }
 
@@ -111,7 +111,7 @@ TEST(HoughSpace, ASpaceIsUsedAgain) {
   CastWorkspace workspace;
   cast_votes({forest, patches, posteriors, kHundredWide, {}}, 0, workspace, space);
   const HoughSpace fresh = vote(forest, patches.point_camera);
-  EXPECT_EQ(space.voter.size(), 1U);
+  EXPECT_EQ(space.voter_of_vote.size(), 1U);
   EXPECT_EQ(space.voters.size(), 1U);
   EXPECT_EQ(space.first_vote, fresh.first_vote);
   EXPECT_EQ(space.image, fresh.image);

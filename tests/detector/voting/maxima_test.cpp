@@ -29,7 +29,7 @@ HoughSpace space_of(const std::vector<Placed>& placed) {
     space.image[cell] += p.weight;
     for (std::size_t c = cell + 1; c < space.first_vote.size(); ++c) ++space.first_vote[c];
   }
-  space.votes.resize(space.votes.size() + kSpareVotes);
+  space.votes.resize(space.votes.size() + kVotePadding);
   return space;
 }
 

@@ -22,7 +22,7 @@ HoughSpace random_space(const Eigen::Vector3f& about, int count) {
     space.votes.push_back(
         {about + Eigen::Vector3f(spread(), spread(), spread()), static_cast<float>(random.uniform(0.001, 0.1))});
   }
-  space.votes.resize(space.votes.size() + kSpareVotes, {Eigen::Vector3f::Ones(), 1.0F});
+  space.votes.resize(space.votes.size() + kVotePadding, {Eigen::Vector3f::Ones(), 1.0F});
   return space;
 }
 
@@ -90,13 +90,13 @@ TEST(MeanShift, RangesAreTheRowsOfAWindowInsideTheImage) {
   space.first_vote.resize(21);
   std::iota(space.first_vote.begin(), space.first_vote.end(), 0U);  // one vote a cell
   std::vector<VoteRange> ranges(7);
-  ranges_near(space, 4, 0, 1, ranges);
+  ranges_of_cells(space, 4, 0, 1, ranges);
   ASSERT_EQ(ranges.size(), 2U);
   EXPECT_EQ(ranges[0].begin, 3U);
   EXPECT_EQ(ranges[0].end, 5U);
   EXPECT_EQ(ranges[1].begin, 8U);
   EXPECT_EQ(ranges[1].end, 10U);
-  ranges_near(space, 9, 1, 2, ranges);
+  ranges_of_cells(space, 9, 1, 2, ranges);
   EXPECT_TRUE(ranges.empty());
 }
 
@@ -109,7 +109,7 @@ TEST(MeanShift, ClimbsToTheMiddleOfACluster) {
   space.votes.push_back({{0.0F, 0.0F, 1.0F}, 0.5F});
   space.votes.push_back({{0.004F, 0.0F, 1.0F}, 0.5F});
   std::fill(space.first_vote.begin() + 30 * 80 + 41, space.first_vote.end(), 2U);  // both in cell (40, 30)
-  space.votes.resize(2 + kSpareVotes);
+  space.votes.resize(2 + kVotePadding);
   std::vector<VoteRange> ranges;
   const Eigen::Vector3f top = seek_mode(space, toy::kSmallCamera, {0.015F, 0.01F, 1.01F}, kSigma, ranges);
   EXPECT_LT((top - Eigen::Vector3f(0.002F, 0.0F, 1.0F)).norm(), 0.001F) << top.transpose();
