@@ -46,7 +46,7 @@ class Thinning {
   }
 
   /// Returns whether a place that survives so many thinnings is kept at this depth.
-  bool leaves(int survived, float z) const { return survived == kThinnings || z > farthest_[survived]; }
+  bool is_kept(int survived, float z) const { return survived == kThinnings || z > farthest_[survived]; }
 
   int count(float z) const {
     int t = 0;
@@ -107,7 +107,7 @@ void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint
   const auto metres_per_px = static_cast<float>(frame.camera.metres_per_px(1.0));
   for_places(frame.filled_depth.size(), spacing.stride, [&](int x, int y) {
     const float z = frame.filled_depth.at<float>(y, x);
-    if (!level.holds(z) || !thinning.leaves(thinnings_survived(x / spacing.stride, y / spacing.stride), z)) return;
+    if (!level.contains(z) || !thinning.is_kept(thinnings_survived(x / spacing.stride, y / spacing.stride), z)) return;
     const float side = sides[thinning.count(z)];
     const float side_metres = side * metres_per_px * z;
     add_place({x, y, side}, level, level_index, grid);

@@ -121,7 +121,7 @@ void resize_into(const RgbdFrame& frame, float scale, const FeatureSettings& set
 
 /// Brings the frame's brightness to a tone. The colours that the frame lends stay as they are: the changed ones go to
 /// `memory`.
-void bring_into(const AffineBrightness& tone, const RgbdFrame& frame, cv::Mat& memory, cv::Mat& colour) {
+void apply_tone(const AffineBrightness& tone, const RgbdFrame& frame, cv::Mat& memory, cv::Mat& colour) {
   if (!tone.changes()) return;
   if (colour.data != frame.colour.data) return apply_affine_brightness(tone, colour, colour);
   apply_affine_brightness(tone, frame.colour, memory);
@@ -183,7 +183,7 @@ void make_working_images(const RgbdFrame& frame, const FeatureSettings& settings
   parallel_for(threads, static_cast<int>(images.levels.size()), [&](int l) {
     const auto level = static_cast<std::size_t>(l);
     resize_into(frame, images.levels[level].scale, settings, images.holes[level], images.frames[level]);
-    bring_into(tone, frame, images.toned, images.frames[level].colour);
+    apply_tone(tone, frame, images.toned, images.frames[level].colour);
     if (level != 0) return;
     make_smoothed_lab(images.frames[0].colour, images.blurred, images.lab);
   });

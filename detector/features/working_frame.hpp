@@ -27,7 +27,7 @@ struct FeatureLevel {
   float min_distance = 0.0F;  ///< metres
   float max_distance = 0.0F;  ///< metres
 
-  bool holds(float depth) const { return depth > min_distance && depth <= max_distance; }  // false for NaN
+  bool contains(float depth) const { return depth > min_distance && depth <= max_distance; }  // false for NaN
 };
 /// Focal length of the 640x480 cameras that the paper's patches, and all supports in pixels, were counted in.
 constexpr float kReferenceFocal_px = 525.0F;

@@ -172,9 +172,9 @@ TEST(WorkingFrame, TheCameraSeesThePointWhereTheResizedImageShowsIt) {
 TEST(WorkingFrame, LevelsShareTheDistancesWithoutGapOrOverlap) {
   const auto levels = feature_levels({});
   EXPECT_FLOAT_EQ(levels[1].scale, 2.0F * levels[0].scale);
-  for (const float depth : {0.3F, 1.2F, 1.2001F, 2.8F}) EXPECT_NE(levels[0].holds(depth), levels[1].holds(depth));
+  for (const float depth : {0.3F, 1.2F, 1.2001F, 2.8F}) EXPECT_NE(levels[0].contains(depth), levels[1].contains(depth));
   for (const float depth : {0.0F, 2.9F, kNoValue}) {
-    EXPECT_FALSE(levels[0].holds(depth) || levels[1].holds(depth)) << depth;
+    EXPECT_FALSE(levels[0].contains(depth) || levels[1].contains(depth)) << depth;
   }
 }
 

@@ -138,10 +138,10 @@ TEST_F(Traversal, NobodyIsGivenUpAfterTheLastTree) {
 
 TEST(FeatureLevels, MeetWithoutAGap) {
   const auto levels = feature_levels(FeatureSettings{});
-  EXPECT_TRUE(levels[0].holds(1.2F));
-  EXPECT_FALSE(levels[1].holds(1.2F));
-  EXPECT_TRUE(levels[1].holds(1.21F));
-  EXPECT_FALSE(levels[1].holds(std::numeric_limits<float>::quiet_NaN()));
+  EXPECT_TRUE(levels[0].contains(1.2F));
+  EXPECT_FALSE(levels[1].contains(1.2F));
+  EXPECT_TRUE(levels[1].contains(1.21F));
+  EXPECT_FALSE(levels[1].contains(std::numeric_limits<float>::quiet_NaN()));
 }
 
 }  // namespace
