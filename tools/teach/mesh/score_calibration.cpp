@@ -20,20 +20,20 @@
 namespace houghstream::teach {
 namespace {
 
-constexpr std::uint64_t kCameras = 0x63616D657261ULL;
+constexpr std::uint64_t kCameraSeed = 0x63616D657261ULL;
 
 /// Renders the frames once; both passes read them. The objects are not quite those that were taught: light, wear and
 /// printer differ.
 std::vector<world::RenderedFrame> render_frames(const std::vector<world::CalibrationSceneObject>& objects,
                                                 const CalibrationSettings& settings, int scene_count) {
   const world::CalibrationScenes scenes(objects, settings.seed);
-  constexpr int kEach = world::CalibrationScenes::kFramesPerScene;
-  std::vector<world::RenderedFrame> frames(static_cast<std::size_t>(scene_count * kEach));
+  constexpr int kFramesPerScene = world::CalibrationScenes::kFramesPerScene;
+  std::vector<world::RenderedFrame> frames(static_cast<std::size_t>(scene_count * kFramesPerScene));
   ProgressLine progress("practice rooms", scene_count);
   parallel_for(settings.threads, scene_count, [&](int scene) {
-    int index = scene * kEach;
+    int index = scene * kFramesPerScene;
     for (world::RenderedFrame& frame : scenes.render(scene)) {
-      Random random = Random::for_item(settings.seed ^ kCameras, static_cast<std::uint64_t>(index));
+      Random random = Random::for_item(settings.seed ^ kCameraSeed, static_cast<std::uint64_t>(index));
       for (const cv::Mat& mask : frame.visible_masks) {
         const cv::Rect part = cv::boundingRect(mask);
         cv::Mat colour = frame.frame.colour(part);
@@ -49,7 +49,7 @@ std::vector<world::RenderedFrame> render_frames(const std::vector<world::Calibra
   return frames;
 }
 
-void warn_of(const std::vector<std::string>& names, int scene_count) {
+void warn_of_unobserved(const std::vector<std::string>& names, int scene_count) {
   for (const std::string& name : names)
     log_warning(
         "{}: seen in none of {} practice rooms, expected some: what its scores and poses are worth is not learnt (too "
@@ -94,15 +94,16 @@ std::vector<GroupCalibration> calibrations_of(const std::vector<CalibrationObjec
   for (const CalibrationObject& object : objects) in_scene.push_back(object.in_scene);
   std::vector<GroupCalibration> all;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    GroupCalibration made;
-    made.place = i;
-    made.ids = new_objects_of(groups[i], new_ids);
-    if (made.ids.empty()) continue;
-    made.objects = groups.size() == 1 ? in_scene : among_strangers(in_scene, made.ids);
-    for (world::CalibrationSceneObject& object : made.objects) object.is_calibrated = made.ids.count(object.id) > 0;
-    made.settings = settings;
-    made.settings.seed += kNextSeed * i;
-    all.push_back(std::move(made));
+    GroupCalibration calibration;
+    calibration.place = i;
+    calibration.ids = new_objects_of(groups[i], new_ids);
+    if (calibration.ids.empty()) continue;
+    calibration.objects = groups.size() == 1 ? in_scene : interleave_distractors(in_scene, calibration.ids);
+    for (world::CalibrationSceneObject& object : calibration.objects)
+      object.is_calibrated = calibration.ids.count(object.id) > 0;
+    calibration.settings = settings;
+    calibration.settings.seed += kNextSeed * i;
+    all.push_back(std::move(calibration));
   }
   return all;
 }
@@ -217,10 +218,11 @@ std::map<std::string, CalibratedObject> learn_from_poses(const GroupCalibration&
 }  // namespace
 
 int scene_count_for(std::size_t new_objects, const CalibrationSettings& settings) {
-  constexpr int kOfOne = 80;
-  constexpr int kOfEachMore = 25;
+  constexpr int kScenesOfFirst = 80;
+  constexpr int kScenesOfFurther = 25;
   constexpr int kMax = 240;
-  return settings.scenes.value_or(std::min(kOfOne + kOfEachMore * (static_cast<int>(new_objects) - 1), kMax));
+  return settings.scenes.value_or(
+      std::min(kScenesOfFirst + kScenesOfFurther * (static_cast<int>(new_objects) - 1), kMax));
 }
 
 std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFrame>& frames,
@@ -246,22 +248,22 @@ std::set<int> new_objects_of(const Forest& forest, const std::set<int>& new_ids)
   return ids;
 }
 
-std::vector<world::CalibrationSceneObject> among_strangers(const std::vector<world::CalibrationSceneObject>& objects,
-                                                           const std::set<int>& group_ids) {
+std::vector<world::CalibrationSceneObject> interleave_distractors(
+    const std::vector<world::CalibrationSceneObject>& objects, const std::set<int>& group_ids) {
   constexpr std::size_t kFurther = 6;  // objects beside the first that a room may have
   std::vector<const world::CalibrationSceneObject*> members;
-  std::vector<const world::CalibrationSceneObject*> strangers;
+  std::vector<const world::CalibrationSceneObject*> distractors;
   for (const world::CalibrationSceneObject& object : objects)
-    (group_ids.count(object.id) > 0 ? members : strangers).push_back(&object);
+    (group_ids.count(object.id) > 0 ? members : distractors).push_back(&object);
   const std::size_t between = (kFurther + members.size() - 1) / members.size();
   const std::size_t rounds =
-      std::max<std::size_t>((strangers.size() + between * members.size() - 1) / (between * members.size()), 1);
+      std::max<std::size_t>((distractors.size() + between * members.size() - 1) / (between * members.size()), 1);
   const std::size_t places = rounds * members.size();
   std::vector<world::CalibrationSceneObject> ordered;
   for (std::size_t i = 0; i < places; ++i) {
     ordered.push_back(*members[i % members.size()]);
-    for (std::size_t k = i * strangers.size() / places; k < (i + 1) * strangers.size() / places; ++k)
-      ordered.push_back(*strangers[k]);
+    for (std::size_t k = i * distractors.size() / places; k < (i + 1) * distractors.size() / places; ++k)
+      ordered.push_back(*distractors[k]);
   }
   return ordered;
 }
@@ -276,20 +278,20 @@ std::map<std::string, CalibratedObject> calibrate_on_scenes(const std::vector<Ca
   std::vector<GroupCalibration> calibrations = calibrations_of(objects, new_ids, settings, groups);
   for (GroupCalibration& calibration : calibrations) {
     render_frames_of(calibration);
-    warn_of(unobserved_objects(calibration.frames, objects, calibration.ids),
-            static_cast<int>(calibration.frames.size()) / world::CalibrationScenes::kFramesPerScene);
+    warn_of_unobserved(unobserved_objects(calibration.frames, objects, calibration.ids),
+                       static_cast<int>(calibration.frames.size()) / world::CalibrationScenes::kFramesPerScene);
     learn_scores(calibration, groups[calibration.place]);
     if (calibrations.size() > 1) calibration.frames.clear();  // of all groups at once they take too much memory
   }
   quality::PosedModels models;
   models.tone = groups.front().features.tone;
-  std::map<std::string, PoseModel> judged_by;
+  std::map<std::string, PoseModel> pose_models;
   for (const CalibrationObject& object : objects) {
     models.meshes[object.name] = object.mesh;
     models.vote_centres[object.name] = object.vote_centre;
     models.symmetries[object.name] = object.symmetries;
     models.shape_symmetries[object.name] = object.shape_symmetry;
-    judged_by[object.name] = make_pose_model(object.mesh, object.symmetries);
+    pose_models[object.name] = make_pose_model(object.mesh, object.symmetries);
   }
   const quality::UnfilteredPoseFinder finder(models, 1);
   std::map<std::string, CalibratedObject> learnt;
@@ -298,7 +300,7 @@ std::map<std::string, CalibratedObject> calibrate_on_scenes(const std::vector<Ca
     const quality::FoundPoses found = find_poses(calibration, finder, groups);
     calibration.frames.clear();
     const float reported_from = detection_settings(groups[calibration.place]).evidence.threshold;
-    learnt.merge(learn_from_poses(calibration, objects, found, judged_by, reported_from));
+    learnt.merge(learn_from_poses(calibration, objects, found, pose_models, reported_from));
   }
   return learnt;
 }

@@ -58,8 +58,8 @@ std::set<int> new_objects_of(const Forest& forest, const std::set<int>& new_ids)
 
 /// Returns the objects in an order in which neighbours, which stand together in a room, are of the group and strangers:
 /// each stranger once, and so many after each of the group's objects that none of these comes twice in a room.
-std::vector<world::CalibrationSceneObject> among_strangers(const std::vector<world::CalibrationSceneObject>& objects,
-                                                           const std::set<int>& group_ids);
+std::vector<world::CalibrationSceneObject> interleave_distractors(
+    const std::vector<world::CalibrationSceneObject>& objects, const std::set<int>& group_ids);
 
 /// Looks for the objects in rendered rooms (world::CalibrationScenes) through widely varied cameras, and learns what
 /// its detections and poses are worth: the scores' weights in the groups' forests, and the qualities, with what was

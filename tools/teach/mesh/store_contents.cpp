@@ -41,18 +41,18 @@ void carry_model_over(const StoreModel& from, const fs::path& models_folder, Car
 
 /// Meshes that were there before keep their files and what is said of them.
 void write_models(std::vector<StoreModel> models, const fs::path& folder, Carrying carrying) {
-  std::vector<NamedModel> made;
+  std::vector<NamedModel> new_models;
   for (StoreModel& it : models) {
-    if (it.file.empty()) made.push_back(std::move(it.model));
+    if (it.file.empty()) new_models.push_back(std::move(it.model));
   }
-  write_bop_models(made, folder);
+  write_bop_models(new_models, folder);
   const fs::path info_file = folder / "models_info.json";
   OrderedJson written = OrderedJson::parse(read_file(info_file, "a list of models"));
   OrderedJson info = OrderedJson::object();
   std::map<int, std::string> names;
   std::size_t next = 0;
   for (const StoreModel& it : models) {
-    const NamedModel& model = it.file.empty() ? made[next++] : it.model;
+    const NamedModel& model = it.file.empty() ? new_models[next++] : it.model;
     const std::string key = std::to_string(model.object_id);
     names[model.object_id] = model.name;
     info[key] = it.file.empty() ? written.at(key) : it.info;
@@ -78,10 +78,10 @@ StoreContents read_contents(const fs::path& folder) {
 }
 
 ObjectStore start_store(const fs::path& folder) {
-  ObjectStore made;
-  made.folder = folder;
+  ObjectStore store;
+  store.folder = folder;
   make_store_folder(folder / "views");
-  return made;
+  return store;
 }
 
 std::map<int, OrderedJson> read_model_entries(const ObjectStore& list) {
@@ -99,22 +99,22 @@ void carry_over(const fs::path& file, const fs::path& to, Carrying carrying) {
   require(!error, "{}: cannot be copied: {}", file.string(), error.message());
 }
 
-void keep_objects(const StoreContents& old, const std::string& except, ObjectStore& made,
+void copy_objects(const StoreContents& old, const std::string& except, ObjectStore& new_store,
                   std::vector<StoreModel>& models) {
   std::map<int, OrderedJson> entries;
   if (!old.list.objects.empty()) entries = read_model_entries(old.list);
   for (const StoredObject& object : old.list.objects) {
     if (object.name == except) continue;
-    made.objects.push_back(object);
-    if (std::optional<store::PracticeRecord>& practice = made.objects.back().practice)
+    new_store.objects.push_back(object);
+    if (std::optional<store::PracticeRecord>& practice = new_store.objects.back().practice)
       practice->taken_for.erase(except);
-    std::optional<ShapeSymmetry>& shape = made.objects.back().shape_symmetry;
+    std::optional<ShapeSymmetry>& shape = new_store.objects.back().shape_symmetry;
     if (!shape) shape = find_shape_symmetry(old.meshes.at(object.name));  // taught before it was looked for
     StoreModel& kept = models.emplace_back();
     kept.model = {object.id, object.name, old.meshes.at(object.name), old.list.symmetries.at(object.id)};
     kept.file = old.list.mesh_file(object.id);
     kept.info = entries.at(object.id);
-    carry_over(old.list.view_image(object.id), made.view_image(object.id));
+    carry_over(old.list.view_image(object.id), new_store.view_image(object.id));
   }
 }
 

@@ -45,7 +45,7 @@ std::map<int, OrderedJson> read_model_entries(const store::ObjectStore& list);
 
 /// Copies the unchanged objects of a store, all but the one of this name, into the list, the models and the images of
 /// views of the new one.
-void keep_objects(const StoreContents& old, const std::string& except, store::ObjectStore& made,
+void copy_objects(const StoreContents& old, const std::string& except, store::ObjectStore& new_store,
                   std::vector<StoreModel>& models);
 
 /// Carrying of files that have not changed into a new store.

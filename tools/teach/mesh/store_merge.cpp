@@ -115,10 +115,10 @@ void give_merged_ids(std::vector<MergedObject>& objects) {
 
 /// Copies the images of an object's views, under the title of its id.
 void copy_views(const MergedObject& merged, const StoredObject& before, const Eigen::Vector3d& size_m,
-                const ObjectStore& made) {
+                const ObjectStore& new_store) {
   cv::Mat image = read_colour_image(merged.from->list.view_image(before.id));
   write_title(title_of(merged.object, size_m), image);
-  write_png(image, made.view_image(merged.object.id));
+  write_png(image, new_store.view_image(merged.object.id));
 }
 
 std::vector<MergedObject> objects_of(const std::vector<StoreContents>& stores) {
@@ -150,13 +150,13 @@ struct ModelEntries {
 
 /// Adds the objects to the list and the models, their views to the folder. A group is called by an id of one of its
 /// objects.
-std::vector<StoreModel> add_objects(const std::vector<MergedObject>& objects, ObjectStore& made) {
+std::vector<StoreModel> add_objects(const std::vector<MergedObject>& objects, ObjectStore& new_store) {
   std::vector<StoreModel> models;
   std::map<std::pair<const StoreContents*, int>, int> groups;
   std::map<const StoreContents*, ModelEntries> known;
   for (const MergedObject& it : objects) {
     const StoredObject& before = store::find_object(it.from->list, it.object.name);
-    StoredObject& object = made.objects.emplace_back(it.object);
+    StoredObject& object = new_store.objects.emplace_back(it.object);
     object.group = groups.emplace(std::make_pair(it.from, before.group), object.id).first->second;
     const ObjectStore& list = it.from->list;
     if (known.count(it.from) == 0) known[it.from] = {read_model_entries(list), object_sizes(list)};
@@ -164,7 +164,7 @@ std::vector<StoreModel> add_objects(const std::vector<MergedObject>& objects, Ob
     models.push_back({{object.id, object.name, it.mesh(), list.symmetries.at(before.id)},
                       list.mesh_file(before.id),
                       stated.entries.at(before.id)});
-    copy_views(it, before, stated.sizes_m.at(before.id), made);
+    copy_views(it, before, stated.sizes_m.at(before.id), new_store);
   }
   return models;
 }
@@ -184,14 +184,14 @@ void merge_stores(const std::vector<fs::path>& stores, const fs::path& out, bool
   std::vector<MergedObject> objects = objects_of(contents);
   require_different(objects);
   give_merged_ids(objects);
-  ObjectStore made = start_store(build.folder());
-  made.settings = settings_of(objects, contents.front());
-  const std::vector<StoreModel> models = add_objects(objects, made);
+  ObjectStore new_store = start_store(build.folder());
+  new_store.settings = settings_of(objects, contents.front());
+  const std::vector<StoreModel> models = add_objects(objects, new_store);
   std::vector<GroupForest> groups;
   for (StoreContents& it : contents) std::move(it.groups.begin(), it.groups.end(), std::back_inserter(groups));
-  write_store(made, models, groups, Carrying::kCopied);
+  write_store(new_store, models, groups, Carrying::kCopied);
   build.commit();
-  name_lookalikes(models, made);
+  log_lookalikes(models, new_store);
   fmt::print(
       "{} objects in {} groups in {}; their scores were learnt apart: 'hs-teach practise {}' learns them among one "
       "another\n",

@@ -26,11 +26,11 @@ using store::ObjectStore;
 using store::StoredObject;
 
 /// Returns the number of views of each of so many objects: the fewer, the more there is time and memory for.
-int views_of_each(std::size_t objects) {
-  constexpr int kAll = 12600;
+int views_per_object(std::size_t objects) {
+  constexpr int kMaxViewsOfAll = 12600;
   constexpr int kMin = 1280;
   constexpr int kMax = 2200;
-  return std::clamp(kAll / static_cast<int>(objects), kMin, kMax);
+  return std::clamp(kMaxViewsOfAll / static_cast<int>(objects), kMin, kMax);
 }
 
 /// Returns the middle of an object's box, so that the place of a mesh's origin, at a corner or a metre beside it, makes
@@ -40,7 +40,7 @@ Eigen::Vector3f vote_centre_of(const Mesh& mesh) {
 }
 
 /// Votes are for the origin of the frame in which a view has its pose.
-void vote_for(const Eigen::Vector3f& centre, std::vector<TrainingView>& views) {
+void move_origins_to(const Eigen::Vector3f& centre, std::vector<TrainingView>& views) {
   for (TrainingView& view : views) view.T_camera_object.translate(centre.cast<double>());
 }
 
@@ -100,11 +100,11 @@ std::vector<NamedModel> models_of(const std::vector<TaughtMesh>& meshes) {
 }
 
 std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, const TeachOptions& options,
-                                     ObjectStore& made, const std::function<void(const std::string&)>& report) {
+                                     ObjectStore& new_store, const std::function<void(const std::string&)>& report) {
   std::vector<TrainingView> all;
   ProgressLine line("objects rendered", static_cast<double>(meshes.size()));
   for (const TaughtMesh& taught : meshes) {
-    std::vector<TrainingView> views = render_views(taught, options, views_of_each(meshes.size()));
+    std::vector<TrainingView> views = render_views(taught, options, views_per_object(meshes.size()));
     for (const TrainingView& own : options.own_views) {
       if (own.class_name != taught.name) continue;
       views.push_back(own);
@@ -120,11 +120,11 @@ std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, cons
     object.shape_symmetry = find_shape_symmetry(taught.mesh);
     const std::string title = title_of(object, mesh_bounds(taught.mesh).sizes().cast<double>());
     report(title);
-    write_png(view_image(views, title), made.view_image(object.id));
+    write_png(view_image(views, title), new_store.view_image(object.id));
     if (!options.dump_views.empty()) dump_views(views, options.dump_views / fmt::format("{:06d}", object.id));
     object.vote_centre = vote_centre_of(taught.mesh);
-    vote_for(object.vote_centre, views);
-    made.objects.push_back(object);
+    move_origins_to(object.vote_centre, views);
+    new_store.objects.push_back(object);
     std::move(views.begin(), views.end(), std::back_inserter(all));
     line.add(1.0);
   }
@@ -141,7 +141,7 @@ Forest train_store_forest(std::vector<TrainingView> views, const Forest* old, co
   // Many attitudes want many patches and small leaves; that fewer of them choose a test pays for it.
   constexpr int kNodeSamples = 700;
   constexpr int kTestsPerNode = 1000;
-  constexpr int kMinOfLeaf = 10;
+  constexpr int kMinLeafSamples = 10;
   Profile profile = options.profile;
   if (old) {
     profile = training::profile_of(*old);
@@ -160,7 +160,7 @@ Forest train_store_forest(std::vector<TrainingView> views, const Forest* old, co
   profile.training.patches_per_view = std::clamp(kPatches / images, kMinPatches, kMaxPatches);
   profile.training.node_samples = kNodeSamples;
   profile.training.tests_per_node = kTestsPerNode;
-  profile.training.min_samples = kMinOfLeaf;
+  profile.training.min_samples = kMinLeafSamples;
   profile.training.seed = options.seed;
   profile.training.threads = options.threads;
   Forest forest = old ? training::add_objects(*old, std::move(views), profile, report)

@@ -42,7 +42,7 @@ class Progress {
 
 /// Gives ids. Those of BOP folders are kept where they are free; an object without one, or with another's, gets the
 /// next free one.
-void give_ids(const ObjectStore& old, std::vector<TaughtMesh>& meshes) {
+void assign_free_ids(const ObjectStore& old, std::vector<TaughtMesh>& meshes) {
   std::vector<int> taken;
   for (const StoredObject& object : old.objects) taken.push_back(object.id);
   const auto is_free = [&](int id) { return std::find(taken.begin(), taken.end(), id) == taken.end(); };
@@ -58,7 +58,7 @@ void give_ids(const ObjectStore& old, std::vector<TaughtMesh>& meshes) {
   std::sort(meshes.begin(), meshes.end(), [](const TaughtMesh& a, const TaughtMesh& b) { return a.id < b.id; });
 }
 
-void require_new(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) {
+void require_new_names(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) {
   for (const TaughtMesh& mesh : meshes) {
     const bool is_known = std::any_of(old.objects.begin(), old.objects.end(),
                                       [&](const StoredObject& object) { return object.name == mesh.name; });
@@ -70,12 +70,12 @@ void require_new(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) 
 /// Searches the objects of the finished store in rooms; what is learnt of the new ones goes into their groups' forests
 /// and the store.
 void calibrate_all(const std::vector<StoreModel>& models, const std::set<int>& new_ids,
-                   const CalibrationSettings& settings, std::vector<GroupForest>& groups, ObjectStore& made) {
+                   const CalibrationSettings& settings, std::vector<GroupForest>& groups, ObjectStore& new_store) {
   std::vector<CalibrationObject> objects(models.size());
   parallel_for(settings.threads, static_cast<int>(models.size()), [&](int i) {
     const NamedModel& model = models[static_cast<std::size_t>(i)].model;
     const auto of_model = [&](const StoredObject& object) { return object.id == model.object_id; };
-    const StoredObject& stored = *std::find_if(made.objects.begin(), made.objects.end(), of_model);
+    const StoredObject& stored = *std::find_if(new_store.objects.begin(), new_store.objects.end(), of_model);
     CalibrationObject& object = objects[static_cast<std::size_t>(i)];
     object.name = model.name;
     object.mesh = model.mesh;
@@ -95,7 +95,7 @@ void calibrate_all(const std::vector<StoreModel>& models, const std::set<int>& n
   }
   const std::map<std::string, CalibratedObject> learnt = calibrate_on_scenes(objects, new_ids, settings, forests);
   for (std::size_t i = 0; i < groups.size(); ++i) groups[i].forest = std::move(forests[i]);
-  for (StoredObject& object : made.objects) {
+  for (StoredObject& object : new_store.objects) {
     const auto found = learnt.find(object.name);
     if (found == learnt.end()) continue;
     object.quality = quality_to_json(found->second.quality);
@@ -120,59 +120,59 @@ std::string calibration_step(const CalibrationSettings& settings, const std::set
 
 /// Objects that are taught together.
 struct GroupPlan {
-  int grown = 0;  ///< number of the group that they join; 0: a new one
+  int joined_group = 0;  ///< number of the group that they join; 0: a new one
   std::vector<TaughtMesh> meshes;
 };
 
 /// Divides the objects into groups: they join the last group where all of them have room there; else they make new
 /// groups of about the same size.
-std::vector<GroupPlan> divide(std::vector<TaughtMesh> meshes, const ObjectStore& old, int max_objects) {
-  const auto room = static_cast<std::size_t>(max_objects);
+std::vector<GroupPlan> plan_groups(std::vector<TaughtMesh> meshes, const ObjectStore& old, int max_objects) {
+  const auto capacity = static_cast<std::size_t>(max_objects);
   if (!old.objects.empty()) {
     const int last = old.groups().back();
     const auto known = std::count_if(old.objects.begin(), old.objects.end(),
                                      [&](const StoredObject& object) { return object.group == last; });
-    if (static_cast<std::size_t>(known) + meshes.size() <= room) return {{last, std::move(meshes)}};
+    if (static_cast<std::size_t>(known) + meshes.size() <= capacity) return {{last, std::move(meshes)}};
   }
-  const std::size_t parts = (meshes.size() + room - 1) / room;
-  std::vector<GroupPlan> plans(parts);
+  const std::size_t group_count = (meshes.size() + capacity - 1) / capacity;
+  std::vector<GroupPlan> plans(group_count);
   for (std::size_t i = 0; i < meshes.size(); ++i)
-    plans[i * parts / meshes.size()].meshes.push_back(std::move(meshes[i]));
+    plans[i * group_count / meshes.size()].meshes.push_back(std::move(meshes[i]));
   return plans;
 }
 
 /// Gives the classes of a forest that has grown the ids of the store.
-void take_ids(const ObjectStore& list, Forest& forest) {
+void assign_store_ids(const ObjectStore& list, Forest& forest) {
   for (ObjectClass& known : forest.classes) known.class_id = store::find_object(list, known.name).id;
 }
 
 /// Grows the forest of a group, whose objects join the list.
-void teach_group(const GroupPlan& plan, const TeachOptions& options, const Progress& progress, ObjectStore& made,
+void teach_group(const GroupPlan& plan, const TeachOptions& options, const Progress& progress, ObjectStore& new_store,
                  std::vector<GroupForest>& groups) {
   // Views of each group: training changes them.
   std::vector<TrainingView> views = read_backgrounds(options.backgrounds);
   progress(fmt::format("{} pictures of rooms read", views.size()));
-  const std::size_t known = made.objects.size();
-  std::vector<TrainingView> of_objects = make_views(plan.meshes, options, made, progress);
+  const std::size_t known = new_store.objects.size();
+  std::vector<TrainingView> of_objects = make_views(plan.meshes, options, new_store, progress);
   std::move(of_objects.begin(), of_objects.end(), std::back_inserter(views));
-  const auto is_grown = [&](const GroupForest& it) { return number_of(it.forest, made) == plan.grown; };
-  const auto old = std::find_if(groups.begin(), groups.end(), is_grown);
-  for (std::size_t i = known; i < made.objects.size(); ++i)
-    made.objects[i].group = plan.grown > 0 ? plan.grown : plan.meshes.front().id;
+  const auto is_joined = [&](const GroupForest& it) { return number_of(it.forest, new_store) == plan.joined_group; };
+  const auto old = std::find_if(groups.begin(), groups.end(), is_joined);
+  for (std::size_t i = known; i < new_store.objects.size(); ++i)
+    new_store.objects[i].group = plan.joined_group > 0 ? plan.joined_group : plan.meshes.front().id;
   if (old == groups.end()) {
     groups.push_back({train_store_forest(std::move(views), nullptr, options, progress), {}});
   } else {
     old->forest = train_store_forest(std::move(views), &old->forest, options, progress);
     old->file.clear();
-    take_ids(made, old->forest);
+    assign_store_ids(new_store, old->forest);
   }
 }
 
 /// Sorts objects and groups as a store that is read has them.
-void put_in_order(ObjectStore& made, std::vector<GroupForest>& groups) {
-  store::number_groups(made);
+void sort_groups(ObjectStore& new_store, std::vector<GroupForest>& groups) {
+  store::number_groups(new_store);
   std::stable_sort(groups.begin(), groups.end(), [&](const GroupForest& a, const GroupForest& b) {
-    return number_of(a.forest, made) < number_of(b.forest, made);
+    return number_of(a.forest, new_store) < number_of(b.forest, new_store);
   });
 }
 
@@ -192,7 +192,7 @@ void require_store(const fs::path& folder) {
 }
 
 /// Refuses a folder with views of another teaching, which would be taken for this one's.
-void require_free(const fs::path& dump) {
+void require_empty_dump(const fs::path& dump) {
   std::error_code error;
   require(dump.empty() || !fs::exists(dump, error) || (fs::is_directory(dump, error) && fs::is_empty(dump, error)),
           "--dump-views {}: holds something already, expected a new folder or an empty one", dump.string());
@@ -219,7 +219,7 @@ void teach_meshes(const TeachOptions& options) {
   StopNotice stop(unchanged_notice(options.out));
   world::parse_mesh_attitudes(options.attitudes);
   if (options.backgrounds.camera) parse_camera(*options.backgrounds.camera);
-  require_free(options.dump_views);
+  require_empty_dump(options.dump_views);
   store::StoreTransaction build(options.out);  // before the store is read: nobody else changes it from here on
   if (!options.add && !options.replace) require_no_store(options.out);
   StoreContents old;
@@ -232,13 +232,13 @@ void teach_meshes(const TeachOptions& options) {
     std::vector<TaughtMesh> read = read_meshes(options.meshes);
     std::move(read.begin(), read.end(), std::back_inserter(meshes));
   }
-  require_new(old.list, meshes);
-  give_ids(old.list, meshes);
+  require_new_names(old.list, meshes);
+  assign_free_ids(old.list, meshes);
   progress(fmt::format("{} meshes read", meshes.size()));
 
-  ObjectStore made = start_store(build.folder());
+  ObjectStore new_store = start_store(build.folder());
   std::vector<StoreModel> models;
-  keep_objects(old, "", made, models);
+  copy_objects(old, "", new_store, models);
   if (!options.dump_views.empty()) write_bop_models(models_of(meshes), options.dump_views / "models");
   std::set<int> new_ids;
   for (NamedModel& model : models_of(meshes)) {
@@ -246,26 +246,26 @@ void teach_meshes(const TeachOptions& options) {
     models.push_back({std::move(model), {}});
   }
   std::vector<GroupForest>& groups = old.groups;
-  for (const GroupPlan& plan : divide(std::move(meshes), old.list, options.max_group_objects))
-    teach_group(plan, options, progress, made, groups);
-  put_in_order(made, groups);
+  for (const GroupPlan& plan : plan_groups(std::move(meshes), old.list, options.max_group_objects))
+    teach_group(plan, options, progress, new_store, groups);
+  sort_groups(new_store, groups);
   CalibrationSettings calibration = options.calibration;
   calibration.seed = options.seed;
   calibration.threads = options.threads;
   progress(calibration_step(calibration, new_ids, groups));
-  calibrate_all(models, new_ids, calibration, groups, made);
+  calibrate_all(models, new_ids, calibration, groups, new_store);
   progress("scores and qualities learnt");
-  made.settings = {
+  new_store.settings = {
       {"attitudes", options.attitudes}, {"seed", options.seed}, {"profile", groups.front().forest.profile}};
-  write_store(made, models, groups);
+  write_store(new_store, models, groups);
   stop.release();
   build.commit();
-  name_lookalikes(models, made);
+  log_lookalikes(models, new_store);
   fmt::print("{}", teaching_summary(store::read_store(options.out), new_ids));
   fmt::print("teach_seconds {:.1f}\n", progress.seconds());
 }
 
-void name_lookalikes(const std::vector<StoreModel>& models, const ObjectStore& list) {
+void log_lookalikes(const std::vector<StoreModel>& models, const ObjectStore& list) {
   std::vector<NamedMesh> named;
   named.reserve(models.size());
   for (const StoreModel& it : models) named.emplace_back(it.model.name, &it.model.mesh);
@@ -290,12 +290,12 @@ void remove_from_store(const fs::path& folder, const std::string& name) {
   } else {
     *of_object = {training::remove_object(of_object->forest, name), {}};
   }
-  ObjectStore made = start_store(build.folder());
-  made.settings = old.list.settings;
+  ObjectStore new_store = start_store(build.folder());
+  new_store.settings = old.list.settings;
   std::vector<StoreModel> models;
-  keep_objects(old, name, made, models);
-  put_in_order(made, groups);
-  write_store(made, models, groups);
+  copy_objects(old, name, new_store, models);
+  sort_groups(new_store, groups);
+  write_store(new_store, models, groups);
   build.commit();
 }
 
@@ -307,17 +307,17 @@ void calibrate_store(const fs::path& folder, const CalibrationSettings& settings
   store::StoreTransaction build(folder);
   StoreContents old = read_contents(folder);
   const std::set<int> ids = ids_of(old.list, names);
-  ObjectStore made = start_store(build.folder());
-  made.settings = old.list.settings;
+  ObjectStore new_store = start_store(build.folder());
+  new_store.settings = old.list.settings;
   std::vector<StoreModel> models;
-  keep_objects(old, "", made, models);
+  copy_objects(old, "", new_store, models);
   progress(calibration_step(settings, ids, old.groups));
-  calibrate_all(models, ids, settings, old.groups, made);
-  write_store(made, models, old.groups);
+  calibrate_all(models, ids, settings, old.groups, new_store);
+  write_store(new_store, models, old.groups);
   stop.release();
   build.commit();
   progress("scores and qualities learnt");
-  name_lookalikes(models, made);
+  log_lookalikes(models, new_store);
   fmt::print("{}", teaching_summary(store::read_store(folder), ids));
 }
 

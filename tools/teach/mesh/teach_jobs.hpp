@@ -20,7 +20,7 @@ void require_no_store(const std::filesystem::path& folder);
 void teach_meshes(const TeachOptions& options);
 
 /// Says in the log which objects of a store can hardly be told apart, by their meshes and by their practice.
-void name_lookalikes(const std::vector<StoreModel>& models, const store::ObjectStore& list);
+void log_lookalikes(const std::vector<StoreModel>& models, const store::ObjectStore& list);
 
 /// Learns scores and qualities of a store's objects anew: of all, or of those of the `names`. Throws InputError for a
 /// name that is not there.

@@ -41,26 +41,26 @@ TEST(Calibration, MoreRoomsThanMemoryHoldsAreRefused) {
             "501 practice rooms, expected at most 500: all are in memory");
 }
 
-std::vector<int> ids_among_strangers(int members, int strangers) {
+std::vector<int> ids_with_distractors(int members, int distractors) {
   std::vector<world::CalibrationSceneObject> objects;
   std::set<int> group;
-  for (int id = 1; id <= members + strangers; ++id) {
+  for (int id = 1; id <= members + distractors; ++id) {
     objects.emplace_back();
     objects.back().id = id;
     if (id <= members) group.insert(id);
   }
   std::vector<int> ids;
-  for (const world::CalibrationSceneObject& object : among_strangers(objects, group)) ids.push_back(object.id);
+  for (const world::CalibrationSceneObject& object : interleave_distractors(objects, group)) ids.push_back(object.id);
   return ids;
 }
 
 TEST(Calibration, EachStrangerStandsBesideMembersOfTheGroup) {
-  EXPECT_EQ(ids_among_strangers(2, 0), (std::vector<int>{1, 2}));
-  EXPECT_EQ(ids_among_strangers(1, 8), (std::vector<int>{1, 2, 3, 4, 5, 1, 6, 7, 8, 9}));
-  EXPECT_EQ(ids_among_strangers(3, 3), (std::vector<int>{1, 4, 2, 5, 3, 6}));
+  EXPECT_EQ(ids_with_distractors(2, 0), (std::vector<int>{1, 2}));
+  EXPECT_EQ(ids_with_distractors(1, 8), (std::vector<int>{1, 2, 3, 4, 5, 1, 6, 7, 8, 9}));
+  EXPECT_EQ(ids_with_distractors(3, 3), (std::vector<int>{1, 4, 2, 5, 3, 6}));
   constexpr int kOfARoom = 7;
   for (const int members : {4, 6, 7}) {
-    const std::vector<int> ids = ids_among_strangers(members, 53);
+    const std::vector<int> ids = ids_with_distractors(members, 53);
     for (int id = members + 1; id <= members + 53; ++id)
       EXPECT_EQ(std::count(ids.begin(), ids.end(), id), 1) << "stranger " << id;
     for (std::size_t first = 0; first < ids.size(); ++first) {
