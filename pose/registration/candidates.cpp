@@ -11,7 +11,7 @@
 namespace houghstream {
 namespace {
 
-std::vector<RotationVote> usable_votes(const std::vector<RotationVote>& votes) {
+std::vector<RotationVote> select_usable_votes(const std::vector<RotationVote>& votes) {
   std::vector<RotationVote> out;
   for (const RotationVote& vote : votes) {
     const float norm = vote.R_camera_object.norm();
@@ -42,7 +42,7 @@ RotationCandidate mean_rotation(const std::vector<RotationVote>& votes) {
 }
 
 /// Returns the vote with most weight within the radius; ties go to the first.
-std::size_t densest(const std::vector<RotationVote>& votes, float min_kernel) {
+std::size_t find_densest_vote(const std::vector<RotationVote>& votes, float min_kernel) {
   std::size_t best = 0;
   float best_weight = -1.0F;
   for (std::size_t i = 0; i < votes.size(); ++i) {
@@ -68,8 +68,8 @@ void add_rotated(std::vector<RotationCandidate>& candidates, int rotated_cluster
   }
 }
 
-PoseCandidate best_place(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                         const SearchSettings& settings) {
+PoseCandidate find_best_position(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                                 const SearchSettings& settings) {
   const ShiftSearch along{settings.points, settings.reach_m, {settings.tolerance_m, observation.noise}};
   PoseCandidate best;
   for (int j = -settings.steps; j <= settings.steps; ++j) {
@@ -89,17 +89,17 @@ PoseCandidate best_place(const ObjectObservation& observation, const Eigen::Isom
 
 std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>& votes,
                                                  const InitialSettings& settings) {
-  std::vector<RotationVote> left = usable_votes(votes);
+  std::vector<RotationVote> remaining = select_usable_votes(votes);
   constexpr double kSelf = 0.9999;  // a vote is always in its own cluster
   const double limit = std::cos(0.5 * settings.cluster_radius_deg * kRadPerDeg);
   const auto min_kernel = static_cast<float>(std::min(limit, kSelf));
   std::vector<RotationCandidate> candidates;
-  while (!left.empty() && static_cast<int>(candidates.size()) < settings.clusters) {
-    const RotationVote centre = left[densest(left, min_kernel)];
+  while (!remaining.empty() && static_cast<int>(candidates.size()) < settings.clusters) {
+    const RotationVote centre = remaining[find_densest_vote(remaining, min_kernel)];
     const auto far = [&](const RotationVote& vote) { return rotation_kernel(vote, centre) < min_kernel; };
-    const auto near_begin = std::stable_partition(left.begin(), left.end(), far);
-    candidates.push_back(mean_rotation({near_begin, left.end()}));
-    left.erase(near_begin, left.end());
+    const auto near_begin = std::stable_partition(remaining.begin(), remaining.end(), far);
+    candidates.push_back(mean_rotation({near_begin, remaining.end()}));
+    remaining.erase(near_begin, remaining.end());
   }
   add_rotated(candidates, settings.rotated_clusters);
   return candidates;
@@ -129,7 +129,7 @@ std::vector<PoseCandidate> place_candidates(const ObjectObservation& observation
     T_camera_object.translation() =
         (observation.centre_camera - rotation.R_camera_object.normalized() * observation.model.vote_centre)
             .cast<double>();
-    candidates.push_back(best_place(observation, T_camera_object, settings));
+    candidates.push_back(find_best_position(observation, T_camera_object, settings));
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const PoseCandidate& a, const PoseCandidate& b) { return a.score > b.score; });

@@ -7,7 +7,7 @@ namespace houghstream {
 namespace {
 
 /// A block of points with the normals that go with them.
-struct Visible {
+struct VisiblePoints {
   CorrespondenceBlock block;
   std::array<Eigen::Vector3f, CorrespondenceBlock::kSize> normals;
 
@@ -20,32 +20,32 @@ struct Visible {
 };
 
 /// Returns the row of the point-to-plane Jacobian, (arm x normal, normal), followed by the residual along the normal.
-ResidualRow across_row(const Eigen::Vector3f& a, const Eigen::Vector3f& n, float apart) {
+ResidualRow point_to_plane_row(const Eigen::Vector3f& a, const Eigen::Vector3f& n, float normal_distance) {
   return {{a.y() * n.z() - a.z() * n.y(), a.z() * n.x() - a.x() * n.z(), a.x() * n.y() - a.y() * n.x(), n.x(), n.y(),
-           n.z(), apart, 0.0F}};
+           n.z(), normal_distance, 0.0F}};
 }
 
 /// Adds the block's correspondences under Tukey's weights, and empties the block.
 void accumulate_correspondences(const ObjectModel& model, const Eigen::Vector3f& centre, float limit_sq,
-                                Visible& visible, CorrespondenceSums& totals) {
+                                VisiblePoints& visible, CorrespondenceSums& totals) {
   const CorrespondenceBlock& block = visible.block;
-  ResidualRows across;
-  ResidualRows along;
+  ResidualRows plane_rows;
+  ResidualRows point_rows;
   CorrespondenceBlock::Values weights;
   std::size_t pairs = 0;
   for (std::size_t i = 0; i < block.count; ++i) {
     if (!(block.distance_sq[i] < limit_sq)) continue;
     const Eigen::Vector3f arm = (Eigen::Vector3f(block.x[i], block.y[i], block.z[i]) - centre) / model.radius;
     const Eigen::Vector3f residual(block.residual_x[i], block.residual_y[i], block.residual_z[i]);
-    const float apart = residual.dot(visible.normals[i]);
-    const float left = 1.0F - block.distance_sq[i] / limit_sq;
-    across[pairs] = across_row(arm, visible.normals[i], apart);
-    along[pairs] = {{arm.x(), arm.y(), arm.z(), 1.0F, residual.x(), residual.y(), residual.z(), 0.0F}};
-    weights[pairs++] = left * left;  // Tukey's biweight
-    totals.squares += static_cast<double>(apart * apart);
+    const float normal_distance = residual.dot(visible.normals[i]);
+    const float tukey = 1.0F - block.distance_sq[i] / limit_sq;
+    plane_rows[pairs] = point_to_plane_row(arm, visible.normals[i], normal_distance);
+    point_rows[pairs] = {{arm.x(), arm.y(), arm.z(), 1.0F, residual.x(), residual.y(), residual.z(), 0.0F}};
+    weights[pairs++] = tukey * tukey;  // Tukey's biweight
+    totals.squares += static_cast<double>(normal_distance * normal_distance);
   }
-  accumulate_outer_products(across, weights, pairs, totals.across);
-  accumulate_outer_products(along, weights, pairs, totals.along);
+  accumulate_outer_products(plane_rows, weights, pairs, totals.across);
+  accumulate_outer_products(point_rows, weights, pairs, totals.along);
   totals.count += static_cast<int>(pairs);
   visible.block.count = 0;
 }
@@ -65,7 +65,7 @@ CorrespondenceSums sum_correspondences(const ObjectObservation& observation, con
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   const Eigen::Vector3f centre = T * model.centre;
   const std::size_t used = std::min(count, view.points.size());
-  Visible visible;
+  VisiblePoints visible;
   CorrespondenceSums totals;
   for (std::size_t i = 0; i < used; ++i) {
     const Eigen::Vector3f point = T * view.points[i];

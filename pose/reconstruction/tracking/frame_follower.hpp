@@ -29,7 +29,7 @@ class FrameFollower {
 
   FlowFrame last_flow_;
   std::vector<LandmarkObservation> corners_;  ///< corners of `last_flow_`, with their present positions
-  double usual_light_rms_ = 0.3;
+  double mean_photometric_rms_ = 0.3;
 };
 
 }  // namespace houghstream::reconstruction

@@ -88,7 +88,7 @@ void TakePlacer::choose(const RgbdFrame& frame) {
   FrameLevels levels = make_levels(frame, levels_);
   step_.restart(selected_.T_camera_stand);
   state_.state = TakePlacerState::kTracking;
-  round_.assign(36, false);
+  covered_directions_.assign(36, false);
   motion_classifier_ = MotionClassifier(make_flow_frame(frame), levels,
                                         object_pixels(levels.levels[0], selected_, selected_.T_camera_stand),
                                         selected_.T_camera_stand, settings_.map.min_corners);
@@ -121,7 +121,7 @@ std::optional<Alignment> TakePlacer::relocalise(const RgbdFrame& frame, const Fr
   if (std::optional<Alignment> found = relocalise_by_neighbours(map_, levels, last)) return found;
   if (motion_ == Motion::kObject) corners = {};  // they are of where the object is believed to be
   if (!corners.seen) corners.seen = detect_landmarks(frame, landmark_mask(frame, step_.T_last));
-  return by_corners_.find(map_, levels, last, everywhere, corners);
+  return relocaliser_.find(map_, levels, last, everywhere, corners);
 }
 
 void TakePlacer::accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
@@ -160,7 +160,7 @@ void TakePlacer::accept(int number, const RgbdFrame& frame, FrameLevels levels, 
   const Eigen::Vector3d towards = step_.T_last.inverse().translation() - map_.settings().middle;
   if (fit) mark_covered(towards, state_.seen);
   const auto at = static_cast<std::size_t>((std::atan2(towards.y(), towards.x()) * kDegrees + 360.0) / 10.0) % 36;
-  round_[at] = round_[at] || fit;
+  covered_directions_[at] = covered_directions_[at] || fit;
 }
 
 /// Follows the object's own surface alone from here on, since the camera is static and the object moves; the table,
@@ -221,7 +221,7 @@ void TakePlacer::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
   const std::optional<LoopClosureError> gap = map_.add(std::move(keyframe), alignment);
   if (!gap) return;
   step_.restart(map_.keyframes().back().T_camera_world);
-  const auto seen_round = std::count(round_.begin(), round_.end(), true);
+  const auto seen_round = std::count(covered_directions_.begin(), covered_directions_.end(), true);
   constexpr int kNearlyRound = 30;  // number of the 36 sectors
   if (seen_round >= kNearlyRound && !take_.gap) take_.gap = gap;
 }
@@ -286,7 +286,7 @@ Take TakePlacer::finish() {
   take_.motion = motion_;
   take_.keyframes = std::move(map_.keyframes());
   take_.seen = state_.seen;
-  take_.degrees_round = static_cast<int>(10 * std::count(round_.begin(), round_.end(), true));
+  take_.degrees_round = static_cast<int>(10 * std::count(covered_directions_.begin(), covered_directions_.end(), true));
   take_.tracking_hz = seconds_ > 0.0 ? static_cast<double>(take_.frames.size()) / seconds_ : 0.0;
   return std::move(take_);
 }

@@ -82,10 +82,10 @@ class TakePlacer {
   int first_number_ = 0;
   LastStep step_;  ///< T_camera_world of the last frame that was placed, and of the one before it
   std::vector<LostFrame> unplaced_;
-  Relocaliser by_corners_;
+  Relocaliser relocaliser_;
   std::deque<double> sharpness_;
   Take take_;
-  std::vector<bool> round_;  ///< each ten degrees of the turn
+  std::vector<bool> covered_directions_;  ///< each ten degrees of the turn
   double seconds_ = 0.0;
 };
 
