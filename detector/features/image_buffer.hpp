@@ -41,7 +41,7 @@ class ImageBuffer {
   LineBytes bytes_;
 };
 
-/// Gives an image memory of its own before it is written, where somebody else shares its pixels.
+/// Releases an image whose pixels are shared, or are not its own, so that writing it changes no other image.
 inline void forget_shared(cv::Mat& image) {
   if (image.u == nullptr || image.u->refcount > 1) image.release();
 }

@@ -45,8 +45,8 @@ struct PatchLayout {
 void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint8_t level_index,
                  const PatchLayout& layout, PatchGrid& grid);
 
-/// Places the patches of all levels of a frame, and marks the tiles that they read. What `grid` held is overwritten and
-/// its memory used again.
+/// Places the patches of all levels of a frame, and marks the tiles that they read. `grid` is overwritten, and its
+/// memory is reused.
 void place_patches(const WorkingImages& images, const PatchLayout& layout, PatchGrid& grid);
 
 /// Adds a patch every `stride` pixels, whatever its depth, without points and areas: for a level of a scale space.

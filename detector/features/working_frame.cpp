@@ -97,7 +97,7 @@ HoleReach hole_reach(const FeatureSettings& settings, const Camera& camera) {
   return {settings.fill_distance_px, settings.fill_distance * static_cast<float>(camera.fx)};
 }
 
-/// Resizes a frame into `out`, whose memory is used again where nobody shares it.
+/// Resizes a frame into `out`, whose memory is reused where it is not shared.
 void resize_into(const RgbdFrame& frame, float scale, const FeatureSettings& settings, HoleWorkspace& holes,
                  WorkingFrame& out) {
   forget_shared(out.colour);
@@ -119,8 +119,8 @@ void resize_into(const RgbdFrame& frame, float scale, const FeatureSettings& set
   fill_holes(out.filled_depth, hole_reach(settings, out.camera), holes);
 }
 
-/// Brings the frame's brightness to a tone. The colours that the frame lends stay as they are: the changed ones go to
-/// `memory`.
+/// Applies an affine brightness to the colours. Where `colour` shares the frame's own pixels, these stay unchanged and
+/// the result is written to `memory`.
 void apply_tone(const AffineBrightness& tone, const RgbdFrame& frame, cv::Mat& memory, cv::Mat& colour) {
   if (!tone.changes()) return;
   if (colour.data != frame.colour.data) return apply_affine_brightness(tone, colour, colour);

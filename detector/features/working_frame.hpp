@@ -18,9 +18,10 @@ struct WorkingFrame {
   float size_ratio = 1.0F;  ///< size of everything in this image over its size as taught, in a scale space
 };
 
-/// A size at which features are computed, and the surfaces that are looked at in it. The support of a feature is fixed
-/// in pixels, which the paper leaves as it is (Section 5.1.2); two sizes an octave apart keep it within a factor of two
-/// in metres too, and give far objects enough pixels. The levels of a scale space each look at everything.
+/// An image size at which features are computed, and the range of depth that is searched in it. The support of a
+/// feature is fixed in pixels, which the paper leaves as it is (Section 5.1.2); two sizes an octave apart keep it
+/// within a factor of two in metres too, and give far objects enough pixels. The levels of a scale space each look at
+/// everything.
 struct FeatureLevel {
   float scale = 1.0F;         ///< working size over frame size
   float size_ratio = 1.0F;    ///< entry of FeatureSettings::scales, in a scale space
@@ -68,8 +69,8 @@ struct WorkingImages {
   cv::Mat toned;  ///< colours of the level that has the frame's own size
 };
 
-/// Makes the depth-normalised levels of a frame. What `images` held is overwritten and its memory used again where
-/// nobody shares it.
+/// Makes the depth-normalised levels of a frame. `images` is overwritten, and its memory is reused where it
+/// is not shared.
 void make_working_images(const RgbdFrame& frame, const FeatureSettings& settings, int threads, WorkingImages& images);
 
 }  // namespace houghstream

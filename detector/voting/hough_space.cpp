@@ -20,8 +20,8 @@ void sum_by_cell(const CastVotes& cast, const CellGrid& grid, std::vector<CellSu
   }
 }
 
-/// Lays the votes out cell by cell, those outside the image last, and copies the weights to the image; of each cell
-/// `next` gets the place of its first vote.
+/// Computes where each cell's votes begin (the exclusive prefix sum of a counting sort); those outside the image come
+/// last. Copies the cells' weights to the image. `next_slot` is where sort_by_cell() puts each cell's next vote.
 void compute_cell_offsets(const std::vector<CellSum>& sums, std::vector<std::uint32_t>& next_slot, HoughSpace& space) {
   next_slot.resize(sums.size());
   space.image.resize(sums.size() - 1);

@@ -33,7 +33,7 @@ struct Voter {
   std::uint32_t leaf_class = 0;  ///< index into Forest::leaf_classes
 };
 
-constexpr std::size_t kVotePadding = 7;  ///< votes behind the last, so that eight can be read anywhere
+constexpr std::size_t kVotePadding = 7;  ///< votes behind the last: vectors of eight are read whole
 
 /// The Hough space of one class: its votes in 3-D, sorted by the image cell in which their centre is seen.
 struct HoughSpace {
@@ -42,7 +42,7 @@ struct HoughSpace {
   int cell_px = 0;  ///< working pixels per cell
   /// Votes by cell, row by row; within a cell in order of patch and tree; then kVotePadding that do not count.
   std::vector<Vote> votes;
-  std::vector<std::uint32_t> voter_of_vote;  ///< per vote, into `voters`: who cast it
+  std::vector<std::uint32_t> voter_of_vote;  ///< per vote: index of its voter, into `voters`
   std::vector<Voter> voters;              ///< voters by patch, tree by tree; some may have cast no vote into the image
   std::vector<std::uint32_t> first_vote;  ///< per cell, and one more
   std::vector<float> image;               ///< sum of weights per cell, smoothed; independent of distance, since both
@@ -60,14 +60,14 @@ struct VotingInput {
   std::size_t searched_classes = 0;
 };
 
-/// Votes in the order of those who cast them.
+/// Votes in the order of their voters.
 struct CastVotes {
-  static constexpr std::size_t kPadding = 4;  ///< elements behind the last that are written but not meant
+  static constexpr std::size_t kPadding = 4;  ///< elements behind the last: vectors are written whole
 
   std::size_t count = 0;  ///< number of elements that count; the vectors may hold more
   std::vector<Vote> votes;
   std::vector<std::uint32_t> cells;   ///< CellGrid::outside() of votes not seen in the image or nearer than 10 cm
-  std::vector<std::uint32_t> voters;  ///< index of who cast it
+  std::vector<std::uint32_t> voters;  ///< per vote: index of its voter
 };
 
 /// Votes of a cell.
@@ -84,7 +84,7 @@ struct CastWorkspace {
 };
 
 /// Votes for one class of all patches that support it (paper, Section 2; Gall et al. 2011, Section 3.3, here in 3-D).
-/// What `space` held is overwritten and its memory used again.
+/// `space` is overwritten, and its memory is reused.
 void cast_votes(const VotingInput& input, int class_index, CastWorkspace& workspace, HoughSpace& space);
 
 /// The image of cells in which votes are counted.
@@ -110,7 +110,7 @@ struct CastInput {
 };
 
 /// Casts the votes of all voters, several at once: the same on every machine, since each vote's numbers depend on it
-/// alone. What `cast` held is overwritten and its memory used again.
+/// alone. `cast` is overwritten, and its memory is reused.
 void cast_all(const CastInput& input, CastVotes& cast);
 
 }  // namespace houghstream

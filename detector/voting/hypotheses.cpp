@@ -62,7 +62,8 @@ void sum_by_view(const Forest& forest, const SparseSums::Weights& by_voter, Voti
   });
 }
 
-/// Returns a maximum with its mass, which is the visible part of the object: the weight times the area of the patches.
+/// Returns a maximum with the weight, number and mass of its votes. The mass is the visible part of the object: the
+/// votes' weight times the area of their patches.
 Hypothesis measure_maximum(const VotingInput& input, const Eigen::Vector3f& centre, VotingWorkspace::Worker& workspace,
                            SparseSums::Weights& by_voter) {
   Hypothesis hypothesis;
@@ -89,7 +90,7 @@ void add_support(const Forest& forest, const SparseSums::Weights& by_voter, Voti
   sum_by_view(forest, by_voter, workspace, hypothesis.views);
 }
 
-/// Returns the classes, those with the most work first, so that no thread starts one when the others have ended.
+/// Returns the classes in descending order of their work, so that no thread starts a large one last.
 std::vector<std::size_t> order_by_work(std::size_t classes, const PatchPosteriors& posteriors) {
   std::vector<std::size_t> work(classes, 0);
   std::vector<std::size_t> order(classes);

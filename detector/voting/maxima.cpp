@@ -7,7 +7,7 @@
 namespace houghstream {
 namespace {
 
-/// Ties between equal neighbours go to the first one in reading order.
+/// Returns whether a cell is a local maximum. Of equal neighbours the first one in reading order is.
 bool is_maximum(const HoughSpace& space, int x, int y) {
   const int here = y * space.width + x;
   const float value = space.image[static_cast<std::size_t>(here)];

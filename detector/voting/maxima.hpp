@@ -28,8 +28,8 @@ struct MaximaWorkspace {
   std::vector<std::pair<float, float>> depths;  ///< depths and their weights
 };
 
-/// Returns at most `limit` maxima of the Hough image, each moved to the nearest maximum of the votes in 3-D, with those
-/// that meet merged: camera frame, metres, the image's highest first.
+/// Returns at most `limit` maxima of the Hough image, each moved to the nearest maximum of the votes in 3-D, camera
+/// frame, metres, the image's highest first. Of maxima that move to the same place the first is kept.
 std::vector<Eigen::Vector3f> find_maxima(const HoughSpace& space, const Camera& camera, const VotingSettings& settings,
                                          int limit, MaximaWorkspace& workspace);
 

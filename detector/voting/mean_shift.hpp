@@ -25,7 +25,7 @@ constexpr std::size_t kSumLanes = 8;  ///< partial sums: the order of a sum is i
 using SumLanes = std::array<std::array<float, kSumLanes>, 4>;
 static_assert(kVotePadding == kSumLanes - 1);
 
-/// Votes' centres times what each supports a maximum with, and the support itself: both summed.
+/// Sums over votes: of their kernel weights, and of their centres times these. The quotient is the mean shift.
 struct VoteSupport {
   Eigen::Vector3f moment = Eigen::Vector3f::Zero();
   float total = 0.0F;

@@ -66,7 +66,7 @@ struct VoteBatch {
   const CellGrid& grid;
 };
 
-/// Writes the votes of one vector's leaf votes to the place `at`.
+/// Casts one vector of a leaf's votes and writes them from index `at` on.
 HWY_INLINE void cast_vote_vector(const float* leaf_votes, const VoteTransform& m, const VoteBatch& batch,
                                  std::size_t at, CastVotes& cast) {
   const Float d;
@@ -83,7 +83,7 @@ HWY_INLINE void cast_vote_vector(const float* leaf_votes, const VoteTransform& m
              reinterpret_cast<std::int32_t*>(cast.voters.data() + at));
 }
 
-/// Lets the cache misses of many voters overlap: what they know lies anywhere in the forest.
+/// Lets the cache misses of many voters overlap, since the entries of their leaves lie anywhere in the forest.
 HWY_INLINE void prefetch_ahead(const Forest& forest, const std::vector<Voter>& voters, std::size_t now) {
   constexpr std::size_t kVotes = 12;  // voters ahead
   constexpr std::size_t kClasses = 24;
@@ -93,7 +93,7 @@ HWY_INLINE void prefetch_ahead(const Forest& forest, const std::vector<Voter>& v
   for (std::size_t line = 0; line < 3; ++line) hwy::Prefetch(forest.votes.data() + soon.first_vote + 4 * line);
 }
 
-/// Casts the votes of voters from `first` on, as many as there is room for; returns the first who did not vote.
+/// Casts the votes of the voters from `first` on until the memory is full; returns the first voter that is left.
 std::size_t cast_until_full(const CastInput& input, std::size_t first, CastVotes& cast) {
   const Forest& forest = input.forest;
   const std::vector<Voter>& voters = input.voters;

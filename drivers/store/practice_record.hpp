@@ -84,8 +84,9 @@ OperatingThreshold choose_threshold(const PracticeCurve& curve, int shown, doubl
 /// Returns the most frequent one of PracticeRecord::taken_for; of equals the first by name.
 Confusion most_frequent_confusion(const PracticeRecord& record);
 
-/// As store.json has it: {"shown", "right", "wrong", "score": {"from": [], "right": [], "wrong": []}, "quality": ...,
-/// "taken_for": {NAME: }, "by_distance_m": {"to": [], "shown": [], "found": []}, "by_visible": ...}.
+/// Converts a record to the JSON of store.json: {"shown", "right", "wrong", "score": {"from": [], "right": [], "wrong":
+/// []}, "quality": ..., "taken_for": {NAME: }, "by_distance_m": {"to": [], "shown": [], "found": []}, "by_visible":
+/// ...}.
 OrderedJson to_json(const PracticeRecord& record);
 
 /// Throws InputError naming `where` for a missing or unknown name, and for numbers that are no counts or thresholds.

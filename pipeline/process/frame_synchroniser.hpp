@@ -129,7 +129,7 @@ class FrameSynchroniser {
     ByteBudget::Reservation reservation;  // bytes of the frame, which may have left the history
   };
   struct Camera {
-    std::deque<Kept> frames;      // the last ones
+    std::deque<Kept> frames;      // the newest last
     std::deque<Waiting> waiting;  // results in the order of arrival
     std::int64_t frames_seen = 0;
     bool fresh = false;     // the last frame may be taken ahead

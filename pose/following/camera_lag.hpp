@@ -18,7 +18,7 @@ class CameraLag {
   double seconds() const { return weighted_ / information(); }
   /// Returns its standard deviation, seconds.
   double sigma_s() const;
-  /// Returns whether it is known well enough to be told: to a fifth of the prior's deviation.
+  /// Returns whether the lag may be published: its standard deviation is at most a fifth of the prior's.
   bool is_known() const;
 
  private:

@@ -19,7 +19,7 @@ class ColourStatistics {
   bool empty() const { return empty_; }
 
   /// Takes a frame's pixels on the object and beside it: each histogram moves by `rate` towards theirs, the first one
-  /// all the way. Without any of one side that side stays what it was.
+  /// all the way. A side without pixels keeps its histogram.
   void learn(const std::vector<cv::Vec3b>& on, const std::vector<cv::Vec3b>& beside, double rate);
 
  private:

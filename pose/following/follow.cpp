@@ -90,8 +90,8 @@ JointResult register_near(const ObjectObservation& observation, const Eigen::Iso
   return result;
 }
 
-/// Judges the pose, of an object that was reported before, by points of the view and the outline of an earlier frame,
-/// where there is one and that suffices; else the model is rendered.
+/// Decides on the pose of an object that was reported before. Where there is the outline of an earlier frame, points of
+/// the view are compared with the depth; where there is none, or they do not suffice, the model is rendered.
 void decide_by_depth(const ObjectObservation& observation, const ExpectedObject& expected, const FollowerInput& input,
                      FollowedPose& followed) {
   const PoseSettings& settings = input.pose;
@@ -123,7 +123,8 @@ void decide_by_depth(const ObjectObservation& observation, const ExpectedObject&
   decide_status(evidence, T, true, quality, followed.pose);
 }
 
-/// Judges the pose where no depth is measured: as it was judged last, less what its colours leave unexplained.
+/// Decides on the pose where no depth is measured: its quality is the last one times the fraction of the silhouette's
+/// lines that have an edge.
 void decide_by_colours(const ExpectedObject& expected, const JointResult& result, const FollowerInput& input,
                        FollowedPose& followed) {
   ObjectPose& pose = followed.pose;

@@ -81,13 +81,13 @@ struct FollowedPose {
 };
 
 /// Finds objects that were posed in earlier frames in this one, in their order, without detections, on
-/// PoseSettings::threads threads. Registers the model from each start in turn until the evidence suffices, to depth and
-/// to the edges of its colours (joint_registration.hpp), then verified as any pose is. Where no depth is measured the
-/// edges alone carry the pose on, with the quality that it had less what they leave unexplained. Rendering
-/// the model costs most: with an outline of an earlier frame, points of the view take its place as long as they
-/// suffice. What is withheld has always been rendered. Where nothing suffices and the object is hidden where it was
-/// expected first, its status is kOccluded (ExpectedObject::check_occlusion). Of a class without a model it is
-/// kNoModel. Throws InputError for a frame that is none.
+/// PoseSettings::threads threads. Registers the model from each start in turn, to depth and to the edges of its colours
+/// (joint_registration.hpp), and verifies the result as any pose is verified, until the evidence suffices. Where no
+/// depth is measured the edges alone determine the pose, and its quality is the last one times the fraction of the
+/// silhouette's lines that have an edge. Rendering the model costs most: with an outline of an earlier frame, points of
+/// the view take its place as long as they suffice. A rejected pose has always been rendered. Where nothing suffices
+/// and the object is occluded where it was expected first, its status is kOccluded (ExpectedObject::check_occlusion).
+/// The status of a class without a model is kNoModel. Throws InputError for an invalid frame.
 std::vector<FollowedPose> follow_objects(const PoseEstimator& estimator, const FollowSettings& settings,
                                          const RgbdFrame& frame, const std::vector<ExpectedObject>& expected);
 

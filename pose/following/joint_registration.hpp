@@ -54,8 +54,8 @@ struct DepthLag {
   Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
 };
 
-/// What one registration tells of the lag, without its prior, in information form: the sum over registrations of
-/// `weighted` over that of `information` is their estimate.
+/// Evidence of one registration for the lag, without its prior, in information form: the estimate is the sum of
+/// `weighted` over registrations divided by that of `information`.
 struct LagEvidence {
   double information = 0.0;  ///< inverse variance, of deviations; 0: nothing
   double weighted = 0.0;     ///< information times the lag, in deviations; positive where depth is the later one
@@ -68,7 +68,7 @@ struct JointStart {
   /// Refines the pose by texture after the coarser half of the levels; may be empty. The later levels ignore the
   /// texture of an earlier frame.
   RefinePose refine_by_texture;
-  DepthLag depth_lag;  ///< direction along which colours place the object, and depth alone falls short
+  DepthLag depth_lag;  ///< motion by which depth may be older than the colours
 };
 
 /// Result of a joint registration.

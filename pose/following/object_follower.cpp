@@ -57,7 +57,7 @@ std::uint64_t depth_digest(const cv::Mat& depth) {
   return digest;
 }
 
-/// Notes when the depth of this frame came first.
+/// Notes the time of the first frame that had this frame's depth, since a camera may repeat an image of depth.
 void update_depth_time(const RgbdFrame& frame, std::int64_t clock_us, FollowedCamera& camera) {
   const std::uint64_t digest = depth_digest(frame.depth);
   const bool is_repeated = !camera.recent_frames.empty() && digest == camera.depth_digest;
@@ -140,7 +140,7 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
   return result;
 }
 
-/// Follows each object from its pose at constant velocity, and tries those that are not found there once more.
+/// Follows each object from its pose at constant velocity, and retries the objects that are not found there.
 std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                                      FollowedCamera& camera) const {
   constexpr double kMaxPrediction_s = 0.25;  // a velocity predicts nothing beyond this interval
@@ -209,7 +209,7 @@ bool ObjectFollower::is_retry_due(const FollowedObject& object, std::int64_t clo
          seconds_between(object.retry_us, clock_us) >= settings_.retry_interval_s;
 }
 
-/// Takes the result of the second try where that is better.
+/// Replaces the result of the first attempt by that of the second where this one is better.
 void ObjectFollower::merge_retry(const ExpectedObject& expected, FollowedPose found, FollowedPose& pose) const {
   const PoseStatus before = pose.pose.status;
   const PoseStatus after = found.pose.status;
@@ -221,8 +221,8 @@ void ObjectFollower::merge_retry(const ExpectedObject& expected, FollowedPose fo
   if (pose.pose.shape_quality < settings_.min_kept_quality) pose.T_camera_object = expected.initial_poses.front();
 }
 
-/// Continues from the result; without evidence the object stays where it was, or where the camera's motion has brought
-/// it.
+/// Updates the object's pose, velocity, times and failures from the result of this frame. Without evidence it stays
+/// where it was, or where the camera's motion has brought it.
 void ObjectFollower::update_object(const PoseEstimator& estimator, const FollowedPose& result, std::int64_t clock_us,
                                    FollowedObject& object) const {
   const bool valid = has_pose(result.pose.status);

@@ -26,8 +26,8 @@ struct FollowerSettings {
   float min_kept_quality = 0.3F;  ///< quality from which on a withheld pose is followed on
   double max_rejected_s = 1.0;    ///< time without a valid pose after which it is lost
   double max_hidden_s = 2.0;      ///< time without a valid pose while it is hidden
-  /// Time after which an object that stays hidden or withheld is searched for anew in its surroundings, which costs
-  /// several times what following it does.
+  /// Time after which an object that stays occluded or rejected is searched for again in its surroundings, which takes
+  /// several times as long as following it.
   double retry_interval_s = 0.05;
   /// Distance between a detection's centre and a followed pose of its class that associates them.
   double reach_m = 0.07;

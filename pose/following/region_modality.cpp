@@ -176,7 +176,7 @@ constexpr double kContrastGain = 4.0;  // sides of which one has 1.7 times the o
 
 /// Errors that all edges of one object share: an unknown displacement outwards, and one towards the darker side. Both
 /// are estimated with the motion and marginalised out of its equations (Schur complement), so that an outline that is
-/// too large all round says nothing of the distance.
+/// too large all round does not change the distance.
 class CommonError {
  public:
   explicit CommonError(double sigma_px) : is_known_(sigma_px == 0.0) {
@@ -267,7 +267,7 @@ MotionEquations region_equations(const RegionView& view, const std::vector<Regio
     const double moved_px =
         line.normal.cast<double>().dot(view.frame.camera.project(point) - line.centre_px.cast<double>());
     const double position = per_px * moved_px;
-    // The edge of a line in which both sides are told apart has the standard deviation of the scale.
+    // The edge of a line whose two sides differ plainly has the standard deviation of the scale.
     const double weight = static_cast<double>(scale.every) * static_cast<double>(kMinVariance) /
                           (per_px * per_px * scale.sigma_px * scale.sigma_px);
     const double gradient = step == EdgeStep::kToMean

@@ -80,9 +80,9 @@ struct RegionView {
 Vector6d image_motion_row(const RegionView& view, const Eigen::Vector3d& point, const Eigen::Vector2d& direction,
                           const Eigen::Vector3d& centre);
 
-/// Draws a line through each point of the silhouette at the pose and finds its edge. Points that nearer depth covers,
-/// or has beside them, say nothing; neither do lines on which the model begins again or ends within three segments, nor
-/// lines all of whose colours are those of one side.
+/// Draws a line through each point of the silhouette at the pose and finds its edge. Left out are points that nearer
+/// depth occludes, also where it lies beside them, lines on which the model begins again or ends within three segments,
+/// and lines all of whose colours are those of one side.
 RegionLines find_region_lines(const RegionView& view, const Silhouette& silhouette, const ColourStatistics& colours,
                               const Eigen::Isometry3d& T_camera_object, const RegionScale& scale,
                               const RegionModalitySettings& settings);

@@ -19,7 +19,7 @@ struct LastStep {
     T_last = T;
   }
 
-  /// Replaces the last pose by a better one, and leaves the camera's step what it was.
+  /// Replaces the last pose by a better one, and leaves the camera's step unchanged.
   void correct(const Eigen::Isometry3d& T) {
     T_before = T_before * T_last.inverse() * T;
     T_last = T;

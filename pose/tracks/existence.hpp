@@ -52,9 +52,10 @@ struct UnobservedContext {
   double coast_s = 0.0;  ///< MotionSettings::coast_s
 };
 
-/// Kinds of evidence that one result gives against an unobserved track, and the time that they stand for.
+/// Evidence that one result gives against an unobserved track: which kinds of it count, and the time by which the
+/// rates of ExistenceSettings are multiplied.
 struct AbsenceEvidence {
-  double dt_s = 0.0;            ///< CameraClock::dt_s: time since the camera's previous frame, as far as it counts
+  double dt_s = 0.0;            ///< CameraClock::dt_s: time since the camera's previous frame, limited
   bool by_depth = false;        ///< whether depth counts: only for the first result of a frame
   bool by_recognition = false;  ///< whether the missing pose counts: only for the first result that searched the class
 };

@@ -220,8 +220,8 @@ void PoseTrack::update_static(const PoseObservation& pose, bool has_contrary_dep
   observers_[pose.frame.channel].agreed_utime = pose.frame.utime;
 }
 
-// A camera whose extrinsics are a little wrong always sees the object beside where the others do. So only a camera that
-// has seen it in its place, or that is the only one to see it, can report that it has moved.
+// A camera whose extrinsics are a little wrong always measures the object beside where the other cameras do. Therefore
+// only a camera that has measured it within the gates, or the only camera that observes it, can trigger a motion.
 bool PoseTrack::can_trigger_motion(const std::string& channel, std::int64_t utime) const {
   constexpr double kOfLateS = 0.5;
   if (observers_.at(channel).agreed_utime != 0) return true;

@@ -108,7 +108,7 @@ TimeOrder WorldClock::classify_known_camera(const Camera& camera, const StampedF
   return classify_forward_jump(last_utime, frame, utime);
 }
 
-/// Decides on a result of a camera whose frames have gone back in time.
+/// Classifies a result of a camera whose frames have gone back in time.
 TimeOrder WorldClock::classify_backward_jump(const Camera& camera, const StampedFrame& frame, std::int64_t utime) {
   const std::int64_t last_utime = camera.clock.utime;
   if (!is_started_again(camera.number, frame.number)) {
@@ -139,8 +139,8 @@ TimeOrder WorldClock::classify_forward_jump(std::int64_t last_utime, const Stamp
   return TimeOrder::kNext;
 }
 
-/// Returns whether the camera's previous doubted frame lay beside this one, far from its last one. Another result of
-/// the same frame confirms nothing.
+/// Notes the time of a frame that lies far from its camera's last one. Returns whether the frame noted before it lies
+/// beside it, which a single wrong stamp does not. Another result of the same frame confirms nothing.
 bool WorldClock::confirm_jump(std::int64_t last_utime, const FrameId& frame, std::int64_t utime) {
   const auto [doubted, is_first] = unconfirmed_.emplace(frame.channel, utime);
   if (is_first || doubted->second == utime) return false;
@@ -198,7 +198,7 @@ std::vector<PoseObservation> Tracker::observe_new_poses(const FrameObservation& 
   return poses;
 }
 
-/// Gives each class' poses to its objects; returns those that no object is near.
+/// Assigns the poses to the objects of their class and updates these; returns the poses without an object near them.
 std::vector<PoseObservation> Tracker::associate(const std::vector<PoseObservation>& poses, double seconds) {
   std::set<std::string> classes;
   for (const PoseObservation& pose : poses) classes.insert(pose.class_name);
@@ -371,7 +371,7 @@ Track* Tracker::find_reidentified(const Track& candidate, std::int64_t utime) {
   Track* best = nullptr;
   double min_cost = 0.0;
   for (Track& track : tracks_) {
-    // A track whose number another candidate has got in this frame is no object any more.
+    // A track whose number another candidate has received in this frame is no object any more.
     if (track.id <= 0 || track.class_name != candidate.class_name || track.is_observed) continue;
     const double unseen_s = seconds_between(track.last_seen.utime, utime);
     const bool is_hand_occluded = track.state == TrackState::kHidden && unseen_s < settings_.hand_occlusion_s;

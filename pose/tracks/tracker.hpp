@@ -42,7 +42,7 @@ void fields(const ObjectTrackerSettings& /*settings*/, const Visit& visit) {
   visit(number("max_objects", &S::max_objects, 0, 1000000));
 }
 
-/// Holds the state of a camera at its last frame.
+/// State of a camera at its last frame.
 struct CameraClock {
   std::int64_t utime = 0;         ///< time of the frame on the world's clock
   std::int64_t results = 0;       ///< number of results of this frame; 0 before the first frame
@@ -69,7 +69,7 @@ struct StampedFrame {
 /// thread-safe.
 class WorldClock {
  public:
-  /// Decides whether a result is used, passed over, or begins a new world.
+  /// Classifies a result: it is used, passed over, or begins a new world. This may change the world's clock.
   /// - Its time lies more than a second from its camera's last one: it is passed over until the next result, or one of
   ///   another camera, lies beside it, since a single stamp may be wrong. A time that is ahead has then passed (at most
   ///   a minute). Where it is behind and the frames' numbers rise, the camera's clock was set back and the world

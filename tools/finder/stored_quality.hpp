@@ -16,8 +16,8 @@ namespace houghstream {
 constexpr float kStoreQuality = 0.6F;
 constexpr float kStoreCandidateQuality = 0.75F;
 
-/// As the object store holds it: {"bias", "weights": {TERM: }, "typical": {TERM: }, "presence": {"bias", "of_score",
-/// "of_quality"}, "print": {"bias", "of_margin"}}.
+/// Converts qualities to the JSON of an object store: {"bias", "weights": {TERM: }, "typical": {TERM: }, "presence":
+/// {"bias", "of_score", "of_quality"}, "print": {"bias", "of_margin"}}.
 nlohmann::json quality_to_json(const QualitySettings& settings);
 
 /// Returns the quality settings that the store has learnt for its objects, by name; the thresholds of each are those of

@@ -91,8 +91,8 @@ class TrackProcess {
     synchroniser_.recheck_gate();
   }
 
-  /// Poses go when it is known where their camera was, wait while that may come, and are refused otherwise: they are
-  /// never put at the origin.
+  /// Returns the gate by which poses pass once their camera's pose at their time is known, wait while its transforms
+  /// may still come, and are refused otherwise: they are never placed at the origin.
   FrameGate extrinsics_gate() {
     FrameGate gate;
     gate.decide = [this](const FrameId& frame, double age_s) -> FrameGate::Decision {
@@ -130,7 +130,7 @@ class TrackProcess {
     }
   }
 
-  /// False for a frame that is too late.
+  /// Returns false for a frame that is too late.
   bool publish_objects(const std::vector<std::uint8_t>& frame, const ObjectPoses& poses, StageClock& clock) {
     if (const auto models = models_(); models != used_models_) {
       used_models_ = models;

@@ -9,7 +9,7 @@
 
 namespace houghstream::teach {
 
-/// Two objects that look alike to whoever sees a side of them.
+/// Two objects that look alike from some side.
 struct Lookalike {
   std::string one;
   std::string other;

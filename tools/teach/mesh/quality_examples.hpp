@@ -20,7 +20,7 @@ struct Example : QualityExample {
   std::size_t object = 0;  ///< index into the frame's objects; only meaningful where the object is present
 };
 
-/// Model and settings for the labels of a pose.
+/// Terms of the quality of one pose, from which QualitySettings are learnt.
 struct PoseTerms {
   QualityTerms own;
   std::optional<QualityTerms> with_swapped_texture = std::nullopt;  ///< see evidence_with_swapped_texture()
@@ -50,7 +50,7 @@ struct PosedModels {
   BrightnessRange tone = {};  ///< see RegionSettings
 };
 
-/// Finds poses and withholds none, and says what each would be judged by.
+/// Estimates poses without rejecting any, and returns the terms of each one's quality.
 class UnfilteredPoseFinder {
  public:
   /// Makes a finder. `threads` is as PoseSettings::threads.
@@ -59,7 +59,7 @@ class UnfilteredPoseFinder {
   /// Detects in frames 0, N, 2N, ... of a scene and finds the detections' poses.
   FoundPoses find(const std::string& name, const BopScene& scene, const Detector& detector, int every) const;
 
-  /// Estimates the poses of `found.detections` into `found.poses`; returns what each is judged by. Thread-safe.
+  /// Estimates the poses of `found.detections` into `found.poses`; returns the terms of their qualities. Thread-safe.
   std::vector<std::optional<PoseTerms>> find_in(const RgbdFrame& frame, EvaluatedFrame& found) const;
 
  private:

@@ -56,15 +56,16 @@ std::vector<std::string> unobserved_objects(const std::vector<world::RenderedFra
 /// Returns those of the ids whose objects the forest knows.
 std::set<int> new_objects_of(const Forest& forest, const std::set<int>& new_ids);
 
-/// Returns the objects in an order in which neighbours, which stand together in a room, are of the group and strangers:
-/// each stranger once, and so many after each of the group's objects that none of these comes twice in a room.
+/// Interleaves a group's objects with the others as distractors, in the order in which scenes are filled: each
+/// distractor comes once, and so many come after each of the group's objects that none of these stands twice in one
+/// scene.
 std::vector<world::CalibrationSceneObject> interleave_distractors(
     const std::vector<world::CalibrationSceneObject>& objects, const std::set<int>& group_ids);
 
 /// Looks for the objects in rendered rooms (world::CalibrationScenes) through widely varied cameras, and learns what
 /// its detections and poses are worth: the scores' weights in the groups' forests, and the qualities, with what was
 /// found by them, by name; both of the classes in `new_ids` only. Each group with such classes has rooms of its own,
-/// scene_count_for() many, in which the other groups' objects stand as strangers, and where all groups are searched
+/// scene_count_for() many, in which the other groups' objects stand as distractors, and where all groups are searched
 /// together: what one finds may suppress what another finds. The result is independent of what was learnt before of the
 /// classes in `new_ids`. A line of the log names those of them that stand in no room. Same result for any number of
 /// threads. Throws InputError for more rooms of a group than CalibrationSettings::kMaxScenes.

@@ -39,7 +39,7 @@ Eigen::Vector3f vote_centre_of(const Mesh& mesh) {
   return mesh_bounds(mesh).center();
 }
 
-/// Votes are for the origin of the frame in which a view has its pose.
+/// Moves the origin of the object frame to its centre, since votes are for the origin of a view's pose.
 void move_origins_to(const Eigen::Vector3f& centre, std::vector<TrainingView>& views) {
   for (TrainingView& view : views) view.T_camera_object.translate(centre.cast<double>());
 }
@@ -134,7 +134,7 @@ std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, cons
 Forest train_store_forest(std::vector<TrainingView> views, const Forest* old, const TeachOptions& options,
                           const std::function<void(const std::string&)>& report) {
   constexpr double kToneFraction = 0.7;  // see TrainingSettings
-  constexpr int kPatches = 26000;        // patches of an object that trees are grown of, which sets how long that takes
+  constexpr int kPatches = 26000;  // patches of an object that trees are grown from: chosen by the time that takes
   constexpr int kMinPatches = 100;
   constexpr int kMaxPatches = 250;
   constexpr int kViewsPerImage = 2;  // a view template costs a tenth of one that trees learn from
@@ -151,8 +151,8 @@ Forest train_store_forest(std::vector<TrainingView> views, const Forest* old, co
     profile.training.trees = trees;
     profile.training.scoring = scoring;
   }
-  profile.training.validation_frames = 0;    // calibration tells more
-  profile.training.composites_per_view = 1;  // another view tells more than another room
+  profile.training.validation_frames = 0;    // calibration on scenes replaces it
+  profile.training.composites_per_view = 1;  // another view is worth more than another background
   profile.training.tone_jitter_fraction = kToneFraction;
   if (!old) profile.features.tone = kCalibrationBrightness;
   profile.training.views_per_image = kViewsPerImage;

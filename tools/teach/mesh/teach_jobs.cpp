@@ -40,8 +40,8 @@ class Progress {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// Gives ids. Those of BOP folders are kept where they are free; an object without one, or with another's, gets the
-/// next free one.
+/// Assigns ids. Those of BOP folders are kept where they are free; an object without an id, or with one that is taken,
+/// gets the smallest free one.
 void assign_free_ids(const ObjectStore& old, std::vector<TaughtMesh>& meshes) {
   std::vector<int> taken;
   for (const StoredObject& object : old.objects) taken.push_back(object.id);
@@ -67,8 +67,8 @@ void require_new_names(const ObjectStore& old, const std::vector<TaughtMesh>& me
   }
 }
 
-/// Searches the objects of the finished store in rooms; what is learnt of the new ones goes into their groups' forests
-/// and the store.
+/// Searches the objects of the finished store in synthetic scenes, and writes the scores and qualities that the new
+/// ones learn there into their groups' forests and the store.
 void calibrate_all(const std::vector<StoreModel>& models, const std::set<int>& new_ids,
                    const CalibrationSettings& settings, std::vector<GroupForest>& groups, ObjectStore& new_store) {
   std::vector<CalibrationObject> objects(models.size());
@@ -124,7 +124,7 @@ struct GroupPlan {
   std::vector<TaughtMesh> meshes;
 };
 
-/// Divides the objects into groups: they join the last group where all of them have room there; else they make new
+/// Plans the groups of new objects: all of them join the last group where it has capacity for them; else they form new
 /// groups of about the same size.
 std::vector<GroupPlan> plan_groups(std::vector<TaughtMesh> meshes, const ObjectStore& old, int max_objects) {
   const auto capacity = static_cast<std::size_t>(max_objects);
@@ -141,12 +141,12 @@ std::vector<GroupPlan> plan_groups(std::vector<TaughtMesh> meshes, const ObjectS
   return plans;
 }
 
-/// Gives the classes of a forest that has grown the ids of the store.
+/// Gives the classes of a forest that was extended the ids of the store.
 void assign_store_ids(const ObjectStore& list, Forest& forest) {
   for (ObjectClass& known : forest.classes) known.class_id = store::find_object(list, known.name).id;
 }
 
-/// Grows the forest of a group, whose objects join the list.
+/// Trains or extends the forest of a group, and adds the group's objects to the store.
 void teach_group(const GroupPlan& plan, const TeachOptions& options, const Progress& progress, ObjectStore& new_store,
                  std::vector<GroupForest>& groups) {
   // Views of each group: training changes them.
@@ -168,7 +168,7 @@ void teach_group(const GroupPlan& plan, const TeachOptions& options, const Progr
   }
 }
 
-/// Sorts objects and groups as a store that is read has them.
+/// Sorts objects and groups in the order in which read_store() returns them.
 void sort_groups(ObjectStore& new_store, std::vector<GroupForest>& groups) {
   store::number_groups(new_store);
   std::stable_sort(groups.begin(), groups.end(), [&](const GroupForest& a, const GroupForest& b) {

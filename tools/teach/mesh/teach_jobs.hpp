@@ -10,7 +10,7 @@
 namespace houghstream::teach {
 
 /// Throws InputError where a store is there, also one that cannot be read: a teaching that neither adds to it nor was
-/// asked to replace it would lose what it knows. Of other folders StoreTransaction takes empty ones only.
+/// asked to replace it would lose its objects. Of other folders StoreTransaction takes empty ones only.
 void require_no_store(const std::filesystem::path& folder);
 
 /// Teaches objects from their meshes. Says on standard error what is done, and at the end which objects can hardly be
@@ -19,10 +19,10 @@ void require_no_store(const std::filesystem::path& folder);
 /// neither add nor replace.
 void teach_meshes(const TeachOptions& options);
 
-/// Says in the log which objects of a store can hardly be told apart, by their meshes and by their practice.
+/// Logs which objects of a store can hardly be distinguished, by their meshes and by their calibration.
 void log_lookalikes(const std::vector<StoreModel>& models, const store::ObjectStore& list);
 
-/// Learns scores and qualities of a store's objects anew: of all, or of those of the `names`. Throws InputError for a
+/// Recalibrates scores and qualities of a store's objects: of all, or of those of the `names`. Throws InputError for a
 /// name that is not there.
 void calibrate_store(const std::filesystem::path& folder, const CalibrationSettings& settings,
                      const std::vector<std::string>& names = {});
