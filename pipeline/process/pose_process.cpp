@@ -109,7 +109,7 @@ class PoseProcess {
       count_dropped();
     }
     warn(models_.at_end());
-    if (!follow_) tell_missing_frames();
+    if (!follow_) log_missing_frames();
     if (follow_ && detections_ > 0)
       log_info("looks: {} came, {} answered, {} passed over for newer ones", detections_.load(), answered_, overtaken_);
     end_process(bus_, status_);
@@ -135,7 +135,7 @@ class PoseProcess {
 
   void note_other_camera(const FrameId& frame) {
     note_camera(frame);
-    ++others_;
+    ++other_camera_detections_;
     transforms_.note_other_camera(frame.channel);
   }
 
@@ -224,7 +224,7 @@ class PoseProcess {
     const DecodedFrames::Decoded frame = decoded_.decode(pair.frame, pair.id.channel);
     detections.stages.push_back(frame->stages.back());
     if (!follow_) warn_of_shared_classes(detections, pair.frame_number);
-    note_models();
+    update_models();
     warn(models_.note(detections));
     ObjectPoses poses = estimate_(*frame, detections, follow_ ? ObjectPoses{} : history_.find_warm_start(detections));
     poses.frame = pair.id;
@@ -241,7 +241,7 @@ class PoseProcess {
   }
 
   // A store's objects may have become others meanwhile.
-  void note_models() {
+  void update_models() {
     if (!options_.objects || models_.settled()) return;
     for (const KnownObject& object : options_.objects().objects) models_.add_model(object.name);
   }
@@ -270,9 +270,9 @@ class PoseProcess {
     }
   }
 
-  void tell_missing_frames() const {
+  void log_missing_frames() const {
     // On a network another process may handle other cameras' detections; of a log it is reported.
-    const std::int64_t others = bus_.is_log() ? others_.load() : 0;
+    const std::int64_t others = bus_.is_log() ? other_camera_detections_.load() : 0;
     const std::int64_t all = detections_ + others;
     const std::int64_t missing = without_frame_ + others;
     if (missing == 0) return;
@@ -299,9 +299,9 @@ class PoseProcess {
   std::int64_t answered_ = 0;                           // detections processed while following
   std::int64_t overtaken_ = 0;                          // passed over for newer ones, before they were answered
   // These are set by the receiving thread.
-  std::set<std::string> cameras_;            // cameras that detections name
-  std::atomic<std::int64_t> detections_{0};  // detections of frames on these channels
-  std::atomic<std::int64_t> others_{0};      // detections of other cameras' frames
+  std::set<std::string> cameras_;                         // cameras that detections name
+  std::atomic<std::int64_t> detections_{0};               // detections of frames on these channels
+  std::atomic<std::int64_t> other_camera_detections_{0};  // detections of other cameras' frames
 };
 
 }  // namespace

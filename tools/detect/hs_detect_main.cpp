@@ -32,8 +32,8 @@ Detector make_detector(std::vector<Forest> groups, const SearchOptions& search) 
 /// A detector and the memory of its frames, which are looked at one after another. Its first frame takes no longer than
 /// others: what it reads for the first time, and the memory that it asks for, have been there before.
 struct ReadyDetector {
-  ReadyDetector(Detector of_forest, const RgbdFrame& made_up) : detector(std::move(of_forest)) {
-    detector.detect(made_up, workspace);
+  ReadyDetector(Detector of_forest, const RgbdFrame& warm_up_frame) : detector(std::move(of_forest)) {
+    detector.detect(warm_up_frame, workspace);
   }
 
   Detector detector;
@@ -54,15 +54,15 @@ struct DetectOptions {
 };
 
 std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& store, const DetectOptions& options,
-                                                   const RgbdFrame& made_up) {
+                                                   const RgbdFrame& warm_up_frame) {
   const SearchOptions search = with_precision(options.search, store, options.precision);
   return std::make_shared<const ReadyDetector>(make_detector(load_store_forests(store, search.threads), search),
-                                               made_up);
+                                               warm_up_frame);
 }
 
 /// Looks by a budget come at leisure: who follows objects from frame to frame goes first. Of all threads that are
 /// started from here on.
-void give_way() {
+void lower_priority() {
   constexpr int kPolite = 2;
   if (nice(kPolite) == -1) log_debug("the priority of looks cannot be lowered");
 }
@@ -77,7 +77,7 @@ class KnownColours {
       objects_[colours.frame.channel] = colours.objects;
   }
 
-  std::vector<ChromaPair> objects_seen_by(const std::string& channel) const {
+  std::vector<ChromaPair> chroma_pairs_of(const std::string& channel) const {
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto known = objects_.find(channel);
     return known == objects_.end() ? std::vector<ChromaPair>{} : known->second;
@@ -90,28 +90,29 @@ class KnownColours {
 
 /// A forest stays what it is.
 void run_with_forest(const DetectOptions& options, const KnownColours& colours) {
-  const std::shared_future<RgbdFrame> made_up = start_warm_up();
+  const std::shared_future<RgbdFrame> warm_up_frame = start_warm_up();
   const ReadyDetector ready(
       make_detector(load_named_forests({{}, options.forest_file, {}}, options.search.threads), options.search),
-      made_up.get());
+      warm_up_frame.get());
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
-    return ready.detector.detect(frame, ready.workspace, colours.objects_seen_by(frame.id.channel));
+    return ready.detector.detect(frame, ready.workspace, colours.chroma_pairs_of(frame.id.channel));
   });
 }
 
 /// A store may change while frames go by: each frame is searched by what is there when its turn comes.
 void run_with_store(DetectOptions options, const KnownColours& colours) {
-  const std::shared_future<RgbdFrame> made_up = start_warm_up();
-  store::StoreWatcher<ReadyDetector> watch(
-      options.objects, [&](const store::ObjectStore& store) { return load_detector(store, options, made_up.get()); });
+  const std::shared_future<RgbdFrame> warm_up_frame = start_warm_up();
+  store::StoreWatcher<ReadyDetector> watch(options.objects, [&](const store::ObjectStore& store) {
+    return load_detector(store, options, warm_up_frame.get());
+  });
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   bus.is_log() ? watch.require_store() : watch.follow();
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
     const std::shared_ptr<const ReadyDetector> ready = watch.current();
     if (!ready) return Detections{frame.id, {}, frame.stages};
-    return ready->detector.detect(frame, ready->workspace, colours.objects_seen_by(frame.id.channel));
+    return ready->detector.detect(frame, ready->workspace, colours.chroma_pairs_of(frame.id.channel));
   });
 }
 
@@ -156,7 +157,7 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     share_one_heap();
     if (!camera.empty()) options.process.camera = camera_of_option(camera);
-    if (options.process.max_rate_hz > 0.0) give_way();
+    if (options.process.max_rate_hz > 0.0) lower_priority();
     require(options.forest_file.empty() != options.objects.empty(), "expected either --objects STORE or --forest FILE");
     require(!options.precision || !options.objects.empty(), "--precision goes with --objects, whose practice it reads");
     require_output_log(options.url, options.output_log);

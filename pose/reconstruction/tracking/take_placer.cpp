@@ -46,7 +46,7 @@ const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
     FrameLevels levels = make_levels(frame, levels_);
     FlowFrame now;
     if (motion_ != Motion::kObject) now = make_flow_frame(frame);
-    take_.frames.back().left_out = !is_fit_for_model(levels.quality);
+    take_.frames.back().left_out = !is_usable_for_model(levels.quality);
     std::optional<Alignment> found;
     if (motion_ == Motion::kObject)
       static_shading_.mark_static_intensity(object_pixels(levels.levels[0], selected_, step_.T_last), levels);
@@ -62,7 +62,7 @@ const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
     LandmarkCache corners;
     if (!found) found = relocalise(frame, levels, false, corners);
     if (found) {
-      accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), *found);
+      place_frame(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), *found);
       follower_.set_last(std::move(now));
     } else {
       note_lost(levels);
@@ -95,10 +95,10 @@ void TakePlacer::choose(const RgbdFrame& frame) {
   follower_.set_last(motion_classifier_.first());
   Alignment at_start;
   at_start.T_camera_world = selected_.T_camera_stand;
-  accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), at_start);
+  place_frame(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), at_start);
 }
 
-bool TakePlacer::is_fit_for_model(const ImageQuality& quality) {
+bool TakePlacer::is_usable_for_model(const ImageQuality& quality) {
   constexpr std::size_t kAround = 31;
   std::vector<double> around(sharpness_.begin(), sharpness_.end());
   sharpness_.push_back(quality.sharpness);
@@ -124,7 +124,7 @@ std::optional<Alignment> TakePlacer::relocalise(const RgbdFrame& frame, const Fr
   return relocaliser_.find(map_, levels, last, everywhere, corners);
 }
 
-void TakePlacer::accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
+void TakePlacer::place_frame(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
   const bool was_lost = state_.state == TakePlacerState::kLost;
   state_.state = TakePlacerState::kTracking;
   if (was_lost) {
@@ -133,34 +133,34 @@ void TakePlacer::accept(int number, const RgbdFrame& frame, FrameLevels levels, 
     step_.advance(alignment.T_camera_world);
   }
   PlacedFrame& placed = take_.frames[static_cast<std::size_t>(number)];
-  const bool fit = !placed.left_out;
+  const bool is_usable = !placed.left_out;
   const int nearest = map_.nearest(step_.T_last);
   const double away =
       nearest < 0 ? 1e9
                   : map_.view_angle(step_.T_last, map_.keyframes()[static_cast<std::size_t>(nearest)].T_camera_world);
-  if (nearest < 0 || (fit && away > settings_.keyframe_angle) || away > 2.0 * settings_.keyframe_angle) {
-    Keyframe made;
-    made.landmarks = detect_landmarks(frame, landmark_mask(frame, step_.T_last));
-    Alignment held = alignment;
+  if (nearest < 0 || (is_usable && away > settings_.keyframe_angle) || away > 2.0 * settings_.keyframe_angle) {
+    Keyframe keyframe;
+    keyframe.landmarks = detect_landmarks(frame, landmark_mask(frame, step_.T_last));
+    Alignment constrained = alignment;
     if (nearest >= 0) map_.local_map(step_.T_last);  // the keyframes that the new one is tied to
     if (nearest >= 0 && map_.settings().use_landmarks) {
-      held = map_.constrain_by_landmarks(levels, made.landmarks, alignment);
-      step_.correct(held.T_camera_world);
+      constrained = map_.constrain_by_landmarks(levels, keyframe.landmarks, alignment);
+      step_.correct(constrained.T_camera_world);
     }
-    made.frame = frame;
-    made.number = number;
-    made.levels = std::move(levels);
-    made.T_camera_world = step_.T_last;
-    add_keyframe(std::move(made), held);
+    keyframe.frame = frame;
+    keyframe.number = number;
+    keyframe.levels = std::move(levels);
+    keyframe.T_camera_world = step_.T_last;
+    add_keyframe(std::move(keyframe), constrained);
   }
   placed.tracked = true;
   placed.keyframe = map_.nearest(step_.T_last);
   placed.T_camera_keyframe =
       step_.T_last * map_.keyframes()[static_cast<std::size_t>(placed.keyframe)].T_camera_world.inverse();
   const Eigen::Vector3d towards = step_.T_last.inverse().translation() - map_.settings().middle;
-  if (fit) mark_covered(towards, state_.seen);
+  if (is_usable) mark_covered(towards, state_.seen);
   const auto at = static_cast<std::size_t>((std::atan2(towards.y(), towards.x()) * kDegrees + 360.0) / 10.0) % 36;
-  covered_directions_[at] = covered_directions_[at] || fit;
+  covered_directions_[at] = covered_directions_[at] || is_usable;
 }
 
 /// Follows the object's own surface alone from here on, since the camera is static and the object moves; the table,
@@ -185,13 +185,13 @@ void TakePlacer::follow_object_only() {
   tie_to_first_keyframe();
   state_.seen = {};
   step_.restart(selected_.T_camera_stand);
-  Keyframe made;
-  made.frame = first;
-  made.number = first_number_;
-  made.levels = make_levels(first, levels_);
-  made.landmarks = detect_landmarks(first, landmark_mask(first, step_.T_last));
-  made.T_camera_world = step_.T_last;
-  add_keyframe(std::move(made), {});
+  Keyframe keyframe;
+  keyframe.frame = first;
+  keyframe.number = first_number_;
+  keyframe.levels = make_levels(first, levels_);
+  keyframe.landmarks = detect_landmarks(first, landmark_mask(first, step_.T_last));
+  keyframe.T_camera_world = step_.T_last;
+  add_keyframe(std::move(keyframe), {});
 }
 
 /// Ties the frames before to the first keyframe: they were tied to keyframes of the surroundings, and the map now holds
@@ -221,9 +221,9 @@ void TakePlacer::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
   const std::optional<LoopClosureError> gap = map_.add(std::move(keyframe), alignment);
   if (!gap) return;
   step_.restart(map_.keyframes().back().T_camera_world);
-  const auto seen_round = std::count(covered_directions_.begin(), covered_directions_.end(), true);
+  const auto covered_sectors = std::count(covered_directions_.begin(), covered_directions_.end(), true);
   constexpr int kNearlyRound = 30;  // number of the 36 sectors
-  if (seen_round >= kNearlyRound && !take_.gap) take_.gap = gap;
+  if (covered_sectors >= kNearlyRound && !take_.gap) take_.gap = gap;
 }
 
 void TakePlacer::note_lost(const FrameLevels& levels) {
@@ -243,7 +243,7 @@ void TakePlacer::note_lost(const FrameLevels& levels) {
 }
 
 void TakePlacer::describe() {
-  constexpr int kTold = 45;  // frames for which the selection is reported, so that a person can read it
+  constexpr int kSelectionFrames = 45;  // frames for which the selection is reported, so that a person can read it
   state_.keyframes = static_cast<int>(map_.keyframes().size());
   state_.T_camera_object.reset();
   state_.box_px = {};
@@ -255,7 +255,7 @@ void TakePlacer::describe() {
   state_.T_camera_object = step_.T_last;
   state_.box_px = box_of(selected_, motion_classifier_.first().frame.camera, step_.T_last);
   state_.message = describe_coverage(state_.seen, selected_.T_camera_stand.inverse().translation());
-  if (state_.frames - first_number_ <= kTold)
+  if (state_.frames - first_number_ <= kSelectionFrames)
     state_.message = describe_selection(selected_) + "; move the camera once around it, or turn it";
 }
 
@@ -270,7 +270,7 @@ void TakePlacer::relocalise_lost_frames() {
         ++at;
         continue;
       }
-      accept(at->number, at->frame, std::move(levels), *found);
+      place_frame(at->number, at->frame, std::move(levels), *found);
       at = unplaced_.erase(at);
       any = true;
     }

@@ -60,9 +60,9 @@ class TakePlacer {
   std::optional<Alignment> relocalise(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
                                       LandmarkCache& corners);
   void relocalise_lost_frames();
-  void accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
+  void place_frame(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   void note_lost(const FrameLevels& levels);
-  bool is_fit_for_model(const ImageQuality& quality);
+  bool is_usable_for_model(const ImageQuality& quality);
   void follow_object_only();
   void tie_to_first_keyframe();
   void add_keyframe(Keyframe keyframe, const Alignment& alignment);

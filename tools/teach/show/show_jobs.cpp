@@ -264,7 +264,8 @@ int conclude(const ShowOptions& options, const ShowResult& shown, ProgressReport
 }
 
 /// Says why where it fails.
-int told(const ShowOptions& options, ShowObserver* observer, const std::function<ShowResult(ProgressReporter&)>& show) {
+int run_reported(const ShowOptions& options, ShowObserver* observer,
+                 const std::function<ShowResult(ProgressReporter&)>& show) {
   ProgressReporter reporter(options.name, observer);
   try {
     check_show_options(options);
@@ -279,15 +280,15 @@ int told(const ShowOptions& options, ShowObserver* observer, const std::function
 
 int show_object(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second,
                 ShowObserver* observer) {
-  return told(options, observer,
-              [&](ProgressReporter& reporter) { return show_takes(options, frames, second, reporter); });
+  return run_reported(options, observer,
+                      [&](ProgressReporter& reporter) { return show_takes(options, frames, second, reporter); });
 }
 
 int show_sources(const ShowOptions& options, ShowObserver* observer) {
   check_show_options(options);
   check_second(options);
   if (is_turntable_videos(options.source))
-    return told(options, observer, [&](ProgressReporter&) { return show_turntable(options); });
+    return run_reported(options, observer, [&](ProgressReporter&) { return show_turntable(options); });
   const ShownFrames second = options.second.empty() ? ShownFrames() : open_shown(options.second, options);
   if (!is_live(options.source)) return show_object(options, open_shown(options.source, options), second, observer);
   CameraTake take(open_shown(options.source, options), observer);

@@ -22,7 +22,7 @@ void ProgressReporter::frame(const FrameId& id, const reconstruction::TakePlacer
   now_.box = state.box_px;
   now_.T_camera_object = state.T_camera_object;
   now_.progress = static_cast<double>(reconstruction::count_covered(state.seen)) / ShowProgress::kDirections;
-  tell();
+  report();
 }
 
 void ProgressReporter::step(TeachingState state, double progress, const std::string& message) {
@@ -32,7 +32,7 @@ void ProgressReporter::step(TeachingState state, double progress, const std::str
   now_.box = {};
   now_.T_camera_object.reset();
   printed_us_ = 0;
-  tell();
+  report();
 }
 
 void ProgressReporter::fail(const std::string& message) {
@@ -41,7 +41,7 @@ void ProgressReporter::fail(const std::string& message) {
   if (observer_ != nullptr) observer_->progress(now_);
 }
 
-void ProgressReporter::tell() {
+void ProgressReporter::report() {
   constexpr std::int64_t kApart_us = 1'000'000;  // interval of the take's time
   const std::string line = fmt::format("{}: {}", to_string(now_.state), now_.message);
   const bool is_choice = printed_state_ == TeachingState::kChoosing && now_.state != TeachingState::kChoosing;

@@ -52,7 +52,7 @@ class ProgressReporter {
   void fail(const std::string& message);
 
  private:
-  void tell();
+  void report();
 
   ShowObserver* observer_;
   ShowProgress now_;

@@ -25,7 +25,7 @@ StreamTake::StreamTake(LcmBus& bus, StreamTakeSettings settings) : bus_(bus), se
           bus_.url());
   require(ChannelPattern(settings_.channel).is_name(), "channel '{}', expected the name of one camera's frames",
           settings_.channel);
-  bus_.subscribe_to_frames(settings_.channel, [this](const ReceivedMessage& arrival) { put(arrival); });
+  bus_.subscribe_to_frames(settings_.channel, [this](const ReceivedMessage& arrival) { push(arrival); });
   const BlockStopSignals block;
   thread_ = std::thread([this] { receive(); });
 }
@@ -58,7 +58,7 @@ void StreamTake::note_outage(Clock::duration time) {
 }
 
 // Messages that are no frames are never queued: they would displace frames.
-void StreamTake::put(const ReceivedMessage& arrival) {
+void StreamTake::push(const ReceivedMessage& arrival) {
   const std::lock_guard lock(mutex_);
   if (ended_) return;
   try {
@@ -80,7 +80,7 @@ void StreamTake::refuse(const std::string& reason) {
   ++refused_;
   last_reason_ = reason;
   const std::string line = fmt::format("message on {} dropped: {}", settings_.channel, reason);
-  if (const auto admitted = lines_.admit("", line, Clock::now())) log_warning("{}", *admitted);
+  if (const auto admitted = throttle_.admit("", line, Clock::now())) log_warning("{}", *admitted);
 }
 
 void StreamTake::end() {
@@ -94,7 +94,7 @@ void StreamTake::skip_to_newest() {
   while (waiting_.size() > 1) drop_first();
 }
 
-StreamTake::Waiting StreamTake::take_first() {
+StreamTake::Waiting StreamTake::pop_first() {
   Waiting first = std::move(waiting_.front());
   waiting_.pop_front();
   waiting_bytes_ -= first.bytes.size();
@@ -103,7 +103,7 @@ StreamTake::Waiting StreamTake::take_first() {
 
 // A stream whose frames are too many to be taken is not silent.
 void StreamTake::drop_first() {
-  last_ = take_first().arrival;
+  last_ = pop_first().arrival;
 }
 
 StreamTake::Clock::time_point StreamTake::deadline() const {
@@ -118,7 +118,7 @@ void StreamTake::require_stream() const {
   fail("no frame within {:.0f} s on {} at {}, expected a stream that runs", seconds, settings_.channel, bus_.url());
 }
 
-std::optional<StreamTake::Waiting> StreamTake::take() {
+std::optional<StreamTake::Waiting> StreamTake::pop() {
   std::unique_lock lock(mutex_);
   while (waiting_.empty() && !ended_ && failure_.empty()) {
     changed_.wait_for(lock, kMoment);
@@ -130,7 +130,7 @@ std::optional<StreamTake::Waiting> StreamTake::take() {
   ended_ = ended_ || (!waiting_.empty() && waiting_.front().arrival > deadline());
   if (ended_ && !first_ && !stop_requested()) require_stream();
   if (ended_) return std::nullopt;
-  return take_first();
+  return pop_first();
 }
 
 RgbdFrame StreamTake::decode(const std::vector<std::uint8_t>& bytes) const {
@@ -151,7 +151,7 @@ void StreamTake::note_frame(const RgbdFrame& frame, Clock::time_point arrival) {
 }
 
 std::optional<RgbdFrame> StreamTake::next() {
-  while (const std::optional<Waiting> message = take()) {
+  while (const std::optional<Waiting> message = pop()) {
     try {
       RgbdFrame frame = decode(message->bytes);
       note_frame(frame, message->arrival);

@@ -64,11 +64,11 @@ class StreamTake {
     std::vector<std::uint8_t> bytes;  // encoded
     Clock::time_point arrival;
   };
-  void put(const ReceivedMessage& arrival);
+  void push(const ReceivedMessage& arrival);
   void refuse(const std::string& reason);
   void receive() noexcept;
-  std::optional<Waiting> take();
-  Waiting take_first();
+  std::optional<Waiting> pop();
+  Waiting pop_first();
   void drop_first();
   void note_outage(Clock::duration time);
   RgbdFrame decode(const std::vector<std::uint8_t>& bytes) const;
@@ -87,7 +87,7 @@ class StreamTake {
   Clock::time_point last_;                  // arrival of the last frame that was taken or dropped
   cv::Size size_;                           // size of the first frame
   std::string last_reason_;                 // why the last message was refused
-  LogThrottle lines_;
+  LogThrottle throttle_;
   bool ended_ = false;
   std::string failure_;
   std::atomic<std::int64_t> passed_over_{0};

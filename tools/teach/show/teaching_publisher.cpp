@@ -54,20 +54,20 @@ void TeachingPublisher::progress(const ShowProgress& now) {
   const std::lock_guard lock(mutex_);
   const bool is_new = !last_ || last_->state != teaching.state;
   last_ = std::move(teaching);
-  is_told_ = false;
+  is_sent_ = false;
   if (is_new || Clock::now() - sent_ >= kApart) publish();
 }
 
 void TeachingPublisher::publish() {
   bus_.publish(channel::kTeaching, to_message(*last_));
-  is_told_ = true;
+  is_sent_ = true;
   sent_ = Clock::now();
 }
 
 void TeachingPublisher::repeat() noexcept {
   std::unique_lock lock(mutex_);
   while (!changed_.wait_for(lock, kApart, [this] { return ending_; })) {
-    if (!last_ || Clock::now() - sent_ < (is_told_ ? kRepeat : kApart)) continue;
+    if (!last_ || Clock::now() - sent_ < (is_sent_ ? kRepeat : kApart)) continue;
     try {
       publish();
     } catch (const std::exception& error) {

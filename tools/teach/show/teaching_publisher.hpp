@@ -42,7 +42,7 @@ class TeachingPublisher : public ShowObserver {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<Teaching> last_;
-  bool is_told_ = true;  // the last one was sent as it is
+  bool is_sent_ = true;  // the last one was sent as it is
   Clock::time_point sent_{};
   bool ending_ = false;
   std::thread thread_;

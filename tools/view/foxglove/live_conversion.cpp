@@ -15,20 +15,20 @@ constexpr std::int64_t kRestart_us = 2'000'000;  // a source that steps back far
 
 LiveConversion::LiveConversion(const std::optional<Camera>& camera) : messages_({}), camera_(camera) {}
 
-bool LiveConversion::knows(const std::string& channel) {
+bool LiveConversion::admit_camera(const std::string& channel) {
   if (shown_.count(channel) == 0 && shown_.size() >= kMaxCameras) return false;
   shown_.try_emplace(channel, 0);
   return true;
 }
 
 LiveConversion::Messages LiveConversion::add_frame(const images_t& frame, const std::string& channel) {
-  if (!knows(channel)) return {};
+  if (!admit_camera(channel)) return {};
   detectors_.note_frame({channel, frame.utime});
   return messages_.convert_frame(frame, channel, camera_);
 }
 
 FrameResults* LiveConversion::results_of(const FrameId& frame) {
-  if (!knows(frame.channel)) return nullptr;
+  if (!admit_camera(frame.channel)) return nullptr;
   while (results_.size() >= kMaxFrames && results_.count(frame) == 0) results_.erase(results_.begin());
   return &results_[frame];
 }

@@ -37,7 +37,7 @@ class LiveConversion {
   void add_placements(ObjectPlacements placed) { placed_ = std::move(placed); }
 
  private:
-  bool knows(const std::string& channel);
+  bool admit_camera(const std::string& channel);
   FrameResults* results_of(const FrameId& frame);
   bool is_complete(const FrameId& frame, const FrameResults& results) const;
   Messages show(const FrameId& frame, const FrameResults& results);
