@@ -6,8 +6,8 @@ namespace houghstream::store {
 
 /// A store that is being made, in the folder `.STORE.partial-PID` beside STORE; STORE stays whole until commit(),
 /// which puts the new one into its place in one step. Where STORE is a symbolic link, all this is where it leads. What
-/// an interrupted teaching left is removed when the next begins. One at a time works on a store, of all processes. What
-/// lies in STORE and is no part of a store (is_store_entry()) is somebody's, and is there afterwards as it was before.
+/// an interrupted teaching left is removed when the next begins. At most one transaction on a store exists at a time,
+/// over all processes. Entries of STORE that are no part of a store (is_store_entry()) belong to the user and are kept.
 class StoreTransaction {
  public:
   /// Begins the transaction. Throws InputError where STORE is a folder of other contents or a link to nothing, another
@@ -32,7 +32,7 @@ class StoreTransaction {
 
 /// Throws InputError where no store could be put: a folder of other contents, a link to nothing, a folder that takes no
 /// files, one with a foreign folder that could not be carried over. Called before the work whose result is to go there;
-/// makes nothing, whoever works on the store.
+/// it creates nothing and takes no lock.
 void require_place_for_store(const std::filesystem::path& store);
 
 /// Moves an old store back into its place. On a file system that cannot exchange folders, a teaching that is

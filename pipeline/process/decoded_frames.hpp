@@ -13,13 +13,13 @@
 
 namespace houghstream {
 
-/// Decodes an images_t that came on this channel; how long it took is the last of the frame's stages, under this name.
-/// Throws InputError where it is none.
+/// Decodes an images_t that came on this channel; the time that this took is appended to the frame's stages under the
+/// name `stage`. Throws InputError where the bytes are no images_t.
 RgbdFrame decode_frame(ByteView bytes, const std::string& channel, const std::optional<Camera>& camera,
                        const std::string& stage);
 
-/// The last decoded frames of all cameras, so that a frame is decoded once, ahead or by the first who asks for it. May
-/// be used from any thread.
+/// The last decoded frames of all cameras, so that a frame is decoded once: ahead, or at its first use. May be used
+/// from any thread.
 class DecodedFrames {
  public:
   using Decoded = std::shared_ptr<const RgbdFrame>;
@@ -28,7 +28,7 @@ class DecodedFrames {
   static constexpr std::size_t kFrames = 12;
   static constexpr std::size_t kBytes = std::size_t{192} << 20U;  ///< of their images; the newest stays in any case
 
-  /// `camera` and `stage` as decode_frame() takes them.
+  /// `camera` and `stage` are passed to decode_frame().
   DecodedFrames(std::optional<Camera> camera, std::string stage)
       : camera_(std::move(camera)), stage_(std::move(stage)) {}
 

@@ -70,8 +70,8 @@ class TransformPublisher {
   std::atomic<bool> several_cameras_;
 };
 
-/// Answers detections with poses. Where it follows as well, frames are worked on first, and are what the status counts;
-/// detections are then answered in the background, and counted apart.
+/// Estimates and publishes the poses of detections. Where it follows objects as well, frames are processed first, and
+/// the status counts them; detections are then processed in the background, and counted separately.
 class PoseProcess {
  public:
   /// Does not follow where `follow` is empty.
@@ -240,7 +240,7 @@ class PoseProcess {
     }
   }
 
-  // A store's objects may have become others meanwhile.
+  // The objects of a store may have changed meanwhile.
   void update_models() {
     if (!options_.objects || models_.settled()) return;
     for (const KnownObject& object : options_.objects().objects) models_.add_model(object.name);

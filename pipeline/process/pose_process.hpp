@@ -41,13 +41,13 @@ struct PoseProcessOptions {
 /// a start.
 using EstimatePoses = std::function<ObjectPoses(const RgbdFrame&, const Detections&, const ObjectPoses&)>;
 
-/// Receives frames and detections, brings each detections_t together with its own frame (same channel, same time),
-/// and publishes `estimate`'s result for each pair, and a rigid_transform_t for each valid pose. Detections of frames
-/// on other channels than `frame_channels` are somebody else's.
+/// Receives frames and detections, matches each detections_t with its own frame (same channel, same time), and
+/// publishes `estimate`'s result for each pair, and a rigid_transform_t for each valid pose. Detections of frames
+/// on other channels than `frame_channels` are left to other processes.
 ///
 /// Transforms go to <OBJECT>_TO_CAMERA where there is one camera, to <OBJECT>_TO_<CAMERA'S CHANNEL> where the channels
-/// are a pattern, and from the moment on when detections of another camera's frames are heard. Those of named frames go
-/// to <OBJECT>_<FRAME>_TO_CAMERA, or _TO_<CAMERA'S CHANNEL>.
+/// are a pattern, and from the moment on when detections of another camera's frames are received. Those of named frames
+/// go to <OBJECT>_<FRAME>_TO_CAMERA, or _TO_<CAMERA'S CHANNEL>.
 ///
 /// On a network the newest detections of each camera come first, the cameras in turn; each frame is decoded as soon as
 /// there is time, also before it is known whether something was detected in it. A log (which must hold frames and

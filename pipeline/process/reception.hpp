@@ -48,8 +48,9 @@ enum class Account { kReceived, kOthers };
 
 /// Subscribes to what a process works on, and checks and counts each message before the process sees it. A message that
 /// cannot be understood, or that its handler refuses with an InputError, is counted and logged, one line a second of
-/// its channel. A duplicate is dropped, and counted as one, on a network; of a log everything is worked on, as often as
-/// it is there. The handlers are called by who calls LcmBus::handle(). Must outlive the bus' last call of handle().
+/// its channel. On a network a duplicate is dropped and counted; of a log every message is processed, as often as it
+/// occurs. The handlers are called in the thread that calls LcmBus::handle(). Must outlive the bus' last call of
+/// handle().
 class Reception {
  public:
   /// Maximum size of a result, which two thousand detections have; larger ones are refused.
@@ -75,7 +76,7 @@ class Reception {
                          {std::move(handler), std::move(other_camera)});
   }
 
-  /// Messages that are neither, decoded.
+  /// Receives messages that are neither frames nor results, decoded.
   template <typename Message>
   void subscribe_to_messages(const std::string& channels,
                              std::function<void(const Message&, const ReceivedMessage&)> handler) {
@@ -87,8 +88,8 @@ class Reception {
     });
   }
 
-  /// Returns the time of a clock that nobody sets, microseconds: of a log, the sum of the steps from event to event
-  /// that lead forward. For a log only the thread that handles the bus may call it.
+  /// Returns the time of a monotonic clock, microseconds; of a log, the sum of the forward steps from event to event.
+  /// For a log only the thread that handles the bus may call it.
   std::int64_t now_us() const;
 
  private:

@@ -29,8 +29,9 @@ Detector make_detector(std::vector<Forest> groups, const SearchOptions& search) 
   return detector_of(std::move(groups), search);
 }
 
-/// A detector and the memory of its frames, which are looked at one after another. Its first frame takes no longer than
-/// others: what it reads for the first time, and the memory that it asks for, have been there before.
+/// A detector with the workspace of its frames, which are searched one after another. It has searched a made-up frame
+/// before, so that its first real frame takes no longer than the others: its data are in the caches, its memory is
+/// allocated.
 struct ReadyDetector {
   ReadyDetector(Detector of_forest, const RgbdFrame& warm_up_frame) : detector(std::move(of_forest)) {
     detector.detect(warm_up_frame, workspace);
@@ -60,8 +61,8 @@ std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& sto
                                                warm_up_frame);
 }
 
-/// Looks by a budget come at leisure: who follows objects from frame to frame goes first. Of all threads that are
-/// started from here on.
+/// Lowers the priority of this thread and of all threads that it starts from here on: where the rate of detections is
+/// limited, hs-pose follows objects from frame to frame and goes first.
 void lower_priority() {
   constexpr int kPolite = 2;
   if (nice(kPolite) == -1) log_debug("the priority of looks cannot be lowered");
@@ -88,7 +89,7 @@ class KnownColours {
   std::map<std::string, std::vector<ChromaPair>> objects_;  // by camera
 };
 
-/// A forest stays what it is.
+/// Detects by a forest file, which does not change while this runs.
 void run_with_forest(const DetectOptions& options, const KnownColours& colours) {
   const std::shared_future<RgbdFrame> warm_up_frame = start_warm_up();
   const ReadyDetector ready(

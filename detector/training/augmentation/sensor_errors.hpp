@@ -38,7 +38,7 @@ void drop_near_depth(double limit, double kept, cv::Mat& depth, Random& random);
 /// Adds the noise of a larger distance. A scale space shows an object `ratio` times as far away as taught in an
 /// enlarged image: its size is the same then, but not the sensor's noise, which is that of the larger distance and as
 /// much coarser. What is missing of it is added to an image taken at `distance` metres; `depth` is CV_32FC1, metres.
-/// What smooth surfaces' normals have told nearby would not be true of rough ones farther away.
+/// Without it, normals of the smooth surfaces nearby would be learnt, which do not hold for the rougher ones far away.
 void add_far_noise(double distance, double ratio, cv::Mat& depth, Random& random);
 
 }  // namespace houghstream::training

@@ -119,7 +119,7 @@ std::optional<Alignment> TakePlacer::relocalise(const RgbdFrame& frame, const Fr
   // Round objects and boxes look similar from several sides.
   const LastPlace last{step_.T_last, motion_ == Motion::kObject ? 0.5 : 1e9};
   if (std::optional<Alignment> found = relocalise_by_neighbours(map_, levels, last)) return found;
-  if (motion_ == Motion::kObject) corners = {};  // they are of where the object is believed to be
+  if (motion_ == Motion::kObject) corners = {};  // they were detected where the object was assumed
   if (!corners.seen) corners.seen = detect_landmarks(frame, landmark_mask(frame, step_.T_last));
   return relocaliser_.find(map_, levels, last, everywhere, corners);
 }
@@ -259,7 +259,7 @@ void TakePlacer::describe() {
     state_.message = describe_selection(selected_) + "; move the camera once around it, or turn it";
 }
 
-/// Frames that were lost on arrival may be relocalised in the map of the whole take.
+/// Relocalises frames that were lost on arrival in the map of the whole take, as long as one more is found.
 void TakePlacer::relocalise_lost_frames() {
   for (bool any = true; any;) {
     any = false;

@@ -85,7 +85,7 @@ std::string overview(const store::ObjectStore& store, const StoreReportParts& pa
   return page + "</table></div>\n";
 }
 
-/// Returns what can hardly be told apart, by practice and by the meshes.
+/// Returns the pairs of objects that can hardly be distinguished, by their calibration and by their meshes.
 std::string lookalike_list(const store::ObjectStore& store, const StoreReportParts& parts) {
   std::string items;
   for (const std::string& line : confusion_lines(store)) items += fmt::format("<li>{}</li>\n", escape_html(line));
@@ -206,7 +206,7 @@ std::string small_jpeg(const fs::path& file) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// Refuses a file that is there and that somebody else has written.
+/// Throws InputError for an existing file that is no report of ours.
 void require_own_page(const fs::path& out) {
   if (!fs::exists(out)) return;
   require(fs::is_regular_file(out), "{}: is no file, expected a place for a page", out.string());

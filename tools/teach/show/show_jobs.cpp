@@ -263,7 +263,7 @@ int conclude(const ShowOptions& options, const ShowResult& shown, ProgressReport
   return 0;
 }
 
-/// Says why where it fails.
+/// Runs a showing to its conclusion; reports the reason of a failure before it throws.
 int run_reported(const ShowOptions& options, ShowObserver* observer,
                  const std::function<ShowResult(ProgressReporter&)>& show) {
   ProgressReporter reporter(options.name, observer);

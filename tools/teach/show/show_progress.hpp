@@ -18,25 +18,26 @@ struct ShowProgress {
   /// Directions of a sphere about the object: reconstruction::view_directions().
   static constexpr int kDirections = 60;
 
-  FrameId frame;     ///< the last that was looked at
+  FrameId frame;     ///< last frame that was processed
   std::string name;  ///< name of the object
   TeachingState state = TeachingState::kChoosing;
   std::string message;                   ///< one line for a person: what was observed, what is missing, why it failed
   std::array<bool, kDirections> seen{};  ///< directions of the object's frame that were observed
-  int frames = 0;                        ///< looked at so far
-  int keyframes = 0;                     ///< kept so far
+  int frames = 0;                        ///< number of frames processed so far
+  int keyframes = 0;                     ///< number of keyframes kept so far
   cv::Rect box;                          ///< box of the object in the last frame, pixels; empty where it is not known
   double progress = 0.0;                 ///< 0 to 1: of the sphere while tracking, of the work afterwards
   std::optional<Eigen::Isometry3d> T_camera_object;  ///< metres, z up, origin at its foot; none while it is not known
 };
 
-/// Is told how far it is; called from the thread that shows. An exception ends the showing.
+/// Receives the progress of a showing, in the thread that processes it. An exception ends the showing.
 struct ShowObserver {
   virtual ~ShowObserver() = default;
   virtual void progress(const ShowProgress& now) = 0;
 };
 
-/// Tells the observer and, where something new happens, the terminal how far a showing is. Not thread-safe.
+/// Reports the progress of a showing to the observer and, where something new happens, to the terminal. Not
+/// thread-safe.
 class ProgressReporter {
  public:
   /// Reports on the object `name`. `observer` may be null.

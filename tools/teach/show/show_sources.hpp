@@ -15,8 +15,8 @@ ShownFrames open_shown(const std::string& source, const ShowOptions& options);
 /// Returns whether a source's frames arrive in real time: openni2 or openni2:CAMERA, or a stream's, stream:CHANNEL.
 bool is_live(const std::string& source);
 
-/// A take of a camera, which somebody carries who cannot reach the keyboard: it ends when enough was seen, or when the
-/// frames do. From then on a stop signal ends the program.
+/// A take of a camera whose carrier cannot reach the keyboard: it ends when enough of the object was observed, or when
+/// the frames end. From then on a stop signal ends the program.
 class CameraTake : public ShowObserver {
  public:
   /// Makes a take. `observer` (may be null) receives all its events.

@@ -21,7 +21,7 @@ void let_others_first() {
     setpriority(PRIO_PROCESS, static_cast<id_t>(std::stoul(thread.path().filename().string())), kPolite);
 }
 
-/// Publishes what it is told, and ends the take when enough was seen.
+/// Publishes the progress, and ends the take when enough of the object was observed.
 class TakeObserver : public ShowObserver {
  public:
   TakeObserver(LcmBus& bus, StreamTake& take) : publisher_(bus, reconstruction::view_directions()), take_(take) {}

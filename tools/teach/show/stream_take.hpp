@@ -28,10 +28,10 @@ struct StreamTakeSettings {
   std::chrono::milliseconds frame_timeout{3'000};  ///< time without a frame, after which the stream counts as ended
 };
 
-/// A take that comes off the bus while the stream goes on. A thread receives, so that none of the frames waits in LCM;
-/// the one who follows the object takes them in order. A message that is no frame of the take (rubbish, a damaged
-/// image, no camera, or another image size than the first frame had) is dropped with a count, and one line a second
-/// says so.
+/// A take that is received from the bus while the stream runs. A thread receives, so that no frame waits in LCM; the
+/// thread that follows the object pops the frames in their order. A message that is no frame of the take (rubbish, a
+/// damaged image, no camera, or another image size than the first frame had) is dropped with a count, and one line a
+/// second says so.
 class StreamTake {
  public:
   /// Listens from here on to `bus`, which must outlive it. Throws InputError where it is a log.
@@ -46,16 +46,16 @@ class StreamTake {
   /// for none of these.
   std::optional<RgbdFrame> next();
 
-  /// Ends the take, which is long enough. It may be called from any thread.
+  /// Ends the take. It may be called from any thread.
   void end();
 
   /// Drops all waiting frames but the newest.
   void skip_to_newest();
 
-  /// Frames that came too fast: of those that wait the oldest goes.
+  /// Returns the number of frames that came too fast: of those that wait the oldest is dropped.
   std::int64_t passed_over() const { return passed_over_; }
 
-  /// Messages on the channel that are no frame of the take.
+  /// Returns the number of messages on the channel that are no frame of the take.
   std::int64_t refused() const { return refused_; }
 
  private:
@@ -84,7 +84,7 @@ class StreamTake {
   std::deque<Waiting> waiting_;
   std::size_t waiting_bytes_ = 0;
   std::optional<Clock::time_point> first_;  // arrival of the first frame
-  Clock::time_point last_;                  // arrival of the last frame that was taken or dropped
+  Clock::time_point last_;                  // arrival of the last frame that was popped or dropped
   cv::Size size_;                           // size of the first frame
   std::string last_reason_;                 // why the last message was refused
   LogThrottle throttle_;

@@ -20,8 +20,8 @@ namespace houghstream::teach {
 /// Converts the progress for the bus; `directions` are those of the viewing sphere.
 Teaching teaching_of(const ShowProgress& now, const std::array<Eigen::Vector3d, ShowProgress::kDirections>& directions);
 
-/// Publishes how far the showing of an object is, as teaching_t: at most ten times a second, each change of state at
-/// once, and the last again each second: who listens can tell work that takes its time from a process that is gone.
+/// Publishes the progress of showing an object as teaching_t: at most ten times a second, each change of state at once,
+/// and the last message again each second, by which receivers distinguish long work from a process that has ended.
 class TeachingPublisher : public ShowObserver {
  public:
   /// Makes a publisher on `bus`, which must outlive it.
@@ -48,10 +48,10 @@ class TeachingPublisher : public ShowObserver {
   std::thread thread_;
 };
 
-/// Tells when a take shows nothing new any more: more than half of the directions were seen, and for some seconds of
-/// the frames' time, or half as long as that took, no further one. Steps of that time that lead back, or far ahead, are
-/// a clock that is set or a wrong stamp, and no time. Over the last third of a turn nothing new is seen,
-/// and still it has to be closed.
+/// Decides when a take shows nothing new any more: more than half of the directions were observed, and for some seconds
+/// of the frames' time, or half as long as that took, no further one. Steps of that time that lead back, or far ahead,
+/// come of a clock that was set or of a wrong stamp, and do not count. Over the last third of a turn no new direction
+/// is observed, although the turn has to be completed for the loop to close.
 class CoverageCriterion {
  public:
   bool operator()(const ShowProgress& now);
