@@ -10,12 +10,16 @@ import rule_command
 
 QUALITY = "pose/verification/quality.hpp"
 STORED = "tools/finder/stored_quality.hpp"
+REGION = "pose/following/region_modality.hpp"
+TEXTURE = "pose/following/texture_modality.hpp"
 ROWS = (
     ("pose/README.md", r"A pose is published from quality ([\d.]+) on", QUALITY, r"float min_quality = ([\d.]+)F"),
     ("pose/README.md", r"learnt per object: ([\d.]+)\)", STORED, r"kStoreQuality = ([\d.]+)F"),
     ("pose/README.md", r"so a pose of quality ([\d.]+) \(", QUALITY, r"float min_candidate_quality = ([\d.]+)F"),
     ("pose/README.md", r"of a store's\s+objects ([\d.]+), as most", STORED, r"kStoreCandidateQuality = ([\d.]+)F"),
     ("pose/README.md", r"not seen \(([\d.]+) is in use", QUALITY, r"float min_quality = ([\d.]+)F"),
+    ("pose/README.md", r"([\d.]+) of 255 levels of brightness", TEXTURE, r"double sigma = ([\d.]+);"),
+    ("pose/README.md", r"`common_error_px`, ([\d.]+) pixels", REGION, r"double common_error_px = ([\d.]+);"),
     ("tools/studies/README.md", r"from its limit of ([\d.]+) on", QUALITY, r"float min_quality = ([\d.]+)F"),
 )
 
