@@ -18,10 +18,9 @@ struct WorkingFrame {
   float size_ratio = 1.0F;  ///< size of everything in this image over its size as taught, in a scale space
 };
 
-/// An image size at which features are computed, and the range of depth that is searched in it. The support of a
-/// feature is fixed in pixels, which the paper leaves as it is (Section 5.1.2); two sizes an octave apart keep it
-/// within a factor of two in metres too, and give far objects enough pixels. The levels of a scale space each look at
-/// everything.
+/// A size at which features are computed, and the range of depth that is searched in it. The support of a feature is
+/// fixed in pixels, as in the paper (Section 5.1.2); two sizes an octave apart keep it within a factor of two in metres
+/// too, and give far objects enough pixels. Each level of a scale space contains all depths.
 struct FeatureLevel {
   float scale = 1.0F;         ///< working size over frame size
   float size_ratio = 1.0F;    ///< entry of FeatureSettings::scales, in a scale space

@@ -84,9 +84,8 @@ OperatingThreshold choose_threshold(const PracticeCurve& curve, int shown, doubl
 /// Returns the most frequent one of PracticeRecord::taken_for; of equals the first by name.
 Confusion most_frequent_confusion(const PracticeRecord& record);
 
-/// Converts a record to the JSON of store.json: {"shown", "right", "wrong", "score": {"from": [], "right": [], "wrong":
-/// []}, "quality": ..., "taken_for": {NAME: }, "by_distance_m": {"to": [], "shown": [], "found": []}, "by_visible":
-/// ...}.
+/// Returns store.json's record: {"shown", "right", "wrong", "score": {"from": [], "right": [], "wrong": []}, "quality":
+/// ..., "taken_for": {NAME: }, "by_distance_m": {"to": [], "shown": [], "found": []}, "by_visible": ...}.
 OrderedJson to_json(const PracticeRecord& record);
 
 /// Throws InputError naming `where` for a missing or unknown name, and for numbers that are no counts or thresholds.

@@ -48,9 +48,8 @@ enum class Account { kReceived, kOthers };
 
 /// Subscribes to what a process works on, and checks and counts each message before the process sees it. A message that
 /// cannot be understood, or that its handler refuses with an InputError, is counted and logged, one line a second of
-/// its channel. On a network a duplicate is dropped and counted; of a log every message is processed, as often as it
-/// occurs. The handlers are called in the thread that calls LcmBus::handle(). Must outlive the bus' last call of
-/// handle().
+/// its channel. On a network a duplicate is dropped and counted; of a log every message is processed. The
+/// handlers are called in the thread that calls LcmBus::handle(). Must outlive the bus' last call of handle().
 class Reception {
  public:
   /// Maximum size of a result, which two thousand detections have; larger ones are refused.

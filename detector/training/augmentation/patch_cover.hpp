@@ -15,8 +15,7 @@ namespace houghstream::training {
 /// share pixels, and next to nothing is held of the room between those that stand apart. Deterministic.
 std::vector<RowSpans> cover_patches(const std::vector<cv::Rect>& seen);
 
-/// Cuts the pixels that the samples' patches read out of an image, and writes into each sample the index of its cutout,
-/// counted from `first` on.
+/// Cuts what patches read out of an image, and writes into each sample the index of its cutout, from `first` on.
 std::vector<Cutout> cut_out_patches(const FeatureImage& image, const PatchSettings& patch, std::int32_t first,
                                     const std::vector<TrainingSample*>& readers);
 std::vector<Cutout> cut_out_patches(const Cutout& image, const PatchSettings& patch, std::int32_t first,

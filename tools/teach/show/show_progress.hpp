@@ -36,8 +36,7 @@ struct ShowObserver {
   virtual void progress(const ShowProgress& now) = 0;
 };
 
-/// Reports the progress of a showing to the observer and, where something new happens, to the terminal. Not
-/// thread-safe.
+/// Reports the progress of a showing to the observer and, where something is new, to the terminal. Not thread-safe.
 class ProgressReporter {
  public:
   /// Reports on the object `name`. `observer` may be null.
