@@ -65,16 +65,16 @@ TEST(HoughSpace, OffsetsTurnWithTheViewingRay) {
 }
 
 TEST(HoughSpace, APatchOfALowPosteriorCastsNone) {
-  EXPECT_TRUE(vote(one_leaf({0, 0, 0}, 0.49F), {{0, 0, 1}}, 0.5F).voter.empty());
-  EXPECT_EQ(vote(one_leaf({0, 0, 0}, 0.51F), {{0, 0, 1}}, 0.5F).voter.size(), 1U);
+  EXPECT_TRUE(vote(one_leaf({0, 0, 0}, 0.49F), {{0, 0, 1}}, 0.5F).voter_of_vote.empty());
+  EXPECT_EQ(vote(one_leaf({0, 0, 0}, 0.51F), {{0, 0, 1}}, 0.5F).voter_of_vote.size(), 1U);
 }
 
 TEST(HoughSpace, VotesOutsideTheImageOrBehindTheCameraAreDropped) {
   const Forest sideways = one_leaf({0.2F, 0.0F, 0.0F}, 1.0F);
-  EXPECT_EQ(vote(sideways, {{0.25F, 0, 1}}).voter.size(), 1U);
-  EXPECT_TRUE(vote(sideways, {{0.45F, 0, 1}}).voter.empty());
-  EXPECT_TRUE(vote(one_leaf({-0.2F, 0, 0}, 1.0F), {{-0.45F, 0, 1}}).voter.empty());
-  EXPECT_TRUE(vote(one_leaf({0, 0, -2.0F}, 1.0F), {{0, 0, 1}}).voter.empty());
+  EXPECT_EQ(vote(sideways, {{0.25F, 0, 1}}).voter_of_vote.size(), 1U);
+  EXPECT_TRUE(vote(sideways, {{0.45F, 0, 1}}).voter_of_vote.empty());
+  EXPECT_TRUE(vote(one_leaf({-0.2F, 0, 0}, 1.0F), {{-0.45F, 0, 1}}).voter_of_vote.empty());
+  EXPECT_TRUE(vote(one_leaf({0, 0, -2.0F}, 1.0F), {{0, 0, 1}}).voter_of_vote.empty());
 }
 
 TEST(HoughSpace, VotesAreSortedByCellAndKeepTheOrderOfPatches) {
