@@ -7,17 +7,13 @@
 #include "detector/training/forest_trainer.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tests/detector/toy_data.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {
 
 std::string refusal(const FeatureSettings& settings) {
-  try {
-    require_searchable(settings, "a.forest");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return error_of([&] { require_searchable(settings, "a.forest"); });
 }
 
 TEST(Searchable, TheProductsProfilesAre) {

@@ -7,6 +7,8 @@
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/forest.hpp"
 #include "pipeline/base/checks.hpp"
+#include "tests/expect_says.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::baseline {
 namespace {
@@ -24,13 +26,7 @@ Forest forest_of(const Profile& profile) {
 TEST(GallProfile, IsKnownBesideThoseOfTheProduct) {
   EXPECT_EQ(profile_names(), (std::vector<std::string>{"gall", "paper", "realtime"}));
   for (const std::string& name : profile_names()) EXPECT_EQ(make_profile(name).name, name);
-  try {
-    make_profile("Gall");
-    FAIL() << "expected an error";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("'Gall', expected one of gall, paper, realtime"), std::string::npos)
-        << error.what();
-  }
+  expect_says(error_of([&] { make_profile("Gall"); }), {"'Gall', expected one of gall, paper, realtime"});
 }
 
 TEST(GallProfile, IsTheOriginalHoughForest) {

@@ -5,6 +5,8 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/geometry/mesh.hpp"
+#include "tests/expect_says.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {
@@ -76,12 +78,7 @@ TEST(MeshPaint, RepeatedTexturesAreReadAloneOnly) {
 TEST(MeshPaint, MissingTexturesAreNamed) {
   const fs::path file = write_obj("missing", "green_picture", "grey_picture");
   fs::remove(file.parent_path() / "grey.png");
-  try {
-    load_mesh(file, 1.0);
-    FAIL() << "expected a refusal";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("grey.png"), std::string::npos) << error.what();
-  }
+  expect_says(error_of([&] { load_mesh(file, 1.0); }), {"grey.png"});
 }
 
 TEST(MeshPaint, ColoursOfTheVerticesThemselvesAreRead) {

@@ -3,7 +3,9 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
+#include "tests/expect_says.hpp"
 #include "tests/pipeline/test_frame.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {
@@ -29,13 +31,7 @@ images_t foreign(images_t message) {
 }
 
 void expect_refused(const images_t& message, const std::string& because) {
-  try {
-    frame_from_message(message, "LEFT", std::nullopt);
-    FAIL() << "accepted, expected a refusal because of " << because;
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find(because), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("frame LEFT 99"), std::string::npos) << error.what();
-  }
+  expect_says(error_of([&] { frame_from_message(message, "LEFT", std::nullopt); }), {because, "frame LEFT 99"});
 }
 
 TEST(FrameMessage, RawFramesComeBackExactly) {

@@ -6,6 +6,7 @@
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 #include "tests/pipeline/messages/over_the_wire.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {
@@ -69,12 +70,7 @@ TEST(ObjectMessages, WhatCannotBeSoIsRefusedInOneLine) {
   const auto refusal = [](const std::function<void(objects_t&)>& spoil) -> std::string {
     objects_t message = to_message(one_mug());
     spoil(message);
-    try {
-      world_from_message(message);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return error_of([&] { world_from_message(message); });
   };
   EXPECT_EQ(refusal([](objects_t& m) { m.objects[0].state = 6; }),
             "objects after frame RIGHT 77: object 3 'mug': state 6, expected 1 to 5");

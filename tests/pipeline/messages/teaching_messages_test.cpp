@@ -7,6 +7,7 @@
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 #include "tests/pipeline/messages/over_the_wire.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {
@@ -27,12 +28,7 @@ Teaching mug_half_seen() {
 }
 
 std::string refusal(const teaching_t& message) {
-  try {
-    teaching_from_message(message);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return error_of([&] { teaching_from_message(message); });
 }
 
 TEST(TeachingMessages, ATeachingComesBackAsItWas) {

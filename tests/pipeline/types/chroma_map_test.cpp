@@ -33,7 +33,7 @@ std::vector<ChromaPair> six_objects() {
           seen_by_warm("meat", -12.0, -20.0, 39.0),  seen_by_warm("bowl", 45.0, 5.0, 30.0)};
 }
 
-double error_of(const ChromaMap& map, const ChromaPair& pair) {
+double chroma_error(const ChromaMap& map, const ChromaPair& pair) {
   return (map.apply(pair.model, pair.lightness) - pair.measured).norm();
 }
 
@@ -50,20 +50,20 @@ TEST(ChromaMap, ACamerasColoursAreLearntOfSixObjects) {
   const ChromaMap map = fit_chroma_map(pairs);
   EXPECT_GT(map.objects(), 5.0);
   const ChromaPair other = seen_by_warm("banana", -5.0, 60.0, 65.0);
-  EXPECT_GT(error_of(ChromaMap(), other), 8.0);
-  EXPECT_LT(error_of(map, other), 4.0);
-  for (const ChromaPair& pair : pairs) EXPECT_LT(error_of(map, pair), 7.5) << pair.class_name;
+  EXPECT_GT(chroma_error(ChromaMap(), other), 8.0);
+  EXPECT_LT(chroma_error(map, other), 4.0);
+  for (const ChromaPair& pair : pairs) EXPECT_LT(chroma_error(map, pair), 7.5) << pair.class_name;
   EXPECT_LT(map.uncertainty(other.model, 65.0).trace(), 0.4 * ChromaMap().uncertainty(other.model, 65.0).trace());
 }
 
 TEST(ChromaMap, AWrongObjectDoesNotDragIt) {
   std::vector<ChromaPair> pairs = six_objects();
   const ChromaPair other = seen_by_warm("banana", -5.0, 60.0, 65.0);
-  const double before = error_of(fit_chroma_map(pairs), other);
+  const double before = chroma_error(fit_chroma_map(pairs), other);
   pairs.push_back(pair_of("bleach", {5.0, 50.0}, {-20.0, -30.0}));
   const ChromaMap map = fit_chroma_map(pairs);
-  EXPECT_LT(error_of(map, other), before + 1.5);
-  EXPECT_GT(error_of(map, pairs.back()), 40.0) << "nor is it explained away";
+  EXPECT_LT(chroma_error(map, other), before + 1.5);
+  EXPECT_GT(chroma_error(map, pairs.back()), 40.0) << "nor is it explained away";
 }
 
 TEST(ChromaMap, AnObjectIsJudgedByTheOthersAlone) {

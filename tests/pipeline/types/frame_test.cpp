@@ -7,6 +7,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "tests/pipeline/test_frame.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {
@@ -40,12 +41,7 @@ TEST(Depth, OfAnotherTypeIsAnError) {
 }
 
 std::string complaint(const RgbdFrame& frame) {
-  try {
-    check_frame(frame, "shelf");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return error_of([&] { check_frame(frame, "shelf"); });
 }
 
 TEST(CheckFrame, NamesTheSourceAndWhatIsWrong) {

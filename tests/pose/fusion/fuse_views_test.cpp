@@ -4,6 +4,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "tests/pose/fusion/turntable_views.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::fusion {
 namespace {
@@ -123,12 +124,7 @@ TEST(FuseViews, DoesNotDependOnThreads) {
 
 TEST(FuseViews, NothingToFuseIsRefusedByName) {
   const auto refusal = [](const std::vector<TrainingView>& views) -> std::string {
-    try {
-      fuse_views("toy", views, settings_for_tests());
-      return "";
-    } catch (const InputError& error) {
-      return error.what();
-    }
+    return error_of([&] { fuse_views("toy", views, settings_for_tests()); });
   };
   EXPECT_EQ(refusal({}).substr(0, 4), "toy:");
   TrainingView blind = turntable_view(TurntableScene{test_scene::cereal_box()}, 0);

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "pipeline/base/checks.hpp"
+#include "tests/expect_says.hpp"
 #include "tests/pose/test_scene.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {
@@ -127,12 +129,7 @@ TEST(ObjectModel, MeshesThatCannotBeModelsAreRefusedByName) {
   Mesh millimetres = cereal_box();
   for (Eigen::Vector3f& v : millimetres.vertices) v *= 1000.0F;
   for (const Mesh& mesh : {Mesh(), point, millimetres}) {
-    try {
-      make_object_model("teapot", mesh, ModelSettings());
-      FAIL() << "accepted";
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("teapot"), std::string::npos) << error.what();
-    }
+    expect_says(error_of([&] { make_object_model("teapot", mesh, ModelSettings()); }), {"teapot"});
   }
 }
 

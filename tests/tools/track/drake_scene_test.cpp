@@ -6,7 +6,9 @@
 #include <sstream>
 
 #include "pipeline/base/checks.hpp"
+#include "tests/expect_says.hpp"
 #include "tests/pipeline/geometry/tetrahedron.hpp"
+#include "tests/test_files.hpp"
 #include "tools/track/world_output.hpp"
 
 namespace houghstream::track {
@@ -236,12 +238,8 @@ TEST(ViewerMesh, EqualMeshesAreOneFileAndOthersAnother) {
 TEST(ViewerMesh, AFolderThatCannotBeMadeIsNamed) {
   const fs::path file = empty_folder("file");
   std::ofstream(file) << "no folder";
-  try {
-    write_viewer_mesh(red_tetrahedron(), "mug", file / "meshes");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find((file / "meshes").string()), std::string::npos) << error.what();
-  }
+  expect_says(error_of([&] { write_viewer_mesh(red_tetrahedron(), "mug", file / "meshes"); }),
+              {(file / "meshes").string()});
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/event_log.hpp"
+#include "tests/expect_says.hpp"
 #include "tests/pipeline/process_test.hpp"
+#include "tests/test_files.hpp"
 #include "tests/tools/track/one_bowl.hpp"
 
 namespace houghstream::track {
@@ -257,14 +259,8 @@ TEST(TrackProcess, ALogOfPosesWithoutTheirFramesIsRefusedWithWhatKeepsThem) {
   writer.close();
   LcmBus bus("file://" + file.string());
   auto none = std::make_shared<const tracks::TrackModels>();
-  try {
-    run_track_process(bus, {}, [&] { return none; });
-    ADD_FAILURE() << "expected an error";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("3 object_poses_t and the frames of none"), std::string::npos)
-        << error.what();
-    EXPECT_NE(std::string(error.what()).find("hs-pose --keep-frames"), std::string::npos) << error.what();
-  }
+  expect_says(error_of([&] { run_track_process(bus, {}, [&] { return none; }); }),
+              {"3 object_poses_t and the frames of none", "hs-pose --keep-frames"});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/store/small_store.hpp"
 #include "tests/pose/reconstruction/shown_scene.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::teach {
 namespace {
@@ -37,12 +38,7 @@ ShowOptions options_for(const std::string& name) {
 }
 
 std::string line_of(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second = {}) {
-  try {
-    show_object(options, frames, second, nullptr);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return error_of([&] { show_object(options, frames, second, nullptr); });
 }
 
 struct Heard : ShowObserver {
