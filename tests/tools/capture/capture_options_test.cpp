@@ -20,12 +20,7 @@ SourceOptions parsed(const std::vector<std::string>& words) {
 }
 
 std::string refusal(const std::vector<std::string>& words) {
-  try {
-    open_source(parsed(words), {});
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return error_of([&] { open_source(parsed(words), {}); });
 }
 
 TEST(CaptureOptions, AFolderIsOpenedByItsKind) {

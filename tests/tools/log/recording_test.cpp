@@ -6,6 +6,7 @@
 
 #include "drivers/datasets/bop_writer.hpp"
 #include "pipeline/base/checks.hpp"
+#include "tests/expect_says.hpp"
 #include "tests/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 
@@ -47,13 +48,9 @@ TEST(Recording, WhatIsNotThereIsAnErrorThatNamesIt) {
   for (const std::string source :
        {"/no/such.log", "/no/such.klg", "/no/such.oni", "oni:/no/such", "bop:/no/such", "bag:/no/such"}) {
     RecordingSettings settings;
+    SCOPED_TRACE(source);
     settings.source = source;
-    try {
-      open_recording(settings, losses)();
-      ADD_FAILURE() << source;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("/no/such"), std::string::npos) << error.what();
-    }
+    expect_says(error_of([&] { open_recording(settings, losses)(); }), {"/no/such"});
   }
 }
 

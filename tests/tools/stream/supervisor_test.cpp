@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "pipeline/base/checks.hpp"
+#include "tests/expect_says.hpp"
 #include "tests/test_files.hpp"
 
 namespace houghstream::stream {
@@ -204,12 +205,8 @@ TEST(Supervisor, SilenceOfABusThatIsGoneDoesNotCount) {
 
 TEST(Supervisor, WhoFailsAtItsStartIsNotTriedAgain) {
   Supervisor supervisor({shell("wrong", "exit 3")}, quick(), be_silent);
-  try {
-    step_until(supervisor, [] { return false; });
-    FAIL() << "goes on without it";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("wrong ended with status 3 at its start"), std::string::npos);
-  }
+  expect_says(error_of([&] { step_until(supervisor, [] { return false; }); }),
+              {"wrong ended with status 3 at its start"});
 }
 
 TEST(Supervisor, WhoHasRunIsTriedAgainEverMoreSlowly) {

@@ -45,12 +45,7 @@ TrainingSources good_sources() {
 
 /// Returns the message of the refusal; empty where nothing is refused.
 std::string refusal(const TrainingSources& sources) {
-  try {
-    read_training_sources(sources);
-    return "";
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  return error_of([&] { read_training_sources(sources); });
 }
 
 TEST(TrainingSources, InstancesOfOneNameBecomeOneClassNumberedByName) {

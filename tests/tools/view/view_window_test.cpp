@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "pipeline/base/checks.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::view {
 namespace {
@@ -12,12 +13,7 @@ namespace {
 std::string refusal(const char* display) {
   unsetenv("WAYLAND_DISPLAY");
   setenv("DISPLAY", display, 1);
-  try {
-    const ViewWindow window;
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return error_of([&] { const ViewWindow window; });
 }
 
 // Its content and its keys are tested on a real display by live_images_test.
