@@ -24,16 +24,6 @@ cv::Rect box_of(const SelectedObject& object, const Camera& camera, const Eigen:
 
 }  // namespace
 
-/// Requires one size, since masks, levels and boxes of the first frame are laid over all others.
-void TakePlacer::require_same_size(const RgbdFrame& frame) {
-  const cv::Size size = frame.depth.size();
-  if (take_.frames.empty()) size_ = size;
-  require(size == size_ && frame.colour.size() == size_,
-          "frame {}: colour {}x{} and depth {}x{}, expected {}x{} as of the first frame: a take is of one camera",
-          to_string(frame.id), frame.colour.cols, frame.colour.rows, size.width, size.height, size_.width,
-          size_.height);
-}
-
 const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
   constexpr std::size_t kMaxUnplaced = 100;
   const auto begin = std::chrono::steady_clock::now();
@@ -75,6 +65,16 @@ const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
   return state_;
 }
 
+/// Requires one size, since masks, levels and boxes of the first frame are laid over all others.
+void TakePlacer::require_same_size(const RgbdFrame& frame) {
+  const cv::Size size = frame.depth.size();
+  if (take_.frames.empty()) size_ = size;
+  require(size == size_ && frame.colour.size() == size_,
+          "frame {}: colour {}x{} and depth {}x{}, expected {}x{} as of the first frame: a take is of one camera",
+          to_string(frame.id), frame.colour.cols, frame.colour.rows, size.width, size.height, size_.width,
+          size_.height);
+}
+
 void TakePlacer::choose(const RgbdFrame& frame) {
   ObjectSelection choice = select_object(frame, settings_.selection);
   if (!choice.object) {
@@ -112,6 +112,50 @@ bool TakePlacer::is_usable_for_model(const ImageQuality& quality) {
   const bool blurred = quality.sharpness < settings_.min_sharpness * around[around.size() / 2];
   take_.blurred += blurred ? 1 : 0;
   return !blurred;
+}
+
+/// Follows the object's own surface alone from here on, since the camera is static and the object moves; the table,
+/// which is static too, keeps it upright.
+void TakePlacer::follow_object_only() {
+  constexpr double kAround = 0.6;
+  const RgbdFrame& first = motion_classifier_.first().frame;
+  MapSettings& map = map_.settings();
+  map.plane = PlanePrior();
+  map.plane->normal = selected_.plane.normal;
+  map.plane->offset = selected_.plane.offset;
+  map.min_inlier_fraction = 0.6;
+  map.coarsest = 1;
+  map.use_landmarks = false;
+  map.sure_corners = 12;
+  const cv::Rect& box = selected_.box_px;
+  const cv::Size more(cvRound(kAround * box.width) + 20, cvRound(kAround * box.height) + 20);
+  levels_.region_px =
+      cv::Rect(box.x - more.width, box.y - more.height, box.width + 2 * more.width, box.height + 2 * more.height) &
+      cv::Rect({0, 0}, first.depth.size());
+  map_ = KeyframeMap(map);
+  tie_to_first_keyframe();
+  state_.seen = {};
+  step_.restart(selected_.T_camera_stand);
+  Keyframe keyframe;
+  keyframe.frame = first;
+  keyframe.number = first_number_;
+  keyframe.levels = make_levels(first, levels_);
+  keyframe.landmarks = detect_landmarks(first, landmark_mask(first, step_.T_last));
+  keyframe.T_camera_world = step_.T_last;
+  add_keyframe(std::move(keyframe), {});
+}
+
+/// Ties the frames before to the first keyframe: they were tied to keyframes of the surroundings, and the map now holds
+/// the first frame alone. All of them show the object as that one does. It already moved in the last of them by an
+/// unknown distance.
+void TakePlacer::tie_to_first_keyframe() {
+  int moved = motion_classifier_.object_moves() - 1;  // the last is the present frame, which is not placed yet
+  for (auto frame = take_.frames.rbegin(); frame != take_.frames.rend(); ++frame) {
+    if (!frame->tracked) continue;
+    frame->T_camera_keyframe.setIdentity();
+    frame->tracked = moved-- <= 0;
+    frame->keyframe = frame->tracked ? 0 : -1;
+  }
 }
 
 std::optional<Alignment> TakePlacer::relocalise(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
@@ -161,50 +205,6 @@ void TakePlacer::place_frame(int number, const RgbdFrame& frame, FrameLevels lev
   if (is_usable) mark_covered(towards, state_.seen);
   const auto at = static_cast<std::size_t>((std::atan2(towards.y(), towards.x()) * kDegrees + 360.0) / 10.0) % 36;
   covered_directions_[at] = covered_directions_[at] || is_usable;
-}
-
-/// Follows the object's own surface alone from here on, since the camera is static and the object moves; the table,
-/// which is static too, keeps it upright.
-void TakePlacer::follow_object_only() {
-  constexpr double kAround = 0.6;
-  const RgbdFrame& first = motion_classifier_.first().frame;
-  MapSettings& map = map_.settings();
-  map.plane = PlanePrior();
-  map.plane->normal = selected_.plane.normal;
-  map.plane->offset = selected_.plane.offset;
-  map.min_inlier_fraction = 0.6;
-  map.coarsest = 1;
-  map.use_landmarks = false;
-  map.sure_corners = 12;
-  const cv::Rect& box = selected_.box_px;
-  const cv::Size more(cvRound(kAround * box.width) + 20, cvRound(kAround * box.height) + 20);
-  levels_.region_px =
-      cv::Rect(box.x - more.width, box.y - more.height, box.width + 2 * more.width, box.height + 2 * more.height) &
-      cv::Rect({0, 0}, first.depth.size());
-  map_ = KeyframeMap(map);
-  tie_to_first_keyframe();
-  state_.seen = {};
-  step_.restart(selected_.T_camera_stand);
-  Keyframe keyframe;
-  keyframe.frame = first;
-  keyframe.number = first_number_;
-  keyframe.levels = make_levels(first, levels_);
-  keyframe.landmarks = detect_landmarks(first, landmark_mask(first, step_.T_last));
-  keyframe.T_camera_world = step_.T_last;
-  add_keyframe(std::move(keyframe), {});
-}
-
-/// Ties the frames before to the first keyframe: they were tied to keyframes of the surroundings, and the map now holds
-/// the first frame alone. All of them show the object as that one does. It already moved in the last of them by an
-/// unknown distance.
-void TakePlacer::tie_to_first_keyframe() {
-  int moved = motion_classifier_.object_moves() - 1;  // the last is the present frame, which is not placed yet
-  for (auto frame = take_.frames.rbegin(); frame != take_.frames.rend(); ++frame) {
-    if (!frame->tracked) continue;
-    frame->T_camera_keyframe.setIdentity();
-    frame->tracked = moved-- <= 0;
-    frame->keyframe = frame->tracked ? 0 : -1;
-  }
 }
 
 /// Returns the mask in which corners are detected: everywhere while the camera moves, else on the object, which may
@@ -259,6 +259,19 @@ void TakePlacer::describe() {
     state_.message = describe_selection(selected_) + "; move the camera once around it, or turn it";
 }
 
+Take TakePlacer::finish() {
+  require(!map_.empty(), "{}", state_.message.empty() ? "no frame, expected some that show an object" : state_.message);
+  relocalise_lost_frames();
+  map_.refine(3);
+  take_.selected = selected_;
+  take_.motion = motion_;
+  take_.keyframes = std::move(map_.keyframes());
+  take_.seen = state_.seen;
+  take_.degrees_round = static_cast<int>(10 * std::count(covered_directions_.begin(), covered_directions_.end(), true));
+  take_.tracking_hz = seconds_ > 0.0 ? static_cast<double>(take_.frames.size()) / seconds_ : 0.0;
+  return std::move(take_);
+}
+
 /// Relocalises frames that were lost on arrival in the map of the whole take, as long as one more is found.
 void TakePlacer::relocalise_lost_frames() {
   for (bool any = true; any;) {
@@ -276,19 +289,6 @@ void TakePlacer::relocalise_lost_frames() {
     }
   }
   take_.lost = still_lost(take_);
-}
-
-Take TakePlacer::finish() {
-  require(!map_.empty(), "{}", state_.message.empty() ? "no frame, expected some that show an object" : state_.message);
-  relocalise_lost_frames();
-  map_.refine(3);
-  take_.selected = selected_;
-  take_.motion = motion_;
-  take_.keyframes = std::move(map_.keyframes());
-  take_.seen = state_.seen;
-  take_.degrees_round = static_cast<int>(10 * std::count(covered_directions_.begin(), covered_directions_.end(), true));
-  take_.tracking_hz = seconds_ > 0.0 ? static_cast<double>(take_.frames.size()) / seconds_ : 0.0;
-  return std::move(take_);
 }
 
 }  // namespace houghstream::reconstruction

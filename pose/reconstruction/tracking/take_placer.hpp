@@ -55,19 +55,20 @@ class TakePlacer {
   Take finish();
 
  private:
+  // These are the steps of process() and finish() in the order of their calls.
   void require_same_size(const RgbdFrame& frame);
   void choose(const RgbdFrame& frame);
-  std::optional<Alignment> relocalise(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
-                                      LandmarkCache& corners);
-  void relocalise_lost_frames();
-  void place_frame(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
-  void note_lost(const FrameLevels& levels);
   bool is_usable_for_model(const ImageQuality& quality);
   void follow_object_only();
   void tie_to_first_keyframe();
-  void add_keyframe(Keyframe keyframe, const Alignment& alignment);
+  std::optional<Alignment> relocalise(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
+                                      LandmarkCache& corners);
+  void place_frame(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   cv::Mat landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const;
+  void add_keyframe(Keyframe keyframe, const Alignment& alignment);
+  void note_lost(const FrameLevels& levels);
   void describe();
+  void relocalise_lost_frames();
 
   TakePlacerSettings settings_;
   TakePlacerStatus state_;
