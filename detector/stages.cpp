@@ -15,7 +15,7 @@ std::vector<double> numbers_of(const Settings& settings) {
   return numbers;
 }
 
-std::vector<ScoredHypothesis> score_in_colours(const SearchContext& search, const std::vector<GroupHypotheses>& groups,
+std::vector<ScoredHypothesis> score_all_groups(const SearchContext& search, const std::vector<GroupHypotheses>& groups,
                                                DetectorWorkspace& workspace) {
   const DetectionSettings& settings = search.settings;
   const bool is_coloured = search.forest().scoring == Scoring::kEvidence && settings.evidence.learn_camera_colours;
@@ -64,7 +64,7 @@ std::vector<ScoredHypothesis> score_hypotheses(const SearchContext& search, cons
                                                DetectorWorkspace& workspace) {
   const LabFrame in_lab{frame, workspace.images.lab, workspace.images.levels.at(0).scale};
   const ScoringInput input{search.index, in_lab, workspace.patches, search.settings.evidence, search.excluded_views};
-  return score_in_colours(search, {{input, hypotheses}}, workspace);
+  return score_all_groups(search, {{input, hypotheses}}, workspace);
 }
 
 std::vector<ScoredHypothesis> score_hypotheses(const std::vector<SearchContext>& groups, const RgbdFrame& frame,
@@ -78,7 +78,7 @@ std::vector<ScoredHypothesis> score_hypotheses(const std::vector<SearchContext>&
     inputs.push_back(
         {{search.index, in_lab, workspace.patches, first.settings.evidence, search.excluded_views}, hypotheses[i]});
   }
-  return score_in_colours(first, inputs, workspace);
+  return score_all_groups(first, inputs, workspace);
 }
 
 Detections report_detections(const SearchContext& search, const RgbdFrame& frame,

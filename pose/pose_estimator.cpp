@@ -48,7 +48,7 @@ ObjectPoses undecided_poses(const Detections& detections) {
 }
 
 /// Returns the reason why no pose is estimated, or kInvalid.
-PoseStatus reason_to_pass_over(const Detection& detection, bool has_model, const PoseSettings& settings) {
+PoseStatus initial_status(const Detection& detection, bool has_model, const PoseSettings& settings) {
   const Eigen::Vector3f& centre_camera = detection.centre_camera;
   if (!has_model) return PoseStatus::kNoModel;
   if (detection.score < settings.min_score) return PoseStatus::kLowScore;
@@ -65,60 +65,63 @@ std::vector<Estimation> begin_estimations(const Detections& detections,
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Detection& detection = detections.detections[i];
     const auto model = models.find(detection.class_name);
-    poses[i].status = reason_to_pass_over(detection, model != models.end(), settings);
+    poses[i].status = initial_status(detection, model != models.end(), settings);
     if (poses[i].status != PoseStatus::kInvalid) continue;
     begun.push_back({detection, model->second, poses[i]});
   }
   return begun;
 }
 
-void look_at_region(const FrameContext& frame, const PoseSettings& settings, Estimation& it) {
-  it.observation.emplace(observe_object(frame, it.detection, it.model, settings.region));
-  if (it.observation->region.points < settings.region.min_points) it.pose.status = PoseStatus::kTooFewPoints;
+void observe_region(const FrameContext& frame, const PoseSettings& settings, Estimation& estimation) {
+  estimation.observation.emplace(observe_object(frame, estimation.detection, estimation.model, settings.region));
+  if (estimation.observation->region.points < settings.region.min_points)
+    estimation.pose.status = PoseStatus::kTooFewPoints;
 }
 
-void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, Estimation& it) {
-  it.rotations = rotation_clusters(it.detection.rotations, settings.initial);
-  it.candidates = place_candidates(*it.observation, it.rotations, settings.search);
+void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, Estimation& estimation) {
+  estimation.rotations = rotation_clusters(estimation.detection.rotations, settings.initial);
+  estimation.candidates = place_candidates(*estimation.observation, estimation.rotations, settings.search);
   const std::vector<PoseCandidate> warm =
-      earlier_candidates(*it.observation, it.detection.class_name, earlier, settings.warm_start);
-  it.candidates.insert(it.candidates.end(), warm.begin(), warm.end());
-  if (it.candidates.empty()) it.pose.status = PoseStatus::kNoInitialPose;
+      earlier_candidates(*estimation.observation, estimation.detection.class_name, earlier, settings.warm_start);
+  estimation.candidates.insert(estimation.candidates.end(), warm.begin(), warm.end());
+  if (estimation.candidates.empty()) estimation.pose.status = PoseStatus::kNoInitialPose;
 }
 
 /// Returns the reason to give a candidate up after its first registration, or kInvalid.
-PoseStatus reason_to_give_up(const PoseSettings& settings, const ExplainedSurface& explained, const Estimation& it,
-                             const RegistrationResult& best) {
-  if (publication_probability(*it.observation, best, it.detection.score, pose_selection_settings(settings)) <
-      settings.min_publication_probability)
+PoseStatus reason_to_give_up(const PoseSettings& settings, const ExplainedSurface& explained,
+                             const Estimation& estimation, const RegistrationResult& best) {
+  if (publication_probability(*estimation.observation, best, estimation.detection.score,
+                              pose_selection_settings(settings)) < settings.min_publication_probability)
     return PoseStatus::kLowScore;
   if (!explained.is_empty() &&
-      explained.fraction_of(it.observation->frame, {it.model, best.T_camera_object},
+      explained.fraction_of(estimation.observation->frame, {estimation.model, best.T_camera_object},
                             {settings.verification.tolerance_m, settings.noise}) > settings.max_explained_surface)
     return PoseStatus::kRefuted;
   return PoseStatus::kInvalid;
 }
 
-void choose_one(const PoseSettings& settings, const ExplainedSurface& explained, Estimation& it) {
+void select_pose(const PoseSettings& settings, const ExplainedSurface& explained, Estimation& estimation) {
   const PoseSelectionSettings selection = pose_selection_settings(settings);
-  const RegistrationResult best = best_registered(*it.observation, it.registered, it.rotations, selection);
+  const RegistrationResult best =
+      best_registered(*estimation.observation, estimation.registered, estimation.rotations, selection);
   if (best.inliers == 0) {
-    it.pose.status = PoseStatus::kNotConverged;
-  } else if (!it.detection.reported) {
-    it.pose.status = reason_to_give_up(settings, explained, it, best);
+    estimation.pose.status = PoseStatus::kNotConverged;
+  } else if (!estimation.detection.reported) {
+    estimation.pose.status = reason_to_give_up(settings, explained, estimation, best);
   }
-  if (it.pose.status == PoseStatus::kInvalid)
-    it.selected = select_poses(*it.observation, best, it.rotations, selection);
-  copy_registration_evidence(it.selected.empty() ? best : it.selected.front(), it.pose);
+  if (estimation.pose.status == PoseStatus::kInvalid)
+    estimation.selected = select_poses(*estimation.observation, best, estimation.rotations, selection);
+  copy_registration_evidence(estimation.selected.empty() ? best : estimation.selected.front(), estimation.pose);
 }
 
-void gather_one(const PoseSettings& settings, Estimation& it) {
-  const QualitySettings& quality = class_quality_of(settings, it.pose.class_name);
-  for (const RegistrationResult& result : it.selected) {
-    it.evidence.push_back(
-        gather_evidence(*it.observation, result.T_camera_object, it.detection.score, settings.verification));
-    std::optional<ChromaPair> pair = chroma_pair(it.pose.class_name, it.evidence.back(), quality);
-    if (pair && (!it.pose.chroma || pair->probability > it.pose.chroma->probability)) it.pose.chroma = std::move(pair);
+void gather_all_evidence(const PoseSettings& settings, Estimation& estimation) {
+  const QualitySettings& quality = class_quality_of(settings, estimation.pose.class_name);
+  for (const RegistrationResult& result : estimation.selected) {
+    estimation.evidence.push_back(gather_evidence(*estimation.observation, result.T_camera_object,
+                                                  estimation.detection.score, settings.verification));
+    std::optional<ChromaPair> pair = chroma_pair(estimation.pose.class_name, estimation.evidence.back(), quality);
+    if (pair && (!estimation.pose.chroma || pair->probability > estimation.pose.chroma->probability))
+      estimation.pose.chroma = std::move(pair);
   }
 }
 
@@ -126,82 +129,82 @@ void gather_one(const PoseSettings& settings, Estimation& it) {
 void learn_camera_colours(const RgbdFrame& frame, const std::vector<ChromaPair>& remembered,
                           std::vector<Estimation>& estimations) {
   if (is_colourless(frame.colour)) {
-    for (Estimation& it : estimations) {
-      it.pose.camera_colours = colourless_camera();
-      it.pose.chroma.reset();
+    for (Estimation& estimation : estimations) {
+      estimation.pose.camera_colours = colourless_camera();
+      estimation.pose.chroma.reset();
     }
     return;
   }
   std::vector<ChromaPair> pairs;
-  for (const Estimation& it : estimations) {
-    if (it.pose.chroma) pairs.push_back(*it.pose.chroma);
+  for (const Estimation& estimation : estimations) {
+    if (estimation.pose.chroma) pairs.push_back(*estimation.pose.chroma);
   }
   pairs.insert(pairs.end(), remembered.begin(), remembered.end());
   const std::vector<ChromaMap> maps = fit_chroma_maps_without_each(pairs);
   auto next = maps.begin();
-  for (Estimation& it : estimations) {
-    if (!it.pose.chroma) continue;
-    if (it.pose.status == PoseStatus::kInvalid) it.pose.camera_colours = *next;
+  for (Estimation& estimation : estimations) {
+    if (!estimation.pose.chroma) continue;
+    if (estimation.pose.status == PoseStatus::kInvalid) estimation.pose.camera_colours = *next;
     ++next;
   }
 }
 
 /// Returns the pose of a result with the status that its evidence decides.
-ObjectPose judged_pose(const Estimation& it, const RegistrationResult& result, const PoseEvidence& evidence,
+ObjectPose judged_pose(const Estimation& estimation, const RegistrationResult& result, const PoseEvidence& evidence,
                        const PoseSettings& settings) {
-  ObjectPose judged = it.pose;
+  ObjectPose judged = estimation.pose;
   judged.T_camera_object.reset();
   copy_registration_evidence(result, judged);
-  decide_status(evidence, result.T_camera_object, it.detection.reported, class_quality_of(settings, it.pose.class_name),
-                judged);
+  decide_status(evidence, result.T_camera_object, estimation.detection.reported,
+                class_quality_of(settings, estimation.pose.class_name), judged);
   return judged;
 }
 
 /// Publishes the pose with the strongest evidence, or the status that names the reason against it.
-void decide_one(const PoseSettings& settings, Estimation& it) {
+void decide_best(const PoseSettings& settings, Estimation& estimation) {
   std::optional<ObjectPose> best;
-  for (std::size_t i = 0; i < it.selected.size(); ++i) {
-    bring_to_camera(it.pose.camera_colours, it.evidence[i]);
-    ObjectPose judged = judged_pose(it, it.selected[i], it.evidence[i], settings);
+  for (std::size_t i = 0; i < estimation.selected.size(); ++i) {
+    bring_to_camera(estimation.pose.camera_colours, estimation.evidence[i]);
+    ObjectPose judged = judged_pose(estimation, estimation.selected[i], estimation.evidence[i], settings);
     if (best && !(judged.quality > best->quality)) continue;
     best = std::move(judged);
-    it.published = i;
+    estimation.published = i;
   }
-  it.pose = *std::move(best);
+  estimation.pose = *std::move(best);
 }
 
 /// Selects the pose that the texture supports among those that are equivalent by shape, with its probability; also for
 /// rejected poses, whose quality is reported too.
-void resolve_symmetry(const PoseSettings& settings, Estimation& it) {
-  constexpr float kWorthTelling = 0.1F;  // a pose that is wrong by its shape stays wrong
-  if (it.pose.shape_quality < kWorthTelling) return;
-  const DepthTolerance tolerance{settings.verification.tolerance_m, it.observation->noise};
-  const TextureSettings& learnt = class_quality_of(settings, it.pose.class_name).texture;
-  const RegistrationResult& published = it.selected[it.published];
+void resolve_symmetry(const PoseSettings& settings, Estimation& estimation) {
+  constexpr float kMinShapeQuality = 0.1F;  // a pose that is wrong by its shape stays wrong
+  if (estimation.pose.shape_quality < kMinShapeQuality) return;
+  const DepthTolerance tolerance{settings.verification.tolerance_m, estimation.observation->noise};
+  const TextureSettings& learnt = class_quality_of(settings, estimation.pose.class_name).texture;
+  const RegistrationResult& published = estimation.selected[estimation.published];
   const std::optional<TextureComparison> texture =
-      compare_with_alternatives(*it.observation, published.T_camera_object, tolerance, settings.registration);
+      compare_with_alternatives(*estimation.observation, published.T_camera_object, tolerance, settings.registration);
   if (!texture) return;
   const auto judge = [&](RegistrationResult result, const std::optional<TextureComparison>& compared) {
     if (compared && compared->aligned) result.T_camera_object = *compared->aligned;
-    PoseEvidence evidence =
-        gather_evidence(*it.observation, result.T_camera_object, it.detection.score, settings.verification);
-    bring_to_camera(it.pose.camera_colours, evidence);
+    PoseEvidence evidence = gather_evidence(*estimation.observation, result.T_camera_object, estimation.detection.score,
+                                            settings.verification);
+    bring_to_camera(estimation.pose.camera_colours, evidence);
     evidence.texture_probability = compared ? texture_probability(compared->margin, learnt) : 1.0F;
-    return judged_pose(it, result, evidence, settings);
+    return judged_pose(estimation, result, evidence, settings);
   };
-  PoseEvidence& published_evidence = it.evidence[it.published];
+  PoseEvidence& published_evidence = estimation.evidence[estimation.published];
   published_evidence.texture_probability = texture_probability(texture->margin, learnt);
   ObjectPose judged =
-      texture->aligned ? judge(published, texture) : judged_pose(it, published, published_evidence, settings);
+      texture->aligned ? judge(published, texture) : judged_pose(estimation, published, published_evidence, settings);
   if (texture->better) {
     const RegistrationResult other =
-        refine_pose(*it.observation, *texture->better, it.rotations, pose_selection_settings(settings));
+        refine_pose(*estimation.observation, *texture->better, estimation.rotations, pose_selection_settings(settings));
     const std::optional<TextureComparison> there =
-        compare_with_alternatives(*it.observation, other.T_camera_object, tolerance, settings.registration);
+        compare_with_alternatives(*estimation.observation, other.T_camera_object, tolerance, settings.registration);
     ObjectPose rotated = judge(other, there);
     if (other.inliers > 0 && rotated.quality > judged.quality) judged = std::move(rotated);
   }
-  it.pose = std::move(judged);
+  estimation.pose = std::move(judged);
 }
 
 /// Adds the models that have a pose.
@@ -214,8 +217,8 @@ void explain_by(const std::vector<ObjectPose>& poses, const std::map<std::string
 }
 
 /// Returns whether the centres of two objects are closer than `ratio` times the smaller radius. False without a model.
-bool are_closer(const std::map<std::string, ObjectModel>& models, const PlacedObject& a, const PlacedObject& b,
-                double ratio) {
+bool are_centres_closer(const std::map<std::string, ObjectModel>& models, const PlacedObject& a, const PlacedObject& b,
+                        double ratio) {
   const auto model_a = models.find(a.class_name);
   const auto model_b = models.find(b.class_name);
   if (model_a == models.end() || model_b == models.end()) return false;
@@ -257,19 +260,19 @@ struct PoseEstimator::State {
 PoseEstimator::PoseEstimator(std::map<std::string, Mesh> models, PoseSettings settings, int threads)
     : state_(std::make_unique<State>()) {
   check_settings(settings, "pose settings");
-  struct Making {
+  struct ModelJob {
     const std::string& name;
     Mesh* mesh;
     ObjectModel& model;
   };
-  std::vector<Making> makings;
-  makings.reserve(models.size());
-  for (auto& named : models) makings.push_back({named.first, &named.second, state_->models[named.first]});
+  std::vector<ModelJob> jobs;
+  jobs.reserve(models.size());
+  for (auto& named : models) jobs.push_back({named.first, &named.second, state_->models[named.first]});
   // Models made one after another would leave threads idle at the end of each; a single one is made by all of them.
-  const int threads_of_each = std::max(1, threads / std::max(1, static_cast<int>(makings.size())));
-  parallel_for(threads, static_cast<int>(makings.size()), [&](int i) {
-    Making& it = makings[static_cast<std::size_t>(i)];
-    it.model = make_object_model(it.name, std::move(*it.mesh), settings.model, threads_of_each);
+  const int threads_of_each = std::max(1, threads / std::max(1, static_cast<int>(jobs.size())));
+  parallel_for(threads, static_cast<int>(jobs.size()), [&](int i) {
+    ModelJob& estimation = jobs[static_cast<std::size_t>(i)];
+    estimation.model = make_object_model(estimation.name, std::move(*estimation.mesh), settings.model, threads_of_each);
   });
   state_->settings = std::move(settings);
 }
@@ -316,25 +319,26 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
       });
     };
     const auto for_each_undecided = [&](const auto& stage) {
-      for_each([&](Estimation& it) {
-        if (it.pose.status == PoseStatus::kInvalid) stage(it);
+      for_each([&](Estimation& estimation) {
+        if (estimation.pose.status == PoseStatus::kInvalid) stage(estimation);
       });
     };
-    for_each_undecided([&](Estimation& it) { look_at_region(context, settings, it); });
+    for_each_undecided([&](Estimation& estimation) { observe_region(context, settings, estimation); });
     clock.mark("pose.region");
-    for_each_undecided([&](Estimation& it) { find_candidates(earlier, settings, it); });
+    for_each_undecided([&](Estimation& estimation) { find_candidates(earlier, settings, estimation); });
     clock.mark("pose.candidates");
-    for_each_undecided([&](Estimation& it) {
-      it.registered = register_candidates(*it.observation, it.candidates, settings.registration);
+    for_each_undecided([&](Estimation& estimation) {
+      estimation.registered =
+          register_candidates(*estimation.observation, estimation.candidates, settings.registration);
     });
     clock.mark("pose.registration");
-    for_each_undecided([&](Estimation& it) { choose_one(settings, explained, it); });
+    for_each_undecided([&](Estimation& estimation) { select_pose(settings, explained, estimation); });
     clock.mark("pose.choice");
-    for_each_undecided([&](Estimation& it) { gather_one(settings, it); });
+    for_each_undecided([&](Estimation& estimation) { gather_all_evidence(settings, estimation); });
     if (settings.learn_camera_colours) learn_camera_colours(frame, remembered, estimations);
-    for_each_undecided([&](Estimation& it) { decide_one(settings, it); });
+    for_each_undecided([&](Estimation& estimation) { decide_best(settings, estimation); });
     clock.mark("pose.verification");
-    for_each([&](Estimation& it) { resolve_symmetry(settings, it); });
+    for_each([&](Estimation& estimation) { resolve_symmetry(settings, estimation); });
     if (are_reported) explain_by(result.poses, state_->models, explained);
     clock.mark("pose.print");
   }
@@ -352,7 +356,7 @@ Eigen::Vector3d PoseEstimator::vote_centre(const PlacedObject& object) const {
 }
 
 bool PoseEstimator::is_duplicate(const PlacedObject& a, const PlacedObject& b) const {
-  return are_closer(state_->models, a, b, state_->settings.duplicate_distance_ratio);
+  return are_centres_closer(state_->models, a, b, state_->settings.duplicate_distance_ratio);
 }
 
 bool PoseEstimator::is_same_object(const RgbdFrame& frame, const PlacedObject& a, const PlacedObject& b) const {
@@ -366,7 +370,7 @@ bool PoseEstimator::is_same_object(const RgbdFrame& frame, const PlacedObject& a
 }
 
 bool PoseEstimator::is_duplicate(const PlacedObject& a, const PlacedObject& b, double max_distance_ratio) const {
-  return are_closer(state_->models, a, b, max_distance_ratio);
+  return are_centres_closer(state_->models, a, b, max_distance_ratio);
 }
 
 void withhold_duplicate(const ObjectPose& other, ObjectPose& pose) {

@@ -71,7 +71,7 @@ std::vector<ChromaSample> find_likeliest(const std::vector<GroupHypotheses>& gro
 
 /// Divides certainty among the samples of one place: only one object stands there, of whichever class, or none, so
 /// that the odds of all of them share it.
-void share_places(std::vector<ChromaSample>& samples) {
+void normalise_overlapping(std::vector<ChromaSample>& samples) {
   std::vector<float> odds;
   odds.reserve(samples.size());
   for (const ChromaSample& sample : samples) odds.push_back(sample.probability / (1.0F - sample.probability));
@@ -112,13 +112,13 @@ GroupCameras learn_cameras(const std::vector<GroupHypotheses>& groups, const std
 std::vector<ChromaPair> all_pairs(const std::vector<GroupHypotheses>& groups, std::vector<ChromaPair> pairs,
                                   const GroupCandidates& candidates) {
   std::vector<ChromaSample> samples = find_likeliest(groups, candidates);
-  share_places(samples);
+  normalise_overlapping(samples);
   std::transform(samples.begin(), samples.end(), std::back_inserter(pairs), to_pair);
   return pairs;
 }
 
 /// Returns whether views must be searched again in these colours, since more than the best of them may differ.
-bool are_far(const std::vector<ChromaMap>& cameras, const std::vector<ChromaMap>& before) {
+bool differ_strongly(const std::vector<ChromaMap>& cameras, const std::vector<ChromaMap>& before) {
   constexpr double kFar = 12.0;  // CIE a*b*, of a colour of medium strength; chosen: about what light changes by itself
   constexpr double kLightness = 60.0;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -132,16 +132,16 @@ bool are_far(const std::vector<ChromaMap>& cameras, const std::vector<ChromaMap>
 
 /// Brings the groups' frames into the colours of their cameras. Returns whether views must be searched again, where a
 /// camera is far from them.
-bool bring_into_cameras(GroupCameras cameras, std::vector<LabFrame>& frames) {
+bool apply_camera_maps(GroupCameras cameras, std::vector<LabFrame>& frames) {
   bool is_far = false;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    is_far = are_far(cameras[i], frames[i].cameras) || is_far;
+    is_far = differ_strongly(cameras[i], frames[i].cameras) || is_far;
     frames[i].cameras = std::move(cameras[i]);
   }
   return is_far;
 }
 
-std::vector<ScoredHypothesis> joined(GroupCandidates by_group) {
+std::vector<ScoredHypothesis> concatenate(GroupCandidates by_group) {
   std::vector<ScoredHypothesis> all = std::move(by_group.front());
   for (std::size_t i = 1; i < by_group.size(); ++i)
     std::move(by_group[i].begin(), by_group[i].end(), std::back_inserter(all));
@@ -171,7 +171,7 @@ void rescore(const ScoringInput& input, int threads, std::vector<ScoredHypothesi
 
 std::vector<ScoredHypothesis> score_groups(const std::vector<GroupHypotheses>& groups, int threads,
                                            ScoringWorkspace& workspace) {
-  return joined(score_by_group(groups, threads, workspace));
+  return concatenate(score_by_group(groups, threads, workspace));
 }
 
 std::vector<ScoredHypothesis> score_in_camera_colours(const std::vector<GroupHypotheses>& groups,
@@ -189,12 +189,12 @@ std::vector<ScoredHypothesis> score_in_camera_colours(const std::vector<GroupHyp
   for (std::size_t i = 0; i < groups.size() && is_grey; ++i)
     frames[i].cameras.assign(groups[i].input.index.forest().classes.size(), colourless_camera());
   if (is_grey) return score_groups(in_camera, threads, workspace);
-  if (!colours.empty()) bring_into_cameras(learn_cameras(groups, colours), frames);
+  if (!colours.empty()) apply_camera_maps(learn_cameras(groups, colours), frames);
   GroupCandidates candidates = score_by_group(in_camera, threads, workspace);
-  if (bring_into_cameras(learn_cameras(groups, all_pairs(groups, colours, candidates)), frames))
+  if (apply_camera_maps(learn_cameras(groups, all_pairs(groups, colours, candidates)), frames))
     return score_groups(in_camera, threads, workspace);
   for (std::size_t i = 0; i < groups.size(); ++i) rescore(in_camera[i].input, threads, candidates[i]);
-  return joined(std::move(candidates));
+  return concatenate(std::move(candidates));
 }
 
 }  // namespace houghstream

@@ -15,15 +15,15 @@ struct EvidenceSettings {
   /// Minimum score of a candidate (a detection for a pose to confirm, Detection::reported); 1: no candidates.
   float candidates_from = 1.0F;
   int max_candidates = 16;  ///< the strongest; a frame full of weak maxima must not hold up the poses of the others
-  /// Hypotheses of a frame that are compared with view templates: those whose votes promise most (vote_promise()). Up
+  /// Hypotheses of a frame that are compared with view templates: those whose votes promise most (vote_logit()). Up
   /// to 13 objects never have more. Chosen on 88 images of furnished rooms: of 21 objects' hypotheses the first 80
   /// held 257 of 260 objects, the first 160 all.
   int max_compared = 160;
   /// Of the compared hypotheses those with many votes that are compared with views of all attitudes too
-  /// (ForestIndex::spread_views), beside the likely ones: those whose votes promise most. Of 454 objects that were
+  /// (ForestIndex::sampled_views), beside the likely ones: those whose votes promise most. Of 454 objects that were
   /// found in furnished rooms and on YCB-V, with 21 to 60 taught, the first 48 of a frame held all but a few that were
   /// likely already.
-  int max_spread = 48;
+  int max_sampled = 48;
   int max_refined = 64;  ///< maximum number of compared hypotheses whose templates are refined, highest scores first
   /// Score from which a hypothesis explains the surface that it shows: others on it are dropped (UnoccludedCells).
   /// Above 1 none does.
@@ -47,7 +47,7 @@ void fields(const EvidenceSettings& /*settings*/, const Visit& visit) {
   visit(number("candidates_from", &S::candidates_from, 0, 1));
   visit(number("max_candidates", &S::max_candidates, 0, 1000000));
   visit(number("max_compared", &S::max_compared, 1, 1000000));
-  visit(number("max_spread", &S::max_spread, 0, 1000000));
+  visit(number("max_sampled", &S::max_sampled, 0, 1000000));
   visit(number("max_refined", &S::max_refined, 0, 1000000));
   visit(number("explains_from", &S::explains_from, 0, 2));
   visit(number("max_rotations", &S::max_rotations, 0, 1000000));

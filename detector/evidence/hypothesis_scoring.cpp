@@ -34,10 +34,10 @@ struct SeedTemplates {
 struct ScoringTask {
   const ScoringInput* input = nullptr;
   const Hypothesis* hypothesis = nullptr;
-  float spread = 1.0F;  ///< attitude_spread() of its class
+  float attitude_factor = 1.0F;  ///< attitude_factor() of its class
   std::size_t group = 0;
   ScoredHypothesis scored;
-  std::optional<PlacedTemplate> spread_best;  ///< see compare_spread_views()
+  std::optional<PlacedTemplate> sampled_best;  ///< see compare_sampled_views()
 };
 
 /// Some of the tasks, in ascending order.
@@ -49,17 +49,17 @@ class HypothesisScorer {
   HypothesisScorer(ScoringTask& task, std::vector<PlacedTemplate>& compared, ScoringWorkspace::Worker& workspace)
       : input_(*task.input),
         hypothesis_(*task.hypothesis),
-        spread_(task.spread),
+        attitude_factor_(task.attitude_factor),
         forest_(input_.index.forest()),
         object_(forest_.classes[hypothesis_.class_index]),
         views_(forest_.views),
         scored_(task.scored),
-        spread_best_(task.spread_best),
+        sampled_best_(task.sampled_best),
         compared_(compared),
         workspace_(workspace) {}
 
   void compare();
-  void compare_spread_views();
+  void compare_sampled_views();
   void refine();
   /// Adds the box, and the rotations of a candidate.
   void complete();
@@ -81,12 +81,12 @@ class HypothesisScorer {
 
   const ScoringInput& input_;
   const Hypothesis& hypothesis_;
-  const float spread_;
+  const float attitude_factor_;
   const Forest& forest_;
   const ObjectClass& object_;
   const std::vector<ViewTemplate>& views_;
   ScoredHypothesis& scored_;
-  std::optional<PlacedTemplate>& spread_best_;
+  std::optional<PlacedTemplate>& sampled_best_;
   std::vector<PlacedTemplate>& compared_;
   ScoringWorkspace::Worker& workspace_;
 };
@@ -97,7 +97,7 @@ Evidence evidence_of_votes(const Forest& forest, const Hypothesis& hypothesis, c
 void keep_most_promising(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks);
 TaskIndices all_of(const std::vector<ScoringTask>& tasks);
 TaskIndices find_likely(const std::vector<ScoringTask>& tasks);
-TaskIndices choose_spread(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum);
+TaskIndices choose_sampled(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum);
 TaskIndices choose_refined(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum);
 TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIndices& likely, float explains_from);
 bool may_touch(const ScoringTask& a, const ScoringTask& b);
@@ -117,8 +117,8 @@ GroupCandidates score_by_group(const std::vector<GroupHypotheses>& groups, int t
       (scorer.*step)();
     });
   };
-  const auto search = [&](const TaskIndices& some, int max_spread, int max_refined) {
-    for_each(choose_spread(tasks, some, max_spread), &HypothesisScorer::compare_spread_views);
+  const auto search = [&](const TaskIndices& some, int max_sampled, int max_refined) {
+    for_each(choose_sampled(tasks, some, max_sampled), &HypothesisScorer::compare_sampled_views);
     for_each(choose_refined(tasks, some, max_refined), &HypothesisScorer::refine);
     for_each(some, &HypothesisScorer::complete);
   };
@@ -127,7 +127,7 @@ GroupCandidates score_by_group(const std::vector<GroupHypotheses>& groups, int t
   const auto likely_count = static_cast<int>(likely.size());
   search(likely, likely_count, settings.max_refined);
   const TaskIndices others = find_unexplained(tasks, likely, settings.explains_from);
-  search(others, settings.max_spread, std::max(0, settings.max_refined - likely_count));
+  search(others, settings.max_sampled, std::max(0, settings.max_refined - likely_count));
   TaskIndices searched;
   std::merge(likely.begin(), likely.end(), others.begin(), others.end(), std::back_inserter(searched));
   GroupCandidates candidates(groups.size());
@@ -135,7 +135,7 @@ GroupCandidates score_by_group(const std::vector<GroupHypotheses>& groups, int t
   return candidates;
 }
 
-float attitude_spread(const Forest& forest, std::uint32_t class_index) {
+float attitude_factor(const Forest& forest, std::uint32_t class_index) {
   constexpr float kOneAttitude = 150.0F;  // views of a turntable
   const auto views = std::count_if(forest.views.begin(), forest.views.end(),
                                    [&](const ViewTemplate& view) { return view.class_index == class_index; });
@@ -153,14 +153,14 @@ std::vector<ScoringTask> list_tasks(const std::vector<GroupHypotheses>& groups) 
   for (std::size_t group = 0; group < groups.size(); ++group) {
     const auto& [input, hypotheses] = groups[group];
     const Forest& forest = input.index.forest();
-    std::vector<float> spreads(forest.classes.size(), 0.0F);
+    std::vector<float> factors(forest.classes.size(), 0.0F);
     for (const Hypothesis& hypothesis : hypotheses) {
-      float& spread = spreads[hypothesis.class_index];
-      if (spread == 0.0F) spread = attitude_spread(forest, static_cast<std::uint32_t>(hypothesis.class_index));
+      float& factor = factors[hypothesis.class_index];
+      if (factor == 0.0F) factor = attitude_factor(forest, static_cast<std::uint32_t>(hypothesis.class_index));
       ScoringTask& task = tasks.emplace_back();
       task.input = &input;
       task.hypothesis = &hypothesis;
-      task.spread = spread;
+      task.attitude_factor = factor;
       task.group = group;
       task.scored.evidence = evidence_of_votes(forest, hypothesis, input.frame.frame.camera);
     }
@@ -197,7 +197,7 @@ void keep_most_promising(const EvidenceSettings& settings, std::vector<ScoringTa
   if (tasks.size() <= static_cast<std::size_t>(settings.max_compared)) return;
   std::vector<double> promises;
   promises.reserve(tasks.size());
-  for (const ScoringTask& task : tasks) promises.push_back(vote_promise(task.scored.evidence));
+  for (const ScoringTask& task : tasks) promises.push_back(vote_logit(task.scored.evidence));
   std::vector<ScoringTask> kept;
   for (const std::size_t i : largest(all_of(tasks), promises, settings.max_compared))
     kept.push_back(std::move(tasks[i]));
@@ -223,16 +223,17 @@ TaskIndices find_likely(const std::vector<ScoringTask>& tasks) {
 
 /// Chooses those of some that are compared with views of all attitudes: of classes with many views, with many votes,
 /// and of these the `maximum` whose votes promise most.
-TaskIndices choose_spread(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum) {
+TaskIndices choose_sampled(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum) {
   constexpr float kManyVotes = 0.3F;  // of the nominal vote mass: a third of the object, seen as well as in training
   TaskIndices worthy;
   std::vector<double> promises;
   for (const std::size_t i : some) {
     const ScoringTask& task = tasks[i];
     const bool has_templates = task.input->index.forest().scoring == Scoring::kEvidence;
-    if (!has_templates || task.spread == 1.0F || task.scored.evidence.relative_vote_mass < kManyVotes) continue;
+    if (!has_templates || task.attitude_factor == 1.0F || task.scored.evidence.relative_vote_mass < kManyVotes)
+      continue;
     worthy.push_back(i);
-    promises.push_back(vote_promise(task.scored.evidence));
+    promises.push_back(vote_logit(task.scored.evidence));
   }
   return largest(worthy, promises, maximum);
 }
@@ -319,20 +320,20 @@ void HypothesisScorer::compare_templates(std::size_t count) {
   }
 }
 
-/// Compares templates sampled from all attitudes (ForestIndex::spread_views), coarse ones first and then those around
+/// Compares templates sampled from all attitudes (ForestIndex::sampled_views), coarse ones first and then those around
 /// the best of these, and aligns the best: comparing all of them found no more in 88 development images. In real images
 /// votes support other views than in rendered ones: those of a plain or symmetric object are often not of its attitude.
-void HypothesisScorer::compare_spread_views() {
+void HypothesisScorer::compare_sampled_views() {
   constexpr std::size_t kBestCoarse = 8;  // coarse views whose surroundings are compared too
-  const SpreadViews& spread = input_.index.spread_views(hypothesis_.class_index);
-  const std::size_t coarse = std::min(spread.views.size(), SpreadViews::kCoarse);
-  std::vector<PlacedTemplate>& compared = workspace_.spread;
+  const SampledViews& sampled = input_.index.sampled_views(hypothesis_.class_index);
+  const std::size_t coarse = std::min(sampled.views.size(), SampledViews::kCoarse);
+  std::vector<PlacedTemplate>& compared = workspace_.sampled;
   compared.clear();
   const auto compare_view = [&](std::uint32_t view) {
     const Eigen::Vector3f& centre = hypothesis_.centre_camera;
     if (!is_excluded(view)) compared.push_back({view, centre, match_template(views_[view], centre, input_.frame)});
   };
-  std::for_each_n(spread.views.begin(), coarse, compare_view);
+  std::for_each_n(sampled.views.begin(), coarse, compare_view);
   if (compared.empty()) return;
   std::stable_sort(compared.begin(), compared.end(), matches_better);
   const std::size_t best = std::min(kBestCoarse, compared.size());
@@ -340,10 +341,10 @@ void HypothesisScorer::compare_spread_views() {
     return std::any_of(compared.begin(), compared.begin() + static_cast<std::ptrdiff_t>(best),
                        [&](const PlacedTemplate& placed) { return placed.view == view; });
   };
-  for (std::size_t i = coarse; i < spread.views.size(); ++i) {
-    if (is_among_best(spread.views[spread.nearest[i]])) compare_view(spread.views[i]);
+  for (std::size_t i = coarse; i < sampled.views.size(); ++i) {
+    if (is_among_best(sampled.views[sampled.nearest[i]])) compare_view(sampled.views[i]);
   }
-  spread_best_ = align_best_templates(views_, input_.frame, compared);
+  sampled_best_ = align_best_templates(views_, input_.frame, compared);
   set_match(*best_compared(), scored_.evidence);
   scored_.detection.score = score(object_.score_model, scored_.evidence);
 }
@@ -351,7 +352,7 @@ void HypothesisScorer::compare_spread_views() {
 /// Returns the best of what was compared, nothing where nothing was.
 const PlacedTemplate* HypothesisScorer::best_compared() const {
   const PlacedTemplate* best = compared_.empty() ? nullptr : &best_match(compared_);
-  if (spread_best_ && (best == nullptr || matches_better(*spread_best_, *best))) return &*spread_best_;
+  if (sampled_best_ && (best == nullptr || matches_better(*sampled_best_, *best))) return &*sampled_best_;
   return best;
 }
 
@@ -368,11 +369,11 @@ void HypothesisScorer::set_match(const PlacedTemplate& placed, Evidence& evidenc
 /// side easily matches a part of the object, and only what lies beyond its outline tells them apart.
 void HypothesisScorer::refine() {
   constexpr ScoreModel kCommon;
-  compare_templates(static_cast<std::size_t>(kTemplates * spread_));
+  compare_templates(static_cast<std::size_t>(kTemplates * attitude_factor_));
   const Evidence unrefined = scored_.evidence;
   workspace_.best_visited.clear();
   double max_log_odds = -std::numeric_limits<double>::infinity();
-  for (const PlacedTemplate& seed : find_seeds(static_cast<std::size_t>(spread_))) {
+  for (const PlacedTemplate& seed : find_seeds(static_cast<std::size_t>(attitude_factor_))) {
     const PlacedTemplate best = refine_over_neighbours(seed);
     Evidence refined = unrefined;
     set_match(best, refined);
@@ -389,7 +390,7 @@ void HypothesisScorer::refine() {
 }
 
 /// Returns the template that matches best, and up to `count` in all of those that match next best in attitudes unlike
-/// these, at most kMaxAttitudes; then the best of the spread views. Sorts `compared_` by how they match.
+/// these, at most kMaxAttitudes; then the best of the sampled views. Sorts `compared_` by how they match.
 SeedTemplates HypothesisScorer::find_seeds(std::size_t count) {
   constexpr float kUnlike_rad = 0.6F;
   const auto rotation = [&](const PlacedTemplate& placed) {
@@ -404,7 +405,7 @@ SeedTemplates HypothesisScorer::find_seeds(std::size_t count) {
     };
     if (std::none_of(seeds.begin(), seeds.end(), is_like)) seeds.templates[seeds.count++] = next;
   }
-  if (spread_best_) seeds.templates[seeds.count++] = *spread_best_;
+  if (sampled_best_) seeds.templates[seeds.count++] = *sampled_best_;
   return seeds;
 }
 
@@ -455,7 +456,7 @@ cv::Rect2f HypothesisScorer::visible_box_between(const cv::Rect2f& voted, const 
 /// that was taught in many attitudes the views lie far apart, and how their templates match the frame says more.
 const WeightedViews& HypothesisScorer::weight_views() {
   constexpr float kSharpness = 4.0F;
-  if (spread_ == 1.0F || compared_.empty()) return hypothesis_.views;
+  if (attitude_factor_ == 1.0F || compared_.empty()) return hypothesis_.views;
   WeightedViews& weighted = workspace_.weighted_views;
   weighted.clear();
   for (const PlacedTemplate& placed : compared_) {

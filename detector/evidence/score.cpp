@@ -77,7 +77,7 @@ float score_as_taught(const ScoreModel& model, const Evidence& evidence) {
   return score(model, as_taught);
 }
 
-double vote_promise(const Evidence& evidence) {
+double vote_logit(const Evidence& evidence) {
   const ScoreTerms terms = score_terms(evidence);
   return 2.8 * terms.log_vote_mass + 0.7 * terms.log_certainty + 1.4 * terms.extent;
 }

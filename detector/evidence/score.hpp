@@ -46,7 +46,7 @@ inline float vote_score(float relative_vote_mass) {
 /// Returns the log odds that a hypothesis is an object by its votes alone, up to a constant: what its evidence may be
 /// worth before anything is compared. Logistic regression on 9801 hypotheses of 21 objects in 48 images of furnished
 /// rooms, 193 of them objects.
-double vote_promise(const Evidence& evidence);
+double vote_logit(const Evidence& evidence);
 
 /// A hypothesis with its label.
 struct ScoreExample {

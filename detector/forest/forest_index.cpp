@@ -9,16 +9,16 @@ namespace houghstream {
 namespace {
 
 std::vector<LeafSummary> build_leaf_summaries(const Forest& forest) {
-  std::vector<LeafSummary> heads(forest.leaves.size());
+  std::vector<LeafSummary> summaries(forest.leaves.size());
   for (std::size_t leaf = 0; leaf + 1 < forest.leaves.size(); ++leaf) {
-    LeafSummary& head = heads[leaf];
-    head.first_class = forest.leaves[leaf];
+    LeafSummary& summary = summaries[leaf];
+    summary.first_class = forest.leaves[leaf];
     for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
-      head.max_posterior = std::max(head.max_posterior, forest.leaf_classes[e].probability);
+      summary.max_posterior = std::max(summary.max_posterior, forest.leaf_classes[e].probability);
     }
   }
-  if (!heads.empty()) heads.back().first_class = forest.leaves.back();
-  return heads;
+  if (!summaries.empty()) summaries.back().first_class = forest.leaves.back();
+  return summaries;
 }
 
 /// The rotations of a class' views, side by side: in the forest they lie among templates, a cache miss each.
@@ -62,11 +62,11 @@ std::vector<ViewNeighbours> find_view_neighbours(const std::vector<ClassViews>& 
 }
 
 /// Chooses of a class's views the next one as far as can be from those chosen before it.
-SpreadViews choose_spread_views(const ClassViews& its) {
+SampledViews sample_views(const ClassViews& its) {
   std::vector<std::size_t> chosen;                                // places in the class' list
   std::vector<float> nearness_to_chosen(its.views.size(), 0.0F);  // of the nearest one
   std::size_t next = 0;
-  while (chosen.size() < std::min(its.views.size(), SpreadViews::kCount)) {
+  while (chosen.size() < std::min(its.views.size(), SampledViews::kCount)) {
     chosen.push_back(next);
     nearness_to_chosen[next] = std::numeric_limits<float>::infinity();
     for (std::size_t i = 0; i < its.views.size(); ++i)
@@ -74,15 +74,15 @@ SpreadViews choose_spread_views(const ClassViews& its) {
     const auto farthest = std::min_element(nearness_to_chosen.begin(), nearness_to_chosen.end());
     next = static_cast<std::size_t>(farthest - nearness_to_chosen.begin());
   }
-  SpreadViews spread;
-  const auto coarse_end = chosen.begin() + static_cast<std::ptrdiff_t>(std::min(chosen.size(), SpreadViews::kCoarse));
+  SampledViews sampled;
+  const auto coarse_end = chosen.begin() + static_cast<std::ptrdiff_t>(std::min(chosen.size(), SampledViews::kCoarse));
   for (const std::size_t view : chosen) {
     const auto is_farther = [&](std::size_t a, std::size_t b) { return its.nearness(view, a) < its.nearness(view, b); };
     const auto nearest = std::max_element(chosen.begin(), coarse_end, is_farther);
-    spread.views.push_back(its.views[view]);
-    spread.nearest.push_back(static_cast<std::uint32_t>(nearest - chosen.begin()));
+    sampled.views.push_back(its.views[view]);
+    sampled.nearest.push_back(static_cast<std::uint32_t>(nearest - chosen.begin()));
   }
-  return spread;
+  return sampled;
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ ForestIndex::ForestIndex(const Forest& forest)
     : forest_(&forest), leaf_summaries_(build_leaf_summaries(forest)), packed_(pack_trees(forest)) {
   const std::vector<ClassViews> by_class = views_by_class(forest);
   view_neighbours_ = find_view_neighbours(by_class, forest.views.size());
-  for (const ClassViews& its : by_class) spread_views_.push_back(choose_spread_views(its));
+  for (const ClassViews& its : by_class) sampled_views_.push_back(sample_views(its));
 }
 
 }  // namespace houghstream

@@ -20,7 +20,7 @@ using ViewNeighbours = std::array<std::uint32_t, 6>;
 
 /// Views of a class that stand for all attitudes in which it was taught, as far apart as they can be chosen one after
 /// another (farthest-point sampling, Gonzalez 1985).
-struct SpreadViews {
+struct SampledViews {
   static constexpr std::size_t kCount = 200;  ///< maximum
   static constexpr std::size_t kCoarse = 48;  ///< number of the first that stand for the others
 
@@ -39,14 +39,14 @@ class ForestIndex {
   const std::vector<LeafSummary>& leaf_summaries() const { return leaf_summaries_; }  ///< number of leaves + 1
   const PackedTrees& packed() const { return packed_; }
   const std::vector<ViewNeighbours>& view_neighbours() const { return view_neighbours_; }  ///< per view
-  const SpreadViews& spread_views(std::size_t class_index) const { return spread_views_[class_index]; }
+  const SampledViews& sampled_views(std::size_t class_index) const { return sampled_views_[class_index]; }
 
  private:
   const Forest* forest_;
   std::vector<LeafSummary> leaf_summaries_;
   PackedTrees packed_;
   std::vector<ViewNeighbours> view_neighbours_;
-  std::vector<SpreadViews> spread_views_;  // per class
+  std::vector<SampledViews> sampled_views_;  // per class
 };
 
 }  // namespace houghstream

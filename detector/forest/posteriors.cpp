@@ -10,24 +10,24 @@ namespace {
 /// Sums over the trees of what the leaves of a run's patches are most certain of: for no class is a patch's sum larger,
 /// not even by rounding, as long as it is summed in the same order.
 void sum_certainties(const ForestIndex& index, const RunLeaves& seen, std::vector<float>& sums) {
-  const std::vector<LeafSummary>& heads = index.leaf_summaries();
+  const std::vector<LeafSummary>& summaries = index.leaf_summaries();
   sums.assign(seen.count, 0.0F);
   const std::int32_t* leaves = seen.leaves;
   for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree, leaves += seen.count) {
-    for (std::size_t i = 0; i < seen.count; ++i) sums[i] += heads[leaves[i]].max_posterior;
+    for (std::size_t i = 0; i < seen.count; ++i) sums[i] += summaries[leaves[i]].max_posterior;
   }
 }
 
 /// Range of the class entries of a leaf; a leaf has few classes even in a large forest.
-struct Known {
+struct LeafClassRange {
   const LeafClass* begin;
   const LeafClass* end;
 };
 
-Known known_to(const ForestIndex& index, std::int32_t leaf) {
-  const LeafSummary* head = &index.leaf_summaries()[static_cast<std::size_t>(leaf)];
+LeafClassRange classes_of_leaf(const ForestIndex& index, std::int32_t leaf) {
+  const LeafSummary* summary = &index.leaf_summaries()[static_cast<std::size_t>(leaf)];
   const LeafClass* classes = index.forest().leaf_classes.data();
-  return {classes + head[0].first_class, classes + head[1].first_class};
+  return {classes + summary[0].first_class, classes + summary[1].first_class};
 }
 
 /// Sums over the trees of p(class | leaf) for some of the patches of a run: element [i * classes + class].
@@ -40,8 +40,8 @@ void sum_by_class(const ForestIndex& index, const std::vector<std::uint32_t>& so
   for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree, leaves += seen.count) {  // stays in the cache
     float* sums_of_patch = sums.data();
     for (std::size_t i = 0; i < some.size(); ++i, sums_of_patch += classes) {
-      if (i + kAhead < some.size()) hwy::Prefetch(known_to(index, leaves[some[i + kAhead]]).begin);
-      const Known known = known_to(index, leaves[some[i]]);
+      if (i + kAhead < some.size()) hwy::Prefetch(classes_of_leaf(index, leaves[some[i + kAhead]]).begin);
+      const LeafClassRange known = classes_of_leaf(index, leaves[some[i]]);
       for (const LeafClass* of = known.begin; of != known.end; ++of) sums_of_patch[of->class_index] += of->probability;
     }
   }
@@ -52,7 +52,7 @@ void sum_by_class(const ForestIndex& index, const std::vector<std::uint32_t>& so
 void append_entries(const ForestIndex& index, std::size_t class_index, std::size_t i, const RunLeaves& seen,
                     std::vector<std::uint32_t>& entries) {
   for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree) {
-    const Known known = known_to(index, seen.leaves[tree * seen.count + i]);
+    const LeafClassRange known = classes_of_leaf(index, seen.leaves[tree * seen.count + i]);
     const auto is_it = [&](const LeafClass& of) { return of.class_index == class_index; };
     const LeafClass* found = std::find_if(known.begin, known.end, is_it);
     if (found != known.end) entries.push_back(static_cast<std::uint32_t>(found - index.forest().leaf_classes.data()));

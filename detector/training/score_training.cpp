@@ -139,7 +139,7 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
   detection.evidence.learn_camera_colours = false;
   // Of what a frame has no time for, scores learn too.
   detection.evidence.max_compared = std::numeric_limits<int>::max();
-  detection.evidence.max_spread = std::numeric_limits<int>::max();
+  detection.evidence.max_sampled = std::numeric_limits<int>::max();
   detection.evidence.max_refined = std::numeric_limits<int>::max();
   detection.evidence.explains_from = 2.0F;
   const ForestIndex index(forest);

@@ -11,7 +11,7 @@
 namespace houghstream {
 namespace {
 
-struct Scored {
+struct ScoredResult {
   RegistrationResult result;
   float score = 0.0F;
 };
@@ -21,7 +21,7 @@ class PoseSelector {
  public:
   PoseSelector(const ObjectObservation& observation, const std::vector<RotationCandidate>& votes,
                const PoseSelectionSettings& settings)
-      : seen_(observation),
+      : observation_(observation),
         votes_(votes),
         settings_(settings),
         tolerance_{settings.tolerance_m, observation.noise},
@@ -30,7 +30,7 @@ class PoseSelector {
   RegistrationResult best_of(const std::vector<RegistrationResult>& registered) const {
     RegistrationResult best;
     float best_score = -std::numeric_limits<float>::infinity();
-    for (const RegistrationResult& result : registered) take_better(result, best, best_score);
+    for (const RegistrationResult& result : registered) keep_better(result, best, best_score);
     return best;
   }
 
@@ -40,82 +40,71 @@ class PoseSelector {
     RegistrationResult best = result;
     float best_score = score_of(result);
     const RotationRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, maximum, settings_.rotation_search.points};
-    for (const ScoredPose& turn : best_rotations_about_z(seen_, result.T_camera_object, range, tolerance_)) {
-      RegistrationResult again = uphill(register_coarsely(
-          seen_, turn.T_camera_object, 0.5 * (distances_.start + distances_.end), settings_.registration));
+    for (const ScoredPose& turn : best_rotations_about_z(observation_, result.T_camera_object, range, tolerance_)) {
+      RegistrationResult again = climb(register_coarsely(
+          observation_, turn.T_camera_object, 0.5 * (distances_.start + distances_.end), settings_.registration));
       again.iterations += result.iterations;
-      take_better(again, best, best_score);
+      keep_better(again, best, best_score);
     }
     return best;
   }
 
   /// Returns `result`, and it turned by half a turn about each principal axis, registered again: a box looks the same
   /// to depth then, and only its texture differs. The best comes first, and none that ends elsewhere.
-  std::vector<Scored> flips_of(const RegistrationResult& result) const {
-    std::vector<Scored> flips = {{result, score_of(result)}};
-    const Eigen::Vector3d middle = seen_.model.surface_median.cast<double>();
+  std::vector<ScoredResult> find_flips(const RegistrationResult& result) const {
+    std::vector<ScoredResult> flips = {{result, score_of(result)}};
+    const Eigen::Vector3d middle = observation_.model.surface_median.cast<double>();
     for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::AngleAxisd half_turn(M_PI, seen_.model.axes.col(axis).cast<double>());
+      const Eigen::AngleAxisd half_turn(M_PI, observation_.model.axes.col(axis).cast<double>());
       const Eigen::Isometry3d flipped =
           result.T_camera_object * Eigen::Translation3d(middle) * half_turn * Eigen::Translation3d(-middle);
-      RegistrationResult again =
-          uphill(register_coarsely(seen_, flipped, 0.5 * (distances_.start + distances_.end), settings_.registration));
+      RegistrationResult again = climb(
+          register_coarsely(observation_, flipped, 0.5 * (distances_.start + distances_.end), settings_.registration));
       again.iterations += result.iterations;
-      if (is_near_detection(seen_, again, settings_.registration)) flips.push_back({again, score_of(again)});
+      if (is_near_detection(observation_, again, settings_.registration)) flips.push_back({again, score_of(again)});
     }
-    std::stable_sort(flips.begin(), flips.end(), [](const Scored& a, const Scored& b) { return a.score > b.score; });
+    std::stable_sort(flips.begin(), flips.end(),
+                     [](const ScoredResult& a, const ScoredResult& b) { return a.score > b.score; });
     return flips;
   }
 
  private:
-  void take_better(const RegistrationResult& result, RegistrationResult& best, float& best_score) const {
-    if (!is_near_detection(seen_, result, settings_.registration)) return;
+  void keep_better(const RegistrationResult& result, RegistrationResult& best, float& best_score) const {
+    if (!is_near_detection(observation_, result, settings_.registration)) return;
     const float score = score_of(result);
     if (!(score > best_score)) return;
     best = result;
     best_score = score;
   }
 
-  RegistrationResult uphill(RegistrationResult result) const {
+  RegistrationResult climb(RegistrationResult result) const {
     const RotationSearchSettings& search = settings_.rotation_search;
     const HillClimb hill_climb{search.fine_step_deg * kRadPerDeg, search.hill_climb_step_m, search.hill_climb_rounds,
                                search.points};
-    result.T_camera_object = hill_climb_pose(seen_, result.T_camera_object, hill_climb, tolerance_).T_camera_object;
+    result.T_camera_object =
+        hill_climb_pose(observation_, result.T_camera_object, hill_climb, tolerance_).T_camera_object;
     return result;
   }
 
   /// Returns the joint score of a result by depth, colour and votes.
   float score_of(const RegistrationResult& result) const {
     const ScoredPose judged =
-        score_pose_jointly(seen_, result.T_camera_object, settings_.registration.fine_points, tolerance_);
+        score_pose_jointly(observation_, result.T_camera_object, settings_.registration.fine_points, tolerance_);
     const float support = vote_support(votes_, result.T_camera_object, settings_.initial);
     return judged.score * (1.0F + settings_.initial.vote_gain * support);
   }
 
-  const ObjectObservation& seen_;
+  const ObjectObservation& observation_;
   const std::vector<RotationCandidate>& votes_;
   const PoseSelectionSettings& settings_;
   DepthTolerance tolerance_;
   CorrespondenceDistances distances_;
 };
 
-/// Ends a selection: turns the pose a little to where all cues agree most, and registers it.
 RegistrationResult refine_fully(const PoseSelector& selector, const ObjectObservation& observation,
-                                const RegistrationResult& result, const PoseSelectionSettings& settings) {
-  const RotationSearchSettings& search = settings.rotation_search;
-  return register_finely(observation, selector.best_rotation(result, search.fine_step_deg, search.step_deg, 1),
-                         settings.registration);
-}
+                                const RegistrationResult& result, const PoseSelectionSettings& settings);
 
 }  // namespace
-
-RegistrationResult refine_pose(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                               const std::vector<RotationCandidate>& votes, const PoseSelectionSettings& settings) {
-  RegistrationResult start;
-  start.T_camera_object = T_camera_object;
-  const RegistrationResult registered = register_finely(observation, start, settings.registration);
-  return refine_fully(PoseSelector(observation, votes, settings), observation, registered, settings);
-}
 
 RegistrationResult best_registered(const ObjectObservation& observation,
                                    const std::vector<RegistrationResult>& registered,
@@ -139,7 +128,7 @@ std::vector<RegistrationResult> select_poses(const ObjectObservation& observatio
   const PoseSelector selector(observation, votes, settings);
   const RotationSearchSettings& search = settings.rotation_search;
   const RegistrationSettings& registration = settings.registration;
-  const std::vector<Scored> flips = selector.flips_of(best);
+  const std::vector<ScoredResult> flips = selector.find_flips(best);
   const RegistrationResult rotated =
       selector.best_rotation(flips.front().result, search.step_deg, 180.0, search.registered);
   std::vector<RegistrationResult> fine = {register_finely(observation, rotated, registration)};
@@ -150,5 +139,25 @@ std::vector<RegistrationResult> select_poses(const ObjectObservation& observatio
   for (RegistrationResult& result : fine) result = refine_fully(selector, observation, result, settings);
   return fine;
 }
+
+RegistrationResult refine_pose(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                               const std::vector<RotationCandidate>& votes, const PoseSelectionSettings& settings) {
+  RegistrationResult start;
+  start.T_camera_object = T_camera_object;
+  const RegistrationResult registered = register_finely(observation, start, settings.registration);
+  return refine_fully(PoseSelector(observation, votes, settings), observation, registered, settings);
+}
+
+namespace {
+
+/// Ends a selection: turns the pose a little to where all cues agree most, and registers it.
+RegistrationResult refine_fully(const PoseSelector& selector, const ObjectObservation& observation,
+                                const RegistrationResult& result, const PoseSelectionSettings& settings) {
+  const RotationSearchSettings& search = settings.rotation_search;
+  return register_finely(observation, selector.best_rotation(result, search.fine_step_deg, search.step_deg, 1),
+                         settings.registration);
+}
+
+}  // namespace
 
 }  // namespace houghstream

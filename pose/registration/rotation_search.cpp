@@ -31,9 +31,9 @@ Eigen::Isometry3d rotated(const Eigen::Isometry3d& T_camera_object, const Object
 
 ScoredPose score_pose_jointly(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                               int points, const DepthTolerance& tolerance) {
-  const ProjectedView look = project_view(observation.frame, observation.model, T_camera_object, points);
-  const float depth = score_projected_view(look, tolerance).value;
-  return {T_camera_object, joint_score(depth, compare_colours(observation.colours, look, tolerance))};
+  const ProjectedView projected = project_view(observation.frame, observation.model, T_camera_object, points);
+  const float depth = score_projected_view(projected, tolerance).value;
+  return {T_camera_object, joint_score(depth, compare_colours(observation.colours, projected, tolerance))};
 }
 
 ScoredPose hill_climb_pose(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,

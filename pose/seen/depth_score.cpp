@@ -11,8 +11,8 @@ namespace {
 /// Scores a shifted view; `width` is the tolerance at the object's depth.
 DepthScore score_of(const ProjectedView& projected, float shift, float width) {
   DepthScore score;
-  for (const ProjectedPoint& look : projected.points) {
-    const float ratio = (look.depth_difference - shift) / width;
+  for (const ProjectedPoint& projected : projected.points) {
+    const float ratio = (projected.depth_difference - shift) / width;
     // The sum has no branches, since the case changes from point to point: NaN is not above 0 and adds nothing.
     score.inlier_fraction += std::max(0.0F, 1.0F - ratio * ratio);
     score.free_space_violation += std::min(1.0F, std::max(0.0F, ratio - 1.0F));
@@ -54,10 +54,10 @@ ProjectedView project_view(const RgbdFrame& frame, const ObjectModel& model, con
     if (!(point.z() > 0.0F)) continue;
     const Eigen::Vector2f pixel = frame.camera.project_single(point) + Eigen::Vector2f::Constant(0.5F);
     if (!(pixel.x() >= 0.0F && pixel.y() >= 0.0F && pixel.x() < columns && pixel.y() < rows)) continue;
-    ProjectedPoint& look = result.points[i];
-    look.x = static_cast<int>(pixel.x());
-    look.y = static_cast<int>(pixel.y());
-    look.depth_difference = frame.depth.ptr<float>(look.y)[look.x] - point.z();
+    ProjectedPoint& projected = result.points[i];
+    projected.x = static_cast<int>(pixel.x());
+    projected.y = static_cast<int>(pixel.y());
+    projected.depth_difference = frame.depth.ptr<float>(projected.y)[projected.x] - point.z();
   }
   return result;
 }
@@ -77,8 +77,9 @@ DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, co
   const auto width = static_cast<float>(search.tolerance.at(projected.depth));
   std::vector<float> within;
   within.reserve(projected.points.size());
-  for (const ProjectedPoint& look : projected.points) {
-    if (std::abs(look.depth_difference) <= search.reach_m) within.push_back(look.depth_difference);  // false for NaN
+  for (const ProjectedPoint& projected : projected.points) {
+    if (std::abs(projected.depth_difference) <= search.reach_m)
+      within.push_back(projected.depth_difference);  // false for NaN
   }
   std::sort(within.begin(), within.end());
   const float shift = densest_mean(within, width);

@@ -28,12 +28,12 @@ float fraction_inside(const PlacedModel& one, const PlacedModel& other) {
 }
 
 /// Returns whether a large part of one of the models may lie where the other is.
-bool may_share(const PlacedModel& a, const PlacedModel& b) {
-  constexpr float kLeast = 0.25F;
+bool can_overlap(const PlacedModel& a, const PlacedModel& b) {
+  constexpr float kMinFraction = 0.25F;
   const Eigen::Vector3d between =
       a.T_camera_object * a.model.centre.cast<double>() - b.T_camera_object * b.model.centre.cast<double>();
   if (between.norm() > a.model.radius + b.model.radius) return false;
-  return fraction_inside(a, b) >= kLeast || fraction_inside(b, a) >= kLeast;
+  return fraction_inside(a, b) >= kMinFraction || fraction_inside(b, a) >= kMinFraction;
 }
 
 /// Returns the rendered depth at a pixel of the frame, metres; NaN beside the model.
@@ -46,7 +46,7 @@ float depth_at(const RenderedRegion& part, const cv::Point& pixel) {
 
 float shared_surface(const RgbdFrame& frame, const PlacedModel& a, const PlacedModel& b,
                      const DepthTolerance& tolerance) {
-  if (!may_share(a, b)) return 0.0F;
+  if (!can_overlap(a, b)) return 0.0F;
   const RenderedRegion first = render_depth_region(a.model.mesh, a.T_camera_object, frame.camera);
   const RenderedRegion second = render_depth_region(b.model.mesh, b.T_camera_object, frame.camera);
   const cv::Rect both = first.region_px | second.region_px;

@@ -94,16 +94,16 @@ float Verification::free_space_violation() const {
   return rendered == 0 ? 0.0F : static_cast<float>(free_space_violations) / static_cast<float>(rendered);
 }
 
-Verification verify_projected_view(const ProjectedView& look, const DepthTolerance& tolerance) {
+Verification verify_projected_view(const ProjectedView& projected, const DepthTolerance& tolerance) {
   constexpr float kEdge = 0.3F;  // cosine between normal and line of sight
   Verification result;
-  for (std::size_t i = 0; i < look.points.size(); ++i) {
-    const Eigen::Vector3f point = look.T * look.view.points[i];
-    const Eigen::Vector3f normal = look.T.linear() * look.view.normals[i];
+  for (std::size_t i = 0; i < projected.points.size(); ++i) {
+    const Eigen::Vector3f point = projected.T * projected.view.points[i];
+    const Eigen::Vector3f normal = projected.T.linear() * projected.view.normals[i];
     if (!(-normal.dot(point) > kEdge * point.norm())) continue;
     ++result.rendered;
     const auto limit = static_cast<float>(tolerance.at(point.z()));
-    const float beyond = look.points[i].depth_difference;  // NaN where nothing was measured: no comparison holds
+    const float beyond = projected.points[i].depth_difference;  // NaN where nothing was measured: no comparison holds
     result.depth_inliers += std::abs(beyond) <= limit ? 1 : 0;
     result.free_space_violations += beyond > limit ? 1 : 0;
     result.occluded += beyond < -limit ? 1 : 0;

@@ -37,7 +37,7 @@ struct Verification {
 
 /// Returns the counts, without the boundary's, at the projected points instead of the rendered pixels, which cover the
 /// view evenly. Points at grazing angles are left out, since the view's direction is only near the pose's.
-Verification verify_projected_view(const ProjectedView& look, const DepthTolerance& tolerance);
+Verification verify_projected_view(const ProjectedView& projected, const DepthTolerance& tolerance);
 
 /// Renders the model and compares it with the frame. `colours` are those of the frame about the object; with nullptr
 /// any colour counts as continued.

@@ -74,13 +74,13 @@ TEST(Candidates, OnlyTheMostPromisingAreCompared) {
   const std::vector<ScoredHypothesis> all = candidates(frame);
   ASSERT_GT(all.size(), 2U);
   std::vector<double> promises;
-  for (const ScoredHypothesis& found : all) promises.push_back(vote_promise(found.evidence));
+  for (const ScoredHypothesis& found : all) promises.push_back(vote_logit(found.evidence));
   std::sort(promises.begin(), promises.end(), std::greater<>());
   DetectionSettings settings;
   settings.evidence.max_compared = 2;
   const std::vector<ScoredHypothesis> two = candidates(frame, settings);
   ASSERT_EQ(two.size(), 2U);
-  for (const ScoredHypothesis& found : two) EXPECT_GE(vote_promise(found.evidence), promises[1]);
+  for (const ScoredHypothesis& found : two) EXPECT_GE(vote_logit(found.evidence), promises[1]);
 }
 
 TEST(Candidates, OnlyTheLikeliestAreRefined) {
@@ -193,7 +193,7 @@ TEST(Candidates, WhatLiesOnTheSurfaceOfASureOneIsDropped) {
   EXPECT_EQ(scores(both[0] + 0.01F), both) << "it is not sure enough";
 }
 
-TEST(AttitudeSpread, GrowsWithTheViewsOfTheClass) {
+TEST(AttitudeFactor, GrowsWithTheViewsOfTheClass) {
   Forest forest;
   const auto add = [&](std::uint32_t class_index, std::size_t views) {
     ViewTemplate view;
@@ -203,9 +203,9 @@ TEST(AttitudeSpread, GrowsWithTheViewsOfTheClass) {
   add(0, 108);
   add(1, 300);
   add(2, 2000);
-  EXPECT_EQ(attitude_spread(forest, 0), 1.0F);
-  EXPECT_FLOAT_EQ(attitude_spread(forest, 1), 2.0F);
-  EXPECT_FLOAT_EQ(attitude_spread(forest, 2), 3.0F);
+  EXPECT_EQ(attitude_factor(forest, 0), 1.0F);
+  EXPECT_FLOAT_EQ(attitude_factor(forest, 1), 2.0F);
+  EXPECT_FLOAT_EQ(attitude_factor(forest, 2), 3.0F);
 }
 
 }  // namespace

@@ -56,27 +56,27 @@ TEST(ForestIndex, ViewsThatStandForAllAttitudesLieFarApart) {
   for (const float angle_rad : {0.0F, 0.1F, 0.9F, 0.5F}) forest.views.push_back(rotated_view(0, angle_rad));
   forest.views.push_back(rotated_view(1, 0.1F));
   const ForestIndex index(forest);
-  EXPECT_EQ(index.spread_views(0).views, (std::vector<std::uint32_t>{0, 2, 3, 1}));
-  EXPECT_EQ(index.spread_views(1).views, std::vector<std::uint32_t>{4});
-  EXPECT_TRUE(index.spread_views(2).views.empty());
+  EXPECT_EQ(index.sampled_views(0).views, (std::vector<std::uint32_t>{0, 2, 3, 1}));
+  EXPECT_EQ(index.sampled_views(1).views, std::vector<std::uint32_t>{4});
+  EXPECT_TRUE(index.sampled_views(2).views.empty());
 }
 
 TEST(ForestIndex, ViewsOfAllAttitudesHaveTheNearestCoarseOne) {
   Forest forest;
   forest.classes.resize(1);
   constexpr float kStep_rad = 0.002F;
-  for (std::size_t i = 0; i < 2 * SpreadViews::kCount; ++i)
+  for (std::size_t i = 0; i < 2 * SampledViews::kCount; ++i)
     forest.views.push_back(rotated_view(0, kStep_rad * static_cast<float>(i)));
   const ForestIndex index(forest);
-  const SpreadViews& spread = index.spread_views(0);
-  ASSERT_EQ(spread.views.size(), SpreadViews::kCount);
-  EXPECT_EQ(std::set<std::uint32_t>(spread.views.begin(), spread.views.end()).size(), SpreadViews::kCount);
-  ASSERT_EQ(spread.nearest.size(), SpreadViews::kCount);
-  for (std::size_t i = 0; i < SpreadViews::kCount; ++i) {
-    ASSERT_LT(spread.nearest[i], SpreadViews::kCoarse);
-    const auto coarse = static_cast<float>(spread.views[spread.nearest[i]]);
-    EXPECT_LT(std::abs(coarse - static_cast<float>(spread.views[i])), 400.0F / (SpreadViews::kCoarse - 1)) << i;
-    EXPECT_TRUE(i >= SpreadViews::kCoarse || spread.nearest[i] == i) << i << " is the nearest to itself";
+  const SampledViews& sampled = index.sampled_views(0);
+  ASSERT_EQ(sampled.views.size(), SampledViews::kCount);
+  EXPECT_EQ(std::set<std::uint32_t>(sampled.views.begin(), sampled.views.end()).size(), SampledViews::kCount);
+  ASSERT_EQ(sampled.nearest.size(), SampledViews::kCount);
+  for (std::size_t i = 0; i < SampledViews::kCount; ++i) {
+    ASSERT_LT(sampled.nearest[i], SampledViews::kCoarse);
+    const auto coarse = static_cast<float>(sampled.views[sampled.nearest[i]]);
+    EXPECT_LT(std::abs(coarse - static_cast<float>(sampled.views[i])), 400.0F / (SampledViews::kCoarse - 1)) << i;
+    EXPECT_TRUE(i >= SampledViews::kCoarse || sampled.nearest[i] == i) << i << " is the nearest to itself";
   }
 }
 
