@@ -11,8 +11,8 @@ namespace {
 /// Scores a shifted view; `width` is the tolerance at the object's depth.
 DepthScore score_of(const ProjectedView& projected, float shift, float width) {
   DepthScore score;
-  for (const ProjectedPoint& projected : projected.points) {
-    const float ratio = (projected.depth_difference - shift) / width;
+  for (const ProjectedPoint& point : projected.points) {
+    const float ratio = (point.depth_difference - shift) / width;
     // The sum has no branches, since the case changes from point to point: NaN is not above 0 and adds nothing.
     score.inlier_fraction += std::max(0.0F, 1.0F - ratio * ratio);
     score.free_space_violation += std::min(1.0F, std::max(0.0F, ratio - 1.0F));
@@ -77,9 +77,8 @@ DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, co
   const auto width = static_cast<float>(search.tolerance.at(projected.depth));
   std::vector<float> within;
   within.reserve(projected.points.size());
-  for (const ProjectedPoint& projected : projected.points) {
-    if (std::abs(projected.depth_difference) <= search.reach_m)
-      within.push_back(projected.depth_difference);  // false for NaN
+  for (const ProjectedPoint& point : projected.points) {
+    if (std::abs(point.depth_difference) <= search.reach_m) within.push_back(point.depth_difference);  // false for NaN
   }
   std::sort(within.begin(), within.end());
   const float shift = densest_mean(within, width);
