@@ -1,7 +1,7 @@
 # PCL's headers and single libraries, found directly: PCL's own CMake package also asks for VTK, Qt and MPI, which
 # nothing here uses.
 
-find_path(PCL_INCLUDE_DIR pcl/registration/icp.h PATH_SUFFIXES pcl-1.15 pcl-1.14 pcl-1.13 pcl-1.12 REQUIRED)
+find_path(PCL_INCLUDE_DIR pcl/registration/icp.h PATH_SUFFIXES pcl-1.15 pcl-1.14 pcl-1.13 pcl-1.12)
 
 # houghstream_use_pcl(target part...): the target's own sources see PCL's headers and link pcl_<part>.
 function(houghstream_use_pcl target)

@@ -33,6 +33,6 @@ configure_and_build() {
 # study NAME OPTIONS...: hands over to tools/studies/NAME, which installs and builds what it needs. By Debian's Python,
 # whose modules tools/packages.txt names; another one may come first in PATH.
 study() {
-  [ -x /usr/bin/python3 ] || tools/setup
+  [ -x /usr/bin/python3 ] || tools/setup --demo
   HOUGHSTREAM_START=$start_seconds PYTHONPATH=tools exec /usr/bin/python3 -m "studies.$1" "${@:2}"
 }

@@ -76,12 +76,13 @@ def recorded_folder(given, part):
 
 
 def prepare(options, targets):
-    """Installs what is missing and builds the targets. Returns the folder of the programs."""
+    """Installs what is missing, by tools/setup with the words `options.setup`, and builds the targets. Returns the folder of
+    the programs."""
     commit_name()  # figures are of what is built, whatever is checked out meanwhile
     if options.bin:
         return know_messages(os.path.realpath(options.bin))
     if "HOUGHSTREAM_PRIVATE_NETWORK" not in os.environ:  # else this has been done before the command started itself again
-        if subprocess.run(["tools/setup"], cwd=REPOSITORY, check=False).returncode != 0:
+        if subprocess.run(["tools/setup", *getattr(options, "setup", ())], cwd=REPOSITORY, check=False).returncode != 0:
             die("tools/setup failed")
         step("build")
         build = [

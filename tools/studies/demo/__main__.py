@@ -61,6 +61,8 @@ def parse(words):
     options.command = " ".join([parser.prog, *("DIR" if word in paths else word for word in words)])
     kind = "teach_demo" if options.teach else "live" if options.live else "real" if options.real else "demo"
     options.out = (options.out or pathlib.Path("out", kind)).resolve()
+    # Annotations of the UW scenes are read by SciPy, lcm-spy is Java's.
+    options.setup = () if options.real or options.pictures else ("--demo",)
     return options
 
 
