@@ -2,6 +2,8 @@
 
 import io
 import pathlib
+import struct
+import subprocess
 import sys
 import tempfile
 import types
@@ -10,7 +12,7 @@ import zlib
 from unittest import mock
 
 import numpy
-from houghstream import event_log, image_t, images_t, subscriber
+from houghstream import event_log, image_t, images_t, object_pose_t, object_poses_t, subscriber
 from houghstream.frames import decode_frame
 from PIL import Image
 
@@ -95,6 +97,28 @@ class EventLog(unittest.TestCase):
                 log.write_bytes(event_log.HEADER.pack(event_log.SYNC, 0, 1, channel_size, data_size) + b"CHANNEL12345")
                 with self.assertRaisesRegex(event_log.DamagedLog, "no valid header"):
                     list(event_log.read_log(log))
+
+
+class Examples(unittest.TestCase):
+    """Those that print lines, as people use them: into a pipe whose reader has had enough."""
+
+    def test_head_ends_them_without_a_word(self):
+        examples = pathlib.Path(__file__).resolve().parents[3] / "tools/examples/python"
+        pose = object_pose_t()
+        pose.class_name, pose.class_id, pose.status, pose.quat = "mug", 1, object_pose_t.VALID, [1.0, 0.0, 0.0, 0.0]
+        message = object_poses_t()
+        message.poses, message.n_poses = 100 * [pose], 100
+        channel, data = b"HOUGHSTREAM_POSES", message.encode()
+        with tempfile.TemporaryDirectory(prefix="package_test_") as folder:
+            log = pathlib.Path(folder) / "poses.lcmlog"
+            log.write_bytes(b"".join(struct.pack(">IQQII", 0xEDA1DA01, i, i, len(channel), len(data)) + channel + data
+                                     for i in range(100)))  # fmt: skip
+            for line in (f"{examples}/read_log.py {log}", f"{examples}/listen.py file://{log}"):
+                if "listen" in line and not hasattr(sys.modules["houghstream"], "listen"):  # built without pybind11
+                    continue
+                said = subprocess.run(["sh", "-c", f"{line} | head -n 1"], capture_output=True, text=True, timeout=60, check=False)
+                self.assertIn("mug ", said.stdout, line)
+                self.assertEqual(said.stderr, "", line)
 
 
 class Subscriber(unittest.TestCase):

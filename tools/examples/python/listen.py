@@ -1,9 +1,12 @@
 #!/usr/bin/python3
 """Prints where objects are as a stream says it, or a log: listen.py [URL], file://LOG for a log. Ctrl-C ends it."""
 
+import signal
 import sys
 
 from houghstream import FoundPoses, InputError, listen
+
+signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # who reads the lines may have enough, as head
 
 try:
     for result in listen(*sys.argv[1:2]):

@@ -1,10 +1,13 @@
 #!/usr/bin/python3
 """Prints the poses of a log, and draws how each object moved: read_log.py LOG [PLOT.png]. Needs no lcm module."""
 
+import signal
 import sys
 
 from houghstream import object_pose_t, object_poses_t
 from houghstream.event_log import read_log
+
+signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # who reads the lines may have enough, as head
 
 if len(sys.argv) not in (2, 3):
     sys.exit("read_log.py: expected LOG [PLOT.png]")

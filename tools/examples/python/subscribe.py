@@ -1,11 +1,14 @@
 #!/usr/bin/python3
 """Prints poses as they come, and how far the middle of the image is. Needs LCM's Python module; a line says how to get it."""
 
+import signal
 import sys
 
 from houghstream import object_pose_t, object_poses_t
 from houghstream.frames import decode_frame
 from houghstream.subscriber import subscribe
+
+signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # who reads the lines may have enough, as head
 
 
 def print_message(channel, data):
