@@ -5,6 +5,7 @@
 #include "drivers/files/json_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
+#include "pipeline/base/require_folder.hpp"
 
 namespace houghstream {
 namespace {
@@ -34,13 +35,16 @@ Eigen::AlignedBox3d parse_bounds(const nlohmann::json& entry, const std::string&
 
 /// CAD models as people keep them: the file's name is the object's.
 std::vector<std::pair<std::string, fs::path>> named_files(const fs::path& folder) {
-  require(fs::is_directory(folder), "{}: no such folder, expected models", folder.string());
+  require_folder(folder, "models");
   std::vector<std::pair<std::string, fs::path>> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string extension = entry.path().extension().string();
     if (extension == ".ply" || extension == ".obj") files.emplace_back(entry.path().stem().string(), entry.path());
   }
-  require(!files.empty(), "{}: neither models_info.json nor any NAME.ply or NAME.obj", folder.string());
+  require(!files.empty(), "{}: neither models_info.json nor any NAME.ply or NAME.obj{}", folder.string(),
+          fs::exists(folder / "models/models_info.json")
+              ? fmt::format("; did you mean {}?", (folder / "models").string())
+              : "");
   std::sort(files.begin(), files.end());
   return files;
 }

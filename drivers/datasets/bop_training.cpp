@@ -8,6 +8,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/parallel.hpp"
+#include "pipeline/base/require_folder.hpp"
 
 namespace houghstream {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> scene_folders(const fs::path& folder) {
-  require(fs::is_directory(folder), "{}: no such folder, expected BOP training scenes", folder.string());
+  require_folder(folder, "BOP training scenes");
   std::vector<fs::path> scenes;
   if (fs::exists(folder / "scene_camera.json")) scenes.push_back(folder);
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {

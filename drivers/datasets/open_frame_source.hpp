@@ -15,6 +15,10 @@ namespace houghstream {
 /// `others` are those that the caller opens itself, "oni:FILE, ".
 std::unique_ptr<FrameSource> open_frame_source(const std::string& specification, const std::string& others = "");
 
+/// Returns "KIND:PLACE", as a folder or a recording that is there wants to be called as a source, and "" where nothing
+/// is there or its kind cannot be told.
+std::string suggest_source(const std::string& place);
+
 /// Throws InputError where an output is the file or folder of "KIND:WHERE", or of a plain name, or lies in it
 /// (require_other_file()).
 void require_outside_source(const std::filesystem::path& output, const std::string& specification);

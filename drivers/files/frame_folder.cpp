@@ -5,6 +5,7 @@
 #include "drivers/files/image_file.hpp"
 #include "drivers/files/natural_order.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/require_folder.hpp"
 
 namespace houghstream {
 namespace {
@@ -41,7 +42,7 @@ bool has_frame_pairs(const fs::path& folder) {
 }
 
 std::vector<FrameFiles> list_frame_pairs(const fs::path& folder) {
-  require(fs::is_directory(folder), "{}: no such folder, expected images", folder.string());
+  require_folder(folder, "images");
   std::vector<FrameFiles> pairs;
   std::size_t images = 0;
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -60,7 +61,7 @@ std::vector<FrameFiles> list_frame_pairs(const fs::path& folder) {
 }
 
 std::vector<fs::path> list_frame_folders(const fs::path& folder) {
-  require(fs::is_directory(folder), "{}: no such folder, expected images", folder.string());
+  require_folder(folder, "images");
   std::vector<fs::path> folders;
   if (has_frame_pairs(folder)) folders.push_back(folder);
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {

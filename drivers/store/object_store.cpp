@@ -11,6 +11,7 @@
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/parallel.hpp"
 #include "pipeline/base/printable.hpp"
+#include "pipeline/base/require_folder.hpp"
 
 namespace houghstream::store {
 namespace {
@@ -277,7 +278,7 @@ std::map<std::string, ShapeSymmetry> ObjectStore::shape_symmetries() const {
 }
 
 ObjectStore read_store(const fs::path& folder) {
-  require(fs::is_directory(folder), "{}: no such folder, expected an object store of hs-teach", folder.string());
+  require_folder(folder, "an object store of hs-teach");
   const fs::path file = folder / kJsonFile;
   require(fs::is_regular_file(file), "{}: missing, expected it in an object store: half written, or no store",
           file.string());

@@ -196,8 +196,8 @@ void StoreWatcherBase::adopt(const ObjectStore& store, std::shared_ptr<const voi
     objects.push_back({object.name, known == known_.objects.end() ? now : known->since_utime});
   }
   if (current_ || !known_.problem.empty()) {
-    log_info("{}: {} objects from here on{}{}", known_.store, objects.size(), changed("new:", objects, known_.objects),
-             changed("gone:", known_.objects, objects));
+    log_info("{}: {} object{} from here on{}{}", known_.store, objects.size(), objects.size() == 1 ? "" : "s",
+             changed("new:", objects, known_.objects), changed("gone:", known_.objects, objects));
   }
   if (current_) retired_.push_back(std::move(current_));
   current_ = std::move(loaded);

@@ -71,10 +71,27 @@ bool has_jpeg_end(const std::uint8_t* jpeg, std::size_t size) {
   return std::search(jpeg + scan, jpeg + size, kEnd.begin(), kEnd.end()) != jpeg + size;
 }
 
+bool is_png(const std::uint8_t* bytes, std::size_t size) {
+  return size >= kPngHeader && std::equal(kPngStart.begin(), kPngStart.end(), bytes);
+}
+
+/// Returns whether a PNG file reaches its last chunk; of a file that is cut libpng would tell in a line of its own.
+bool has_png_end(const std::filesystem::path& file) {
+  constexpr std::streamoff kChecksum = 4;
+  std::ifstream in(file, std::ios::binary);
+  in.seekg(kPngStart.size());
+  std::array<std::uint8_t, 8> head{};  // length and type of a chunk
+  while (in.read(reinterpret_cast<char*>(head.data()), head.size())) {
+    if (std::memcmp(head.data() + 4, "IEND", 4) == 0) return true;
+    in.seekg(static_cast<std::streamoff>(big_endian(head.data(), 4)) + kChecksum, std::ios::cur);
+  }
+  return false;
+}
+
 /// Other formats are left to OpenCV.
 bool is_modest(const std::uint8_t* bytes, std::size_t size) {
   if (is_jpeg(bytes, size)) return jpeg_pixels(bytes, size) <= kMaxPixels && count_jpeg_scans(bytes, size) <= kMaxScans;
-  if (size < kPngHeader || !std::equal(kPngStart.begin(), kPngStart.end(), bytes)) return true;
+  if (!is_png(bytes, size)) return true;
   const std::uint64_t width = big_endian(bytes + 16, 4);
   const std::uint64_t height = big_endian(bytes + 20, 4);
   return width * height <= kMaxPixels;
@@ -110,6 +127,7 @@ cv::Mat decode_image_file(const std::filesystem::path& file, int mode) {
     return has_jpeg_end(bytes.data(), bytes.size()) ? decode_image(bytes.data(), bytes.size(), mode) : cv::Mat();
   }
   if (!is_modest(bytes.data(), bytes.size())) return {};
+  if (is_png(bytes.data(), bytes.size()) && !has_png_end(file)) return {};
   try {
     return cv::imread(file.string(), mode);
   } catch (const cv::Exception&) {

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <set>
 
@@ -149,7 +150,9 @@ void check_lcm_url(const std::string& url) {
   const std::vector<std::string> schemes = {kMulticast, kTcp, "file://", "memq://", "mpudpm://"};
   const bool known =
       std::any_of(schemes.begin(), schemes.end(), [&](const std::string& scheme) { return begins_with(url, scheme); });
-  require(known, "LCM URL '{}', expected udpm://ADDRESS:PORT?ttl=0, tcpq://ADDRESS:PORT or file://LOG", url);
+  std::error_code unknown;
+  require(known, "LCM URL '{}', expected udpm://ADDRESS:PORT?ttl=0, tcpq://ADDRESS:PORT or file://LOG{}", url,
+          std::filesystem::is_regular_file(url, unknown) ? "; did you mean file://" + url + "?" : "");
   if (!begins_with(url, kMulticast)) return;
   check_group(url);
   std::set<std::string> names;

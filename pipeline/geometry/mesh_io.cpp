@@ -71,8 +71,10 @@ void check_faces(const aiMesh& part, const std::string& file) {
 /// The scene as the file has it, then in triangles. It belongs to the importer.
 const aiScene& read_scene(const std::filesystem::path& file, Assimp::Importer& importer) {
   const auto require_scene = [&](const aiScene* scene) {
-    require(scene != nullptr && (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) == 0U,
-            "{}: {}, expected a PLY, OBJ or glTF mesh with triangles", file.string(), importer.GetErrorString());
+    if (scene != nullptr && (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) == 0U) return;
+    std::string words = importer.GetErrorString();
+    words.erase(words.find_last_not_of(" .") + 1);
+    fail("{}: {}, expected a PLY, OBJ or glTF mesh with triangles", file.string(), words);
   };
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(file.string(), 0);

@@ -9,6 +9,7 @@
 #include "drivers/openni/openni_device.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/printable.hpp"
+#include "tools/common/usage_error.hpp"
 
 namespace houghstream::capture {
 namespace {
@@ -41,7 +42,7 @@ void require_no_camera_option(const SourceOptions& options) {
                                                 {"--record", !options.live.record.empty()},
                                                 {"--record-jpeg", options.live.record_jpeg}};
   for (const auto& [name, is_given] : given)
-    require(!is_given, "{} goes with --source openni2, not with {}", name, options.source);
+    require_usage(!is_given, "{} goes with --source openni2, not with {}", name, options.source);
 }
 
 }  // namespace
@@ -66,13 +67,14 @@ void add_source_options(CommandLine& app, SourceOptions& options) {
 std::unique_ptr<FrameSource> open_source(const SourceOptions& options, const openni::CameraListener& listener) {
   const auto [kind, value] = split(options.source);
   if (kind == "openni2") {
-    require(!options.live.record_jpeg || !options.live.record.empty(), "--record-jpeg goes with --record FILE.oni");
+    require_usage(!options.live.record_jpeg || !options.live.record.empty(),
+                  "--record-jpeg goes with --record FILE.oni");
     return openni::open_camera_source(value, camera_options(options), listener);
   }
   require_no_camera_option(options);
   if (kind == "oni" && !value.empty())
     return openni::open_oni_source(value, camera_options(options), listener.stop_requested);
-  require(options.camera.empty(), "--camera goes with --source openni2 or oni, not with {}", options.source);
+  require_usage(options.camera.empty(), "--camera goes with --source openni2 or oni, not with {}", options.source);
   require(kind != "klg" && kind != "log",
           "source '{}': of recordings hs-log import makes a log, and lcm-logplayer plays logs", options.source);
   return open_frame_source(options.source, "openni2, openni2:CAMERA, oni:FILE, ");

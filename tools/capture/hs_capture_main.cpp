@@ -5,6 +5,7 @@
 #include "tools/capture/capture_options.hpp"
 #include "tools/capture/publish_frames.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/common/usage_error.hpp"
 
 int main(int argc, char** argv) {
   using namespace houghstream;
@@ -37,17 +38,17 @@ int main(int argc, char** argv) {
   app.add_example("hs-capture --source bop:out/demo/data/scene --log scene.lcmlog");
 
   return run_tool(app, argc, argv, [&] {
-    require(list || !json, "--json goes with --list-devices");
+    require_usage(list || !json, "--json goes with --list-devices");
     if (list) {
       if (json) return print_json(devices_json());
       std::puts(devices_text().c_str());
       return;
     }
-    require(!source.source.empty(), "--source is missing: for instance openni2, oni:FILE or bop:DIR");
+    require_usage(!source.source.empty(), "--source is missing: for instance openni2, oni:FILE or bop:DIR");
     require_outside_source(log, source.source);
     settings.format.jpeg = !raw_colour;
     settings.format.zip_depth = !raw_depth;
-    require(log.empty() || !settings.loop || settings.frames, "--loop into a log never ends; give --frames");
+    require_usage(log.empty() || !settings.loop || settings.frames, "--loop into a log never ends; give --frames");
     source.live.replace_record = settings.replace;
     catch_stop_signals();
     const OpenSource open = [&](const openni::CameraListener& listener) { return open_source(source, listener); };

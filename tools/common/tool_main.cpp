@@ -10,6 +10,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/printable.hpp"
 #include "pipeline/base/terminal_colour.hpp"
+#include "tools/common/usage_error.hpp"
 
 namespace houghstream {
 
@@ -19,13 +20,15 @@ int run_tool(CommandLine& line, int argc, char** argv, const std::function<void(
   line.set_version(line.name() + " " + HOUGHSTREAM_VERSION);
   if (const std::optional<int> status = line.parse({argv + 1, argv + argc})) return *status;
   start_log(line.name(), verbose ? LogLevel::kDebug : LogLevel::kInfo);
+  constexpr int kFailed = 1;
+  constexpr int kMisused = 2;
   try {
     body();
     return 0;
   } catch (const std::exception& error) {
     const std::string name = in_colour(line.name() + ":", TerminalColour::kRed, shows_colours(STDERR_FILENO));
     fmt::print(stderr, "{} {}\n", name, printable_lines(error.what()));
-    return 1;
+    return dynamic_cast<const UsageError*>(&error) != nullptr ? kMisused : kFailed;
   }
 }
 

@@ -9,7 +9,7 @@
 namespace houghstream {
 
 /// Runs an executable with what all have in common: -h, --version, -v, the log on stderr under the tool's name, and
-/// errors as one line with a non-zero exit status.
+/// errors as one line with exit status 2 for the command line (UsageError), else 1.
 int run_tool(CommandLine& line, int argc, char** argv, const std::function<void()>& body);
 
 /// Prints a value for scripts, which read it whole: indented by two, names in their order, what is no UTF-8 replaced.

@@ -183,6 +183,11 @@ std::int64_t export_mcap(const std::filesystem::path& log_file, const McapExtras
       out.close(),
       "{}: no frame, detection or object that could be exported; hs-pose --keep-frames keeps these beside its poses{}",
       log_file.string(), losses.line().empty() ? "" : ": " + losses.line());
+  if (conversion.frames() == 0) {
+    losses.add_warning(
+        "no frames in it, so there are no images; hs-log record takes them off the bus, --keep-frames of hs-detect "
+        "and hs-pose keeps them beside the results of a log");
+  }
   return conversion.frames();
 }
 

@@ -1,6 +1,9 @@
 #include "tools/log/filter_log.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <set>
 #include <vector>
 
 #include "pipeline/base/checks.hpp"
@@ -74,12 +77,20 @@ std::int64_t filter_log(const std::filesystem::path& log_file, const LogFilter& 
                         const std::filesystem::path& out_file, LossReport& losses) {
   const ChannelPattern channels(filter.channels);
   require_other_file(out_file, log_file);
+  require(!filter.start_s || !filter.end_s || *filter.start_s <= *filter.end_s,
+          "from {} s to {} s, expected an end that is not before the start", filter.start_s.value_or(0.0),
+          filter.end_s.value_or(0.0));
   Dates dates(origin_of(log_file));
   IntactEvents events(log_file, losses);
   std::optional<LogWriter> out;  // made when there is something to write
+  constexpr std::size_t kMaxNamed = 10;
+  std::set<std::string> seen;  // channels
+  double last_s = 0.0;
   std::int64_t kept = 0;
   while (const std::optional<LogEvent> event = events.next()) {
     const double time_s = dates.note(event->timestamp);
+    last_s = std::max(last_s, time_s);
+    if (seen.size() < kMaxNamed) seen.insert(event->channel);
     if ((filter.start_s && time_s < *filter.start_s) || (filter.end_s && time_s > *filter.end_s)) continue;
     if (channels.matches(event->channel) == filter.others) continue;
     if (!out) out.emplace(out_file);
@@ -87,9 +98,10 @@ std::int64_t filter_log(const std::filesystem::path& log_file, const LogFilter& 
     ++kept;
   }
   dates.tell(losses, filter.start_s || filter.end_s);
-  require(out.has_value(), "{}: no event from {} s to {} s on {}channels '{}'", log_file.string(),
-          filter.start_s.value_or(0.0), filter.end_s ? fmt::format("{}", *filter.end_s) : "its end",
-          filter.others ? "other than " : "", filter.channels);
+  require(out.has_value(), "{}: no event from {} s to {} on {}channels '{}'; it lasts {:.3f} s, on {}",
+          log_file.string(), filter.start_s.value_or(0.0),
+          filter.end_s ? fmt::format("{} s", *filter.end_s) : "its end", filter.others ? "other than " : "",
+          filter.channels, last_s, fmt::join(seen, ", "));
   out->close();
   return kept;
 }

@@ -31,7 +31,7 @@ std::string LossReport::line() const {
 }
 
 IntactEvents::IntactEvents(const std::filesystem::path& file, LossReport& losses)
-    : log_(file), losses_(losses), progress_(file.filename().string(), static_cast<double>(log_.size())) {}
+    : file_(file), log_(file), losses_(losses), progress_(file.filename().string(), static_cast<double>(log_.size())) {}
 
 std::optional<LogEvent> IntactEvents::read() {
   while (!ended_) {
@@ -52,7 +52,7 @@ std::optional<LogEvent> IntactEvents::read() {
 
 std::optional<LogEvent> IntactEvents::next() {
   std::optional<LogEvent> event = read();
-  require(event.has_value() || count_ > 0, "no event of an LCM log in it: {}", losses_.line());
+  require(event.has_value() || count_ > 0, "{}: no event of an LCM log in it: {}", file_.string(), losses_.line());
   if (event) ++count_;
   return event;
 }

@@ -46,6 +46,7 @@ class IntactEvents {
  private:
   std::optional<LogEvent> read();
 
+  std::filesystem::path file_;
   LogReader log_;
   LossReport& losses_;
   ProgressLine progress_;

@@ -11,6 +11,7 @@
 #include "pipeline/bus/event_log.hpp"
 #include "tools/common/progress_line.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/common/usage_error.hpp"
 #include "tools/log/export_frames.hpp"
 #include "tools/log/export_mcap.hpp"
 #include "tools/log/export_objects.hpp"
@@ -147,7 +148,8 @@ CommandLine add_mcap(CommandLine& app, Options& options) {
 }
 
 std::int64_t export_mcap_of(const Options& options, LossReport& losses) {
-  require(options.models.empty() || options.objects.empty(), "expected either --objects STORE or --models FOLDER");
+  require_usage(options.models.empty() || options.objects.empty(),
+                "expected either --objects STORE or --models FOLDER");
   McapExtras extras;
   extras.camera = options.recording.camera;
   if (!options.models.empty()) extras.models = load_class_models(options.models, options.model_unit_m);

@@ -206,6 +206,10 @@ NextFrame open_recording(const RecordingSettings& settings, LossReport& losses) 
   }
   if (starts_with(begin_of(settings.source), "#ROSBAG"))
     return reading(std::make_shared<SourceRecording>(open_frame_source("bag:" + settings.source)));
+  if (std::filesystem::is_directory(settings.source)) {
+    const std::string meant = suggest_source(settings.source);
+    require(meant.empty(), "{}: is a folder, expected an LCM log; did you mean {}?", settings.source, meant);
+  }
   refuse_other_kinds(settings.source);
   return reading(std::make_shared<LogRecording>(settings, losses));
 }

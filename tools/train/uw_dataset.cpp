@@ -15,6 +15,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/require_folder.hpp"
 #include "tools/train/turntable.hpp"
 
 namespace houghstream {
@@ -38,7 +39,7 @@ std::pair<std::string, std::string> parse_selected(const std::string& text) {
 }
 
 std::map<std::string, fs::path> instance_folders(const fs::path& folder) {
-  require(fs::is_directory(folder), "{}: no such folder, expected CATEGORY/INSTANCE/ folders", folder.string());
+  require_folder(folder, "CATEGORY/INSTANCE/ folders");
   std::map<std::string, fs::path> found;
   for (const auto& category : fs::directory_iterator(folder)) {
     if (!category.is_directory()) continue;

@@ -3,6 +3,7 @@
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/datasets/bop_writer.hpp"
 #include "pipeline/base/checks.hpp"
+#include "tests/expect_says.hpp"
 #include "tests/pipeline/geometry/tetrahedron.hpp"
 #include "tests/test_files.hpp"
 
@@ -81,6 +82,13 @@ TEST(BopModels, AreFoundAboveASceneAndItsOwnNamesComeFirst) {
   write_bop_names({{1, "cup"}}, scene / "names.json");
   EXPECT_EQ(find_bop_names(scene).at(1), "cup");
   EXPECT_TRUE(find_bop_names(fresh_folder("models_none")).empty());
+}
+
+TEST(BopModels, TheFolderAboveIsToldWithTheModelsInIt) {
+  const fs::path above = write_models("models_above");
+  expect_says(error_of([&] { load_class_models(above); }), {"did you mean " + (above / "models").string() + "?"});
+  expect_says(error_of([&] { load_class_models(above / "models/models_info.json"); }),
+              {"models_info.json: is a file, expected a folder: models"});
 }
 
 TEST(BopModels, BadFilesAreRefused) {

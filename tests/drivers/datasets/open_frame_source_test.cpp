@@ -6,6 +6,7 @@
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "tests/expect_says.hpp"
 #include "tests/test_files.hpp"
 
 namespace houghstream {
@@ -65,6 +66,41 @@ TEST(FrameSource, AFoldersNameMayHoldCommas) {
 TEST(FrameSource, WhatIsNotKnownIsRefusedWithAllThatTheCallerTakes) {
   EXPECT_EQ(error_of([] { open_frame_source("bogus", "oni:FILE, "); }),
             "source 'bogus', expected oni:FILE, bop:DIR, uw:DIR, tum:DIR or bag:FILE");
+}
+
+TEST(FrameSource, AFolderWithoutItsKindIsToldWithTheKindThatItHas) {
+  const fs::path scene = fresh_folder("source_kinds") / "scene";
+  BopWriter writer(scene);
+  writer.add(plain_frame(), {}, {});
+  writer.finish();
+  const std::string images = write_uw_folder("source_kinds_uw", ".png").string();
+  const fs::path sequence = fresh_folder("source_kinds_tum");
+  write_text(sequence / "depth.txt", "");
+  write_text(sequence / "take.oni", "");
+  write_text(sequence / "notes.txt", "");
+  const auto refusal = [](const std::string& place) { return error_of([&] { open_frame_source(place); }); };
+  expect_says(refusal(scene.string()), {"did you mean bop:" + scene.string() + "?"});
+  expect_says(refusal(images), {"did you mean uw:" + images + "?"});
+  expect_says(refusal(sequence.string()), {"did you mean tum:" + sequence.string() + "?"});
+  EXPECT_EQ(suggest_source((sequence / "take.oni").string()), "oni:" + (sequence / "take.oni").string());
+  for (const fs::path& place : {sequence / "notes.txt", sequence / "take.bag", scene.parent_path()})
+    EXPECT_EQ(suggest_source(place.string()), "") << place;
+}
+
+TEST(FrameSource, AFolderThatIsNoSceneIsToldByWhatIsThere) {
+  const fs::path above = fresh_folder("source_above");
+  expect_says(error_of([&] { open_frame_source("bop:" + (above / "none").string()); }),
+              {(above / "none").string() + ": no such folder, expected a BOP scene folder"});
+  write_text(above / "file", "");
+  expect_says(error_of([&] { open_frame_source("bop:" + (above / "file").string()); }),
+              {(above / "file").string() + ": is a file, expected a folder: a BOP scene folder"});
+  expect_says(error_of([&] { open_frame_source("bop:" + above.string()); }),
+              {above.string() + ": no scene_camera.json in it"});
+  BopWriter writer(above / "scene");
+  writer.add(plain_frame(), {}, {});
+  writer.finish();
+  expect_says(error_of([&] { open_frame_source("bop:" + above.string()); }),
+              {"bop:" + (above / "scene").string() + " is one"});
 }
 
 TEST(FrameSource, BadSpecificationsAreRefused) {

@@ -50,5 +50,19 @@ TEST(ImageDecoding, SoItIsOfFiles) {
   EXPECT_TRUE(decode_image_file(file, cv::IMREAD_COLOR).empty());
 }
 
+TEST(ImageDecoding, APngThatIsCutIsRefusedWithoutAWordOfTheLibrary) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("image_decoding_cut_" + std::to_string(getpid()) + ".png");
+  cv::Mat noise(100, 100, CV_8UC3);
+  cv::randu(noise, 0, 256);
+  cv::imwrite(file.string(), noise);
+  EXPECT_EQ(decode_image_file(file, cv::IMREAD_COLOR).rows, 100);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  testing::internal::CaptureStderr();
+  EXPECT_TRUE(decode_image_file(file, cv::IMREAD_COLOR).empty());
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  std::filesystem::remove(file);
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/base/checks.hpp"
+#include "tests/expect_says.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {
@@ -62,6 +64,13 @@ TEST(LcmUrl, WhatLcmWouldMistakeIsRefused) {
                           "udpm://?recv_buf_size=99999999999"}) {
     EXPECT_THROW(check_lcm_url(url), InputError) << url;
   }
+}
+
+TEST(LcmUrl, ALogWithoutItsSchemeIsToldWithIt) {
+  const std::string log = (fresh_folder("lcm_url") / "take.lcmlog").string();
+  EXPECT_EQ(error_of([&] { check_lcm_url(log); }).find("did you mean"), std::string::npos) << "no such log";
+  write_text(log, "");
+  expect_says(error_of([&] { check_lcm_url(log); }), {"LCM URL '" + log + "'", "did you mean file://" + log + "?"});
 }
 
 TEST(LcmUrl, WhatLcmPassesOverIsSaid) {

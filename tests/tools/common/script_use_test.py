@@ -71,13 +71,13 @@ class Json(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIsInstance(json.loads(done.stdout), list)
         refused = run("hs-capture", "--json", "--source", "openni2")
-        self.assertEqual((refused.returncode, refused.stderr), (1, "hs-capture: --json goes with --list-devices\n"))
+        self.assertEqual((refused.returncode, refused.stderr), (2, "hs-capture: --json goes with --list-devices\n"))
 
 
 class Statuses(unittest.TestCase):
     def test_what_the_tools_readme_says_of_them(self):
         for words, status in ((("hs-log", "--help"), 0), (("hs-log", "--version"), 0), (("hs-log",), 2), (("hs-log", "--nonsense"), 2),
-                              (("hs-detect", "--threshold", "2"), 2), (("hs-detect", "--forest", "/nowhere"), 1),
+                              (("hs-capture",), 2), (("hs-detect", "--threshold", "2"), 2), (("hs-detect", "--forest", "/nowhere"), 1),
                               (("hs-log", "info", "/nowhere"), 1)):  # fmt: skip
             self.assertEqual(run(*words).returncode, status, words)
 

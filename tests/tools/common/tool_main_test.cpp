@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/base/checks.hpp"
+#include "tools/common/usage_error.hpp"
 
 namespace houghstream {
 namespace {
@@ -21,6 +21,15 @@ TEST(ToolMain, AFailureIsOneLineAndAStatus) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(run({}, [] { fail("a.txt: 3 legs, expected 4"); }), 1);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "hs-tool: a.txt: 3 legs, expected 4\n");
+}
+
+TEST(ToolMain, WordsThatDoNotGoTogetherHaveTheStatusOfAnUnknownOption) {
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run({}, [] { require_usage(false, "--a and --b, expected one of them"); }), 2);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "hs-tool: --a and --b, expected one of them\n");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run({"--nonsense"}, [] {}), 2);
+  testing::internal::GetCapturedStderr();
 }
 
 TEST(ToolMain, WhatWorksEndsWithZero) {

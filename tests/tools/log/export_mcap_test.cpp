@@ -5,6 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/messages/channels.hpp"
+#include "tests/expect_says.hpp"
 #include "tests/test_files.hpp"
 #include "tests/tools/log/foreign_frames.hpp"
 #include "tests/tools/log/recordings.hpp"
@@ -72,6 +73,17 @@ TEST(ExportMcap, IsNotWrittenOverItsLogNorBesideSomebodyElse) {
   EXPECT_EQ(read_text(log), before);
   const AtomicFile held(folder / "out.mcap");
   EXPECT_THROW(export_mcap(log, {}, folder / "out.mcap", losses), InputError) << "somebody else writes it";
+}
+
+TEST(ExportMcap, ResultsWithoutFramesAreToldToLackImages) {
+  const fs::path folder = fresh_folder("export_mcap_results");
+  TestLog log(folder / "in.lcmlog");
+  const Detections detections{{"FRAMES", 1'000'000}, {}, {}};
+  log.add(channel::kDetections, to_message(detections));
+  log.close();
+  LossReport losses;
+  EXPECT_EQ(export_mcap(folder / "in.lcmlog", {}, folder / "out.mcap", losses), 0);
+  expect_says(losses.line(), {"no frames in it, so there are no images", "--keep-frames"});
 }
 
 TEST(ExportMcap, ALogWithNothingToShowIsRefused) {

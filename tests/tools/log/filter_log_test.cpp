@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/base/checks.hpp"
+#include "tests/expect_says.hpp"
 #include "tests/test_files.hpp"
 
 namespace houghstream::log_tools {
@@ -110,7 +111,10 @@ TEST_F(FilterLog, WhatMakesNoSenseIsRefused) {
   filter = {};
   filter.start_s = 100.0;
   fs::remove(folder / "out");
-  EXPECT_THROW(pass(filter), InputError);
+  expect_says(error_of([&] { pass(filter); }),
+              {"no event from 100 s to its end on channels '.*'; it lasts 9.000 s, on A_ONE, B"});
+  filter.end_s = 50.0;
+  expect_says(error_of([&] { pass(filter); }), {"from 100 s to 50 s, expected an end that is not before the start"});
   EXPECT_FALSE(fs::exists(folder / "out")) << "nothing is written where nothing passes";
   LossReport losses;
   EXPECT_THROW(filter_log(folder / "in", {}, folder / "in", losses), InputError);

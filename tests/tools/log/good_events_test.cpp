@@ -110,6 +110,15 @@ TEST(IntactEvents, AForgedLogIsReadAFewTimesOnly) {
   EXPECT_LE(events, 10U);
 }
 
+TEST(IntactEvents, AFileThatIsNoLogIsNamedFirst) {
+  const fs::path file = fresh_folder("good_none") / "film.mp4";
+  write_text(file, std::string(100, 'x'));
+  LossReport losses;
+  IntactEvents events(file, losses);
+  const std::string error = error_of([&] { events.next(); });
+  EXPECT_EQ(error.find(file.string() + ": no event of an LCM log in it"), 0U) << error;
+}
+
 TEST(LossReport, SaysInOneLineWhatWasLost) {
   LossReport losses;
   losses.note_refused("frame 7: no camera");

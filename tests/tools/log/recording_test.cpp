@@ -125,6 +125,10 @@ TEST(Recording, WhatCannotBeOpenedOrMakesNoSenseIsRefused) {
     settings.source = source;
     EXPECT_THROW(numbers_in(settings, losses), InputError) << source;
   }
+  write_text(folder / "depth.txt", "");
+  settings.source = folder.string();
+  EXPECT_NE(error_of([&] { open_recording(settings, losses); }).find("did you mean tum:" + folder.string() + "?"),
+            std::string::npos);
   settings.source = log_of(folder, 1, "FRAMES", foreign_images);
   settings.camera = Camera{64, 48, -1.0, 99.0, 31.0, 23.0};
   EXPECT_THROW(open_recording(settings, losses), InputError);

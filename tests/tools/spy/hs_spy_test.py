@@ -32,6 +32,7 @@ class HsSpy(unittest.TestCase):
         self.assert_refused(start("--no-such"), "unknown argument --no-such")
         self.assert_refused(start("-l"), "-l needs a value")
         self.assert_refused(start("--heap", "much"), "--heap much")
+        self.assertEqual([start(*words).returncode for words in (["--no-such"], ["-l"], ["--heap", "much"])], [2, 2, 2])
         self.assert_refused(start("-l", "nonsense://x"), "LCM URL nonsense://x: expected udpm://")
         self.assert_refused(start("-l", "file:///tmp/x.lcmlog"), "lcm-logplayer")
 
