@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "tools/finder/object_finder.hpp"
 #include "tools/python/native_values.hpp"
 #include "tools/python/result_listener.hpp"
@@ -117,7 +118,8 @@ py::object next_result(ResultListener& listener) {
 
 PYBIND11_MODULE(_native, module) {
   using namespace houghstream;
-  py::register_exception<InputError>(module, "InputError", PyExc_ValueError);
+  start_log("houghstream", LogLevel::kInfo);  // on stderr: what the program prints is its own
+  py::register_exception<InputError>(module, "InputError", PyExc_ValueError).attr("__module__") = "houghstream";
   py::class_<NativeFinder>(module, "Finder")
       .def(py::init(&make_finder), py::arg("store"), py::arg("threads"), py::arg("threshold"), py::arg("min_quality"),
            py::arg("precision"))

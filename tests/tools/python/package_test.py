@@ -102,17 +102,34 @@ class EventLog(unittest.TestCase):
 class Examples(unittest.TestCase):
     """Those that print lines, as people use them: into a pipe whose reader has had enough."""
 
-    def test_head_ends_them_without_a_word(self):
-        examples = pathlib.Path(__file__).resolve().parents[3] / "tools/examples/python"
+    FOLDER = pathlib.Path(__file__).resolve().parents[3] / "tools/examples/python"
+
+    @staticmethod
+    def write_poses(log, quaternion):
+        """A hundred events of a hundred poses each."""
         pose = object_pose_t()
-        pose.class_name, pose.class_id, pose.status, pose.quat = "mug", 1, object_pose_t.VALID, [1.0, 0.0, 0.0, 0.0]
+        pose.class_name, pose.class_id, pose.status, pose.quat = "mug", 1, object_pose_t.VALID, quaternion
         message = object_poses_t()
         message.poses, message.n_poses = 100 * [pose], 100
         channel, data = b"HOUGHSTREAM_POSES", message.encode()
+        log.write_bytes(b"".join(struct.pack(">IQQII", 0xEDA1DA01, i, i, len(channel), len(data)) + channel + data
+                                 for i in range(100)))  # fmt: skip
+
+    def test_what_the_library_says_is_not_among_what_they_print(self):
+        if not hasattr(sys.modules["houghstream"], "listen"):
+            self.skipTest("built without pybind11")
         with tempfile.TemporaryDirectory(prefix="package_test_") as folder:
             log = pathlib.Path(folder) / "poses.lcmlog"
-            log.write_bytes(b"".join(struct.pack(">IQQII", 0xEDA1DA01, i, i, len(channel), len(data)) + channel + data
-                                     for i in range(100)))  # fmt: skip
+            self.write_poses(log, [0.0, 0.0, 0.0, 0.0])
+            said = subprocess.run([f"{self.FOLDER}/listen.py", f"file://{log}"], capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual(said.stdout, "")
+            self.assertIn("quaternion of length 0", said.stderr)
+
+    def test_head_ends_them_without_a_word(self):
+        examples = self.FOLDER
+        with tempfile.TemporaryDirectory(prefix="package_test_") as folder:
+            log = pathlib.Path(folder) / "poses.lcmlog"
+            self.write_poses(log, [1.0, 0.0, 0.0, 0.0])
             for line in (f"{examples}/read_log.py {log}", f"{examples}/listen.py file://{log}"):
                 if "listen" in line and not hasattr(sys.modules["houghstream"], "listen"):  # built without pybind11
                     continue
