@@ -14,6 +14,7 @@
 #include "pipeline/process/detect_process.hpp"
 #include "pipeline/process/warm_up.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/common/usage_error.hpp"
 #include "tools/finder/search_arguments.hpp"
 #include "tools/finder/stored_forest.hpp"
 #include "tools/finder/stored_precision.hpp"
@@ -159,8 +160,10 @@ int main(int argc, char** argv) {
     share_one_heap();
     if (!camera.empty()) options.process.camera = camera_of_option(camera);
     if (options.process.max_rate_hz > 0.0) lower_priority();
-    require(options.forest_file.empty() != options.objects.empty(), "expected either --objects STORE or --forest FILE");
-    require(!options.precision || !options.objects.empty(), "--precision goes with --objects, whose practice it reads");
+    require_usage(options.forest_file.empty() != options.objects.empty(),
+                  "expected either --objects STORE or --forest FILE");
+    require_usage(!options.precision || !options.objects.empty(),
+                  "--precision goes with --objects, whose practice it reads");
     require_output_log(options.url, options.output_log);
     for (const std::string& input : {options.forest_file, options.objects})
       require_other_file(options.output_log, input);

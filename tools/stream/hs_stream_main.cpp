@@ -12,6 +12,7 @@
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/messages/channels.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/common/usage_error.hpp"
 #include "tools/stream/state_board.hpp"
 #include "tools/stream/stream_plan.hpp"
 
@@ -107,9 +108,11 @@ void await_last_frames(StatusEar& ear, const DrainMonitor& last_frames) {
 }
 
 void run_stream(StreamOptions options, const Pace& pace) {
-  require(options.objects.empty() != options.forest.empty(), "expected either --objects STORE or --forest FILE");
-  require(!options.precision || !options.objects.empty(), "--precision goes with --objects, whose practice it reads");
-  require(options.objects.empty() || options.models.empty(), "--models goes with --forest; --objects has its own");
+  require_usage(options.objects.empty() != options.forest.empty(), "expected either --objects STORE or --forest FILE");
+  require_usage(!options.precision || !options.objects.empty(),
+                "--precision goes with --objects, whose practice it reads");
+  require_usage(options.objects.empty() || options.models.empty(),
+                "--models goes with --forest; --objects has its own");
   options.executables = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   if (options.view && options.view_options.empty() && !has_display()) {
     log_warning(

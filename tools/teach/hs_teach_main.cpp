@@ -6,6 +6,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/common/usage_error.hpp"
 #include "tools/teach/mesh/store_merge.hpp"
 #include "tools/teach/mesh/store_rename.hpp"
 #include "tools/teach/mesh/store_report.hpp"
@@ -188,9 +189,9 @@ CommandLine add_show(CommandLine& app, ShowOptions& options, ShowWords& words) {
 int run_show(ShowOptions options, const ShowWords& words) {
   if (!words.box.empty()) options.box = parse_box(words.box);
   if (!words.at.empty()) options.at = parse_place(words.at);
-  require(!options.box || !options.at, "expected either --box or --at");
-  require(options.source.empty() == words.from_stream, "expected either --source SOURCE or --from-stream");
-  require(!words.from_stream || options.second.empty(), "--second goes with --source, not with --from-stream");
+  require_usage(!options.box || !options.at, "expected either --box or --at");
+  require_usage(options.source.empty() == words.from_stream, "expected either --source SOURCE or --from-stream");
+  require_usage(!words.from_stream || options.second.empty(), "--second goes with --source, not with --from-stream");
   return words.from_stream ? show_from_stream(options, words.lcm_url) : show_sources(options, nullptr);
 }
 
@@ -264,7 +265,7 @@ int main(int argc, char** argv) {
       write_store_report(folder, page);
       fmt::print("{}\n", page.string());
     } else if (frame.given()) {
-      require(remove_frame != !place.empty(), "expected either --at x,y,z[,qw,qx,qy,qz] or --remove");
+      require_usage(remove_frame != !place.empty(), "expected either --at x,y,z[,qw,qx,qy,qz] or --remove");
       set_frame_in_store(folder, name, frame_name,
                          remove_frame ? std::nullopt : std::optional(parse_frame_place(place)));
     } else if (rename.given()) {

@@ -77,7 +77,8 @@ class Json(unittest.TestCase):
 class Statuses(unittest.TestCase):
     def test_what_the_tools_readme_says_of_them(self):
         for words, status in ((("hs-log", "--help"), 0), (("hs-log", "--version"), 0), (("hs-log",), 2), (("hs-log", "--nonsense"), 2),
-                              (("hs-capture",), 2), (("hs-detect", "--threshold", "2"), 2), (("hs-detect", "--forest", "/nowhere"), 1),
+                              (("hs-capture",), 2), (("hs-detect",), 2), (("hs-stream",), 2), (("hs-detect", "--threshold", "2"), 2),
+                              (("hs-detect", "--forest", "/nowhere"), 1),
                               (("hs-log", "info", "/nowhere"), 1)):  # fmt: skip
             self.assertEqual(run(*words).returncode, status, words)
 

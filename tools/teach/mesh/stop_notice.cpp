@@ -22,6 +22,11 @@ StopNotice::~StopNotice() {
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
+void StopNotice::remove_on_stop(const std::filesystem::path& folder) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  folder_ = folder;
+}
+
 void StopNotice::release() {
   is_over_ = true;
   if (watcher_.joinable()) watcher_.join();
@@ -34,6 +39,11 @@ void StopNotice::watch() {
     if (received < 0) continue;
     fmt::print(stderr, "{}{}\n", isatty(STDERR_FILENO) == 1 ? "\n" : "", line_);  // below a line of progress
     std::fflush(stderr);
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      std::error_code unremoved;  // the next teaching removes what is left
+      if (!folder_.empty()) std::filesystem::remove_all(folder_, unremoved);
+    }
     std::signal(received, SIG_DFL);  // who waits for the program sees which signal ended it
     pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
     std::raise(received);

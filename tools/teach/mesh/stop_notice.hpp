@@ -2,6 +2,8 @@
 
 #include <atomic>
 #include <csignal>
+#include <filesystem>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -17,6 +19,9 @@ class StopNotice {
   StopNotice(const StopNotice&) = delete;
   StopNotice& operator=(const StopNotice&) = delete;
 
+  /// A signal removes this folder too, with all that is in it.
+  void remove_on_stop(const std::filesystem::path& folder);
+
   /// Lets the signals wait from here on until this one is gone.
   void release();
 
@@ -24,6 +29,8 @@ class StopNotice {
   void watch();
 
   std::string line_;
+  std::mutex mutex_;
+  std::filesystem::path folder_;  // guarded by the mutex; empty without one
   sigset_t signals_{};
   sigset_t before_{};
   std::atomic<bool> is_over_{false};

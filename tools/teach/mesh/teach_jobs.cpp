@@ -221,6 +221,7 @@ void teach_meshes(const TeachOptions& options) {
   if (options.backgrounds.camera) parse_camera(*options.backgrounds.camera);
   require_empty_dump(options.dump_views);
   store::StoreTransaction build(options.out);  // before the store is read: nobody else changes it from here on
+  stop.remove_on_stop(build.folder());
   if (!options.add && !options.replace) require_no_store(options.out);
   StoreContents old;
   if (options.add) {
@@ -234,7 +235,7 @@ void teach_meshes(const TeachOptions& options) {
   }
   require_new_names(old.list, meshes);
   assign_free_ids(old.list, meshes);
-  progress(fmt::format("{} meshes read", meshes.size()));
+  progress(fmt::format("{} mesh{} read", meshes.size(), meshes.size() == 1 ? "" : "es"));
 
   ObjectStore new_store = start_store(build.folder());
   std::vector<StoreModel> models;
@@ -261,8 +262,8 @@ void teach_meshes(const TeachOptions& options) {
   stop.release();
   build.commit();
   log_lookalikes(models, new_store);
-  fmt::print("{}", teaching_summary(store::read_store(options.out), new_ids));
   fmt::print("teach_seconds {:.1f}\n", progress.seconds());
+  fmt::print("{}", teaching_summary(store::read_store(options.out), new_ids));
 }
 
 void log_lookalikes(const std::vector<StoreModel>& models, const ObjectStore& list) {
@@ -305,6 +306,7 @@ void calibrate_store(const fs::path& folder, const CalibrationSettings& settings
   StopNotice stop(unchanged_notice(folder));
   require_store(folder);
   store::StoreTransaction build(folder);
+  stop.remove_on_stop(build.folder());
   StoreContents old = read_contents(folder);
   const std::set<int> ids = ids_of(old.list, names);
   ObjectStore new_store = start_store(build.folder());

@@ -112,6 +112,16 @@ void append_plain_folder(const fs::path& folder, const MeshSources& sources, std
   for (const fs::path& file : files) meshes.push_back(read_mesh(0, file.stem().string(), file, unit_of(file, sources)));
 }
 
+/// Returns how a mesh of a common format that is not read becomes one that is; empty for other files.
+std::string conversion_of(const fs::path& file) {
+  for (const char* extension : {".stl", ".dae", ".3ds", ".off", ".x3d"}) {
+    if (file.extension() != extension) continue;
+    return fmt::format("; assimp export {} {} makes one (Debian's assimp-utils)", file.string(),
+                       fs::path(file).replace_extension(".ply").string());
+  }
+  return "";
+}
+
 /// Renames objects, by id or by old name. Throws InputError for a name without effect.
 void rename(const std::vector<std::string>& renames, std::vector<TaughtMesh>& meshes) {
   std::set<std::string> renamed;
@@ -129,8 +139,22 @@ void rename(const std::vector<std::string>& renames, std::vector<TaughtMesh>& me
   }
 }
 
+/// Returns the option that gives an object, which is called as its file, a name without what no name may hold; where it
+/// needs none, or the option could not be written so, "--names" alone.
+std::string renaming_option(const TaughtMesh& mesh) {
+  const std::string which = mesh.file.stem().string();
+  if (mesh.id > 0 || mesh.name != which) return "--names";
+  std::string word = which;
+  for (char& letter : word) {
+    if (std::string(" ,/\\=").find(letter) != std::string::npos) letter = '_';
+  }
+  if (word == which || which.find_first_of(",=") != std::string::npos) return "--names";
+  return fmt::format("--names '{}={}'", which, word);
+}
+
 void require_names(const std::vector<TaughtMesh>& meshes) {
-  for (const TaughtMesh& mesh : meshes) store::require_new_name(mesh.name, mesh.file.string() + " (--names)");
+  for (const TaughtMesh& mesh : meshes)
+    store::require_new_name(mesh.name, fmt::format("{} ({})", mesh.file.string(), renaming_option(mesh)));
 }
 
 void require_different(const std::vector<TaughtMesh>& meshes) {
@@ -206,7 +230,8 @@ std::vector<TaughtMesh> read_meshes(const MeshSources& sources) {
       append_plain_folder(source, sources, meshes);
     } else {
       require(fs::exists(source), "{}: no such file or folder, expected a mesh or a folder of meshes", source.string());
-      require(is_mesh_file(source), "{}: expected a mesh: PLY, OBJ, GLB or glTF", source.string());
+      require(is_mesh_file(source), "{}: expected a mesh: PLY, OBJ, GLB or glTF{}", source.string(),
+              conversion_of(source));
       meshes.push_back(read_mesh(0, source.stem().string(), source, unit_of(source, sources)));
     }
   }

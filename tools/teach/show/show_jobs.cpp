@@ -15,6 +15,7 @@
 #include "pose/fusion/surface_nets.hpp"
 #include "pose/reconstruction/model/take_model.hpp"
 #include "pose/reconstruction/tracking/take_placer.hpp"
+#include "tools/common/usage_error.hpp"
 #include "tools/teach/mesh/mesh_checks.hpp"
 #include "tools/teach/mesh/teach_jobs.hpp"
 #include "tools/teach/show/session_archive.hpp"
@@ -112,7 +113,7 @@ void check_show_options(const ShowOptions& options) {
   store::require_new_name(options.name, "--name");
   if (!options.keep.empty()) require_keepable(options.keep);
   if (!options.teach) return;
-  require(!options.out.empty(), "--out is missing, expected the store to teach into, or --no-teach");
+  require_usage(!options.out.empty(), "--out is missing, expected the store to teach into, or --no-teach");
   store::require_place_for_store(options.out);
   store::recover_store(options.out);
   if (!options.add && !options.replace) require_no_store(options.out);
@@ -182,7 +183,7 @@ Take follow(const TakeSource& source, const ShowOptions& options, ProgressReport
     }
     reporter.frame(frame->id, placer.process(*frame));
   }
-  reporter.step(TeachingState::kFusing, 0.0, "all keyframes are laid on one another");
+  if (placer.state().frames > 0) reporter.step(TeachingState::kFusing, 0.0, "all keyframes are laid on one another");
   Take take = placer.finish();
   require(take.frames.size() >= kMin, "{} frames, expected at least {}, of a whole turn", take.frames.size(), kMin);
   return take;

@@ -25,6 +25,21 @@ TEST(StopNoticeDeathTest, SaysWhatIsLeftAndEndsByTheSignal) {
   }
 }
 
+TEST(StopNoticeDeathTest, WhatWasBegunIsRemoved) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const std::filesystem::path begun = std::filesystem::temp_directory_path() / "stop_notice_test.begun";
+  std::filesystem::create_directories(begun / "views");
+  EXPECT_EXIT(
+      {
+        StopNotice notice("stopped");
+        notice.remove_on_stop(begun);
+        kill(getpid(), SIGINT);
+        wait_a_second();
+      },
+      testing::KilledBySignal(SIGINT), "^stopped\n$");
+  EXPECT_FALSE(std::filesystem::exists(begun));
+}
+
 TEST(StopNoticeDeathTest, AfterItsReleaseASignalWaitsWithoutAWord) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(

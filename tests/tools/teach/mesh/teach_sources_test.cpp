@@ -82,6 +82,16 @@ TEST(MeshSources, FilesHaveTheirNamesAndUnits) {
   expect_says(refusal(from(folder / "notes.txt")), {"notes.txt", "expected a mesh: PLY, OBJ, GLB or glTF"});
 }
 
+TEST(MeshSources, AFormatThatIsNotReadIsToldWithItsConversion) {
+  const fs::path folder = fresh_folder("sources_formats");
+  write_text(folder / "part.stl", "solid part");
+  write_text(folder / "part.txt", "part");
+  const std::string part = (folder / "part").string();
+  expect_says(refusal(from(folder / "part.stl")),
+              {"expected a mesh: PLY", "assimp export " + part + ".stl " + part + ".ply"});
+  EXPECT_EQ(refusal(from(folder / "part.txt")).find("assimp"), std::string::npos);
+}
+
 TEST(MeshSources, WhatNoStoreCanHoldIsRefused) {
   const fs::path folder = fresh_folder("sources_unstorable");
   Mesh far = crooked_part();
@@ -97,6 +107,8 @@ TEST(MeshSources, WhatNoStoreCanHoldIsRefused) {
     sources.names = {"m\xfcg=" + none};
     expect_says(refusal(sources), {"(--names): the name '" + none + "', expected a word"});
   }
+  save_ply(crooked_part(), folder / "my mug.ply");
+  expect_says(refusal(from(folder / "my mug.ply")), {"(--names 'my mug=my_mug'): the name 'my mug', expected a word"});
   sources.names = {"m\xfcg=mug"};
   EXPECT_EQ(read_meshes(sources).at(0).name, "mug");
 }
