@@ -9,6 +9,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/common/usage_error.hpp"
 #include "tools/evaluate/bop_results.hpp"
 #include "tools/evaluate/bop_targets.hpp"
 #include "tools/evaluate/class_names.hpp"
@@ -151,10 +152,10 @@ void check_place(const EvaluateOptions& options) {
 
 void run(EvaluateOptions options) {
   check_place(options);
-  require(!options.log.empty() || !options.known.forest.empty(),
-          "neither --log nor --forest nor --objects, expected results to evaluate");
-  require(options.log.empty() || options.scenes.size() == 1, "--log with {} scenes, expected the one that it is of",
-          options.scenes.size());
+  require_usage(!options.log.empty() || !options.known.forest.empty(),
+                "neither --log nor --forest nor --objects, expected results to evaluate");
+  require_usage(options.log.empty() || options.scenes.size() == 1,
+                "--log with {} scenes, expected the one that it is of", options.scenes.size());
   std::optional<Latencies> latencies;
   if (!options.latency.empty()) latencies = read_latencies(options.latency);
   std::vector<OpenScene> scenes = open_scenes(options);
@@ -236,8 +237,8 @@ static EvaluateOptions with_store(EvaluateOptions options) {
   const std::optional<store::ObjectStore> store = resolve_store(options.known);
   options.pose = pose_settings_of(options.pose, store, options.min_quality);
   if (!options.rules.precision) return options;
-  require(store.has_value() && options.log.empty(),
-          "--precision goes with --objects, whose practice it reads, and without --log");
+  require_usage(store.has_value() && options.log.empty(),
+                "--precision goes with --objects, whose practice it reads, and without --log");
   options.rules.class_operating_scores = with_precision({}, *store, options.rules.precision).class_thresholds;
   set_precision(*options.rules.precision, *store, options.pose);
   return options;

@@ -16,6 +16,7 @@
 #include "pose/seen/camera_colours.hpp"
 #include "tools/common/mesh_size.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/common/usage_error.hpp"
 #include "tools/finder/search_arguments.hpp"
 #include "tools/finder/stored_precision.hpp"
 #include "tools/finder/stored_quality.hpp"
@@ -233,8 +234,10 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     share_one_heap();
     if (!camera.empty()) options.process.camera = camera_of_option(camera);
-    require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
-    require(!options.precision || !options.objects.empty(), "--precision goes with --objects, whose practice it reads");
+    require_usage(options.objects.empty() || options.models.empty(),
+                  "expected either --objects STORE or --models FOLDER");
+    require_usage(!options.precision || !options.objects.empty(),
+                  "--precision goes with --objects, whose practice it reads");
     require_output_log(options.url, options.output_log);
     for (const std::string& input : {options.models, options.objects}) require_other_file(options.output_log, input);
     options.objects.empty() ? run_with_models(options) : run_with_store(options);

@@ -7,6 +7,7 @@
 #include "pipeline/base/stop_signal.hpp"
 #include "pose/tracks/camera_extrinsics.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/common/usage_error.hpp"
 #include "tools/finder/track_models.hpp"
 #include "tools/track/track_process.hpp"
 
@@ -111,7 +112,8 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     catch_stop_signals();
     if (!camera.empty()) options.process.camera = camera_of_option(camera);
-    require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
+    require_usage(options.objects.empty() || options.models.empty(),
+                  "expected either --objects STORE or --models FOLDER");
     require(!options.process.check || options.output_log.empty(),
             "--output-log {}: --check publishes nothing, expected one of the two", options.output_log);
     if (!options.process.check) require_output_log(options.url, options.output_log);

@@ -8,6 +8,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
+#include "tools/common/usage_error.hpp"
 
 namespace houghstream::view {
 namespace {
@@ -34,7 +35,8 @@ ViewedFrame decode(const MatchedFrame& matched, const std::optional<Camera>& cam
 }
 
 std::shared_ptr<const ClassModels> load_models(const FrameRendererSettings& settings) {
-  require(settings.models.empty() || settings.objects.empty(), "expected either --objects STORE or --models FOLDER");
+  require_usage(settings.models.empty() || settings.objects.empty(),
+                "expected either --objects STORE or --models FOLDER");
   ClassModels models;
   if (!settings.models.empty()) models = load_class_models(settings.models, settings.model_unit_m);
   return std::make_shared<const ClassModels>(std::move(models));

@@ -99,12 +99,6 @@ void draw_objects(Block block, const ViewedFrame& viewed) {
   }
 }
 
-std::string latency_heading(const ViewedFrame& viewed) {
-  if (!viewed.detect_latency_ms) return "no detections";
-  const std::string detections = fmt::format("detections after {:.0f} ms, ", *viewed.detect_latency_ms);
-  return detections + (viewed.pose_latency_ms ? fmt::format("poses {:.0f}", *viewed.pose_latency_ms) : "no poses");
-}
-
 void draw_keys(cv::Mat image, const FrameViewSettings& settings, bool several_cameras) {
   image.setTo(kKeysGround);
   const int baseline = kKeysHeight - 9;
@@ -117,6 +111,12 @@ void draw_keys(cv::Mat image, const FrameViewSettings& settings, bool several_ca
 }
 
 }  // namespace
+
+std::string latency_heading(const std::optional<double>& detect_ms, const std::optional<double>& pose_ms) {
+  if (!detect_ms) return pose_ms ? fmt::format("poses after {:.0f} ms", *pose_ms) : "no detections";
+  const std::string detections = fmt::format("detections after {:.0f} ms, ", *detect_ms);
+  return detections + (pose_ms ? fmt::format("poses {:.0f}", *pose_ms) : "no poses");
+}
 
 std::string camera_heading(const FrameId& frame, const std::vector<std::string>& cameras) {
   std::string time = fmt::format("frame {:.3f} s", static_cast<double>(frame.utime) * 1e-6);
@@ -150,7 +150,7 @@ cv::Mat draw_panel(const ViewedFrame& viewed, const StreamView& stream, const Fr
   draw_objects(Block(panel, corner(1), objects_heading(viewed, settings.min_score)), viewed);
   Block stages(panel, corner(2), "stages, ms");
   draw_stage_list(stages.image(), stages.area(), viewed.poses ? viewed.poses->stages : viewed.detections.stages, kRows);
-  Block latency(panel, corner(3), latency_heading(viewed));
+  Block latency(panel, corner(3), latency_heading(viewed.detect_latency_ms, viewed.pose_latency_ms));
   draw_latency_chart(latency.image(), latency.area(), stream.history);
   if (settings.show_keys) draw_keys(panel.rowRange(blocks_height, panel.rows), settings, stream.cameras.size() > 1);
   return panel.colRange(0, width).clone();

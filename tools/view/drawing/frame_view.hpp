@@ -63,6 +63,10 @@ cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const
 /// Returns the heading that names frame and camera: "LEFT_CAMERA (1 of 2), frame 1499876543.210 s".
 std::string camera_heading(const FrameId& frame, const std::vector<std::string>& cameras);
 
+/// Returns the heading of the latency chart: after how many milliseconds detections and poses came. What is followed
+/// from frame to frame has poses without detections.
+std::string latency_heading(const std::optional<double>& detect_ms, const std::optional<double>& pose_ms);
+
 /// Returns the rate of frames and the number of those lost: "frames 30.0 Hz, 2 lost". A negative number is unknown.
 std::string rates_line(double frames_hz, std::int64_t lost);
 

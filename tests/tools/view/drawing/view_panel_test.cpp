@@ -48,6 +48,13 @@ TEST(ViewPanel, TheCameraIsNamedAndThatThereAreOthers) {
   EXPECT_EQ(camera_heading({"", 1'500'000}, {}), "frame 1.500 s");
 }
 
+TEST(ViewPanel, LatencyIsThatOfWhatCame) {
+  EXPECT_EQ(latency_heading(50.0, 80.4), "detections after 50 ms, poses 80");
+  EXPECT_EQ(latency_heading(50.0, std::nullopt), "detections after 50 ms, no poses");
+  EXPECT_EQ(latency_heading(std::nullopt, 12.0), "poses after 12 ms") << "of followed objects";
+  EXPECT_EQ(latency_heading(std::nullopt, std::nullopt), "no detections");
+}
+
 TEST(ViewPanel, WhatTheDetectorSendsIsAllShownUnlessAskedOtherwise) {
   ViewedFrame viewed = with_objects(3);
   for (Detection& detection : viewed.detections.detections) detection.score = 0.1F;

@@ -54,6 +54,9 @@ def check_elements(page):
     page.wait_for(f"{text_of('#processes tbody')}.includes('hs-view')")
     assert "pose.registration" in page.value(text_of("#stages"))
     assert page.value(text_of("#latency-title")).startswith("LATENCY: detections ")
+    titles = "[[null, 27], [50, 27], [50, null], [null, null]].map(([detect_ms, pose_ms]) => { Object.assign(frame, { detect_ms, pose_ms }); showStages(); return document.getElementById('latency-title').textContent; })"  # fmt: skip
+    assert page.value(titles) == ["LATENCY: poses 27 ms", "LATENCY: detections 50 ms, poses 27 ms", "LATENCY: detections 50 ms, no poses",
+                                  "LATENCY: no detections"], page.value(titles)  # fmt: skip
     second = "document.getElementById('second')"
     page.value("{ const view = document.getElementById('second-view'); view.value = '3d'; view.dispatchEvent(new Event('change')); }")
     before = page.value(f"{second}.src")
@@ -91,6 +94,8 @@ def check_terms(page):
     assert page.value(text_of("#explanation")) == score
     page.value("document.body.dispatchEvent(new PointerEvent('pointerup', { bubbles: true, pointerType: 'touch' }))")
     assert page.value("document.getElementById('explanation').hidden")
+    unexplained = "[...document.querySelectorAll('th.n')].map(head => head.innerText).filter((words, i) => !document.querySelectorAll('th.n')[i].querySelector('[title]'))"  # fmt: skip
+    assert page.value(unexplained) == ["age"], page.value(unexplained)
     assert "score" in page.value(text_of("#terms")) and "quality" in page.value(text_of("#terms"))
 
 
