@@ -273,7 +273,20 @@ def check_token(page, start_view):
     view.stop(10)
 
 
+# A long row in the list of objects: whether the list stays within its card, and on how many lines the name stands.
+LONG_ROW = """(() => { const table = document.getElementById('objects'), row = table.tBodies[0].rows[0].cloneNode(true);
+  row.cells[0].lastChild.textContent = 'coffee_mug';
+  row.cells[2].innerHTML = '-0.243, -0.117, 1.853<div class="muted">quality 0.36, by shape 0.93</div>';
+  table.tBodies[0].append(row);
+  const name = document.createRange(); name.selectNodeContents(row.cells[0].lastChild);
+  const found = [table.getBoundingClientRect().right <= table.parentElement.getBoundingClientRect().right, name.getClientRects().length];
+  row.remove(); return found; })()"""
+
+
 def check_phone(page, out):
+    page.resize(360, 740, True)
+    page.wait_for("innerWidth === 360")
+    assert page.value(LONG_ROW) == [True, 1], page.value(LONG_ROW)
     page.resize(390, 844, True)
     page.wait_for("innerWidth === 390")
     assert page.value("document.documentElement.scrollWidth") <= 390, "a phone has to scroll sideways"
