@@ -11,6 +11,7 @@ int colours_command(CommandLine& app, int argc, char** argv);
 int evaluate_command(CommandLine& app, int argc, char** argv);
 int failures_command(CommandLine& app, int argc, char** argv);
 int hough_command(CommandLine& app, int argc, char** argv);
+int household_command(CommandLine& app, int argc, char** argv);
 int kernels_command(CommandLine& app, int argc, char** argv);
 int linemod_command(CommandLine& app, int argc, char** argv);
 int pose_command(CommandLine& app, int argc, char** argv);

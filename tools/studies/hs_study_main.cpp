@@ -29,6 +29,8 @@ constexpr Study kStudies[] = {
     {"colours",
      "Measures what cameras of strange colours cost in rendered rooms, and what learning their colours brings back",
      studies::colours_command},
+    {"household", "Renders furnished rooms in which objects that are taught and others stand together, with the truth",
+     studies::household_command},
     {"quality", "Learns QualitySettings, by which a pose's evidence becomes the probability that it is right",
      studies::quality_command},
     {"pose", "Measures poses on rendered scenes: ours, PCL's ICP from the same starts, and two other methods",

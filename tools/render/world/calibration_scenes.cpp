@@ -16,7 +16,6 @@ namespace houghstream::world {
 namespace {
 
 constexpr std::uint64_t kFirstRoom = 1ULL << 44U;  // number of training worlds, far beyond those of other uses
-constexpr int kMaxObjects = 7;
 constexpr int kMaxDistractors = 12;
 constexpr int kMaxLookAlikes = 3;
 constexpr double kTaughtColours = 0.3;  // share of the distractors' surfaces
@@ -92,19 +91,21 @@ World CalibrationScenes::make_furnished_world(int room) const {
   world.items = std::move(walls.items);
   set_lighting(world, room % 3 == 2 ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(scene_seed, 2));
   Random lens(aspect_seed(scene_seed, 4));
-  world.camera = draw_camera(lens);
+  world.camera = settings_.camera ? *settings_.camera : draw_camera(lens);
   TableSetter setter(world, walls.table_half, aspect_seed(scene_seed, 3));
   Random& random = setter.random();
-  const double reach = random.uniform(0.35, 0.8);  // near together they hide one another
+  const double reach = random.uniform(settings_.min_reach, settings_.max_reach);
   const Eigen::AlignedBox2d middle = setter.region(-reach, reach, -reach, 0.8 * reach);
   const Eigen::AlignedBox2d all = setter.region(-0.95, 0.95, -0.95, 0.95);
   const int first = draw_calibrated(objects_, random);
-  const int count = std::min(static_cast<int>(objects_.size()), random.between(3, kMaxObjects));
+  const int count =
+      std::min(static_cast<int>(objects_.size()), random.between(settings_.min_objects, settings_.max_objects));
   for (int i = 0; i < count; ++i) {
     const CalibrationSceneObject& object = objects_[static_cast<std::size_t>(first + i) % objects_.size()];
     const AssetPtr painted = object.has_colour ? object.thing : plainly_painted(*object.thing, random);
     Random shape(aspect_seed(scene_seed, 50U + static_cast<std::uint64_t>(i)));
-    setter.put(put_down(object, make_instance_variant(*painted, shape), object.id, random), middle);
+    const AssetPtr instance = settings_.varies_instances ? make_instance_variant(*painted, shape) : painted;
+    setter.put(put_down(object, instance, object.id, random), middle);
   }
   // The hard negatives are at most about half as many as the objects.
   const int max_look_alikes = std::min(kMaxLookAlikes, (count + 1) / 2);
@@ -120,9 +121,9 @@ World CalibrationScenes::make_furnished_world(int room) const {
   return world;
 }
 
-std::array<RenderedFrame, CalibrationScenes::kFramesPerScene> CalibrationScenes::render(int room) const {
+std::vector<RenderedFrame> CalibrationScenes::render(int room) const {
   const LitWorld lit_world = light_world(make_furnished_world(room));  // takes as long as a frame
-  std::array<RenderedFrame, kFramesPerScene> frames;
+  std::vector<RenderedFrame> frames(static_cast<std::size_t>(settings_.frames));
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::uint64_t index = frames.size() * static_cast<std::uint64_t>(room) + i;
     const std::uint64_t scene_seed = aspect_seed(world_seed(DatasetSplit::kTraining, seed_), kFirstRoom + index);

@@ -50,6 +50,23 @@ TEST(CalibrationScenes, TheSameSeedGivesTheSameFrameAndAnotherOneAnotherRoom) {
   EXPECT_GT((between(frame) - between(other)).cwiseAbs().maxCoeff(), 0.02) << "not only the camera's place";
 }
 
+TEST(CalibrationScenes, SettingsGiveTheCameraTheNumberOfFramesAndTheNumberOfObjects) {
+  CalibrationSceneSettings settings;
+  settings.frames = 3;
+  settings.camera = synthetic_camera();
+  settings.min_objects = 1;
+  settings.max_objects = 1;
+  const CalibrationScenes scenes(
+      {brick(3, {0.08, 0.12, 0.18}, {30, 30, 200}), brick(8, {0.1, 0.1, 0.06}, {200, 60, 20})}, 1, settings);
+  const std::vector<RenderedFrame> frames = scenes.render(0);
+  ASSERT_EQ(frames.size(), 3U);
+  for (const RenderedFrame& view : frames) {
+    EXPECT_EQ(view.frame.camera.fx, synthetic_camera().fx);
+    EXPECT_LE(view.objects.size(), 1U);
+  }
+  EXPECT_FALSE(identical(frames[0].frame.colour, frames[2].frame.colour));
+}
+
 /// Returns the median distance of the measured depth from the mesh's at the true pose, metres.
 float median_error(const RenderedFrame& view, std::size_t index, const Mesh& mesh) {
   const cv::Rect all({0, 0}, view.frame.depth.size());
