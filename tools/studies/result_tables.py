@@ -295,6 +295,18 @@ def shown_table(summary):
     return table(rows)
 
 
+def household_table(summary):
+    """Returns how well stores of several numbers of objects find them, and what they cost."""
+    from studies.household import report
+
+    return "\n\n".join(table(report.rows(columns, summary["by_number"])) for columns in (report.COLUMNS, report.COSTS))
+
+
+def household_words(summary):
+    return (f"{summary['rooms']} rooms, {summary['frames']} frames; {len(summary['taught'])} objects are taught, "
+            f"{len(summary['strangers'])} never. {summary['alone']}")  # fmt: skip
+
+
 def shown_words(summary):
     text = f"Frames are followed at {show(summary['tracking_hz'], '{:.0f}')} Hz."
     stream = summary["stream"]

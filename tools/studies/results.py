@@ -20,6 +20,8 @@ from studies.result_tables import (
     demo_table,
     growth_table,
     host_words,
+    household_table,
+    household_words,
     live_frames,
     live_table,
     pose_table,
@@ -133,12 +135,14 @@ def bench_sections(out, commit):
 
 
 def life_sections(out, commit):
-    """Returns the sections of objects that are followed over time, and of objects that are shown."""
+    """Returns the sections of objects that are followed over time, of objects that are shown, and of many in one store."""
     tracks, shown = Source(out / "bench" / "tracks.json", commit), Source(out / "teach" / "summary.json", commit)
+    household = Source(out / "household" / "summary.json", commit)
     followed = (sequence_table, track_words, rate_table, host_words)
     return [
         section("Objects that persist", tracks, "tools/bench tracks", *followed),
         section("Objects that are shown to a camera", shown, "tools/bench teach", shown_table, shown_words),
+        section("A household", household, "tools/bench household", household_table, household_words),
     ]
 
 

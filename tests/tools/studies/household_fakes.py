@@ -69,7 +69,7 @@ def evaluate(words, out):
     rates = {name: 0.5 if count else None for name, count in there.items()}
     write_json(out / "summary.json", {
         "required": there, "auc": every | {"mean": area, "weighted": area}, "recall": rates, "precision": rates,
-        "operating": {"recall": 0.5, "precision": 0.9}, "published": required // 2, "published_right_fraction": 0.5,
+        "operating": {"recall": 0.5, "precision": 0.9}, "published": required // 2, "published_right_fraction": 0.5, "published_good_fraction": 0.75,
         "detection_calibration": calibration(0.1, 0.4, required), "pose_calibration": calibration(0.2, 0.5, required),
         "bop19": {"ar": {"all": 0.6} | rates, "targets": {"all": required}},
     })  # fmt: skip

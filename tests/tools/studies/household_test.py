@@ -51,22 +51,23 @@ class Figures(unittest.TestCase):
 
     def test_right_poses_are_counted_of_all_objects_that_stand_there(self):
         summary = {"required": {"a": 10, "b": 10}, "published": 8, "published_right_fraction": 0.75,
+                   "published_good_fraction": 0.875,
                    "pose_calibration": {"proposed": [{"precision": 0.98, "score": 0.8, "recall": 0.5}],
                                         "bins": [{"count": 0, "true_fraction": None}, {"count": 20, "true_fraction": 0.4}]}}  # fmt: skip
         told = figures.right_figures(summary)
         self.assertAlmostEqual(told["right_recall"], 6 / 20)
-        self.assertEqual(told["right_precision"], 0.75)
+        self.assertEqual((told["right_precision"], told["shape_precision"]), (0.75, 0.875))
         self.assertAlmostEqual(told["right_recall_098"], 0.5 * 8 / 20)
 
     def test_nothing_published_is_no_right_pose(self):
-        summary = {"required": {"a": 4}, "published": 0, "published_right_fraction": None,
+        summary = {"required": {"a": 4}, "published": 0, "published_right_fraction": None, "published_good_fraction": None,
                    "pose_calibration": {"proposed": [], "bins": []}}  # fmt: skip
         told = figures.right_figures(summary)
         self.assertEqual((told["right_recall"], told["right_precision"], told["right_recall_098"]), (0.0, None, None))
 
     def test_the_area_alone_is_of_the_same_objects_or_not_known(self):
         summary = {"required": {"a": 1, "b": 3, "c": 0}, "auc": {"a": 0.8, "b": 0.5, "c": None, "mean": 0.6},
-                   "operating": {"recall": 0.5, "precision": 0.9}, "published": 0, "published_right_fraction": None,
+                   "operating": {"recall": 0.5, "precision": 0.9}, "published": 0, "published_right_fraction": None, "published_good_fraction": None,
                    "detection_calibration": {"ece": 0.1, "proposed": []},
                    "pose_calibration": {"ece": 0.1, "proposed": [], "bins": []}}  # fmt: skip
         told = figures.found_figures(summary, figures.alone([summary]))
@@ -205,7 +206,7 @@ class StoresTaughtBefore(Case):
         self.assertAlmostEqual(by_number["7"]["store_mb_per_object"], 1.0, places=2)
         merges = self.calls("hs-teach")
         self.assertEqual([call[1:4] for call in merges], [["merge", str(first), str(second)]])
-        self.assertIn("| 60 | – |", (self.out / "report.md").read_text())
+        self.assertIn("| 60 | not measured |", (self.out / "report.md").read_text())
         self.assertEqual(self.summary()["strangers"][0], 140)
 
     def test_a_folder_of_stores_is_taken_as_a_whole(self):

@@ -7,6 +7,7 @@ import unittest
 from studies import results
 from studies.bench import speed
 from studies.bop.figures import COUNTS, FIGURES
+from studies.household.figures import empty
 from studies.records import write_json
 from studies.reproduce.results import Results
 from studies.reproduce.summary import summarise
@@ -137,6 +138,16 @@ class ResultsOfACommit(unittest.TestCase):
         section = self.section(self.written(), "Objects that are shown")
         self.assertIn("| tin | 0.50, 0.50 | 0.50, 0.50 | 0.500 | not measured, 0.500 |", section)
         self.assertIn("followed at 43 Hz.", section)
+
+    def test_a_household_has_a_row_for_each_number_of_objects(self):
+        measured = {**empty(), "objects": 21, "auc": 0.673, "auc_alone": 0.654, "ms_detect": 30.0, "ms_detect_7": 20.0}
+        summary = {"by_number": {"20": measured, "60": empty()}, "rooms": 8, "frames": 40, "taught": [1, 2], "strangers": [3],
+                   "alone": "In its group means that."}  # fmt: skip
+        write_json(self.out / "household" / "summary.json", {**summary, **OF_COMMIT})
+        section = self.section(self.written(), "A household")
+        for words in ("| 21 | not measured | 0.673 | 0.654 |", "| 60 | not measured |", "| 21 | 30.0 | 1.50 |",
+                      "8 rooms, 40 frames; 2 objects are taught, 1 never. In its group means that."):  # fmt: skip
+            self.assertIn(words, section)
 
     def test_a_cell_that_was_not_measured_says_so(self):
         write_json(self.out / "reproduce" / "summary.json", reproduced())
