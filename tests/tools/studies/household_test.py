@@ -217,6 +217,23 @@ class StoresTaughtBefore(Case):
         self.assertEqual(self.summary()["by_number"]["14"]["objects"], 14)
 
 
+    def test_one_that_has_been_joined_before_is_taken_as_it_is(self):
+        first, second = self.store("a.store", range(1, 8)), self.store("b.store", range(101, 115))
+        joined = self.store("both.store", [*range(1, 8), *range(101, 115)])
+        stores = ("--stores", f"{first},{second}", "--numbers", "7,20", "--no-add", "--joined")
+        done = self.run_it(*stores, joined)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.calls("hs-teach"), [])
+        twenty = self.summary()["by_number"]["20"]
+        self.assertEqual((twenty["objects"], twenty["groups"], twenty["auc_alone"]), (21, 2, 0.851))  # 0.9 of six, 0.83 of fourteen
+        self.assertAlmostEqual(twenty["store_mb_per_object"], 1.0, places=2)
+        self.assertEqual(self.run_it(*stores, first).returncode, 0)
+        self.assertEqual(len(self.calls("hs-teach merge")), 1, "it holds other objects")
+        done = self.run_it("--joined", joined)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("--joined goes with --stores", done.stderr)
+
+
 class BadInput(Case):
     def refused(self, words, *options):
         done = self.run_it(*options)

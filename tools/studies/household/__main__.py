@@ -34,6 +34,8 @@ def parse(words):
     add("--models", type=pathlib.Path, default=MODELS, metavar="DIR", help=f"the meshes, a BOP models folder (default {MODELS})")
     add("--stores", metavar="PATHS", help="stores that hs-teach has taught before, or folders of them, between commas, instead of "
         "teaching: they are joined in this order, and --numbers takes what comes near to each")  # fmt: skip
+    add("--joined", metavar="PATHS", help="stores of several of those, joined before: one that holds just the objects of a number's "
+        "stores is taken instead of joining these")  # fmt: skip
     add("--numbers", type=numbers, metavar="N,N", help="of objects in a store (default 4,7,20,40,60)")
     add("--rooms", type=positive, metavar="N", help="rendered rooms (default 8)")
     add("--frames", type=positive, metavar="N", help="frames of each (default 5)")
@@ -49,7 +51,10 @@ def parse(words):
     set_defaults(options)
     options.names = model_names(options.models)
     options.models = options.models.resolve()
-    options.stores = given_stores(options.stores)
+    if options.joined is not None and options.stores is None:
+        parser.error("--joined goes with --stores")
+    options.stores = None if options.stores is None else apart(given_stores("--stores", options.stores))
+    options.joined = [] if options.joined is None else given_stores("--joined", options.joined)
     choose_objects(options)
     return options
 
@@ -74,16 +79,19 @@ def model_names(models):
     return {one: names.get(str(one), f"object_{one}") for one in ids}
 
 
-def given_stores(text):
-    """[(folder, {id: name})] in their order, or None."""
-    if text is None:
-        return None
+def given_stores(option, text):
+    """[(folder, {id: name})] in their order."""
     stores = []
     for path in map(pathlib.Path, text.split(",")):
         folders = [path] if (path / "store.json").is_file() else sorted(file.parent for file in path.glob("*/store.json"))
         if not folders:
-            die(f"--stores {path}: no store there, expected one by hs-teach, or a folder of them")
+            die(f"{option} {path}: no store there, expected one by hs-teach, or a folder of them")
         stores += [(folder.resolve(), read_store(folder)) for folder in folders if not folder.name.startswith(".")]
+    return stores
+
+
+def apart(stores):
+    """These stores, of which no two hold the same object."""
     owners = {}
     for folder, known in stores:
         for name in known.values():

@@ -1,9 +1,11 @@
 """The figures of tools/bench household: of each store in the same rooms, and of its objects alone."""
 
+import pathlib
 import statistics
 
 from studies.bop.figures import share
 from studies.records import read_json
+from studies.unit_runner import INPUT
 
 PRECISION = 0.98
 KEYS = ("objects", "auc", "auc_alone", "recall", "precision", "ar", "ms_detect", "ms_detect_7", "ms_pose", "teach_gb",
@@ -137,11 +139,8 @@ class Results:
 
     def folder(self, number):
         """The folder of a number's store."""
-        groups = self.plan.numbers[number]
-        if len(groups) > 1:
-            return self.store.path(f"joined/{number}") / "store"
-        unit = f"taught/{groups[0].key}"
-        return self.store.path(unit) / "store" if unit in self.store.units else groups[0].path
+        words, _ = self.plan.store_of(number)
+        return pathlib.Path(INPUT.sub(lambda name: str(self.store.path(name[1])), words))
 
     def entry(self, number):
         if number not in self.plan.numbers:

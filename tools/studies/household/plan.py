@@ -3,7 +3,6 @@ each store in the same rooms."""
 
 import dataclasses
 import json
-import pathlib
 
 from studies.bop.dataset import folder_digest
 from studies.records import threads
@@ -23,10 +22,6 @@ class Group:
     store: str  # its folder; "{UNIT}/store" where a unit makes it
     names: tuple
     of: str = ""  # digest of a store that was taught before
-
-    @property
-    def path(self):
-        return pathlib.Path(self.store)
 
 
 def ranges_of(numbers):
@@ -127,11 +122,16 @@ class Plan:
                             for number, places in ranges_of(numbers).items()}  # fmt: skip
 
     def store_of(self, number):
-        """(folder, digest) of the store of that number, joined where it has several groups."""
+        """(folder, digest) of the store of that number, which is joined where it has several groups. The folder may lie in a
+        unit's output, as words say it."""
         groups = self.numbers[number]
         known = json.dumps([group.of for group in groups])
         if len(groups) == 1:
             return groups[0].store, known
+        names = {name for group in groups for name in group.names}
+        for folder, there in self.options.joined:
+            if set(there.values()) == names:
+                return str(folder), folder_digest(folder)
         unit = self.add_run(f"joined/{number}", "hs-teach", ("merge", *(group.store for group in groups), "--out",
                             "{out}/store"), of=known)  # fmt: skip
         return f"{{{unit}}}/store", known
