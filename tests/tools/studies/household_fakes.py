@@ -46,6 +46,8 @@ def teach(words, out):
 
 
 def render(words, out):
+    if int(value_of(words, "--max-objects")) > len(value_of(words, "--ids").split(",")):
+        sys.exit("hs-study household: too few objects")
     for room in range(1, int(value_of(words, "--rooms")) + 1):
         write_json(out / f"{room:06}" / "scene_gt.json", {str(frame): [] for frame in range(FRAMES)})
 

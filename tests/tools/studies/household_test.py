@@ -183,6 +183,12 @@ class WholeRun(Case):
         self.assertEqual((list(summary["by_number"]), summary["rooms"], summary["frames"]), (["4", "7"], 2, 4))
         self.assertTrue(all("--practice-rooms" in call for call in self.calls("hs-teach mesh")))
 
+    def test_a_room_is_meant_to_hold_no_more_objects_than_there_are(self):
+        done = self.run_it("--quick", "--numbers", "4", "--scenes-only")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        call = self.calls("hs-study")[0]
+        self.assertEqual(call[call.index("--max-objects") + 1], "9", "four and five strangers")
+
     def test_scenes_can_be_rendered_alone(self):
         self.assertEqual(self.run_it("--scenes-only").returncode, 0)
         self.assertEqual([call[0] for call in map(str.split, self.log.read_text().splitlines())], ["hs-study"])

@@ -66,7 +66,6 @@ def set_defaults(options):
     options.rounds = options.rounds or (1 if quick else 3)
     options.numbers = options.numbers or (QUICK_NUMBERS if quick else NUMBERS)
     options.practice_rooms = options.practice_rooms or (3 if quick else None)
-    options.in_a_room = (5, 10) if quick else (10, 25)
 
 
 def model_names(models):
@@ -119,6 +118,8 @@ def choose_objects(options):
     if options.quick:
         strangers = [one for one in options.names if one not in options.taught and one not in TAUGHT]
         options.placed = sorted(options.taught + strangers[:QUICK_STRANGERS])
+    least, most = (5, 10) if options.quick else (10, 25)
+    options.in_a_room = (min(least, len(options.placed)), min(most, len(options.placed)))
     options.strangers = [one for one in options.placed if one not in options.taught and one not in TAUGHT]
 
 
