@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -126,10 +125,10 @@ GroupCandidates score_by_group(const std::vector<GroupHypotheses>& groups, int t
   const TaskIndices likely = find_likely(tasks);
   const auto likely_count = static_cast<int>(likely.size());
   search(likely, likely_count, settings.max_refined);
-  const TaskIndices others = find_unexplained(tasks, likely, settings.explains_from);
-  search(others, settings.max_sampled, std::max(0, settings.max_refined - likely_count));
-  TaskIndices searched;
-  std::merge(likely.begin(), likely.end(), others.begin(), others.end(), std::back_inserter(searched));
+  TaskIndices searched = find_unexplained(tasks, likely, settings.explains_from);
+  search(searched, settings.max_sampled, std::max(0, settings.max_refined - likely_count));
+  searched.insert(searched.end(), likely.begin(), likely.end());
+  std::sort(searched.begin(), searched.end());
   GroupCandidates candidates(groups.size());
   for (const std::size_t i : searched) candidates[tasks[i].group].push_back(std::move(tasks[i].scored));
   return candidates;
@@ -178,28 +177,22 @@ Evidence evidence_of_votes(const Forest& forest, const Hypothesis& hypothesis, c
   return evidence;
 }
 
-/// Returns those of the indices whose values are the `count` largest, of equal ones the first.
-TaskIndices largest(const TaskIndices& some, const std::vector<double>& values, int count) {
+/// Returns those of the tasks whose values are the `count` largest, of equal ones the first.
+template <typename ValueOf>
+TaskIndices largest(TaskIndices some, int count, const ValueOf& value_of) {
   if (some.size() <= static_cast<std::size_t>(count)) return some;
-  std::vector<std::size_t> order(some.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
-  order.resize(static_cast<std::size_t>(count));
-  std::sort(order.begin(), order.end());
-  TaskIndices kept;
-  kept.reserve(order.size());
-  for (const std::size_t i : order) kept.push_back(some[i]);
-  return kept;
+  std::stable_sort(some.begin(), some.end(), [&](std::size_t a, std::size_t b) { return value_of(a) > value_of(b); });
+  some.resize(static_cast<std::size_t>(count));
+  std::sort(some.begin(), some.end());
+  return some;
 }
 
 /// Drops the hypotheses that are not compared with the frame.
 void keep_most_promising(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks) {
   if (tasks.size() <= static_cast<std::size_t>(settings.max_compared)) return;
-  std::vector<double> promises;
-  promises.reserve(tasks.size());
-  for (const ScoringTask& task : tasks) promises.push_back(vote_logit(task.scored.evidence));
   std::vector<ScoringTask> kept;
-  for (const std::size_t i : largest(all_of(tasks), promises, settings.max_compared))
+  const auto promise = [&](std::size_t i) { return vote_logit(tasks[i].scored.evidence); };
+  for (const std::size_t i : largest(all_of(tasks), settings.max_compared, promise))
     kept.push_back(std::move(tasks[i]));
   tasks.swap(kept);
 }
@@ -214,6 +207,7 @@ TaskIndices all_of(const std::vector<ScoringTask>& tasks) {
 TaskIndices find_likely(const std::vector<ScoringTask>& tasks) {
   constexpr float kLikely = 0.5F;  // score
   TaskIndices likely;
+  likely.reserve(tasks.size());
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const ScoredHypothesis& scored = tasks[i].scored;
     if (scored.evidence.view != Evidence::kNoView && scored.detection.score >= kLikely) likely.push_back(i);
@@ -226,16 +220,15 @@ TaskIndices find_likely(const std::vector<ScoringTask>& tasks) {
 TaskIndices choose_sampled(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum) {
   constexpr float kManyVotes = 0.3F;  // of the nominal vote mass: a third of the object, seen as well as in training
   TaskIndices worthy;
-  std::vector<double> promises;
+  worthy.reserve(some.size());
   for (const std::size_t i : some) {
     const ScoringTask& task = tasks[i];
     const bool has_templates = task.input->index.forest().scoring == Scoring::kEvidence;
     if (!has_templates || task.attitude_factor == 1.0F || task.scored.evidence.relative_vote_mass < kManyVotes)
       continue;
     worthy.push_back(i);
-    promises.push_back(vote_logit(task.scored.evidence));
   }
-  return largest(worthy, promises, maximum);
+  return largest(std::move(worthy), maximum, [&](std::size_t i) { return vote_logit(tasks[i].scored.evidence); });
 }
 
 /// Chooses those of some that are refined, the `maximum` with the highest scores. One that is hopeless is not: most
@@ -243,14 +236,13 @@ TaskIndices choose_sampled(const std::vector<ScoringTask>& tasks, const TaskIndi
 TaskIndices choose_refined(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum) {
   constexpr float kHopeless = 0.02F;  // score: votes bring occluded objects templates that hardly match
   TaskIndices worthy;
-  std::vector<double> scores;
+  worthy.reserve(some.size());
   for (const std::size_t i : some) {
     const ScoredHypothesis& scored = tasks[i].scored;
     if (scored.evidence.view == Evidence::kNoView || scored.detection.score < kHopeless) continue;
     worthy.push_back(i);
-    scores.push_back(scored.detection.score);
   }
-  return largest(worthy, scores, maximum);
+  return largest(std::move(worthy), maximum, [&](std::size_t i) { return tasks[i].scored.detection.score; });
 }
 
 /// Returns those that are not likely, but for what lies on the surface that a likely one shows whose score is
@@ -276,7 +268,8 @@ TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIn
     });
   };
   TaskIndices left;
-  for (const std::size_t i : all_of(tasks)) {
+  left.reserve(tasks.size());
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
     if (!std::binary_search(likely.begin(), likely.end(), i) && !is_explained(i)) left.push_back(i);
   }
   return left;

@@ -79,7 +79,7 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
         std::string(" mm "), std::string(" practice views"),
         "\nnext: hs-stream --source openni2 --objects " + options.out.string() + "\n"})
     EXPECT_NE(summary.find(part), std::string::npos) << part << " in\n" << summary;
-  EXPECT_LT(summary.find("next: "), summary.find("teach_seconds ")) << "which scripts read last";
+  EXPECT_GT(summary.find("next: "), summary.find("teach_seconds ")) << "what to type next stands last";
   expect_notes(options.out, "mesh --replace");
   const store::ObjectStore first = store::read_store(options.out);
   ASSERT_EQ(first.objects.size(), 1U);
