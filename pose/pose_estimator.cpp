@@ -271,8 +271,8 @@ PoseEstimator::PoseEstimator(std::map<std::string, Mesh> models, PoseSettings se
   // Models made one after another would leave threads idle at the end of each; a single one is made by all of them.
   const int threads_of_each = std::max(1, threads / std::max(1, static_cast<int>(jobs.size())));
   parallel_for(threads, static_cast<int>(jobs.size()), [&](int i) {
-    ModelJob& estimation = jobs[static_cast<std::size_t>(i)];
-    estimation.model = make_object_model(estimation.name, std::move(*estimation.mesh), settings.model, threads_of_each);
+    ModelJob& job = jobs[static_cast<std::size_t>(i)];
+    job.model = make_object_model(job.name, std::move(*job.mesh), settings.model, threads_of_each);
   });
   state_->settings = std::move(settings);
 }

@@ -2,11 +2,12 @@
 
 Run as one of the names below. BOP_FAKE_LOG gets a line for each call; hs-teach fails where BOP_FAKE_FAILS is set."""
 
-import json
 import os
 import pathlib
-import stat
 import sys
+
+import fake_programs
+from fake_programs import write_json
 
 NAMES = ("hs-teach", "hs-evaluate", "hs-study")
 # By scene: of object_2 (score, is true), how many there are, and what the poses came to.
@@ -20,11 +21,6 @@ IMAGE = bytes.fromhex(
     "89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c4890000000d49444154789c6360f8cf500f0003860180"
     "5a347d6b0000000049454e44ae426082"
 )
-
-
-def write_json(file, value):
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(json.dumps(value))
 
 
 def bins(score, fraction, count):
@@ -93,11 +89,7 @@ def stand_in(name, words):
 
 
 def install(folder):
-    folder.mkdir(parents=True)
-    for name in NAMES:
-        program = folder / name
-        program.write_text(f'#!/bin/sh\nexec {sys.executable} -IS {pathlib.Path(__file__).resolve()} {name} "$@"\n')
-        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+    fake_programs.install(folder, NAMES, __file__)
 
 
 if __name__ == "__main__":

@@ -6,20 +6,13 @@ at most seven, less 0.01 for each further one."""
 import json
 import os
 import pathlib
-import stat
 import sys
+
+import fake_programs
+from fake_programs import value_of, write_json
 
 NAMES = ("hs-teach", "hs-evaluate", "hs-capture", "hs-detect", "hs-pose", "hs-study")
 FRAMES = 2  # of a room
-
-
-def write_json(file, value):
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(json.dumps(value))
-
-
-def value_of(words, option):
-    return words[words.index(option) + 1]
 
 
 def values_of(words, option):
@@ -94,11 +87,7 @@ def stand_in(name, words):
 
 
 def install(folder):
-    folder.mkdir(parents=True)
-    for name in NAMES:
-        program = folder / name
-        program.write_text(f'#!/bin/sh\nexec {sys.executable} -IS {pathlib.Path(__file__).resolve()} {name} "$@"\n')
-        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+    fake_programs.install(folder, NAMES, __file__)
 
 
 if __name__ == "__main__":

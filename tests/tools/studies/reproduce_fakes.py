@@ -9,9 +9,10 @@ import json
 import os
 import pathlib
 import random
-import stat
 import sys
 import time
+
+import fake_programs
 
 NAMES = ("hs-render", "hs-import", "hs-log", "hs-train", "hs-evaluate", "hs-study")
 OBJECTS = ("bowl", "cereal_box", "coffee_mug", "soda_can")
@@ -30,12 +31,7 @@ QUALITY = {
 
 
 def install(folder):
-    """One program a name, each of which runs this file."""
-    folder.mkdir(parents=True)
-    for name in NAMES:
-        program = folder / name
-        program.write_text(f'#!/bin/sh\nexec {sys.executable} -IS {pathlib.Path(__file__).resolve()} {name} "$@"\n')
-        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+    fake_programs.install(folder, NAMES, __file__)
 
 
 def option(words, name, default=""):

@@ -6,8 +6,10 @@ poor, TEACH_FAKE_REFUSED one that it refuses, TEACH_FAKE_CRASHES one that it die
 import json
 import os
 import pathlib
-import stat
 import sys
+
+import fake_programs
+from fake_programs import value_of, write_json
 
 NAMES = ("hs-render", "hs-teach", "hs-evaluate", "hs-capture", "hs-study")
 IDS = {"bowl": 1, "cereal_box": 2, "coffee_mug": 3}
@@ -16,15 +18,6 @@ IMAGE = bytes.fromhex(
     "5a347d6b0000000049454e44ae426082"
 )
 MOVED = [1, 0, 0, 0.01, 0, 1, 0, 0.02, 0, 0, 1, 0.03]  # T_true_taught
-
-
-def write_json(file, value):
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(json.dumps(value))
-
-
-def value_of(words, option):
-    return words[words.index(option) + 1]
 
 
 def write_names(folder):
@@ -107,13 +100,7 @@ def stand_in(name, words):
 
 
 def install(folder):
-    """Files of the programs' names that start this one."""
-    folder.mkdir()
-    for name in NAMES:
-        file = folder / name
-        here = pathlib.Path(__file__).resolve()
-        file.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{here}" {name} "$@"\n')
-        file.chmod(file.stat().st_mode | stat.S_IXUSR)
+    fake_programs.install(folder, NAMES, __file__)
 
 
 if __name__ == "__main__":
