@@ -268,6 +268,8 @@ import sys
 from houghstream.event_log import read_log
 from houghstream.frames import decode_frame
 for event in read_log(sys.argv[1]):
+    if event.channel != "OPENNI_FRAME":
+        continue  # lcm-logger also keeps a test of its own connection, where that had to be sent twice
     frame = decode_frame(event.data)
     middle = frame.depth[frame.depth.shape[0] // 2, frame.depth.shape[1] // 2]
     print(event.channel, frame.colour.shape, frame.colour.dtype, round(float(frame.depth[0, 0]), 3), round(float(middle), 3),
