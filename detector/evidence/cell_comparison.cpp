@@ -60,7 +60,8 @@ HWY_INLINE Floats excess_over(Floats beyond_centre, Ints template_mm, float metr
   return hn::IfThenElse(is_known, hn::Sub(beyond_centre, template_depth), nothing);
 }
 
-void compare_in_vectors(const TemplateGrid& grid, const CellPlaces& places, const cv::Mat& depth, CellDepths& out) {
+void compare_in_vectors(const TemplateGrid& grid, const CellPlaces& places, const cv::Mat& depth, std::size_t row_step,
+                        CellDepths& out) {
   const Float d;
   const Int di;
   const Short ds;
@@ -68,7 +69,7 @@ void compare_in_vectors(const TemplateGrid& grid, const CellPlaces& places, cons
   const Ints last_px = hn::Set(di, depth.cols - 1);
   out.object_cells = 0;
   out.beside_cells = 0;
-  for (std::size_t row = 0; row < kTemplateSide; ++row) {
+  for (std::size_t row = row_step / 2; row < kTemplateSide; row += row_step) {
     const int y = places.row_px[row];
     if (y < 0 || y >= depth.rows) continue;
     const auto* measured = depth.ptr<float>(y);
@@ -189,8 +190,9 @@ HWY_EXPORT(compare_in_vectors);
 HWY_EXPORT(median_within_reach);
 HWY_EXPORT(tally_in_vectors);
 
-void compare_depths(const TemplateGrid& grid, const CellPlaces& places, const cv::Mat& depth, CellDepths& out) {
-  HWY_DYNAMIC_DISPATCH(compare_in_vectors)(grid, places, depth, out);
+void compare_depths(const TemplateGrid& grid, const CellPlaces& places, const cv::Mat& depth, std::size_t row_step,
+                    CellDepths& out) {
+  HWY_DYNAMIC_DISPATCH(compare_in_vectors)(grid, places, depth, row_step, out);
 }
 
 float common_shift(const CellDepths& depths) {

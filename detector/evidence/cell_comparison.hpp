@@ -9,11 +9,11 @@
 
 namespace houghstream {
 
-/// A cell of a template.
+/// A cell of a template. It has no values of its own: arrays of some hundred are made for each comparison, and filled.
 struct TemplateCell {
-  std::uint16_t index = 0;  ///< into TemplateGrid::mm
-  std::uint8_t row = 0;
-  std::uint8_t column = 0;
+  std::uint16_t index;  ///< into TemplateGrid::mm
+  std::uint8_t row;
+  std::uint8_t column;
 };
 
 constexpr std::size_t kTemplateSide = TemplateGrid::kSide;
@@ -25,11 +25,11 @@ using PerCell = std::array<T, kTemplateCells + 8>;
 
 /// Where the cells of a template lie in a frame, and the depth that the template's is counted from there.
 struct CellPlaces {
-  std::array<int, kTemplateSide> column_px{};  ///< frame pixels that the cells' centres lie in; may lie outside
-  std::array<int, kTemplateSide> row_px{};
-  std::array<float, kTemplateSide> row_depth{};     ///< depth of the template's zero in each row, metres
-  std::array<float, kTemplateSide> column_depth{};  ///< amount added to row_depth in each column, metres
-  float metres_per_mm = 0.001F;                     ///< metres per millimetre of template depth
+  std::array<int, kTemplateSide> column_px;  ///< frame pixels that the cells' centres lie in; may lie outside
+  std::array<int, kTemplateSide> row_px;
+  std::array<float, kTemplateSide> row_depth;     ///< depth of the template's zero in each row, metres
+  std::array<float, kTemplateSide> column_depth;  ///< amount added to row_depth in each column, metres
+  float metres_per_mm = 0.001F;                   ///< metres per millimetre of template depth
 };
 
 /// Measured minus template depth at the template's cells inside the frame, row by row, metres; NaN where either is
@@ -43,8 +43,10 @@ struct CellDepths {
 };
 
 /// Compares the depth of a template with that of a frame (CV_32FC1, metres, NaN where not measured), cell by cell,
-/// several at once; the same on every machine. What `out` held is overwritten.
-void compare_depths(const TemplateGrid& grid, const CellPlaces& places, const cv::Mat& depth, CellDepths& out);
+/// several at once; the same on every machine. Of the rows every `row_step`-th is compared. What `out` held is
+/// overwritten.
+void compare_depths(const TemplateGrid& grid, const CellPlaces& places, const cv::Mat& depth, std::size_t row_step,
+                    CellDepths& out);
 
 /// Returns the median of the object's excesses within 3 cm, metres; 0 where there is none.
 float common_shift(const CellDepths& depths);

@@ -43,7 +43,6 @@ using GroupCandidates = std::vector<std::vector<ScoredHypothesis>>;
 /// Workspace of score_by_group(), used again from frame to frame.
 struct ScoringWorkspace {
   struct Worker {
-    std::vector<PlacedTemplate> sampled;       ///< templates of all attitudes that were compared
     std::vector<PlacedTemplate> visited;       ///< templates that were compared while one was refined
     std::vector<PlacedTemplate> best_visited;  ///< templates of the refinement that led to the best match
     std::vector<std::pair<std::uint32_t, float>> weighted_views;  ///< views with the weight of their rotation
@@ -61,8 +60,5 @@ struct ScoringWorkspace {
 /// the more so the more objects are known. Hypotheses that are not compared or dropped have no candidate; the others
 /// keep their order. The result is the same for any number of threads.
 GroupCandidates score_by_group(const std::vector<GroupHypotheses>& groups, int threads, ScoringWorkspace& workspace);
-
-/// Returns how many times as many views a class has as one that was taught in one attitude, 1 to 3.
-float attitude_factor(const Forest& forest, std::uint32_t class_index);
 
 }  // namespace houghstream

@@ -54,8 +54,8 @@ PlacedTemplate align_best_templates(const std::vector<ViewTemplate>& views, cons
 float alternative_scale_gain(const ViewTemplate& view, const PlacedTemplate& placed, const LabFrame& frame) {
   constexpr float kSmaller = 0.7F;
   constexpr float kLarger = 1.4F;
-  const float smaller = match_quality(match_template(view, placed.centre_camera, frame, kSmaller));
-  const float larger = match_quality(match_template(view, placed.centre_camera, frame, kLarger));
+  const float smaller = match_quality(match_template(view, placed.centre_camera, frame, {kSmaller}));
+  const float larger = match_quality(match_template(view, placed.centre_camera, frame, {kLarger}));
   return std::max(smaller, larger) - match_quality(placed.fit);
 }
 

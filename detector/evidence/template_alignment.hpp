@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -21,6 +23,30 @@ struct PlacedTemplate {
 inline bool matches_better(const PlacedTemplate& a, const PlacedTemplate& b) {
   return match_quality(a.fit) > match_quality(b.fit);
 }
+
+/// The templates that match best of those that are added, at most kMost, best first; equal ones in the order in which
+/// they came. It needs no memory of its own, as a frame has many of them.
+template <std::size_t kMost>
+class BestTemplates {
+ public:
+  void add(const PlacedTemplate& placed) {
+    if (count_ == kMost && !matches_better(placed, templates_[kMost - 1])) return;
+    if (count_ < kMost) ++count_;
+    std::size_t place = count_ - 1;
+    for (; place > 0 && matches_better(placed, templates_[place - 1]); --place)
+      templates_[place] = templates_[place - 1];
+    templates_[place] = placed;
+  }
+
+  std::size_t size() const { return count_; }
+  const PlacedTemplate& front() const { return templates_.front(); }
+  const PlacedTemplate* begin() const { return templates_.data(); }
+  const PlacedTemplate* end() const { return templates_.data() + count_; }
+
+ private:
+  std::array<PlacedTemplate, kMost> templates_;
+  std::size_t count_ = 0;
+};
 
 /// Moves the template sideways, by cells or parts of them and at most a few times, to where it matches best: votes meet
 /// within a few centimetres only. The result matches at least as well.

@@ -87,12 +87,17 @@ class UnoccludedCells {
   std::array<std::uint32_t, TemplateGrid::kSide> rows_{};  ///< a bit for each column
 };
 
+/// How a template is compared.
+struct Sampling {
+  float size = 1.0F;         ///< of the object, over the template's
+  std::size_t row_step = 1;  ///< of the rows of cells every so manyth is compared
+};
+
 /// Compares a template with the frame, cell by cell, after moving it along the ray by at most a few centimetres to
 /// where most of it agrees: the depth of a vote is less exact than that of a surface. Brightness, contrast and colour
-/// cast, which the light decides, do not change the match. With a `size` other than 1 the template counts as that of
-/// an object so many times as large.
+/// cast, which the light decides, do not change the match.
 TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame,
-                             float size = 1.0F);
+                             const Sampling& sampling = {});
 
 /// Measures whether surface and colour end where the template's outline is. Places where something lies in front of the
 /// object, within or beyond the outline, are left out.

@@ -93,7 +93,12 @@ ForestIndex::ForestIndex(const Forest& forest)
     : forest_(&forest), leaf_summaries_(build_leaf_summaries(forest)), packed_(pack_trees(forest)) {
   const std::vector<ClassViews> by_class = views_by_class(forest);
   view_neighbours_ = find_view_neighbours(by_class, forest.views.size());
-  for (const ClassViews& class_views : by_class) sampled_views_.push_back(sample_views(class_views));
+  constexpr float kOneAttitude = 150.0F;  // views of a turntable
+  for (const ClassViews& class_views : by_class) {
+    sampled_views_.push_back(sample_views(class_views));
+    attitude_factors_.push_back(
+        std::clamp(static_cast<float>(class_views.views.size()) / kOneAttitude, 1.0F, kMaxAttitudeFactor));
+  }
 }
 
 }  // namespace houghstream

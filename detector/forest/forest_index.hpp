@@ -32,6 +32,8 @@ struct SampledViews {
 /// index and stay as it is: a forest that was changed gets another index.
 class ForestIndex {
  public:
+  static constexpr float kMaxAttitudeFactor = 3.0F;
+
   explicit ForestIndex(const Forest& forest);
   explicit ForestIndex(Forest&&) = delete;
 
@@ -40,6 +42,9 @@ class ForestIndex {
   const PackedTrees& packed() const { return packed_; }
   const std::vector<ViewNeighbours>& view_neighbours() const { return view_neighbours_; }  ///< per view
   const SampledViews& sampled_views(std::size_t class_index) const { return sampled_views_[class_index]; }
+  /// Returns how many times as many views a class has as one that was taught in one attitude (a way of standing or
+  /// lying), 1 to kMaxAttitudeFactor: how many attitudes are searched of it, however many it was taught in.
+  float attitude_factor(std::size_t class_index) const { return attitude_factors_[class_index]; }
 
  private:
   const Forest* forest_;
@@ -47,6 +52,7 @@ class ForestIndex {
   PackedTrees packed_;
   std::vector<ViewNeighbours> view_neighbours_;
   std::vector<SampledViews> sampled_views_;  // per class
+  std::vector<float> attitude_factors_;      // per class
 };
 
 }  // namespace houghstream

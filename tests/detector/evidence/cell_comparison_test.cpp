@@ -96,7 +96,7 @@ void for_each_case(const Check& check) {
       SCOPED_TRACE(seed);
       const std::unique_ptr<Case> made = random_case(seed);
       CellDepths depths;
-      compare_depths(made->grid, made->places, made->depth, depths);
+      compare_depths(made->grid, made->places, made->depth, 1, depths);
       check(*made, depths);
     }
   });
@@ -112,6 +112,24 @@ TEST(CellComparison, IsThatOfOneCellAfterAnother) {
       ASSERT_EQ(cell.index, expected.cells[i]);
       ASSERT_EQ(cell.row * kTemplateSide + cell.column, expected.cells[i]);
     }
+  });
+}
+
+TEST(CellComparison, OfSomeRowsIsThatOfTheseRows) {
+  constexpr std::size_t kStep = 3;
+  simd::with_every_target([&] {
+    const std::unique_ptr<Case> made = random_case(1);
+    CellDepths all;
+    CellDepths some;
+    compare_depths(made->grid, made->places, made->depth, 1, all);
+    compare_depths(made->grid, made->places, made->depth, kStep, some);
+    std::vector<std::uint16_t> expected;
+    for (std::size_t i = 0; i < all.object_cells; ++i) {
+      if (all.cells[i].row % kStep == kStep / 2) expected.push_back(all.cells[i].index);
+    }
+    ASSERT_EQ(some.object_cells, expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(some.cells[i].index, expected[i]);
+    EXPECT_LT(some.beside_cells, all.beside_cells);
   });
 }
 
@@ -161,7 +179,7 @@ TEST(CellComparison, ATemplateBesideTheImageHasNoCells) {
   const std::unique_ptr<Case> made = random_case(1);
   made->places.row_px.fill(-1);
   CellDepths depths;
-  compare_depths(made->grid, made->places, made->depth, depths);
+  compare_depths(made->grid, made->places, made->depth, 1, depths);
   EXPECT_EQ(depths.object_cells, 0U);
   EXPECT_EQ(common_shift(depths), 0.0F);
   CellTally tally;

@@ -8,6 +8,22 @@
 namespace houghstream {
 namespace {
 
+TEST(BestTemplates, AreInOrderAndOfEqualOnesTheFirstStay) {
+  BestTemplates<3> best;
+  EXPECT_EQ(best.size(), 0U);
+  std::uint32_t view = 0;
+  for (const float visible : {0.2F, 0.5F, 0.1F, 0.5F, 0.2F, 0.9F}) {
+    PlacedTemplate placed;
+    placed.view = view++;
+    placed.fit.visible_fraction = visible;
+    best.add(placed);
+  }
+  std::vector<std::uint32_t> views;
+  for (const PlacedTemplate& placed : best) views.push_back(placed.view);
+  EXPECT_EQ(views, (std::vector<std::uint32_t>{5, 1, 3}));
+  EXPECT_EQ(best.front().view, 5U);
+}
+
 TEST(ViewAlignment, AVoteBesideTheCentreFindsItsWayBack) {
   const TrainingView seen = toy::training_views().front();
   const ViewTemplate view = toy::template_view();

@@ -33,6 +33,19 @@ TEST(TemplateMatch, TheViewItselfFitsWholly) {
   EXPECT_GT(box_iou(result.visible_box_px, cv::Rect2f(cv::boundingRect(view.mask))), 0.9F);
 }
 
+TEST(TemplateMatch, OfSomeRowsIsAboutThatOfAll) {
+  const RgbdFrame frame = tile_frame();
+  for (const float beside : {0.0F, 0.02F, 0.04F}) {
+    const Eigen::Vector3f centre = kCentre + Eigen::Vector3f(beside, 0.0F, 0.0F);
+    const LabFrame lab = toy::lab_frame(frame, frame.colour, 1.0F);
+    const TemplateMatch all = match_template(toy::template_view(), centre, lab);
+    const TemplateMatch some = match_template(toy::template_view(), centre, lab, {1.0F, 3});
+    EXPECT_NEAR(some.visible_fraction, all.visible_fraction, 0.05F) << beside;
+    EXPECT_NEAR(some.free_space_violation, all.free_space_violation, 0.05F) << beside;
+    EXPECT_NEAR(some.colour_correlation, all.colour_correlation, 0.15F) << beside;
+  }
+}
+
 TEST(TemplateMatch, FitsWhereverInTheImageTheObjectFacesTheCamera) {
   for (const cv::Point2d at : {cv::Point2d(30, 119.5), cv::Point2d(290, 119.5), cv::Point2d(280, 200)}) {
     RgbdFrame frame = toy::background(5);
@@ -198,7 +211,7 @@ TEST(TemplateMatch, AViewMayBeTakenForOneOfALargerObject) {
   const RgbdFrame frame = tile_frame();
   const LabFrame lab = toy::lab_frame(frame, frame.colour, 1.0F);
   const TemplateMatch own = match_template(toy::template_view(), kCentre, lab);
-  const TemplateMatch resized = match_template(toy::resized(toy::template_view(), 0.5F), kCentre, lab, 2.0F);
+  const TemplateMatch resized = match_template(toy::resized(toy::template_view(), 0.5F), kCentre, lab, {2.0F});
   EXPECT_NEAR(resized.visible_fraction, own.visible_fraction, 0.01F);
   EXPECT_NEAR(resized.colour_correlation, own.colour_correlation, 0.01F);
   EXPECT_GT(box_iou(resized.visible_box_px, own.visible_box_px), 0.99F);

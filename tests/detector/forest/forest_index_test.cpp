@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -48,6 +49,18 @@ TEST(ForestIndex, ViewsHaveTheNearestOfTheirClassAsNeighbours) {
   EXPECT_EQ(neighbours[0], (ViewNeighbours{2, 1, 0, 0, 0, 0}));
   EXPECT_EQ(neighbours[1], (ViewNeighbours{2, 0, 1, 1, 1, 1}));
   EXPECT_EQ(neighbours[3], (ViewNeighbours{3, 3, 3, 3, 3, 3}));
+}
+
+TEST(ForestIndex, MoreAttitudesOfAClassAreSearchedTheMoreViewsItHas) {
+  Forest forest;
+  forest.classes.resize(3);
+  const std::array<std::size_t, 3> views = {108, 300, 500};
+  for (std::uint32_t class_index = 0; class_index < views.size(); ++class_index)
+    forest.views.insert(forest.views.end(), views[class_index], rotated_view(class_index, 0.0F));
+  const ForestIndex index(forest);
+  EXPECT_EQ(index.attitude_factor(0), 1.0F);
+  EXPECT_FLOAT_EQ(index.attitude_factor(1), 2.0F);
+  EXPECT_FLOAT_EQ(index.attitude_factor(2), 3.0F);
 }
 
 TEST(ForestIndex, ViewsThatStandForAllAttitudesLieFarApart) {
