@@ -413,8 +413,9 @@ SeedTemplates HypothesisScorer::find_seeds() {
 /// on YCB-V a foam brick got scores of 0.14 to 0.22 in three of five images, and 0.9 from 1.5 cm beside.
 BestTemplates<kBestSampled> HypothesisScorer::match_beside_centre() const {
   constexpr float kDisplacement = 0.25F;  // of the object's radius
+  constexpr float kSure = 0.9F;           // score from which no other place is tried
   BestTemplates<kBestSampled> aligned;
-  if (attitude_factor_ == 1.0F) return aligned;
+  if (attitude_factor_ == 1.0F || scored_.detection.score >= kSure) return aligned;
   const Eigen::Vector3f& centre = hypothesis_.centre_camera;
   const Eigen::Vector3f right = kDisplacement * object_.radius * Eigen::Vector3f::UnitX();
   const Eigen::Vector3f down = kDisplacement * object_.radius * Eigen::Vector3f::UnitY();
