@@ -37,12 +37,22 @@ cv::Rect2f expected_box(const RgbdFrame& frame, const ObjectModel& model, const 
   return box;
 }
 
+/// Observes the depth where the object is expected. Its colours, which take longer, follow by observe_colours().
 ObjectObservation observe_expected(const FrameContext& frame, const ObjectModel& model,
                                    const Eigen::Isometry3d& T_camera_object, const PoseSettings& settings) {
   Detection expected;
   expected.box_px = expected_box(frame.frame, model, T_camera_object);
   expected.centre_camera = T_camera_object.cast<float>() * model.vote_centre;
-  return observe_object(frame, expected, model, settings.region);
+  ObjectObservation observation{frame.frame, model};
+  observation.centre_camera = expected.centre_camera;
+  observation.noise = frame.noise;
+  observation.region = find_region(frame.frame, expected, model, settings.region);
+  return observation;
+}
+
+void observe_colours(const FrameContext& frame, ObjectObservation& observation) {
+  if (observation.colours.lab.empty())
+    observation.colours = lab_region(frame.frame, observation.region.box_px, frame.tone);
 }
 
 bool has_depth(const ObjectObservation& observation, const FollowerInput& input) {
@@ -91,36 +101,46 @@ JointResult register_near(const ObjectObservation& observation, const Eigen::Iso
 }
 
 /// Decides on the pose of an object that was reported before. Where there is the outline of an earlier frame, points of
-/// the view are compared with the depth; where there is none, or they do not suffice, the model is rendered.
-void decide_by_depth(const ObjectObservation& observation, const ExpectedObject& expected, const FollowerInput& input,
-                     FollowedPose& followed) {
+/// the view are compared with the depth, and an object that stands is judged by the colours that it had then; where
+/// there is none, or they do not suffice, the model is rendered and its colours are compared.
+void decide_by_depth(const FrameContext& frame, const ExpectedObject& expected, const FollowerInput& input,
+                     ObjectObservation& observation, FollowedPose& followed) {
   const PoseSettings& settings = input.pose;
   const DepthTolerance tolerance{settings.verification.tolerance_m, observation.noise};
   const QualitySettings& quality = class_quality_of(settings, followed.pose.class_name);
   const Eigen::Isometry3d& T = followed.T_camera_object;
   const ProjectedView projected = project_view(observation.frame, observation.model, T, settings.verification.points);
-  PoseEvidence evidence{
-      expected.score, {}, compare_texture(observation, projected, tolerance), expected.texture_probability};
-  bring_to_camera(expected.camera_colours, evidence);
   followed.pose.camera_colours = expected.camera_colours;
-  if (expected.verified) {
-    evidence.depth = verify_projected_view(projected, tolerance);
-    evidence.depth.boundary_samples = expected.verified->boundary_samples;
-    evidence.depth.boundary_continuations = expected.verified->boundary_continuations;
-    followed.verified = expected.verified;
+  const auto compare_here = [&] {
+    observe_colours(frame, observation);
+    followed.colours = {compare_texture(observation, projected, tolerance), T};
+  };
+  const auto decide = [&](const Verification& depth) {
+    PoseEvidence evidence{expected.score, depth, followed.colours->comparison, expected.texture_probability};
+    bring_to_camera(expected.camera_colours, evidence);
     followed.pose.chroma = chroma_pair(followed.pose.class_name, evidence, quality);
     decide_status(evidence, T, true, quality, followed.pose);
+  };
+  const bool reuses_colours =
+      expected.verified && expected.colours && is_same_place(observation.model, expected.colours->T_camera_object, T);
+  followed.colours = expected.colours;
+  if (!reuses_colours) compare_here();
+  if (expected.verified) {
+    Verification depth = verify_projected_view(projected, tolerance);
+    depth.boundary_samples = expected.verified->boundary_samples;
+    depth.boundary_continuations = expected.verified->boundary_continuations;
+    followed.verified = expected.verified;
+    decide(depth);
     // The outline of an earlier frame cannot show where the camera sees through the object in this one.
-    const auto judged = static_cast<float>(evidence.depth.depth_inliers + evidence.depth.free_space_violations);
+    const auto judged = static_cast<float>(depth.depth_inliers + depth.free_space_violations);
     const bool is_present =
-        static_cast<float>(evidence.depth.free_space_violations) <= input.follow.max_free_space_violation * judged;
+        static_cast<float>(depth.free_space_violations) <= input.follow.max_free_space_violation * judged;
     if (has_pose(followed.pose.status) && is_present) return;
     followed.pose.T_camera_object.reset();
   }
-  evidence.depth = verify_pose(observation.frame, observation.model.mesh, T, tolerance, &observation.colours);
-  followed.verified = evidence.depth;
-  followed.pose.chroma = chroma_pair(followed.pose.class_name, evidence, quality);
-  decide_status(evidence, T, true, quality, followed.pose);
+  if (reuses_colours) compare_here();
+  followed.verified = verify_pose(observation.frame, observation.model.mesh, T, tolerance, &observation.colours);
+  decide(*followed.verified);
 }
 
 /// Decides on the pose where no depth is measured: its quality is the last one times the fraction of the silhouette's
@@ -157,8 +177,9 @@ FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, co
   FollowedPose followed = make_unposed(expected);
   ObjectPose& pose = followed.pose;
   followed.T_camera_object = start;
-  const ObjectObservation observation = observe_expected(frame, model, start, settings);
+  ObjectObservation observation = observe_expected(frame, model, start, settings);
   followed.has_depth = has_depth(observation, input);
+  if (followed.has_depth && expected.refine_by_texture) observe_colours(frame, observation);
   if (!followed.has_depth && !(is_without_depth(observation, input) && expected.appearance.colours)) {
     pose.status = PoseStatus::kTooFewPoints;
     return followed;
@@ -179,7 +200,7 @@ FollowedPose follow_from(const FrameContext& frame, const ObjectModel& model, co
   }
   followed.T_camera_object = registration.T_camera_object;
   if (followed.has_depth) {
-    decide_by_depth(observation, expected, input, followed);
+    decide_by_depth(frame, expected, input, observation, followed);
   } else {
     decide_by_colours(expected, result, input, followed);
   }
@@ -212,6 +233,13 @@ FollowedPose follow_object(const FrameContext& frame, const ObjectModel& model, 
 }
 
 }  // namespace
+
+bool is_same_place(const ObjectModel& model, const Eigen::Isometry3d& T_before, const Eigen::Isometry3d& T_after) {
+  constexpr double kMoved_m = 0.002;
+  const double angle = Eigen::AngleAxisd(T_before.linear().transpose() * T_after.linear()).angle();
+  const double shift_m = (middle_of(model, T_after) - middle_of(model, T_before)).norm();
+  return shift_m + angle * static_cast<double>(model.radius) <= kMoved_m;
+}
 
 std::vector<FollowedPose> follow_objects(const PoseEstimator& estimator, const FollowSettings& settings,
                                          const RgbdFrame& frame, const std::vector<ExpectedObject>& expected) {

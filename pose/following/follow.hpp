@@ -10,6 +10,7 @@
 #include "pipeline/types/object_pose.hpp"
 #include "pose/following/joint_registration.hpp"
 #include "pose/pose_estimator.hpp"
+#include "pose/seen/colour_score.hpp"
 
 namespace houghstream {
 
@@ -48,6 +49,12 @@ void fields(const FollowSettings& /*settings*/, const Visit& visit) {
   visit(number("max_free_space_violation", &S::max_free_space_violation, 0, 1));
 }
 
+/// Colours of an object beside its model's, as one frame showed them.
+struct ComparedColours {
+  std::optional<ColourComparison> comparison;                         ///< nothing where there was too little to compare
+  Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< pose at which they were compared, metres
+};
+
 /// An object that had a pose in an earlier frame, with its predicted poses in this one.
 struct ExpectedObject {
   int class_id = 0;
@@ -59,6 +66,8 @@ struct ExpectedObject {
   /// Tests for occlusion at the first predicted pose, which costs one more rendering.
   bool check_occlusion = true;
   std::optional<Verification> verified;  ///< result of an earlier frame, whose outline serves for this one
+  /// Colours of an earlier frame, which serve for this one where the object has not moved since.
+  std::optional<ComparedColours> colours;
   float texture_probability = 1.0F;  ///< PoseEvidence::texture_probability of the detection's pose that it continues
   ChromaMap camera_colours = {};     ///< map from taught to measured colours, by which its colours are judged
   float shape_quality = 0.0F;        ///< shape quality of its last pose that was judged by depth
@@ -73,6 +82,7 @@ struct FollowedPose {
   /// Place where the best attempt ended, withheld or not.
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
   std::optional<Verification> verified;     ///< verification by the last rendering
+  std::optional<ComparedColours> colours;   ///< colours by which it was judged, of this frame or of an earlier one
   bool has_depth = false;                   ///< whether it was judged by depth
   bool is_refined = false;                  ///< whether its texture has moved it (ExpectedObject::refine_by_texture)
   Matrix6d information = Matrix6d::Zero();  ///< JointResult::information of that attempt
@@ -80,14 +90,20 @@ struct FollowedPose {
   std::shared_ptr<const Silhouette> silhouette;  ///< silhouette that it used last, or null
 };
 
+/// Returns whether no point of the model moves between two poses by more than a pixel or two (2 mm): what the image
+/// showed of it at the one it shows at the other.
+bool is_same_place(const ObjectModel& model, const Eigen::Isometry3d& T_before, const Eigen::Isometry3d& T_after);
+
 /// Finds objects that were posed in earlier frames in this one, in their order, without detections, on
 /// PoseSettings::threads threads. Registers the model from each start in turn, to depth and to the edges of its colours
 /// (joint_registration.hpp), and verifies the result as any pose is verified, until the evidence suffices. Where no
 /// depth is measured the edges alone determine the pose, and its quality is the last one times the fraction of the
-/// silhouette's lines that have an edge. Rendering the model costs most: with an outline of an earlier frame, points of
-/// the view take its place as long as they suffice. A rejected pose has always been rendered. Where nothing suffices
-/// and the object is occluded where it was expected first, its status is kOccluded (ExpectedObject::check_occlusion).
-/// The status of a class without a model is kNoModel. Throws InputError for an invalid frame.
+/// silhouette's lines that have an edge. Rendering the model and comparing its colours cost most: with an outline of an
+/// earlier frame, points of the view take its place as long as they suffice, and the colours of that frame serve as
+/// long as the object stands before the camera. A rejected pose has always been rendered and compared in its own frame.
+/// Where nothing suffices and the object is occluded where it was expected first, its status is kOccluded
+/// (ExpectedObject::check_occlusion). The status of a class without a model is kNoModel. Throws InputError for an
+/// invalid frame.
 std::vector<FollowedPose> follow_objects(const PoseEstimator& estimator, const FollowSettings& settings,
                                          const RgbdFrame& frame, const std::vector<ExpectedObject>& expected);
 

@@ -43,7 +43,7 @@ class JointRegistration {
         sigma_m_(settings.depth_sigmas * observation.noise.sigma(observation.centre_camera.z())) {
     result_.silhouette = start.appearance.silhouette;
     result_.registration.T_camera_object = start.T_camera_object;
-    if (start.appearance.texture) brightness_ = make_brightness(observation.frame, observation.region.box_px);
+    if (is_textured()) brightness_ = make_brightness(observation.frame, observation.region.box_px);
   }
 
   JointResult run() {
@@ -55,6 +55,7 @@ class JointRegistration {
         pose() = start_.refine_by_texture(pose());
         brightness_ = {};
       }
+      is_finest_ = i + 1 == kLevels.size();
       register_level(kLevels[i], distance_m);
       distance_m = std::max(end_m_, distance_m * shrink);
     }
@@ -65,6 +66,8 @@ class JointRegistration {
  private:
   Eigen::Isometry3d& pose() { return result_.registration.T_camera_object; }
 
+  bool is_textured() const { return start_.appearance.texture && start_.appearance.texture->is_textured(); }
+
   void register_level(const JointLevel& level, double distance_m) {
     const RegionLines lines = find_lines(level);
     result_.edges = static_cast<int>(lines.lines.size());
@@ -72,10 +75,10 @@ class JointRegistration {
     result_.covered = lines.covered;
     for (int i = 0; i < kUpdates; ++i) {
       MotionEquations all = region_equations(view_, lines.lines, pose(), level.scale, level.step, settings_.region);
-      if (start_.appearance.texture)
+      if (is_textured())
         add(texture_equations(view_, brightness_, *start_.appearance.texture, pose(), level.texture, settings_.texture),
             1.0, all);
-      result_.information = all.hessian;
+      if (is_finest_) result_.information = all.hessian;
       const bool has_depth = add_depth(level, distance_m, all);
       if (!has_depth && lines.lines.empty()) return;
       apply_step(all);
@@ -105,7 +108,7 @@ class JointRegistration {
     lag_.hessian = 1.0 + motion.dot(lag_.cross_terms);
     lag_.gradient = motion.dot(equations.gradient) - lag_.deviations;
     equations.gradient -= lag_.cross_terms * (lag_.gradient / lag_.hessian);
-    equations.hessian.selfadjointView<Eigen::Lower>().rankUpdate(lag_.cross_terms, -1.0 / lag_.hessian);
+    add_outer_product(lag_.cross_terms, -1.0 / lag_.hessian, equations.hessian);
   }
 
   static void add(const MotionEquations& part, double weight, MotionEquations& all) {
@@ -121,18 +124,16 @@ class JointRegistration {
     if (pairs.count < kMinPairs) return false;
     // A level with fewer pairs weighs as much as the finest one.
     const double weight = 1.0 / (level.points * sigma_m_ * sigma_m_);
-    MotionEquations depth;
-    MotionEquations point_to_plane;
-    add(build_equations(pairs, registration_.point_weight), weight, depth);
-    add(build_equations(pairs, 0.0), weight, point_to_plane);
     lag_.hessian = 0.0;
     const bool has_colour_equations = !all.hessian.isZero(0.0);
-    if (has_colour_equations) {
-      marginalise_lag(point_to_plane);
-      marginalise_lag(depth);
-    }
-    add(depth, 1.0, all);
-    result_.information += point_to_plane.hessian;
+    const auto build = [&](double point_weight) {
+      MotionEquations depth;
+      add(build_equations(pairs, point_weight), weight, depth);
+      if (has_colour_equations) marginalise_lag(depth);
+      return depth;
+    };
+    if (is_finest_) result_.information += build(0.0).hessian;
+    add(build(registration_.point_weight), 1.0, all);
     return true;
   }
 
@@ -153,7 +154,7 @@ class JointRegistration {
     const Vector6d step = solver.solve(all.gradient);
     if (lag_.hessian > 0.0) {
       lag_.deviations += (lag_.gradient - lag_.cross_terms.dot(step)) / lag_.hessian;
-      update_lag_evidence(solver);
+      if (is_finest_) measure_lag(solver);
     }
     ++result_.registration.iterations;
     result_.registration.converged =
@@ -161,7 +162,7 @@ class JointRegistration {
   }
 
   /// Notes what is known of the lag when the pose is free as well, less its prior.
-  void update_lag_evidence(const Eigen::LDLT<Matrix6d>& solver) {
+  void measure_lag(const Eigen::LDLT<Matrix6d>& solver) {
     const double from_pose = lag_.cross_terms.dot(solver.solve(lag_.cross_terms)) / (lag_.hessian * lag_.hessian);
     const double variance = 1.0 / lag_.hessian + from_pose;
     result_.lag.information = std::max(0.0, 1.0 / variance - 1.0);
@@ -194,7 +195,8 @@ class JointRegistration {
   const JointSettings& settings_;
   const RegistrationSettings& registration_;
   const double end_m_;
-  const double sigma_m_;  // standard deviation of a pair of depth
+  const double sigma_m_;    // standard deviation of a pair of depth
+  bool is_finest_ = false;  // whether the level is the last one, of whose updates the last is the result's evidence
   BrightnessImage brightness_;
   Lag lag_;
   JointResult result_;

@@ -1,8 +1,8 @@
 #include "pose/following/object_follower.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <string_view>
+#include <array>
+#include <cstring>
 
 #include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/logit.hpp"
@@ -45,15 +45,25 @@ std::int64_t to_camera_time(std::int64_t utime, const FollowedCamera& camera) {
   return shifted(utime, camera.clock_offset_us);
 }
 
-/// Returns a digest of every fourth row: sensor noise makes those of two measurements differ.
+/// Returns a digest of every fourth row: sensor noise makes those of two measurements differ. A polynomial in each of a
+/// few lanes, so that vector units can compute it.
 std::uint64_t depth_digest(const cv::Mat& depth) {
   constexpr int kEvery = 4;
-  std::uint64_t digest = 0;
+  std::array<std::uint64_t, 8> lanes{};
+  const auto add = [&](const char* bytes, std::size_t size) {
+    std::array<std::uint64_t, 8> values{};
+    std::memcpy(values.data(), bytes, size);
+    for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = (lanes[i] << 5U) - lanes[i] + values[i];
+  };
   for (int row = 0; row < depth.rows; row += kEvery) {
     const auto* bytes = depth.ptr<char>(row);
-    const std::string_view values(bytes, static_cast<std::size_t>(depth.cols) * depth.elemSize());
-    digest = digest * 31 + std::hash<std::string_view>()(values);
+    const std::size_t size = static_cast<std::size_t>(depth.cols) * depth.elemSize();
+    std::size_t done = 0;
+    for (; done + sizeof(lanes) <= size; done += sizeof(lanes)) add(bytes + done, sizeof(lanes));
+    add(bytes + done, size - done);
   }
+  std::uint64_t digest = 0;
+  for (const std::uint64_t lane : lanes) digest = digest * 31 + lane;
   return digest;
 }
 
@@ -158,7 +168,10 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
         make_expected_object(object.velocity.predict(object.T_camera_object, predicted_s), object));
     next.refine_by_texture = refine_by_texture;
     next.depth_lag = depth_lag(lag_s, object.velocity);
-    if (!refine_by_texture) next.verified = object.verified;
+    if (!refine_by_texture) {
+      next.verified = object.verified;
+      next.colours = object.colours;
+    }
     next.camera_colours = colours_for(object, estimator, camera);
   }
   std::vector<FollowedPose> poses = follow_objects(estimator, settings_.follow, frame, expected);
@@ -191,9 +204,14 @@ void ObjectFollower::retry_without_pose(const PoseEstimator& estimator, const Rg
     again.refine_by_texture = true;
     again.is_lost = true;
     again.camera_colours = colours_for(object, estimator, camera);
-    if (carried) again.initial_poses.insert(again.initial_poses.begin(), *carried);
+    // A camera that stands carries an object to where it was: the two are one place then, and searched once.
+    const auto model = estimator.models().find(object.class_name);
+    const bool is_elsewhere =
+        carried && model != estimator.models().end() && !is_same_place(model->second, object.T_camera_object, *carried);
+    if (is_elsewhere) again.initial_poses.insert(again.initial_poses.begin(), *carried);
+    if (carried && !is_elsewhere) again.initial_poses = {*carried};
     // An object that stands was expected there the first time too, which has tested its occlusion.
-    again.check_occlusion = carried || !object.velocity.is_zero();
+    again.check_occlusion = is_elsewhere || !object.velocity.is_zero();
     retried.push_back(i);
     expected.push_back(std::move(again));
   }
@@ -238,6 +256,7 @@ void ObjectFollower::update_object(const PoseEstimator& estimator, const Followe
   object.failures = kept || result.pose.status == PoseStatus::kOccluded ? 0 : object.failures + 1;
   object.T_camera_object = orthonormalised(result.T_camera_object);
   object.verified = result.verified;
+  object.colours = result.colours;
   object.clock_us = clock_us;
   if (valid) object.valid_us = clock_us;
   if (valid && result.has_depth) object.shape_quality = result.pose.shape_quality;
@@ -441,7 +460,9 @@ void adopt_better_pose(const ObjectPose& pose, const FollowedPose& followed, con
   object.T_camera_object =
       orthonormalised(object.T_camera_object * followed.T_camera_object.inverse() * *pose.T_camera_object);
   object.texture_probability = texture_probability_of(pose);
-  object.appearance.texture.reset();  // the keyframe was made at the wrong pose
+  object.appearance.texture.reset();  // the keyframe was made at the wrong pose, and so were outline and colours
+  object.verified.reset();
+  object.colours.reset();
 }
 
 }  // namespace

@@ -82,9 +82,10 @@ struct FollowedObject {
   std::int64_t recheck_us = 0;  ///< time at which it was last estimated as if it were not followed
   std::int64_t retry_us = 0;    ///< time at which it was last searched for in its surroundings
   int failures = 0;
-  float shape_quality = 0.0F;            ///< shape quality of its last pose that was judged by depth
-  std::optional<Verification> verified;  ///< verification by the last rendering
-  FollowedAppearance appearance;         ///< appearance that its valid poses have taught
+  float shape_quality = 0.0F;              ///< shape quality of its last pose that was judged by depth
+  std::optional<Verification> verified;    ///< verification by the last rendering
+  std::optional<ComparedColours> colours;  ///< colours by which it was judged last
+  FollowedAppearance appearance;           ///< appearance that its valid poses have taught
 };
 
 /// A frame's poses, with the numbers of their objects.

@@ -136,14 +136,16 @@ std::optional<SegmentProbabilities> segment_probabilities(const RgbdFrame& frame
 bool find_edge(const SegmentProbabilities& segments, RegionLine& line) {
   constexpr float kMaxVariance = 8.0F;  // variance of a flat posterior is 11.9
   static const std::array<float, kFunctionSegments> step = step_function();
-  float sum = 0.0F;
-  for (std::size_t i = 0; i < kEdgePositions; ++i) {
-    float product = 1.0F;
-    for (std::size_t j = 0; j < kFunctionSegments; ++j)
-      product *= step[j] * segments.foreground[i + j] + (1.0F - step[j]) * segments.background[i + j];
-    line.posterior[i] = product;
-    sum += product;
+  // All positions advance together, so that they share vector units.
+  std::array<float, kEdgePositions> products{};
+  products.fill(1.0F);
+  for (std::size_t j = 0; j < kFunctionSegments; ++j) {
+    for (std::size_t i = 0; i < kEdgePositions; ++i)
+      products[i] *= step[j] * segments.foreground[i + j] + (1.0F - step[j]) * segments.background[i + j];
   }
+  float sum = 0.0F;
+  for (const float product : products) sum += product;
+  line.posterior = products;
   if (!(sum > 0.0F)) return false;
   float mean = 0.0F;
   for (std::size_t i = 0; i < kEdgePositions; ++i) {
@@ -221,6 +223,7 @@ RegionLines find_region_lines(const RegionView& view, const Silhouette& silhouet
                               const RegionModalitySettings& settings) {
   constexpr int kBeside_px = 4;
   RegionLines found;
+  found.lines.reserve(silhouette.points.size() / static_cast<std::size_t>(scale.every) + 1);
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   const auto focal = static_cast<float>(view.frame.camera.fx);
   for (std::size_t i = 0; i < silhouette.points.size(); i += static_cast<std::size_t>(scale.every)) {
@@ -274,7 +277,7 @@ MotionEquations region_equations(const RegionView& view, const std::vector<Regio
                                 ? (line.mean - position) / line.variance
                                 : static_cast<double>(gradient_at(line, static_cast<float>(position)));
     const Vector6d row = per_px * image_motion_row(view, point, line.normal.cast<double>(), centre);
-    equations.hessian.selfadjointView<Eigen::Lower>().rankUpdate(row, weight / line.variance);
+    add_outer_product(row, weight / line.variance, equations.hessian);
     equations.gradient += weight * gradient * row;
     common.add(row, weight / line.variance, weight * gradient,
                per_px * Eigen::Vector2d(1.0, std::tanh(kContrastGain * line.contrast)));

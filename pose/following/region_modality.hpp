@@ -80,6 +80,15 @@ struct RegionView {
 Vector6d image_motion_row(const RegionView& view, const Eigen::Vector3d& point, const Eigen::Vector2d& direction,
                           const Eigen::Vector3d& centre);
 
+/// Adds weight * row * row^T to the lower triangle of a hessian, bit for bit as Eigen's rankUpdate() does, whose
+/// general code takes several times as long for so small a matrix.
+inline void add_outer_product(const Vector6d& row, double weight, Matrix6d& hessian) {
+  for (Eigen::Index j = 0; j < row.size(); ++j) {
+    const double weighted = weight * row[j];
+    for (Eigen::Index i = j; i < row.size(); ++i) hessian(i, j) += weighted * row[i];
+  }
+}
+
 /// Draws a line through each point of the silhouette at the pose and finds its edge. Left out are points that nearer
 /// depth occludes, also where it lies beside them, lines on which the model begins again or ends within three segments,
 /// and lines all of whose colours are those of one side.

@@ -45,6 +45,13 @@ std::optional<BrightnessSample> sample_brightness(const BrightnessImage& image, 
   return sample;
 }
 
+/// Returns the nearest whole number, of two the one farther from zero: std::lround() as a few instructions.
+int rounded(float value) {
+  const int whole = static_cast<int>(value);
+  const float rest = value - static_cast<float>(whole);
+  return whole + (rest >= 0.5F ? 1 : 0) - (rest <= -0.5F ? 1 : 0);
+}
+
 /// A point of the surface in a frame; nothing where it is turned away, or nearer or farther depth is measured.
 struct SurfacePoint {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();  // camera frame, metres
@@ -59,8 +66,8 @@ std::optional<SurfacePoint> find_surface_point(const RegionView& view, const Eig
   if (!(out.point.z() > 0.0F) || -(T.linear() * normal).dot(out.point) < kMinFacing * out.point.norm())
     return std::nullopt;
   out.pixel = view.frame.camera.project_single(out.point);
-  const auto x = static_cast<int>(std::lround(std::clamp(out.pixel.x(), -1.0F, 1e5F)));
-  const auto y = static_cast<int>(std::lround(std::clamp(out.pixel.y(), -1.0F, 1e5F)));
+  const int x = rounded(std::clamp(out.pixel.x(), -1.0F, 1e5F));
+  const int y = rounded(std::clamp(out.pixel.y(), -1.0F, 1e5F));
   if (x < 0 || y < 0 || x >= view.frame.depth.cols || y >= view.frame.depth.rows) return std::nullopt;
   const float beyond = view.frame.depth.at<float>(y, x) - out.point.z();
   const double tolerance = DepthTolerance{kTolerance_m, view.noise}.at(out.point.z());
@@ -128,9 +135,8 @@ TextureKeyframe make_texture_keyframe(const RegionView& view, const BrightnessIm
 MotionEquations texture_equations(const RegionView& view, const BrightnessImage& image, const TextureKeyframe& keyframe,
                                   const Eigen::Isometry3d& T_camera_object, std::size_t level,
                                   const TextureModalitySettings& settings) {
-  constexpr std::size_t kMinPoints = 15;
   MotionEquations equations;
-  if (image.levels[level].empty()) return equations;
+  if (image.levels[level].empty() || !keyframe.is_textured()) return equations;
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   const Eigen::Vector3d centre = T_camera_object * view.model.centre.cast<double>();
   std::vector<Compared> compared;
@@ -144,7 +150,7 @@ MotionEquations texture_equations(const RegionView& view, const BrightnessImage&
     compared.push_back(
         {image_motion_row(view, at->point.cast<double>(), gradient, centre), point.brightness[level] - sample->value});
   }
-  if (compared.size() < kMinPoints) return equations;
+  if (compared.size() < TextureKeyframe::kMinPoints) return equations;
   const float offset = median_residual(compared);
   const double information = 1.0 / (settings.sigma * settings.sigma);
   for (const Compared& one : compared) {
@@ -153,7 +159,7 @@ MotionEquations texture_equations(const RegionView& view, const BrightnessImage&
     if (!(std::abs(ratio) < 1.0)) continue;
     const double left = 1.0 - ratio * ratio;
     const double weight = information * left * left;  // Tukey's biweight
-    equations.hessian.selfadjointView<Eigen::Lower>().rankUpdate(one.row, weight);
+    add_outer_product(one.row, weight, equations.hessian);
     equations.gradient += weight * residual * one.row;
   }
   return equations;

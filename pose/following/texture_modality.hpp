@@ -46,6 +46,11 @@ struct TextureKeyframe {
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();          ///< unit, object frame
     std::array<float, BrightnessImage::kLevels> brightness{};  ///< brightness by level
   };
+  static constexpr std::size_t kMinPoints = 15;  ///< fewer points say nothing
+
+  /// Returns whether there are enough points for equations.
+  bool is_textured() const { return points.size() >= kMinPoints; }
+
   std::vector<Point> points;
 };
 

@@ -26,6 +26,16 @@ Eigen::Isometry3d drawn_in(const ModalityScene& scene, Eigen::Isometry3d pose, c
   return pose;
 }
 
+TEST(RegionModality, AnOuterProductIsBitForBitThatOfEigen) {
+  Vector6d row;
+  row << 0.1, -3.7, 1e-3, 17.0, -0.33, 2.0 / 3.0;
+  Matrix6d ours = Matrix6d::Constant(0.7);
+  Matrix6d theirs = ours;
+  add_outer_product(row, 0.3, ours);
+  theirs.selfadjointView<Eigen::Lower>().rankUpdate(row, 0.3);
+  EXPECT_EQ(ours, theirs);
+}
+
 TEST(RegionModality, EdgesAreOnTheSilhouetteAtTheTruePose) {
   const ModalityScene& scene = box_scene();
   const RegionLines found = lines_at(scene, scene.truth, {1, 1.5});
