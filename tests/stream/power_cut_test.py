@@ -101,8 +101,8 @@ def main():
     check_store(arguments, "rename_without_exchange", ("rename", "bowl", "dish"), exchange=False)
     hs_log = arguments.tools / "hs-log"
     scene = arguments.made / "scene.log"
-    check_file(arguments, "log", lambda file: shutil.copy(scene, file), [hs_log, "filter", "-e", "0.1", scene])
-    check_file(arguments, "table", lambda file: file.write_text("old"), [hs_log, "export", "csv", arguments.made / "results.log"])
+    check_file(arguments, "log", lambda file: shutil.copy(scene, file), [hs_log, "filter", "--replace", "-e", "0.1", scene])
+    check_file(arguments, "table", lambda file: file.write_text("old"), [hs_log, "export", "csv", "--replace", arguments.made / "results.log"])
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/event_log.hpp"
+#include "tools/common/new_output.hpp"
 #include "tools/common/progress_line.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/common/usage_error.hpp"
@@ -28,6 +29,7 @@ struct Options {
   bool json = false;
   std::string in;
   std::string out;
+  bool replace = false;
   std::string camera;
   std::string channel = "OPENNI_FRAME";
   LogFilter filter;
@@ -61,6 +63,7 @@ CommandLine add_filter(CommandLine& app, Options& options) {
                   "channels: a regular expression for the whole name")
       .capture_default_str();
   filter.add_flag("-i,--invert", options.filter.others, "keep the channels that do not match");
+  add_replace_output_option(filter, options.replace, "OUT");
   filter.add_example("hs-log filter IN.lcmlog OUT.lcmlog -s 2.5 -e 10 -c 'OPENNI_.*'");
   return filter;
 }
@@ -97,6 +100,7 @@ CommandLine add_seal(CommandLine& app, Options& options) {
       app.add_subcommand("seal", "copies a log with a checksum for each event, which every reader checks");
   seal.add_option("log", options.in, "LCM log").required();
   seal.add_option("out", options.out, "LCM log to write").required();
+  add_replace_output_option(seal, options.replace, "OUT");
   seal.add_example("hs-log seal IN.lcmlog OUT.lcmlog");
   return seal;
 }
@@ -105,6 +109,7 @@ CommandLine add_repair(CommandLine& app, Options& options) {
   CommandLine repair = app.add_subcommand("repair", "copies an .oni recording whose recorder was killed, with its end");
   repair.add_option("recording", options.in, "FILE.oni, or FILE.oni.partial.oni").required();
   repair.add_option("out", options.out, ".oni file to write").required();
+  add_replace_output_option(repair, options.replace, "OUT");
   repair.add_example("hs-log repair take.oni.partial.oni take.oni");
   return repair;
 }
@@ -117,6 +122,7 @@ CommandLine add_import(CommandLine& app, Options& options) {
   import.add_option("--from-channel", options.recording.channel,
                     "the one channel to read; default: the first with frames");
   import.add_option("-c,--channel", options.channel, "the one channel to write").capture_default_str();
+  add_replace_output_option(import, options.replace, "OUT");
   import.add_example("hs-log import recording.klg OUT.lcmlog --camera 640x480,525,525,319.5,239.5");
   return import;
 }
@@ -128,7 +134,10 @@ CommandLine add_export(CommandLine& app, const std::string& name, const std::str
   part.add_option("out", options.out, frames ? "folder to write" : "file to write").required();
   part.add_example(fmt::format("hs-log export {} {}", name,
                                frames ? "IN.lcmlog FOLDER" : "RESULTS.lcmlog OUT." + name.substr(name.rfind('-') + 1)));
-  if (!frames) return part;
+  if (!frames) {
+    add_replace_output_option(part, options.replace, "OUT");
+    return part;
+  }
   part.add_option("--camera", options.camera, kCameraOptionHelp);
   part.add_option("--from-channel", options.recording.channel,
                   "the one channel to read; default: the first with frames");
@@ -143,6 +152,7 @@ CommandLine add_mcap(CommandLine& app, Options& options) {
   mcap.add_option("--objects", options.objects, "object store of hs-teach with the models");
   add_model_options(mcap, options.models, options.model_unit_m);
   mcap.add_option("--camera", options.camera, kCameraOptionHelp);
+  add_replace_output_option(mcap, options.replace, "OUT");
   mcap.add_example("hs-log export mcap RESULTS.lcmlog OUT.mcap --objects my.store");
   return mcap;
 }
@@ -202,6 +212,8 @@ int main(int argc, char** argv) {
 
   return run_tool(app, argc, argv, [&] {
     if (record.given()) return record_and_tell(options.record);
+    const bool makes_folder = bop.given() || png.given();
+    if (!makes_folder) require_new_output(options.out, options.replace);
     LossReport losses;
     options.recording.source = options.in;
     if (!options.camera.empty()) options.recording.camera = camera_of_option(options.camera);

@@ -7,6 +7,7 @@
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/messages/channels.hpp"
+#include "tools/common/new_output.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/observe/frame_times.hpp"
 
@@ -20,6 +21,7 @@ struct ObserveOptions {
   std::string frame_channels = channel::kFrame;
   std::string out;
   std::string csv;
+  bool replace = false;
   double duration_s = 1e9;
   double quiet_s = 2.5;  // timeout longer than the status period, so that the last word of each process is in
   std::optional<std::int64_t> expect;
@@ -42,7 +44,9 @@ std::string receive(LcmBus& bus, const std::function<bool()>& done) {
 
 void observe(const ObserveOptions& options) {
   for (const std::string& file : {options.out, options.csv}) {
-    if (!file.empty()) require_writable(file);
+    if (file.empty()) continue;
+    require_writable(file);
+    require_new_output(file, options.replace);
   }
   catch_stop_signals();
   LcmBus bus(options.url);
@@ -94,6 +98,7 @@ int main(int argc, char** argv) {
   ObserveOptions options;
   app.add_option("--out", options.out, "write the summary to this JSON file instead of stdout");
   app.add_option("--csv", options.csv, "write one row for each frame to this file");
+  houghstream::add_replace_output_option(app, options.replace, "files of the names of --out and --csv");
   app.add_option("--duration", options.duration_s, "end after this many seconds; default: at a stop signal")
       .non_negative();
   app.add_option("--expect", options.expect, "frames that are sent; end when they have come and the bus is quiet")

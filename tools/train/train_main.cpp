@@ -10,6 +10,7 @@
 #include "pipeline/base/check_settings.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "tools/common/new_output.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/train/training_sources.hpp"
 
@@ -136,6 +137,7 @@ int train_main(int argc, char** argv, const TrainProgram& program) {
   Overrides overrides;
   std::string out;
   std::string add_to;
+  bool replace = false;
   app.add_option("--views", sources.views, "training views: bop:DIR or uw:DIR").required();
   app.add_option("--background", sources.backgrounds, "rooms without the objects: bop:DIR or images:DIR").required();
   app.add_option("--instances", sources.instances, "instances of a uw: folder to teach").delimiter(',');
@@ -143,10 +145,12 @@ int train_main(int argc, char** argv, const TrainProgram& program) {
   app.add_option("--camera", sources.camera, "WIDTHxHEIGHT,fx,fy,cx,cy, for data without one");
   app.add_option("--out", out, "forest file to write").required();
   app.add_option("--add-to", add_to, "forest that learns them too; its profile counts");
+  add_replace_output_option(app, replace, "a file of the name of --out");
   add_overrides(app, program, overrides);
   app.add_example(program.name + " --views bop:VIEWS --background bop:ROOMS --out my.forest");
   return run_tool(app, argc, argv, [&] {
     require_writable(out);
+    require_new_output(out, replace);
     std::optional<Forest> old;
     if (!add_to.empty()) old = load_forest(add_to);
     train(sources, old ? profile_for(*old, program, overrides) : overridden(program, overrides), old, out, program);

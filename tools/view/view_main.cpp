@@ -21,7 +21,7 @@ void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSetting
       .positive();
   app.add_option("--video", outputs.video, "write a video to this file (.mp4)");
   app.add_option("--pictures", outputs.images, "write every picture drawn to this folder");
-  houghstream::add_replace_option(app, outputs.replace, "--video or --pictures");
+  houghstream::add_replace_option(app, outputs.replace, "--snapshot, --video or --pictures");
   app.add_flag("--preview", show.preview, "send JPEGs below 100 kB on HOUGHSTREAM_PREVIEW");
   app.add_option("--http", show.http,
                  "serve a page for browsers at [ADDRESS:]PORT; without an address for this machine only");

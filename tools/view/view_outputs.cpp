@@ -8,6 +8,7 @@
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/base/recording_names.hpp"
 
 namespace houghstream::view {
@@ -52,21 +53,31 @@ void ViewOutputs::add(const cv::Mat& image, std::int64_t utime, std::int64_t slo
   last_ = image;
   if (video_) video_->add(image, slot);
   if (!settings_.images.empty()) {
-    const fs::path file = settings_.images / fmt::format("{}.jpg", utime);
-    save_image(settings_.replace ? file : next_recording_name(file), image);
+    save_image(name_for(settings_.images / fmt::format("{}.jpg", utime)), image);
   }
   if (!settings_.snapshot.empty() && added_ == settings_.snapshot_after) {
-    save_image(settings_.snapshot, image);
-    snapshot_written_ = true;
+    save_snapshot(image);
   }
 }
 
 void ViewOutputs::finish() {
   const bool wanted = !settings_.snapshot.empty() || !settings_.video.empty() || !settings_.images.empty();
   require(!wanted || added_ > 0, "nothing to write: no frame was seen on the bus");
-  if (!settings_.snapshot.empty() && !snapshot_written_) save_image(settings_.snapshot, last_);
+  if (!settings_.snapshot.empty() && !snapshot_written_) save_snapshot(last_);
   if (video_) video_->finish();
   video_.reset();
+}
+
+fs::path ViewOutputs::name_for(const fs::path& wanted) const {
+  return settings_.replace ? wanted : next_recording_name(wanted);
+}
+
+void ViewOutputs::save_snapshot(const cv::Mat& image) {
+  const fs::path file = name_for(settings_.snapshot);
+  save_image(file, image);
+  snapshot_written_ = true;
+  if (file != settings_.snapshot)
+    log_warning("{}: is there and stays; the snapshot goes to {}", settings_.snapshot.string(), file.string());
 }
 
 bool ViewOutputs::complete() const {

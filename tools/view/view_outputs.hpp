@@ -16,7 +16,7 @@ struct OutputSettings {
   std::filesystem::path video;      ///< MP4
   std::filesystem::path images;     ///< folder for every image drawn, UTIME.jpg
   double rate_hz = 10.0;            ///< rate of the video
-  bool replace = false;             ///< a video and images that are there, instead of taking the next number
+  bool replace = false;             ///< replaces files that are there, instead of taking the next number
 };
 
 /// Writes images to files.
@@ -34,6 +34,9 @@ class ViewOutputs {
   bool complete() const;
 
  private:
+  std::filesystem::path name_for(const std::filesystem::path& wanted) const;
+  void save_snapshot(const cv::Mat& image);
+
   OutputSettings settings_;
   std::unique_ptr<VideoFile> video_;
   cv::Mat last_;

@@ -113,7 +113,8 @@ def export(arguments, log, out):
     models = arguments.out / "models"
     models.mkdir(exist_ok=True)
     (models / "bowl.ply").write_text(BOWL)
-    command = [arguments.tools / "hs-log", "export", "mcap", log, out, "--models", models, "--camera", CAMERA]
+    command = [arguments.tools / "hs-log", "export", "mcap", log, out, "--replace", "--models", models, "--camera",
+               CAMERA]  # fmt: skip
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 0, done.stderr
     return done

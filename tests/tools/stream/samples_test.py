@@ -130,7 +130,7 @@ class Completion(unittest.TestCase):
 
     def test_options_of_the_job_that_help_lists(self):
         self.assertEqual(self.completed("hs-view", "--3"), ["--3d"])
-        self.assertEqual(self.completed("hs-log", "export", "csv", "--"), ["--help", "--verbose"])
+        self.assertEqual(self.completed("hs-log", "export", "csv", "--"), ["--help", "--replace", "--verbose"])
         self.assertIn("--channels", self.completed("hs-log", "filter", "a", "--"))
         self.assertNotIn("--invert", self.completed("hs-log", "--"))
         self.assertEqual(self.completed("hs-stream", "--loo"), [])

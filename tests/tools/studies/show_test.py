@@ -35,6 +35,11 @@ class Words(Case):
         self.assertIsNone(self.parse("--page", display=False).picture)
         self.assertEqual(self.parse("--picture", "found.jpg", display=True).picture.name, "found.jpg")
 
+    def test_an_image_that_is_there_stays(self):
+        for name in ("found.jpg", "found_2.jpg"):
+            (self.folder / name).touch()
+        self.assertEqual(self.parse("--picture", str(self.folder / "found.jpg"), display=True).picture, self.folder / "found_3.jpg")
+
     def test_what_cannot_be_done_is_one_line(self):
         for words, complaint in ((("--picture", "x.bmp"), "--picture x.bmp: expected a .png or .jpg"),
                                  (("--picture", "/nowhere/x.png"), "there is no folder /nowhere"),

@@ -89,9 +89,10 @@ TEST(ViewOutputs, VideoAndImagesGoOnAfterTheSnapshot) {
   EXPECT_GT(fs::file_size(settings.video), 0U);
 }
 
-TEST(ViewOutputs, ImagesAndVideosThatAreThereStay) {
+TEST(ViewOutputs, WhatIsThereStays) {
   const fs::path folder = fresh_folder("view_outputs_again");
   OutputSettings settings;
+  settings.snapshot = folder / "shot.png";
   settings.video = folder / "video.mp4";
   settings.images = folder / "pictures";
   for (const int level : {10, 60, 110}) {
@@ -102,6 +103,9 @@ TEST(ViewOutputs, ImagesAndVideosThatAreThereStay) {
   }
   EXPECT_NEAR(level_of(settings.images / "222.jpg"), 110, 2);
   EXPECT_NEAR(level_of(settings.images / "222_2.jpg"), 60, 2);
+  EXPECT_EQ(level_of(settings.snapshot), 110);
+  EXPECT_EQ(level_of(folder / "shot_2.png"), 60);
+  EXPECT_FALSE(fs::exists(folder / "shot_3.png"));
   EXPECT_TRUE(fs::exists(settings.video) && fs::exists(folder / "video_2.mp4"));
   EXPECT_FALSE(fs::exists(folder / "video_3.mp4"));
 }

@@ -5,6 +5,7 @@ The stream has a network of its own, where that is allowed: it disturbs no other
 is the machine's all the same: its socket was made before."""
 
 import argparse
+import itertools
 import os
 import pathlib
 import shutil
@@ -39,8 +40,9 @@ def parse(words):
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = JOBS
     add = parser.add_argument
-    add("--picture", type=pathlib.Path, metavar="FILE", help="write one image of what is found (.png or .jpg) and end; without a "
-                                                             "display the default is houghstream.png")  # fmt: skip
+    add("--picture", type=pathlib.Path, metavar="FILE", help="write one image of what is found (.png or .jpg) and end; a file "
+                                                             "that is there stays, and the image is FILE_2; without a display "
+                                                             "the default is houghstream.png")  # fmt: skip
     add("--page", action="store_true", help="serve the page even where there is no display")
     add("--port", type=positive, default=8080, metavar="N", help="of the page, for this machine only (default 8080, or a free one)")
     add("--seconds", type=positive, metavar="N", help="end after so long; default: at Ctrl-C")
@@ -55,7 +57,15 @@ def parse(words):
         options.picture = pathlib.Path("houghstream.png")
     if options.picture and not options.picture.resolve().parent.is_dir():
         die(f"--picture {options.picture}: there is no folder {options.picture.resolve().parent}")
+    if options.picture:
+        options.picture = next_name(options.picture)
     return options
+
+
+def next_name(file):
+    """The file's name where nothing has it, else the first of FILE_2, FILE_3, ... that nothing has: as recordings are called."""
+    names = (file.with_name(f"{file.stem}_{number}{file.suffix}") for number in itertools.count(2))
+    return next(name for name in itertools.chain([file], names) if not os.path.lexists(name))
 
 
 def find_samples(options, programs):

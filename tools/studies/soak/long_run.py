@@ -95,7 +95,8 @@ class LongRun:
                     *(("--looks-per-second", LOOKS, "--threads", 1) if follows else ()))  # fmt: skip
         self._start("pose", "hs-pose", *models, *(("--follow",) if follows else ()))
         self._start("track", "hs-track", *models)
-        self._start("observe", "hs-observe", "--out", self.folder / "observe.json", "--csv", self.folder / "frame_times.csv")
+        self._start("observe", "hs-observe", "--out", self.folder / "observe.json", "--csv", self.folder / "frame_times.csv",
+                    "--replace")  # fmt: skip
         for process in self.running.by_name.values():
             process.wait_until_ready(60)
 
