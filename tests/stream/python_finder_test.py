@@ -122,6 +122,7 @@ class SamePoses(WithAFinder):
             self.assertTrue(pose.box.y < shown[1] < pose.box.y + pose.box.height, (shown, pose.box))
             self.assertIn(f"Pose({pose.name} at ", repr(pose))
         self.assertEqual(self.finder.names, sorted(self.finder.names))
+        self.assertEqual(repr(self.finder), f"ObjectFinder({str(self.store)!r}): {', '.join(self.finder.names)}")
         self.assertEqual(self.poses[0].rotation.shape, (3, 3))
         with self.assertRaises(IndexError):
             self.poses[len(self.poses)]
@@ -170,6 +171,7 @@ class Arrays(WithAFinder):
             (InputError, "expected float32 metres", self.colour, self.depth.astype(numpy.float32), CAMERA),
             (TypeError, "camera: found 525, expected Camera", self.colour, self.depth, 525),
             (TypeError, "camera: found .*, expected Camera", self.colour, self.depth, (525, 525)),
+            (TypeError, r"found an array of shape \(3, 3\), expected .* Camera.from_matrix\(K\)", self.colour, self.depth, numpy.eye(3)),
             (InputError, "camera: ", self.colour, self.depth, (0, 525, 319.5, 239.5)),
             (InputError, "camera: ", self.colour, self.depth, (math.nan, 525, 319.5, 239.5)),
             (InputError, "camera", large, numpy.zeros((1, 20000), numpy.uint16), CAMERA),
@@ -189,6 +191,8 @@ class Arrays(WithAFinder):
         for option, value in (*wrong, ("precision", 1), ("precision", math.nan)):
             with self.assertRaisesRegex(InputError, f"{option}: found {value}, expected"):
                 ObjectFinder(self.store, **{option: value})
+        with self.assertRaisesRegex(TypeError, "threads: found '2', expected a number"):
+            ObjectFinder(self.store, threads="2")
         with self.assertRaisesRegex(InputError, "precision: found a threshold or min_quality beside it"):
             ObjectFinder(self.store, precision=0.9, threshold=0.5)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numbers
 import os
 from typing import Any, Literal, NamedTuple, Protocol
 
@@ -69,8 +70,11 @@ class ObjectFinder:
         precision: instead of both, fraction of what is reported that is to be right, 0 to below 1: each object has the
             least score and quality that its practice (hs-teach) needed for it; a warning names those that do not reach it.
         Raises InputError, a ValueError, where the folder is no store, is half written or of another version, and for a
-        number out of its range.
+        number out of its range, TypeError for what is no number.
         """
+        for name, value in (("threads", threads), ("threshold", threshold), ("min_quality", min_quality), ("precision", precision)):
+            if value is not None and not isinstance(value, numbers.Real):
+                raise TypeError(f"{name}: found {value!r}, expected a number")
         if not 1 <= threads <= MOST_THREADS:
             raise InputError(f"threads: found {threads}, expected 1 to {MOST_THREADS}")
         for name, value in (("threshold", threshold), ("min_quality", min_quality)):
@@ -80,7 +84,11 @@ class ObjectFinder:
             raise InputError(f"precision: found {precision}, expected 0 to below 1")
         if precision is not None and (threshold, min_quality) != (None, None):
             raise InputError("precision: found a threshold or min_quality beside it, expected one or the other")
-        self._finder = Finder(os.fspath(store), threads, threshold, min_quality, precision)
+        self._store = os.fspath(store)
+        self._finder = Finder(self._store, threads, threshold, min_quality, precision)
+
+    def __repr__(self) -> str:
+        return f"ObjectFinder({self._store!r}): {', '.join(self.names)}"
 
     @property
     def names(self) -> list[str]:
@@ -137,5 +145,7 @@ def _camera_numbers(camera: Any, width: int, height: int) -> tuple[float, float,
             camera = tuple(getattr(camera, name) for name in Camera._fields)
         fx, fy, cx, cy = (float(value) for value in camera)
     except (TypeError, ValueError) as error:
-        raise TypeError(f"camera: found {camera!r}, expected Camera(fx, fy, cx, cy), or these four numbers") from error
+        found = f"an array of shape {camera.shape}" if isinstance(camera, numpy.ndarray) else repr(camera)
+        raise TypeError(f"camera: found {found}, expected Camera(fx, fy, cx, cy), these four numbers, or "
+                        "Camera.from_matrix(K)") from error  # fmt: skip
     return fx, fy, cx, cy

@@ -1,5 +1,7 @@
-"""The front page's images, of a stream that goes on: hs-view's window, and lcm-spy's viewer of detections."""
+"""The front page's images: hs-view's window, of a stream that follows objects, as README recommends it, and lcm-spy's viewer of
+detections, of one that looks at each frame anew."""
 
+import itertools
 import shutil
 import time
 
@@ -10,33 +12,36 @@ from studies.stream import Processes
 from studies.virtual_display import VirtualDisplay, open_viewer
 
 RATE_HZ = 10
-BOXES = ((0xE6, 0x9F, 0x00), (0x56, 0xB4, 0xE9), (0x00, 0x9E, 0x73), (0xF0, 0xE4, 0x42))  # of the four objects
-BOX_PIXELS = 300
+LOOKS = 5  # of the detector, a second
 AXES = ((255, 60, 60), (60, 220, 60), (60, 120, 255))  # the colours of x, y, z
 VIEW_SIZE = (640, 480)  # where hs-view's window shows colour
-LOOKS, BETWEEN_S, PATIENCE_S = 12, 1.0, 180.0
+CELL, ORIGIN_PIXELS = 32, 3  # where axes of all colours meet stands an object
+LOOKS, SETTLING = 48, 12  # the first ones see no rates and few tracks
+BETWEEN_S, PATIENCE_S = 0.7, 180.0
 
 
 def drawn(image):
-    """(objects whose box is drawn, pixels in the rarest colour of the axes)"""
-    boxes = sum(image.count(colour) > BOX_PIXELS for colour in BOXES)
-    return boxes, min(image.count(colour) for colour in AXES)
+    """(objects whose axes are drawn, pixels in the rarest colour of the axes)"""
+    corners = itertools.product(range(0, image.width - CELL, CELL), range(0, image.height - CELL, CELL))
+    cells = (image.cut(x, y, CELL, CELL) for x, y in corners)
+    origins = sum(all(cell.count(colour) >= ORIGIN_PIXELS for colour in AXES) for cell in cells)
+    return origins, min(image.count(colour) for colour in AXES)
 
 
 def best_image(display, window, size=None):
-    """Returns the image of a window, of some from the first that shows a pose on, with the most objects and axes in its upper
-    left part of this size."""
+    """Returns the image of a window, of some from the first that shows a pose and a while later on, with the most objects and
+    axes in its upper left part of this size."""
     best, most, looks, end = None, (0, 0), 0, time.monotonic() + PATIENCE_S
     while looks < LOOKS:
         time.sleep(BETWEEN_S)
         image = display.photograph(window)
         found = drawn(image.cut(0, 0, *(size or (image.width, image.height))))
-        if found[1] > 0 and found > most:
+        looks += looks > 0 or found[1] > 0
+        if looks > SETTLING and found > most:
             best, most = image, found
-        looks += best is not None
-        if best is None and time.monotonic() > end:
+        if looks == 0 and time.monotonic() > end:
             die(f"no pose is drawn within {PATIENCE_S:.0f} s, expected some")
-    return best
+    return best or die("no pose is drawn any more, expected some")
 
 
 def save_jpeg(image, file):
@@ -53,14 +58,22 @@ def take(options, demo):
     scene = ("--source", f"bop:{demo.store.path('scene')}", "--loop", "--rate", RATE_HZ, "--jpeg-quality", 90)
     options.pictures.mkdir(parents=True, exist_ok=True)
     with VirtualDisplay(options.out) as display, Processes(options.out / "pictures") as running:
-        running.start("detect", programs / "hs-detect", "--forest", demo.store.path("forest"), "--threads", threads())
-        running.start("pose", programs / "hs-pose", "--models", models)
-        for name in ("detect", "pose"):
-            running.by_name[name].wait_until_ready()
+
+        def find(looks=(), follow=()):
+            running.start("detect", programs / "hs-detect", "--forest", demo.store.path("forest"), "--threads", threads(), *looks)
+            running.start("pose", programs / "hs-pose", "--models", models, *follow)
+            for name in ("detect", "pose"):
+                running.by_name[name].wait_until_ready()
+
+        find(("--looks-per-second", LOOKS), ("--follow",))
+        running.start("track", programs / "hs-track", "--models", models)
+        running.by_name["track"].wait_until_ready()
         running.start("capture", programs / "hs-capture", *scene)
         view = running.start("view", programs / "hs-view", "--models", models, "--rate", RATE_HZ)
         save_jpeg(best_image(display, display.window("Houghstream"), VIEW_SIZE), options.pictures / "hs_view.jpg")
         view.kill()
+        running.stop("track", "pose", "detect")
+        find()
         spy = running.start("spy", programs / "hs-spy")
         display.window("LCM Spy")
         time.sleep(BETWEEN_S)  # spy counts rates once a second
