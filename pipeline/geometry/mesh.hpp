@@ -38,7 +38,7 @@ struct SurfacePoints {
 };
 SurfacePoints sample_surface(const Mesh& mesh, int count, std::uint64_t seed);
 
-/// Reads PLY, OBJ or glTF (GLB) with its texture or colours; normals are made where the file has none. Several textures
+/// Reads PLY, OBJ, STL or glTF (GLB) with texture or colours; normals are made where there are none. Several textures
 /// of a file, or textures and coloured materials, become one texture; colours of its materials alone become those of
 /// the vertices. Textures may lie within a GLB. Axes stay as the file has them (glTF: y up). `unit_m` is the length of
 /// the file's unit in metres (BOP files are in millimetres: 1e-3). Throws InputError when it is missing, unreadable,

@@ -435,15 +435,84 @@ std::vector<std::filesystem::path> material_files(std::string_view obj, const st
   return found;
 }
 
-// ---------------------------------------------------------------- glTF
-
-using Json = nlohmann::json;
-
 std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;
   std::memcpy(&value, bytes.data() + at, sizeof value);
   return value;
 }
+
+// ---------------------------------------------------------------- STL
+
+constexpr std::size_t kStlHeader = 84;    // bytes, with the count of triangles at its end
+constexpr std::size_t kStlTriangle = 50;  // bytes
+
+bool is_binary_stl(std::string_view bytes) {
+  return bytes.size() >= kStlHeader &&
+         bytes.size() - kStlHeader == kStlTriangle * std::size_t{little_endian(bytes, kStlHeader - 4)};
+}
+
+/// Checks the text of solids: each holds facets, a facet seven lines.
+class StlCheck {
+ public:
+  StlCheck(std::string_view text, const std::string& source) : lines_(text), source_(source) {}
+
+  void check() {
+    while (const std::optional<Words> begin = next_line()) {
+      expect(*begin, "solid", 0, true);
+      Words line = required_line("facet or endsolid");
+      for (; line.front() == "facet"; line = required_line("facet or endsolid")) check_facet(line);
+      expect(line, "endsolid", 0, true);
+    }
+  }
+
+ private:
+  /// Returns the words of the next line that has some.
+  std::optional<Words> next_line() {
+    while (const std::optional<std::string_view> line = lines_.next()) {
+      Words words = split_words(*line);
+      if (!words.empty()) return words;
+    }
+    return std::nullopt;
+  }
+
+  Words required_line(const char* expected) {
+    const std::optional<Words> words = next_line();
+    require(words.has_value(), "{}: ends behind line {}, expected {}", source_, lines_.number(), expected);
+    return *words;
+  }
+
+  void check_facet(const Words& first) {
+    require(first.size() == 5 && first[1] == "normal", "{}: line {}, expected 'facet normal X Y Z'", source_,
+            lines_.number());
+    expect({first.begin() + 1, first.end()}, "normal", 3, false);
+    const Words loop = required_line("outer loop");
+    require(loop.size() == 2 && loop[0] == "outer" && loop[1] == "loop", "{}: line {}, expected 'outer loop'", source_,
+            lines_.number());
+    for (int corner = 0; corner < 3; ++corner) expect(required_line("vertex"), "vertex", 3, false);
+    expect(required_line("endloop"), "endloop", 0, false);
+    expect(required_line("endfacet"), "endfacet", 0, false);
+  }
+
+  /// Checks a line of a word and so many numbers, or a word and a name.
+  void expect(const Words& words, std::string_view word, std::size_t numbers, bool has_name) const {
+    const bool is_whole = words.front() == word && (has_name || words.size() == numbers + 1) &&
+                          std::all_of(words.begin() + 1, words.end(), [&](std::string_view other) {
+                            // The library takes a word of a name for the line that begins so.
+                            if (has_name) return !is_word_of(" facet vertex endsolid ", other);
+                            const std::optional<double> value = parse_number<double>(other);
+                            return value && std::isfinite(*value);
+                          });
+    require(is_whole, "{}: line {} '{}', expected '{}'{}", source_, lines_.number(), excerpt(words.front()), word,
+            numbers > 0 ? " and three numbers" : "");
+  }
+
+  TextLines lines_;
+  const std::string& source_;
+};
+
+// ---------------------------------------------------------------- glTF
+
+using Json = nlohmann::json;
 
 /// Checks one asset and its parts. The library itself refuses an index without a target, and missing buffers.
 class GltfCheck {
@@ -656,6 +725,15 @@ void check_obj(std::string_view bytes, const std::filesystem::path& file) {
     if (!std::filesystem::exists(materials, error)) continue;
     check_mtl(read_file(materials, "an OBJ's materials"), materials.string());
   }
+}
+
+void check_stl(std::string_view bytes, const std::string& source) {
+  if (is_binary_stl(bytes)) return;
+  require(bytes.substr(0, 5) == "solid" && bytes.find('\0') == std::string_view::npos,
+          "{}: {} bytes, expected {} and {} for each triangle that its header states, or a text that begins with "
+          "'solid'",
+          source, bytes.size(), kStlHeader, kStlTriangle);
+  StlCheck(bytes, source).check();
 }
 
 void check_mtl(std::string_view bytes, const std::string& source) {

@@ -20,6 +20,10 @@ void check_ply(std::string_view bytes, const std::string& source);
 /// its last line, and in vertices at its end that belong to no face.
 void check_obj(std::string_view bytes, const std::filesystem::path& file);
 
+/// Checks STL, text or binary: of a binary one the length that its count of triangles states, of a text its lines in
+/// their order, with whole numbers of corners and an end.
+void check_stl(std::string_view bytes, const std::string& source);
+
 /// Checks the materials of an OBJ: known words with as many numbers as they take, textures with a file, all within a
 /// material that has a name.
 void check_mtl(std::string_view bytes, const std::string& source);

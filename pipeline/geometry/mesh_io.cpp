@@ -43,13 +43,18 @@ bool is_gltf(const std::filesystem::path& file) {
   return lower_extension(file) == ".glb" || lower_extension(file) == ".gltf";
 }
 
+bool is_stl(const std::filesystem::path& file) {
+  return lower_extension(file) == ".stl";
+}
+
 /// Checks that the file is whole: Assimp trusts its contents, and cut or damaged ones make it loop for ever, end the
 /// process, or return a part.
 void require_whole(const std::filesystem::path& file) {
-  const std::string bytes = read_file(file, "a PLY, OBJ or glTF mesh");
+  const std::string bytes = read_file(file, "a PLY, OBJ, STL or glTF mesh");
   if (lower_extension(file) == ".ply") return check_ply(bytes, file.string());
   if (lower_extension(file) == ".obj") return check_obj(bytes, file);
-  require(is_gltf(file), "{}: expected a file .ply, .obj, .glb or .gltf", file.string());
+  if (is_stl(file)) return check_stl(bytes, file.string());
+  require(is_gltf(file), "{}: expected a file .ply, .obj, .stl, .glb or .gltf", file.string());
   check_gltf(bytes, file.string());
 }
 
@@ -74,12 +79,17 @@ const aiScene& read_scene(const std::filesystem::path& file, Assimp::Importer& i
     if (scene != nullptr && (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) == 0U) return;
     std::string words = importer.GetErrorString();
     words.erase(words.find_last_not_of(" .") + 1);
-    fail("{}: {}, expected a PLY, OBJ or glTF mesh with triangles", file.string(), words);
+    fail("{}: {}, expected a PLY, OBJ, STL or glTF mesh with triangles", file.string(), words);
   };
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(file.string(), 0);
   require_scene(scene);
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) check_faces(*scene->mMeshes[i], file.string());
+  // An STL states a normal for each triangle, often 0 0 0; without them corners that meet become one.
+  if (is_stl(file)) {
+    importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
+    require_scene(importer.ApplyPostProcessing(aiProcess_RemoveComponent));
+  }
   scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
                                        aiProcess_GenSmoothNormals | aiProcess_PreTransformVertices);
   require_scene(scene);

@@ -17,6 +17,10 @@ Taken read_obj(ByteView input) {
   return {load_mesh(as_file(input, "mesh.obj")).triangles.size()};
 }
 
+Taken read_stl(ByteView input) {
+  return {load_mesh(as_file(input, "mesh.stl")).triangles.size()};
+}
+
 /// Returns the materials of a mesh that is whole.
 Taken read_mtl(ByteView input) {
   const std::string materials = std::filesystem::path(as_file(input, "paint.mtl")).filename().string();
@@ -57,6 +61,25 @@ std::vector<Bytes> objs() {
   return {
       bytes_of_text("o thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\nusemtl red\n"
                     "f 1/1/1 2/1/1 3/1/1\nf 1/1/1 3/1/1 4/1/1\nf 2/1/1 3/1/1 4/1/1\nf -4/1/1 -2/1/1 -1/1/1\n")};
+}
+
+std::vector<Bytes> stls() {
+  const std::string facet =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1e0 0\nendloop\nendfacet\n";
+  Bytes binary(80, ' ');
+  append(std::uint32_t{1}, binary);
+  for (const float value : {0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 1.0F, 1.0F, 0.0F})
+    append(value, binary);
+  append(std::uint16_t{0}, binary);
+  return {bytes_of_text("solid thing\n" + facet + facet + "endsolid thing\n"), binary};
+}
+
+/// The count of triangles in a binary one.
+void repair_stl(Bytes& input) {
+  constexpr std::size_t kHeader = 84;
+  if (input.size() < kHeader || std::memcmp(input.data(), "solid", 5) == 0) return;
+  const auto triangles = static_cast<std::uint32_t>((input.size() - kHeader) / 50);
+  std::memcpy(input.data() + kHeader - sizeof triangles, &triangles, sizeof triangles);
 }
 
 std::vector<Bytes> mtls() {
@@ -115,6 +138,13 @@ std::vector<FuzzTarget> mesh_targets() {
            {"v ", "vt ", "vn ", "f ", "mtllib ", "usemtl ", "//", "\\\n", "nan"},
            1024,
            {true, 1}},
+          {"stl",
+           read_stl,
+           stls,
+           repair_stl,
+           {"facet normal ", "outer loop\n", "endloop\n", "solid ", "endsolid\n"},
+           1024,
+           kAnyDamage},
           {"mtl",
            read_mtl,
            mtls,

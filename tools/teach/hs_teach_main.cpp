@@ -59,7 +59,7 @@ void add_store_flags(CommandLine& command, bool& add, bool& replace) {
 CommandLine add_mesh(CommandLine& app, TeachOptions& options, Lists& lists) {
   CommandLine mesh = app.add_subcommand("mesh", "teaches objects from their meshes");
   mesh.add_option("sources", options.meshes.sources,
-                  "meshes (PLY, OBJ, GLB, glTF), folders of them, or BOP models/ folders")
+                  "meshes (PLY, OBJ, STL, GLB, glTF), folders of them, or BOP models/ folders")
       .required();
   mesh.add_option("--out", options.out, "object store to write; one that is there wants --add or --replace").required();
   add_store_flags(mesh, options.add, options.replace);

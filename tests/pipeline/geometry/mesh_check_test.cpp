@@ -114,13 +114,43 @@ std::string glb() {
   return bytes + std::string("BIN\0", 4) + binary;
 }
 
+std::string text_stl() {
+  const Mesh mesh = ball();
+  std::string text = "solid a ball\n";
+  for (const auto& t : mesh.triangles) {
+    text += "  facet normal 0 0 0\n    outer loop\n";
+    for (const std::uint32_t corner : t) {
+      const Eigen::Vector3f v = 1e3F * mesh.vertices[corner];
+      text += fmt::format("      vertex {:.6e} {:.6e} {:.6e}\n", v.x(), v.y(), v.z());
+    }
+    text += "    endloop\n  endfacet\n";
+  }
+  return text + "endsolid a ball\n";
+}
+
+std::string binary_stl() {
+  const Mesh mesh = ball();
+  std::string bytes = "solid, as many programs call binary ones too";
+  bytes.resize(80, ' ');
+  append(static_cast<std::uint32_t>(mesh.triangles.size()), bytes);
+  for (const auto& t : mesh.triangles) {
+    for (int axis = 0; axis < 3; ++axis) append(0.0F, bytes);
+    for (const std::uint32_t corner : t) {
+      for (int axis = 0; axis < 3; ++axis) append(1e3F * mesh.vertices[corner][axis], bytes);
+    }
+    append(std::uint16_t{0}, bytes);
+  }
+  return bytes;
+}
+
 struct Kind {
   const char* ending;
   std::string bytes;
 };
 
 std::vector<Kind> kinds() {
-  return {{".ply", text_ply()}, {"_binary.ply", binary_ply()}, {".obj", obj()}, {".glb", glb()}};
+  return {{".ply", text_ply()}, {"_binary.ply", binary_ply()}, {".obj", obj()},
+          {".stl", text_stl()}, {"_binary.stl", binary_stl()}, {".glb", glb()}};
 }
 
 /// Triangles that a file with these bytes gives; nothing where it is refused in one line.
@@ -184,7 +214,8 @@ TEST(MeshCheck, DamagedFilesAreRefusedOrAsLarge) {
         EXPECT_GE(*triangles + 2, ball().triangles.size()) << kind.ending << ", flip " << i;
       }
     }
-    EXPECT_GT(refused, 0) << kind.ending;
+    // Of a binary STL only the count says something of the rest.
+    EXPECT_GT(refused + (kind.ending == std::string("_binary.stl") ? 1 : 0), 0) << kind.ending;
   }
 }
 
@@ -203,6 +234,40 @@ TEST(MeshCheck, WhatIsWrittenByOthersIsRead) {
                 "property list uint8 uint32 vertex_index\r\nend_header\r\n0 0 0\r\n1 0 0\r\n0 nan 0\r\n"
                 "3 0 1 2\r\n",
                 "of Windows"));
+}
+
+TEST(MeshCheck, AnStlHasItsCornersJoinedAndNormalsOfItsSurface) {
+  const fs::path folder = fresh_folder("mesh_check_stl");
+  for (const std::string& bytes : {text_stl(), binary_stl()}) {
+    std::ofstream(folder / "ball.STL", std::ios::binary) << bytes;
+    const Mesh read = load_mesh(folder / "ball.STL", 1e-3);
+    EXPECT_EQ(read.vertices.size(), ball().vertices.size());
+    ASSERT_EQ(read.normals.size(), read.vertices.size());
+    for (std::size_t i = 0; i < read.vertices.size(); ++i)
+      EXPECT_GT(std::abs(read.normals[i].dot(read.vertices[i].normalized())), 0.9F) << "none is stated in the file";
+    EXPECT_TRUE(read.colours.empty());
+  }
+}
+
+TEST(MeshCheck, AnStlIsWholeInItsLines) {
+  const std::string facet =
+      "facet normal 0 0 1\r\nouter loop\r\nvertex 0 0 0\r\nvertex 1 0 0\r\nvertex 0 +1.5E-3 "
+      "0\r\nendloop\r\nendfacet\r\n";
+  EXPECT_NO_THROW(check_stl("solid\r\n" + facet + facet + "endsolid\r\nsolid of two\n" + facet + "endsolid", "of two"));
+  const auto without = [&](const std::string& line) {
+    std::string text = "solid\n" + facet + "endsolid\n";
+    return text.erase(text.find(line), line.size());
+  };
+  for (const char* line : {"facet normal 0 0 1\r\n", "outer loop\r\n", "vertex 1 0 0\r\n", "endloop\r\n",
+                           "endfacet\r\n", "endsolid\n", "0 0 1", "+1.5E-3"})
+    EXPECT_THROW(check_stl(without(line), "without.stl"), InputError) << line;
+  for (const char* bad : {"", "solid", "SOLID\nendsolid\n", "solid of a facet\nendsolid\n", "solid\nendsolid\nmore\n"})
+    EXPECT_THROW(check_stl(bad, "bad.stl"), InputError) << bad;
+  std::string bytes = binary_stl();
+  EXPECT_NO_THROW(check_stl(bytes, "binary.stl"));
+  EXPECT_THROW(check_stl(bytes + " ", "longer.stl"), InputError);
+  bytes[80] = static_cast<char>(bytes[80] - 1);
+  EXPECT_THROW(check_stl(bytes, "fewer.stl"), InputError);
 }
 
 TEST(MeshCheck, NodesThatGoRoundAreRefused) {

@@ -37,7 +37,8 @@ std::string lower_extension(const fs::path& file) {
 
 bool is_mesh_file(const fs::path& file) {
   const std::string extension = lower_extension(file);
-  return extension == ".ply" || extension == ".obj" || extension == ".glb" || extension == ".gltf";
+  return extension == ".ply" || extension == ".obj" || extension == ".stl" || extension == ".glb" ||
+         extension == ".gltf";
 }
 
 double unit_of(const fs::path& file, const MeshSources& sources) {
@@ -107,14 +108,15 @@ void append_plain_folder(const fs::path& folder, const MeshSources& sources, std
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (is_mesh_file(entry.path())) files.push_back(entry.path());
   }
-  require(!files.empty(), "{}: neither models_info.json nor any NAME.ply, NAME.obj, NAME.glb", folder.string());
+  require(!files.empty(), "{}: neither models_info.json nor any NAME.ply, NAME.obj, NAME.stl, NAME.glb",
+          folder.string());
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) meshes.push_back(read_mesh(0, file.stem().string(), file, unit_of(file, sources)));
 }
 
 /// Returns how a mesh of a common format that is not read becomes one that is; empty for other files.
 std::string conversion_of(const fs::path& file) {
-  for (const char* extension : {".stl", ".dae", ".3ds", ".off", ".x3d"}) {
+  for (const char* extension : {".dae", ".3ds", ".off", ".x3d"}) {
     if (file.extension() != extension) continue;
     return fmt::format("; assimp export {} {} makes one (Debian's assimp-utils)", file.string(),
                        fs::path(file).replace_extension(".ply").string());
@@ -230,7 +232,7 @@ std::vector<TaughtMesh> read_meshes(const MeshSources& sources) {
       append_plain_folder(source, sources, meshes);
     } else {
       require(fs::exists(source), "{}: no such file or folder, expected a mesh or a folder of meshes", source.string());
-      require(is_mesh_file(source), "{}: expected a mesh: PLY, OBJ, GLB or glTF{}", source.string(),
+      require(is_mesh_file(source), "{}: expected a mesh: PLY, OBJ, STL, GLB or glTF{}", source.string(),
               conversion_of(source));
       meshes.push_back(read_mesh(0, source.stem().string(), source, unit_of(source, sources)));
     }

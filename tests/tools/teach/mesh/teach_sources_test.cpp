@@ -79,17 +79,37 @@ TEST(MeshSources, FilesHaveTheirNamesAndUnits) {
   EXPECT_TRUE(plate.at(0).mesh.colours.empty());
   expect_says(refusal(from(folder / "none.ply")), {"none.ply", "no such file"});
   write_text(folder / "notes.txt", "");
-  expect_says(refusal(from(folder / "notes.txt")), {"notes.txt", "expected a mesh: PLY, OBJ, GLB or glTF"});
+  expect_says(refusal(from(folder / "notes.txt")), {"notes.txt", "expected a mesh: PLY, OBJ, STL, GLB or glTF"});
 }
 
 TEST(MeshSources, AFormatThatIsNotReadIsToldWithItsConversion) {
   const fs::path folder = fresh_folder("sources_formats");
-  write_text(folder / "part.stl", "solid part");
+  write_text(folder / "part.dae", "<COLLADA>");
   write_text(folder / "part.txt", "part");
   const std::string part = (folder / "part").string();
-  expect_says(refusal(from(folder / "part.stl")),
-              {"expected a mesh: PLY", "assimp export " + part + ".stl " + part + ".ply"});
+  expect_says(refusal(from(folder / "part.dae")),
+              {"expected a mesh: PLY", "assimp export " + part + ".dae " + part + ".ply"});
   EXPECT_EQ(refusal(from(folder / "part.txt")).find("assimp"), std::string::npos);
+}
+
+TEST(MeshSources, AnStlHasNoUnitAndNoColour) {
+  const fs::path folder = fresh_folder("sources_stl");
+  std::string text = "solid part\n";
+  const char* corners[] = {"0 0 0", "200 0 0", "0 150 0", "0 0 100"};
+  for (const auto& [a, b, c] : {std::array{0, 2, 1}, std::array{0, 1, 3}, std::array{0, 3, 2}, std::array{1, 2, 3}}) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const int corner : {a, b, c}) text += fmt::format("vertex {}\n", corners[corner]);
+    text += "endloop\nendfacet\n";
+  }
+  write_text(folder / "part.stl", text + "endsolid part\n");
+  const std::vector<TaughtMesh> part = read_meshes(from(folder));
+  ASSERT_EQ(part.size(), 1U);
+  EXPECT_EQ(part[0].name, "part");
+  EXPECT_FALSE(part[0].coloured);
+  EXPECT_NEAR(mesh_bounds(part[0].mesh).sizes().x(), 0.2F, 1e-6F) << "millimetres, unless --unit says otherwise";
+  MeshSources metres = from(folder);
+  metres.unit_m = 1.0;
+  expect_says(refusal(metres), {"part.stl", "when read in m", "--unit mm would make it"});
 }
 
 TEST(MeshSources, WhatNoStoreCanHoldIsRefused) {
