@@ -19,6 +19,7 @@ std::int64_t for_each_frame(const RecordingSettings& settings, LossReport& losse
   const NextFrame next = open_recording(settings, losses);
   std::int64_t frames = 0;
   while (const std::optional<RecordedFrame> frame = next()) {
+    require_not_stopped();
     if (write(*frame)) ++frames;
   }
   require(frames > 0, "{}: no frame could be exported: {}", settings.source, losses.line());

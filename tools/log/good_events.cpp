@@ -1,10 +1,17 @@
 #include "tools/log/good_events.hpp"
 
+#include <csignal>
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
 
 namespace houghstream::log_tools {
+
+void require_not_stopped() {
+  sigset_t waiting;
+  sigpending(&waiting);
+  if (sigismember(&waiting, SIGINT) == 1 || sigismember(&waiting, SIGTERM) == 1) throw Stopped();
+}
 
 void LossReport::note_damage(std::uint64_t bytes, const std::string& reason) {
   if (damaged_places_ == 0) first_damage_ = reason;
@@ -35,6 +42,7 @@ IntactEvents::IntactEvents(const std::filesystem::path& file, LossReport& losses
 
 std::optional<LogEvent> IntactEvents::read() {
   while (!ended_) {
+    require_not_stopped();
     std::optional<LogEvent> ready = std::exchange(held_, std::nullopt);
     try {
       held_ = log_.next();

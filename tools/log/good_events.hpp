@@ -3,12 +3,22 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "pipeline/bus/event_log.hpp"
 #include "tools/common/progress_line.hpp"
 
 namespace houghstream::log_tools {
+
+/// Ends a job that SIGINT or SIGTERM asks to stop, so that it leaves no part of its output behind.
+class Stopped : public std::runtime_error {
+ public:
+  Stopped() : std::runtime_error("stopped") {}
+};
+
+/// Throws Stopped where one of the signals waits, which it does while BlockStopSignals holds it back.
+void require_not_stopped();
 
 /// Events of a recording that could not be kept.
 class LossReport {
@@ -40,7 +50,8 @@ class IntactEvents {
   /// `losses` must outlive it. Throws InputError when the file cannot be read or is empty.
   IntactEvents(const std::filesystem::path& file, LossReport& losses);
 
-  /// Returns the next whole event, or nothing at the end. Throws InputError when the file holds none at all.
+  /// Returns the next whole event, or nothing at the end. Throws InputError when the file holds none at all, and
+  /// Stopped.
   std::optional<LogEvent> next();
 
  private:

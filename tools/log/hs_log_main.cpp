@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <filesystem>
+#include <functional>
 
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/files/camera_info.hpp"
@@ -8,6 +10,7 @@
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "tools/common/new_output.hpp"
 #include "tools/common/progress_line.hpp"
@@ -18,6 +21,7 @@
 #include "tools/log/export_objects.hpp"
 #include "tools/log/export_results.hpp"
 #include "tools/log/filter_log.hpp"
+#include "tools/log/good_events.hpp"
 #include "tools/log/log_info.hpp"
 #include "tools/log/record_log.hpp"
 #include "tools/log/recording.hpp"
@@ -167,9 +171,25 @@ std::int64_t export_mcap_of(const Options& options, LossReport& losses) {
   return export_mcap(options.in, extras, options.out, losses);
 }
 
+/// Runs a job that a stop signal ends without a part of a file left behind; the signal then ends the program.
+std::int64_t run_until_stopped(const std::string& out, bool makes_folder, const std::function<std::int64_t()>& job) {
+  const BlockStopSignals held;  // its end lets the signal through
+  try {
+    return job();
+  } catch (const Stopped&) {
+    const char* below_progress = isatty(STDERR_FILENO) == 1 ? "\n" : "";
+    fmt::print(stderr, "{}hs-log: stopped; {} {}\n", below_progress, out,
+               makes_folder ? "holds a part of the frames" : "is as it was");
+    return 0;
+  }
+}
+
 std::int64_t seal_with_progress(const Options& options) {
   ProgressLine progress(std::filesystem::path(options.in).filename().string(), 1.0);
-  return seal_log(options.in, options.out, [&](double fraction) { progress.at(fraction); });
+  return seal_log(options.in, options.out, [&](double fraction) {
+    require_not_stopped();
+    progress.at(fraction);
+  });
 }
 
 }  // namespace
@@ -225,16 +245,19 @@ int main(int argc, char** argv) {
       fmt::print("{} images in {}; colour may lie an image beside its depth\n",
                  openni::copy_repaired_oni(options.in, options.out), options.out);
     } else {
-      const std::int64_t count = filter.given()   ? filter_log(options.in, options.filter, options.out, losses)
-                                 : seal.given()   ? seal_with_progress(options)
-                                 : import.given() ? import_log(options.recording, options.channel, options.out, losses)
-                                 : bop.given()    ? export_bop(options.recording, options.out, losses)
-                                 : png.given()    ? export_pngs(options.recording, options.out, losses)
-                                 : mcap.given()   ? export_mcap_of(options, losses)
-                                 : csv.given()    ? export_results_csv(options.in, options.out, losses)
-                                 : json.given()   ? export_results_json(options.in, options.out, losses)
-                                 : objects_csv.given() ? export_objects_csv(options.in, options.out, losses)
-                                                       : export_objects_json(options.in, options.out, losses);
+      const auto job = [&] {
+        return filter.given()        ? filter_log(options.in, options.filter, options.out, losses)
+               : seal.given()        ? seal_with_progress(options)
+               : import.given()      ? import_log(options.recording, options.channel, options.out, losses)
+               : bop.given()         ? export_bop(options.recording, options.out, losses)
+               : png.given()         ? export_pngs(options.recording, options.out, losses)
+               : mcap.given()        ? export_mcap_of(options, losses)
+               : csv.given()         ? export_results_csv(options.in, options.out, losses)
+               : json.given()        ? export_results_json(options.in, options.out, losses)
+               : objects_csv.given() ? export_objects_csv(options.in, options.out, losses)
+                                     : export_objects_json(options.in, options.out, losses);
+      };
+      const std::int64_t count = run_until_stopped(options.out, makes_folder, job);
       fmt::print("{} {} in {}\n", count, filter.given() || seal.given() ? "events" : "frames", options.out);
     }
     if (!losses.line().empty()) log_warning("{}: {}", options.in, losses.line());

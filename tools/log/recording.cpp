@@ -222,6 +222,7 @@ std::int64_t import_log(const RecordingSettings& settings, const std::string& ch
   std::optional<LogWriter> log;  // made when there is something to write
   std::int64_t frames = 0;
   while (const std::optional<RecordedFrame> frame = next()) {
+    require_not_stopped();
     const std::vector<std::uint8_t> bytes = encode_message(frame->message);
     if (!log) log.emplace(log_file);
     log->write(frame->timestamp, channel, {bytes.data(), bytes.size()});

@@ -2,9 +2,12 @@
 existing_outputs_test.py EXECUTABLES_FOLDER"""
 
 import pathlib
+import signal
+import struct
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 from houghstream import images_t
@@ -92,6 +95,32 @@ class Replaced(Case):
         self.assertEqual(done.returncode, 1)
         self.assertIn("is the source itself", done.stderr)
         self.assertEqual(self.log.read_bytes(), before)
+
+
+def write_long_log(file, events=800, size=1 << 20):
+    """A log whose events hold nothing: holes of the file, which take no space."""
+    with open(file, "wb") as log:
+        for number in range(events):
+            log.write(struct.pack(">IqqII", 0xEDA1DA01, number, 10**15 + number, 1, size) + b"A")
+            log.seek(size, 1)
+        log.truncate()
+
+
+class Stopped(Case):
+    def test_a_job_of_hs_log_leaves_no_part_behind(self):
+        log = self.folder / "log"
+        write_long_log(log)
+        partial = self.folder / "out.partial"
+        for job, number in (("filter", signal.SIGINT), ("filter", signal.SIGTERM), ("seal", signal.SIGINT)):
+            command = [str(EXECUTABLES / "hs-log"), job, log, self.out, "--replace"]
+            child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            while child.poll() is None and not partial.exists():
+                time.sleep(0.002)
+            child.send_signal(number)
+            _, said = child.communicate(timeout=60)
+            self.assertEqual((child.returncode, said.splitlines()[-1]), (-number, f"hs-log: stopped; {self.out} is as it was"))
+            self.assertEqual(self.out.read_bytes(), OLD)
+            self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["log", "out"])
 
 
 if __name__ == "__main__":
