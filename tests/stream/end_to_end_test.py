@@ -227,7 +227,7 @@ def check_refusals(tools, folder):
     for words, part in (
         (("hs-capture", "--source", f"oni:{log}", "--log", log), f"{log}: is the source itself"),
         (("hs-capture", "--source", f"bop:{scene}", "--log", scene / "scene_gt.json"), f"lies in {scene}"),
-        (("hs-log", "import", f"bop:{scene}", scene / "scene_camera.json"), f"lies in {scene}"),
+        (("hs-log", "import", f"bop:{scene}", scene / "scene_camera.json", "--replace"), f"lies in {scene}"),
         (("hs-render", "background", "--count", 1, "--out", folder / "background"), "holds pictures already"),
         (("hs-fuse", "--views", f"bop:{folder / 'views'}", "--out", models), f"lies in {folder / 'views'}"),
         (("hs-train", *taught, "--out", folder / "none" / "forest"), "there is no folder"),

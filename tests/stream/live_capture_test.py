@@ -126,7 +126,7 @@ def places_of(sent, replayed):
 
 def check_import(tools, folder, events):
     """hs-log makes the same of a .oni file, with colour as it is there."""
-    imported = run(tools / "hs-log", "import", folder / "live.oni", folder / "imported.log")
+    imported = run(tools / "hs-log", "import", folder / "live.oni", folder / "imported.log", "--replace")
     assert imported.returncode == 0, imported
     frames = [(utime_of(data), images_of(data)) for _, _, data in read_log(folder / "imported.log")]
     assert [utime for utime, _ in frames] == [utime for _, utime, _ in events], "every frame, at the same time"
