@@ -57,19 +57,18 @@ PoseStatus initial_status(const Detection& detection, bool has_model, const Pose
 }
 
 /// Returns the detections whose pose is estimated; `poses` of the others get the reason why not.
-std::vector<Estimation> begin_estimations(const Detections& detections,
-                                          const std::map<std::string, ObjectModel>& models,
-                                          const PoseSettings& settings, std::vector<ObjectPose>& poses) {
-  std::vector<Estimation> begun;
-  begun.reserve(poses.size());
+std::vector<Estimation> make_estimations(const Detections& detections, const std::map<std::string, ObjectModel>& models,
+                                         const PoseSettings& settings, std::vector<ObjectPose>& poses) {
+  std::vector<Estimation> estimations;
+  estimations.reserve(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Detection& detection = detections.detections[i];
     const auto model = models.find(detection.class_name);
     poses[i].status = initial_status(detection, model != models.end(), settings);
     if (poses[i].status != PoseStatus::kInvalid) continue;
-    begun.push_back({detection, model->second, poses[i]});
+    estimations.push_back({detection, model->second, poses[i]});
   }
-  return begun;
+  return estimations;
 }
 
 void observe_region(const FrameContext& frame, const PoseSettings& settings, Estimation& estimation) {
@@ -88,8 +87,8 @@ void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, E
 }
 
 /// Returns the reason to give a candidate up after its first registration, or kInvalid.
-PoseStatus reason_to_give_up(const PoseSettings& settings, const ExplainedSurface& explained,
-                             const Estimation& estimation, const RegistrationResult& best) {
+PoseStatus early_rejection_reason(const PoseSettings& settings, const ExplainedSurface& explained,
+                                  const Estimation& estimation, const RegistrationResult& best) {
   if (publication_probability(*estimation.observation, best, estimation.detection.score,
                               pose_selection_settings(settings)) < settings.min_publication_probability)
     return PoseStatus::kLowScore;
@@ -107,7 +106,7 @@ void select_pose(const PoseSettings& settings, const ExplainedSurface& explained
   if (best.inliers == 0) {
     estimation.pose.status = PoseStatus::kNotConverged;
   } else if (!estimation.detection.reported) {
-    estimation.pose.status = reason_to_give_up(settings, explained, estimation, best);
+    estimation.pose.status = early_rejection_reason(settings, explained, estimation, best);
   }
   if (estimation.pose.status == PoseStatus::kInvalid)
     estimation.selected = select_poses(*estimation.observation, best, estimation.rotations, selection);
@@ -150,14 +149,14 @@ void learn_camera_colours(const RgbdFrame& frame, const std::vector<ChromaPair>&
 }
 
 /// Returns the pose of a result with the status that its evidence decides.
-ObjectPose judged_pose(const Estimation& estimation, const RegistrationResult& result, const PoseEvidence& evidence,
+ObjectPose decide_pose(const Estimation& estimation, const RegistrationResult& result, const PoseEvidence& evidence,
                        const PoseSettings& settings) {
-  ObjectPose judged = estimation.pose;
-  judged.T_camera_object.reset();
-  copy_registration_evidence(result, judged);
+  ObjectPose decided = estimation.pose;
+  decided.T_camera_object.reset();
+  copy_registration_evidence(result, decided);
   decide_status(evidence, result.T_camera_object, estimation.detection.reported,
-                class_quality_of(settings, estimation.pose.class_name), judged);
-  return judged;
+                class_quality_of(settings, estimation.pose.class_name), decided);
+  return decided;
 }
 
 /// Publishes the pose with the strongest evidence, or the status that names the reason against it.
@@ -165,9 +164,9 @@ void decide_best(const PoseSettings& settings, Estimation& estimation) {
   std::optional<ObjectPose> best;
   for (std::size_t i = 0; i < estimation.selected.size(); ++i) {
     bring_to_camera(estimation.pose.camera_colours, estimation.evidence[i]);
-    ObjectPose judged = judged_pose(estimation, estimation.selected[i], estimation.evidence[i], settings);
-    if (best && !(judged.quality > best->quality)) continue;
-    best = std::move(judged);
+    ObjectPose decided = decide_pose(estimation, estimation.selected[i], estimation.evidence[i], settings);
+    if (best && !(decided.quality > best->quality)) continue;
+    best = std::move(decided);
     estimation.published = i;
   }
   estimation.pose = *std::move(best);
@@ -184,32 +183,32 @@ void resolve_symmetry(const PoseSettings& settings, Estimation& estimation) {
   const std::optional<TextureComparison> texture =
       compare_with_alternatives(*estimation.observation, published.T_camera_object, tolerance, settings.registration);
   if (!texture) return;
-  const auto judge = [&](RegistrationResult result, const std::optional<TextureComparison>& compared) {
+  const auto decide = [&](RegistrationResult result, const std::optional<TextureComparison>& compared) {
     if (compared && compared->aligned) result.T_camera_object = *compared->aligned;
     PoseEvidence evidence = gather_evidence(*estimation.observation, result.T_camera_object, estimation.detection.score,
                                             settings.verification);
     bring_to_camera(estimation.pose.camera_colours, evidence);
     evidence.texture_probability = compared ? texture_probability(compared->margin, learnt) : 1.0F;
-    return judged_pose(estimation, result, evidence, settings);
+    return decide_pose(estimation, result, evidence, settings);
   };
   PoseEvidence& published_evidence = estimation.evidence[estimation.published];
   published_evidence.texture_probability = texture_probability(texture->margin, learnt);
-  ObjectPose judged =
-      texture->aligned ? judge(published, texture) : judged_pose(estimation, published, published_evidence, settings);
+  ObjectPose decided =
+      texture->aligned ? decide(published, texture) : decide_pose(estimation, published, published_evidence, settings);
   if (texture->better) {
-    const RegistrationResult other =
+    const RegistrationResult refined =
         refine_pose(*estimation.observation, *texture->better, estimation.rotations, pose_selection_settings(settings));
-    const std::optional<TextureComparison> there =
-        compare_with_alternatives(*estimation.observation, other.T_camera_object, tolerance, settings.registration);
-    ObjectPose rotated = judge(other, there);
-    if (other.inliers > 0 && rotated.quality > judged.quality) judged = std::move(rotated);
+    const std::optional<TextureComparison> refined_texture =
+        compare_with_alternatives(*estimation.observation, refined.T_camera_object, tolerance, settings.registration);
+    ObjectPose rotated = decide(refined, refined_texture);
+    if (refined.inliers > 0 && rotated.quality > decided.quality) decided = std::move(rotated);
   }
-  estimation.pose = std::move(judged);
+  estimation.pose = std::move(decided);
 }
 
 /// Adds the models that have a pose.
-void explain_by(const std::vector<ObjectPose>& poses, const std::map<std::string, ObjectModel>& models,
-                ExplainedSurface& explained) {
+void add_explained_surface(const std::vector<ObjectPose>& poses, const std::map<std::string, ObjectModel>& models,
+                           ExplainedSurface& explained) {
   for (const ObjectPose& pose : poses) {
     const auto model = models.find(pose.class_name);
     if (pose.T_camera_object && model != models.end()) explained.add({model->second, *pose.T_camera_object});
@@ -222,18 +221,18 @@ bool are_centres_closer(const std::map<std::string, ObjectModel>& models, const 
   const auto model_a = models.find(a.class_name);
   const auto model_b = models.find(b.class_name);
   if (model_a == models.end() || model_b == models.end()) return false;
-  const Eigen::Vector3d middle_a = a.T_camera_object * model_a->second.centre.cast<double>();
-  const Eigen::Vector3d middle_b = b.T_camera_object * model_b->second.centre.cast<double>();
-  return (middle_a - middle_b).norm() < ratio * std::min(model_a->second.radius, model_b->second.radius);
+  const Eigen::Vector3d centre_a = a.T_camera_object * model_a->second.centre.cast<double>();
+  const Eigen::Vector3d centre_b = b.T_camera_object * model_b->second.centre.cast<double>();
+  return (centre_a - centre_b).norm() < ratio * std::min(model_a->second.radius, model_b->second.radius);
 }
 
 /// Returns whether `a` is less probable than `b` where both are one object: of one class by all that was seen, of two
 /// by the shape, since the texture that does not tell which way round an object is does not speak for another.
 bool is_less_probable(const ObjectPose& a, const ObjectPose& b) {
   const bool by_shape = a.class_name != b.class_name;
-  const float of_a = by_shape ? a.shape_quality : a.quality;
-  const float of_b = by_shape ? b.shape_quality : b.quality;
-  return of_a < of_b || (of_a == of_b && &b < &a);
+  const float probability_a = by_shape ? a.shape_quality : a.quality;
+  const float probability_b = by_shape ? b.shape_quality : b.quality;
+  return probability_a < probability_b || (probability_a == probability_b && &b < &a);
 }
 
 /// Withholds the less probable of two poses of one object, as of two detections of it, or of two classes that look
@@ -241,10 +240,10 @@ bool is_less_probable(const ObjectPose& a, const ObjectPose& b) {
 void withhold_duplicates(const PoseEstimator& estimator, const RgbdFrame& frame, std::vector<ObjectPose>& poses) {
   for (ObjectPose& pose : poses) {
     if (!pose.T_camera_object) continue;
-    const PlacedObject here{pose.class_name, *pose.T_camera_object};
+    const PlacedObject placed{pose.class_name, *pose.T_camera_object};
     const auto better = std::find_if(poses.begin(), poses.end(), [&](const ObjectPose& other) {
       return &other != &pose && other.T_camera_object && is_less_probable(pose, other) &&
-             estimator.is_same_object(frame, here, {other.class_name, *other.T_camera_object});
+             estimator.is_same_object(frame, placed, {other.class_name, *other.T_camera_object});
     });
     if (better != poses.end()) withhold_duplicate(*better, pose);
   }
@@ -308,10 +307,10 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   const PoseSettings& settings = state_->settings;
   StageClock clock;
   ObjectPoses result = undecided_poses(detections);
-  std::vector<Estimation> estimations = begin_estimations(detections, state_->models, settings, result.poses);
+  std::vector<Estimation> estimations = make_estimations(detections, state_->models, settings, result.poses);
   const FrameContext context = make_frame_context(frame, settings.region, settings.noise);
   ExplainedSurface explained;
-  explain_by(known.poses, state_->models, explained);
+  add_explained_surface(known.poses, state_->models, explained);
   for (const bool are_reported : {true, false}) {
     const auto for_each = [&](const auto& stage) {
       parallel_for(settings.threads, static_cast<int>(estimations.size()), [&](int i) {
@@ -339,7 +338,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
     for_each_undecided([&](Estimation& estimation) { decide_best(settings, estimation); });
     clock.mark("pose.verification");
     for_each([&](Estimation& estimation) { resolve_symmetry(settings, estimation); });
-    if (are_reported) explain_by(result.poses, state_->models, explained);
+    if (are_reported) add_explained_surface(result.poses, state_->models, explained);
     clock.mark("pose.print");
   }
   withhold_duplicates(*this, frame, result.poses);

@@ -44,8 +44,8 @@ HWY_INLINE hn::Mask<Int> within(Ints value, int limit) {
 }
 
 /// Processes the points of one vector.
-HWY_INLINE void find_some(const PixelRays& rays, const float* depth, const CorrespondenceSearch& search,
-                          std::size_t first, CorrespondenceBlock& block) {
+HWY_INLINE void search_vector(const PixelRays& rays, const float* depth, const CorrespondenceSearch& search,
+                              std::size_t first, CorrespondenceBlock& block) {
   const Float d;
   const Int di;
   const Floats px = hn::Load(d, block.x.data() + first);
@@ -70,13 +70,13 @@ HWY_INLINE void find_some(const PixelRays& rays, const float* depth, const Corre
       const Floats z = hn::GatherIndex(d, depth, hn::IfThenElseZero(inside, hn::Add(row, u)));
       const Floats x = hn::Sub(hn::Mul(z, ray(rays.first.x(), rays.step.x(), u)), px);
       const Floats y = hn::Sub(hn::Mul(z, ray_y), py);
-      const Floats beyond = hn::Sub(z, pz);
-      const Floats apart_sq = hn::Add(hn::Mul(x, x), hn::Add(hn::Mul(y, y), hn::Mul(beyond, beyond)));
-      const auto closer = hn::And(hn::RebindMask(d, inside), hn::Lt(apart_sq, best_sq));  // not where z is NaN
-      best_sq = hn::IfThenElse(closer, apart_sq, best_sq);
+      const Floats z_difference = hn::Sub(z, pz);
+      const Floats distance_sq = hn::Add(hn::Mul(x, x), hn::Add(hn::Mul(y, y), hn::Mul(z_difference, z_difference)));
+      const auto closer = hn::And(hn::RebindMask(d, inside), hn::Lt(distance_sq, best_sq));  // not where z is NaN
+      best_sq = hn::IfThenElse(closer, distance_sq, best_sq);
       best_x = hn::IfThenElse(closer, x, best_x);
       best_y = hn::IfThenElse(closer, y, best_y);
-      best_z = hn::IfThenElse(closer, beyond, best_z);
+      best_z = hn::IfThenElse(closer, z_difference, best_z);
     }
   }
   hn::Store(best_sq, d, block.distance_sq.data() + first);
@@ -87,7 +87,7 @@ HWY_INLINE void find_some(const PixelRays& rays, const float* depth, const Corre
 
 void find_all(const PixelRays& rays, const float* depth, const CorrespondenceSearch& search,
               CorrespondenceBlock& block) {
-  for (std::size_t i = 0; i < block.count; i += hn::Lanes(Float())) find_some(rays, depth, search, i, block);
+  for (std::size_t i = 0; i < block.count; i += hn::Lanes(Float())) search_vector(rays, depth, search, i, block);
 }
 
 void add_all(const ResidualRows& rows, const CorrespondenceBlock::Values& weights, std::size_t count, float* sums) {

@@ -70,8 +70,8 @@ CorrespondenceSums sum_correspondences(const ObjectObservation& observation, con
   for (std::size_t i = 0; i < used; ++i) {
     const Eigen::Vector3f point = T * view.points[i];
     const Eigen::Vector3f normal = T.linear() * view.normals[i];
-    const bool in_sight = point.z() > 0.0F && normal.dot(point) < 0.0F;  // not turned away since the view was chosen
-    if (in_sight) visible.add(point, normal);
+    const bool is_visible = point.z() > 0.0F && normal.dot(point) < 0.0F;  // not turned away since the view was chosen
+    if (is_visible) visible.add(point, normal);
     if (visible.block.count < CorrespondenceBlock::kSize && i + 1 < used) continue;
     find_correspondences(observation.frame, search, visible.block);
     accumulate_correspondences(model, centre, search.distance_m * search.distance_m, visible, totals);

@@ -40,11 +40,11 @@ class PoseSelector {
     RegistrationResult best = result;
     float best_score = score_of(result);
     const RotationRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, maximum, settings_.rotation_search.points};
-    for (const ScoredPose& turn : best_rotations_about_z(observation_, result.T_camera_object, range, tolerance_)) {
-      RegistrationResult again = climb(register_coarsely(
-          observation_, turn.T_camera_object, 0.5 * (distances_.start + distances_.end), settings_.registration));
-      again.iterations += result.iterations;
-      keep_better(again, best, best_score);
+    for (const ScoredPose& rotated : best_rotations_about_z(observation_, result.T_camera_object, range, tolerance_)) {
+      RegistrationResult registered = climb_hill(register_coarsely(
+          observation_, rotated.T_camera_object, 0.5 * (distances_.start + distances_.end), settings_.registration));
+      registered.iterations += result.iterations;
+      keep_better(registered, best, best_score);
     }
     return best;
   }
@@ -58,10 +58,11 @@ class PoseSelector {
       const Eigen::AngleAxisd half_turn(M_PI, observation_.model.axes.col(axis).cast<double>());
       const Eigen::Isometry3d flipped =
           result.T_camera_object * Eigen::Translation3d(middle) * half_turn * Eigen::Translation3d(-middle);
-      RegistrationResult again = climb(
+      RegistrationResult registered = climb_hill(
           register_coarsely(observation_, flipped, 0.5 * (distances_.start + distances_.end), settings_.registration));
-      again.iterations += result.iterations;
-      if (is_near_detection(observation_, again, settings_.registration)) flips.push_back({again, score_of(again)});
+      registered.iterations += result.iterations;
+      if (is_near_detection(observation_, registered, settings_.registration))
+        flips.push_back({registered, score_of(registered)});
     }
     std::stable_sort(flips.begin(), flips.end(),
                      [](const ScoredResult& a, const ScoredResult& b) { return a.score > b.score; });
@@ -77,7 +78,7 @@ class PoseSelector {
     best_score = score;
   }
 
-  RegistrationResult climb(RegistrationResult result) const {
+  RegistrationResult climb_hill(RegistrationResult result) const {
     const RotationSearchSettings& search = settings_.rotation_search;
     const HillClimb hill_climb{search.fine_step_deg * kRadPerDeg, search.hill_climb_step_m, search.hill_climb_rounds,
                                search.points};
@@ -88,10 +89,10 @@ class PoseSelector {
 
   /// Returns the joint score of a result by depth, colour and votes.
   float score_of(const RegistrationResult& result) const {
-    const ScoredPose judged =
+    const ScoredPose scored =
         score_pose_jointly(observation_, result.T_camera_object, settings_.registration.fine_points, tolerance_);
     const float support = vote_support(votes_, result.T_camera_object, settings_.initial);
-    return judged.score * (1.0F + settings_.initial.vote_gain * support);
+    return scored.score * (1.0F + settings_.initial.vote_gain * support);
   }
 
   const ObjectObservation& observation_;

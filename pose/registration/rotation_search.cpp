@@ -45,12 +45,12 @@ ScoredPose hill_climb_pose(const ObjectObservation& observation, const Eigen::Is
   for (int round = 0; round < hill_climb.rounds; ++round) {
     bool improved = false;
     for (int motion = 0; motion < kMotions && failed < kMotions; ++motion) {  // a ninth would repeat the first
-      const double way = (motion % 2 == 0 ? 1.0 : -1.0) * size;
+      const double step = (motion % 2 == 0 ? 1.0 : -1.0) * size;
       Eigen::Isometry3d moved = best.T_camera_object;
       if (motion < 2) {
-        moved = rotated(moved, observation.model, way * hill_climb.step_rad);
+        moved = rotated(moved, observation.model, step * hill_climb.step_rad);
       } else {
-        moved.translate(way * hill_climb.step_m * Eigen::Vector3d::Unit(motion / 2 - 1));
+        moved.translate(step * hill_climb.step_m * Eigen::Vector3d::Unit(motion / 2 - 1));
       }
       const ScoredPose next = score_pose_jointly(observation, moved, hill_climb.points, tolerance);
       ++failed;

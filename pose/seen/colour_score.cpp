@@ -26,30 +26,33 @@ double variance(const ColourProducts& products, Eigen::Index channel) {
 }
 
 /// Returns the mean square of a channel's observed values that is left by least squares on the model's.
-double chroma_left_over(const ColourProducts& products, Eigen::Index template_value, Eigen::Index seen) {
-  const double model_variance = variance(products, template_value);
-  const double covariance = products(template_value, seen) - products(template_value, kOne) * products(seen, kOne);
+double residual_chroma_variance(const ColourProducts& products, Eigen::Index model_channel,
+                                Eigen::Index observed_channel) {
+  const double model_variance = variance(products, model_channel);
+  const double covariance =
+      products(model_channel, observed_channel) - products(model_channel, kOne) * products(observed_channel, kOne);
   const double gain = std::clamp(covariance / std::max(model_variance, 1e-3), kMinGain, kMaxGain);
-  return std::max(0.0, variance(products, seen) - gain * (2.0 * covariance - gain * model_variance));
+  return std::max(0.0, variance(products, observed_channel) - gain * (2.0 * covariance - gain * model_variance));
 }
 
 /// Returns the residual variance of the lightness after regression on the model's and on the surface's normal.
-double lightness_left_over(const ColourProducts& products) {
+double residual_lightness_variance(const ColourProducts& products) {
   constexpr double kRidge = 1e-4;   // terms that do not vary are left alone
   constexpr int kTerms = kOne + 1;  // model value, normal (3), 1
-  constexpr int kOthers = kTerms - 1;
+  constexpr int kFreeTerms = kTerms - 1;
   using Terms = Eigen::Matrix<double, kTerms, 1>;
-  Eigen::Matrix<double, kTerms, kTerms> curvature = products.topLeftCorner<kTerms, kTerms>();
-  curvature.diagonal().array() += kRidge;
-  const Terms with_seen = products.block<kTerms, 1>(0, kObservedLightness);
-  Terms weights = curvature.ldlt().solve(with_seen);
+  Eigen::Matrix<double, kTerms, kTerms> normal_matrix = products.topLeftCorner<kTerms, kTerms>();
+  normal_matrix.diagonal().array() += kRidge;
+  const Terms moments = products.block<kTerms, 1>(0, kObservedLightness);
+  Terms weights = normal_matrix.ldlt().solve(moments);
   const double gain = std::clamp(weights[0], kMinGain, kMaxGain);
   if (gain != weights[0]) {
-    const Eigen::Matrix<double, kOthers, 1> rest = with_seen.tail<kOthers>() - gain * curvature.block<kOthers, 1>(1, 0);
-    weights << gain, curvature.bottomRightCorner<kOthers, kOthers>().ldlt().solve(rest);
+    const Eigen::Matrix<double, kFreeTerms, 1> rest =
+        moments.tail<kFreeTerms>() - gain * normal_matrix.block<kFreeTerms, 1>(1, 0);
+    weights << gain, normal_matrix.bottomRightCorner<kFreeTerms, kFreeTerms>().ldlt().solve(rest);
   }
-  const double seen_sq = products(kObservedLightness, kObservedLightness);
-  return std::max(0.0, seen_sq - 2.0 * weights.dot(with_seen) + weights.dot(curvature * weights));
+  const double observed_sq = products(kObservedLightness, kObservedLightness);
+  return std::max(0.0, observed_sq - 2.0 * weights.dot(moments) + weights.dot(normal_matrix * weights));
 }
 
 ChromaMeans chroma_means(const ColourProducts& products) {
@@ -83,21 +86,22 @@ ColourComparison compare(const SummedColours& sums) {
     return kLightnessWeight * lightness + a + b;
   };
   const ColourProducts products = sums.compared.means();
-  const double seen =
+  const double observed_variance =
       weighted(variance(products, kObservedLightness), variance(products, kObservedA), variance(products, kObservedB));
   const double model_variance =
       weighted(variance(products, kLightness), variance(products, kA), variance(products, kB));
-  const double left = weighted(lightness_left_over(products), chroma_left_over(products, kA, kObservedA),
-                               chroma_left_over(products, kB, kObservedB));
+  const double residual_variance =
+      weighted(residual_lightness_variance(products), residual_chroma_variance(products, kA, kObservedA),
+               residual_chroma_variance(products, kB, kObservedB));
   ColourComparison comparison;
   comparison.points = sums.compared.count();
-  comparison.agreement = static_cast<float>(1.0 - left / (kUntexturedVariance + seen));
-  comparison.residual_stddev = static_cast<float>(std::sqrt(left));
+  comparison.agreement = static_cast<float>(1.0 - residual_variance / (kUntexturedVariance + observed_variance));
+  comparison.residual_stddev = static_cast<float>(std::sqrt(residual_variance));
   comparison.chroma = chroma_means(sums.all_means(products));
   comparison.unclipped_chroma = chroma_means(products);
   comparison.chroma_difference = chroma_difference(comparison.chroma, kAsTaught);
   comparison.clipped = sums.clipped.count();
-  comparison.observed_contrast = static_cast<float>(std::sqrt(std::max(0.0, seen)));
+  comparison.observed_contrast = static_cast<float>(std::sqrt(std::max(0.0, observed_variance)));
   comparison.model_contrast = static_cast<float>(std::sqrt(std::max(0.0, model_variance)));
   return comparison;
 }
@@ -127,9 +131,9 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
   std::array<ComparedPoint, 64> points;
   std::size_t count = 0;
   for (std::size_t i = 0; i < projected.points.size(); ++i) {
-    const ProjectedPoint& look = projected.points[i];
-    const cv::Point inside = cv::Point(look.x, look.y) - colours.origin_px;
-    if (!(std::abs(look.depth_difference) <= width) || !part.contains(inside)) continue;
+    const ProjectedPoint& point = projected.points[i];
+    const cv::Point inside = cv::Point(point.x, point.y) - colours.origin_px;
+    if (!(std::abs(point.depth_difference) <= width) || !part.contains(inside)) continue;
     const Eigen::Vector3f normal = kNormalUnits * (projected.T.linear() * projected.view.normals[i]);
     points[count] = {about_grey(projected.view.colours[i]),
                      about_grey(colours.lab.at<cv::Vec3b>(inside)),
@@ -147,29 +151,31 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
   return compare(sums);
 }
 
-std::optional<ColourComparison> compare_texture(const ObjectObservation& observation, const ProjectedView& look,
+std::optional<ColourComparison> compare_texture(const ObjectObservation& observation, const ProjectedView& projected,
                                                 const DepthTolerance& tolerance) {
-  constexpr double kDetails = 2.5;  // averaged over so many of the model's details, so that a little beside is near,
-  constexpr double kMax = 5.0;      // or at most over so many pixels
-  constexpr int kAlready = 3;       // pixels over which LabRegion's colours are averaged already
+  constexpr double kDetailsPerMean =
+      2.5;                         // averaged over so many of the model's details, so that a little beside is near,
+  constexpr double kMax = 5.0;     // or at most over so many pixels
+  constexpr int kSmoothed_px = 3;  // pixels over which LabRegion's colours are averaged already
   const LabRegion& colours = observation.colours;
-  if (colours.lab.empty() || !(look.depth > 0.0)) return std::nullopt;
+  if (colours.lab.empty() || !(projected.depth > 0.0)) return std::nullopt;
   const double detail_m = 2.0 * static_cast<double>(observation.model.radius) / ModelSettings{}.pixels_per_diameter;
-  const double averaged_px = std::min(kDetails * detail_m / observation.frame.camera.metres_per_px(look.depth), kMax);
+  const double averaged_px =
+      std::min(kDetailsPerMean * detail_m / observation.frame.camera.metres_per_px(projected.depth), kMax);
   const int side = 2 * static_cast<int>(0.5 * averaged_px) + 1;
-  const int reach = side > kAlready ? 2 : 1;
-  LabRegion moved{{}, {}, colours.clipped};  // a copy of the image would be the image, and change with it
-  if (side > kAlready) {
-    cv::blur(colours.lab, moved.lab, cv::Size(side, side));
+  const int reach = side > kSmoothed_px ? 2 : 1;
+  LabRegion shifted{{}, {}, colours.clipped};  // a copy of the image would be the image, and change with it
+  if (side > kSmoothed_px) {
+    cv::blur(colours.lab, shifted.lab, cv::Size(side, side));
   } else {
-    moved.lab = colours.lab;
+    shifted.lab = colours.lab;
   }
   std::optional<ColourComparison> best;
   for (const int dy : {0, -reach, reach}) {
     for (const int dx : {0, -reach, reach}) {
-      moved.origin_px = colours.origin_px + cv::Point(dx, dy);
-      const std::optional<ColourComparison> here = compare_colours(moved, look, tolerance);
-      if (here && (!best || here->agreement > best->agreement)) best = here;
+      shifted.origin_px = colours.origin_px + cv::Point(dx, dy);
+      const std::optional<ColourComparison> comparison = compare_colours(shifted, projected, tolerance);
+      if (comparison && (!best || comparison->agreement > best->agreement)) best = comparison;
     }
   }
   return best;

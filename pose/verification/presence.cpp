@@ -24,11 +24,11 @@ float presence_probability(float score, float quality, const PresenceSettings& s
 
 PresenceSettings fit_presence(const std::vector<PresenceExample>& examples, const PresenceSettings& prior,
                               double precision) {
-  std::vector<LogisticExample<3>> judged;
-  judged.reserve(examples.size());
+  std::vector<LogisticExample<3>> labelled;
+  labelled.reserve(examples.size());
   for (const PresenceExample& example : examples)
-    judged.push_back({terms_of(example.score, example.quality), example.is_present});
-  const PresenceWeights weights = fit_logistic<3>(judged, {weights_of(prior), precision});
+    labelled.push_back({terms_of(example.score, example.quality), example.is_present});
+  const PresenceWeights weights = fit_logistic<3>(labelled, {weights_of(prior), precision});
   return {weights[0], weights[1], weights[2]};
 }
 

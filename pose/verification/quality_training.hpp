@@ -19,7 +19,7 @@ struct QualityExample {
   std::optional<double> texture_margin = std::nullopt;  ///< TextureComparison::margin, where the pose has alternatives
   float score = 0.0F;                                   ///< score of the detection
   bool is_present = false;  ///< the object that was detected, whether the pose is right or not
-  int half = 0;             ///< 0 or 1: half of the calibration examples
+  int fold = 0;             ///< 0 or 1: fold of the two-fold cross-validation
 };
 
 /// Fits the probability of the texture's margins by logistic regression over the examples that are correct up to their
@@ -33,14 +33,14 @@ TextureSettings fit_texture_settings(const std::vector<QualityExample>& examples
 QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples, const QualitySettings& prior,
                                      double precision);
 
-/// Returns the shape quality of each example, in their order, by settings that are fitted to the other half of all: as
+/// Returns the shape quality of each example, in their order, by settings that are fitted to the other fold: as
 /// uncertain as that of a pose that the fit has not seen.
 std::map<std::string, std::vector<float>> cross_fitted_qualities(
     const std::map<std::string, std::vector<QualityExample>>& examples);
 
 /// Learns the quality settings of several objects from their poses, by name, with the objects' common weights as a
-/// prior, and the presence settings from these qualities. The latter use cross-fitted qualities (those of one half from
-/// the other half), since later ones will not have been trained on their examples either.
+/// prior, and the presence settings from these qualities. The latter use cross-fitted qualities (those of one fold from
+/// the other fold), since later ones will not have been trained on their examples either.
 std::map<std::string, QualitySettings> learn_qualities(
     const std::map<std::string, std::vector<QualityExample>>& examples);
 

@@ -56,14 +56,14 @@ float shared_surface(const RgbdFrame& frame, const PlacedModel& a, const PlacedM
   for (int y = both.y; y < both.br().y; ++y) {
     for (int x = both.x; x < both.br().x; ++x) {
       const float measured = frame.depth.at<float>(y, x);
-      const float here = depth_at(first, {x, y});
-      const float there = depth_at(second, {x, y});
+      const float first_depth = depth_at(first, {x, y});
+      const float second_depth = depth_at(second, {x, y});
       const auto limit = static_cast<float>(tolerance.at(measured));
-      const bool is_first = std::abs(measured - here) <= limit;  // false for NaN
-      const bool is_second = std::abs(measured - there) <= limit;
+      const bool is_first = std::abs(measured - first_depth) <= limit;  // false for NaN
+      const bool is_second = std::abs(measured - second_depth) <= limit;
       explained_first += is_first ? 1 : 0;
       explained_second += is_second ? 1 : 0;
-      shared += is_first && is_second && std::abs(here - there) <= kCoincident * limit ? 1 : 0;
+      shared += is_first && is_second && std::abs(first_depth - second_depth) <= kCoincident * limit ? 1 : 0;
     }
   }
   const int fewer = std::min(explained_first, explained_second);
@@ -80,17 +80,17 @@ float ExplainedSurface::fraction_of(const RgbdFrame& frame, const PlacedModel& p
   constexpr int kPoints = 250;
   constexpr float kNear = 0.5F;  // fraction of the tolerance: wider than kCoincident, since the pose is a first one
   const ProjectedView projected = project_view(frame, placed.model, placed.T_camera_object, kPoints);
-  int agreeing = 0;
+  int inliers = 0;
   int shared = 0;
   for (std::size_t i = 0; i < projected.points.size(); ++i) {
     const Eigen::Vector3f point = projected.T * projected.view.points[i];
     const auto limit = static_cast<float>(tolerance.at(point.z()));
     if (!(std::abs(projected.points[i].depth_difference) <= limit)) continue;  // NaN where nothing was measured
-    ++agreeing;
+    ++inliers;
     const auto contains = [&](const Part& part) { return part.contains(point, kNear * limit); };
     shared += std::any_of(parts_.begin(), parts_.end(), contains) ? 1 : 0;
   }
-  return agreeing == 0 ? 0.0F : static_cast<float>(shared) / static_cast<float>(agreeing);
+  return inliers == 0 ? 0.0F : static_cast<float>(shared) / static_cast<float>(inliers);
 }
 
 /// Returns whether a point lies within `limit` metres of the surface, which continues flat about each point of the view

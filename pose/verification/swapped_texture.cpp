@@ -9,27 +9,27 @@ namespace {
 
 /// Returns the view with the colours of each point's opposite.
 ModelView with_opposite_colours(const ModelView& view) {
-  ModelView other = view;
+  ModelView swapped = view;
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
   for (const Eigen::Vector3f& point : view.points) middle += point / static_cast<float>(view.points.size());
-  std::vector<Eigen::Vector3f> across;  // offsets from the middle, across the line of sight
-  across.reserve(view.points.size());
+  std::vector<Eigen::Vector3f> offsets;  // offsets from the middle, across the line of sight
+  offsets.reserve(view.points.size());
   for (const Eigen::Vector3f& point : view.points) {
     const Eigen::Vector3f from_middle = point - middle;
-    across.emplace_back(from_middle - from_middle.dot(view.direction) * view.direction);
+    offsets.emplace_back(from_middle - from_middle.dot(view.direction) * view.direction);
   }
-  for (std::size_t i = 0; i < across.size(); ++i) {
-    const Eigen::Vector3f opposite = -across[i];
-    const auto nearest = std::min_element(across.begin(), across.end(), [&](const auto& a, const auto& b) {
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    const Eigen::Vector3f opposite = -offsets[i];
+    const auto nearest = std::min_element(offsets.begin(), offsets.end(), [&](const auto& a, const auto& b) {
       return (a - opposite).squaredNorm() < (b - opposite).squaredNorm();
     });
-    other.colours[i] = view.colours[static_cast<std::size_t>(nearest - across.begin())];
+    swapped.colours[i] = view.colours[static_cast<std::size_t>(nearest - offsets.begin())];
   }
-  return other;
+  return swapped;
 }
 
 /// Returns L*, a*, b* of each point, less their means.
-Eigen::MatrixX3d about_mean(const std::vector<LabColour>& colours) {
+Eigen::MatrixX3d subtract_mean(const std::vector<LabColour>& colours) {
   Eigen::MatrixX3d out(static_cast<Eigen::Index>(colours.size()), 3);
   for (std::size_t i = 0; i < colours.size(); ++i)
     out.row(static_cast<Eigen::Index>(i)) << colours[i][0], colours[i][1], colours[i][2];
@@ -37,13 +37,13 @@ Eigen::MatrixX3d about_mean(const std::vector<LabColour>& colours) {
   return out;
 }
 
-/// Returns the correlation of two textures of the same points, which is near 1 for plain ones too.
+/// Returns the correlation of two textures of the same points, which is near 1 for two uniform ones too.
 double correlation(const std::vector<LabColour>& a, const std::vector<LabColour>& b) {
-  constexpr double kPlain = 30.0;  // variance without texture
-  const Eigen::MatrixX3d one = about_mean(a);
-  const Eigen::MatrixX3d two = about_mean(b);
-  const double plain = kPlain * static_cast<double>(a.size());
-  return (one.cwiseProduct(two).sum() + plain) / (one.norm() * two.norm() + plain);
+  constexpr double kVarianceFloor = 30.0;  // keeps what varies without texture from mattering
+  const Eigen::MatrixX3d centred_a = subtract_mean(a);
+  const Eigen::MatrixX3d centred_b = subtract_mean(b);
+  const double floor = kVarianceFloor * static_cast<double>(a.size());
+  return (centred_a.cwiseProduct(centred_b).sum() + floor) / (centred_a.norm() * centred_b.norm() + floor);
 }
 
 }  // namespace
@@ -53,14 +53,14 @@ std::optional<PoseEvidence> evidence_with_swapped_texture(const ObjectObservatio
                                                           const PoseEvidence& original,
                                                           const VerificationSettings& settings) {
   constexpr double kMaxTextureCorrelation = 0.5;
-  const ProjectedView look = project_view(observation.frame, observation.model, T_camera_object, settings.points);
-  if (look.view.colours.empty()) return std::nullopt;
-  const ModelView view = with_opposite_colours(look.view);
-  if (correlation(look.view.colours, view.colours) > kMaxTextureCorrelation) return std::nullopt;
+  const ProjectedView projected = project_view(observation.frame, observation.model, T_camera_object, settings.points);
+  if (projected.view.colours.empty()) return std::nullopt;
+  const ModelView view = with_opposite_colours(projected.view);
+  if (correlation(projected.view.colours, view.colours) > kMaxTextureCorrelation) return std::nullopt;
   const DepthTolerance tolerance{settings.tolerance_m, observation.noise};
-  const ProjectedView other{view, look.T, look.depth, look.points};
+  const ProjectedView swapped{view, projected.T, projected.depth, projected.points};
   PoseEvidence evidence = original;
-  evidence.colour = compare_texture(observation, other, tolerance);
+  evidence.colour = compare_texture(observation, swapped, tolerance);
   if (!evidence.colour) return std::nullopt;
   return evidence;
 }

@@ -29,7 +29,7 @@ struct BoundaryView {
 };
 
 /// Returns 0 where colours are not known; nothing where they are known of other positions only.
-std::optional<float> colours_apart_sq(const BoundaryView& view, const cv::Point& inside, const cv::Point& beyond) {
+std::optional<float> colour_difference_sq(const BoundaryView& view, const cv::Point& inside, const cv::Point& beyond) {
   if (view.colours == nullptr || view.colours->lab.empty()) return 0.0F;
   const cv::Mat& lab = view.colours->lab;
   const cv::Point origin = view.colours->origin_px - view.origin_px;
@@ -51,14 +51,14 @@ std::optional<BoundarySample> sample_boundary(const BoundaryView& view, const cv
   const cv::Point before = inside - 2 * in_px * side;
   const cv::Point beyond = at + out_px * side;
   if (!view.is_model(inside) || view.is_model(beyond) || !view.is_in_frame(beyond)) return std::nullopt;
-  const float here = view.measured(inside);
-  if (here < view.model(inside) - static_cast<float>(tolerance.at(view.model(inside)))) return std::nullopt;
-  const std::optional<float> colour_sq = colours_apart_sq(view, inside, beyond);
+  const float inside_depth = view.measured(inside);
+  if (inside_depth < view.model(inside) - static_cast<float>(tolerance.at(view.model(inside)))) return std::nullopt;
+  const std::optional<float> colour_sq = colour_difference_sq(view, inside, beyond);
   if (!colour_sq) return std::nullopt;
   BoundarySample sample;
   const auto steps = static_cast<float>(in_px + out_px);
   sample.lateral_distance = steps * static_cast<float>(metres_per_px);
-  sample.depth_change = view.measured(beyond) - here;
+  sample.depth_change = view.measured(beyond) - inside_depth;
   const float slope = view.is_model(before) ? view.model(inside) - view.model(before) : kNoValue;
   sample.expected_depth_change = slope * steps / static_cast<float>(2 * in_px);
   sample.colour_sq = *colour_sq;
@@ -103,10 +103,11 @@ Verification verify_projected_view(const ProjectedView& projected, const DepthTo
     if (!(-normal.dot(point) > kEdge * point.norm())) continue;
     ++result.rendered;
     const auto limit = static_cast<float>(tolerance.at(point.z()));
-    const float beyond = projected.points[i].depth_difference;  // NaN where nothing was measured: no comparison holds
-    result.depth_inliers += std::abs(beyond) <= limit ? 1 : 0;
-    result.free_space_violations += beyond > limit ? 1 : 0;
-    result.occluded += beyond < -limit ? 1 : 0;
+    const float difference =
+        projected.points[i].depth_difference;  // NaN where nothing was measured: no comparison holds
+    result.depth_inliers += std::abs(difference) <= limit ? 1 : 0;
+    result.free_space_violations += difference > limit ? 1 : 0;
+    result.occluded += difference < -limit ? 1 : 0;
   }
   return result;
 }
@@ -125,10 +126,10 @@ Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::
       if (std::isnan(model[x])) continue;
       ++result.rendered;
       const auto limit = static_cast<float>(tolerance.at(model[x]));
-      const float beyond = measured[x] - model[x];  // NaN where nothing was measured: no comparison holds
-      result.depth_inliers += std::abs(beyond) <= limit ? 1 : 0;
-      result.free_space_violations += beyond > limit ? 1 : 0;
-      result.occluded += beyond < -limit ? 1 : 0;
+      const float difference = measured[x] - model[x];  // NaN where nothing was measured: no comparison holds
+      result.depth_inliers += std::abs(difference) <= limit ? 1 : 0;
+      result.free_space_violations += difference > limit ? 1 : 0;
+      result.occluded += difference < -limit ? 1 : 0;
     }
   }
   compare_boundary({frame, rendered, region.tl(), colours}, tolerance, result);

@@ -117,7 +117,7 @@ std::vector<QualityExample> calibrated(double there_anyway) {
   }
   const std::vector<QualityExample> again = examples;
   examples.insert(examples.end(), again.begin(), again.end());
-  for (std::size_t i = again.size(); i < examples.size(); ++i) examples[i].half = 1;
+  for (std::size_t i = again.size(); i < examples.size(); ++i) examples[i].fold = 1;
   return examples;
 }
 
@@ -180,15 +180,15 @@ TEST(LearnQualities, WhatABadPoseSaysOfPresenceIsEachObjectsOwn) {
 }
 
 TEST(LearnQualities, PresenceIsLearntFromQualitiesThatDidNotKnowTheExamples) {
-  // In one half the first term shows that a pose is correct, in the other one that it is wrong: the settings of one
-  // half then contradict the other, which a quality fitted to both would not.
+  // In one fold the first term shows that a pose is correct, in the other one that it is wrong: the settings of one
+  // fold then contradict the other, which a quality fitted to both would not.
   std::vector<QualityExample> examples(400);
   for (std::size_t i = 0; i < examples.size(); ++i) {
     QualityExample& example = examples[i];
-    example.half = i < examples.size() / 2 ? 0 : 1;
+    example.fold = i < examples.size() / 2 ? 0 : 1;
     example.is_correct_up_to_shape = example.is_present = i % 2 == 0;
     example.score = 0.5F;
-    example.terms.detection_logit = example.is_correct_up_to_shape == (example.half == 0) ? 1.0 : -1.0;
+    example.terms.detection_logit = example.is_correct_up_to_shape == (example.fold == 0) ? 1.0 : -1.0;
   }
   EXPECT_LT(learn_qualities({{"mug", examples}}).at("mug").presence.quality_weight, 0.0);
 }

@@ -68,11 +68,11 @@ training::ValidationSource validation_source(const std::vector<world::RenderedFr
           }};
 }
 
-/// A half of the rooms: those of even, or of odd numbers.
-constexpr int kHalves = 2;
+/// Folds of the cross-validation: rooms of even numbers, and of odd ones.
+constexpr int kFolds = 2;
 
-int half_of(std::size_t frame) {
-  return static_cast<int>(frame) / world::CalibrationScenes::kFramesPerScene % kHalves;
+int fold_of(std::size_t frame) {
+  return static_cast<int>(frame) / world::CalibrationScenes::kFramesPerScene % kFolds;
 }
 
 /// The calibration of a group, in rooms of its own.
@@ -121,18 +121,18 @@ void learn_scores(GroupCalibration& calibration, Forest& forest) {
   training::fit_scores(calibration.examples, calibration.ids, forest);
 }
 
-std::vector<std::size_t> frames_of(int half, const GroupCalibration& calibration) {
-  std::vector<std::size_t> of_half;
+std::vector<std::size_t> frames_of(int fold, const GroupCalibration& calibration) {
+  std::vector<std::size_t> in_fold;
   for (std::size_t f = 0; f < calibration.frames.size(); ++f) {
-    if (half_of(f) == half) of_half.push_back(f);
+    if (fold_of(f) == fold) in_fold.push_back(f);
   }
-  return of_half;
+  return in_fold;
 }
 
-void fit_scores_without(int half, const GroupCalibration& calibration, Forest& forest) {
+void fit_scores_without(int fold, const GroupCalibration& calibration, Forest& forest) {
   std::vector<training::ScoreExamples> others;
   for (std::size_t f = 0; f < calibration.examples.size(); ++f) {
-    if (half_of(f) != half) others.push_back(calibration.examples[f]);
+    if (fold_of(f) != fold) others.push_back(calibration.examples[f]);
   }
   training::fit_scores(others, calibration.ids, forest);
 }
@@ -145,9 +145,9 @@ DetectionSettings detection_of(const Forest& forest) {
   return detection;
 }
 
-/// Finds poses. Each half of the group's rooms is searched with scores that were fitted without it: what a score is
+/// Finds poses. Each fold of the group's rooms is searched with scores that were fitted without it: what a score is
 /// worth to a pose is learnt where the score is as uncertain as it will be. The forests, which may be too large to be
-/// in memory twice, are lent to a detector; the group's takes the scores of one half after the other, and is left with
+/// in memory twice, are lent to a detector; the group's takes the scores of one fold after the other, and is left with
 /// those of all.
 quality::FoundPoses find_poses(const GroupCalibration& calibration, const quality::UnfilteredPoseFinder& finder,
                                std::vector<Forest>& groups) {
@@ -163,10 +163,10 @@ quality::FoundPoses find_poses(const GroupCalibration& calibration, const qualit
   PerWorker<DetectorWorkspace> workspaces;
   workspaces.resize(threads);
   ProgressLine progress("search in practice rooms", static_cast<double>(calibration.frames.size()));
-  for (int half = 0; half < kHalves; ++half) {
-    fit_scores_without(half, calibration, groups[calibration.place]);
+  for (int fold = 0; fold < kFolds; ++fold) {
+    fit_scores_without(fold, calibration, groups[calibration.place]);
     Detector detector(std::move(groups), detection);
-    const std::vector<std::size_t> searched = frames_of(half, calibration);
+    const std::vector<std::size_t> searched = frames_of(fold, calibration);
     parallel_for_workers(threads, static_cast<int>(searched.size()), [&](int worker, int i) {
       const std::size_t index = searched[static_cast<std::size_t>(i)];
       const world::RenderedFrame& rendered = calibration.frames[index];
@@ -189,7 +189,7 @@ ExamplesByName label_all(const quality::FoundPoses& found, const std::map<std::s
   ExamplesByName by_name;
   for (const auto& [name, model] : models) {
     by_name[name] = quality::label_examples(found, {{name, model}});
-    for (quality::Example& example : by_name[name]) example.half = half_of(example.frame);
+    for (quality::Example& example : by_name[name]) example.fold = fold_of(example.frame);
   }
   return by_name;
 }
