@@ -11,7 +11,7 @@ namespace houghstream::tracks {
 
 /// Settings of the assignment of measured poses to objects.
 struct AssociationSettings {
-  double reach_m = 0.06;         ///< distance up to which a pose is of an object that stands, metres
+  double reach_m = 0.06;         ///< distance up to which a pose is of a static object, metres
   double moving_reach_m = 0.12;  ///< that distance for a moving object
   double rotation_cost = 0.5;    ///< cost of a rotation by half a turn; that of the whole reach is 1
   double exclusion_ratio = 0.6;  ///< radii within which there is no second object of a class
@@ -26,7 +26,7 @@ void fields(const AssociationSettings& /*settings*/, const Visit& visit) {
   visit(number("exclusion_ratio", &S::exclusion_ratio, 0, 10));
 }
 
-/// The objects of a class that are there, and the poses that a frame has of it.
+/// The present objects of a class, and the poses that a frame has of it.
 struct ClassGroup {
   const Symmetries& symmetries;
   std::vector<Track*> objects = {};

@@ -18,14 +18,15 @@
 namespace houghstream::tracks {
 namespace {
 
-constexpr std::size_t kSamples = 2048;
+constexpr std::size_t kMaxSamples = 2048;
 
-bool equal_places(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-  constexpr double kSame = 1e-6;
-  return local_coordinates_about_world(a, b).cwiseAbs().maxCoeff() < kSame;
+bool are_equal_poses(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  constexpr double kMaxDifference = 1e-6;
+  return local_coordinates_about_world(a, b).cwiseAbs().maxCoeff() < kMaxDifference;
 }
 
-Eigen::Isometry3d rigid(const Eigen::Vector3d& translation, const Eigen::Vector4d& wxyz, const std::string& of) {
+Eigen::Isometry3d make_rigid_transform(const Eigen::Vector3d& translation, const Eigen::Vector4d& wxyz,
+                                       const std::string& of) {
   constexpr double kUnitTolerance = 1e-2;  // written by people, with a few digits
   constexpr double kMaxDistanceM = 1e6;
   require(translation.allFinite() && translation.cwiseAbs().maxCoeff() <= kMaxDistanceM,
@@ -43,7 +44,7 @@ struct Link {
 using Links = std::map<std::string, Link>;
 
 template <int Count>
-Eigen::Matrix<double, Count, 1> numbers_of(const YAML::Node& node, const std::string& of) {
+Eigen::Matrix<double, Count, 1> read_numbers(const YAML::Node& node, const std::string& of) {
   Eigen::Matrix<double, Count, 1> out;
   require(node.IsDefined() && node.IsSequence() && node.size() == Count, "{}: expected {} numbers", of, Count);
   for (int i = 0; i < Count; ++i) {
@@ -54,7 +55,7 @@ Eigen::Matrix<double, Count, 1> numbers_of(const YAML::Node& node, const std::st
   return out;
 }
 
-double number_of(const YAML::Node& node, const char* key, const std::string& of) {
+double read_number(const YAML::Node& node, const char* key, const std::string& of) {
   const std::optional<double> number = yaml_number(yaml_member(node, key));
   require(number.has_value(), "{}: no number {}", of, key);
   return *number;
@@ -76,8 +77,8 @@ void add_cameras(const YAML::Node& cameras, const std::string& file, Links& link
     require(node.IsMap(), "{}: expected translation and rotation", of);
     const YAML::Node parent = yaml_member(node, "parent");
     links[name] = {parent.IsDefined() && parent.IsScalar() ? parent.Scalar() : "world",
-                   rigid(numbers_of<3>(yaml_member(node, "translation"), of + ": translation"),
-                         numbers_of<4>(yaml_member(node, "rotation"), of + ": rotation"), of)};
+                   make_rigid_transform(read_numbers<3>(yaml_member(node, "translation"), of + ": translation"),
+                                        read_numbers<4>(yaml_member(node, "rotation"), of + ": rotation"), of)};
     require_names(node, {"parent", "translation", "rotation"}, of);
   }
 }
@@ -93,12 +94,13 @@ void add_transforms(const YAML::Node& transforms, const std::string& file, Links
     const YAML::Node q = yaml_member(yaml_member(node, "transform"), "rotation");
     links[child.Scalar()] = {
         parent.Scalar(),
-        rigid({number_of(t, "x", of), number_of(t, "y", of), number_of(t, "z", of)},
-              {number_of(q, "w", of), number_of(q, "x", of), number_of(q, "y", of), number_of(q, "z", of)}, of)};
+        make_rigid_transform(
+            {read_number(t, "x", of), read_number(t, "y", of), read_number(t, "z", of)},
+            {read_number(q, "w", of), read_number(q, "x", of), read_number(q, "y", of), read_number(q, "z", of)}, of)};
   }
 }
 
-Links links_of(const YAML::Node& yaml, const std::string& file) {
+Links read_links(const YAML::Node& yaml, const std::string& file) {
   Links links;
   const YAML::Node cameras = yaml_member(yaml, "cameras");
   const YAML::Node transforms = yaml_member(yaml, "transforms");
@@ -111,12 +113,12 @@ Links links_of(const YAML::Node& yaml, const std::string& file) {
   return links;
 }
 
-Eigen::Isometry3d chained(const Links& links, const std::string& camera, const std::string& file) {
+Eigen::Isometry3d chain_to_root(const Links& links, const std::string& camera, const std::string& file) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  std::set<std::string> seen;
+  std::set<std::string> visited;
   for (auto link = links.find(camera); link != links.end(); link = links.find(link->second.parent)) {
-    require(seen.insert(link->first).second, "{}: camera {}: its parents go round in a loop through {}", file, camera,
-            link->first);
+    require(visited.insert(link->first).second, "{}: camera {}: its parents go round in a loop through {}", file,
+            camera, link->first);
     T = link->second.T_parent_child * T;
   }
   return T;
@@ -134,14 +136,14 @@ void CameraExtrinsics::add_transform(const std::string& camera, std::int64_t uti
           "transforms of more than {} cameras, expected at most that many", kMaxMoving);
   std::deque<Sample>& samples = moving_[camera];
   if (!samples.empty() && seconds_between(utime, samples.back().utime) > 1.0) samples.clear();
-  auto place = samples.end();
-  while (place != samples.begin() && (place - 1)->utime >= utime) --place;
-  if (place != samples.end() && place->utime == utime) {
-    place->T_world_camera = T_world_camera;
+  auto position = samples.end();
+  while (position != samples.begin() && (position - 1)->utime >= utime) --position;
+  if (position != samples.end() && position->utime == utime) {
+    position->T_world_camera = T_world_camera;
   } else {
-    samples.insert(place, {utime, T_world_camera});
+    samples.insert(position, {utime, T_world_camera});
   }
-  if (samples.size() > kSamples) samples.pop_front();
+  if (samples.size() > kMaxSamples) samples.pop_front();
 }
 
 CameraPose CameraExtrinsics::interpolate(const std::string& camera, std::int64_t utime) const {
@@ -154,7 +156,7 @@ CameraPose CameraExtrinsics::interpolate(const std::string& camera, std::int64_t
                                       [](const Sample& sample, std::int64_t time) { return sample.utime < time; });
   if (after == samples.end()) {
     const std::size_t count = samples.size();
-    if (count >= 2 && equal_places(samples[count - 1].T_world_camera, samples[count - 2].T_world_camera))
+    if (count >= 2 && are_equal_poses(samples[count - 1].T_world_camera, samples[count - 2].T_world_camera))
       return {samples.back().T_world_camera, false, ""};
     return {std::nullopt, true,
             fmt::format("the last transform of {} is {:.3f} s older", camera, -seconds(samples.back().utime))};
@@ -166,7 +168,7 @@ CameraPose CameraExtrinsics::interpolate(const std::string& camera, std::int64_t
                         seconds(after->utime))};
   const Sample& before = *(after - 1);
   const double gap = seconds_between(before.utime, after->utime);
-  if (gap > kMaxGapS && !equal_places(before.T_world_camera, after->T_world_camera))
+  if (gap > kMaxGapS && !are_equal_poses(before.T_world_camera, after->T_world_camera))
     return {
         std::nullopt, false,
         fmt::format("the transforms of {} about it are {:.3f} s apart, expected at most {} s", camera, gap, kMaxGapS)};
@@ -176,12 +178,12 @@ CameraPose CameraExtrinsics::interpolate(const std::string& camera, std::int64_t
 std::map<std::string, Eigen::Isometry3d> read_camera_extrinsics(const std::filesystem::path& file) {
   constexpr std::size_t kMaxFrames = 1024;  // each may hang on all others
   const Links links =
-      links_of(parse_yaml(read_file(file, "a YAML file of camera poses"), file.string()), file.string());
+      read_links(parse_yaml(read_file(file, "a YAML file of camera poses"), file.string()), file.string());
   require(!links.empty(), "{}: neither 'cameras:' nor 'transforms:', expected poses of cameras", file.string());
   require(links.size() <= kMaxFrames, "{}: poses of {} frames, expected at most {}", file.string(), links.size(),
           kMaxFrames);
   std::map<std::string, Eigen::Isometry3d> poses;
-  for (const auto& [camera, link] : links) poses[camera] = chained(links, camera, file.string());
+  for (const auto& [camera, link] : links) poses[camera] = chain_to_root(links, camera, file.string());
   return poses;
 }
 
@@ -200,8 +202,8 @@ std::pair<std::string, Eigen::Isometry3d> parse_camera_pose(const std::string& t
   require(numbers.size() == 7, "--camera-pose '{}': {} numbers, expected {}", printable(text), numbers.size(),
           expected);
   return {text.substr(0, equals),
-          rigid({numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5], numbers[6]},
-                "--camera-pose " + printable(text))};
+          make_rigid_transform({numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5], numbers[6]},
+                               "--camera-pose " + printable(text))};
 }
 
 void add_camera_pose(const std::string& text, std::map<std::string, Eigen::Isometry3d>& poses) {

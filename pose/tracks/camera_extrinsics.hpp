@@ -18,14 +18,15 @@ struct CameraPose {
   std::string reason;     ///< reason why it is unknown, one line
 };
 
-/// Stores the poses of cameras: fixed ones as they were set, moving ones interpolated between the transforms before and
-/// after a time. Names of cameras are the channels of their frames, or the part before _TO_WORLD
+/// Stores the poses of cameras: static ones as they were set, moving ones interpolated between the transforms before
+/// and after a time. Names of cameras are the channels of their frames, or the part before _TO_WORLD
 /// (channel::camera_name). Not thread-safe.
 class CameraExtrinsics {
  public:
   /// Maximum gap between transforms that are interpolated, unless they are equal.
   static constexpr double kMaxGapS = 0.5;
-  /// Cameras that move; further ones are refused: a sender of rubbish may make up channels without end.
+  /// Maximum number of moving cameras; further ones are refused, since an untrusted sender may make up channels without
+  /// end.
   static constexpr std::size_t kMaxMoving = 256;
 
   void set_static(const std::string& camera, const Eigen::Isometry3d& T_world_camera);
@@ -50,21 +51,21 @@ class CameraExtrinsics {
   std::map<std::string, std::deque<Sample>> moving_;  // samples by camera, in the order of time
 };
 
-/// Places of fixed cameras, T_world_camera by name, from a YAML file. Read are our own,
+/// Reads the poses of static cameras, T_world_camera by name, from a YAML file. It understands our own format,
 ///
 ///     cameras:
 ///       LEFT: {parent: world, translation: [x, y, z], rotation: [w, x, y, z]}
 ///
 /// (parent may be another camera; without it the world), and static transforms of ROS as `ros2 topic echo /tf_static`
 /// prints them: entries of `transforms` with header.frame_id, child_frame_id and transform, chained to the root frame,
-/// which is the world. Metres. Throws InputError naming file and camera for what is missing, not rigid, goes round in
-/// a loop, has an unknown name, or is a duplicate.
+/// which is the world. Metres. Throws InputError naming file and camera for what is missing, not rigid, part of a loop,
+/// of an unknown name, or a duplicate.
 std::map<std::string, Eigen::Isometry3d> read_camera_extrinsics(const std::filesystem::path& file);
 
 /// Parses the value of an option --camera-pose: CHANNEL=x,y,z,qw,qx,qy,qz, T_world_camera. Throws InputError.
 std::pair<std::string, Eigen::Isometry3d> parse_camera_pose(const std::string& text);
 
-/// Adds such a value to the places that are given. Throws InputError also where its camera has one.
+/// Adds such a value to the poses. Throws InputError also where its camera has one already.
 void add_camera_pose(const std::string& text, std::map<std::string, Eigen::Isometry3d>& poses);
 
 }  // namespace houghstream::tracks

@@ -20,7 +20,7 @@ std::string find_same_object(const TrackModels& models, const TrackModel& model)
   return found == models.end() ? std::string() : found->first;
 }
 
-/// Returns the object that stands at the pose, has the same number in the store, and another name that the store holds.
+/// Returns the object at the pose that has the same number in the store and another name, which the store holds.
 const Track* find_namesake(const ObjectPose& pose, const Eigen::Isometry3d& T_world_camera, const TrackModels& models,
                            const std::vector<Track>& tracks, double same_rotation_rad) {
   const PoseMeasurement measured{0, T_world_camera * *pose.T_camera_object, Covariance6::Identity()};
@@ -34,17 +34,17 @@ const Track* find_namesake(const ObjectPose& pose, const Eigen::Isometry3d& T_wo
   return found == tracks.end() ? nullptr : &*found;
 }
 
-/// Marks what was begun in the place of a renamed object while only its new name came, for being forgotten.
-void mark_doubles(std::size_t renamed_index, const TrackModels& models, std::vector<Track>& tracks) {
+/// Marks tracks that were begun at the pose of a renamed object, while results had its new name already, as duplicates.
+void mark_duplicates(std::size_t renamed_index, const TrackModels& models, std::vector<Track>& tracks) {
   const Track& kept = tracks[renamed_index];
   if (kept.id <= 0 || !kept.is_present()) return;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     Track& other = tracks[i];
     if (i == renamed_index || other.class_name != kept.class_name || (other.id > 0 && other.id < kept.id)) continue;
-    const double apart_m =
+    const double distance_m =
         kept.pose.distance({kept.pose.filter().utime(), other.pose.filter().T_world_object(), Covariance6::Identity()},
                            symmetries_of(models, kept.class_name), centre_of(models, kept.class_name));
-    if (apart_m < 0.5 * radius_of(models, kept.class_name)) other.id = -1;
+    if (distance_m < 0.5 * radius_of(models, kept.class_name)) other.id = -1;
   }
 }
 
@@ -90,7 +90,7 @@ void rename_tracks(const std::map<std::string, std::string>& renamed, const Trac
     track.class_name = found->second;
     changed.push_back(i);
   }
-  for (const std::size_t i : changed) mark_doubles(i, models, tracks);
+  for (const std::size_t i : changed) mark_duplicates(i, models, tracks);
   tracks.erase(std::remove_if(tracks.begin(), tracks.end(), [](const Track& track) { return track.id < 0; }),
                tracks.end());
 }
@@ -107,8 +107,8 @@ void rename_counts(const std::map<std::string, std::string>& renamed, std::map<s
 
 void ClassNames::update(const ModelChange& change, const TrackModels& models) {
   for (auto it = renamed_.begin(); it != renamed_.end();) {
-    const auto again = change.renamed.find(it->second);
-    if (again != change.renamed.end()) it->second = again->second;
+    const auto renamed_again = change.renamed.find(it->second);
+    if (renamed_again != change.renamed.end()) it->second = renamed_again->second;
     const bool is_removed = change.removed.count(it->second) > 0;
     if (is_removed) removed_.insert(it->first);
     it = is_removed ? renamed_.erase(it) : std::next(it);

@@ -20,12 +20,12 @@ struct ModelChange {
 /// the same mesh under another name; one without a number is never renamed, only removed.
 ModelChange find_model_change(const TrackModels& before, const TrackModels& after);
 
-/// Ends the objects of removed classes: they are gone from here on, and candidates are forgotten.
+/// Deletes the tracks of removed classes: objects are reported as gone from here on, and candidates are removed.
 /// `gone_log_odds`: ExistenceSettings::delete_log_odds.
 void retire_tracks(const std::set<std::string>& removed, double gone_log_odds, std::vector<Track>& tracks);
 
-/// Gives objects the new names of their classes. What was begun in the place of one of them, while only its new name
-/// came, is forgotten.
+/// Gives objects the new names of their classes. Tracks that were begun at their poses, while results had the new names
+/// already, are removed.
 void rename_tracks(const std::map<std::string, std::string>& renamed, const TrackModels& models,
                    std::vector<Track>& tracks);
 
@@ -40,17 +40,17 @@ class ClassNames {
   /// Notes a change that has led to these models.
   void update(const ModelChange& change, const TrackModels& models);
 
-  /// Returns the poses by the names of today, without those of classes that have left the store. A valid pose of a name
-  /// that the store does not hold, which is where an object with the same number in the store stands, is of that
-  /// object: its new name is about to be taken over.
+  /// Returns the poses under the current names, without those of classes that have left the store. A valid pose whose
+  /// name the store does not hold is assigned to the object at its position that has the same number in the store: the
+  /// new name will arrive soon.
   ObjectPoses resolve(const FrameObservation& observation, const TrackModels& models, const std::vector<Track>& tracks,
                       double same_rotation_rad) const;
 
-  /// Returns the detections by the names of today; nothing where they have these already.
+  /// Returns the detections under the current names; nothing where they have these already.
   std::optional<Detections> resolve(const Detections& detections) const;
 
  private:
-  std::map<std::string, std::string> renamed_;  // today's names by former ones
+  std::map<std::string, std::string> renamed_;  // current names by former ones
   std::set<std::string> removed_;
 };
 

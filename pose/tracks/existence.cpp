@@ -12,10 +12,10 @@ namespace {
 
 /// Returns whether an object of another class is recognised in its place.
 bool is_displaced(const UnobservedContext& context, const Track& track) {
-  const Eigen::Vector3d place = track.pose.filter().T_world_object() * centre_of(context.models, track.class_name);
+  const Eigen::Vector3d centre = track.pose.filter().T_world_object() * centre_of(context.models, track.class_name);
   return std::any_of(context.poses.begin(), context.poses.end(), [&](const PoseObservation& pose) {
     return pose.class_name != track.class_name &&
-           (pose.measured.T_world_object * centre_of(context.models, pose.class_name) - place).norm() <
+           (pose.measured.T_world_object * centre_of(context.models, pose.class_name) - centre).norm() <
                0.5 * std::min(radius_of(context.models, pose.class_name), radius_of(context.models, track.class_name));
   });
 }
@@ -36,8 +36,8 @@ bool is_detected(const UnobservedContext& context, const std::string& class_name
 void update_unobserved(const UnobservedContext& context, const AbsenceEvidence& absence,
                        const ExistenceSettings& settings, Track& track) {
   const FrameObservation& observation = context.observation;
-  const auto known = context.models.find(track.class_name);
-  const TrackModel* model = known == context.models.end() ? nullptr : &known->second;
+  const auto model_entry = context.models.find(track.class_name);
+  const TrackModel* model = model_entry == context.models.end() ? nullptr : &model_entry->second;
   const RgbdFrame* image = model != nullptr && observation.image ? observation.image() : nullptr;
   const Eigen::Isometry3d T_camera_object = observation.T_world_camera.inverse() * track.pose.filter().T_world_object();
   const VisibilityCheck visibility =

@@ -19,8 +19,8 @@ struct ExtrinsicInconsistency {
   int samples = 0;
 };
 
-/// Compares where cameras see the same objects at about the same time, to find cameras whose places (extrinsics)
-/// contradict each other. Knows nothing of tracks: one camera's poses are laid beside the other's. Not thread-safe.
+/// Compares where cameras see the same objects at about the same time, to find cameras whose extrinsics
+/// contradict each other. It knows nothing of tracks, and compares the cameras' poses directly. Not thread-safe.
 class ExtrinsicCheck {
  public:
   /// Minimum offset that is reported: twice the difference of good poses of a can or a mug from two sides.
@@ -37,13 +37,13 @@ class ExtrinsicCheck {
   std::vector<ExtrinsicInconsistency> pairs() const;
 
  private:
-  struct Seen {
+  struct ObservedObject {
     std::string class_name;
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   };
   struct View {
     std::int64_t utime = 0;
-    std::vector<Seen> objects;
+    std::vector<ObservedObject> objects;
   };
   std::map<std::string, View> last_;  // last view by channel
   std::map<std::pair<std::string, std::string>, std::deque<Eigen::Vector3d>> offsets_;

@@ -14,7 +14,7 @@
 namespace houghstream::tracks {
 namespace {
 
-constexpr std::size_t kHypotheses = 3;
+constexpr std::size_t kMaxHypotheses = 3;
 constexpr double kMaxWeight = 6.0;
 constexpr double kWeightDecay_s = 3.0;
 
@@ -99,20 +99,20 @@ std::vector<PoseObservation> observe_poses(const ObjectPoses& poses, const Eigen
 
 VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model,
                                  const Eigen::Isometry3d& T_camera_object) {
-  constexpr double kToleranceM = 0.012;
-  constexpr double kNearestM = 0.05;
+  constexpr double kTolerance_m = 0.012;
+  constexpr double kMinDepth_m = 0.05;
   constexpr int kMinPx = 30;
   constexpr double kMinMeasured = 0.2;  // minimum fraction of the pixels with depth
   constexpr double kMaxOccluded = 0.6;
   constexpr double kMaxFreeSpaceViolation = 0.35;
   const Eigen::Vector3d centre = T_camera_object * model.centre;
-  if (centre.z() < kNearestM) return {};
+  if (centre.z() < kMinDepth_m) return {};
   const Eigen::Vector2d pixel = frame.camera.project(centre);
   if (pixel.x() < 0.0 || pixel.y() < 0.0 || pixel.x() >= frame.camera.width || pixel.y() >= frame.camera.height)
     return {};
-  const Verification verification = verify_pose(frame, model.mesh, T_camera_object, {kToleranceM, DepthNoise{}});
-  const int judged = verification.depth_inliers + verification.free_space_violations + verification.occluded;
-  if (verification.rendered < kMinPx || judged < kMinMeasured * verification.rendered) return {};
+  const Verification verification = verify_pose(frame, model.mesh, T_camera_object, {kTolerance_m, DepthNoise{}});
+  const int compared = verification.depth_inliers + verification.free_space_violations + verification.occluded;
+  if (verification.rendered < kMinPx || compared < kMinMeasured * verification.rendered) return {};
   VisibilityCheck visibility;
   visibility.free_space_violation = static_cast<double>(verification.free_space_violations) /
                                     std::max(1, verification.depth_inliers + verification.free_space_violations);
@@ -120,7 +120,7 @@ VisibilityCheck check_visibility(const RgbdFrame& frame, const TrackModel& model
       verification.boundary_continuations > 0.5F * static_cast<float>(verification.boundary_samples);
   visibility.state = TrackState::kUnrecognised;
   if (visibility.free_space_violation > kMaxFreeSpaceViolation) visibility.state = TrackState::kGone;
-  if (verification.occluded > kMaxOccluded * judged) visibility.state = TrackState::kHidden;
+  if (verification.occluded > kMaxOccluded * compared) visibility.state = TrackState::kHidden;
   return visibility;
 }
 
@@ -143,14 +143,14 @@ void PoseTrack::update(const PoseObservation& pose, const Symmetries& symmetries
   const std::size_t index = hypothesis_for(pose.measured, symmetries);
   Hypothesis& hypothesis = hypotheses_[index];
   hypothesis.weight = std::min(kMaxWeight, hypothesis.weight + std::max(0.1, quality_logit(pose.quality)));
-  PoseObservation rotated = pose;
-  rotated.measured.T_world_object =
+  PoseObservation nearest = pose;
+  nearest.measured.T_world_object =
       nearest_equivalent(pose.measured.T_world_object, hypothesis.filter.T_world_object(), symmetries);
   hypothesis.filter.predict(pose.frame.utime);
   if (hypothesis.filter.moving()) {
-    update_moving(rotated.measured, hypothesis);
+    update_moving(nearest.measured, hypothesis);
   } else {
-    update_static(rotated, has_contrary_depth, hypothesis);
+    update_static(nearest, has_contrary_depth, hypothesis);
   }
   if (hypothesis.weight > hypotheses_[best_].weight + kMinLead) best_ = index;
   if (hypothesis.filter.moving() && index == best_ && hypotheses_.size() > 1) {
@@ -174,7 +174,7 @@ std::size_t PoseTrack::hypothesis_for(const PoseMeasurement& measured, const Sym
     found = i;
   }
   if (found) return *found;
-  if (hypotheses_.size() < kHypotheses) {
+  if (hypotheses_.size() < kMaxHypotheses) {
     hypotheses_.push_back({MotionFilter(measured, settings_.motion), 0.0});
     return hypotheses_.size() - 1;
   }
@@ -187,8 +187,8 @@ std::size_t PoseTrack::hypothesis_for(const PoseMeasurement& measured, const Sym
 }
 
 void PoseTrack::update_static(const PoseObservation& pose, bool has_contrary_depth, Hypothesis& hypothesis) {
-  constexpr double kWithinS = 0.4;
-  constexpr std::size_t kMinPositions = 3;  // measured apart from where it stands
+  constexpr double kWindow_s = 0.4;
+  constexpr std::size_t kMinPositions = 3;  // measurements outside the gate of its position
   constexpr std::size_t kMinRotations = 8;  // measurements whose rotation alone changed
   const Vector6 innovation =
       local_coordinates_about_world(pose.measured.T_world_object, hypothesis.filter.T_world_object());
@@ -196,19 +196,19 @@ void PoseTrack::update_static(const PoseObservation& pose, bool has_contrary_dep
   const double place_gate =
       std::max(settings_.static_gate_m, 4.0 * std::sqrt(noise.topLeftCorner<3, 3>().trace() / 3.0));
   const double rotation_gate = std::max(settings_.static_gate_rad, 4.0 * std::sqrt(noise(5, 5)));
-  const bool in_place = innovation.head<3>().norm() < place_gate;
+  const bool is_in_place = innovation.head<3>().norm() < place_gate;
   ObserverHistory& observer = observers_[pose.frame.channel];
-  if (in_place && innovation.tail<3>().norm() < rotation_gate) {
+  if (is_in_place && innovation.tail<3>().norm() < rotation_gate) {
     hypothesis.filter.update(pose.measured);
     observer.outside_gates.clear();
     observer.agreed_utime = pose.frame.utime;
     return;
   }
   observer.outside_gates.push_back(pose.measured);
-  while (seconds_between(observer.outside_gates.front().utime, pose.frame.utime) > kWithinS)
+  while (seconds_between(observer.outside_gates.front().utime, pose.frame.utime) > kWindow_s)
     observer.outside_gates.pop_front();
-  const std::size_t needed = in_place ? kMinRotations : has_contrary_depth ? 1 : kMinPositions;
-  if (observer.outside_gates.size() < needed || !can_trigger_motion(pose.frame.channel, pose.frame.utime)) return;
+  const std::size_t min_count = is_in_place ? kMinRotations : has_contrary_depth ? 1 : kMinPositions;
+  if (observer.outside_gates.size() < min_count || !can_trigger_motion(pose.frame.channel, pose.frame.utime)) return;
   const PoseMeasurement& first = observer.outside_gates.front();
   const double seconds = std::max(0.02, seconds_between(first.utime, pose.frame.utime));
   Vector6 motion = local_coordinates_about_world(pose.measured.T_world_object, first.T_world_object);
@@ -223,35 +223,35 @@ void PoseTrack::update_static(const PoseObservation& pose, bool has_contrary_dep
 // A camera whose extrinsics are a little wrong always measures the object beside where the other cameras do. Therefore
 // only a camera that has measured it within the gates, or the only camera that observes it, can trigger a motion.
 bool PoseTrack::can_trigger_motion(const std::string& channel, std::int64_t utime) const {
-  constexpr double kOfLateS = 0.5;
+  constexpr double kRecent_s = 0.5;
   if (observers_.at(channel).agreed_utime != 0) return true;
   return std::none_of(observers_.begin(), observers_.end(), [&](const auto& entry) {
-    return entry.first != channel && seconds_between(entry.second.agreed_utime, utime) < kOfLateS;
+    return entry.first != channel && seconds_between(entry.second.agreed_utime, utime) < kRecent_s;
   });
 }
 
 void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypothesis) {
-  constexpr double kWithinS = 0.4;
-  constexpr double kMinS = 0.28;
-  constexpr std::size_t kMin = 6;
+  constexpr double kWindow_s = 0.4;
+  constexpr double kMinWindow_s = 0.28;
+  constexpr std::size_t kMinPoses = 6;
   // Another camera's frame may be a little older, so that its pose is predicted to the filter's time.
   const double late_s = std::min(settings_.motion.coast_s, seconds_between(measured.utime, hypothesis.filter.utime()));
-  PoseMeasurement now = measured;
+  PoseMeasurement predicted = measured;
   if (late_s > 0.0)
-    now.T_world_object = retract_about_world(measured.T_world_object, late_s * hypothesis.filter.velocity());
-  hypothesis.filter.update(now);
+    predicted.T_world_object = retract_about_world(measured.T_world_object, late_s * hypothesis.filter.velocity());
+  hypothesis.filter.update(predicted);
   recent_.push_back(measured);
-  while (seconds_between(recent_.front().utime, measured.utime) > kWithinS) recent_.pop_front();
-  if (recent_.size() < kMin || seconds_between(recent_.front().utime, measured.utime) < kMinS) return;
+  while (seconds_between(recent_.front().utime, measured.utime) > kWindow_s) recent_.pop_front();
+  if (recent_.size() < kMinPoses || seconds_between(recent_.front().utime, measured.utime) < kMinWindow_s) return;
   // The mean of the earlier half beside that of the later one, each about the pose in its middle.
   const Eigen::Isometry3d& T_middle = recent_[recent_.size() / 2].T_world_object;
   std::array<Vector6, 2> means = {Vector6::Zero(), Vector6::Zero()};
   const std::size_t half = recent_.size() / 2;
   for (std::size_t i = 0; i < 2 * half; ++i)
     means[i / half] += local_coordinates_about_world(recent_[i].T_world_object, T_middle) / static_cast<double>(half);
-  const Vector6 between = means[1] - means[0];
-  if (between.head<3>().norm() < settings_.rest_threshold_m &&
-      between.tail<3>().norm() < settings_.rest_threshold_rad) {
+  const Vector6 half_difference = means[1] - means[0];
+  if (half_difference.head<3>().norm() < settings_.rest_threshold_m &&
+      half_difference.tail<3>().norm() < settings_.rest_threshold_rad) {
     hypothesis.filter.stop();
     recent_.clear();
   }

@@ -126,8 +126,8 @@ class PoseTrack {
 
   /// Moves all hypotheses to a time.
   void predict(std::int64_t utime);
-  /// Updates the hypothesis that the measured rotation belongs to, and decides whether the object stands or moves.
-  /// `has_contrary_depth`: depth has contradicted its place since it was measured last; then one measurement elsewhere
+  /// Updates the hypothesis that the measured rotation belongs to, and decides whether the object moves.
+  /// `has_contrary_depth`: depth has contradicted its pose since it was measured last; then one measurement elsewhere
   /// suffices for a motion.
   void update(const PoseObservation& pose, const Symmetries& symmetries, bool has_contrary_depth);
 

@@ -45,7 +45,7 @@ std::optional<WorldObjects> Tracker::update(const FrameObservation& received) {
   return report(received, frame.utime);
 }
 
-/// Sets the camera's clock to the frame; returns null where the frame is passed over.
+/// Sets the camera's clock to the frame; returns null where the frame is skipped.
 CameraClock* Tracker::begin_frame(const FrameObservation& received) {
   const FrameId& id = received.poses.frame;
   const StampedFrame frame{id, received.number, received.newest_utime.value_or(id.utime)};
@@ -58,12 +58,12 @@ CameraClock* Tracker::begin_frame(const FrameObservation& received) {
 namespace {
 
 /// Returns whether the numbers show that the source, or its log, was restarted: they fall, or are of another run.
-bool is_started_again(const FrameNumber& before, const FrameNumber& after) {
+bool is_restarted(const FrameNumber& before, const FrameNumber& after) {
   if (before.run != 0 && after.run != 0 && before.run != after.run) return true;
   return before.sequence && after.sequence && *after.sequence < *before.sequence;
 }
 
-bool has_risen(const FrameNumber& before, const FrameNumber& after) {
+bool is_sequence_higher(const FrameNumber& before, const FrameNumber& after) {
   return before.run == after.run && before.sequence && after.sequence && *after.sequence > *before.sequence;
 }
 
@@ -93,29 +93,29 @@ TimeOrder WorldClock::classify(const StampedFrame& frame) {
 }
 
 TimeOrder WorldClock::classify_known_camera(const Camera& camera, const StampedFrame& frame, std::int64_t utime) {
-  constexpr double kIntervals = 3.0;  // results may come seldom
+  constexpr double kMaxIntervals = 3.0;  // results may come seldom
   const std::int64_t last_utime = camera.clock.utime;
   if (seconds_between(shifted(frame.newest_utime, offset_us_), last_utime) > kMaxOvertakenS)
     return classify_backward_jump(camera, frame, utime);
-  const bool other_run = frame.number.run != camera.number.run && frame.number.run != 0 && camera.number.run != 0;
-  if (utime <= last_utime && other_run) {
+  const bool is_other_run = frame.number.run != camera.number.run && frame.number.run != 0 && camera.number.run != 0;
+  if (utime <= last_utime && is_other_run) {
     log_new_world(frame.id, last_utime);
     return TimeOrder::kReset;
   }
   if (utime < last_utime) return TimeOrder::kLate;
   const double passed_s = seconds_between(last_utime, utime);
-  if (passed_s <= std::max(kMaxOvertakenS, kIntervals * camera.interval_s)) return TimeOrder::kNext;
+  if (passed_s <= std::max(kMaxOvertakenS, kMaxIntervals * camera.interval_s)) return TimeOrder::kNext;
   return classify_forward_jump(last_utime, frame, utime);
 }
 
 /// Classifies a result of a camera whose frames have gone back in time.
 TimeOrder WorldClock::classify_backward_jump(const Camera& camera, const StampedFrame& frame, std::int64_t utime) {
   const std::int64_t last_utime = camera.clock.utime;
-  if (!is_started_again(camera.number, frame.number)) {
-    const auto doubted = unconfirmed_.find(frame.id.channel);
-    const std::int64_t first = doubted == unconfirmed_.end() ? utime : doubted->second;
+  if (!is_restarted(camera.number, frame.number)) {
+    const auto unconfirmed = unconfirmed_.find(frame.id.channel);
+    const std::int64_t first = unconfirmed == unconfirmed_.end() ? utime : unconfirmed->second;
     if (!confirm_jump(last_utime, frame.id, utime)) return TimeOrder::kLate;
-    if (has_risen(camera.number, frame.number)) {
+    if (is_sequence_higher(camera.number, frame.number)) {
       warn(
           fmt::format("frame {} is {:.1f} s older than the last one, though its number is higher: the camera's clock "
                       "was set back, and the world goes on",
@@ -130,23 +130,23 @@ TimeOrder WorldClock::classify_backward_jump(const Camera& camera, const Stamped
 }
 
 TimeOrder WorldClock::classify_forward_jump(std::int64_t last_utime, const StampedFrame& frame, std::int64_t utime) {
-  constexpr std::int64_t kMaxDurationUs = 60'000'000;
+  constexpr std::int64_t kMaxStep_us = 60'000'000;
   if (seconds_between(last_utime, utime) <= kMaxOvertakenS) return TimeOrder::kNext;
   const bool is_confirmed_by_another_camera = std::abs(seconds_between(newest_->utime, utime)) <= kMaxOvertakenS;
   if (!is_confirmed_by_another_camera && !confirm_jump(last_utime, frame.id, utime)) return TimeOrder::kLate;
-  if (microseconds_between(newest_->utime, utime) > kMaxDurationUs)
-    set_offset(shifted(newest_->utime, kMaxDurationUs), frame.id);
+  if (microseconds_between(newest_->utime, utime) > kMaxStep_us)
+    set_offset(shifted(newest_->utime, kMaxStep_us), frame.id);
   return TimeOrder::kNext;
 }
 
 /// Notes the time of a frame that lies far from its camera's last one. Returns whether the frame noted before it lies
 /// beside it, which a single wrong stamp does not. Another result of the same frame confirms nothing.
 bool WorldClock::confirm_jump(std::int64_t last_utime, const FrameId& frame, std::int64_t utime) {
-  const auto [doubted, is_first] = unconfirmed_.emplace(frame.channel, utime);
-  if (is_first || doubted->second == utime) return false;
-  const double beside_s = std::abs(seconds_between(doubted->second, utime));
-  const bool confirmed = beside_s < std::abs(seconds_between(last_utime, utime));
-  doubted->second = utime;
+  const auto [unconfirmed, is_first] = unconfirmed_.emplace(frame.channel, utime);
+  if (is_first || unconfirmed->second == utime) return false;
+  const double distance_s = std::abs(seconds_between(unconfirmed->second, utime));
+  const bool confirmed = distance_s < std::abs(seconds_between(last_utime, utime));
+  unconfirmed->second = utime;
   return confirmed;
 }
 
@@ -165,8 +165,8 @@ void WorldClock::warn(const std::string& line) {
 }
 
 CameraClock& WorldClock::set(const StampedFrame& frame) {
-  constexpr double kUsualS = 1.0 / 30.0;
-  constexpr double kMaxS = 0.1;
+  constexpr double kDefaultInterval_s = 1.0 / 30.0;
+  constexpr double kMaxInterval_s = 0.1;
   stale_results_ = 0;
   const FrameId now{frame.id.channel, shifted(frame.id.utime, offset_us_)};
   unconfirmed_.erase(now.channel);
@@ -174,7 +174,7 @@ CameraClock& WorldClock::set(const StampedFrame& frame) {
   Camera& camera = cameras_[now.channel];
   CameraClock& clock = camera.clock;
   const double passed_s = seconds_between(clock.utime, now.utime);
-  const double seconds = clock.results == 0 ? kUsualS : std::min(kMaxS, passed_s);
+  const double seconds = clock.results == 0 ? kDefaultInterval_s : std::min(kMaxInterval_s, passed_s);
   if (clock.results > 0 && passed_s > 0.0) camera.interval_s = passed_s;
   if (clock.results == 0 || now.utime != clock.utime) {
     clock = CameraClock();
@@ -226,13 +226,13 @@ std::vector<PoseObservation> Tracker::associate(const std::vector<PoseObservatio
 }
 
 void Tracker::update_track(Track& track, const PoseObservation& pose, double seconds) {
-  constexpr double kRateHz = 30.0;
+  constexpr double kReferenceRate_hz = 30.0;
   constexpr double kMax = 4.0;
-  const double fraction = std::clamp(seconds * kRateHz, 0.5, 1.5);
+  const double frames = std::clamp(seconds * kReferenceRate_hz, 0.5, 1.5);
   track.pose.update(pose, symmetries_of(models_, track.class_name), track.free_space_violation_s > 0.0);
-  track.log_odds = std::min(
-      settings_.existence.max_log_odds,
-      track.log_odds + fraction * settings_.existence.gain * std::clamp(quality_logit(pose.quality), 0.3, kMax));
+  track.log_odds =
+      std::min(settings_.existence.max_log_odds,
+               track.log_odds + frames * settings_.existence.gain * std::clamp(quality_logit(pose.quality), 0.3, kMax));
   ++track.observed_frames;
   track.is_observed = true;
   track.free_space_violation_s = 0.0;
@@ -241,23 +241,23 @@ void Tracker::update_track(Track& track, const PoseObservation& pose, double sec
   track.reason = fmt::format("seen by {}", pose.frame.channel);
 }
 
-/// Updates the tracks without a pose; each is missed once a frame, however many results the frame has.
+/// Updates the tracks without a pose. A frame counts once against each, however many results it has.
 void Tracker::update_unobserved_tracks(const FrameObservation& observation, const std::vector<PoseObservation>& poses,
                                        CameraClock& camera) {
   searched_classes_.note(observation.poses);
   UnobservedContext context{observation, poses, models_};
   context.reach_m = settings_.association.reach_m;
   context.coast_s = settings_.pose.motion.coast_s;
-  std::set<std::string> missed_now;
+  std::set<std::string> newly_missed;
   for (Track& track : tracks_) {
     if (!track.is_present() || track.is_observed) continue;
     const AbsenceEvidence absence{camera.dt_s, camera.results == 1,
                                   camera.missed.count(track.class_name) == 0 &&
                                       searched_classes_.has_searched(observation.poses, track.class_name)};
-    if (absence.by_recognition) missed_now.insert(track.class_name);
+    if (absence.by_recognition) newly_missed.insert(track.class_name);
     if (absence.by_depth || absence.by_recognition) update_unobserved(context, absence, settings_.existence, track);
   }
-  camera.missed.insert(missed_now.begin(), missed_now.end());
+  camera.missed.insert(newly_missed.begin(), newly_missed.end());
 }
 
 namespace {
@@ -301,16 +301,16 @@ bool SearchedClasses::has_searched(const ObjectPoses& poses, const std::string& 
 
 /// Returns whether its detector has reported anything within the last second.
 bool SearchedClasses::is_reporting(const std::string& class_name, std::int64_t utime) const {
-  constexpr double kSilentS = 1.0;
+  constexpr double kTimeout_s = 1.0;
   const std::set<std::string>& classes = coverage_.at(class_name).classes;
   return std::any_of(classes.begin(), classes.end(), [&](const std::string& name) {
     const auto reported = coverage_.find(name);
-    return reported != coverage_.end() && seconds_between(reported->second.utime, utime) <= kSilentS;
+    return reported != coverage_.end() && seconds_between(reported->second.utime, utime) <= kTimeout_s;
   });
 }
 
 void Tracker::begin_track(const PoseObservation& pose) {
-  if (!make_room()) {
+  if (!evict_oldest()) {
     ++refused_;
     return;
   }
@@ -326,8 +326,8 @@ void Tracker::begin_track(const PoseObservation& pose) {
   tracks_.push_back(std::move(track));
 }
 
-/// Frees a place for one more object by removing the one that has been gone longest; returns false where none is gone.
-bool Tracker::make_room() {
+/// Makes space for one more object by removing the one that was deleted first; returns false where none is deleted.
+bool Tracker::evict_oldest() {
   if (tracks_.size() < settings_.max_objects) return true;
   auto oldest = tracks_.end();
   for (auto it = tracks_.begin(); it != tracks_.end(); ++it) {

@@ -54,7 +54,7 @@ struct CameraClock {
 /// Order of a result in time.
 enum class TimeOrder {
   kNext,  ///< it is of a frame as new as its camera's last one, or newer
-  kLate,  ///< it is passed over: its camera's later frames are known, or it is of an earlier run, or its time is wrong
+  kLate,  ///< it is skipped: its camera's later frames are known, or it is of an earlier run, or its time is wrong
   kReset  ///< time goes back: a new world begins with it
 };
 
@@ -69,12 +69,12 @@ struct StampedFrame {
 /// thread-safe.
 class WorldClock {
  public:
-  /// Classifies a result: it is used, passed over, or begins a new world. This may change the world's clock.
-  /// - Its time lies more than a second from its camera's last one: it is passed over until the next result, or one of
-  ///   another camera, lies beside it, since a single stamp may be wrong. A time that is ahead has then passed (at most
-  ///   a minute). Where it is behind and the frames' numbers rise, the camera's clock was set back and the world
+  /// Classifies a result: it is used, skipped, or begins a new world. This may change the world's clock.
+  /// - Its time lies more than a second from its camera's last one: it is skipped until the next result, or one of
+  ///   another camera, confirms that time, since a single stamp may be wrong. A time that is ahead has then passed (at
+  ///   most a minute). Where it is behind and the frames' numbers rise, the camera's clock was set back and the world
   ///   continues; else a new world begins, at once where the numbers show that the source was restarted.
-  /// - It is of an older frame of a camera that continues: it has only taken long, and is passed over.
+  /// - It is of an older frame of a camera that continues: it was only delayed, and is skipped.
   /// - It is more than a second older than another camera's last one, as with clocks that disagree: throws InputError.
   ///   After thirty of them in a row the other camera has ended, and the thirtieth begins a new world.
   /// Logs set clocks and new worlds, at most once a second.
@@ -183,7 +183,7 @@ class Tracker {
   void update_unobserved_tracks(const FrameObservation& observation, const std::vector<PoseObservation>& poses,
                                 CameraClock& camera);
   void begin_track(const PoseObservation& pose);
-  bool make_room();
+  bool evict_oldest();
   void confirm_tracks(std::int64_t utime);
   Track* find_reidentified(const Track& candidate, std::int64_t utime);
   void forget_tracks(std::int64_t utime);
