@@ -150,25 +150,25 @@ void add_plane(const PlanePrior& plane, const Eigen::Isometry3d& T, NormalEquati
   equations.add(row, plane.normal.dot(T.translation()) + plane.offset, 1.0 / (plane.sigma_m * plane.sigma_m));
 }
 
-/// Computes bearing_error() of a corner whose point lies at p, which is before the camera.
-double bearing_error_at(const Eigen::Vector3d& p, const LandmarkObservation& corner) {
-  return (p.head<2>() / p.z() - corner.in_camera.head<2>() / corner.in_camera.z()).norm();
+/// Computes bearing_error() of a landmark at p, which is in front of the camera.
+double bearing_error_at(const Eigen::Vector3d& p, const LandmarkObservation& landmark) {
+  return (p.head<2>() / p.z() - landmark.in_camera.head<2>() / landmark.in_camera.z()).norm();
 }
 
 /// Adds a landmark. Its bearing hardly depends on its depth, so far landmarks constrain the camera's rotation.
-void add_corner(const LandmarkObservation& corner, const Eigen::Isometry3d& T, NormalEquations& equations) {
+void add_landmark(const LandmarkObservation& landmark, const Eigen::Isometry3d& T, NormalEquations& equations) {
   constexpr double kSigma = 0.003;  // error of a bearing: one to two pixels
-  const Eigen::Vector3d p = T * corner.in_world;
+  const Eigen::Vector3d p = T * landmark.in_world;
   if (!(p.z() > 0.1)) return;
-  const double weight = tukey(bearing_error_at(p, corner) / (2.0 * kSigma)) / (kSigma * kSigma);
+  const double weight = tukey(bearing_error_at(p, landmark) / (2.0 * kSigma)) / (kSigma * kSigma);
   if (weight <= 0.0) return;
   for (const int axis : {0, 1}) {
     Eigen::Vector3d gradient = Eigen::Vector3d::Unit(axis) / p.z();
     gradient.z() = -p[axis] / (p.z() * p.z());
     const Eigen::Vector3d in_world = T.linear().transpose() * gradient;
     Vector6 row;
-    row << in_world, corner.in_world.cross(in_world);
-    equations.add(row, p[axis] / p.z() - corner.in_camera[axis] / corner.in_camera.z(), weight);
+    row << in_world, landmark.in_world.cross(in_world);
+    equations.add(row, p[axis] / p.z() - landmark.in_camera[axis] / landmark.in_camera.z(), weight);
   }
 }
 
@@ -182,9 +182,9 @@ NormalEquations build_normal_equations(const std::vector<SurfacePoint>& points, 
 
 }  // namespace
 
-double bearing_error(const LandmarkObservation& corner, const Eigen::Isometry3d& T_camera_world) {
-  const Eigen::Vector3d p = T_camera_world * corner.in_world;
-  return p.z() > 0.0 ? bearing_error_at(p, corner) : std::numeric_limits<double>::infinity();
+double bearing_error(const LandmarkObservation& landmark, const Eigen::Isometry3d& T_camera_world) {
+  const Eigen::Vector3d p = T_camera_world * landmark.in_world;
+  return p.z() > 0.0 ? bearing_error_at(p, landmark) : std::numeric_limits<double>::infinity();
 }
 
 Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
@@ -199,7 +199,8 @@ Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const
       equations = build_normal_equations(points[l], frame.levels[l], out.T_camera_world, level, limits);
       if (equations.pairs < kMin) break;
       if (constraints.plane) add_plane(*constraints.plane, out.T_camera_world, equations);
-      for (const LandmarkObservation& corner : constraints.corners) add_corner(corner, out.T_camera_world, equations);
+      for (const LandmarkObservation& landmark : constraints.landmarks)
+        add_landmark(landmark, out.T_camera_world, equations);
       if (i == limits.iterations) break;
       Matrix6 damped = equations.hessian;
       damped.diagonal() += Vector6::Constant(1.0) + 1e-6 * equations.hessian.diagonal();

@@ -27,7 +27,7 @@ struct LandmarkObservation {
 /// Constraints of a frame's pose besides geometry and intensity.
 struct PoseConstraints {
   std::optional<PlanePrior> plane;
-  std::vector<LandmarkObservation> corners;
+  std::vector<LandmarkObservation> landmarks;
 };
 
 struct AlignmentLimits {
@@ -53,8 +53,8 @@ struct Alignment {
 
 /// Registers a frame to surface points: point-to-plane distances (Chen & Medioni 1992) of projective correspondences
 /// (Blais & Levine 1995), intensity differences (Steinbruecker, Sturm, Cremers, "Real-time visual odometry from dense
-/// RGB-D images", ICCVW 2011), and bearings of corners are minimised jointly by Gauss-Newton with Tukey's weights, from
-/// coarse to fine. `points` lie in the world frame, as many levels as the frame's. Thread-safe.
+/// RGB-D images", ICCVW 2011), and bearings of landmarks are minimised jointly by Gauss-Newton with Tukey's weights,
+/// from coarse to fine. `points` lie in the world frame, as many levels as the frame's. Thread-safe.
 Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
                       const PoseConstraints& constraints, const AlignmentLimits& limits);
 
@@ -64,6 +64,6 @@ Alignment compare_frame(const LevelPoints& points, const FrameLevels& frame, con
 
 /// Returns the distance between a landmark's observed and predicted bearing in the pinhole's plane (tangents), radians;
 /// infinite where the landmark is behind the camera.
-double bearing_error(const LandmarkObservation& corner, const Eigen::Isometry3d& T_camera_world);
+double bearing_error(const LandmarkObservation& landmark, const Eigen::Isometry3d& T_camera_world);
 
 }  // namespace houghstream::reconstruction

@@ -39,12 +39,12 @@ struct LevelSettings {
 
 FrameLevels make_levels(const RgbdFrame& frame, const LevelSettings& settings);
 
-/// A point of surface as a keyframe saw it.
+/// A surface point as observed in a keyframe.
 struct SurfacePoint {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< metres
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit length, towards the camera
   float intensity = 0.0F;  ///< value of FrameLevel::intensity there; NaN where it is not informative
-  bool on_table = false;   ///< true on the plane z = 0 of the world, as far as is known
+  bool on_table = false;   ///< whether it lies on the plane z = 0 of the world
 };
 
 /// Points of each level, finest first.

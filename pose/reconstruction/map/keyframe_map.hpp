@@ -33,17 +33,17 @@ struct MapSettings {
   double min_inlier_fraction = 0.75;
   double min_visible_fraction = 0.25;
   double max_photometric_rms = 0.62;
-  int coarsest = 2;               ///< level on which registration begins
-  bool use_landmarks = true;      ///< landmarks of the surroundings; highlights of a rotating object yield false ones
-  std::size_t min_corners = 12;   ///< minimum in common with another frame to constrain a pose
-  std::size_t sure_corners = 30;  ///< minimum in common with a keyframe to determine a pose alone
+  int coarsest = 2;                ///< level on which registration begins
+  bool use_landmarks = true;       ///< landmarks of the surroundings; highlights of a rotating object yield false ones
+  std::size_t min_landmarks = 12;  ///< minimum number in common with another frame to constrain a pose
+  std::size_t min_deciding_landmarks = 30;  ///< minimum number in common with a keyframe to determine a pose alone
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< middle of the object, world frame
   std::optional<PlanePrior> plane;                   ///< prior of a static camera
   int threads = 1;
 };
 
-/// Holds a subset of the keyframes, and their points in the world frame.
-struct MapPart {
+/// A subset of the keyframes, and their points in the world frame.
+struct Submap {
   std::vector<int> keyframes;
   LevelPoints points;
 };
@@ -54,10 +54,10 @@ struct LandmarkReobservation {
   LandmarkMatch match;  ///< match from the keyframe's camera to the frame's
 };
 
-/// Limits of a frame's registration to keyframes without an edge to it.
+/// Limits of the registration of a frame to a submap.
 struct RegistrationLimits {
   int coarsest = 0;          ///< level to begin on
-  bool may_be_lost = false;  ///< the likely pose may be far off: corners may contradict it
+  bool may_be_lost = false;  ///< the predicted pose may be far off: landmarks may contradict it
 };
 
 /// Keyframes of a take, the pose graph between them, and the local map to which the next frame is registered.
@@ -100,15 +100,15 @@ class KeyframeMap {
   bool empty() const { return keyframes_.empty(); }
 
  private:
-  std::vector<int> local_keyframes_for(const Eigen::Isometry3d& T_camera_world) const;
-  MapPart part_of(std::vector<int> keyframes) const;
+  std::vector<int> find_local_keyframes(const Eigen::Isometry3d& T_camera_world) const;
+  Submap make_submap(std::vector<int> keyframes) const;
   std::vector<LandmarkReobservation> match_keyframes(const std::vector<int>& keyframes,
                                                      const Landmarks& landmarks) const;
-  Alignment register_to_part(const MapPart& part, const FrameLevels& levels,
-                             const std::vector<LandmarkReobservation>& again, const Eigen::Isometry3d& T_likely,
-                             const RegistrationLimits& limits) const;
+  Alignment register_to_submap(const Submap& part, const FrameLevels& levels,
+                               const std::vector<LandmarkReobservation>& reobservations,
+                               const Eigen::Isometry3d& T_predicted, const RegistrationLimits& limits) const;
   std::vector<PoseEdge> edges_from(int from, int coarsest,
-                                   std::map<int, std::vector<LandmarkReobservation>>& again) const;
+                                   std::map<int, std::vector<LandmarkReobservation>>& reobservations) const;
   std::optional<LoopClosureError> close_loop(int last);
   void correct_poses();
   PoseEdge edge_between(int from, int to, const Matrix6& information) const;
@@ -116,8 +116,8 @@ class KeyframeMap {
   MapSettings settings_;
   std::vector<Keyframe> keyframes_;
   std::vector<PoseEdge> edges_;
-  std::vector<int> steps_;  ///< number of edges from each keyframe to the last one
-  MapPart local_;
+  std::vector<int> graph_distances_;  ///< number of edges from each keyframe to the last one
+  Submap local_;
 };
 
 }  // namespace houghstream::reconstruction

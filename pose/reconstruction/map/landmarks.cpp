@@ -17,20 +17,20 @@ using Pairs = decltype(LandmarkMatch::inliers);
 const cv::Size kFlowWindow(21, 21);  // pixels
 constexpr int kFlowLevels = 3;
 
-double limit_at(double z) {
+double max_distance_at(double z) {
   return 0.006 + 3.0 * depth_sigma(z);
 }
 
-Pairs like_pairs(const Landmarks& a, const Landmarks& b) {
-  constexpr float kClearly = 0.85F;  // nearer than the second (Lowe 2004)
+Pairs match_descriptors(const Landmarks& a, const Landmarks& b) {
+  constexpr float kMaxDistanceRatio = 0.85F;  // nearer than the second (Lowe 2004)
   const cv::BFMatcher matcher(cv::NORM_HAMMING);
   std::vector<std::vector<cv::DMatch>> matches;
   matcher.knnMatch(a.descriptors, b.descriptors, matches, 2);
   Pairs pairs;
-  for (const std::vector<cv::DMatch>& two : matches) {
-    if (two.size() < 2 || two[0].distance > kClearly * two[1].distance) continue;
-    pairs.emplace_back(a.points[static_cast<std::size_t>(two[0].queryIdx)],
-                       b.points[static_cast<std::size_t>(two[0].trainIdx)]);
+  for (const std::vector<cv::DMatch>& nearest_two : matches) {
+    if (nearest_two.size() < 2 || nearest_two[0].distance > kMaxDistanceRatio * nearest_two[1].distance) continue;
+    pairs.emplace_back(a.points[static_cast<std::size_t>(nearest_two[0].queryIdx)],
+                       b.points[static_cast<std::size_t>(nearest_two[0].trainIdx)]);
   }
   return pairs;
 }
@@ -48,58 +48,59 @@ Eigen::Isometry3d motion_between(const Pairs& pairs) {
   return T;
 }
 
-bool fits(const Pairs::value_type& pair, const Eigen::Isometry3d& T) {
-  return (T * pair.first - pair.second).norm() < limit_at(pair.second.z());
+bool is_inlier(const Pairs::value_type& pair, const Eigen::Isometry3d& T) {
+  return (T * pair.first - pair.second).norm() < max_distance_at(pair.second.z());
 }
 
-Pairs agreeing(const Pairs& pairs, const Eigen::Isometry3d& T) {
+Pairs select_inliers(const Pairs& pairs, const Eigen::Isometry3d& T) {
   Pairs inliers;
   for (const auto& pair : pairs) {
-    if (fits(pair, T)) inliers.push_back(pair);
+    if (is_inlier(pair, T)) inliers.push_back(pair);
   }
   return inliers;
 }
 
 /// Returns the number of inliers of a motion, or 0 as soon as they cannot exceed `maximum`.
-std::size_t count_fitting(const Pairs& pairs, const Eigen::Isometry3d& T, std::size_t maximum) {
+std::size_t count_inliers(const Pairs& pairs, const Eigen::Isometry3d& T, std::size_t maximum) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (count + (pairs.size() - i) <= maximum) return 0;
-    count += fits(pairs[i], T) ? 1 : 0;
+    count += is_inlier(pairs[i], T) ? 1 : 0;
   }
   return count;
 }
 
-std::optional<LandmarkMatch> max_agree_on(const Pairs& pairs) {
+std::optional<LandmarkMatch> estimate_motion_by_ransac(const Pairs& pairs) {
   constexpr int kTrials = 300;
   constexpr std::size_t kMin = 8;
   if (pairs.size() < kMin) return std::nullopt;
   Random random(1);
-  Pairs three(3);
+  Pairs sample(3);
   std::size_t maximum = 0;
-  Eigen::Isometry3d T_most = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_best = Eigen::Isometry3d::Identity();
   for (int trial = 0; trial < kTrials && maximum < pairs.size(); ++trial) {
-    for (auto& one : three) one = pairs[static_cast<std::size_t>(random.below(static_cast<int>(pairs.size())))];
-    if ((three[0].first - three[1].first).norm() < 0.02 || (three[0].first - three[2].first).norm() < 0.02) continue;
-    const Eigen::Isometry3d T = motion_between(three);
-    const std::size_t count = count_fitting(pairs, T, maximum);
+    for (auto& pair : sample) pair = pairs[static_cast<std::size_t>(random.below(static_cast<int>(pairs.size())))];
+    if ((sample[0].first - sample[1].first).norm() < 0.02 || (sample[0].first - sample[2].first).norm() < 0.02)
+      continue;
+    const Eigen::Isometry3d T = motion_between(sample);
+    const std::size_t count = count_inliers(pairs, T, maximum);
     if (count <= maximum) continue;
     maximum = count;
-    T_most = T;
+    T_best = T;
   }
   if (maximum < kMin) return std::nullopt;
-  Pairs best = agreeing(pairs, T_most);
+  Pairs best = select_inliers(pairs, T_best);
   LandmarkMatch match;
-  for (int again = 0; again < 2; ++again) {
+  for (int iteration = 0; iteration < 2; ++iteration) {
     match.T_b_a = motion_between(best);
-    best = agreeing(pairs, match.T_b_a);
+    best = select_inliers(pairs, match.T_b_a);
     if (best.size() < kMin) return std::nullopt;
   }
   match.inliers = std::move(best);
   return match;
 }
 
-cv::Mat grey_of(const RgbdFrame& frame) {
+cv::Mat to_grey(const RgbdFrame& frame) {
   cv::Mat grey;
   cv::cvtColor(frame.colour, grey, cv::COLOR_BGR2GRAY);
   return grey;
@@ -122,7 +123,7 @@ Landmarks detect_landmarks(const RgbdFrame& frame, const cv::Mat& mask) {
   Landmarks landmarks;
   cv::Mat descriptors;
   cv::ORB::create(kMax, 1.2F, 6, 15, 0, 2, cv::ORB::HARRIS_SCORE, 31, 10)
-      ->detectAndCompute(grey_of(frame), mask, corners, descriptors);
+      ->detectAndCompute(to_grey(frame), mask, corners, descriptors);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const std::optional<Eigen::Vector3d> point = surface_at(frame, corners[i].pt);
     if (!point) continue;
@@ -134,13 +135,13 @@ Landmarks detect_landmarks(const RgbdFrame& frame, const cv::Mat& mask) {
 
 std::optional<LandmarkMatch> match_landmarks(const Landmarks& a, const Landmarks& b) {
   if (a.points.empty() || b.points.empty()) return std::nullopt;
-  return max_agree_on(like_pairs(a, b));
+  return estimate_motion_by_ransac(match_descriptors(a, b));
 }
 
 FlowFrame make_flow_frame(const RgbdFrame& frame) {
-  FlowFrame made{frame, grey_of(frame), {}};
-  cv::buildOpticalFlowPyramid(made.grey, made.pyramid, kFlowWindow, kFlowLevels);
-  return made;
+  FlowFrame flow_frame{frame, to_grey(frame), {}};
+  cv::buildOpticalFlowPyramid(flow_frame.grey, flow_frame.pyramid, kFlowWindow, kFlowLevels);
+  return flow_frame;
 }
 
 std::vector<cv::Point2f> detect_flow_corners(const FlowFrame& frame, const cv::Mat& mask) {
@@ -154,24 +155,26 @@ std::vector<cv::Point2f> detect_flow_corners(const FlowFrame& frame, const cv::M
 
 std::optional<LandmarkMatch> track_corners(const FlowFrame& a, const std::vector<cv::Point2f>& corners,
                                            const FlowFrame& b) {
-  constexpr float kReturns_px = 0.5F;
+  constexpr float kMaxRoundTripError_px = 0.5F;
   if (corners.empty()) return std::nullopt;
-  std::vector<cv::Point2f> there;
-  std::vector<cv::Point2f> back;
-  std::vector<std::uint8_t> went;
-  std::vector<std::uint8_t> came_back;
+  std::vector<cv::Point2f> tracked;
+  std::vector<cv::Point2f> tracked_back;
+  std::vector<std::uint8_t> is_tracked;
+  std::vector<std::uint8_t> is_tracked_back;
   std::vector<float> errors;
-  cv::calcOpticalFlowPyrLK(a.pyramid, b.pyramid, corners, there, went, errors, kFlowWindow, kFlowLevels);
-  cv::calcOpticalFlowPyrLK(b.pyramid, a.pyramid, there, back, came_back, errors, kFlowWindow, kFlowLevels);
+  cv::calcOpticalFlowPyrLK(a.pyramid, b.pyramid, corners, tracked, is_tracked, errors, kFlowWindow, kFlowLevels);
+  cv::calcOpticalFlowPyrLK(b.pyramid, a.pyramid, tracked, tracked_back, is_tracked_back, errors, kFlowWindow,
+                           kFlowLevels);
   Pairs pairs;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const cv::Point2f off = back[i] - corners[i];
-    if (went[i] == 0 || came_back[i] == 0 || std::hypot(off.x, off.y) > kReturns_px) continue;
+    const cv::Point2f round_trip = tracked_back[i] - corners[i];
+    if (is_tracked[i] == 0 || is_tracked_back[i] == 0 || std::hypot(round_trip.x, round_trip.y) > kMaxRoundTripError_px)
+      continue;
     const std::optional<Eigen::Vector3d> from = surface_at(a.frame, corners[i]);
-    const std::optional<Eigen::Vector3d> to = surface_at(b.frame, there[i]);
+    const std::optional<Eigen::Vector3d> to = surface_at(b.frame, tracked[i]);
     if (from && to) pairs.emplace_back(*from, *to);
   }
-  return max_agree_on(pairs);
+  return estimate_motion_by_ransac(pairs);
 }
 
 }  // namespace houghstream::reconstruction

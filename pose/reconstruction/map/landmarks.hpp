@@ -10,7 +10,7 @@
 
 namespace houghstream::reconstruction {
 
-/// Corners of an image that have depth, as they are found again from elsewhere.
+/// Corners of an image that have depth, with descriptors by which other views find them again.
 struct Landmarks {
   std::vector<Eigen::Vector3d> points;  ///< camera frame, metres
   cv::Mat descriptors;                  ///< a row each
@@ -30,7 +30,7 @@ struct LandmarkMatch {
 /// same input gives the same result.
 std::optional<LandmarkMatch> match_landmarks(const Landmarks& a, const Landmarks& b);
 
-/// A frame from which corners are followed, or into which: its brightness, which is made once for both.
+/// A frame from which, or into which, corners are tracked, with its brightness, which is computed once for both.
 struct FlowFrame {
   RgbdFrame frame;
   cv::Mat grey;                  ///< CV_8UC1
@@ -39,7 +39,7 @@ struct FlowFrame {
 
 FlowFrame make_flow_frame(const RgbdFrame& frame);
 
-/// Corners that can be followed from a frame (Shi & Tomasi 1994), pixels. `mask`: as for detect_landmarks.
+/// Detects corners that can be tracked from a frame (Shi & Tomasi 1994), pixels. `mask`: as for detect_landmarks.
 std::vector<cv::Point2f> detect_flow_corners(const FlowFrame& frame, const cv::Mat& mask);
 
 /// Tracks corners of one frame into the next, in which they are nearly in the same place (Lucas & Kanade 1981), forth

@@ -14,64 +14,64 @@ double robust_weight(const Vector6& error) {
   constexpr double kAngle = 0.02;
   const double shift = error.head<3>().norm() / kShift_m;
   const double angle = error.tail<3>().norm() / kAngle;
-  const double rest = 1.0 + shift * shift + angle * angle;
-  return 1.0 / (rest * rest);  // Geman & McClure
+  const double scale = 1.0 + shift * shift + angle * angle;
+  return 1.0 / (scale * scale);  // Geman & McClure
 }
 
 }  // namespace
 
 void optimise_pose_graph(const std::vector<PoseEdge>& edges, std::vector<Eigen::Isometry3d>& T_camera_world) {
   constexpr int kIterations = 12;
-  constexpr int kPlainIterations = 4;  // first everything counts: a long loop's gap is no error of an edge
+  constexpr int kUnweightedIterations = 4;  // first everything counts: a long loop's gap is no error of an edge
   constexpr double kConvergence = 1e-6;
   const auto n = static_cast<Eigen::Index>(T_camera_world.size());
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(6 * n, 6 * n);
-    Eigen::VectorXd slope = Eigen::VectorXd::Zero(6 * n);
+    Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(6 * n, 6 * n);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(6 * n);
     for (const PoseEdge& edge : edges) {
       const auto i = static_cast<std::size_t>(edge.from);
       const auto j = static_cast<std::size_t>(edge.to);
       const Vector6 error =
           local_coordinates_about_body((edge.T_to_from * T_camera_world[i]).inverse() * T_camera_world[j]);
-      const Matrix6 weight = edge.information * (iteration < kPlainIterations ? 1.0 : robust_weight(error));
-      squares.block<6, 6>(6 * edge.from, 6 * edge.from) += weight;
-      squares.block<6, 6>(6 * edge.to, 6 * edge.to) += weight;
-      squares.block<6, 6>(6 * edge.from, 6 * edge.to) -= weight;
-      squares.block<6, 6>(6 * edge.to, 6 * edge.from) -= weight;
-      slope.segment<6>(6 * edge.from) -= weight * error;
-      slope.segment<6>(6 * edge.to) += weight * error;
+      const Matrix6 weight = edge.information * (iteration < kUnweightedIterations ? 1.0 : robust_weight(error));
+      hessian.block<6, 6>(6 * edge.from, 6 * edge.from) += weight;
+      hessian.block<6, 6>(6 * edge.to, 6 * edge.to) += weight;
+      hessian.block<6, 6>(6 * edge.from, 6 * edge.to) -= weight;
+      hessian.block<6, 6>(6 * edge.to, 6 * edge.from) -= weight;
+      gradient.segment<6>(6 * edge.from) -= weight * error;
+      gradient.segment<6>(6 * edge.to) += weight * error;
     }
-    squares.diagonal().array() += 1.0;
-    squares.topLeftCorner<6, 6>().diagonal().array() += 1e12;
-    const Eigen::VectorXd step = squares.ldlt().solve(-slope);
+    hessian.diagonal().array() += 1.0;
+    hessian.topLeftCorner<6, 6>().diagonal().array() += 1e12;
+    const Eigen::VectorXd step = hessian.ldlt().solve(-gradient);
     if (!step.allFinite()) return;
     for (Eigen::Index k = 1; k < n; ++k) {
       Eigen::Isometry3d& T = T_camera_world[static_cast<std::size_t>(k)];
       T = retract_about_body(T, step.segment<6>(6 * k));
     }
-    if (iteration >= kPlainIterations && step.lpNorm<Eigen::Infinity>() < kConvergence) return;
+    if (iteration >= kUnweightedIterations && step.lpNorm<Eigen::Infinity>() < kConvergence) return;
   }
 }
 
 std::vector<int> graph_distances(int start, int poses, const std::vector<PoseEdge>& edges) {
-  std::vector<int> steps(static_cast<std::size_t>(poses), -1);
-  std::vector<std::vector<int>> next(static_cast<std::size_t>(poses));
+  std::vector<int> distances(static_cast<std::size_t>(poses), -1);
+  std::vector<std::vector<int>> adjacent(static_cast<std::size_t>(poses));
   for (const PoseEdge& edge : edges) {
-    next[static_cast<std::size_t>(edge.from)].push_back(edge.to);
-    next[static_cast<std::size_t>(edge.to)].push_back(edge.from);
+    adjacent[static_cast<std::size_t>(edge.from)].push_back(edge.to);
+    adjacent[static_cast<std::size_t>(edge.to)].push_back(edge.from);
   }
-  std::deque<int> open = {start};
-  steps[static_cast<std::size_t>(start)] = 0;
-  while (!open.empty()) {
-    const int at = open.front();
-    open.pop_front();
-    for (const int to : next[static_cast<std::size_t>(at)]) {
-      if (steps[static_cast<std::size_t>(to)] >= 0) continue;
-      steps[static_cast<std::size_t>(to)] = steps[static_cast<std::size_t>(at)] + 1;
-      open.push_back(to);
+  std::deque<int> queue = {start};
+  distances[static_cast<std::size_t>(start)] = 0;
+  while (!queue.empty()) {
+    const int pose = queue.front();
+    queue.pop_front();
+    for (const int to : adjacent[static_cast<std::size_t>(pose)]) {
+      if (distances[static_cast<std::size_t>(to)] >= 0) continue;
+      distances[static_cast<std::size_t>(to)] = distances[static_cast<std::size_t>(pose)] + 1;
+      queue.push_back(to);
     }
   }
-  return steps;
+  return distances;
 }
 
 }  // namespace houghstream::reconstruction

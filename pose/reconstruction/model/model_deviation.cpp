@@ -13,10 +13,10 @@
 namespace houghstream::reconstruction {
 namespace {
 
-/// Adds the median distance of measured points on the mask from the model along the line of sight, times the cosine to
-/// its normal.
-void add_distances(const Mesh& mesh, const RgbdFrame& frame, const MaskedKeyframe& view,
-                   std::vector<float>& distances) {
+/// Appends the distances of the measured points on the mask from the model along its normals: those along the line of
+/// sight, times the cosine between the two.
+void append_distances(const Mesh& mesh, const RgbdFrame& frame, const MaskedKeyframe& view,
+                      std::vector<float>& distances) {
   const cv::Rect box = cv::boundingRect(view.mask);
   if (box.empty()) return;
   const cv::Mat model = render_depth(mesh, view.T_camera_object, frame.camera, box);
@@ -51,8 +51,8 @@ cv::Mat render_visible_mask(const Mesh& mesh, const RgbdFrame& frame, const Eige
       const float z = model.at<float>(y, x);
       if (!std::isfinite(z)) continue;
       const float measured = frame.depth.at<float>(y, x);
-      const double nearer = 0.008 + 3.0 * depth_sigma(z);
-      const bool contradicts = measured < z - nearer || measured > z + 2.0 * nearer;
+      const double tolerance = 0.008 + 3.0 * depth_sigma(z);
+      const bool contradicts = measured < z - tolerance || measured > z + 2.0 * tolerance;
       mask.at<std::uint8_t>(y, x) = contradicts ? 0 : 255;
     }
   }
@@ -62,7 +62,7 @@ cv::Mat render_visible_mask(const Mesh& mesh, const RgbdFrame& frame, const Eige
 double free_space_violation(const Mesh& mesh, const Take& take, const std::vector<MaskedKeyframe>& views, int threads) {
   struct Count {
     double all = 0.0;
-    double through = 0.0;
+    double violations = 0.0;
   };
   std::vector<Count> counts(views.size());
   parallel_for(threads, static_cast<int>(views.size()), [&](int i) {
@@ -80,16 +80,16 @@ double free_space_violation(const Mesh& mesh, const Take& take, const std::vecto
         const float z = model.at<float>(y, x);
         if (!std::isfinite(z) || !(frame.depth.at<float>(y, x) > 0.0F)) continue;
         count.all += 1.0;
-        count.through += nearest.at<float>(y, x) > z + 0.012 + 3.0 * depth_sigma(z) ? 1.0 : 0.0;
+        count.violations += nearest.at<float>(y, x) > z + 0.012 + 3.0 * depth_sigma(z) ? 1.0 : 0.0;
       }
     }
   });
   Count sum;
   for (const Count& count : counts) {
     sum.all += count.all;
-    sum.through += count.through;
+    sum.violations += count.violations;
   }
-  return sum.all > 0.0 ? sum.through / sum.all : 0.0;
+  return sum.all > 0.0 ? sum.violations / sum.all : 0.0;
 }
 
 double surface_deviation(const Mesh& mesh, const std::vector<ViewsOfTake>& of_takes, int threads) {
@@ -100,7 +100,7 @@ double surface_deviation(const Mesh& mesh, const std::vector<ViewsOfTake>& of_ta
       const auto at = static_cast<std::size_t>(i);
       const MaskedKeyframe& view = (*of_take.views)[at];
       const Keyframe& keyframe = of_take.take->keyframes[static_cast<std::size_t>(view.keyframe)];
-      add_distances(mesh, keyframe.frame, view, distances[at]);
+      append_distances(mesh, keyframe.frame, view, distances[at]);
     });
     for (const std::vector<float>& of_view : distances) all.insert(all.end(), of_view.begin(), of_view.end());
   }

@@ -13,7 +13,7 @@ namespace houghstream::reconstruction {
 struct MaskedKeyframe {
   int keyframe = 0;  ///< index in the take
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
-  cv::Mat mask;  ///< CV_8UC1, 255 where the object is seen: nothing hides it there. Size of the frame
+  cv::Mat mask;  ///< CV_8UC1, 255 where the object is visible. Size of the frame
 };
 
 /// Views of one take, which outlive this.

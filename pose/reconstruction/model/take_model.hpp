@@ -25,25 +25,26 @@ struct ReconstructionSettings {
   double coarse_voxel_m = 0.004;
   /// Height below which table and object cannot be separated: the object is continued downwards.
   double foot_m = 0.005;
-  double beside_m = 0.01;  ///< margin about the object whose surface may belong to it
+  double margin_m = 0.01;  ///< margin about the object whose surface may belong to it
   int threads = 1;         ///< any number gives the same result
 };
 
-/// Makes the model of a take's object: all that the keyframes show in its place is fused (Curless & Levoy 1996), the
-/// part that hangs together above the table where the object was chosen is kept, and the masks come of that model and
-/// of the depth, so that they hold neither table nor hand. Throws InputError where there is no such part.
+/// Reconstructs the model of a take's object: the keyframes are fused about its position (Curless & Levoy 1996), the
+/// connected component above the table where the object was selected is kept, and the masks follow from that model and
+/// the depth, so that they contain neither table nor hand. Throws InputError where there is no such component.
 ReconstructedModel reconstruct_model(const Take& take, const ReconstructionSettings& settings);
 
 /// Returns DepthView::lighting_id of the take's keyframes: `number` where the camera moved and the lighting was static
 /// relative to the object.
 int lighting_of(const Take& take, int number);
 
-/// Views of one object, whose poses mean one frame.
-struct ModelOfViews {
+/// Surface that was fused from views of one object.
+struct FusedSurface {
   Mesh mesh;
   std::vector<bool> seen;  ///< per vertex
 };
 
+/// Views of one object, with poses in one object frame.
 struct MaskedViews {
   std::vector<TrainingView> views;
   std::vector<int> lighting_ids;  ///< DepthView::lighting_id of each view; empty: all -1
@@ -53,7 +54,7 @@ struct MaskedViews {
 /// Fuses masked views from all sides (Curless & Levoy 1996). Occluders in a view, within the outline of `known`, are
 /// ignored; space beside that outline is free, but beside whole images nothing is known. Where `foot_m` is set, the
 /// object ends there, since no view shows it from below. Throws InputError naming `name` where nothing is left.
-ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views, const Mesh& known,
+FusedSurface fuse_masked_views(const std::string& name, const MaskedViews& views, const Mesh& known,
                                std::optional<double> foot_m, const ReconstructionSettings& settings);
 
 /// Registers views of an object to one another, by their masks' pixels alone, from poses that are nearly right, and

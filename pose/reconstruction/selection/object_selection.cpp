@@ -16,14 +16,14 @@
 namespace houghstream::reconstruction {
 namespace {
 
-cv::Point2d meant_place(const RgbdFrame& frame, const SelectionSettings& settings) {
+cv::Point2d target_pixel(const RgbdFrame& frame, const SelectionSettings& settings) {
   if (settings.box_px) return (settings.box_px->tl() + settings.box_px->br()) * 0.5;
   if (settings.at_px) return *settings.at_px;
   return {0.5 * frame.depth.cols, 0.5 * frame.depth.rows};
 }
 
-/// Returns the cluster that is meant; 0 = none.
-int meant_cluster(const Clusters& clusters, const RgbdFrame& frame, const SelectionSettings& settings) {
+/// Returns the cluster of the target; 0 = none.
+int find_target_cluster(const Clusters& clusters, const RgbdFrame& frame, const SelectionSettings& settings) {
   constexpr int kMinPixels = 60;
   constexpr double kMaxFoot_m = 0.035;
   int best = 0;
@@ -31,8 +31,8 @@ int meant_cluster(const Clusters& clusters, const RgbdFrame& frame, const Select
   for (std::size_t i = 1; i < clusters.list.size(); ++i) {
     const Cluster& cluster = clusters.list[i];
     if (cluster.pixels < kMinPixels || cluster.lowest > kMaxFoot_m) continue;
-    if (!settings.box_px && cluster.to_middle_px > settings.max_fraction * frame.depth.cols) continue;
-    const double rank = settings.box_px ? -cluster.pixels : cluster.to_middle_px - 1e-6 * cluster.pixels;
+    if (!settings.box_px && cluster.target_distance_px > settings.max_fraction * frame.depth.cols) continue;
+    const double rank = settings.box_px ? -cluster.pixels : cluster.target_distance_px - 1e-6 * cluster.pixels;
     if (rank >= best_rank) continue;
     best_rank = rank;
     best = static_cast<int>(i);
@@ -41,7 +41,7 @@ int meant_cluster(const Clusters& clusters, const RgbdFrame& frame, const Select
 }
 
 /// Returns why the selected cluster cannot be taught; empty where it can.
-std::string fault_of(const SelectedObject& object, const RgbdFrame& frame, const SelectionSettings& settings) {
+std::string find_fault(const SelectedObject& object, const RgbdFrame& frame, const SelectionSettings& settings) {
   const double widest = std::max(2.0 * object.radius_m, object.height_m);
   if (widest > settings.max_m)
     return fmt::format(
@@ -56,15 +56,15 @@ std::string fault_of(const SelectedObject& object, const RgbdFrame& frame, const
   return {};
 }
 
-SelectedObject make_object(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes, const Clusters& clusters,
-                           int selected) {
+SelectedObject describe_cluster(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes,
+                                const Clusters& clusters, int selected) {
   const Cluster& cluster = clusters.list[static_cast<std::size_t>(selected)];
   SelectedObject object;
   object.mask = clusters.of_pixel == selected;
   object.box_px = cv::boundingRect(object.mask);
-  constexpr double kLikeSkin = 0.15;
-  object.like_skin =
-      cv::countNonZero(skin_pixels(frame.colour) & object.mask) > kLikeSkin * cv::countNonZero(object.mask);
+  constexpr double kMinSkinFraction = 0.15;
+  object.is_skin_coloured =
+      cv::countNonZero(skin_pixels(frame.colour) & object.mask) > kMinSkinFraction * cv::countNonZero(object.mask);
   const Eigen::Vector3d middle =
       axes.point_at(cluster.cells.x + 0.5 * cluster.cells.width, cluster.cells.y + 0.5 * cluster.cells.height);
   object.plane = refine_plane(frame, object.mask, plane, middle, 0.5);
@@ -91,24 +91,25 @@ bool is_level(const RgbdFrame& frame, const Plane& plane, int x, int y) {
 
 /// Returns the plane that carries a smaller object, since a cluster may be an object on a disc, a book or a box lid: a
 /// wide horizontal surface.
-std::optional<Plane> carried_by(const RgbdFrame& frame, const SelectedObject& object) {
+std::optional<Plane> find_carrier_plane(const RgbdFrame& frame, const SelectedObject& object) {
   constexpr double kBin_m = 0.002;
   constexpr double kMax_m = 0.06;
   constexpr double kAbove_m = 0.012;
   constexpr double kMinFraction = 0.25;
-  std::array<int, 31> levels{};
+  std::array<int, 31> height_counts{};
   int all = 0;
   for (int y = 0; y < object.mask.rows; ++y) {
     for (int x = 0; x < object.mask.cols; ++x) {
       if (object.mask.at<std::uint8_t>(y, x) == 0) continue;
       ++all;
       const double height = object.plane.height(frame.camera.backproject(x, y, frame.depth.at<float>(y, x)));
-      if (height < kMax_m && is_level(frame, object.plane, x, y)) ++levels[static_cast<std::size_t>(height / kBin_m)];
+      if (height < kMax_m && is_level(frame, object.plane, x, y))
+        ++height_counts[static_cast<std::size_t>(height / kBin_m)];
     }
   }
   std::size_t best = 1;
-  const auto about = [&](std::size_t i) { return levels[i - 1] + levels[i] + levels[i + 1]; };
-  for (std::size_t i = 1; i + 1 < levels.size(); ++i) best = about(i) > about(best) ? i : best;
+  const auto about = [&](std::size_t i) { return height_counts[i - 1] + height_counts[i] + height_counts[i + 1]; };
+  for (std::size_t i = 1; i + 1 < height_counts.size(); ++i) best = about(i) > about(best) ? i : best;
   if (about(best) < kMinFraction * all) return std::nullopt;
   const double level = kBin_m * (static_cast<double>(best) + 0.5);
   cv::Mat on_level = cv::Mat::zeros(object.mask.size(), CV_8UC1);
@@ -133,7 +134,7 @@ std::optional<Plane> carried_by(const RgbdFrame& frame, const SelectedObject& ob
   return refine_plane(frame, elsewhere, plane, object.T_camera_stand.translation(), 0.5);
 }
 
-std::string nothing_there(const SelectionSettings& settings) {
+std::string describe_absence(const SelectionSettings& settings) {
   if (settings.box_px) return "nothing with depth stands in the box, expected an object on the table there";
   if (settings.at_px)
     return fmt::format("nothing with depth stands near {},{}, expected an object on the table there", settings.at_px->x,
@@ -143,20 +144,20 @@ std::string nothing_there(const SelectionSettings& settings) {
 }
 
 /// Selects the object on this plane.
-ObjectSelection choose_on(const RgbdFrame& frame, const Plane& plane, const SelectionSettings& settings) {
-  const cv::Point2d meant = meant_place(frame, settings);
-  const PlaneAxes axes(plane, frame.camera.backproject(meant.x, meant.y, 1.0));
+ObjectSelection select_on_plane(const RgbdFrame& frame, const Plane& plane, const SelectionSettings& settings) {
+  const cv::Point2d target = target_pixel(frame, settings);
+  const PlaneAxes axes(plane, frame.camera.backproject(target.x, target.y, 1.0));
   const cv::Rect whole({0, 0}, frame.depth.size());
   const Clusters clusters =
-      find_clusters(frame, plane, axes, {settings.box_px.value_or(whole) & whole, meant, settings.max_distance_m});
-  const int selected = meant_cluster(clusters, frame, settings);
-  if (selected == 0) return {{}, nothing_there(settings)};
-  SelectedObject object = make_object(frame, plane, axes, clusters, selected);
-  object.boxed = settings.box_px.has_value();
-  if (const std::optional<Plane> carrier = carried_by(frame, object)) {
-    if (ObjectSelection carried = choose_on(frame, *carrier, settings); carried.object) return carried;
+      find_clusters(frame, plane, axes, {settings.box_px.value_or(whole) & whole, target, settings.max_distance_m});
+  const int selected = find_target_cluster(clusters, frame, settings);
+  if (selected == 0) return {{}, describe_absence(settings)};
+  SelectedObject object = describe_cluster(frame, plane, axes, clusters, selected);
+  object.has_given_box = settings.box_px.has_value();
+  if (const std::optional<Plane> carrier = find_carrier_plane(frame, object)) {
+    if (ObjectSelection carried = select_on_plane(frame, *carrier, settings); carried.object) return carried;
   }
-  std::string fault = fault_of(object, frame, settings);
+  std::string fault = find_fault(object, frame, settings);
   if (!fault.empty()) return {{}, std::move(fault)};
   return {std::move(object), {}};
 }
@@ -182,9 +183,9 @@ ObjectSelection select_object(const RgbdFrame& frame, const SelectionSettings& s
   if (planes.empty()) return {{}, "no table or other level surface is seen, expected one on which the object stands"};
   ObjectSelection first;
   for (const Plane& plane : planes) {
-    ObjectSelection choice = choose_on(frame, plane, settings);
-    if (choice.object) return choice;
-    if (first.reason.empty()) first = std::move(choice);
+    ObjectSelection selection = select_on_plane(frame, plane, settings);
+    if (selection.object) return selection;
+    if (first.reason.empty()) first = std::move(selection);
   }
   return first;
 }
@@ -195,8 +196,8 @@ std::string describe_selection(const SelectedObject& object) {
                      middle.y, 2e2 * object.radius_m, 1e2 * object.height_m);
 }
 
-std::optional<cv::Rect> seen_box(const Eigen::AlignedBox3d& box, const Camera& camera,
-                                 const Eigen::Isometry3d& T_camera_box) {
+std::optional<cv::Rect> project_box(const Eigen::AlignedBox3d& box, const Camera& camera,
+                                    const Eigen::Isometry3d& T_camera_box) {
   std::vector<cv::Point2f> corners;
   for (int i = 0; i < 8; ++i) {
     const Eigen::Vector3d p = T_camera_box * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));

@@ -19,8 +19,8 @@ struct SelectedObject {
   double height_m = 0.0;                                             ///< above the plane
   cv::Mat mask;                                                      ///< CV_8UC1, 255 on it, size of the frame
   cv::Rect box_px;                                                   ///< bounding box of the mask
-  bool like_skin = false;  ///< true if its colour does not distinguish it from a hand
-  bool boxed = false;      ///< given by a person: parts that touch it there do not belong to it
+  bool is_skin_coloured = false;  ///< true if its colour does not distinguish it from a hand
+  bool has_given_box = false;     ///< a person has drawn its box: parts that touch it beyond do not belong to it
 };
 
 /// The selected object, or the reason why there is none.
@@ -43,9 +43,9 @@ struct SelectionSettings {
 /// Returns the pixels with a colour of skin, CV_8UC1 (Chai & Ngan, "Face segmentation using skin-color map", 1999).
 cv::Mat skin_pixels(const cv::Mat& colour);
 
-/// Returns the rectangle about a projected box, also beyond the image; none where a corner is nearer than 5 cm.
-std::optional<cv::Rect> seen_box(const Eigen::AlignedBox3d& box, const Camera& camera,
-                                 const Eigen::Isometry3d& T_camera_box);
+/// Returns the rectangle about a projected box, which may exceed the image; none where a corner is nearer than 5 cm.
+std::optional<cv::Rect> project_box(const Eigen::AlignedBox3d& box, const Camera& camera,
+                                    const Eigen::Isometry3d& T_camera_box);
 
 /// Selects the cluster of points above the dominant plane that is nearest to the image's centre, to a given pixel, or
 /// in the box. Planes are tried in order until one supports a cluster.

@@ -18,11 +18,11 @@ cv::Mat cells_of_pixels(const RgbdFrame& frame, const Plane& plane, const PlaneA
                         cv::Mat& grid) {
   constexpr double kMin_m = 0.006;  // lower points are taken for the plane
   constexpr double kMax_m = 0.75;
-  const cv::Rect& where = searched.region_px;
+  const cv::Rect& region = searched.region_px;
   cv::Mat cells(frame.depth.size(), CV_32SC2, cv::Scalar(-1, -1));
   grid = cv::Mat::zeros(PlaneAxes::cells(), PlaneAxes::cells(), CV_8UC1);
-  for (int y = where.y; y < where.br().y; ++y) {
-    for (int x = where.x; x < where.br().x; ++x) {
+  for (int y = region.y; y < region.br().y; ++y) {
+    for (int x = region.x; x < region.br().x; ++x) {
       const float z = frame.depth.at<float>(y, x);
       if (!(z > 0.1F && z < searched.max_distance_m)) continue;
       const Eigen::Vector3d p = frame.camera.backproject(x, y, z);
@@ -71,7 +71,7 @@ Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAx
   Clusters clusters;
   clusters.list.resize(static_cast<std::size_t>(cv::connectedComponents(joined, labels, 8, CV_32S)));
   clusters.of_pixel = cv::Mat::zeros(frame.depth.size(), CV_32SC1);
-  const cv::Point2d& meant = searched.target_px;
+  const cv::Point2d& target = searched.target_px;
   for (int y = 0; y < cells.rows; ++y) {
     for (int x = 0; x < cells.cols; ++x) {
       const auto& cell = cells.at<cv::Vec2i>(y, x);
@@ -83,7 +83,7 @@ Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAx
       ++cluster.pixels;
       cluster.lowest = std::min(cluster.lowest, height);
       cluster.highest = std::max(cluster.highest, height);
-      cluster.to_middle_px = std::min(cluster.to_middle_px, std::hypot(x - meant.x, y - meant.y));
+      cluster.target_distance_px = std::min(cluster.target_distance_px, std::hypot(x - target.x, y - target.y));
       cluster.cells =
           cluster.cells.empty() ? cv::Rect(cell[0], cell[1], 1, 1) : cluster.cells | cv::Rect(cell[0], cell[1], 1, 1);
     }

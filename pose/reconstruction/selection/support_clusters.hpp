@@ -11,7 +11,7 @@ namespace houghstream::reconstruction {
 
 /// Coordinates in a plane, and cells of it; camera frame, metres.
 struct PlaneAxes {
-  static constexpr double kCell_m = 0.005;  ///< side of a cell: what hangs together is found in these
+  static constexpr double kCell_m = 0.005;  ///< side of a cell, in which connected components are found
 
   Eigen::Vector3d origin, x, y;
 
@@ -30,7 +30,7 @@ struct PlaneAxes {
 struct Cluster {
   int pixels = 0;
   double lowest = 1e9, highest = 0.0;  ///< above the plane, metres
-  double to_middle_px = 1e9;           ///< distance of its nearest pixel from the target
+  double target_distance_px = 1e9;     ///< distance of its nearest pixel from the target
   cv::Rect cells;
 };
 
@@ -42,7 +42,7 @@ struct Clusters {
 /// Region of an image that is searched.
 struct SearchedPart {
   cv::Rect region_px;           ///< within the image
-  cv::Point2d target_px;        ///< the place that is meant
+  cv::Point2d target_px;        ///< pixel on or near the object that is to be selected
   double max_distance_m = 0.0;  ///< maximum distance from the camera
 };
 

@@ -5,7 +5,7 @@
 namespace houghstream::reconstruction {
 namespace {
 
-double agreement_of(const Alignment& alignment) {
+double alignment_score(const Alignment& alignment) {
   return alignment.inlier_fraction * std::min(1.0, alignment.visible_point_fraction / 0.4) -
          0.5 * alignment.photometric_rms;
 }
@@ -16,11 +16,11 @@ Alignment FrameFollower::register_to_map(const FrameLevels& levels, const Eigen:
                                          KeyframeMap& map) const {
   AlignmentLimits limits;
   limits.coarsest = coarsest;
-  return align_frame(map.local_map(T_start), levels, T_start, {map.settings().plane, corners_}, limits);
+  return align_frame(map.local_map(T_start), levels, T_start, {map.settings().plane, landmarks_}, limits);
 }
 
-std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const FrameLevels& levels, const LastStep& step,
-                                               Motion motion, KeyframeMap& map) {
+std::optional<Alignment> FrameFollower::follow(const FlowFrame& flow_frame, const FrameLevels& levels,
+                                               const LastStep& step, Motion motion, KeyframeMap& map) {
   constexpr double kMaxRotation_rad = 0.15;       // a frame, from rest
   constexpr double kMaxMovingRotation_rad = 0.4;  // a frame
   constexpr double kMaxShift_m = 0.02;            // a frame, of an object that turns where it stands
@@ -29,15 +29,16 @@ std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const Frame
       motion == Motion::kObject ? step.repeat_of_object() : step.repeat_of_camera();
   const int coarsest = map.settings().coarsest;
   const LevelPoints& points = map.local_map(T_last);
-  const bool is_extrapolation_better = agreement_of(compare_frame(points, levels, T_extrapolated, coarsest)) >
-                                       agreement_of(compare_frame(points, levels, T_last, coarsest));
+  const bool is_extrapolation_better = alignment_score(compare_frame(points, levels, T_extrapolated, coarsest)) >
+                                       alignment_score(compare_frame(points, levels, T_last, coarsest));
   const std::optional<LandmarkMatch> flow =
-      motion == Motion::kObject ? std::nullopt : track_corners(last_flow_, detect_flow_corners(last_flow_, {}), now);
-  corners_.clear();
-  if (flow && flow->inliers.size() >= map.settings().min_corners) {
-    for (const auto& [before, after] : flow->inliers) corners_.push_back({T_last.inverse() * before, after});
+      motion == Motion::kObject ? std::nullopt
+                                : track_corners(last_flow_, detect_flow_corners(last_flow_, {}), flow_frame);
+  landmarks_.clear();
+  if (flow && flow->inliers.size() >= map.settings().min_landmarks) {
+    for (const auto& [before, after] : flow->inliers) landmarks_.push_back({T_last.inverse() * before, after});
   }
-  const Eigen::Isometry3d T_initial = !corners_.empty()         ? flow->T_b_a * T_last
+  const Eigen::Isometry3d T_initial = !landmarks_.empty()       ? flow->T_b_a * T_last
                                       : is_extrapolation_better ? T_extrapolated
                                                                 : T_last;
   Alignment best = register_to_map(levels, T_initial, coarsest, map);
@@ -47,7 +48,7 @@ std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const Frame
     for (const Alignment& other :
          {register_to_map(levels, T_initial, 0, map), register_to_map(levels, T_alternative, coarsest, map),
           register_to_map(levels, T_alternative, 1, map)}) {
-      if (agreement_of(other) > agreement_of(best)) best = other;
+      if (alignment_score(other) > alignment_score(best)) best = other;
     }
   }
   const double maximum =

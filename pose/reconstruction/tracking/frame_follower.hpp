@@ -11,15 +11,15 @@
 
 namespace houghstream::reconstruction {
 
-/// Lays each frame on a map of keyframes, from where the frame before was.
+/// Registers each frame to a map of keyframes, from a prediction by the frame before.
 class FrameFollower {
  public:
   /// Sets the frame of LastStep::T_last, from which corners are tracked; it is unused once the object rotates.
   void set_last(FlowFrame frame) { last_flow_ = std::move(frame); }
 
   /// Returns the next frame's pose T_camera_world, predicted from that of the frame before by the camera's motion of
-  /// the tracked corners, or by repetition of its last motion; none where it does not fit or would have jumped. While
-  /// the object rotates (`motion`), `now` is empty.
+  /// the tracked corners, or by repetition of its last motion; none where registration fails or the pose would have
+  /// jumped. While the object rotates (`motion`), `now` is empty.
   std::optional<Alignment> follow(const FlowFrame& now, const FrameLevels& levels, const LastStep& step, Motion motion,
                                   KeyframeMap& map);
 
@@ -28,7 +28,7 @@ class FrameFollower {
                             KeyframeMap& map) const;
 
   FlowFrame last_flow_;
-  std::vector<LandmarkObservation> corners_;  ///< corners of `last_flow_`, with their present positions
+  std::vector<LandmarkObservation> landmarks_;  ///< tracked corners of `last_flow_`, with their present positions
   double mean_photometric_rms_ = 0.3;
 };
 

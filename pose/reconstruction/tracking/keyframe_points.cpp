@@ -9,23 +9,23 @@ namespace houghstream::reconstruction {
 namespace {
 
 /// Removes from a keyframe's mask the points that violate the free space of the map's keyframes: a hand.
-void remove_seen_through(const Keyframe& seen, const KeyframeMap& map, cv::Mat& mask) {
+void remove_free_space_violations(const Keyframe& keyframe, const KeyframeMap& map, cv::Mat& mask) {
   constexpr double kBehind_m = 0.015;
-  constexpr double kAlike = 1.2;  // radians: keyframes from farther round do not see this side
-  const FrameLevel& level = seen.levels.levels[0];
-  const Eigen::Isometry3d T_world_camera = seen.T_camera_world.inverse();
-  for (const Keyframe& keyframe : map.keyframes()) {
-    if (map.view_angle(keyframe.T_camera_world, seen.T_camera_world) > kAlike) continue;
-    const Eigen::Isometry3d T = keyframe.T_camera_world * T_world_camera;
+  constexpr double kMaxViewAngle = 1.2;  // radians: keyframes from farther round do not see this side
+  const FrameLevel& level = keyframe.levels.levels[0];
+  const Eigen::Isometry3d T_world_camera = keyframe.T_camera_world.inverse();
+  for (const Keyframe& other : map.keyframes()) {
+    if (map.view_angle(other.T_camera_world, keyframe.T_camera_world) > kMaxViewAngle) continue;
+    const Eigen::Isometry3d T = other.T_camera_world * T_world_camera;
     for (int y = 0; y < mask.rows; ++y) {
       for (int x = 0; x < mask.cols; ++x) {
         if (mask.at<std::uint8_t>(y, x) == 0) continue;
         const Eigen::Vector3d p = T * level.camera.backproject(x, y, level.depth.at<float>(y, x));
         if (p.z() < 0.1) continue;
-        const Eigen::Vector2d px = keyframe.frame.camera.project(p);
+        const Eigen::Vector2d px = other.frame.camera.project(p);
         const cv::Point at(cvRound(px.x()), cvRound(px.y()));
-        if (!cv::Rect({0, 0}, keyframe.frame.depth.size()).contains(at)) continue;
-        const float z = keyframe.frame.depth.at<float>(at);
+        if (!cv::Rect({0, 0}, other.frame.depth.size()).contains(at)) continue;
+        const float z = other.frame.depth.at<float>(at);
         if (z > p.z() + kBehind_m + 3.0 * depth_sigma(z)) mask.at<std::uint8_t>(y, x) = 0;
       }
     }
@@ -53,8 +53,8 @@ cv::Mat object_pixels(const FrameLevel& level, const SelectedObject& object, con
       const float z = level.depth.at<float>(y, x);
       if (!(z > 0.1F)) continue;
       const Eigen::Vector3d p = T_world_camera * level.camera.backproject(x, y, z);
-      const bool is_on_it = p.z() > kMin_m && p.z() < object.height_m + 0.03 && std::hypot(p.x(), p.y()) < widest;
-      mask.at<std::uint8_t>(y, x) = is_on_it ? 255 : 0;
+      const bool is_on_object = p.z() > kMin_m && p.z() < object.height_m + 0.03 && std::hypot(p.x(), p.y()) < widest;
+      mask.at<std::uint8_t>(y, x) = is_on_object ? 255 : 0;
     }
   }
   return mask;
@@ -78,8 +78,8 @@ LevelPoints points_of_scene(const Keyframe& keyframe) {
 LevelPoints points_of_object(const Keyframe& keyframe, const KeyframeMap& map, const SelectedObject& object,
                              const cv::Rect& region_px) {
   cv::Mat mask = object_pixels(keyframe.levels.levels[0], object, keyframe.T_camera_world);
-  remove_seen_through(keyframe, map, mask);
-  if (!object.like_skin) remove_skin(keyframe.frame.colour(region_px), mask);
+  remove_free_space_violations(keyframe, map, mask);
+  if (!object.is_skin_coloured) remove_skin(keyframe.frame.colour(region_px), mask);
   PointSettings points;
   points.square_px = 4;
   return choose_points(keyframe.levels, mask, points);

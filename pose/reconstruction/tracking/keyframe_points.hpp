@@ -9,10 +9,10 @@
 namespace houghstream::reconstruction {
 
 /// Pixels that show the object, or a hand on it: CV_8UC1, 255 where the measured point lies above the table and within
-/// the chosen object's bounds. World: z up, origin at the object's foot.
+/// the selected object's bounds. World: z up, origin at the object's foot.
 cv::Mat object_pixels(const FrameLevel& level, const SelectedObject& object, const Eigen::Isometry3d& T_camera_world);
 
-/// Returns points of all that a keyframe shows, while the camera is carried about; those of the table are marked.
+/// Returns points of the whole scene in a keyframe, for a moving camera; those of the table are marked.
 /// Camera frame.
 LevelPoints points_of_scene(const Keyframe& keyframe);
 

@@ -20,9 +20,9 @@ class MotionClassifier {
  public:
   MotionClassifier() = default;
   /// `levels` are of the first frame; `on_object` is CV_8UC1, as large as the finest, and not 0 where the object is.
-  /// `min_corners` is the minimum in common with the first frame that decides whether the camera is static.
+  /// `min_landmarks` is the minimum in common with the first frame that decides whether the camera is static.
   MotionClassifier(FlowFrame first, const FrameLevels& levels, const cv::Mat& on_object,
-                   const Eigen::Isometry3d& T_camera_world, std::size_t min_corners);
+                   const Eigen::Isometry3d& T_camera_world, std::size_t min_landmarks);
 
   const FlowFrame& first() const { return first_; }
 
@@ -31,19 +31,19 @@ class MotionClassifier {
   Motion classify(const FlowFrame& now, const FrameLevels& levels, Eigen::Isometry3d& T_camera_world);
 
   /// Returns the number of consecutive frames in which the object moved, the last one included.
-  int object_moves() const { return object_moves_; }
+  int moving_object_frames() const { return moving_object_frames_; }
 
  private:
-  bool camera_is_still(const FlowFrame& now, const FrameLevels& levels, const Eigen::Isometry3d& T_moved) const;
+  bool is_camera_static(const FlowFrame& now, const FrameLevels& levels, const Eigen::Isometry3d& T_moved) const;
 
   FlowFrame first_;
-  cv::Mat first_intensity_, about_object_, away_from_object_;  ///< masks and intensity of its finest level
+  cv::Mat first_intensity_, object_mask_, background_mask_;  ///< masks and intensity of its finest level
   Eigen::Isometry3d T_first_ = Eigen::Isometry3d::Identity();
-  std::size_t min_corners_ = 0;
+  std::size_t min_landmarks_ = 0;
   std::vector<cv::Point2f> corners_;  ///< corners of the first frame, away from the object
-  LevelPoints rest_;                  ///< points away from the object, world frame
-  int object_moves_ = 0;
-  int camera_moves_ = 0;
+  LevelPoints surroundings_;          ///< points away from the object, world frame
+  int moving_object_frames_ = 0;
+  int moving_camera_frames_ = 0;
 };
 
 /// Intensities of the last frames of a static camera, while the object turns.

@@ -32,20 +32,20 @@ std::optional<Alignment> register_to_keyframe(const KeyframeMap& map, int keyfra
 }
 
 /// Matches a keyframe's landmarks with those of the frame.
-const LandmarkCache::Place& place_by_corners(const KeyframeMap& map, int keyframe, LandmarkCache& corners) {
-  const auto [known, is_new] = corners.by_keyframe.try_emplace(keyframe);
-  LandmarkCache::Place& place = known->second;
-  if (!is_new) return place;
+const LandmarkCache::KeyframeMatch& match_keyframe(const KeyframeMap& map, int keyframe, LandmarkCache& cache) {
+  const auto [known, is_new] = cache.by_keyframe.try_emplace(keyframe);
+  LandmarkCache::KeyframeMatch& result = known->second;
+  if (!is_new) return result;
   const Landmarks& of_keyframe = map.keyframes()[static_cast<std::size_t>(keyframe)].landmarks;
-  if (const std::optional<LandmarkMatch> match = match_landmarks(of_keyframe, *corners.seen))
-    place = {match->inliers.size(), match->T_b_a};
-  return place;
+  if (const std::optional<LandmarkMatch> match = match_landmarks(of_keyframe, *cache.landmarks))
+    result = {match->inliers.size(), match->T_b_a};
+  return result;
 }
 
 }  // namespace
 
 std::optional<Alignment> relocalise_by_neighbours(const KeyframeMap& map, const FrameLevels& levels,
-                                                  const LastPlace& last) {
+                                                  const LastPose& last) {
   constexpr std::size_t kTried = 4;
   const std::vector<std::pair<double, int>> by_distance = keyframes_by_distance(map, last.T_camera_world);
   for (std::size_t i = 0; i < std::min(kTried, by_distance.size()); ++i) {
@@ -57,23 +57,23 @@ std::optional<Alignment> relocalise_by_neighbours(const KeyframeMap& map, const 
   return std::nullopt;
 }
 
-std::optional<Alignment> Relocaliser::find(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last,
-                                           bool everywhere, LandmarkCache& corners) {
+std::optional<Alignment> Relocaliser::find(const KeyframeMap& map, const FrameLevels& levels, const LastPose& last,
+                                           bool everywhere, LandmarkCache& cache) {
   const std::vector<Keyframe>& keyframes = map.keyframes();
   const std::vector<std::pair<double, int>> by_distance = keyframes_by_distance(map, last.T_camera_world);
   const std::size_t tried = everywhere ? keyframes.size() : 12;
-  LandmarkCache::Place best;
+  LandmarkCache::KeyframeMatch best;
   int best_keyframe = -1;
   for (std::size_t i = 0; i < std::min(tried, by_distance.size()); ++i) {
     // The nearest half, and the others in turn.
     const std::size_t at = i < tried / 2 ? i : next_to_try_++ % by_distance.size();
     const int k = by_distance[at].second;
-    const LandmarkCache::Place& place = place_by_corners(map, k, corners);
-    if (place.corners <= best.corners) continue;
-    best = place;
+    const LandmarkCache::KeyframeMatch& match = match_keyframe(map, k, cache);
+    if (match.matches <= best.matches) continue;
+    best = match;
     best_keyframe = k;
   }
-  if (best_keyframe < 0 || best.corners < map.settings().sure_corners) return std::nullopt;
+  if (best_keyframe < 0 || best.matches < map.settings().min_deciding_landmarks) return std::nullopt;
   const Eigen::Isometry3d T = best.T_frame_keyframe * keyframes[static_cast<std::size_t>(best_keyframe)].T_camera_world;
   if (map.view_angle(T, last.T_camera_world) > last.max_view_angle) return std::nullopt;
   return register_to_keyframe(map, best_keyframe, levels, T);

@@ -9,40 +9,41 @@
 
 namespace houghstream::reconstruction {
 
-/// Caches the corners of a lost frame, and their match with each keyframe, since the frame is searched repeatedly.
+/// Caches the landmarks of a lost frame, and their match with each keyframe, since the frame is searched repeatedly.
 struct LandmarkCache {
-  struct Place {
-    std::size_t corners = 0;  ///< matching corners; 0 = no information
+  struct KeyframeMatch {
+    std::size_t matches = 0;  ///< number of matching landmarks; 0 = no information
     Eigen::Isometry3d T_frame_keyframe = Eigen::Isometry3d::Identity();
   };
-  std::optional<Landmarks> seen;
-  std::map<int, Place> by_keyframe;
+  std::optional<Landmarks> landmarks;
+  std::map<int, KeyframeMatch> by_keyframe;
 };
 
-/// A frame that could not be placed when it came.
+/// A frame that could not be registered on arrival.
 struct LostFrame {
   int number = 0;  ///< number in its take
   RgbdFrame frame;
-  LandmarkCache corners;
+  LandmarkCache cache;
 };
 
 /// Gives the last known pose, from which a lost frame is searched.
-struct LastPlace {
+struct LastPose {
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< last known pose, metres
   double max_view_angle = 1e9;  ///< maximum KeyframeMap::view_angle() to that pose, radians
 };
 
-/// Lays a frame on the keyframes nearest to the last place, one by one, with its view taken for theirs.
+/// Registers a frame to the keyframes nearest to the last pose, one after another, each time from the keyframe's own
+/// pose.
 std::optional<Alignment> relocalise_by_neighbours(const KeyframeMap& map, const FrameLevels& levels,
-                                                  const LastPlace& last);
+                                                  const LastPose& last);
 
-/// Looks for frames by the corners that they have in common with keyframes.
+/// Relocalises frames by the landmarks that they have in common with keyframes.
 class Relocaliser {
  public:
-  /// Lays a frame on the keyframe with the most corners in common, if these suffice. `corners.seen` are the frame's.
-  /// Unless it is to look `everywhere`, it tries some keyframes: the nearest, and others in turn from call to call.
-  std::optional<Alignment> find(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last,
-                                bool everywhere, LandmarkCache& corners);
+  /// Registers a frame to the keyframe with the most landmarks in common, if these suffice. `cache.landmarks` are the
+  /// frame's. Unless `everywhere`, it tries some keyframes only: the nearest, and others in turn from call to call.
+  std::optional<Alignment> find(const KeyframeMap& map, const FrameLevels& levels, const LastPose& last,
+                                bool everywhere, LandmarkCache& cache);
 
  private:
   std::size_t next_to_try_ = 0;

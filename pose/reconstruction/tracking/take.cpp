@@ -2,11 +2,11 @@
 
 namespace houghstream::reconstruction {
 
-Eigen::Isometry3d Take::pose_of(const PlacedFrame& frame) const {
+Eigen::Isometry3d Take::pose_of(const RegisteredFrame& frame) const {
   return frame.T_camera_keyframe * keyframes[static_cast<std::size_t>(frame.keyframe)].T_camera_world;
 }
 
-std::vector<LostSpan> still_lost(const Take& take) {
+std::vector<LostSpan> find_unrecovered_spans(const Take& take) {
   std::vector<LostSpan> still;
   for (const LostSpan& span : take.lost) {
     for (int i = span.from; i <= span.to; ++i) {

@@ -13,16 +13,16 @@
 
 namespace houghstream::reconstruction {
 
-/// Motion of a take: the camera about the object, the object before a static camera, or a turntable with known masks
-/// (not by the placer).
+/// Motion of a take: the camera about the object, the object before a static camera, or a turntable with known masks,
+/// which TakeMapper does not process.
 enum class Motion : std::uint8_t { kUnknown, kCamera, kObject, kTurntable };
 
-/// Holds the result of placing a frame.
-struct PlacedFrame {
+/// Result of the registration of a frame.
+struct RegisteredFrame {
   FrameId id;
   bool tracked = false;
-  bool left_out = false;  ///< blurred or badly exposed: it is not used for the model
-  int keyframe = -1;      ///< keyframe relative to which its pose is stored
+  bool is_excluded = false;  ///< blurred or badly exposed: it is not used for the model
+  int keyframe = -1;         ///< keyframe relative to which its pose is stored
   Eigen::Isometry3d T_camera_keyframe = Eigen::Isometry3d::Identity();
 };
 
@@ -32,12 +32,12 @@ struct LostSpan {
   std::string why;
 };
 
-/// A take that is over.
+/// A finished take: a recording of an object from many sides, from which its model is reconstructed.
 struct Take {
   SelectedObject selected;  ///< object in the first frame
   Motion motion = Motion::kUnknown;
   std::vector<Keyframe> keyframes;
-  std::vector<PlacedFrame> frames;
+  std::vector<RegisteredFrame> frames;
   std::vector<LostSpan> lost;
   std::optional<LoopClosureError> gap;  ///< error of the loop around the object, before it was closed
   ViewCoverage seen{};
@@ -46,10 +46,10 @@ struct Take {
   double tracking_hz = 0.0;            ///< frames a second that tracking alone takes
 
   /// Returns T_camera_world of a tracked frame.
-  Eigen::Isometry3d pose_of(const PlacedFrame& frame) const;
+  Eigen::Isometry3d pose_of(const RegisteredFrame& frame) const;
 };
 
-/// Returns the take's lost spans without frames that have been placed since.
-std::vector<LostSpan> still_lost(const Take& take);
+/// Returns the take's lost spans without frames that have been registered since.
+std::vector<LostSpan> find_unrecovered_spans(const Take& take);
 
 }  // namespace houghstream::reconstruction

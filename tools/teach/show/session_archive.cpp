@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using reconstruction::LostSpan;
 using reconstruction::MaskedKeyframe;
-using reconstruction::PlacedFrame;
+using reconstruction::RegisteredFrame;
 using reconstruction::Take;
 
 void write_poses(const ShowResult& shown, const fs::path& file) {
@@ -40,7 +40,7 @@ void write_poses(const ShowResult& shown, const fs::path& file) {
   const Eigen::Isometry3d T_world_object =
       take.keyframes[static_cast<std::size_t>(any.keyframe)].T_camera_world.inverse() * any.T_camera_object;
   for (std::size_t i = 0; i < take.frames.size(); ++i) {
-    const PlacedFrame& frame = take.frames[i];
+    const RegisteredFrame& frame = take.frames[i];
     out << fmt::format("{},{},{}", i, frame.id.utime, frame.tracked ? 1 : 0);
     const Eigen::Isometry3d T = frame.tracked ? take.pose_of(frame) * T_world_object : Eigen::Isometry3d::Identity();
     for (int row = 0; row < 3; ++row) {

@@ -14,7 +14,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pose/fusion/surface_nets.hpp"
 #include "pose/reconstruction/model/take_model.hpp"
-#include "pose/reconstruction/tracking/take_placer.hpp"
+#include "pose/reconstruction/tracking/take_mapper.hpp"
 #include "tools/common/usage_error.hpp"
 #include "tools/teach/mesh/mesh_checks.hpp"
 #include "tools/teach/mesh/teach_jobs.hpp"
@@ -30,7 +30,7 @@ namespace {
 
 using reconstruction::ReconstructedModel;
 using reconstruction::Take;
-using reconstruction::TakePlacer;
+using reconstruction::TakeMapper;
 
 /// Makes a training view: the object with a margin, in the brightness in which it is searched.
 void crop_to_object(TrainingView& view) {
@@ -163,17 +163,17 @@ Take follow(const TakeSource& source, const ShowOptions& options, ProgressReport
   constexpr int kAwake = 90;   // frames after which a camera has found its exposure
   constexpr int kAimed = 300;  // frames in which somebody has pointed it at the object
   const bool live = is_live(source.name);
-  reconstruction::TakePlacerSettings settings;
+  reconstruction::TakeMapperSettings settings;
   if (live && !source.at) settings.max_frames_to_choose = kAimed;
   settings.selection.box_px = source.box;
   settings.selection.at_px = source.at;
   settings.selection.seed = options.seed;
   settings.map.threads = options.threads;
-  TakePlacer placer(settings);
+  TakeMapper mapper(settings);
   int blank = 0;
   while (const std::optional<RgbdFrame> frame = source.frames()) {
-    if (placer.state().frames == 0) {
-      reconstruction::TakePlacerStatus waiting;
+    if (mapper.state().frames == 0) {
+      reconstruction::TakeMapperStatus waiting;
       waiting.message = lack_of(*frame);
       if (!waiting.message.empty()) {
         require(live && ++blank < kAwake, "{}", waiting.message);
@@ -181,10 +181,10 @@ Take follow(const TakeSource& source, const ShowOptions& options, ProgressReport
         continue;
       }
     }
-    reporter.frame(frame->id, placer.process(*frame));
+    reporter.frame(frame->id, mapper.process(*frame));
   }
-  if (placer.state().frames > 0) reporter.step(TeachingState::kFusing, 0.0, "all keyframes are laid on one another");
-  Take take = placer.finish();
+  if (mapper.state().frames > 0) reporter.step(TeachingState::kFusing, 0.0, "all keyframes are laid on one another");
+  Take take = mapper.finish();
   require(take.frames.size() >= kMin, "{} frames, expected at least {}, of a whole turn", take.frames.size(), kMin);
   return take;
 }

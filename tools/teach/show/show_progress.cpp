@@ -9,11 +9,11 @@ ProgressReporter::ProgressReporter(const std::string& name, ShowObserver* observ
   now_.name = name;
 }
 
-void ProgressReporter::frame(const FrameId& id, const reconstruction::TakePlacerStatus& state) {
-  using reconstruction::TakePlacerState;
+void ProgressReporter::frame(const FrameId& id, const reconstruction::TakeMapperStatus& state) {
+  using reconstruction::TakeMapperState;
   now_.frame = id;
-  now_.state = state.state == TakePlacerState::kTracking ? TeachingState::kTracking
-               : state.state == TakePlacerState::kLost   ? TeachingState::kLost
+  now_.state = state.state == TakeMapperState::kTracking ? TeachingState::kTracking
+               : state.state == TakeMapperState::kLost   ? TeachingState::kLost
                                                          : TeachingState::kChoosing;
   now_.message = state.message;
   now_.seen = state.seen;

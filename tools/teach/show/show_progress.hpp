@@ -9,7 +9,7 @@
 
 #include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/teaching.hpp"
-#include "pose/reconstruction/tracking/take_placer.hpp"
+#include "pose/reconstruction/tracking/take_mapper.hpp"
 
 namespace houghstream::teach {
 
@@ -43,7 +43,7 @@ class ProgressReporter {
   ProgressReporter(const std::string& name, ShowObserver* observer);
 
   /// Reports a frame of the take.
-  void frame(const FrameId& id, const reconstruction::TakePlacerStatus& state);
+  void frame(const FrameId& id, const reconstruction::TakeMapperStatus& state);
 
   /// Reports a step after the takes; `progress` of all work, 0 to 1.
   void step(TeachingState state, double progress, const std::string& message);

@@ -9,7 +9,7 @@ namespace {
 
 using reconstruction::LostSpan;
 using reconstruction::Motion;
-using reconstruction::PlacedFrame;
+using reconstruction::RegisteredFrame;
 using reconstruction::Take;
 
 int lost_frames(const Take& take) {
@@ -106,7 +106,7 @@ double second_of(const Take& take, int frame) {
 
 int tracked_frames(const Take& take) {
   return static_cast<int>(
-      std::count_if(take.frames.begin(), take.frames.end(), [](const PlacedFrame& frame) { return frame.tracked; }));
+      std::count_if(take.frames.begin(), take.frames.end(), [](const RegisteredFrame& frame) { return frame.tracked; }));
 }
 
 reconstruction::ViewCoverage seen_by_all(const ShowResult& shown) {

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using reconstruction::MaskedKeyframe;
-using reconstruction::ModelOfViews;
+using reconstruction::FusedSurface;
 using reconstruction::Take;
 
 constexpr const char* kNominalCamera = "640x480,525,525,319.5,239.5";
@@ -110,7 +110,7 @@ class Merging {
       }
       Mesh outline = outline_;
       reconstruction::append_mesh(video.model.mesh, found->T_a_b, outline);
-      ModelOfViews model = fuse(all, outline);
+      FusedSurface model = fuse(all, outline);
       overlap = teach::silhouette_iou(model.mesh, all);
       if (overlap > overlap_ - kMaxLost) {
         std::tie(views_, outline_, model_, overlap_) =
@@ -128,7 +128,7 @@ class Merging {
     for (int round = 0; round < kRounds; ++round) {
       std::vector<TrainingView> placed = views_;
       reconstruction::align_silhouettes(model_.mesh, options_.threads, placed);
-      ModelOfViews again = fuse(placed, model_.mesh);
+      FusedSurface again = fuse(placed, model_.mesh);
       const double overlap = teach::silhouette_iou(again.mesh, placed);
       if (overlap <= overlap_) return;
       std::tie(views_, model_, overlap_) = std::tuple(std::move(placed), std::move(again), overlap);
@@ -136,11 +136,11 @@ class Merging {
   }
 
   std::vector<TrainingView>& views() { return views_; }
-  ModelOfViews& model() { return model_; }
+  FusedSurface& model() { return model_; }
   double overlap() const { return overlap_; }
 
  private:
-  ModelOfViews fuse(const std::vector<TrainingView>& views, const Mesh& outline) const {
+  FusedSurface fuse(const std::vector<TrainingView>& views, const Mesh& outline) const {
     return fuse_masked_views(options_.name, {views, {}}, outline, mesh_bounds(outline).min().z(), making_);
   }
 
@@ -149,7 +149,7 @@ class Merging {
   reconstruction::ReconstructionSettings making_;
   std::vector<TrainingView> views_;
   Mesh outline_;
-  ModelOfViews model_;
+  FusedSurface model_;
   double overlap_ = 0.0;
 };
 
@@ -163,7 +163,7 @@ Take take_of(const std::vector<TrainingView>& views, std::vector<MaskedKeyframe>
     keyframe.frame = views[i].frame;
     keyframe.number = static_cast<int>(i);
     keyframe.T_camera_world = views[i].T_camera_object;
-    reconstruction::PlacedFrame& placed = take.frames.emplace_back();
+    reconstruction::RegisteredFrame& placed = take.frames.emplace_back();
     placed.id = views[i].frame.id;
     placed.tracked = true;
     placed.keyframe = static_cast<int>(i);
@@ -193,7 +193,7 @@ ShowResult show_turntable(const ShowOptions& options) {
   for (std::size_t i = 1; i < videos.size(); ++i) merging.add(videos[i]);
   merging.settle();
   std::vector<TrainingView>& views = merging.views();
-  ModelOfViews& model = merging.model();
+  FusedSurface& model = merging.model();
   const Eigen::Vector3d foot = reconstruction::foot_of(model.mesh);
   for (Eigen::Vector3f& vertex : model.mesh.vertices) vertex -= foot.cast<float>();
   for (TrainingView& view : views) view.T_camera_object = view.T_camera_object * Eigen::Translation3d(foot);

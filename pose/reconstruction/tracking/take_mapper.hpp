@@ -14,9 +14,9 @@
 
 namespace houghstream::reconstruction {
 
-enum class TakePlacerState : std::uint8_t { kChoosing, kTracking, kLost };
+enum class TakeMapperState : std::uint8_t { kChoosing, kTracking, kLost };
 
-struct TakePlacerSettings {
+struct TakeMapperSettings {
   SelectionSettings selection;
   MapSettings map;                 ///< middle and plane are those of the object
   int max_frames_to_choose = 45;   ///< frames without an object after which the take fails
@@ -26,9 +26,9 @@ struct TakePlacerSettings {
   double max_bright_fraction = 0.4;
 };
 
-/// Status of the placer, which is valid at any time.
-struct TakePlacerStatus {
-  TakePlacerState state = TakePlacerState::kChoosing;
+/// Status of the mapper, which is valid at any time.
+struct TakeMapperStatus {
+  TakeMapperState state = TakeMapperState::kChoosing;
   std::string message;  ///< message for a person, one line
   ViewCoverage seen{};
   int frames = 0;
@@ -42,14 +42,14 @@ struct TakePlacerStatus {
 /// points are constrained to one plane; when the loop closes, its error is distributed over it. Lost frames are
 /// relocalised by neighbouring keyframes and by ORB landmarks. It uses one thread; the same frames give the same
 /// result.
-class TakePlacer {
+class TakeMapper {
  public:
-  explicit TakePlacer(const TakePlacerSettings& settings) : settings_(settings), map_(settings.map) {}
+  explicit TakeMapper(const TakeMapperSettings& settings) : settings_(settings), map_(settings.map) {}
 
   /// Processes the next frame. Throws InputError with the reason where no object was found in the first frames, and for
   /// a frame of another size than the first.
-  const TakePlacerStatus& process(const RgbdFrame& frame);
-  const TakePlacerStatus& state() const { return state_; }
+  const TakeMapperStatus& process(const RgbdFrame& frame);
+  const TakeMapperStatus& state() const { return state_; }
 
   /// Registers all keyframes to one another once more and hands over the take. Throws InputError where there is none.
   Take finish();
@@ -57,21 +57,21 @@ class TakePlacer {
  private:
   // These are the steps of process() and finish() in the order of their calls.
   void require_same_size(const RgbdFrame& frame);
-  void choose(const RgbdFrame& frame);
+  void initialise(const RgbdFrame& frame);
   bool is_usable_for_model(const ImageQuality& quality);
   void follow_object_only();
   void tie_to_first_keyframe();
   std::optional<Alignment> relocalise(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
-                                      LandmarkCache& corners);
-  void place_frame(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
+                                      LandmarkCache& cache);
+  void register_frame(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   cv::Mat landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const;
   void add_keyframe(Keyframe keyframe, const Alignment& alignment);
   void note_lost(const FrameLevels& levels);
   void describe();
   void relocalise_lost_frames();
 
-  TakePlacerSettings settings_;
-  TakePlacerStatus state_;
+  TakeMapperSettings settings_;
+  TakeMapperStatus state_;
   SelectedObject selected_;
   KeyframeMap map_;
   LevelSettings levels_;
@@ -81,8 +81,8 @@ class TakePlacer {
   FrameFollower follower_;
   cv::Size size_;  ///< size of all frames, pixels
   int first_number_ = 0;
-  LastStep step_;  ///< T_camera_world of the last frame that was placed, and of the one before it
-  std::vector<LostFrame> unplaced_;
+  LastStep step_;  ///< T_camera_world of the last registered frame, and of the one before it
+  std::vector<LostFrame> lost_frames_;
   Relocaliser relocaliser_;
   std::deque<double> sharpness_;
   Take take_;

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/tracking/take_placer.hpp"
+#include "pose/reconstruction/tracking/take_mapper.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,16 +22,16 @@ Eigen::Isometry3d ground_truth_pose(int i) {
 }
 
 Take go_round(const Mesh& mesh, int from, int to, const std::vector<int>& black) {
-  TakePlacer placer{TakePlacerSettings()};
+  TakeMapper mapper{TakeMapperSettings()};
   for (int i = from; i < to; ++i) {
     RgbdFrame frame = photograph(mesh, ground_truth_pose(i), ShownScene().camera, 1 + 33000 * i);
     if (std::find(black.begin(), black.end(), i) != black.end()) {
       frame.colour.setTo(cv::Scalar::all(0));
       frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
     }
-    placer.process(frame);
+    mapper.process(frame);
   }
-  return placer.finish();
+  return mapper.finish();
 }
 
 /// Returns the drift of the last tracked pose relative to the first, metres at the object.
@@ -42,7 +42,7 @@ double drift_m(const Take& take, int first, int last) {
   return (at_first.inverse() * at_last).translation().norm();
 }
 
-TEST(TakePlacer, ClosesATurnAndMakesAModel) {
+TEST(TakeMapper, ClosesATurnAndMakesAModel) {
   const Take take = go_round(table_with({}), 0, kFrames, {});
   EXPECT_EQ(take.motion, Motion::kCamera);
   EXPECT_EQ(take.degrees_round, 360);
@@ -59,20 +59,20 @@ TEST(TakePlacer, ClosesATurnAndMakesAModel) {
   EXPECT_LT(model.agreement_m, 0.001);
 }
 
-TEST(TakePlacer, FirstSaysWhatItTakesForTheObject) {
+TEST(TakeMapper, FirstSaysWhatItTakesForTheObject) {
   RgbdFrame frame = photograph(table_with({}), ground_truth_pose(0), ShownScene().camera, 1);
-  TakePlacer placer{TakePlacerSettings()};
-  const std::string choice = placer.process(frame).message;
+  TakeMapper mapper{TakeMapperSettings()};
+  const std::string choice = mapper.process(frame).message;
   EXPECT_EQ(choice.find("meant is what stands at "), 0U) << choice;
   EXPECT_NE(choice.find(" cm across and 16 cm high"), std::string::npos) << choice;
   for (int i = 1; i < 46; ++i) {
     frame.id.utime += 33000;
-    placer.process(frame);
+    mapper.process(frame);
   }
-  EXPECT_EQ(placer.state().message.find("seen from "), 0U) << "when it could be read: " << placer.state().message;
+  EXPECT_EQ(mapper.state().message.find("seen from "), 0U) << "when it could be read: " << mapper.state().message;
 }
 
-TEST(TakePlacer, SaysWhereItWasLostAndGoesOn) {
+TEST(TakeMapper, SaysWhereItWasLostAndGoesOn) {
   const Take take = go_round(table_with({}), 0, 40, {20, 21});
   ASSERT_EQ(take.lost.size(), 1U);
   EXPECT_EQ(take.lost[0].from, 20);
@@ -81,11 +81,11 @@ TEST(TakePlacer, SaysWhereItWasLostAndGoesOn) {
   EXPECT_LT(drift_m(take, 0, 39), 0.003);
 }
 
-TEST(TakePlacer, FollowsAnObjectThatTurnsBeforeAStillCamera) {
+TEST(TakeMapper, FollowsAnObjectThatTurnsBeforeAStillCamera) {
   const Mesh table = table_with({{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, ShownScene().camera});
   const Eigen::Isometry3d T_camera_table = test_scene::camera_at(0.3, 0.6, 0.65);
   const Mesh box = test_scene::box_of({});
-  TakePlacer placer{TakePlacerSettings()};
+  TakeMapper mapper{TakeMapperSettings()};
   for (int i = 0; i < 40; ++i) {
     Mesh both = table;
     const Eigen::Matrix3f rotated =
@@ -94,16 +94,16 @@ TEST(TakePlacer, FollowsAnObjectThatTurnsBeforeAStillCamera) {
     for (const Eigen::Vector3f& vertex : box.vertices) both.vertices.push_back(rotated * vertex);
     both.colours.insert(both.colours.end(), box.colours.begin(), box.colours.end());
     for (const auto& t : box.triangles) both.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-    placer.process(photograph(both, T_camera_table, ShownScene().camera, 1 + 33000 * i));
+    mapper.process(photograph(both, T_camera_table, ShownScene().camera, 1 + 33000 * i));
   }
-  const Take take = placer.finish();
+  const Take take = mapper.finish();
   EXPECT_EQ(take.motion, Motion::kObject);
   ASSERT_TRUE(take.frames.back().tracked);
   const Eigen::Isometry3d moved = take.keyframes.front().T_camera_world.inverse() * take.pose_of(take.frames.back());
   EXPECT_NEAR(Eigen::AngleAxisd(moved.linear()).angle(), 0.03 * 39, 0.03);
   int untracked = 0;
   for (std::size_t i = 0; i < take.frames.size(); ++i) {
-    const PlacedFrame& frame = take.frames[i];
+    const RegisteredFrame& frame = take.frames[i];
     untracked += frame.tracked ? 0 : 1;
     if (!frame.tracked) continue;
     ASSERT_GE(frame.keyframe, 0) << i;
@@ -162,37 +162,37 @@ void step_depth(RgbdFrame& frame) {
   }
 }
 
-/// Returns the placer's rotation about the object after 70 degrees.
-double degrees_gone(std::size_t min_corners) {
+/// Returns the mapper's rotation about the object after 70 degrees.
+double degrees_gone(std::size_t min_landmarks) {
   const Mesh mesh = plain_tin_among_boxes();
-  TakePlacerSettings settings;
-  settings.map.min_corners = min_corners;
-  TakePlacer placer(settings);
+  TakeMapperSettings settings;
+  settings.map.min_landmarks = min_landmarks;
+  TakeMapper mapper(settings);
   for (int i = 0; i <= 35; ++i) {
     const Eigen::Isometry3d T = test_scene::camera_at(0.3 + kAngle * i / 180.0, 0.5, 0.7);
     RgbdFrame frame = photograph(mesh, T, ShownScene().camera, 1 + 33000 * i);
     step_depth(frame);
-    placer.process(frame);
+    mapper.process(frame);
   }
-  const Take take = placer.finish();
+  const Take take = mapper.finish();
   if (!take.frames.back().tracked) return 0.0;
   const Eigen::Isometry3d gone = take.pose_of(take.frames.front()).inverse() * take.pose_of(take.frames.back());
   return Eigen::AngleAxisd(gone.linear()).angle() * 360.0 / kAngle;
 }
 
-TEST(TakePlacer, CornersSayHowFarItIsRoundSomethingPlainAndRound) {
+TEST(TakeMapper, CornersSayHowFarItIsRoundSomethingPlainAndRound) {
   EXPECT_NEAR(degrees_gone(12), 70.0, 1.0);
   EXPECT_GT(std::abs(degrees_gone(100000) - 70.0), 3.0) << "the scene holds a camera without corners, too";
 }
 
-TEST(TakePlacer, RefusesAFrameOfAnotherSize) {
+TEST(TakeMapper, RefusesAFrameOfAnotherSize) {
   const Mesh table = table_with({});
   const Camera smaller = {160, 120, 145.0, 145.0, 79.5, 59.5};
-  TakePlacer placer{TakePlacerSettings()};
-  placer.process(photograph(table, ground_truth_pose(0), ShownScene().camera, 1));
+  TakeMapper mapper{TakeMapperSettings()};
+  mapper.process(photograph(table, ground_truth_pose(0), ShownScene().camera, 1));
   std::string line;
   try {
-    placer.process(photograph(table, ground_truth_pose(1), smaller, 33001));
+    mapper.process(photograph(table, ground_truth_pose(1), smaller, 33001));
   } catch (const InputError& error) {
     line = error.what();
   }
@@ -200,7 +200,7 @@ TEST(TakePlacer, RefusesAFrameOfAnotherSize) {
       << line;
 }
 
-TEST(TakePlacer, RefusesATakeWithoutAnObject) {
+TEST(TakeMapper, RefusesATakeWithoutAnObject) {
   ShownScene empty;
   empty.box.setZero();
   EXPECT_THROW(go_round(table_with(empty), 0, 50, {}), InputError);
