@@ -12,31 +12,31 @@ namespace houghstream {
 /// items.
 class ByteBudget {
  public:
-  /// The bytes of one item, which count for as long as this lives.
+  /// The bytes of one item, which count as long as this object lives.
   class Reservation {
    public:
     Reservation() = default;
     ~Reservation() {
-      if (count_ != nullptr) count_->total_ -= bytes_;
+      if (budget_ != nullptr) budget_->total_ -= bytes_;
     }
-    Reservation(Reservation&& other) noexcept : count_(std::exchange(other.count_, nullptr)), bytes_(other.bytes_) {}
+    Reservation(Reservation&& other) noexcept : budget_(std::exchange(other.budget_, nullptr)), bytes_(other.bytes_) {}
     Reservation& operator=(Reservation&& other) noexcept {
-      Reservation mine(std::move(other));
-      std::swap(count_, mine.count_);
-      std::swap(bytes_, mine.bytes_);
+      Reservation moved(std::move(other));
+      std::swap(budget_, moved.budget_);
+      std::swap(bytes_, moved.bytes_);
       return *this;
     }
     Reservation(const Reservation&) = delete;
     Reservation& operator=(const Reservation&) = delete;
 
     /// Zero where nothing is held: by default, and after a move.
-    std::size_t bytes() const { return count_ == nullptr ? 0 : bytes_; }
+    std::size_t bytes() const { return budget_ == nullptr ? 0 : bytes_; }
 
    private:
     friend class ByteBudget;
-    Reservation(ByteBudget& count, std::size_t bytes) : count_(&count), bytes_(bytes) { count.total_ += bytes; }
+    Reservation(ByteBudget& budget, std::size_t bytes) : budget_(&budget), bytes_(bytes) { budget.total_ += bytes; }
 
-    ByteBudget* count_ = nullptr;
+    ByteBudget* budget_ = nullptr;
     std::size_t bytes_ = 0;
   };
 

@@ -26,18 +26,18 @@ DecodedFrames::Decoded DecodedFrames::decode(const SharedBytes& bytes, const std
   if (Decoded known = find(bytes)) return known;
   const auto frame =
       std::make_shared<const RgbdFrame>(decode_frame({bytes->data(), bytes->size()}, channel, camera_, stage_));
-  keep(bytes, frame);
+  store(bytes, frame);
   return frame;
 }
 
 DecodedFrames::Decoded DecodedFrames::find(const SharedBytes& bytes) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto found =
-      std::find_if(frames_.rbegin(), frames_.rend(), [&](const Kept& kept) { return kept.bytes.lock() == bytes; });
+      std::find_if(frames_.rbegin(), frames_.rend(), [&](const Entry& entry) { return entry.bytes.lock() == bytes; });
   return found == frames_.rend() ? nullptr : found->frame;
 }
 
-void DecodedFrames::keep(const SharedBytes& bytes, const Decoded& frame) {
+void DecodedFrames::store(const SharedBytes& bytes, const Decoded& frame) {
   const std::lock_guard<std::mutex> lock(mutex_);
   bytes_ += image_bytes(*frame);
   frames_.push_back({bytes, frame});

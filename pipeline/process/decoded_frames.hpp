@@ -24,31 +24,32 @@ class DecodedFrames {
  public:
   using Decoded = std::shared_ptr<const RgbdFrame>;
 
-  /// A decoded frame has some megabytes, and a sender of rubbish may make up channels without end.
+  /// A decoded frame has some megabytes, and an untrusted sender may make up channels without end.
   static constexpr std::size_t kFrames = 12;
-  static constexpr std::size_t kBytes = std::size_t{192} << 20U;  ///< of their images; the newest stays in any case
+  static constexpr std::size_t kBytes = std::size_t{192}
+                                        << 20U;  ///< maximum of their images; the newest frame stays in any case
 
   /// `camera` and `stage` are passed to decode_frame().
   DecodedFrames(std::optional<Camera> camera, std::string stage)
       : camera_(std::move(camera)), stage_(std::move(stage)) {}
 
-  /// Returns the frame of these bytes, and not another one of the same name. Throws InputError where they are no
-  /// images_t.
+  /// Returns the frame that these very bytes encode, not another one of the same id. Throws InputError where they are
+  /// no images_t.
   Decoded decode(const SharedBytes& bytes, const std::string& channel);
 
  private:
-  struct Kept {
+  struct Entry {
     std::weak_ptr<const std::vector<std::uint8_t>> bytes;  // message from which it was decoded
     Decoded frame;
   };
 
   Decoded find(const SharedBytes& bytes) const;
-  void keep(const SharedBytes& bytes, const Decoded& frame);
+  void store(const SharedBytes& bytes, const Decoded& frame);
 
   std::optional<Camera> camera_;
   std::string stage_;
   mutable std::mutex mutex_;
-  std::deque<Kept> frames_;
+  std::deque<Entry> frames_;
   std::size_t bytes_ = 0;
 };
 

@@ -49,9 +49,9 @@ class DetectProcess {
 
   /// Returns whether another frame is dropped for it, or it for another.
   bool push(const ReceivedFrame& frame) {
-    EncodedFrame waiting{frame.id, shared_copy(frame.bytes), frame.time};
-    return frame.order == FrameOrder::kLate ? newest_.push_late(frame.id.channel, std::move(waiting), frame.bytes.size)
-                                            : newest_.push(frame.id.channel, std::move(waiting), frame.bytes.size);
+    EncodedFrame encoded{frame.id, shared_copy(frame.bytes), frame.time};
+    return frame.order == FrameOrder::kLate ? newest_.push_late(frame.id.channel, std::move(encoded), frame.bytes.size)
+                                            : newest_.push(frame.id.channel, std::move(encoded), frame.bytes.size);
   }
 
   /// Expedites the next detection of a camera on which a followed object is lost, or has become doubtful.

@@ -6,7 +6,7 @@ namespace houghstream {
 
 bool DetectionThrottle::is_due(const FrameId& frame) {
   constexpr double kExpedited = 0.25;
-  constexpr double kSlack = 0.002;  // seconds, for times that tremble
+  constexpr double kSlack = 0.002;  // seconds, for the jitter of times
   if (!(max_rate_hz_ > 0.0)) return true;
   if (cameras_.size() >= kCameras && cameras_.count(frame.channel) == 0) return true;
   Camera& camera = cameras_[frame.channel];

@@ -12,8 +12,8 @@ namespace houghstream {
 /// Limits the rate at which a detector searches each camera's frames, by the frames' times. Not thread-safe.
 class DetectionThrottle {
  public:
-  /// Maximum number of cameras with a stored time; every frame of a further one is processed. A sender of rubbish may
-  /// make up channels without end.
+  /// Maximum number of cameras with a stored time; every frame of a further one is processed. An untrusted sender
+  /// may make up channels without end.
   static constexpr std::size_t kCameras = 64;
 
   /// With 0 it detects in every frame. Every frame of a camera's first `start_s` seconds is searched: nothing is

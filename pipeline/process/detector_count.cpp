@@ -16,7 +16,7 @@ void push_limited(std::deque<T>& queue, T item, std::size_t limit) {
 
 }  // namespace
 
-DetectorCount::Camera* DetectorCount::camera_of(const std::string& channel) {
+DetectorCount::Camera* DetectorCount::find_or_add_camera(const std::string& channel) {
   if (cameras_.size() >= kCameras && cameras_.count(channel) == 0) return nullptr;
   return &cameras_[channel];
 }
@@ -27,26 +27,26 @@ DetectorCount::Frame* DetectorCount::Camera::find(std::int64_t utime) {
 }
 
 void DetectorCount::note_frame(const FrameId& frame) {
-  Camera* camera = camera_of(frame.channel);
+  Camera* camera = find_or_add_camera(frame.channel);
   if (camera == nullptr) return;
-  Frame* known = camera->find(frame.utime);
-  if (known != nullptr && known->has_come) {
+  Frame* frame_entry = camera->find(frame.utime);
+  if (frame_entry != nullptr && frame_entry->has_arrived) {
     forget(frame);
-  } else if (known != nullptr) {
-    known->has_come = true;
+  } else if (frame_entry != nullptr) {
+    frame_entry->has_arrived = true;
   }
   push_limited(camera->utimes, frame.utime, kUtimes);
 }
 
 void DetectorCount::note_result(const FrameId& frame) {
-  Camera* camera = camera_of(frame.channel);
+  Camera* camera = find_or_add_camera(frame.channel);
   if (camera == nullptr) return;
   if (Frame* known = camera->find(frame.utime); known != nullptr) {
     ++known->results;
     return;
   }
-  const bool has_come = std::find(camera->utimes.begin(), camera->utimes.end(), frame.utime) != camera->utimes.end();
-  push_limited(camera->frames, Frame{frame.utime, 1, has_come}, kFrames);
+  const bool has_arrived = std::find(camera->utimes.begin(), camera->utimes.end(), frame.utime) != camera->utimes.end();
+  push_limited(camera->frames, Frame{frame.utime, 1, has_arrived}, kFrames);
 }
 
 void DetectorCount::forget(const FrameId& frame) {
@@ -57,7 +57,7 @@ void DetectorCount::forget(const FrameId& frame) {
                frames.end());
 }
 
-int DetectorCount::of(const std::string& channel) const {
+int DetectorCount::estimate(const std::string& channel) const {
   int maximum = 1;
   const auto camera = cameras_.find(channel);
   if (camera == cameras_.end()) return maximum;

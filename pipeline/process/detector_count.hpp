@@ -14,27 +14,27 @@ namespace houghstream {
 /// names its detector. Not thread-safe.
 class DetectorCount {
  public:
-  /// Cameras whose results are counted; of a further one nothing is known. Results may name any camera.
+  /// Maximum number of cameras whose results are counted, since results may name any camera.
   static constexpr std::size_t kCameras = 64;
 
   /// Notes a frame. One that comes a second time (a log that is replayed, a source that is started again and stamps as
   /// before) is another frame: its results are counted from 0.
   void note_frame(const FrameId& frame);
 
-  /// May come before its frame, which then is its own.
+  /// Notes a result. It may arrive before its frame.
   void note_result(const FrameId& frame);
 
   /// Makes results of this frame count from 0.
   void forget(const FrameId& frame);
 
-  /// Returns at least 1.
-  int of(const std::string& channel) const;
+  /// Returns the estimate, at least 1.
+  int estimate(const std::string& channel) const;
 
  private:
   struct Frame {
     std::int64_t utime = 0;
     int results = 0;
-    bool has_come = false;
+    bool has_arrived = false;
   };
   struct Camera {
     std::deque<Frame> frames;         // the last ones with results
@@ -43,7 +43,7 @@ class DetectorCount {
     Frame* find(std::int64_t utime);
   };
 
-  Camera* camera_of(const std::string& channel);
+  Camera* find_or_add_camera(const std::string& channel);
 
   std::map<std::string, Camera> cameras_;  // by channel name
 };

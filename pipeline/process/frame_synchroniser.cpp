@@ -11,16 +11,16 @@ void FrameSynchroniser::add_frame(const FrameId& id, SharedBytes bytes) {
   bool is_awaited = false;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    Camera& camera = camera_of(id.channel);
+    Camera& camera = find_or_add_camera(id.channel);
     detectors_.note_frame(id);
     ByteBudget::Reservation reservation = frame_bytes_.reserve(bytes->size());
-    ++camera.frames_seen;
-    camera.frames.push_back({{id, std::move(bytes)}, ++frames_, std::move(reservation)});
+    ++camera.frame_count;
+    camera.frames.push_back({{id, std::move(bytes)}, ++frame_count_, std::move(reservation)});
     if (camera.frames.size() > kHistory) camera.frames.pop_front();
     limit_frame_bytes();
-    camera.fresh = newest_first_ && ahead_;
+    camera.has_unmatched_frame = newest_first_ && offers_unmatched_frames_;
     drop_unmatchable(camera);
-    is_awaited = camera.fresh || !camera.waiting.empty();
+    is_awaited = camera.has_unmatched_frame || !camera.pending.empty();
   }
   if (is_awaited) changed_.notify_one();
 }
@@ -28,29 +28,29 @@ void FrameSynchroniser::add_frame(const FrameId& id, SharedBytes bytes) {
 void FrameSynchroniser::add_result(const FrameId& id, std::vector<std::uint8_t> bytes) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    Camera& camera = camera_of(id.channel);
+    Camera& camera = find_or_add_camera(id.channel);
     detectors_.note_result(id);
-    Waiting waiting;
-    waiting.id = id;
-    waiting.reservation = waiting_bytes_.reserve(bytes.size());
-    waiting.bytes = std::move(bytes);
-    waiting.arrival = std::chrono::steady_clock::now();
-    waiting.number = ++arrivals_;
-    waiting.frames_before = camera.frames_seen;
-    camera.waiting.push_back(std::move(waiting));
+    PendingResult pending;
+    pending.id = id;
+    pending.reservation = pending_bytes_.reserve(bytes.size());
+    pending.bytes = std::move(bytes);
+    pending.arrival = std::chrono::steady_clock::now();
+    pending.number = ++result_count_;
+    pending.frames_before = camera.frame_count;
+    camera.pending.push_back(std::move(pending));
     drop_unmatchable(camera);
-    limit_waiting_bytes();
+    limit_pending_bytes();
   }
   changed_.notify_one();
 }
 
-FrameSynchroniser::Camera& FrameSynchroniser::camera_of(const std::string& channel) {
+FrameSynchroniser::Camera& FrameSynchroniser::find_or_add_camera(const std::string& channel) {
   require(cameras_.size() < kCameras || cameras_.count(channel) > 0,
           "a camera more than the {} that are listened to; expected a pattern that fewer channels match", kCameras);
   return cameras_[channel];
 }
 
-// There are frames.
+// Requires that there are frames.
 FrameSynchroniser::Camera& FrameSynchroniser::largest_camera() {
   Camera* selected = nullptr;
   for (auto& [channel, camera] : cameras_) {
@@ -66,42 +66,43 @@ FrameSynchroniser::Camera& FrameSynchroniser::largest_camera() {
 void FrameSynchroniser::limit_frame_bytes() {
   while (frame_bytes_.total() > kHistoryBytes) {
     Camera& camera = largest_camera();
-    if (camera.frames.front().number == frames_) return;  // the last one that has come is the only one left
+    if (camera.frames.front().number == frame_count_) return;  // the last one that has come is the only one left
     camera.frames.pop_front();
-    if (camera.frames.empty()) camera.fresh = false;
+    if (camera.frames.empty()) camera.has_unmatched_frame = false;
   }
 }
 
-void FrameSynchroniser::limit_waiting_bytes() {
-  while (waiting_bytes_.total() > kAllWaitingBytes) {
-    const auto maximum = std::max_element(cameras_.begin(), cameras_.end(), [](const auto& a, const auto& b) {
-      return a.second.waiting.size() < b.second.waiting.size();
+void FrameSynchroniser::limit_pending_bytes() {
+  while (pending_bytes_.total() > kMaxPendingBytes) {
+    const auto largest = std::max_element(cameras_.begin(), cameras_.end(), [](const auto& a, const auto& b) {
+      return a.second.pending.size() < b.second.pending.size();
     });
-    drop_first(maximum->second);
+    drop_first(largest->second);
   }
 }
 
 std::optional<SynchronisedMessages> FrameSynchroniser::pop(std::chrono::milliseconds timeout) {
-  constexpr std::chrono::milliseconds kRecheck(3);  // maximum delay until a changed answer of the gate is noticed
+  constexpr std::chrono::milliseconds kMaxRecheckInterval(
+      3);  // maximum delay until a changed answer of the gate is noticed
   std::unique_lock<std::mutex> lock(mutex_);
-  const bool none_waits = held_back_.empty();
+  const bool none_is_deferred = deferred_.empty();
   std::optional<SynchronisedMessages> pair;
-  changed_.wait_for(lock, none_waits ? timeout : std::min(timeout, kRecheck), [&] {
+  changed_.wait_for(lock, none_is_deferred ? timeout : std::min(timeout, kMaxRecheckInterval), [&] {
     pair = next_pair();
-    return pair || any_fresh() || none_waits != held_back_.empty();
+    return pair || has_any_unmatched_frame() || none_is_deferred != deferred_.empty();
   });
   return pair;
 }
 
 std::optional<SynchronisedMessages> FrameSynchroniser::next_pair() {
-  for (auto it = held_back_.begin(); it != held_back_.end();) {
+  for (auto it = deferred_.begin(); it != deferred_.end();) {
     const FrameGate::Answer answer = decide_by_gate(it->pair.id, it->since_us);
     if (answer == FrameGate::Answer::kWait) {
       ++it;
       continue;
     }
     SynchronisedMessages pair = std::move(it->pair);
-    it = held_back_.erase(it);
+    it = deferred_.erase(it);
     if (answer == FrameGate::Answer::kGo) return pair;
   }
   while (Camera* camera = next_camera()) {
@@ -109,7 +110,7 @@ std::optional<SynchronisedMessages> FrameSynchroniser::next_pair() {
     const std::int64_t now_us = gate_.now_us ? gate_.now_us() : 0;
     const FrameGate::Answer answer = decide_by_gate(pair.id, now_us);
     if (answer == FrameGate::Answer::kGo) return pair;
-    if (answer == FrameGate::Answer::kWait) hold_back(std::move(pair), now_us);
+    if (answer == FrameGate::Answer::kWait) defer(std::move(pair), now_us);
   }
   return std::nullopt;
 }
@@ -121,25 +122,27 @@ FrameGate::Answer FrameSynchroniser::decide_by_gate(const FrameId& id, std::int6
   return decision.answer;
 }
 
-// A frame goes with each pair, and detections of one frame may be sent without end.
-void FrameSynchroniser::hold_back(SynchronisedMessages pair, std::int64_t since_us) {
-  ByteBudget::Reservation reservation = held_back_bytes_.reserve(pair.frame->size());
-  held_back_.push_back({std::move(pair), since_us, std::move(reservation)});
-  while (held_back_.size() > 1 && (held_back_.size() > kHeldBack || held_back_bytes_.total() > kHeldBackBytes)) {
-    dropped_.refused.push_back({held_back_.front().pair.id, "too many wait for " + gate_.awaited});
-    held_back_.pop_front();
+// Deferred pairs are limited, since each holds its frame, and detections of one frame may be sent without end.
+void FrameSynchroniser::defer(SynchronisedMessages pair, std::int64_t since_us) {
+  ByteBudget::Reservation reservation = deferred_bytes_.reserve(pair.frame->size());
+  deferred_.push_back({std::move(pair), since_us, std::move(reservation)});
+  while (deferred_.size() > 1 && (deferred_.size() > kMaxDeferred || deferred_bytes_.total() > kMaxDeferredBytes)) {
+    dropped_.refused.push_back({deferred_.front().pair.id, "too many wait for " + gate_.awaited});
+    deferred_.pop_front();
   }
 }
 
 void FrameSynchroniser::recheck_gate() {
-  { const std::lock_guard<std::mutex> lock(mutex_); }  // a thread in pop() has asked before this, or waits
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+  }  // so that a thread in pop() has either asked the gate already, or waits
   changed_.notify_one();
 }
 
-std::optional<ArrivedFrame> FrameSynchroniser::pop_unmatched_frame() {
+std::optional<StoredFrame> FrameSynchroniser::pop_unmatched_frame() {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (auto& [channel, camera] : cameras_) {
-    if (std::exchange(camera.fresh, false)) return camera.frames.back().frame;
+    if (std::exchange(camera.has_unmatched_frame, false)) return camera.frames.back().frame;
   }
   return std::nullopt;
 }
@@ -152,48 +155,48 @@ FrameSynchroniser::Dropped FrameSynchroniser::pop_dropped() {
 void FrameSynchroniser::flush() {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (auto& [channel, camera] : cameras_) {
-    while (!camera.waiting.empty()) drop_first(camera);
+    while (!camera.pending.empty()) drop_first(camera);
   }
-  for (const HeldBack& waiting : held_back_) dropped_.refused.push_back({waiting.pair.id, "the stream has ended"});
-  held_back_.clear();
+  for (const DeferredPair& pending : deferred_) dropped_.refused.push_back({pending.pair.id, "the stream has ended"});
+  deferred_.clear();
 }
 
 void FrameSynchroniser::drop_first(Camera& camera) {
-  const FrameId& id = camera.waiting.front().id;
+  const FrameId& id = camera.pending.front().id;
   if (camera.find_frame(id) == nullptr) {
     dropped_.without_frame.push_back(id);
   } else {
     ++dropped_.skipped;
   }
-  camera.waiting.pop_front();
+  camera.pending.pop_front();
 }
 
-const FrameSynchroniser::Kept* FrameSynchroniser::Camera::find_frame(const FrameId& id) const {
+const FrameSynchroniser::HistoryEntry* FrameSynchroniser::Camera::find_frame(const FrameId& id) const {
   const auto found =
-      std::find_if(frames.rbegin(), frames.rend(), [&](const Kept& kept) { return kept.frame.id == id; });
+      std::find_if(frames.rbegin(), frames.rend(), [&](const HistoryEntry& entry) { return entry.frame.id == id; });
   return found == frames.rend() ? nullptr : &*found;
 }
 
-std::optional<std::size_t> FrameSynchroniser::Camera::first_complete() const {
-  const auto found =
-      std::find_if(waiting.begin(), waiting.end(), [&](const Waiting& w) { return find_frame(w.id) != nullptr; });
-  if (found == waiting.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - waiting.begin());
+std::optional<std::size_t> FrameSynchroniser::Camera::first_matched() const {
+  const auto found = std::find_if(pending.begin(), pending.end(),
+                                  [&](const PendingResult& result) { return find_frame(result.id) != nullptr; });
+  if (found == pending.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - pending.begin());
 }
 
-// The camera with a pair that has its turn: the one served longest ago, or, in a log, the one whose detections came
+// Returns the camera whose pair comes next: the one served longest ago, or, in a log, the one whose detections arrived
 // first.
 FrameSynchroniser::Camera* FrameSynchroniser::next_camera() {
   Camera* next = nullptr;
-  std::int64_t next_rank = 0;
+  std::int64_t next_order = 0;
   for (auto& [channel, camera] : cameras_) {
     if (newest_first_) drop_stale(channel, camera);
-    const std::optional<std::size_t> first = camera.first_complete();
+    const std::optional<std::size_t> first = camera.first_matched();
     if (!first) continue;
-    const std::int64_t rank = newest_first_ ? camera.turn : camera.waiting[*first].number;
-    if (next != nullptr && rank >= next_rank) continue;
+    const std::int64_t order = newest_first_ ? camera.last_served : camera.pending[*first].number;
+    if (next != nullptr && order >= next_order) continue;
     next = &camera;
-    next_rank = rank;
+    next_order = order;
   }
   return next;
 }
@@ -201,44 +204,45 @@ FrameSynchroniser::Camera* FrameSynchroniser::next_camera() {
 // The newest complete result of each detector of the camera stays; results before these are dropped, since results do
 // not name their detector.
 void FrameSynchroniser::drop_stale(const std::string& channel, Camera& camera) {
-  int left = detectors_.of(channel);
-  auto oldest = camera.waiting.end();
-  while (left > 0 && oldest != camera.waiting.begin()) {
+  int missing = detectors_.estimate(channel);
+  auto oldest = camera.pending.end();
+  while (missing > 0 && oldest != camera.pending.begin()) {
     --oldest;
-    if (camera.find_frame(oldest->id) != nullptr) --left;
+    if (camera.find_frame(oldest->id) != nullptr) --missing;
   }
-  if (left > 0) return;
-  dropped_.skipped += oldest - camera.waiting.begin();
-  camera.waiting.erase(camera.waiting.begin(), oldest);
+  if (missing > 0) return;
+  dropped_.skipped += oldest - camera.pending.begin();
+  camera.pending.erase(camera.pending.begin(), oldest);
 }
 
 void FrameSynchroniser::drop_unmatchable(Camera& camera) {
   // The second condition bounds memory where detections come and frames do not.
   while (
-      !camera.waiting.empty() && camera.find_frame(camera.waiting.front().id) == nullptr &&
-      (camera.frames_seen - camera.waiting.front().frames_before > kMaxLagFrames || camera.waiting.size() > kHistory)) {
+      !camera.pending.empty() && camera.find_frame(camera.pending.front().id) == nullptr &&
+      (camera.frame_count - camera.pending.front().frames_before > kMaxLagFrames || camera.pending.size() > kHistory)) {
     drop_first(camera);
   }
-  while (camera.waiting.size() > kWaiting) drop_first(camera);
+  while (camera.pending.size() > kMaxPending) drop_first(camera);
 }
 
 SynchronisedMessages FrameSynchroniser::pop_pair(Camera& camera) {
-  const auto selected = camera.waiting.begin() + static_cast<std::ptrdiff_t>(*camera.first_complete());
-  if (selected->id == camera.frames.back().frame.id) camera.fresh = false;
-  const Kept& kept = *camera.find_frame(selected->id);
+  const auto selected = camera.pending.begin() + static_cast<std::ptrdiff_t>(*camera.first_matched());
+  if (selected->id == camera.frames.back().frame.id) camera.has_unmatched_frame = false;
+  const HistoryEntry& entry = *camera.find_frame(selected->id);
   SynchronisedMessages pair;
   pair.id = selected->id;
-  pair.frame = kept.frame.bytes;
-  pair.frame_number = kept.number;
+  pair.frame = entry.frame.bytes;
+  pair.frame_number = entry.number;
   pair.result = std::move(selected->bytes);
   pair.arrival = selected->arrival;
-  camera.turn = ++turns_;
-  camera.waiting.erase(selected);
+  camera.last_served = ++serve_count_;
+  camera.pending.erase(selected);
   return pair;
 }
 
-bool FrameSynchroniser::any_fresh() const {
-  return std::any_of(cameras_.begin(), cameras_.end(), [](const auto& entry) { return entry.second.fresh; });
+bool FrameSynchroniser::has_any_unmatched_frame() const {
+  return std::any_of(cameras_.begin(), cameras_.end(),
+                     [](const auto& entry) { return entry.second.has_unmatched_frame; });
 }
 
 }  // namespace houghstream

@@ -20,8 +20,8 @@
 
 namespace houghstream {
 
-/// Holds an encoded frame.
-struct ArrivedFrame {
+/// An encoded frame of the history.
+struct StoredFrame {
   FrameId id;
   SharedBytes bytes;
 };
@@ -35,7 +35,7 @@ struct SynchronisedMessages {
   std::chrono::steady_clock::time_point arrival;  ///< arrival of the result
 };
 
-/// Decides over each pair before it is handed out; without `decide` every pair goes at once. `decide` is called with
+/// Decides whether each pair is handed out; without `decide` every pair is. `decide` is called with
 /// the synchroniser locked, in the thread that pops, for the oldest pairs first and again for those that must wait.
 struct FrameGate {
   enum class Answer { kGo, kWait, kRefuse };
@@ -43,7 +43,7 @@ struct FrameGate {
     Answer answer = Answer::kGo;
     std::string reason;  ///< reason of a refusal
   };
-  /// The age, in seconds, is that of the pair since it was asked for first.
+  /// `age_s` is the time since this pair was decided on first, seconds.
   std::function<Decision(const FrameId&, double age_s)> decide;
   std::function<std::int64_t()> now_us;  ///< the clock of the ages, microseconds; it may be a log's
   std::string awaited;                   ///< names, in a sentence, what pairs wait for
@@ -59,24 +59,25 @@ class FrameSynchroniser {
   /// earliest goes. The last frame that has come stays, however large it is.
   static constexpr std::size_t kHistory = 64;
   static constexpr std::size_t kHistoryBytes = std::size_t{192} << 20U;
-  /// Maximum number of results of each camera that wait, for their frame or their turn; the oldest are dropped.
-  static constexpr std::size_t kWaiting = 128;
-  /// Bytes of the waiting results of all cameras; above this, the camera with the most drops its oldest.
-  static constexpr std::size_t kAllWaitingBytes = std::size_t{128} << 20U;
-  /// Frames on more channels are refused: a sender of rubbish may make up channels without end.
+  /// Maximum number of pending results of each camera, which wait for their frame or for pop(); the oldest are dropped.
+  static constexpr std::size_t kMaxPending = 128;
+  /// Maximum number of bytes of the pending results of all cameras; above it, the camera with the most results drops
+  /// its oldest.
+  static constexpr std::size_t kMaxPendingBytes = std::size_t{128} << 20U;
+  /// Frames on more channels are refused, since an untrusted sender may make up channels without end.
   static constexpr std::size_t kCameras = 64;
-  /// Maximum number of pairs of all cameras that wait for the gate, and of the bytes of their frames; the oldest are
-  /// refused.
-  static constexpr std::size_t kHeldBack = 1024;
-  static constexpr std::size_t kHeldBackBytes = kHistoryBytes;
+  /// Maximum number of deferred pairs, those of all cameras that wait for the gate, and of the bytes of their frames;
+  /// the oldest are refused.
+  static constexpr std::size_t kMaxDeferred = 1024;
+  static constexpr std::size_t kMaxDeferredBytes = kHistoryBytes;
   /// Results without their frame wait for this many further frames of the camera, then are dropped.
   static constexpr std::int64_t kMaxLagFrames = 30;
 
   /// With `newest_first`, pop() serves the cameras in turn, and drops older results of a camera: one of each of
-  /// its detectors stays. Otherwise everything is processed in the order of arrival. `ahead` enables
-  /// pop_unmatched_frame().
-  explicit FrameSynchroniser(bool newest_first, bool ahead = true, FrameGate gate = {})
-      : newest_first_(newest_first), ahead_(ahead), gate_(std::move(gate)) {}
+  /// its detectors stays. Otherwise everything is processed in the order of arrival. `offers_unmatched_frames`
+  /// enables pop_unmatched_frame().
+  explicit FrameSynchroniser(bool newest_first, bool offers_unmatched_frames = true, FrameGate gate = {})
+      : newest_first_(newest_first), offers_unmatched_frames_(offers_unmatched_frames), gate_(std::move(gate)) {}
 
   /// Throws InputError for one camera too many.
   void add_frame(const FrameId& id, SharedBytes bytes);
@@ -92,7 +93,7 @@ class FrameSynchroniser {
 
   /// Returns the newest frame of a camera, where `newest_first`, and where neither it nor its pair has been popped:
   /// there is time to decode it while its result is on the way. It stays here for it.
-  std::optional<ArrivedFrame> pop_unmatched_frame();
+  std::optional<StoredFrame> pop_unmatched_frame();
 
   /// Frames and results that were dropped since the last call.
   struct Refused {
@@ -100,7 +101,7 @@ class FrameSynchroniser {
     std::string reason;
   };
   struct Dropped {
-    std::int64_t skipped = 0;            ///< passed over for newer ones, or for too many
+    std::int64_t skipped = 0;            ///< dropped for newer ones, or where there were too many
     std::vector<FrameId> without_frame;  ///< results whose frame never came, by its id
     std::vector<Refused> refused;        ///< refused by the gate, or while they waited for it
   };
@@ -110,12 +111,12 @@ class FrameSynchroniser {
   void flush();
 
  private:
-  struct Kept {
-    ArrivedFrame frame;
+  struct HistoryEntry {
+    StoredFrame frame;
     std::int64_t number = 0;  // SynchronisedMessages::frame_number
     ByteBudget::Reservation reservation;
   };
-  struct Waiting {
+  struct PendingResult {
     FrameId id;
     std::vector<std::uint8_t> bytes;
     std::chrono::steady_clock::time_point arrival;
@@ -123,26 +124,26 @@ class FrameSynchroniser {
     std::int64_t frames_before = 0;  // frames of the camera that had arrived when it did
     ByteBudget::Reservation reservation;
   };
-  struct HeldBack {
+  struct DeferredPair {
     SynchronisedMessages pair;
     std::int64_t since_us = 0;            // time on the gate's clock
     ByteBudget::Reservation reservation;  // bytes of the frame, which may have left the history
   };
   struct Camera {
-    std::deque<Kept> frames;      // the newest last
-    std::deque<Waiting> waiting;  // results in the order of arrival
-    std::int64_t frames_seen = 0;
-    bool fresh = false;     // the last frame may be taken ahead
-    std::int64_t turn = 0;  // when it was served last
+    std::deque<HistoryEntry> frames;    // the newest last
+    std::deque<PendingResult> pending;  // results in the order of arrival
+    std::int64_t frame_count = 0;
+    bool has_unmatched_frame = false;  // whether pop_unmatched_frame() may return the last frame
+    std::int64_t last_served = 0;      // value of serve_count_ when it was served last
 
-    const Kept* find_frame(const FrameId& id) const;
-    std::optional<std::size_t> first_complete() const;
+    const HistoryEntry* find_frame(const FrameId& id) const;
+    std::optional<std::size_t> first_matched() const;
   };
 
-  Camera& camera_of(const std::string& channel);
+  Camera& find_or_add_camera(const std::string& channel);
   Camera& largest_camera();
   void limit_frame_bytes();
-  void limit_waiting_bytes();
+  void limit_pending_bytes();
   Camera* next_camera();
   void drop_stale(const std::string& channel, Camera& camera);
   void drop_first(Camera& camera);
@@ -150,23 +151,23 @@ class FrameSynchroniser {
   SynchronisedMessages pop_pair(Camera& camera);
   std::optional<SynchronisedMessages> next_pair();
   FrameGate::Answer decide_by_gate(const FrameId& id, std::int64_t since_us);
-  void hold_back(SynchronisedMessages pair, std::int64_t since_us);
-  bool any_fresh() const;
+  void defer(SynchronisedMessages pair, std::int64_t since_us);
+  bool has_any_unmatched_frame() const;
 
   bool newest_first_;
-  bool ahead_;
+  bool offers_unmatched_frames_;
   FrameGate gate_;
   std::mutex mutex_;
   std::condition_variable changed_;
   ByteBudget frame_bytes_;                 // frames of all cameras
-  ByteBudget waiting_bytes_;               // results of all cameras
-  ByteBudget held_back_bytes_;             // frames of pairs that wait for the gate
+  ByteBudget pending_bytes_;               // results of all cameras
+  ByteBudget deferred_bytes_;              // frames of pairs that wait for the gate
   std::map<std::string, Camera> cameras_;  // by channel name
-  std::deque<HeldBack> held_back_;         // oldest first
+  std::deque<DeferredPair> deferred_;      // oldest first
   DetectorCount detectors_;
-  std::int64_t arrivals_ = 0;  // results that have arrived
-  std::int64_t frames_ = 0;    // frames that have arrived
-  std::int64_t turns_ = 0;
+  std::int64_t result_count_ = 0;  // results that have arrived
+  std::int64_t frame_count_ = 0;   // frames that have arrived
+  std::int64_t serve_count_ = 0;
   Dropped dropped_;
 };
 

@@ -7,17 +7,17 @@ namespace houghstream {
 
 std::optional<std::string> ModelCheck::note(const Detections& detections) {
   constexpr int kMinSamples = 10;
-  if (settled_ || models_.empty() || detections.detections.empty()) return std::nullopt;
+  if (is_done_ || models_.empty() || detections.detections.empty()) return std::nullopt;
   for (const Detection& detection : detections.detections) {
     detected_.insert(detection.class_name);
-    settled_ = settled_ || models_.count(detection.class_name) > 0;
+    is_done_ = is_done_ || models_.count(detection.class_name) > 0;
   }
-  return ++checked_ < kMinSamples ? std::nullopt : at_end();
+  return ++checked_ < kMinSamples ? std::nullopt : finish();
 }
 
-std::optional<std::string> ModelCheck::at_end() {
-  if (settled_ || checked_ == 0) return std::nullopt;
-  settled_ = true;
+std::optional<std::string> ModelCheck::finish() {
+  if (is_done_ || checked_ == 0) return std::nullopt;
+  is_done_ = true;
   return fmt::format("none of what was detected has a model: detected are {}; there are models of {}",
                      fmt::join(detected_, ", "), fmt::join(models_, ", "));
 }

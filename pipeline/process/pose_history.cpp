@@ -5,7 +5,7 @@
 namespace houghstream {
 namespace {
 
-bool share_a_class(const ObjectPoses& poses, const Detections& detections) {
+bool has_common_class(const ObjectPoses& poses, const Detections& detections) {
   return std::any_of(poses.poses.begin(), poses.poses.end(), [&](const ObjectPose& pose) {
     return std::any_of(detections.detections.begin(), detections.detections.end(),
                        [&](const Detection& detection) { return detection.class_name == pose.class_name; });
@@ -30,29 +30,29 @@ std::vector<std::string> PoseHistory::note_classes(const Detections& detections,
     *known = {detections.frame, frame_number, std::move(names)};
     return {};
   }
-  std::vector<std::string> found_twice;
+  std::vector<std::string> duplicates;
   for (const std::string& name : names) {
-    if (!known->names.insert(name).second) found_twice.push_back(name);
+    if (!known->names.insert(name).second) duplicates.push_back(name);
   }
-  return found_twice;
+  return duplicates;
 }
 
 ObjectPoses PoseHistory::find_warm_start(const Detections& detections) const {
   const auto camera = cameras_.find(detections.frame.channel);
   if (camera == cameras_.end()) return {};
-  const std::deque<ObjectPoses>& kept = camera->second;
-  if (detectors_.of(detections.frame.channel) == 1) return kept.back();
-  const auto found = std::find_if(kept.rbegin(), kept.rend(), [&](const ObjectPoses& poses) {
-    return poses.frame.utime < detections.frame.utime && share_a_class(poses, detections);
+  const std::deque<ObjectPoses>& history = camera->second;
+  if (detectors_.estimate(detections.frame.channel) == 1) return history.back();
+  const auto found = std::find_if(history.rbegin(), history.rend(), [&](const ObjectPoses& poses) {
+    return poses.frame.utime < detections.frame.utime && has_common_class(poses, detections);
   });
-  return found == kept.rend() ? ObjectPoses{} : *found;
+  return found == history.rend() ? ObjectPoses{} : *found;
 }
 
 void PoseHistory::add(const ObjectPoses& poses) {
   constexpr std::size_t kResults = 16;
-  std::deque<ObjectPoses>& kept = cameras_[poses.frame.channel];
-  kept.push_back(poses);
-  if (kept.size() > kResults) kept.pop_front();
+  std::deque<ObjectPoses>& history = cameras_[poses.frame.channel];
+  history.push_back(poses);
+  if (history.size() > kResults) history.pop_front();
   detectors_.note_result(poses.frame);
 }
 

@@ -84,7 +84,7 @@ class PoseProcess {
         reception_(bus, status_, options.frame_channels, options.keep_frames),
         synchroniser_(!bus.is_log(), !follow),
         decoded_(options.camera, "pose.decode"),
-        models_(options.models),
+        model_check_(options.models),
         transforms_(bus, options.frame_channels, options.frames) {}
 
   void run() {
@@ -108,10 +108,11 @@ class PoseProcess {
       synchroniser_.flush();
       count_dropped();
     }
-    warn(models_.at_end());
+    warn(model_check_.finish());
     if (!follow_) log_missing_frames();
     if (follow_ && detections_ > 0)
-      log_info("looks: {} came, {} answered, {} passed over for newer ones", detections_.load(), answered_, overtaken_);
+      log_info("looks: {} came, {} answered, {} passed over for newer ones", detections_.load(), processed_results_,
+               skipped_results_);
     end_process(bus_, status_);
   }
 
@@ -121,10 +122,10 @@ class PoseProcess {
     synchroniser_.add_frame(frame.id, bytes);  // refuses one camera too many
     if (!follow_) return;
     EncodedFrame encoded{frame.id, bytes, frame.time};
-    const bool passed_over = frame.order == FrameOrder::kLate
-                                 ? newest_.push_late(frame.id.channel, std::move(encoded), bytes->size())
-                                 : newest_.push(frame.id.channel, std::move(encoded), bytes->size());
-    if (passed_over) status_.count_skipped(1);
+    const bool is_skipped = frame.order == FrameOrder::kLate
+                                ? newest_.push_late(frame.id.channel, std::move(encoded), bytes->size())
+                                : newest_.push(frame.id.channel, std::move(encoded), bytes->size());
+    if (is_skipped) status_.count_skipped(1);
   }
 
   void add_detections(const ReceivedResult& detections) {
@@ -191,10 +192,10 @@ class PoseProcess {
       return false;
     }
     try {
-      const ObjectPoses poses = poses_of(*pair);
+      const ObjectPoses poses = estimate_poses(*pair);
       publish(poses);
       if (follow_) {
-        ++answered_;
+        ++processed_results_;
       } else {
         publish_camera(poses.frame);
         transforms_.publish(poses);
@@ -208,15 +209,15 @@ class PoseProcess {
 
   // Decodes a camera's newest frame while its detections are on the way. An error is reported when they come.
   void decode_ahead() {
-    const std::optional<ArrivedFrame> fresh = synchroniser_.pop_unmatched_frame();
-    if (!fresh) return;
+    const std::optional<StoredFrame> unmatched = synchroniser_.pop_unmatched_frame();
+    if (!unmatched) return;
     try {
-      decoded_.decode(fresh->bytes, fresh->id.channel);
+      decoded_.decode(unmatched->bytes, unmatched->id.channel);
     } catch (const InputError&) {
     }
   }
 
-  ObjectPoses poses_of(const SynchronisedMessages& pair) {
+  ObjectPoses estimate_poses(const SynchronisedMessages& pair) {
     Detections detections =
         detections_from_message(decode_message<detections_t>({pair.result.data(), pair.result.size()}));
     if (!bus_.is_log()) require_max_detections(detections);
@@ -224,8 +225,8 @@ class PoseProcess {
     const DecodedFrames::Decoded frame = decoded_.decode(pair.frame, pair.id.channel);
     detections.stages.push_back(frame->stages.back());
     if (!follow_) warn_of_shared_classes(detections, pair.frame_number);
-    update_models();
-    warn(models_.note(detections));
+    update_model_check();
+    warn(model_check_.note(detections));
     ObjectPoses poses = estimate_(*frame, detections, follow_ ? ObjectPoses{} : history_.find_warm_start(detections));
     poses.frame = pair.id;
     if (!follow_) history_.add(poses);
@@ -241,9 +242,9 @@ class PoseProcess {
   }
 
   // The objects of a store may have changed meanwhile.
-  void update_models() {
-    if (!options_.objects || models_.settled()) return;
-    for (const KnownObject& object : options_.objects().objects) models_.add_model(object.name);
+  void update_model_check() {
+    if (!options_.objects || model_check_.is_done()) return;
+    for (const KnownObject& object : options_.objects().objects) model_check_.add_model(object.name);
   }
 
   static void warn(const std::optional<std::string>& words) {
@@ -253,7 +254,7 @@ class PoseProcess {
   void count_dropped() {
     const FrameSynchroniser::Dropped dropped = synchroniser_.pop_dropped();
     if (follow_) {
-      overtaken_ += dropped.skipped;
+      skipped_results_ += dropped.skipped;
     } else {
       status_.count_skipped(dropped.skipped);
     }
@@ -292,12 +293,12 @@ class PoseProcess {
   FrameSynchroniser synchroniser_;
   DecodedFrames decoded_;
   PoseHistory history_;
-  ModelCheck models_;
+  ModelCheck model_check_;
   TransformPublisher transforms_;
   std::map<std::string, std::int64_t> camera_sent_us_;  // frame time by camera
   std::int64_t without_frame_ = 0;                      // detections
-  std::int64_t answered_ = 0;                           // detections processed while following
-  std::int64_t overtaken_ = 0;                          // passed over for newer ones, before they were answered
+  std::int64_t processed_results_ = 0;                  // results processed while following
+  std::int64_t skipped_results_ = 0;                    // results dropped for newer ones while following
   // These are set by the receiving thread.
   std::set<std::string> cameras_;                         // cameras that detections name
   std::atomic<std::int64_t> detections_{0};               // detections of frames on these channels

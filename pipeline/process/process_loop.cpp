@@ -19,15 +19,15 @@ namespace {
 using std::chrono::milliseconds;
 
 // Interval at which stop signals are polled.
-constexpr milliseconds kTimeout(100);
+constexpr milliseconds kPollInterval(100);
 
 // Interval at which freed memory is given back to the system. It takes some milliseconds, in which no thread allocates.
 constexpr std::chrono::seconds kMemoryInterval(60);
 
 void play_log(LcmBus& bus, const WorkStep& work, const WorkStep& background) {
-  constexpr milliseconds kNow(0);
-  while (!stop_requested() && bus.handle(kTimeout)) {
-    while (work(kNow) || (background && background(kNow))) {
+  constexpr milliseconds kNoWait(0);
+  while (!stop_requested() && bus.handle(kPollInterval)) {
+    while (work(kNoWait) || (background && background(kNoWait))) {
     }
   }
   require(!stop_requested(), "{}: stopped before its end, no output is written", bus.url());
@@ -44,7 +44,7 @@ class Receiver {
   Receiver(const Receiver&) = delete;
   Receiver& operator=(const Receiver&) = delete;
 
-  bool running() const { return running_; }
+  bool is_running() const { return running_; }
 
   /// Ends the thread and rethrows what stopped it.
   void finish() {
@@ -61,7 +61,7 @@ class Receiver {
   void receive() noexcept {
     try {
       while (running_) {
-        bus_.handle(kTimeout);
+        bus_.handle(kPollInterval);
         // A hung process publishes no status.
         if (!work_.is_beating() || !status_.publish_if_due(bus_)) continue;
         notify_service("WATCHDOG=1");
@@ -110,10 +110,10 @@ class BackgroundWorker {
 
  private:
   void run() {
-    constexpr int kPolite = 2;
-    if (nice(kPolite) == -1) log_debug("the priority of the work in the background cannot be lowered");
-    const SerialScope alone;  // its helpers would be of its priority, and kept for the others
-    while (running_) work_(kTimeout);
+    constexpr int kNiceIncrement = 2;
+    if (nice(kNiceIncrement) == -1) log_debug("the priority of the work in the background cannot be lowered");
+    const SerialScope serial;  // threads that it starts would inherit its priority and be reused by others
+    while (running_) work_(kPollInterval);
   }
 
   const WorkStep& work_;
@@ -127,13 +127,13 @@ void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work,
   if (bus.is_log()) {
     play_log(bus, work, background);
   } else {
-    Heartbeat heart;
+    Heartbeat heartbeat;
     const BackgroundWorker worker(background);
-    Receiver receiver(bus, status, heart);
+    Receiver receiver(bus, status, heartbeat);
     notify_service("READY=1");
-    while (!stop_requested() && receiver.running()) {
-      work(kTimeout);
-      heart.beat();
+    while (!stop_requested() && receiver.is_running()) {
+      work(kPollInterval);
+      heartbeat.beat();
     }
     notify_service("STOPPING=1");
     receiver.finish();

@@ -8,7 +8,7 @@
 
 namespace houghstream {
 
-/// Works on the next item that has come in, waiting for one up to the given time; false where there was none.
+/// Processes the next item, waiting for one up to the given time; returns false where there was none.
 using WorkStep = std::function<bool(std::chrono::milliseconds)>;
 
 /// Runs a process until SIGINT or SIGTERM, or to the end of a log. On a network one thread receives, so that
@@ -18,11 +18,11 @@ using WorkStep = std::function<bool(std::chrono::milliseconds)>;
 /// the log is damaged or was not read to its end.
 ///
 /// `background` is work that the rest does not wait for: on a network a second thread, of low priority and without
-/// helpers, does it; of a log it has its turn where `work` has nothing left.
+/// helpers, does it; in a log it runs where `work` has nothing left to do.
 void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work, const WorkStep& background = {});
 
-/// Publishes the final status for receivers that add up, logs the account, and ends the output log. Throws InputError
-/// where that cannot be ended, or has nothing in it (LcmBus::close()).
+/// Publishes the final status, so that receivers have the totals, logs its summary, and ends the output log.
+/// Throws InputError where that cannot be ended, or has nothing in it (LcmBus::close()).
 void end_process(LcmBus& bus, StatusReporter& status);
 
 }  // namespace houghstream

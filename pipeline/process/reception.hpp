@@ -20,7 +20,7 @@ namespace houghstream {
 using SharedBytes = std::shared_ptr<const std::vector<std::uint8_t>>;
 SharedBytes shared_copy(ByteView bytes);
 
-/// A frame as it has arrived; its bytes are valid during the handler's call only.
+/// A received frame; its bytes are valid during the handler's call only.
 struct ReceivedFrame {
   FrameId id;
   FrameOrder order = FrameOrder::kNext;
@@ -28,22 +28,23 @@ struct ReceivedFrame {
   std::chrono::steady_clock::time_point time;
 };
 
-/// A frame that is kept until it is worked on.
+/// A received frame that waits to be decoded.
 struct EncodedFrame {
   FrameId id;
   SharedBytes bytes;
   std::chrono::steady_clock::time_point arrival;
 };
 
-/// Detections or poses as they have arrived, with the frame that they are about; the bytes likewise.
+/// Received detections or poses, with the frame that they are about; the bytes are valid during the handler's call
+/// only.
 struct ReceivedResult {
   FrameId id;
   ByteView bytes;
   std::chrono::steady_clock::time_point time;
 };
 
-/// Account of a subscription: messages that status_t counts as received and refused, or others, whose faults are
-/// counted separately.
+/// Account of status_t to which the messages of a subscription are added: those that it counts as received and refused,
+/// or others, of which only faults are counted, separately.
 enum class Account { kReceived, kOthers };
 
 /// Subscribes to what a process works on, and checks and counts each message before the process sees it. A message that
@@ -59,10 +60,10 @@ class Reception {
   using ResultHandler = std::function<void(const ReceivedResult&)>;
   using OtherCameraHandler = std::function<void(const FrameId&)>;
 
-  /// `frame_channels` is a ChannelPattern: where it is an expression, what is no images_t on these channels is passed
-  /// over. `keep`: frames, and results of them, go to the output log as they come. Throws InputError where they are to
-  /// be kept without a log.
-  Reception(LcmBus& bus, StatusReporter& status, const std::string& frame_channels, bool keep = false);
+  /// `frame_channels` is a ChannelPattern: where it is an expression, messages of other types than images_t on these
+  /// channels are ignored. `keep_frames`: frames, and results of them, are copied to the output log as they come.
+  /// Throws InputError where that is asked for without a log.
+  Reception(LcmBus& bus, StatusReporter& status, const std::string& frame_channels, bool keep_frames = false);
 
   void subscribe_to_frames(Account account, FrameHandler handler);
 
@@ -102,18 +103,18 @@ class Reception {
   };
 
   void subscribe_to_results(MessageType type, const std::string& channel, Account account, ResultHandlers handlers);
-  /// `take` returns whether the message counts.
-  void receive(const ReceivedMessage& message, Account account, const std::function<bool()>& take);
-  bool take_frame(const ReceivedMessage& message, const FrameHandler& handler);
-  bool take_result(const ReceivedMessage& message, const ResultHandlers& handlers, DuplicateFilter& duplicates);
-  void note_event(const ReceivedMessage& message);
+  /// `handle` returns whether the message counts.
+  void receive(const ReceivedMessage& message, Account account, const std::function<bool()>& handle);
+  bool handle_frame(const ReceivedMessage& message, const FrameHandler& handler);
+  bool handle_result(const ReceivedMessage& message, const ResultHandlers& handlers, DuplicateFilter& duplicates);
+  void advance_log_clock(const ReceivedMessage& message);
 
   LcmBus& bus_;
   StatusReporter& status_;
   ChannelPattern pattern_;
-  bool keep_;
+  bool keep_frames_;
   std::optional<std::int64_t> event_us_;  // time of a log's last event
-  std::int64_t log_us_ = 0;
+  std::int64_t log_clock_us_ = 0;
 };
 
 }  // namespace houghstream

@@ -11,11 +11,12 @@ namespace houghstream {
 /// codecs' are ready when the first real frame comes.
 RgbdFrame make_warm_up_frame();
 
-/// Makes it in a thread of its own while the caller reads forest or models, and has OpenCV's tables for L*a*b*, which
-/// take a tenth of a second, made there too: before several threads ask for them at once.
+/// Makes that frame in a thread of its own while the caller reads forest or models. The thread also initialises
+/// OpenCV's tables for L*a*b*, which takes a tenth of a second, before several threads need them at once.
 std::shared_future<RgbdFrame> start_warm_up();
 
-/// Threads for what is done once, before the first frame: all cores, however many the work on frames is given.
+/// Returns the number of threads for work before the first frame: all cores up to eight, even where the work on frames
+/// has fewer.
 int warm_up_threads(int threads_of_work);
 
 }  // namespace houghstream

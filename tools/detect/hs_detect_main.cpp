@@ -65,8 +65,8 @@ std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& sto
 /// Lowers the priority of this thread and of all threads that it starts from here on: where the rate of detections is
 /// limited, hs-pose follows objects from frame to frame and goes first.
 void lower_priority() {
-  constexpr int kPolite = 2;
-  if (nice(kPolite) == -1) log_debug("the priority of looks cannot be lowered");
+  constexpr int kNiceIncrement = 2;
+  if (nice(kNiceIncrement) == -1) log_debug("the priority of looks cannot be lowered");
 }
 
 /// Holds the colours that hs-pose has learnt last of each camera. Every function may be called from any thread.

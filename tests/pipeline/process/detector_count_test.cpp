@@ -7,16 +7,16 @@ namespace {
 
 TEST(DetectorCount, IsHowManyResultsAFrameHadOfLate) {
   DetectorCount detectors;
-  EXPECT_EQ(detectors.of("LEFT"), 1);
+  EXPECT_EQ(detectors.estimate("LEFT"), 1);
   detectors.note_result({"LEFT", 1});
   detectors.note_result({"RIGHT", 1});
-  EXPECT_EQ(detectors.of("LEFT"), 1) << "the other one's is another frame";
+  EXPECT_EQ(detectors.estimate("LEFT"), 1) << "the other one's is another frame";
   detectors.note_result({"LEFT", 2});
   detectors.note_result({"LEFT", 1});
-  EXPECT_EQ(detectors.of("LEFT"), 2);
-  EXPECT_EQ(detectors.of("RIGHT"), 1);
+  EXPECT_EQ(detectors.estimate("LEFT"), 2);
+  EXPECT_EQ(detectors.estimate("RIGHT"), 1);
   for (int i = 10; i < 30; ++i) detectors.note_result({"LEFT", i});
-  EXPECT_EQ(detectors.of("LEFT"), 1) << "one of them is gone";
+  EXPECT_EQ(detectors.estimate("LEFT"), 1) << "one of them is gone";
 }
 
 TEST(DetectorCount, AFrameThatComesAgainIsCountedAnew) {
@@ -25,7 +25,7 @@ TEST(DetectorCount, AFrameThatComesAgainIsCountedAnew) {
   detectors.forget({"LEFT", 1});
   detectors.forget({"NONE", 1});
   detectors.note_result({"LEFT", 1});
-  EXPECT_EQ(detectors.of("LEFT"), 1);
+  EXPECT_EQ(detectors.estimate("LEFT"), 1);
 }
 
 TEST(DetectorCount, ASecondRunWithTheSameStampsIsNoSecondDetector) {
@@ -34,7 +34,7 @@ TEST(DetectorCount, ASecondRunWithTheSameStampsIsNoSecondDetector) {
     for (int utime = 0; utime < 8; ++utime) {
       detectors.note_frame({"LEFT", utime});
       detectors.note_result({"LEFT", utime});
-      EXPECT_EQ(detectors.of("LEFT"), 1) << run << " " << utime;
+      EXPECT_EQ(detectors.estimate("LEFT"), 1) << run << " " << utime;
     }
   }
 }
@@ -44,10 +44,10 @@ TEST(DetectorCount, AResultMayComeBeforeItsFrame) {
   detectors.note_result({"LEFT", 1});
   detectors.note_frame({"LEFT", 1});
   detectors.note_result({"LEFT", 1});
-  EXPECT_EQ(detectors.of("LEFT"), 2) << "of the same frame";
+  EXPECT_EQ(detectors.estimate("LEFT"), 2) << "of the same frame";
   detectors.note_frame({"LEFT", 1});
   detectors.note_result({"LEFT", 1});
-  EXPECT_EQ(detectors.of("LEFT"), 1) << "of another one of that name";
+  EXPECT_EQ(detectors.estimate("LEFT"), 1) << "of another one of that name";
 }
 
 TEST(DetectorCount, RemembersAFewCamerasOnly) {
@@ -57,8 +57,8 @@ TEST(DetectorCount, RemembersAFewCamerasOnly) {
     detectors.note_result({"one more", 1});
     detectors.note_result({"0", 1});
   }
-  EXPECT_EQ(detectors.of("one more"), 1);
-  EXPECT_EQ(detectors.of("0"), 3);
+  EXPECT_EQ(detectors.estimate("one more"), 1);
+  EXPECT_EQ(detectors.estimate("0"), 3);
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST(FrameSynchroniser, TheNewestFrameMayBeTakenAheadOnce) {
   synchroniser.add_frame(id(1), arrived_bytes(11));
   synchroniser.add_frame(id(2), arrived_bytes(12));
   EXPECT_FALSE(synchroniser.pop(std::chrono::minutes(1)).has_value()) << "does not wait: a frame has come";
-  const std::optional<ArrivedFrame> fresh = synchroniser.pop_unmatched_frame();
+  const std::optional<StoredFrame> fresh = synchroniser.pop_unmatched_frame();
   ASSERT_TRUE(fresh.has_value());
   EXPECT_EQ(fresh->id, id(2));
   EXPECT_EQ(*fresh->bytes, bytes(12));
@@ -158,11 +158,11 @@ TEST(FrameSynchroniser, PairsThatWaitForTheGateAreKeptWithinBounds) {
     TestGate test;
     FrameSynchroniser synchroniser(false, false, test.gate());
     constexpr std::int64_t kLargeKept = 4;
-    const std::int64_t kept = large ? kLargeKept : static_cast<std::int64_t>(FrameSynchroniser::kHeldBack);
+    const std::int64_t kept = large ? kLargeKept : static_cast<std::int64_t>(FrameSynchroniser::kMaxDeferred);
     for (std::int64_t i = 1; i <= kept + kMore; ++i) {
       add_pair(synchroniser, i,
                std::make_shared<const std::vector<std::uint8_t>>(
-                   large ? FrameSynchroniser::kHeldBackBytes / static_cast<std::size_t>(kLargeKept) : 1));
+                   large ? FrameSynchroniser::kMaxDeferredBytes / static_cast<std::size_t>(kLargeKept) : 1));
       EXPECT_FALSE(synchroniser.pop(kNow).has_value());
     }
     const std::vector<FrameSynchroniser::Refused> refused = synchroniser.pop_dropped().refused;
@@ -212,9 +212,9 @@ TEST(FrameSynchroniser, MemoryIsBoundedWhereResultsOfOneFrameComeWithoutEnd) {
     for (int i = 0; i < count; ++i) synchroniser.add_result(id(1), {1, static_cast<std::uint8_t>(i)});
     std::size_t taken = 0;
     while (synchroniser.pop(kNow)) ++taken;
-    EXPECT_EQ(taken, FrameSynchroniser::kWaiting);
+    EXPECT_EQ(taken, FrameSynchroniser::kMaxPending);
     const FrameSynchroniser::Dropped dropped = synchroniser.pop_dropped();
-    EXPECT_EQ(dropped.skipped, count - static_cast<std::int64_t>(FrameSynchroniser::kWaiting));
+    EXPECT_EQ(dropped.skipped, count - static_cast<std::int64_t>(FrameSynchroniser::kMaxPending));
     EXPECT_TRUE(dropped.without_frame.empty());
   }
 }
@@ -342,7 +342,7 @@ TEST(FrameSynchroniser, LargeDetectionsOfManyCamerasAreKeptWithinABound) {
     for (int camera = 0; camera < kCameras; ++camera)
       synchroniser.add_result({std::to_string(camera), i}, std::vector<std::uint8_t>(Reception::kMaxResultBytes));
   }
-  constexpr std::size_t kMax = FrameSynchroniser::kAllWaitingBytes / Reception::kMaxResultBytes;
+  constexpr std::size_t kMax = FrameSynchroniser::kMaxPendingBytes / Reception::kMaxResultBytes;
   EXPECT_EQ(synchroniser.pop_dropped().without_frame.size(), kCameras * 60 - kMax);
   for (int camera = 0; camera < kCameras; ++camera)
     synchroniser.add_frame({std::to_string(camera), 59}, arrived_bytes(1));

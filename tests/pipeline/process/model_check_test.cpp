@@ -18,24 +18,24 @@ TEST(ModelCheck, NamesBothSidesOnceWhereTheyShareNothing) {
   EXPECT_EQ(check.note(detected("bowl")),
             "none of what was detected has a model: detected are bowl, box; there are models of can, mug");
   EXPECT_FALSE(check.note(detected("bowl")).has_value());
-  EXPECT_FALSE(check.at_end().has_value());
+  EXPECT_FALSE(check.finish().has_value());
 }
 
 TEST(ModelCheck, AShortRunIsToldAtItsEnd) {
   ModelCheck check({"mug"});
-  EXPECT_FALSE(check.at_end().has_value());
+  EXPECT_FALSE(check.finish().has_value());
   EXPECT_FALSE(check.note(detected("bowl")).has_value());
-  EXPECT_TRUE(check.at_end().has_value());
+  EXPECT_TRUE(check.finish().has_value());
 }
 
 TEST(ModelCheck, OneCommonClassIsEnough) {
   ModelCheck check({"mug"});
   check.note(detected("mug"));
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(check.note(detected("bowl")).has_value());
-  EXPECT_FALSE(check.at_end().has_value());
+  EXPECT_FALSE(check.finish().has_value());
   ModelCheck without({});
   without.note(detected("bowl"));
-  EXPECT_FALSE(without.at_end().has_value()) << "that there are no models is said elsewhere";
+  EXPECT_FALSE(without.finish().has_value()) << "that there are no models is said elsewhere";
 }
 
 }  // namespace
