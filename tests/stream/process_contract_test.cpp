@@ -79,9 +79,9 @@ void run_follow(LcmBus& bus, const RunOptions& run) {
 void run_track(LcmBus& bus, const RunOptions& run) {
   track::TrackProcessOptions options;
   options.frame_channels = run.frame_channels;
-  options.places[channel::kFrame] = Eigen::Isometry3d::Identity();
+  options.camera_poses[channel::kFrame] = Eigen::Isometry3d::Identity();
   for (std::size_t i = 0; i <= FrameSynchroniser::kCameras; ++i)
-    options.places[numbered_camera(i)] = Eigen::Isometry3d::Identity();
+    options.camera_poses[numbered_camera(i)] = Eigen::Isometry3d::Identity();
   const auto models = std::make_shared<const tracks::TrackModels>();
   track::run_track_process(bus, options, [&] { return models; });
 }

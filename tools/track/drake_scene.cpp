@@ -111,7 +111,7 @@ void add_axes(const ObjectFrame& frame, drake_viewer_link_data_t& link) {
   }
 }
 
-constexpr float kBoxM = 0.05F;  // side of the box in place of a mesh
+constexpr float kBox_m = 0.05F;  // side of the box in place of a mesh
 
 /// Viewers make folders of "::" and "/".
 std::string link_name(const TrackedObject& object) {
@@ -178,7 +178,7 @@ DrakeScene::DrakeScene(std::filesystem::path mesh_folder) : folder_(std::move(me
 void DrakeScene::set_models(const tracks::TrackModels& models) {
   meshes_.clear();
   frames_.clear();
-  told_.clear();
+  warned_.clear();
   changed_ = true;
   for (const auto& [name, model] : models) {
     frames_[name] = model.frames;
@@ -186,17 +186,17 @@ void DrakeScene::set_models(const tracks::TrackModels& models) {
       meshes_.emplace(name, write_viewer_mesh(model.mesh, name, folder_));
     } catch (const InputError& error) {
       log_warning("Drake's viewers show a box in place of {}: {}", name, error.what());
-      told_.insert(name);
+      warned_.insert(name);
     }
   }
 }
 
 DrakeScene::Messages DrakeScene::messages(const WorldObjects& world) {
-  constexpr std::int64_t kAgainUs = 10000000;
+  constexpr std::int64_t kReloadInterval_us = 10000000;
   Messages out;
   std::vector<std::string> links = shown_links(world);
   const std::int64_t age = microseconds_between(load_utime_, world.frame.utime);
-  if (changed_ || !loaded_ || links != *loaded_ || age >= kAgainUs || age <= -kAgainUs) {
+  if (changed_ || !loaded_ || links != *loaded_ || age >= kReloadInterval_us || age <= -kReloadInterval_us) {
     out.load = load_message(world);
     loaded_ = std::move(links);
     changed_ = false;
@@ -229,14 +229,14 @@ drake_viewer_geometry_data_t DrakeScene::shape_of(const std::string& class_name)
   std::fill_n(shape.color, 4, 1.0F);
   const auto mesh = meshes_.find(class_name);
   if (mesh == meshes_.end()) {
-    constexpr std::size_t kMaxTold = 64;  // a sender of rubbish may make up classes without end
-    if (told_.size() < kMaxTold && told_.insert(class_name).second)
+    constexpr std::size_t kMaxWarned = 64;  // an untrusted sender may make up classes without end
+    if (warned_.size() < kMaxWarned && warned_.insert(class_name).second)
       log_warning(
           "Drake's viewers show a box in place of {}: its model is not known here, expected it in --objects or "
           "--models",
           class_name);
     shape.type = drake_viewer_geometry_data_t::BOX;
-    shape.float_data.assign(3, kBoxM);
+    shape.float_data.assign(3, kBox_m);
   } else {
     shape.type = drake_viewer_geometry_data_t::MESH;
     shape.string_data = mesh->second.file;

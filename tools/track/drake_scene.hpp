@@ -54,7 +54,7 @@ class DrakeScene {
   std::filesystem::path folder_;
   std::map<std::string, ViewerMesh> meshes_;                // meshes by class
   std::map<std::string, std::vector<ObjectFrame>> frames_;  // named frames by class
-  std::set<std::string> told_;                              // classes without a mesh
+  std::set<std::string> warned_;                            // classes without a mesh, of which a warning was logged
   std::optional<std::vector<std::string>> loaded_;
   bool changed_ = false;
   std::int64_t load_utime_ = 0;

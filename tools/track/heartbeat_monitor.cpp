@@ -24,13 +24,13 @@ void HeartbeatMonitor::on_status(const ReceivedMessage& arrival) {
 }
 
 std::vector<std::string> HeartbeatMonitor::pop_timed_out(std::int64_t now_us) {
-  constexpr std::int64_t kSilentUs = 3000000;
+  constexpr std::int64_t kTimeout_us = 3000000;
   const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<std::string> out;
   for (auto it = last_.begin(); it != last_.end();) {
-    const bool silent = now_us - it->second > kSilentUs;
-    if (silent) out.push_back(it->first);
-    it = silent ? last_.erase(it) : std::next(it);
+    const bool is_timed_out = now_us - it->second > kTimeout_us;
+    if (is_timed_out) out.push_back(it->first);
+    it = is_timed_out ? last_.erase(it) : std::next(it);
   }
   return out;
 }
@@ -38,7 +38,7 @@ std::vector<std::string> HeartbeatMonitor::pop_timed_out(std::int64_t now_us) {
 void HeartbeatMonitor::log_timed_out(std::int64_t now_us) {
   for (const std::string& name : pop_timed_out(now_us)) {
     const std::string line = name + ": no heartbeat for 3 s; objects that only it detects are no longer updated";
-    const auto admitted = lines_.admit(name, line, std::chrono::steady_clock::now());
+    const auto admitted = throttle_.admit(name, line, std::chrono::steady_clock::now());
     if (admitted) log_warning("{}", *admitted);
   }
 }

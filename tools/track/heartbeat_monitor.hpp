@@ -32,11 +32,11 @@ class HeartbeatMonitor {
   void log_timed_out(std::int64_t now_us);
 
  private:
-  static constexpr std::size_t kProcesses = 64;  // a sender of rubbish may make up numbers without end
+  static constexpr std::size_t kProcesses = 64;  // an untrusted sender may make up numbers without end
 
   std::mutex mutex_;
   std::map<std::string, std::int64_t> last_;
-  LogThrottle lines_;
+  LogThrottle throttle_;
 };
 
 }  // namespace houghstream::track

@@ -121,8 +121,9 @@ int main(int argc, char** argv) {
       require_other_file(options.output_log, input);
     if (options.drake_viewer)
       options.process.output.drake_meshes = cache_folder("one of them for the meshes of --drake-viewer") / "meshes";
-    if (!options.cameras_file.empty()) options.process.places = tracks::read_camera_extrinsics(options.cameras_file);
-    for (const std::string& text : options.camera_poses) tracks::add_camera_pose(text, options.process.places);
+    if (!options.cameras_file.empty())
+      options.process.camera_poses = tracks::read_camera_extrinsics(options.cameras_file);
+    for (const std::string& text : options.camera_poses) tracks::add_camera_pose(text, options.process.camera_poses);
     options.objects.empty() ? run_with_models(options) : run_with_store(options);
   });
 }

@@ -34,7 +34,7 @@ class TrackProcess {
         used_models_(models()),
         tracker_(*used_models_, {}),
         output_(bus, options.output),
-        world_(options.places) {
+        world_reference_(options.camera_poses) {
     output_.set_models(*used_models_);
   }
 
@@ -87,7 +87,7 @@ class TrackProcess {
 
   void add_transform(const rigid_transform_t& message, const std::string& channel) {
     constexpr std::size_t kSuffix = 9;  // length of "_TO_WORLD"
-    world_.add(channel.substr(0, channel.size() - kSuffix), message.utime, transform_from_message(message));
+    world_reference_.add(channel.substr(0, channel.size() - kSuffix), message.utime, transform_from_message(message));
     synchroniser_.recheck_gate();
   }
 
@@ -96,10 +96,10 @@ class TrackProcess {
   FrameGate extrinsics_gate() {
     FrameGate gate;
     gate.decide = [this](const FrameId& frame, double age_s) -> FrameGate::Decision {
-      const tracks::CameraPose place = world_.camera_pose(frame, age_s < options_.wait_s);
-      if (!place.T_world_camera && place.may_come) return {FrameGate::Answer::kWait, ""};
-      if (!place.T_world_camera) return {FrameGate::Answer::kRefuse, place.reason};
-      T_world_camera_ = *place.T_world_camera;
+      const tracks::CameraPose pose = world_reference_.camera_pose(frame, age_s < options_.wait_s);
+      if (!pose.T_world_camera && pose.may_come) return {FrameGate::Answer::kWait, ""};
+      if (!pose.T_world_camera) return {FrameGate::Answer::kRefuse, pose.reason};
+      T_world_camera_ = *pose.T_world_camera;
       return {FrameGate::Answer::kGo, ""};
     };
     gate.now_us = [this] { return reception_.now_us(); };
@@ -112,7 +112,7 @@ class TrackProcess {
     count_dropped();
     if (!bus_.is_log()) heartbeats_->log_timed_out(reception_.now_us());
     if (!pair) return false;
-    if (world_.consume_reset()) tracker_.reset();
+    if (world_reference_.consume_reset()) tracker_.reset();
     process(*pair);
     return true;
   }
@@ -137,7 +137,7 @@ class TrackProcess {
       tracker_.set_models(*models);
       output_.set_models(*models);
     }
-    const Detections detections = detections_.of(poses.frame);
+    const Detections detections = detections_.find(poses.frame);
     std::optional<RgbdFrame> image;
     const auto decode = [&]() -> const RgbdFrame* {
       if (!image) {
@@ -159,7 +159,7 @@ class TrackProcess {
       status_.note_bad_message(fmt::format("frame {}: no room for {} objects more, expected at most {} in all",
                                            to_string(poses.frame), tracker_.refused(),
                                            tracks::ObjectTrackerSettings().max_objects));
-    objects->world = world_.name();
+    objects->world = world_reference_.name();
     objects->stages.insert(objects->stages.end(), clock.times().begin(), clock.times().end());
     output_.publish(*objects, tracks::place_objects(*objects, *used_models_));
     return true;
@@ -188,7 +188,7 @@ class TrackProcess {
       const std::string line =
           fmt::format("{} sees objects {:.1f} cm from where {} sees them: one of their places is wrong", pair.second,
                       100.0 * pair.offset_m.norm(), pair.first);
-      const auto admitted = lines_.admit(pair.first + pair.second, line, std::chrono::steady_clock::now());
+      const auto admitted = throttle_.admit(pair.first + pair.second, line, std::chrono::steady_clock::now());
       if (!admitted || bus_.is_log()) continue;
       log_warning("{}", *admitted);
       status_.set_last_error(line);
@@ -204,11 +204,11 @@ class TrackProcess {
   std::shared_ptr<const tracks::TrackModels> used_models_;
   tracks::Tracker tracker_;
   WorldOutput output_;
-  WorldReference world_;
+  WorldReference world_reference_;
   // Camera pose of the last pair that passed the gate.
   Eigen::Isometry3d T_world_camera_ = Eigen::Isometry3d::Identity();
   tracks::ExtrinsicCheck check_;
-  LogThrottle lines_;  // logs inconsistencies
+  LogThrottle throttle_;  // logs inconsistencies
   std::shared_ptr<HeartbeatMonitor> heartbeats_ = std::make_shared<HeartbeatMonitor>();
   std::int64_t without_frame_ = 0;  // poses
   RecentDetections detections_;

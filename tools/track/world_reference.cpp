@@ -19,10 +19,10 @@ void WorldReference::add(const std::string& camera, std::int64_t utime, const Ei
 
 tracks::CameraPose WorldReference::camera_pose(const FrameId& frame, bool may_wait) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  tracks::CameraPose place = extrinsics_.interpolate(channel::camera_name(frame.channel), frame.utime);
-  place.may_come = place.may_come && may_wait && (reference_camera_.empty() || extrinsics_.any());
-  if (place.T_world_camera || place.may_come) return begin("WORLD", place);
-  if (extrinsics_.any()) return place;
+  tracks::CameraPose pose = extrinsics_.interpolate(channel::camera_name(frame.channel), frame.utime);
+  pose.may_come = pose.may_come && may_wait && (reference_camera_.empty() || extrinsics_.any());
+  if (pose.T_world_camera || pose.may_come) return set_world("WORLD", pose);
+  if (extrinsics_.any()) return pose;
   if (!reference_camera_.empty() && reference_camera_ != frame.channel)
     return {std::nullopt, false,
             "the pose of its camera is not known, expected --cameras, --camera-pose or " +
@@ -30,17 +30,17 @@ tracks::CameraPose WorldReference::camera_pose(const FrameId& frame, bool may_wa
   if (reference_camera_.empty())
     log_info("the pose of {} is not known: the world is its own frame, and objects move when it does", frame.channel);
   reference_camera_ = frame.channel;
-  return begin(frame.channel, {Eigen::Isometry3d::Identity(), false, ""});
+  return set_world(frame.channel, {Eigen::Isometry3d::Identity(), false, ""});
 }
 
-tracks::CameraPose WorldReference::begin(const std::string& world, const tracks::CameraPose& place) {
-  if (!place.T_world_camera || name_ == world) return place;
+tracks::CameraPose WorldReference::set_world(const std::string& world, const tracks::CameraPose& pose) {
+  if (!pose.T_world_camera || name_ == world) return pose;
   if (!name_.empty()) {
     log_warning("the world is {} from here on, no longer {}: a new one begins", world, name_);
-    begun_ = true;
+    was_reset_ = true;
   }
   name_ = world;
-  return place;
+  return pose;
 }
 
 }  // namespace houghstream::track

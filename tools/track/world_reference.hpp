@@ -32,14 +32,14 @@ class WorldReference {
   const std::string& name() const { return name_; }
 
   /// Returns whether the world was reset since the last call: earlier observations have no pose in it.
-  bool consume_reset() { return std::exchange(begun_, false); }
+  bool consume_reset() { return std::exchange(was_reset_, false); }
 
  private:
-  tracks::CameraPose begin(const std::string& world, const tracks::CameraPose& place);
+  tracks::CameraPose set_world(const std::string& world, const tracks::CameraPose& pose);
 
   std::string name_;
-  std::string reference_camera_;  // the camera whose frame is the world, where no place is known
-  bool begun_ = false;
+  std::string reference_camera_;  // the camera whose frame is the world as long as no pose is known
+  bool was_reset_ = false;
   std::mutex mutex_;  // guards the following members
   tracks::CameraExtrinsics extrinsics_;
 };

@@ -16,8 +16,8 @@ TEST(RecentDetections, AreThoseOfAllDetectorsOfTheFrame) {
   recent.add(found({"LEFT", 1}, "can"));
   recent.add(found({"LEFT", 1}, "mug"));
   recent.add(found({"RIGHT", 1}, "bowl"));
-  EXPECT_EQ(recent.of({"LEFT", 1}).detections.size(), 2U);
-  EXPECT_EQ(recent.of({"LEFT", 2}).detections.size(), 0U);
+  EXPECT_EQ(recent.find({"LEFT", 1}).detections.size(), 2U);
+  EXPECT_EQ(recent.find({"LEFT", 2}).detections.size(), 0U);
 }
 
 TEST(RecentDetections, AFrameThatHasTheNameOfAnotherOneHasItsOwn) {
@@ -26,9 +26,9 @@ TEST(RecentDetections, AFrameThatHasTheNameOfAnotherOneHasItsOwn) {
   recent.add(found({"RIGHT", 1}, "can"));
   recent.forget({"LEFT", 1});
   recent.add(found({"LEFT", 1}, "mug"));
-  ASSERT_EQ(recent.of({"LEFT", 1}).detections.size(), 1U);
-  EXPECT_EQ(recent.of({"LEFT", 1}).detections[0].class_name, "mug");
-  EXPECT_EQ(recent.of({"RIGHT", 1}).detections.size(), 1U);
+  ASSERT_EQ(recent.find({"LEFT", 1}).detections.size(), 1U);
+  EXPECT_EQ(recent.find({"LEFT", 1}).detections[0].class_name, "mug");
+  EXPECT_EQ(recent.find({"RIGHT", 1}).detections.size(), 1U);
 }
 
 }  // namespace
