@@ -8,7 +8,7 @@
 
 namespace houghstream {
 
-/// Patches of one image that walk down one tree together.
+/// Patches of one image that descend a tree together.
 struct PatchBatch {
   const FeatureImage* image = nullptr;
   const std::int16_t* x = nullptr;  ///< working pixels
@@ -22,8 +22,8 @@ struct TreeRange {
   std::size_t last = 0;  ///< end of the patches, exclusive
 };
 
-/// Finds the leaf of each patch, tree by tree, many patches a step. Returns false, having done nothing, where nothing
-/// is packed or the image is too large for 32-bit offsets. The leaves are those of find_leaf.
+/// Finds the leaf of each patch, tree by tree, many patches a step. Returns false, without writing leaves, where no
+/// tree is packed or the image is too large for 32-bit offsets. The leaves are those of find_leaf().
 bool traverse_batched(const PackedTrees& packed, TreeRange trees, const PatchBatch& patches, std::int32_t* leaves);
 
 }  // namespace houghstream

@@ -9,20 +9,21 @@
 
 namespace houghstream {
 
-/// Values that detection reads of each leaf, side by side, so that a leaf costs one cache miss instead of two.
+/// Values of a leaf that detection reads, side by side, so that a leaf costs one cache miss instead of two.
 struct LeafSummary {
   float max_posterior = 0.0F;     ///< the largest p(class | leaf)
   std::uint32_t first_class = 0;  ///< index as in Forest::leaves
 };
 
-/// The views of the same class that look at it from nearest by, nearest first; itself where there are no more.
+/// The views of the same class with the nearest viewing directions, nearest first; filled up with the view itself.
 using ViewNeighbours = std::array<std::uint32_t, 6>;
 
-/// Views of a class that stand for all attitudes in which it was taught, as far apart as they can be chosen one after
-/// another (farthest-point sampling, Gonzalez 1985).
+/// Views of a class that represent all attitudes in which it was taught, chosen by farthest-point sampling (Gonzalez
+/// 1985).
 struct SampledViews {
   static constexpr std::size_t kCount = 200;  ///< maximum
-  static constexpr std::size_t kCoarse = 48;  ///< number of the first that stand for the others
+  static constexpr std::size_t kCoarse =
+      48;  ///< number of the first views, of which each of the others has a nearest one
 
   std::vector<std::uint32_t> views;    ///< in the order of the choice, the class's first view first
   std::vector<std::uint32_t> nearest;  ///< of each view: the index into `views` of the nearest coarse one

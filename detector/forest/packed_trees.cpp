@@ -6,8 +6,8 @@
 namespace houghstream {
 namespace {
 
-constexpr std::size_t kMaxNodes = std::size_t{1} << packed::kLimitShift;
-constexpr int kMaxLimit = 255;  // differences of bytes do not exceed it
+constexpr std::size_t kMaxNodes = std::size_t{1} << packed::kThresholdShift;
+constexpr int kMaxThreshold = 255;  // differences of bytes do not exceed it
 
 std::uint32_t step_bits(int step, int place) {
   constexpr std::uint32_t kMask = (1U << packed::kStepBits) - 1;
@@ -19,20 +19,20 @@ bool fits(const PixelTest& test) {
   return std::max({std::abs(test.dx1), std::abs(test.dy1), std::abs(test.dx2), std::abs(test.dy2)}) <= kMaxDistance;
 }
 
-std::int32_t pack_way(std::size_t left, int limit) {
-  const auto bits = static_cast<std::uint32_t>(limit) << packed::kLimitShift | static_cast<std::uint32_t>(left);
+std::int32_t pack_branch(std::size_t left, int threshold) {
+  const auto bits = static_cast<std::uint32_t>(threshold) << packed::kThresholdShift | static_cast<std::uint32_t>(left);
   return static_cast<std::int32_t>(bits);
 }
 
 /// Packs a node. A test of one pixel reads it twice, since a second pixel would come into the cache for nothing.
 PackedNode pack_node(const PixelTest& test, std::size_t left) {
-  const bool alone = test.kind == PixelTest::kSinglePixel;
+  const bool single_pixel = test.kind == PixelTest::kSinglePixel;
   std::uint32_t bits = step_bits(test.dx1, 0) | step_bits(test.dy1, 1);
-  bits |= step_bits(alone ? test.dx1 : test.dx2, 2) | step_bits(alone ? test.dy1 : test.dy2, 3);
+  bits |= step_bits(single_pixel ? test.dx1 : test.dx2, 2) | step_bits(single_pixel ? test.dy1 : test.dy2, 3);
   bits |= static_cast<std::uint32_t>(test.plane) << packed::kPlaneShift;
-  if (alone) bits |= packed::kSinglePixel;
+  if (single_pixel) bits |= packed::kSinglePixel;
   if (test.kind == PixelTest::kWrapping) bits |= packed::kWraps;
-  return {bits, pack_way(left, std::clamp(test.threshold - 1, -kMaxLimit - 1, kMaxLimit))};
+  return {bits, pack_branch(left, std::clamp(test.threshold - 1, -kMaxThreshold - 1, kMaxThreshold))};
 }
 
 /// Appends one tree, breadth first. Returns false where it does not fit.

@@ -7,14 +7,14 @@
 namespace houghstream {
 namespace {
 
-/// Sums over the trees of what the leaves of a run's patches are most certain of: for no class is a patch's sum larger,
-/// not even by rounding, as long as it is summed in the same order.
-void sum_certainties(const ForestIndex& index, const RunLeaves& seen, std::vector<float>& sums) {
+/// Sums over the trees the largest posterior of the leaf that each patch of a run reached. It bounds the patch's sum
+/// for every class from above, even with rounding, since both are summed in the same order.
+void sum_max_posteriors(const ForestIndex& index, const RunLeaves& run_leaves, std::vector<float>& sums) {
   const std::vector<LeafSummary>& summaries = index.leaf_summaries();
-  sums.assign(seen.count, 0.0F);
-  const std::int32_t* leaves = seen.leaves;
-  for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree, leaves += seen.count) {
-    for (std::size_t i = 0; i < seen.count; ++i) sums[i] += summaries[leaves[i]].max_posterior;
+  sums.assign(run_leaves.count, 0.0F);
+  const std::int32_t* leaves = run_leaves.leaves;
+  for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree, leaves += run_leaves.count) {
+    for (std::size_t i = 0; i < run_leaves.count; ++i) sums[i] += summaries[leaves[i]].max_posterior;
   }
 }
 
@@ -30,32 +30,35 @@ LeafClassRange classes_of_leaf(const ForestIndex& index, std::int32_t leaf) {
   return {classes + summary[0].first_class, classes + summary[1].first_class};
 }
 
-/// Sums over the trees of p(class | leaf) for some of the patches of a run: element [i * classes + class].
-void sum_by_class(const ForestIndex& index, const std::vector<std::uint32_t>& some, const RunLeaves& seen,
+/// Sums over the trees of p(class | leaf) for the candidate patches of a run: element [i * classes + class].
+void sum_by_class(const ForestIndex& index, const std::vector<std::uint32_t>& candidates, const RunLeaves& run_leaves,
                   std::vector<float>& sums) {
   constexpr std::size_t kAhead = 16;  // patches, so that their cache misses overlap
   const std::size_t classes = index.forest().classes.size();
-  sums.assign(some.size() * classes, 0.0F);
-  const std::int32_t* leaves = seen.leaves;
-  for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree, leaves += seen.count) {  // stays in the cache
+  sums.assign(candidates.size() * classes, 0.0F);
+  const std::int32_t* leaves = run_leaves.leaves;
+  for (std::size_t tree = 0; tree < index.forest().roots.size();
+       ++tree, leaves += run_leaves.count) {  // stays in the cache
     float* sums_of_patch = sums.data();
-    for (std::size_t i = 0; i < some.size(); ++i, sums_of_patch += classes) {
-      if (i + kAhead < some.size()) hwy::Prefetch(classes_of_leaf(index, leaves[some[i + kAhead]]).begin);
-      const LeafClassRange known = classes_of_leaf(index, leaves[some[i]]);
-      for (const LeafClass* of = known.begin; of != known.end; ++of) sums_of_patch[of->class_index] += of->probability;
+    for (std::size_t i = 0; i < candidates.size(); ++i, sums_of_patch += classes) {
+      if (i + kAhead < candidates.size()) hwy::Prefetch(classes_of_leaf(index, leaves[candidates[i + kAhead]]).begin);
+      const LeafClassRange leaf_classes = classes_of_leaf(index, leaves[candidates[i]]);
+      for (const LeafClass* of = leaf_classes.begin; of != leaf_classes.end; ++of)
+        sums_of_patch[of->class_index] += of->probability;
     }
   }
 }
 
 /// Appends the indices, into Forest::leaf_classes, of the class's entries in the leaves that the run's patch number `i`
 /// reached, tree by tree.
-void append_entries(const ForestIndex& index, std::size_t class_index, std::size_t i, const RunLeaves& seen,
+void append_entries(const ForestIndex& index, std::size_t class_index, std::size_t i, const RunLeaves& run_leaves,
                     std::vector<std::uint32_t>& entries) {
   for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree) {
-    const LeafClassRange known = classes_of_leaf(index, seen.leaves[tree * seen.count + i]);
-    const auto is_it = [&](const LeafClass& of) { return of.class_index == class_index; };
-    const LeafClass* found = std::find_if(known.begin, known.end, is_it);
-    if (found != known.end) entries.push_back(static_cast<std::uint32_t>(found - index.forest().leaf_classes.data()));
+    const LeafClassRange leaf_classes = classes_of_leaf(index, run_leaves.leaves[tree * run_leaves.count + i]);
+    const auto is_class = [&](const LeafClass& of) { return of.class_index == class_index; };
+    const LeafClass* found = std::find_if(leaf_classes.begin, leaf_classes.end, is_class);
+    if (found != leaf_classes.end)
+      entries.push_back(static_cast<std::uint32_t>(found - index.forest().leaf_classes.data()));
   }
 }
 
@@ -74,22 +77,22 @@ void PatchPosteriors::reset(const ForestIndex& index, std::size_t runs, float mi
   }
 }
 
-void PatchPosteriors::note(const RunLeaves& seen) {
-  auto& [sums, some] = workers_[seen.worker];
+void PatchPosteriors::note(const RunLeaves& run_leaves) {
+  auto& [sums, candidates] = workers_[run_leaves.worker];
   const std::size_t classes = index_->forest().classes.size();
   const auto trees = static_cast<float>(index_->forest().roots.size());
-  sum_certainties(*index_, seen, sums);
-  some.clear();
-  for (std::uint32_t i = 0; i < seen.count; ++i) {
-    if (sums[i] / trees >= min_fraction_) some.push_back(i);
+  sum_max_posteriors(*index_, run_leaves, sums);
+  candidates.clear();
+  for (std::uint32_t i = 0; i < run_leaves.count; ++i) {
+    if (sums[i] / trees >= min_fraction_) candidates.push_back(i);
   }
-  sum_by_class(*index_, some, seen, sums);
-  for (std::size_t i = 0; i < some.size(); ++i) {
+  sum_by_class(*index_, candidates, run_leaves, sums);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
     for (std::size_t c = 0; c < classes; ++c) {
       if (sums[i * classes + c] / trees < min_fraction_) continue;
-      SupportingPatches& supporters = supporters_[seen.run * classes + c];
-      supporters.patches.push_back(seen.patches[some[i]]);
-      append_entries(*index_, c, some[i], seen, supporters.entries);
+      SupportingPatches& supporters = supporters_[run_leaves.run * classes + c];
+      supporters.patches.push_back(run_leaves.patches[candidates[i]]);
+      append_entries(*index_, c, candidates[i], run_leaves, supporters.entries);
       supporters.ends.push_back(static_cast<std::uint32_t>(supporters.entries.size()));
     }
   }
@@ -101,7 +104,7 @@ void find_posteriors(const PosteriorInput& input, LeafWorkspace& workspace, Patc
   LeafInput leaves{input.index, input.features, input.patches, runs};
   leaves.early_rejection = {input.settings.first_trees, input.settings.min_first_posterior};
   posteriors.reset(input.index, runs.size(), input.settings.min_class_fraction, input.threads);
-  find_leaves(leaves, input.threads, workspace, [&](const RunLeaves& seen) { posteriors.note(seen); });
+  find_leaves(leaves, input.threads, workspace, [&](const RunLeaves& run_leaves) { posteriors.note(run_leaves); });
 }
 
 }  // namespace houghstream

@@ -14,7 +14,7 @@ namespace houghstream {
 struct SupportingPatches {
   std::vector<std::uint32_t> patches;  ///< indices into the PatchGrid
   std::vector<std::uint32_t> ends;     ///< end of each patch's entries; they begin where those before it end
-  /// Indices into Forest::leaf_classes: what a patch's leaves know of the class, tree by tree.
+  /// Indices into Forest::leaf_classes: the class's entries in a patch's leaves, tree by tree.
   std::vector<std::uint32_t> entries;
 };
 
@@ -31,8 +31,8 @@ class PatchPosteriors {
   /// Resets to the state of a new object, for so many workers, and keeps the memory.
   void reset(const ForestIndex& index, std::size_t runs, float min_fraction, int threads);
 
-  /// Notes who votes among the patches of a run. Different workers may note different runs at the same time.
-  void note(const RunLeaves& seen);
+  /// Notes which patches of a run vote. Different workers may note different runs at the same time.
+  void note(const RunLeaves& run_leaves);
 
   /// Calls visit(patch, entries, count) for every patch that votes for the class, in the grid's order.
   template <typename Visit>
@@ -52,7 +52,7 @@ class PatchPosteriors {
  private:
   struct Worker {
     std::vector<float> sums;
-    std::vector<std::uint32_t> some;
+    std::vector<std::uint32_t> candidates;
   };
 
   const ForestIndex* index_ = nullptr;
@@ -71,8 +71,8 @@ struct PosteriorInput {
   int threads = 1;
 };
 
-/// Walks the patches down the forest and notes for which classes they vote. What `posteriors` held is overwritten and
-/// its memory used again.
+/// Finds the leaves of the patches and notes for which classes they vote. `posteriors` is overwritten, and its memory
+/// reused.
 void find_posteriors(const PosteriorInput& input, LeafWorkspace& workspace, PatchPosteriors& posteriors);
 
 }  // namespace houghstream

@@ -8,17 +8,17 @@ namespace houghstream {
 namespace {
 
 /// Finds the leaves of patches of one level in some of the trees.
-void traverse_trees(const ForestIndex& index, const PatchBatch& walking, TreeRange trees, std::int32_t* leaves) {
-  if (traverse_batched(index.packed(), trees, walking, leaves)) return;
-  for (std::size_t tree = trees.first; tree < trees.last; ++tree, leaves += walking.count) {
-    for (int p = 0; p < walking.count; ++p) {
-      const PatchView patch = walking.image->patch(walking.x[p], walking.y[p], walking.scale[p]);
+void traverse_trees(const ForestIndex& index, const PatchBatch& batch, TreeRange trees, std::int32_t* leaves) {
+  if (traverse_batched(index.packed(), trees, batch, leaves)) return;
+  for (std::size_t tree = trees.first; tree < trees.last; ++tree, leaves += batch.count) {
+    for (int p = 0; p < batch.count; ++p) {
+      const PatchView patch = batch.image->patch(batch.x[p], batch.y[p], batch.scale[p]);
       leaves[p] = find_leaf(index.forest(), static_cast<int>(tree), patch);
     }
   }
 }
 
-/// Gives patches up and closes the gaps that they leave in the leaves of the first trees.
+/// Rejects patches, and closes their gaps in the leaves of the first trees.
 void reject_patches(const ForestIndex& index, const EarlyRejection& early_rejection, const PatchRun& run,
                     LeafWorkspace::Worker& workspace) {
   workspace.sums.assign(run.count, 0.0F);
@@ -38,7 +38,7 @@ void reject_patches(const ForestIndex& index, const EarlyRejection& early_reject
   }
 }
 
-/// Returns the patches that are left, side by side.
+/// Returns the accepted patches, side by side.
 PatchBatch gather_accepted(const FeatureImage& image, const PatchGrid& patches, LeafWorkspace::Worker& workspace) {
   workspace.x.clear();
   workspace.y.clear();
@@ -48,13 +48,13 @@ PatchBatch gather_accepted(const FeatureImage& image, const PatchGrid& patches, 
     workspace.y.push_back(patches.y[p]);
     workspace.scale.push_back(patches.scale[p]);
   }
-  PatchBatch left;
-  left.image = &image;
-  left.x = workspace.x.data();
-  left.y = workspace.y.data();
-  left.scale = workspace.scale.data();
-  left.count = static_cast<int>(workspace.x.size());
-  return left;
+  PatchBatch accepted;
+  accepted.image = &image;
+  accepted.x = workspace.x.data();
+  accepted.y = workspace.y.data();
+  accepted.scale = workspace.scale.data();
+  accepted.count = static_cast<int>(workspace.x.size());
+  return accepted;
 }
 
 /// Finds the leaves of one run.
@@ -63,8 +63,8 @@ void traverse_run(const LeafInput& input, const PatchRun& run, LeafWorkspace::Wo
   const PatchGrid& patches = input.patches;
   const FeatureImage& image = input.features[patches.level[run.first]];
   const std::size_t trees = index.forest().roots.size();
-  const bool may_end = input.early_rejection.is_enabled(index.forest());
-  const std::size_t first = may_end ? static_cast<std::size_t>(input.early_rejection.trees) : trees;
+  const bool can_reject = input.early_rejection.is_enabled(index.forest());
+  const std::size_t first = can_reject ? static_cast<std::size_t>(input.early_rejection.trees) : trees;
   workspace.leaves.resize(run.count * trees);
   PatchBatch all;
   all.image = &image;
@@ -73,14 +73,14 @@ void traverse_run(const LeafInput& input, const PatchRun& run, LeafWorkspace::Wo
   all.scale = patches.scale.data() + run.first;
   all.count = static_cast<int>(run.count);
   traverse_trees(index, all, {0, first}, workspace.leaves.data());
-  if (!may_end) {
+  if (!can_reject) {
     workspace.patches.resize(run.count);
     std::iota(workspace.patches.begin(), workspace.patches.end(), static_cast<std::uint32_t>(run.first));
     return;
   }
   reject_patches(index, input.early_rejection, run, workspace);
-  const PatchBatch left = gather_accepted(image, patches, workspace);
-  traverse_trees(index, left, {first, trees}, workspace.leaves.data() + first * workspace.patches.size());
+  const PatchBatch accepted = gather_accepted(image, patches, workspace);
+  traverse_trees(index, accepted, {first, trees}, workspace.leaves.data() + first * workspace.patches.size());
 }
 
 }  // namespace

@@ -13,15 +13,15 @@ namespace houghstream {
 
 /// Number of trees after which a patch may be rejected, and the condition, see LeafSettings.
 struct EarlyRejection {
-  int trees = 0;                    ///< 0 = no patch is given up
+  int trees = 0;                    ///< 0 = no patch is rejected
   float min_mean_posterior = 0.0F;  ///< mean of LeafSummary::max_posterior that must be reached
 
   bool is_enabled(const Forest& forest) const { return trees > 0 && trees < static_cast<int>(forest.roots.size()); }
-  /// Returns whether the patch continues. `sum` is that of the certainties, added in the trees' order.
+  /// Returns whether the patch continues. `sum` is that of LeafSummary::max_posterior, added in the trees' order.
   bool is_accepted(float sum) const { return sum >= min_mean_posterior * static_cast<float>(trees); }
 };
 
-/// Patches and the trees that they walk down.
+/// Patches, and the trees whose leaves are searched.
 struct LeafInput {
   const ForestIndex& index;
   const std::vector<FeatureImage>& features;  ///< one image for each level
@@ -30,7 +30,7 @@ struct LeafInput {
   EarlyRejection early_rejection = {};
 };
 
-/// The leaves of those patches of a run that were not given up.
+/// The leaves of those patches of a run that were not rejected.
 struct RunLeaves {
   std::size_t run = 0;
   std::size_t count = 0;                   ///< patches
@@ -44,10 +44,10 @@ using LeafVisitor = std::function<void(const RunLeaves&)>;
 /// Workspace of find_leaves(), reused from frame to frame.
 struct LeafWorkspace {
   struct Worker {
-    std::vector<std::int32_t> leaves;    ///< tree by tree, of the patches that are left
-    std::vector<std::uint32_t> patches;  ///< indices of the patches that are left, into the grid
-    std::vector<float> sums;             ///< sums of the leaves' certainties
-    std::vector<std::int16_t> x;         ///< coordinates of those that are left
+    std::vector<std::int32_t> leaves;    ///< leaves tree by tree, of the accepted patches
+    std::vector<std::uint32_t> patches;  ///< indices of the accepted patches into the grid
+    std::vector<float> sums;             ///< sums of LeafSummary::max_posterior
+    std::vector<std::int16_t> x;         ///< coordinates of the accepted patches
     std::vector<std::int16_t> y;
     std::vector<std::int32_t> scale;
   };
@@ -55,8 +55,8 @@ struct LeafWorkspace {
   PerWorker<Worker> workers;
 };
 
-/// Finds the leaf of every patch in every tree, except of rejected patches. Patches are walked many at once, and runs
-/// are visited at the same time; the leaves are those of find_leaf.
+/// Finds the leaf of every patch in every tree, except of rejected patches. Many patches are traversed together, and
+/// runs are visited concurrently; the leaves are those of find_leaf().
 void find_leaves(const LeafInput& input, int threads, LeafWorkspace& workspace, const LeafVisitor& visit);
 
 }  // namespace houghstream

@@ -15,21 +15,21 @@ constexpr int kSide = TemplateGrid::kSide;
 
 /// Marks the cells beside the outline, each with the depth of the nearest cell of the object. Cells below the object's
 /// upper part stay free, since what it stands on may touch it there.
-void mark_rim(TemplateGrid& appearance) {
+void mark_rim(TemplateGrid& grid) {
   constexpr int kUpper = TemplateGrid::kRim + (TemplateGrid::kBoxSide * 3) / 5;
-  appearance.beside.fill(TemplateGrid::kBeside);
+  grid.beside.fill(TemplateGrid::kBeside);
   for (int j = 0; j < kUpper; ++j) {
     for (int i = 0; i < kSide; ++i) {
       const auto cell = static_cast<std::size_t>(j * kSide + i);
-      if (appearance.mm[cell] != TemplateGrid::kBeside) continue;
+      if (grid.mm[cell] != TemplateGrid::kBeside) continue;
       int nearest_sq = 2 * TemplateGrid::kRim * TemplateGrid::kRim + 1;
       for (int y = std::max(0, j - TemplateGrid::kRim); y <= std::min(kUpper - 1, j + TemplateGrid::kRim); ++y) {
         for (int x = std::max(0, i - TemplateGrid::kRim); x <= std::min(kSide - 1, i + TemplateGrid::kRim); ++x) {
-          const std::int16_t other = appearance.mm[static_cast<std::size_t>(y * kSide + x)];
+          const std::int16_t other = grid.mm[static_cast<std::size_t>(y * kSide + x)];
           const int distance_sq = (x - i) * (x - i) + (y - j) * (y - j);
           if (other <= TemplateGrid::kNoDepth || distance_sq >= nearest_sq) continue;
           nearest_sq = distance_sq;
-          appearance.beside[cell] = other;
+          grid.beside[cell] = other;
         }
       }
     }
@@ -47,37 +47,37 @@ struct Line {
     return is_row ? OutlineCells::Cell{position, along} : OutlineCells::Cell{along, position};
   }
   /// Returns TemplateGrid::mm of a cell, or kBeside where there is no such cell.
-  std::int16_t mm(const TemplateGrid& appearance, int i) const {
+  std::int16_t mm(const TemplateGrid& grid, int i) const {
     if (i < 0 || i >= kSide) return TemplateGrid::kBeside;
-    return appearance.mm[static_cast<std::size_t>(is_row ? number * kSide + i : i * kSide + number)];
+    return grid.mm[static_cast<std::size_t>(is_row ? number * kSide + i : i * kSide + number)];
   }
 };
 
-/// Across the outline at `edge`, the object's outermost cell of the line, outwards in steps of `out`, 1 or -1. Nothing
-/// where the object is too narrow there.
-std::optional<OutlineCells> across(const TemplateGrid& appearance, const Line& line, int edge, int out) {
-  constexpr int kInwards = 2;  // cells to the one that tells how the surface slopes
-  const int inside = edge - out;
-  const std::int16_t here = line.mm(appearance, inside);
-  if (here == TemplateGrid::kBeside) return std::nullopt;
+/// Finds the crossing of the outline at `outermost`, the object's outermost cell of the line, outwards in steps of
+/// `out`, 1 or -1. Returns nothing where the object is too narrow there.
+std::optional<OutlineCells> find_crossing(const TemplateGrid& grid, const Line& line, int outermost, int out) {
+  constexpr int kInwards = 2;  // cells to the one from which the slope of the surface is computed
+  const int inside = outermost - out;
+  const std::int16_t depth_mm = line.mm(grid, inside);
+  if (depth_mm == TemplateGrid::kBeside) return std::nullopt;
   OutlineCells pair{line.cell(inside), line.cell(inside + OutlineCells::kApart * out), TemplateGrid::kNoDepth};
-  const std::int16_t before = line.mm(appearance, inside - kInwards * out);
-  if (here <= TemplateGrid::kNoDepth || before <= TemplateGrid::kNoDepth) return pair;
-  const double gained = static_cast<double>(here - before) * OutlineCells::kApart / kInwards;
+  const std::int16_t inner_depth_mm = line.mm(grid, inside - kInwards * out);
+  if (depth_mm <= TemplateGrid::kNoDepth || inner_depth_mm <= TemplateGrid::kNoDepth) return pair;
+  const double gained = static_cast<double>(depth_mm - inner_depth_mm) * OutlineCells::kApart / kInwards;
   if (std::abs(gained) < 30000.0) pair.gained_mm = static_cast<std::int16_t>(std::lround(gained));
   return pair;
 }
 
-void mark_outline(TemplateGrid& appearance) {
+void mark_outline(TemplateGrid& grid) {
   std::size_t count = 0;
   const auto mark_ends = [&](const Line& line) {
     int first = 0;
     int last = kSide - 1;
-    while (first < kSide && line.mm(appearance, first) == TemplateGrid::kBeside) ++first;
-    while (last >= 0 && line.mm(appearance, last) == TemplateGrid::kBeside) --last;
+    while (first < kSide && line.mm(grid, first) == TemplateGrid::kBeside) ++first;
+    while (last >= 0 && line.mm(grid, last) == TemplateGrid::kBeside) --last;
     if (first > last) return;
-    for (const auto& [edge, out] : {std::pair(first, -1), std::pair(last, 1)}) {
-      if (const auto pair = across(appearance, line, edge, out)) appearance.outline[count++] = *pair;
+    for (const auto& [outermost, out] : {std::pair(first, -1), std::pair(last, 1)}) {
+      if (const auto pair = find_crossing(grid, line, outermost, out)) grid.outline[count++] = *pair;
     }
   };
   for (int i = TemplateGrid::kRim; i < TemplateGrid::kRim + TemplateGrid::kBoxSide; ++i) {
@@ -90,11 +90,11 @@ void mark_outline(TemplateGrid& appearance) {
 
 TemplateGrid make_template_grid(const RgbdFrame& view, const cv::Mat& mask, const cv::Rect& box_px,
                                 const Eigen::Vector3f& centre_camera) {
-  const OffAxisSlope tilt = off_axis_slope(centre_camera);
+  const OffAxisSlope slope = off_axis_slope(centre_camera);
   const Eigen::Vector2d centre_px = view.camera.project(centre_camera.cast<double>());
   const double metres_per_px = view.camera.metres_per_px(centre_camera.z());
-  TemplateGrid appearance;
-  appearance.mm.fill(TemplateGrid::kBeside);
+  TemplateGrid grid;
+  grid.mm.fill(TemplateGrid::kBeside);
   cv::Mat lab;
   cv::resize(view.colour(box_px), lab, cv::Size(TemplateGrid::kBoxSide, TemplateGrid::kBoxSide), 0, 0, cv::INTER_AREA);
   cv::cvtColor(lab, lab, cv::COLOR_BGR2Lab);
@@ -103,18 +103,18 @@ TemplateGrid make_template_grid(const RgbdFrame& view, const cv::Mat& mask, cons
       const int x = box_px.x + static_cast<int>((i + 0.5) * box_px.width / TemplateGrid::kBoxSide);
       const int y = box_px.y + static_cast<int>((j + 0.5) * box_px.height / TemplateGrid::kBoxSide);
       if (mask.at<std::uint8_t>(y, x) == 0) continue;
-      const double gained = metres_per_px * (tilt.right * (x - centre_px.x()) + tilt.down * (y - centre_px.y()));
+      const double gained = metres_per_px * (slope.right * (x - centre_px.x()) + slope.down * (y - centre_px.y()));
       const double offset_mm = 1000.0 * (view.depth.at<float>(y, x) - centre_camera.z() - gained);
       const auto cell = static_cast<std::size_t>((j + TemplateGrid::kRim) * kSide + i + TemplateGrid::kRim);
       const auto& colour = lab.at<cv::Vec3b>(j, i);
-      appearance.lab[cell] = {colour[0], colour[1], colour[2]};
-      appearance.mm[cell] =
+      grid.lab[cell] = {colour[0], colour[1], colour[2]};
+      grid.mm[cell] =
           std::abs(offset_mm) < 30000.0 ? static_cast<std::int16_t>(std::lround(offset_mm)) : TemplateGrid::kNoDepth;
     }
   }
-  mark_rim(appearance);
-  mark_outline(appearance);
-  return appearance;
+  mark_rim(grid);
+  mark_outline(grid);
+  return grid;
 }
 
 }  // namespace houghstream

@@ -22,7 +22,7 @@ TEST(PackedTrees, HoldEveryNodeAndLeafOnce) {
   EXPECT_EQ(trees.nodes.size(), forest.roots.size() + 2 * forest.nodes.size());
   std::vector<int> seen(trees.nodes.size() - forest.nodes.size());
   for (const PackedNode& node : trees.nodes) {
-    if (node.test == packed::kLeaf) ++seen.at(static_cast<std::size_t>(node.way));
+    if (node.test == packed::kLeaf) ++seen.at(static_cast<std::size_t>(node.branch));
   }
   EXPECT_EQ(seen, std::vector<int>(seen.size(), 1));
 }
@@ -68,7 +68,7 @@ TEST(PackedTrees, NodesAndPixelsAreFetched) {
   std::vector<PackedNode> fetched(3);
   fetch_nodes(nodes.data(), places.data(), places.size(), fetched.data());
   EXPECT_EQ(fetched[0].test, 5U);
-  EXPECT_EQ(fetched[1].way, 2);
+  EXPECT_EQ(fetched[1].branch, 2);
   const std::vector<std::int32_t> first = {1, -1, 0};
   const std::vector<std::int32_t> second = {0, 0, 1};
   std::vector<std::uint8_t> first_values(3);
