@@ -10,8 +10,8 @@ namespace {
 /// Left, top, right and bottom of a box, frame pixels; 0 is the left edge of the first pixel.
 using Sides = std::array<float, 4>;
 
-/// Returns the sides of the box about the supporting patches. Patches that support the object weakly lie beside it; the
-/// median supporter defines what is weak here.
+/// Returns the sides of the box about the supporting patches. Patches that support the object weakly lie beside it;
+/// weak is relative to the median of the supporting patches.
 Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches, BoxWorkspace& workspace) {
   std::vector<float>& weights = workspace.weights;
   std::array<std::vector<float>, 4>& values = workspace.sides;
@@ -63,15 +63,16 @@ Sides template_sides(const Forest& forest, const Hypothesis& hypothesis, const C
 cv::Rect2f backproject_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
                            const Camera& camera, BoxWorkspace& workspace) {
   if (hypothesis.patches.empty() || hypothesis.views.empty()) return {};
-  // Fraction of the object's width or height, from which on a side is taken to be hidden.
-  constexpr float kHidden = 0.3F;
-  const Sides seen = supporting_sides(hypothesis, patches, workspace);
-  const Sides whole = template_sides(forest, hypothesis, camera, workspace);
+  // Fraction of the object's width or height by which the patches may end before the template; beyond it the side is
+  // taken to be occluded.
+  constexpr float kMaxGapFraction = 0.3F;
+  const Sides supported = supporting_sides(hypothesis, patches, workspace);
+  const Sides templates = template_sides(forest, hypothesis, camera, workspace);
   Sides sides{};
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    const float size = whole[(i % 2) + 2] - whole[i % 2];
-    const float outwards = i < 2 ? seen[i] - whole[i] : whole[i] - seen[i];
-    sides[i] = outwards < kHidden * size ? whole[i] : seen[i];
+    const float size = templates[(i % 2) + 2] - templates[i % 2];
+    const float outwards = i < 2 ? supported[i] - templates[i] : templates[i] - supported[i];
+    sides[i] = outwards < kMaxGapFraction * size ? templates[i] : supported[i];
   }
   const cv::Rect2f box(sides[0], sides[1], sides[2] - sides[0], sides[3] - sides[1]);
   return box & cv::Rect2f(0.0F, 0.0F, static_cast<float>(camera.width), static_cast<float>(camera.height));

@@ -9,7 +9,7 @@
 
 namespace houghstream {
 
-/// Workspace of backproject_box(), used again from box to box.
+/// Workspace of backproject_box(), reused from box to box.
 struct BoxWorkspace {
   std::vector<float> weights;
   std::array<std::vector<float>, 4> sides;               ///< sides of the supporting patches

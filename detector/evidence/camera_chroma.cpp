@@ -11,7 +11,7 @@ namespace houghstream {
 namespace {
 
 /// The camera's rendering of the colours of each class of each group.
-using GroupCameras = std::vector<std::vector<ChromaMap>>;
+using GroupChromaMaps = std::vector<std::vector<ChromaMap>>;
 
 /// A candidate from whose colours the camera's chroma map is learnt.
 struct ChromaSample {
@@ -29,7 +29,7 @@ const ObjectClass& class_of(const Forest& forest, const ScoredHypothesis& candid
   return forest.classes[class_index_of(forest, candidate)];
 }
 
-bool is_beside(const ScoredHypothesis& a, const ScoredHypothesis& b, float radius) {
+bool is_near(const ScoredHypothesis& a, const ScoredHypothesis& b, float radius) {
   return (a.detection.centre_camera - b.detection.centre_camera).norm() < radius;
 }
 
@@ -56,37 +56,37 @@ std::vector<ChromaSample> find_likeliest(const std::vector<GroupHypotheses>& gro
   for (auto& [name, samples] : by_class) {
     std::stable_sort(samples.begin(), samples.end(),
                      [](const ChromaSample& a, const ChromaSample& b) { return a.probability > b.probability; });
-    std::vector<ChromaSample> kept;
+    std::vector<ChromaSample> distinct;
     for (const ChromaSample& sample : samples) {
       const float radius = sample.object->radius;
-      const bool is_known = std::any_of(kept.begin(), kept.end(), [&](const ChromaSample& other) {
-        return is_beside(*sample.candidate, *other.candidate, radius);
+      const bool is_duplicate = std::any_of(distinct.begin(), distinct.end(), [&](const ChromaSample& other) {
+        return is_near(*sample.candidate, *other.candidate, radius);
       });
-      if (!is_known && kept.size() < kMaxPerClass) kept.push_back(sample);
+      if (!is_duplicate && distinct.size() < kMaxPerClass) distinct.push_back(sample);
     }
-    likeliest.insert(likeliest.end(), kept.begin(), kept.end());
+    likeliest.insert(likeliest.end(), distinct.begin(), distinct.end());
   }
   return likeliest;
 }
 
-/// Divides certainty among the samples of one place: only one object stands there, of whichever class, or none, so
-/// that the odds of all of them share it.
+/// Normalises the probabilities of overlapping samples: one object at most is there, so that their odds and those of
+/// none sum to 1.
 void normalise_overlapping(std::vector<ChromaSample>& samples) {
   std::vector<float> odds;
   odds.reserve(samples.size());
   for (const ChromaSample& sample : samples) odds.push_back(sample.probability / (1.0F - sample.probability));
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const float radius = samples[i].object->radius;
-    float all = 1.0F;
+    float odds_sum = 1.0F;
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      const float reach = 0.5F * (radius + samples[k].object->radius);
-      if (is_beside(*samples[i].candidate, *samples[k].candidate, reach)) all += odds[k];
+      const float max_distance = 0.5F * (radius + samples[k].object->radius);
+      if (is_near(*samples[i].candidate, *samples[k].candidate, max_distance)) odds_sum += odds[k];
     }
-    samples[i].probability = odds[i] / all;
+    samples[i].probability = odds[i] / odds_sum;
   }
 }
 
-ChromaPair to_pair(const ChromaSample& sample) {
+ChromaPair to_chroma_pair(const ChromaSample& sample) {
   const MeanColours& colours = sample.candidate->evidence.fit.colours;
   ChromaPair pair;
   pair.class_name = sample.candidate->detection.class_name;
@@ -98,47 +98,48 @@ ChromaPair to_pair(const ChromaSample& sample) {
 }
 
 /// Learns for each class how the camera renders its colours, from the pairs of the others.
-GroupCameras learn_cameras(const std::vector<GroupHypotheses>& groups, const std::vector<ChromaPair>& pairs) {
-  GroupCameras cameras;
+GroupChromaMaps fit_group_maps(const std::vector<GroupHypotheses>& groups, const std::vector<ChromaPair>& pairs) {
+  GroupChromaMaps chroma_maps;
   for (const GroupHypotheses& searched : groups) {
-    std::vector<ChromaMap>& by_class = cameras.emplace_back();
+    std::vector<ChromaMap>& by_class = chroma_maps.emplace_back();
     for (const ObjectClass& object : searched.input.index.forest().classes)
       by_class.push_back(fit_chroma_map_without(object.name, pairs));
   }
-  return cameras;
+  return chroma_maps;
 }
 
 /// Returns the pairs of earlier frames and those of the frame's candidates.
-std::vector<ChromaPair> all_pairs(const std::vector<GroupHypotheses>& groups, std::vector<ChromaPair> pairs,
-                                  const GroupCandidates& candidates) {
+std::vector<ChromaPair> collect_pairs(const std::vector<GroupHypotheses>& groups, std::vector<ChromaPair> pairs,
+                                      const GroupCandidates& candidates) {
   std::vector<ChromaSample> samples = find_likeliest(groups, candidates);
   normalise_overlapping(samples);
-  std::transform(samples.begin(), samples.end(), std::back_inserter(pairs), to_pair);
+  std::transform(samples.begin(), samples.end(), std::back_inserter(pairs), to_chroma_pair);
   return pairs;
 }
 
 /// Returns whether views must be searched again in these colours, since more than the best of them may differ.
-bool differ_strongly(const std::vector<ChromaMap>& cameras, const std::vector<ChromaMap>& before) {
-  constexpr double kFar = 12.0;  // CIE a*b*, of a colour of medium strength; chosen: about what light changes by itself
+bool differ_strongly(const std::vector<ChromaMap>& chroma_maps, const std::vector<ChromaMap>& before) {
+  // CIE a*b*, of a colour of medium strength. Chosen: about what light changes by itself.
+  constexpr double kMaxDifference_ab = 12.0;
   constexpr double kLightness = 60.0;
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
+  for (std::size_t i = 0; i < chroma_maps.size(); ++i) {
     for (const Eigen::Vector2d& colour : {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(25.0, 25.0)}) {
-      const Eigen::Vector2d was = before.empty() ? colour : before[i].apply(colour, kLightness);
-      if ((cameras[i].apply(colour, kLightness) - was).norm() > kFar) return true;
+      const Eigen::Vector2d before_ab = before.empty() ? colour : before[i].apply(colour, kLightness);
+      if ((chroma_maps[i].apply(colour, kLightness) - before_ab).norm() > kMaxDifference_ab) return true;
     }
   }
   return false;
 }
 
-/// Brings the groups' frames into the colours of their cameras. Returns whether views must be searched again, where a
+/// Sets the chroma maps of the groups' frames. Returns whether views must be searched again, where a
 /// camera is far from them.
-bool apply_camera_maps(GroupCameras cameras, std::vector<LabFrame>& frames) {
-  bool is_far = false;
+bool set_chroma_maps(GroupChromaMaps chroma_maps, std::vector<LabFrame>& frames) {
+  bool differs = false;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    is_far = differ_strongly(cameras[i], frames[i].cameras) || is_far;
-    frames[i].cameras = std::move(cameras[i]);
+    differs = differ_strongly(chroma_maps[i], frames[i].chroma_maps) || differs;
+    frames[i].chroma_maps = std::move(chroma_maps[i]);
   }
-  return is_far;
+  return differs;
 }
 
 std::vector<ScoredHypothesis> concatenate(GroupCandidates by_group) {
@@ -150,15 +151,15 @@ std::vector<ScoredHypothesis> concatenate(GroupCandidates by_group) {
 
 /// Matches each candidate's best template again, at its place, in the camera's colours.
 void rescore(const ScoringInput& input, int threads, std::vector<ScoredHypothesis>& candidates) {
-  constexpr float kHopeless = 0.02F;  // score, if the colours were as usual
+  constexpr float kMinScore = 0.02F;  // score, if the colours were as usual
   const Forest& forest = input.index.forest();
   parallel_for(threads, static_cast<int>(candidates.size()), [&](int i) {
     ScoredHypothesis& candidate = candidates[static_cast<std::size_t>(i)];
     Evidence& evidence = candidate.evidence;
     if (evidence.view == Evidence::kNoView) return;
-    if (!input.frame.cameras[class_index_of(forest, candidate)].is_learnt()) return;  // its colours are as taught
+    if (!input.frame.chroma_maps[class_index_of(forest, candidate)].is_learnt()) return;  // its colours are as taught
     const ScoreModel& model = class_of(forest, candidate).score_model;
-    if (score_as_taught(model, evidence) < kHopeless) return;
+    if (score_as_taught(model, evidence) < kMinScore) return;
     evidence.fit = match_template(forest.views[evidence.view], evidence.view_centre, input.frame);
     candidate.detection.score = score(model, evidence);
     const float threshold = input.settings.threshold_of(candidate.detection.class_name);
@@ -179,21 +180,20 @@ std::vector<ScoredHypothesis> score_in_camera_colours(const std::vector<GroupHyp
                                                       ScoringWorkspace& workspace) {
   std::vector<LabFrame> frames;
   frames.reserve(groups.size());  // the inputs refer to them
-  std::vector<GroupHypotheses> in_camera;
+  std::vector<GroupHypotheses> mapped;
   for (const auto& [input, hypotheses] : groups) {
     frames.push_back(input.frame);
-    in_camera.push_back(
-        {{input.index, frames.back(), input.patches, input.settings, input.excluded_views}, hypotheses});
+    mapped.push_back({{input.index, frames.back(), input.patches, input.settings, input.excluded_views}, hypotheses});
   }
   const bool is_grey = is_colourless(frames.front().frame.colour);
   for (std::size_t i = 0; i < groups.size() && is_grey; ++i)
-    frames[i].cameras.assign(groups[i].input.index.forest().classes.size(), colourless_camera());
-  if (is_grey) return score_groups(in_camera, threads, workspace);
-  if (!colours.empty()) apply_camera_maps(learn_cameras(groups, colours), frames);
-  GroupCandidates candidates = score_by_group(in_camera, threads, workspace);
-  if (apply_camera_maps(learn_cameras(groups, all_pairs(groups, colours, candidates)), frames))
-    return score_groups(in_camera, threads, workspace);
-  for (std::size_t i = 0; i < groups.size(); ++i) rescore(in_camera[i].input, threads, candidates[i]);
+    frames[i].chroma_maps.assign(groups[i].input.index.forest().classes.size(), colourless_camera());
+  if (is_grey) return score_groups(mapped, threads, workspace);
+  if (!colours.empty()) set_chroma_maps(fit_group_maps(groups, colours), frames);
+  GroupCandidates candidates = score_by_group(mapped, threads, workspace);
+  if (set_chroma_maps(fit_group_maps(groups, collect_pairs(groups, colours, candidates)), frames))
+    return score_groups(mapped, threads, workspace);
+  for (std::size_t i = 0; i < groups.size(); ++i) rescore(mapped[i].input, threads, candidates[i]);
   return concatenate(std::move(candidates));
 }
 

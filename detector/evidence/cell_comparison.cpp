@@ -52,96 +52,98 @@ HWY_INLINE Ints cell_numbers(std::size_t row, std::size_t column) {
 }
 
 /// Returns measured minus template depth, metres; NaN where the template has no depth.
-HWY_INLINE Floats excess_over(Floats beyond_centre, Ints template_mm, float metres_per_mm) {
+HWY_INLINE Floats difference_to(Floats beyond_centre, Ints template_mm, float metres_per_mm) {
   const Float d;
   const Floats template_depth = hn::Mul(hn::Set(d, metres_per_mm), hn::ConvertTo(d, template_mm));
   const auto is_known = hn::RebindMask(d, hn::Gt(template_mm, hn::Set(Int(), TemplateGrid::kNoDepth)));
-  const Floats nothing = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
-  return hn::IfThenElse(is_known, hn::Sub(beyond_centre, template_depth), nothing);
+  const Floats missing = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+  return hn::IfThenElse(is_known, hn::Sub(beyond_centre, template_depth), missing);
 }
 
-void compare_in_vectors(const TemplateGrid& grid, const CellPlaces& places, const cv::Mat& depth, std::size_t row_step,
+void compare_in_vectors(const TemplateGrid& grid, const CellLayout& layout, const cv::Mat& depth, std::size_t row_step,
                         CellDepths& out) {
   const Float d;
   const Int di;
   const Short ds;
-  const Ints none = hn::Set(di, TemplateGrid::kBeside);
+  const Ints no_object = hn::Set(di, TemplateGrid::kBeside);
   const Ints last_px = hn::Set(di, depth.cols - 1);
   out.object_cells = 0;
-  out.beside_cells = 0;
+  out.rim_cells = 0;
   for (std::size_t row = row_step / 2; row < kTemplateSide; row += row_step) {
-    const int y = places.row_px[row];
+    const int y = layout.row_px[row];
     if (y < 0 || y >= depth.rows) continue;
     const auto* measured = depth.ptr<float>(y);
-    const Floats row_depth = hn::Set(d, places.row_depth[row]);
+    const Floats row_depth = hn::Set(d, layout.row_depth[row]);
     for (std::size_t column = 0; column < kTemplateSide; column += hn::Lanes(d)) {
-      const Ints x = hn::LoadU(di, places.column_px.data() + column);
+      const Ints x = hn::LoadU(di, layout.column_px.data() + column);
       const Ints inside_x = hn::Min(hn::Max(x, hn::Zero(di)), last_px);
       const auto is_inside = hn::Eq(x, inside_x);
-      const Floats expected = hn::Add(row_depth, hn::LoadU(d, places.column_depth.data() + column));
-      const Floats beyond_centre = hn::Sub(hn::GatherIndex(d, measured, inside_x), expected);
+      const Floats expected = hn::Add(row_depth, hn::LoadU(d, layout.column_depth.data() + column));
+      const Floats difference_to_zero = hn::Sub(hn::GatherIndex(d, measured, inside_x), expected);
       const std::size_t cell = row * kTemplateSide + column;
       const Ints on_object = hn::PromoteTo(di, hn::LoadU(ds, grid.mm.data() + cell));
       const Ints beside = hn::PromoteTo(di, hn::LoadU(ds, grid.beside.data() + cell));
-      const auto shows_object = hn::And(is_inside, hn::Ne(on_object, none));
-      const auto is_beside = hn::And(is_inside, hn::Ne(beside, none));
+      const auto shows_object = hn::And(is_inside, hn::Ne(on_object, no_object));
+      const auto is_beside = hn::And(is_inside, hn::Ne(beside, no_object));
       hn::StoreU(compress(di, cell_numbers(row, column), shows_object), di,
                  reinterpret_cast<std::int32_t*>(out.cells.data() + out.object_cells));
+      hn::StoreU(compress(d, difference_to(difference_to_zero, on_object, layout.metres_per_mm),
+                          hn::RebindMask(d, shows_object)),
+                 d, out.depth_difference.data() + out.object_cells);
       hn::StoreU(
-          compress(d, excess_over(beyond_centre, on_object, places.metres_per_mm), hn::RebindMask(d, shows_object)), d,
-          out.excess.data() + out.object_cells);
-      hn::StoreU(compress(d, excess_over(beyond_centre, beside, places.metres_per_mm), hn::RebindMask(d, is_beside)), d,
-                 out.excess_beside.data() + out.beside_cells);
+          compress(d, difference_to(difference_to_zero, beside, layout.metres_per_mm), hn::RebindMask(d, is_beside)), d,
+          out.rim_difference.data() + out.rim_cells);
       out.object_cells += hn::CountTrue(di, shows_object);
-      out.beside_cells += hn::CountTrue(di, is_beside);
+      out.rim_cells += hn::CountTrue(di, is_beside);
     }
   }
 }
 
-/// Returns the median of the excesses within reach. Only the class of a histogram that holds it is searched: searching
-/// all of them mispredicts a branch for about every second value.
-float median_within_reach(const CellDepths& depths) {
-  constexpr float kReach = 0.03F;
-  constexpr int kClasses = 64;
+/// Returns the median of the depth differences within the limit. Only the bin of a histogram that holds it is searched,
+/// since searching all of them mispredicts a branch for about every second value.
+float median_within_limit(const CellDepths& depths) {
+  constexpr float kMaxShift = 0.03F;
+  constexpr int kBins = 64;
   const Float d;
   const Int di;
-  PerCell<std::int32_t> classes;
-  std::array<std::size_t, kClasses + 1> counts{};  // the last: out of reach
+  PerCell<std::int32_t> bins;
+  std::array<std::size_t, kBins + 1> counts{};  // the last: beyond the limit
   const std::size_t cells = depths.object_cells;
   for (std::size_t i = 0; i < cells; i += hn::Lanes(d)) {
-    const Floats e = hn::LoadU(d, depths.excess.data() + i);
-    const auto within = hn::Lt(hn::Abs(e), hn::Set(d, kReach));
-    const Floats position = hn::Mul(hn::Add(e, hn::Set(d, kReach)), hn::Set(d, kClasses / (2.0F * kReach)));
-    const Ints bin = hn::Min(hn::ConvertTo(di, hn::IfThenElseZero(within, position)), hn::Set(di, kClasses - 1));
-    hn::StoreU(hn::IfThenElse(hn::RebindMask(di, within), bin, hn::Set(di, kClasses)), di, classes.data() + i);
+    const Floats e = hn::LoadU(d, depths.depth_difference.data() + i);
+    const auto is_within = hn::Lt(hn::Abs(e), hn::Set(d, kMaxShift));
+    const Floats position = hn::Mul(hn::Add(e, hn::Set(d, kMaxShift)), hn::Set(d, kBins / (2.0F * kMaxShift)));
+    const Ints bin = hn::Min(hn::ConvertTo(di, hn::IfThenElseZero(is_within, position)), hn::Set(di, kBins - 1));
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(di, is_within), bin, hn::Set(di, kBins)), di, bins.data() + i);
   }
-  for (std::size_t i = 0; i < cells; ++i) ++counts[static_cast<std::size_t>(classes[i])];
-  const std::size_t total = cells - counts[kClasses];
+  for (std::size_t i = 0; i < cells; ++i) ++counts[static_cast<std::size_t>(bins[i])];
+  const std::size_t total = cells - counts[kBins];
   if (total == 0) return 0.0F;
   std::size_t rank = total / 2;
-  std::int32_t middle = 0;
-  for (; rank >= counts[static_cast<std::size_t>(middle)]; ++middle) rank -= counts[static_cast<std::size_t>(middle)];
-  PerCell<float> near;
+  std::int32_t median_bin = 0;
+  for (; rank >= counts[static_cast<std::size_t>(median_bin)]; ++median_bin)
+    rank -= counts[static_cast<std::size_t>(median_bin)];
+  PerCell<float> bin_values;
   std::size_t count = 0;
   for (std::size_t i = 0; i < cells; i += hn::Lanes(d)) {
-    const auto is_meant =
-        hn::And(hn::Eq(hn::LoadU(di, classes.data() + i), hn::Set(di, middle)), hn::FirstN(di, cells - i));
-    hn::StoreU(compress(d, hn::LoadU(d, depths.excess.data() + i), hn::RebindMask(d, is_meant)), d,
-               near.data() + count);
-    count += hn::CountTrue(di, is_meant);
+    const auto is_in_bin =
+        hn::And(hn::Eq(hn::LoadU(di, bins.data() + i), hn::Set(di, median_bin)), hn::FirstN(di, cells - i));
+    hn::StoreU(compress(d, hn::LoadU(d, depths.depth_difference.data() + i), hn::RebindMask(d, is_in_bin)), d,
+               bin_values.data() + count);
+    count += hn::CountTrue(di, is_in_bin);
   }
-  auto* const median = near.data() + rank;
-  std::nth_element(near.data(), median, near.data() + count);
+  auto* const median = bin_values.data() + rank;
+  std::nth_element(bin_values.data(), median, bin_values.data() + count);
   return *median;
 }
 
 /// Returns the lanes' bits together.
 HWY_INLINE std::uint32_t bits_of(Ints lanes) {
   const Int d;
-  std::array<std::int32_t, hn::MaxLanes(Int())> each;
-  hn::StoreU(lanes, d, each.data());
+  std::array<std::int32_t, hn::MaxLanes(Int())> lane_bits;
+  hn::StoreU(lanes, d, lane_bits.data());
   std::uint32_t all = 0;
-  for (std::size_t i = 0; i < hn::Lanes(d); ++i) all |= static_cast<std::uint32_t>(each[i]);
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) all |= static_cast<std::uint32_t>(lane_bits[i]);
   return all;
 }
 
@@ -157,7 +159,7 @@ void tally_in_vectors(const CellDepths& depths, float shift, float tolerance, Ce
   out.visible = out.occluded = out.free_space_violations = out.no_depth = out.unoccluded = 0;
   for (std::size_t i = 0; i < depths.object_cells; i += hn::Lanes(d)) {
     const auto present = hn::FirstN(d, depths.object_cells - i);
-    const Floats e = hn::Sub(hn::LoadU(d, depths.excess.data() + i), hn::Set(d, shift));
+    const Floats e = hn::Sub(hn::LoadU(d, depths.depth_difference.data() + i), hn::Set(d, shift));
     const Ints cell = hn::LoadU(di, reinterpret_cast<const std::int32_t*>(depths.cells.data() + i));
     const auto no_depth = hn::And(hn::IsNaN(e), present);
     const auto visible = hn::And(hn::Le(hn::Abs(e), limit), present);
@@ -187,16 +189,16 @@ HWY_AFTER_NAMESPACE();
 namespace houghstream {
 
 HWY_EXPORT(compare_in_vectors);
-HWY_EXPORT(median_within_reach);
+HWY_EXPORT(median_within_limit);
 HWY_EXPORT(tally_in_vectors);
 
-void compare_depths(const TemplateGrid& grid, const CellPlaces& places, const cv::Mat& depth, std::size_t row_step,
+void compare_depths(const TemplateGrid& grid, const CellLayout& layout, const cv::Mat& depth, std::size_t row_step,
                     CellDepths& out) {
-  HWY_DYNAMIC_DISPATCH(compare_in_vectors)(grid, places, depth, row_step, out);
+  HWY_DYNAMIC_DISPATCH(compare_in_vectors)(grid, layout, depth, row_step, out);
 }
 
-float common_shift(const CellDepths& depths) {
-  return HWY_DYNAMIC_DISPATCH(median_within_reach)(depths);
+float median_depth_shift(const CellDepths& depths) {
+  return HWY_DYNAMIC_DISPATCH(median_within_limit)(depths);
 }
 
 void tally_cells(const CellDepths& depths, float shift, float tolerance, CellTally& tally) {

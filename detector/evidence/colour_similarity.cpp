@@ -6,9 +6,10 @@
 namespace houghstream {
 namespace {
 
-constexpr int kMin = 12;            // pairs from which a comparison means something
+constexpr int kMinPairs = 12;       // pairs from which a comparison means something
 constexpr double kNeutral = 128.0;  // a* and b* of grey
-constexpr double kPale = 120.0;     // squared strength in the a*b* plane about which a hue begins to mean something
+constexpr double kPaleChroma_sq =
+    120.0;  // squared strength in the a*b* plane about which a hue begins to mean something
 
 }  // namespace
 
@@ -39,7 +40,7 @@ double ColourSimilarity::observed_variance(std::size_t channel) const {
 
 MeanColours ColourSimilarity::means() const {
   constexpr double kLightness = 100.0 / 255.0;
-  if (count_ < kMin) return {};
+  if (count_ < kMinPairs) return {};
   const double count = count_;
   const auto chroma = [&](std::size_t channel, std::size_t which) {
     return static_cast<float>(channels_[channel][which] / count - kNeutral);
@@ -51,25 +52,25 @@ MeanColours ColourSimilarity::means() const {
 }
 
 float ColourSimilarity::mean_chroma_distance() const {
-  constexpr double kPlain = 100.0;  // variance of a and b that plain surfaces have in changing light
-  constexpr double kPalest = 0.5;   // strengths over the expected one
-  constexpr double kStrongest = 2.5;
-  if (count_ < kMin) return 0.0F;
+  constexpr double kUniformVariance = 100.0;  // variance of a and b that plain surfaces have in changing light
+  constexpr double kMinStrength = 0.5;        // strengths over the expected one
+  constexpr double kMaxStrength = 2.5;
+  if (count_ < kMinPairs) return 0.0F;
   const double count = count_;
   const auto mean = [&](std::size_t channel, std::size_t which) {
     return channels_[channel][which] / count - kNeutral;
   };
   const double expected_sq = mean(1, 0) * mean(1, 0) + mean(2, 0) * mean(2, 0);
   const double product = mean(1, 0) * mean(1, 1) + mean(2, 0) * mean(2, 1);
-  const double strength = std::clamp(product / std::max(expected_sq, 1.0), kPalest, kStrongest);
+  const double strength = std::clamp(product / std::max(expected_sq, 1.0), kMinStrength, kMaxStrength);
   const double a = mean(1, 1) - strength * mean(1, 0);
   const double b = mean(2, 1) - strength * mean(2, 0);
   return static_cast<float>(
-      std::min(4.0, std::sqrt((a * a + b * b) / (kPlain + observed_variance(1) + observed_variance(2)))));
+      std::min(4.0, std::sqrt((a * a + b * b) / (kUniformVariance + observed_variance(1) + observed_variance(2)))));
 }
 
-ColourSimilarity::Strengths ColourSimilarity::strengths() const {
-  Strengths out;
+ColourSimilarity::ChromaProducts ColourSimilarity::chroma_products() const {
+  ChromaProducts out;
   const double count = count_;
   for (const std::size_t c : {std::size_t{1}, std::size_t{2}}) {
     const Sums& sums = channels_[c];
@@ -82,32 +83,33 @@ ColourSimilarity::Strengths ColourSimilarity::strengths() const {
 }
 
 float ColourSimilarity::hue_mismatch() const {
-  if (count_ < kMin) return 0.0F;
-  const Strengths sum = strengths();
-  const double lacking = std::sqrt(sum.expected_sq * sum.observed_sq) - sum.product;
-  const double pale = kPale * count_;
-  return static_cast<float>(std::max(lacking, 0.0) / std::sqrt((sum.expected_sq + pale) * (sum.observed_sq + pale)));
+  if (count_ < kMinPairs) return 0.0F;
+  const ChromaProducts sum = chroma_products();
+  const double deficit = std::sqrt(sum.expected_sq * sum.observed_sq) - sum.product;
+  const double pale_sum = kPaleChroma_sq * count_;
+  return static_cast<float>(std::max(deficit, 0.0) /
+                            std::sqrt((sum.expected_sq + pale_sum) * (sum.observed_sq + pale_sum)));
 }
 
 float ColourSimilarity::chroma_deficit() const {
-  constexpr double kDarkest = 0.1;  // brightness over the expected one
-  constexpr double kBrightest = 4.0;
-  if (count_ < kMin) return 0.0F;
-  const Strengths sum = strengths();
+  constexpr double kMinBrightness = 0.1;  // brightness over the expected one
+  constexpr double kMaxBrightness = 4.0;
+  if (count_ < kMinPairs) return 0.0F;
+  const ChromaProducts sum = chroma_products();
   const double expected = std::max(static_cast<double>(channels_[0][0]), 1.0);
-  const double brightness = std::clamp(channels_[0][1] / expected, kDarkest, kBrightest);
-  const double pale = kPale * count_;
-  const double expected_chroma = brightness * sum.expected_sq + pale;
-  return static_cast<float>(std::clamp(std::log(expected_chroma / (std::max(sum.product, 0.0) + pale)), -1.0, 2.0));
+  const double brightness = std::clamp(channels_[0][1] / expected, kMinBrightness, kMaxBrightness);
+  const double pale_sum = kPaleChroma_sq * count_;
+  const double expected_chroma = brightness * sum.expected_sq + pale_sum;
+  return static_cast<float>(std::clamp(std::log(expected_chroma / (std::max(sum.product, 0.0) + pale_sum)), -1.0, 2.0));
 }
 
 float ColourSimilarity::log_contrast_ratio() const {
-  constexpr double kNoise = 9.0;  // variance that a plain surface's pixels have
+  constexpr double kNoiseVariance = 9.0;  // variance that a plain surface's pixels have
   constexpr double kMax = 2.0;
-  if (count_ < kMin) return 0.0F;
+  if (count_ < kMinPairs) return 0.0F;
   const double count = count_;
-  double expected = 3.0 * kNoise;
-  double observed = 3.0 * kNoise;
+  double expected = 3.0 * kNoiseVariance;
+  double observed = 3.0 * kNoiseVariance;
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const double mean = channels_[c][0] / count;
     expected += channels_[c][2] / count - mean * mean;
@@ -117,12 +119,12 @@ float ColourSimilarity::log_contrast_ratio() const {
 }
 
 float ColourSimilarity::correlation() const {
-  constexpr double kNoise = 9.0;  // variance that a plain surface's pixels have
-  if (count_ < kMin) return 0.0F;
+  constexpr double kNoiseVariance = 9.0;  // variance that a plain surface's pixels have
+  if (count_ < kMinPairs) return 0.0F;
   const double count = count_;
   double covariance = 0.0;
-  double expected = 3.0 * kNoise;
-  double observed = 3.0 * kNoise;
+  double expected = 3.0 * kNoiseVariance;
+  double observed = 3.0 * kNoiseVariance;
   for (const Sums& sums : channels_) {
     const double mean_a = sums[0] / count;
     const double mean_b = sums[1] / count;

@@ -77,14 +77,14 @@ class ColourSimilarity {
   using Sums = std::array<std::int32_t, 5>;  // exact for 33 000 pairs, many times what a view has
 
   /// Sums over all pairs of the products of chroma vectors, about grey and not about their mean.
-  struct Strengths {
+  struct ChromaProducts {
     double product = 0.0;
     double expected_sq = 0.0;
     double observed_sq = 0.0;
   };
 
   double observed_variance(std::size_t channel) const;
-  Strengths strengths() const;
+  ChromaProducts chroma_products() const;
 
   int count_ = 0;
   std::array<Sums, 3> channels_{};

@@ -15,7 +15,7 @@ struct Evidence {
   float relative_vote_mass = 0.0F;  ///< vote mass over the class's nominal_vote_mass
   float certainty = 1.0F;           ///< weight of the votes over the number of patches that cast them
   float distance = 1.0F;            ///< distance of the centre from the camera, metres
-  /// Radius of the object at that distance, at about the usual focal length: see focal_octave_scale.
+  /// Radius of the object at that distance, at about the reference focal length: see focal_octave_scale().
   float radius_px = 40.0F;
   std::uint32_t view = kNoView;                           ///< index of the best template into Forest::views
   Eigen::Vector3f view_centre = Eigen::Vector3f::Zero();  ///< place of its centre, camera frame, metres
@@ -43,9 +43,9 @@ inline float vote_score(float relative_vote_mass) {
   return relative_vote_mass / (relative_vote_mass + 0.45F);
 }
 
-/// Returns the log odds that a hypothesis is an object by its votes alone, up to a constant: what its evidence may be
-/// worth before anything is compared. Logistic regression on 9801 hypotheses of 21 objects in 48 images of furnished
-/// rooms, 193 of them objects.
+/// Returns the log odds that a hypothesis is an object by its votes alone, up to a constant, by which hypotheses are
+/// ranked before any template is compared. Logistic regression on 9801 hypotheses of 21 objects in 48 images of
+/// furnished rooms, 193 of them objects.
 double vote_logit(const Evidence& evidence);
 
 /// A hypothesis with its label.

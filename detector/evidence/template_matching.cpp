@@ -17,7 +17,7 @@ constexpr int kSide = TemplateGrid::kSide;
 
 /// The cells of a template placed in the frame, and their depths.
 struct Comparison {
-  CellPlaces places;
+  CellLayout layout;
   CellDepths depths;
   float left = 0.0F;  // of the first cell, frame pixels
   float top = 0.0F;
@@ -29,9 +29,9 @@ struct Comparison {
   /// Returns how far the measured surface lies behind the template's zero at a cell, metres; NaN where depth is not
   /// measured, nothing where the cell is not in the frame.
   std::optional<float> beyond_centre(const RgbdFrame& frame, OutlineCells::Cell cell) const {
-    const cv::Point at(places.column_px[cell.column], places.row_px[cell.row]);
+    const cv::Point at(layout.column_px[cell.column], layout.row_px[cell.row]);
     if (!cv::Rect(cv::Point(), frame.depth.size()).contains(at)) return std::nullopt;
-    return frame.depth.at<float>(at) - (places.row_depth[cell.row] + places.column_depth[cell.column]);
+    return frame.depth.at<float>(at) - (layout.row_depth[cell.row] + layout.column_depth[cell.column]);
   }
 
   /// Returns the centre of a cell, frame pixels from the left upper edge of the first pixel.
@@ -42,7 +42,7 @@ struct Comparison {
 };
 
 /// A bit for each row or column of cells that shows a part of the object.
-using Lines = std::uint32_t;
+using LineBits = std::uint32_t;
 static_assert(kSide <= 32);
 
 /// The frame's colours at the cells of a template.
@@ -61,27 +61,28 @@ class CellColours {
 };
 
 // The steps of the two functions below; they stand behind them in the order of their calls.
-void compare(const ViewTemplate& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, const Sampling& sampling,
-             Comparison& out);
+void compare_template(const ViewTemplate& view, const Eigen::Vector3f& centre, const RgbdFrame& frame,
+                      const Sampling& sampling, Comparison& out);
 int floor_to_int(float value);
-void place(const ViewTemplate& view, const Eigen::Vector3f& centre, const Camera& camera, float size, Comparison& out);
-float tolerance_at(float z);
-std::size_t level_of(float cell_width, const LabLevels& levels);
+void project_cells(const ViewTemplate& view, const Eigen::Vector3f& centre, const Camera& camera, float size,
+                   Comparison& out);
+float depth_tolerance_at(float z);
+std::size_t select_level(float cell_width, const LabLevels& levels);
 void collect_colours(const CellTally& tally, const TemplateGrid& appearance, const CellColours& colours,
                      ColourPairs& pairs);
-void bring_to_camera(const ChromaMap& camera, ColourPairs& pairs);
+void apply_chroma_map(const ChromaMap& camera, ColourPairs& pairs);
 float rim_continuation(const CellDepths& depths, float shift, float tolerance);
-cv::Rect2f visible_box(const Comparison& comparison, Lines columns, Lines rows);
-std::pair<int, int> range(Lines seen);
+cv::Rect2f visible_box(const Comparison& comparison, LineBits columns, LineBits rows);
+std::pair<int, int> range(LineBits seen);
 
 }  // namespace
 
 TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame,
                              const Sampling& sampling) {
   Comparison comparison;
-  compare(view, centre_camera, frame.frame, sampling, comparison);
-  const float shift = common_shift(comparison.depths);
-  const float tolerance = tolerance_at(centre_camera.z());
+  compare_template(view, centre_camera, frame.frame, sampling, comparison);
+  const float shift = median_depth_shift(comparison.depths);
+  const float tolerance = depth_tolerance_at(centre_camera.z());
   CellTally tally;
   tally_cells(comparison.depths, shift, tolerance, tally);
   ColourPairs pairs;
@@ -89,8 +90,8 @@ TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& ce
   ColourSimilarity as_taught;
   as_taught.add(pairs);
   ColourSimilarity similarity = as_taught;
-  if (!frame.cameras.empty()) {
-    bring_to_camera(frame.cameras[view.class_index], pairs);
+  if (!frame.chroma_maps.empty()) {
+    apply_chroma_map(frame.chroma_maps[view.class_index], pairs);
     similarity = ColourSimilarity();
     similarity.add(pairs);
   }
@@ -114,9 +115,9 @@ TemplateMatch match_template(const ViewTemplate& view, const Eigen::Vector3f& ce
 UnoccludedCells::UnoccludedCells(const ViewTemplate& view, const Eigen::Vector3f& centre_camera,
                                  const RgbdFrame& frame) {
   Comparison comparison;
-  compare(view, centre_camera, frame, {}, comparison);
+  compare_template(view, centre_camera, frame, {}, comparison);
   CellTally tally;
-  tally_cells(comparison.depths, common_shift(comparison.depths), tolerance_at(centre_camera.z()), tally);
+  tally_cells(comparison.depths, median_depth_shift(comparison.depths), depth_tolerance_at(centre_camera.z()), tally);
   cell_px_ = {comparison.left, comparison.top, comparison.cell_width, comparison.cell_height};
   for (std::size_t i = 0; i < tally.unoccluded; ++i)
     rows_[tally.unoccluded_cells[i].row] |= 1U << tally.unoccluded_cells[i].column;
@@ -147,10 +148,10 @@ bool UnoccludedCells::contains(const cv::Point2f& px) const {
 BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, const Eigen::Vector3f& centre_camera,
                                                    const LabFrame& frame) {
   Comparison comparison;
-  compare(view, centre_camera, frame.frame, {}, comparison);
+  compare_template(view, centre_camera, frame.frame, {}, comparison);
   const CellColours colours(comparison, frame);
-  const float shift = common_shift(comparison.depths);
-  const float tolerance = tolerance_at(centre_camera.z());
+  const float shift = median_depth_shift(comparison.depths);
+  const float tolerance = depth_tolerance_at(centre_camera.z());
   const TemplateGrid& appearance = view.appearance;
   BoundaryContinuation fit;
   for (const OutlineCells& cells : appearance.outline) {
@@ -161,15 +162,15 @@ BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, con
     const std::optional<float> beyond = comparison.beyond_centre(frame.frame, out);
     if (!inside || !beyond) continue;
     const std::int16_t mm = appearance.mm[in.row * kSide + in.column];
-    const bool is_hidden =
-        mm > TemplateGrid::kNoDepth && *inside - comparison.places.metres_per_mm * mm - shift < -tolerance;
-    if (is_hidden) continue;
+    const bool is_occluded =
+        mm > TemplateGrid::kNoDepth && *inside - comparison.layout.metres_per_mm * mm - shift < -tolerance;
+    if (is_occluded) continue;
     BoundarySample sample;
     const float cell_px = in.row == out.row ? comparison.cell_width : comparison.cell_height;
     sample.lateral_distance = OutlineCells::kApart * comparison.metres_per_px * cell_px;
     sample.depth_change = *beyond - *inside;
     sample.expected_depth_change =
-        cells.gained_mm > TemplateGrid::kNoDepth ? comparison.places.metres_per_mm * cells.gained_mm : kNoValue;
+        cells.gained_mm > TemplateGrid::kNoDepth ? comparison.layout.metres_per_mm * cells.gained_mm : kNoValue;
     sample.colour_sq = colour_distance_sq(colours.at(in.row, in.column), colours.at(out.row, out.column));
     if (!is_foreground_step(sample, tolerance)) fit.add(sample, tolerance);
   }
@@ -179,21 +180,21 @@ BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, con
 namespace {
 
 /// Places a template in the frame, and compares its depth there, cell by cell.
-void compare(const ViewTemplate& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, const Sampling& sampling,
-             Comparison& out) {
-  place(view, centre, frame.camera, sampling.size, out);
+void compare_template(const ViewTemplate& view, const Eigen::Vector3f& centre, const RgbdFrame& frame,
+                      const Sampling& sampling, Comparison& out) {
+  project_cells(view, centre, frame.camera, sampling.size, out);
   out.metres_per_px = static_cast<float>(frame.camera.metres_per_px(centre.z()));
-  CellPlaces& places = out.places;
-  places.metres_per_mm = 0.001F * sampling.size;
-  const OffAxisSlope tilt = off_axis_slope(centre);
+  CellLayout& layout = out.layout;
+  layout.metres_per_mm = 0.001F * sampling.size;
+  const OffAxisSlope slope = off_axis_slope(centre);
   for (std::size_t i = 0; i < kSide; ++i) {
     const cv::Point2f px = out.cell_centre(i, i);
-    places.column_px[i] = floor_to_int(px.x);
-    places.row_px[i] = floor_to_int(px.y);
-    places.column_depth[i] = tilt.right * out.metres_per_px * (px.x - out.centre_px.x);
-    places.row_depth[i] = centre.z() + tilt.down * out.metres_per_px * (px.y - out.centre_px.y);
+    layout.column_px[i] = floor_to_int(px.x);
+    layout.row_px[i] = floor_to_int(px.y);
+    layout.column_depth[i] = slope.right * out.metres_per_px * (px.x - out.centre_px.x);
+    layout.row_depth[i] = centre.z() + slope.down * out.metres_per_px * (px.y - out.centre_px.y);
   }
-  compare_depths(view.appearance, places, frame.depth, sampling.row_step, out.depths);
+  compare_depths(view.appearance, layout, frame.depth, sampling.row_step, out.depths);
 }
 
 /// Returns std::floor() of a value, faster than processors without an instruction for it have it.
@@ -203,7 +204,8 @@ int floor_to_int(float value) {
 }
 
 /// Computes where the template's cells lie in the frame.
-void place(const ViewTemplate& view, const Eigen::Vector3f& centre, const Camera& camera, float size, Comparison& out) {
+void project_cells(const ViewTemplate& view, const Eigen::Vector3f& centre, const Camera& camera, float size,
+                   Comparison& out) {
   const Eigen::Vector2d centre_px = camera.project(centre.cast<double>());
   const auto px_per_metre = size * static_cast<float>(1.0 / camera.metres_per_px(centre.z()));  // of the view
   out.cell_width = px_per_metre * (view.box[2] - view.box[0]) / TemplateGrid::kBoxSide;
@@ -215,20 +217,20 @@ void place(const ViewTemplate& view, const Eigen::Vector3f& centre, const Camera
 }
 
 /// Returns the tolerance of depth, metres: alignment, and the noise of a structured-light camera.
-float tolerance_at(float z) {
+float depth_tolerance_at(float z) {
   return 0.010F + 0.003F * z * z;
 }
 
 /// Returns the level whose pixels show about as much as a cell does: finer detail than that of the template is noise.
-std::size_t level_of(float cell_width, const LabLevels& levels) {
-  constexpr float kAveraged = 3.0F;  // pixels of a level: what each of them is the mean of
-  const int level = static_cast<int>(std::lround(std::log2(std::max(cell_width, kAveraged) / kAveraged)));
+std::size_t select_level(float cell_width, const LabLevels& levels) {
+  constexpr float kMeanSize_px = 3.0F;  // pixels of a level: what each of them is the mean of
+  const int level = static_cast<int>(std::lround(std::log2(std::max(cell_width, kMeanSize_px) / kMeanSize_px)));
   return std::min(static_cast<std::size_t>(level), levels.size() - 1);
 }
 
 CellColours::CellColours(const Comparison& comparison, const LabFrame& frame) {
   const float cell_size = 0.5F * (comparison.cell_width + comparison.cell_height);
-  const std::size_t level = level_of(cell_size * frame.scale, frame.lab);
+  const std::size_t level = select_level(cell_size * frame.scale, frame.lab);
   const float scale = frame.scale / static_cast<float>(1U << level);
   lab_ = &frame.lab[level];
   for (std::size_t i = 0; i < kSide; ++i) {
@@ -255,7 +257,7 @@ void collect_colours(const CellTally& tally, const TemplateGrid& appearance, con
 
 /// Brings the expected colours to what the camera would measure in the light of the frame: ChromaMap::apply() for all
 /// cells, written out so that compilers make vectors of it.
-void bring_to_camera(const ChromaMap& camera, ColourPairs& pairs) {
+void apply_chroma_map(const ChromaMap& camera, ColourPairs& pairs) {
   constexpr float kGrey = 128.0F;
   constexpr float kLightness = 100.0F / 255.0F;  // of 8-bit L*
   const Eigen::Matrix<float, ChromaMap::kParameters, 1> map = camera.parameters().cast<float>();
@@ -274,16 +276,16 @@ void bring_to_camera(const ChromaMap& camera, ColourPairs& pairs) {
 /// Returns the fraction of the cells beside the outline to which the object's surface continues: a larger thing of the
 /// same shape comes nearer there before it turns away.
 float rim_continuation(const CellDepths& depths, float shift, float tolerance) {
-  constexpr float kNearer = 0.03F;
-  int continued = 0;
-  for (std::size_t i = 0; i < depths.beside_cells; ++i) {
-    const float e = depths.excess_beside[i] - shift;
-    continued += (e >= -kNearer ? 1 : 0) & (e <= 2.0F * tolerance ? 1 : 0);
+  constexpr float kMaxNearer_m = 0.03F;
+  int continued_count = 0;
+  for (std::size_t i = 0; i < depths.rim_cells; ++i) {
+    const float difference = depths.rim_difference[i] - shift;
+    continued_count += (difference >= -kMaxNearer_m ? 1 : 0) & (difference <= 2.0F * tolerance ? 1 : 0);
   }
-  return static_cast<float>(continued) / static_cast<float>(std::max<std::size_t>(depths.beside_cells, 1));
+  return static_cast<float>(continued_count) / static_cast<float>(std::max<std::size_t>(depths.rim_cells, 1));
 }
 
-cv::Rect2f visible_box(const Comparison& comparison, Lines columns, Lines rows) {
+cv::Rect2f visible_box(const Comparison& comparison, LineBits columns, LineBits rows) {
   if (columns == 0 || rows == 0) return {};
   const auto [left, right] = range(columns);
   const auto [top, bottom] = range(rows);
@@ -294,11 +296,11 @@ cv::Rect2f visible_box(const Comparison& comparison, Lines columns, Lines rows) 
 }
 
 /// Returns the first and one past the last line whose bit is set; `seen` is not 0.
-std::pair<int, int> range(Lines seen) {
+std::pair<int, int> range(LineBits bits) {
   int first = 0;
-  while ((seen >> first & 1U) == 0) ++first;
+  while ((bits >> first & 1U) == 0) ++first;
   int last = kSide;
-  while ((seen >> (last - 1) & 1U) == 0) --last;
+  while ((bits >> (last - 1) & 1U) == 0) --last;
   return {first, last};
 }
 

@@ -14,14 +14,14 @@
 
 namespace houghstream {
 
-/// A frame with its colours as templates hold them.
+/// A frame with its colours in the form of templates, CIE L*a*b*.
 struct LabFrame {
   const RgbdFrame& frame;
-  LabLevels lab;       ///< see make_smoothed_lab
+  LabLevels lab;       ///< levels of make_smoothed_lab()
   float scale = 1.0F;  ///< size of the first level over the frame's
-  /// The camera's rendering of the colours of each class, by its index: views are brought to these colours before they
-  /// are compared. Empty: as they were taught.
-  std::vector<ChromaMap> cameras = {};
+  /// Map from taught colours to those of the camera, by class index, which is applied to views before they are
+  /// compared. Empty: colours are compared as they were taught.
+  std::vector<ChromaMap> chroma_maps = {};
 };
 
 /// Match of a view template at a hypothesis' centre with the frame. The first four are fractions of the template's
@@ -72,7 +72,7 @@ class BoundaryContinuation {
   float both_ = 0.0F;
 };
 
-/// The cells of a template at its place in a frame in which the measured surface is the template's, or is not known.
+/// The cells of a placed template that are visible, or whose depth is not known.
 class UnoccludedCells {
  public:
   UnoccludedCells(const ViewTemplate& view, const Eigen::Vector3f& centre_camera, const RgbdFrame& frame);

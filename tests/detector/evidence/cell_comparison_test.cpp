@@ -20,7 +20,7 @@ constexpr float kTolerance_m = 0.012F;
 /// A template, a frame, and where the one lies in the other: some of its cells beside the image.
 struct Case {
   TemplateGrid grid;
-  CellPlaces places;
+  CellLayout layout;
   cv::Mat depth = cv::Mat(40, 50, CV_32FC1);
 };
 
@@ -37,10 +37,10 @@ std::unique_ptr<Case> random_case(std::uint64_t seed) {
   const int left = random.between(-12, 40);
   const int top = random.between(-12, 30);
   for (std::size_t i = 0; i < kTemplateSide; ++i) {
-    made->places.column_px[i] = left + static_cast<int>(i) * 3 / 2;
-    made->places.row_px[i] = top + static_cast<int>(i);
-    made->places.column_depth[i] = static_cast<float>(random.uniform(-0.01, 0.01));
-    made->places.row_depth[i] = static_cast<float>(random.uniform(0.99, 1.01));
+    made->layout.column_px[i] = left + static_cast<int>(i) * 3 / 2;
+    made->layout.row_px[i] = top + static_cast<int>(i);
+    made->layout.column_depth[i] = static_cast<float>(random.uniform(-0.01, 0.01));
+    made->layout.row_depth[i] = static_cast<float>(random.uniform(0.99, 1.01));
   }
   for (int y = 0; y < made->depth.rows; ++y) {
     for (int x = 0; x < made->depth.cols; ++x)
@@ -58,23 +58,23 @@ struct Reference {
   }
 
   void add(const Case& made, std::size_t row, std::size_t column) {
-    const cv::Point at(made.places.column_px[column], made.places.row_px[row]);
+    const cv::Point at(made.layout.column_px[column], made.layout.row_px[row]);
     if (!cv::Rect(cv::Point(), made.depth.size()).contains(at)) return;
-    const float beyond = made.depth.at<float>(at) - (made.places.row_depth[row] + made.places.column_depth[column]);
+    const float beyond = made.depth.at<float>(at) - (made.layout.row_depth[row] + made.layout.column_depth[column]);
     const std::size_t cell = row * kTemplateSide + column;
     const auto over = [&](std::int16_t mm) {
-      return mm > TemplateGrid::kNoDepth ? beyond - made.places.metres_per_mm * static_cast<float>(mm) : kNoValue;
+      return mm > TemplateGrid::kNoDepth ? beyond - made.layout.metres_per_mm * static_cast<float>(mm) : kNoValue;
     };
     if (made.grid.mm[cell] != TemplateGrid::kBeside) {
       cells.push_back(cell);
-      excess.push_back(over(made.grid.mm[cell]));
+      depth_difference.push_back(over(made.grid.mm[cell]));
     }
-    if (made.grid.beside[cell] != TemplateGrid::kBeside) excess_beside.push_back(over(made.grid.beside[cell]));
+    if (made.grid.beside[cell] != TemplateGrid::kBeside) rim_difference.push_back(over(made.grid.beside[cell]));
   }
 
   std::vector<std::size_t> cells;
-  std::vector<float> excess;
-  std::vector<float> excess_beside;
+  std::vector<float> depth_difference;
+  std::vector<float> rim_difference;
 };
 
 void expect_equal(const std::vector<float>& expected, const float* values, std::size_t count) {
@@ -96,7 +96,7 @@ void for_each_case(const Check& check) {
       SCOPED_TRACE(seed);
       const std::unique_ptr<Case> made = random_case(seed);
       CellDepths depths;
-      compare_depths(made->grid, made->places, made->depth, 1, depths);
+      compare_depths(made->grid, made->layout, made->depth, 1, depths);
       check(*made, depths);
     }
   });
@@ -105,8 +105,8 @@ void for_each_case(const Check& check) {
 TEST(CellComparison, IsThatOfOneCellAfterAnother) {
   for_each_case([](const Case& made, const CellDepths& depths) {
     const Reference expected(made);
-    expect_equal(expected.excess, depths.excess.data(), depths.object_cells);
-    expect_equal(expected.excess_beside, depths.excess_beside.data(), depths.beside_cells);
+    expect_equal(expected.depth_difference, depths.depth_difference.data(), depths.object_cells);
+    expect_equal(expected.rim_difference, depths.rim_difference.data(), depths.rim_cells);
     for (std::size_t i = 0; i < depths.object_cells; ++i) {
       const TemplateCell cell = depths.cells[i];
       ASSERT_EQ(cell.index, expected.cells[i]);
@@ -121,25 +121,26 @@ TEST(CellComparison, OfSomeRowsIsThatOfTheseRows) {
     const std::unique_ptr<Case> made = random_case(1);
     CellDepths all;
     CellDepths some;
-    compare_depths(made->grid, made->places, made->depth, 1, all);
-    compare_depths(made->grid, made->places, made->depth, kStep, some);
+    compare_depths(made->grid, made->layout, made->depth, 1, all);
+    compare_depths(made->grid, made->layout, made->depth, kStep, some);
     std::vector<std::uint16_t> expected;
     for (std::size_t i = 0; i < all.object_cells; ++i) {
       if (all.cells[i].row % kStep == kStep / 2) expected.push_back(all.cells[i].index);
     }
     ASSERT_EQ(some.object_cells, expected.size());
     for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(some.cells[i].index, expected[i]);
-    EXPECT_LT(some.beside_cells, all.beside_cells);
+    EXPECT_LT(some.rim_cells, all.rim_cells);
   });
 }
 
 TEST(CellComparison, TheCommonShiftIsTheMedianWithinReach) {
   for_each_case([](const Case& /*made*/, const CellDepths& depths) {
     std::vector<float> near;
-    std::copy_if(depths.excess.begin(), depths.excess.begin() + static_cast<std::ptrdiff_t>(depths.object_cells),
+    std::copy_if(depths.depth_difference.begin(),
+                 depths.depth_difference.begin() + static_cast<std::ptrdiff_t>(depths.object_cells),
                  std::back_inserter(near), [](float e) { return std::abs(e) < 0.03F; });
     std::sort(near.begin(), near.end());
-    EXPECT_EQ(common_shift(depths), near.empty() ? 0.0F : near[near.size() / 2]);
+    EXPECT_EQ(median_depth_shift(depths), near.empty() ? 0.0F : near[near.size() / 2]);
   });
 }
 
@@ -149,7 +150,7 @@ TEST(CellComparison, TalliesEachCellOnce) {
     tally_cells(depths, kShift_m, kTolerance_m, tally);
     CellTally expected;
     for (std::size_t i = 0; i < depths.object_cells; ++i) {
-      const float e = depths.excess[i] - kShift_m;
+      const float e = depths.depth_difference[i] - kShift_m;
       const TemplateCell cell = depths.cells[i];
       expected.no_depth += std::isnan(e) ? 1 : 0;
       expected.occluded += e < -kTolerance_m ? 1 : 0;
@@ -177,11 +178,11 @@ TEST(CellComparison, TalliesEachCellOnce) {
 
 TEST(CellComparison, ATemplateBesideTheImageHasNoCells) {
   const std::unique_ptr<Case> made = random_case(1);
-  made->places.row_px.fill(-1);
+  made->layout.row_px.fill(-1);
   CellDepths depths;
-  compare_depths(made->grid, made->places, made->depth, 1, depths);
+  compare_depths(made->grid, made->layout, made->depth, 1, depths);
   EXPECT_EQ(depths.object_cells, 0U);
-  EXPECT_EQ(common_shift(depths), 0.0F);
+  EXPECT_EQ(median_depth_shift(depths), 0.0F);
   CellTally tally;
   tally_cells(depths, 0.0F, kTolerance_m, tally);
   EXPECT_EQ(tally.unoccluded, 0U);
