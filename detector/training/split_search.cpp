@@ -16,30 +16,30 @@ SplitSearch::SplitSearch(const TrainingSet& set, const PatchSettings& patch, con
       allow_single_pixel_intensity_(allow_single_pixel_intensity) {
   for (int plane = 0; plane < set.layout.planes(); ++plane) {
     const bool is_histogram = set.layout.kind(plane) == PlaneKind::kHistogram;
-    (is_histogram ? histograms_ : others_).push_back(static_cast<std::uint8_t>(plane));
+    (is_histogram ? histogram_planes_ : pixel_planes_).push_back(static_cast<std::uint8_t>(plane));
   }
   tests_.resize(static_cast<std::size_t>(settings.tests_per_node));
   bins_.resize(kBins * label_weights_.size());
   label_counts_.resize(bins_.size());
   left_.resize(label_weights_.size());
-  all_.resize(label_weights_.size());
+  total_.resize(label_weights_.size());
 }
 
 const SplitSearch::Planes& SplitSearch::draw_planes(Random& random) const {
-  if (histograms_.empty()) return others_;
-  if (others_.empty()) return histograms_;
-  return random.uniform() < settings_.histogram_fraction ? histograms_ : others_;
+  if (histogram_planes_.empty()) return pixel_planes_;
+  if (pixel_planes_.empty()) return histogram_planes_;
+  return random.uniform() < settings_.histogram_fraction ? histogram_planes_ : pixel_planes_;
 }
 
 void SplitSearch::draw_tests(std::size_t test_count, Random& random) {
   const auto coordinate = [&] { return static_cast<std::int8_t>(random.between(-patch_.radius, patch_.radius)); };
-  for (Place& place : places_) place = {coordinate(), coordinate()};
+  for (PatchPixel& pixel : patch_pixels_) pixel = {coordinate(), coordinate()};
   const Planes& planes = draw_planes(random);
-  drawn_.resize(test_count);
+  pixel_pairs_.resize(test_count);
   for (std::size_t t = 0; t < test_count; ++t) {
-    drawn_[t].first = static_cast<std::uint8_t>(random.below(kPlaces));
-    drawn_[t].second = static_cast<std::uint8_t>(random.below(kPlaces));
-    tests_[t] = random_test(planes, drawn_[t], random);
+    pixel_pairs_[t].first = static_cast<std::uint8_t>(random.below(kPatchPixels));
+    pixel_pairs_[t].second = static_cast<std::uint8_t>(random.below(kPatchPixels));
+    tests_[t] = random_test(planes, pixel_pairs_[t], random);
   }
 }
 
@@ -50,7 +50,7 @@ double SplitSearch::single_pixel_fraction(PlaneKind kind) const {
   return kind == PlaneKind::kScaledDepth ? std::max(of_shape, 0.5) : settings_.single_pixel_fraction;
 }
 
-PixelTest SplitSearch::random_test(const Planes& planes, PlacePair& pair, Random& random) const {
+PixelTest SplitSearch::random_test(const Planes& planes, PixelPair& pair, Random& random) const {
   PixelTest test;
   test.plane = planes[static_cast<std::size_t>(random.below(static_cast<int>(planes.size())))];
   const PlaneKind kind = set_.layout.kind(test.plane);
@@ -61,10 +61,10 @@ PixelTest SplitSearch::random_test(const Planes& planes, PlacePair& pair, Random
     test.kind = PixelTest::kSinglePixel;
     pair.second = pair.first;
   }
-  test.dx1 = places_[pair.first].dx;
-  test.dy1 = places_[pair.first].dy;
-  test.dx2 = places_[pair.second].dx;
-  test.dy2 = places_[pair.second].dy;
+  test.dx1 = patch_pixels_[pair.first].dx;
+  test.dy1 = patch_pixels_[pair.first].dy;
+  test.dx2 = patch_pixels_[pair.second].dx;
+  test.dy2 = patch_pixels_[pair.second].dy;
   return test;
 }
 
@@ -76,14 +76,14 @@ SplitSearch::Sums& SplitSearch::Sums::operator+=(const Sums& other) {
   return *this;
 }
 
-void SplitSearch::load_items(const std::vector<std::uint32_t>& samples) {
-  items_.clear();
-  std::fill(all_.begin(), all_.end(), Sums{});
+void SplitSearch::load_sample_sums(const std::vector<std::uint32_t>& samples) {
+  sample_sums_.clear();
+  std::fill(total_.begin(), total_.end(), Sums{});
   for (const std::uint32_t s : samples) {
     const TrainingSample& sample = set_.samples[s];
     const float w = label_weights_[sample.label];
-    items_.push_back({{w, w * sample.offset.x(), w * sample.offset.y(), w * sample.offset.z()}, sample.label});
-    all_[sample.label] += items_.back().sums;
+    sample_sums_.push_back({{w, w * sample.offset.x(), w * sample.offset.y(), w * sample.offset.z()}, sample.label});
+    total_[sample.label] += sample_sums_.back().sums;
   }
 }
 
@@ -91,20 +91,20 @@ void SplitSearch::prepare_tests(std::size_t test_count, int pixel_stride) {
   prepared_.resize(test_count);
   for (std::size_t t = 0; t < test_count; ++t) {
     const PixelTest& test = tests_[t];
-    prepared_[t] = {static_cast<std::uint16_t>(drawn_[t].first * pixel_stride + test.plane),
-                    static_cast<std::uint16_t>(drawn_[t].second * pixel_stride + test.plane),
+    prepared_[t] = {static_cast<std::uint16_t>(pixel_pairs_[t].first * pixel_stride + test.plane),
+                    static_cast<std::uint16_t>(pixel_pairs_[t].second * pixel_stride + test.plane),
                     static_cast<std::uint16_t>(test.kind & 31), static_cast<std::uint16_t>((test.kind >> 7) - 1)};
   }
 }
 
-/// Copies the pixels at the node's places side by side. Patches are far apart in memory: the next one is asked for
-/// while this one is looked at.
+/// Copies the values of the node's pixels side by side. Patches are far apart in memory, so that the next one is
+/// prefetched meanwhile.
 void SplitSearch::load_pixels(const CutoutPatch& patch, const CutoutPatch& next) {
   const auto stride = static_cast<std::size_t>(patch.pixel_stride);
-  pixels_.resize(kPlaces * stride);
-  for (std::size_t i = 0; i < kPlaces; ++i) {
-    __builtin_prefetch(next.at(places_[i].dx, places_[i].dy));
-    std::memcpy(pixels_.data() + i * stride, patch.at(places_[i].dx, places_[i].dy), stride);
+  pixels_.resize(kPatchPixels * stride);
+  for (std::size_t i = 0; i < kPatchPixels; ++i) {
+    __builtin_prefetch(next.at(patch_pixels_[i].dx, patch_pixels_[i].dy));
+    std::memcpy(pixels_.data() + i * stride, patch.at(patch_pixels_[i].dx, patch_pixels_[i].dy), stride);
   }
 }
 
@@ -123,7 +123,7 @@ void SplitSearch::evaluate_tests(std::size_t test_count, const std::vector<std::
       load_pixels(patch_of(begin + s), patch_of(std::min(begin + s + 1, count - 1)));
       std::int16_t* out = block_.data() + s * test_count;
       for (std::size_t t = 0; t < test_count; ++t) {
-        const Prepared& test = prepared_[t];
+        const PreparedTest& test = prepared_[t];
         const int difference = pixels_[test.first] - (pixels_[test.second] & test.mask);
         out[t] = static_cast<std::int16_t>(
             static_cast<std::int32_t>(static_cast<std::uint32_t>(difference) << test.shift) >> test.shift);
@@ -145,7 +145,7 @@ float SplitSearch::class_gain() const {
   float right_sq = 0.0F;
   for (std::size_t l = 0; l < left_.size(); ++l) {
     const float left = left_[l].weight;
-    const float right = all_[l].weight - left;
+    const float right = total_[l].weight - left;
     left_sum += left;
     right_sum += right;
     left_sq += left * left;
@@ -161,13 +161,13 @@ float SplitSearch::offset_gain() const {
   for (std::size_t l = 1; l < left_.size(); ++l) {
     const Sums& a = left_[l];
     gain += term(a.weight, a.x, a.y, a.z);
-    gain += term(all_[l].weight - a.weight, all_[l].x - a.x, all_[l].y - a.y, all_[l].z - a.z);
+    gain += term(total_[l].weight - a.weight, total_[l].x - a.x, total_[l].y - a.y, total_[l].z - a.z);
   }
   return gain;
 }
 
 bool SplitSearch::fill_bins(std::size_t t, Objective objective, int& first, int& range) {
-  const std::size_t count = items_.size();
+  const std::size_t count = sample_sums_.size();
   const std::size_t labels = label_weights_.size();
   const std::int16_t* values = values_.data() + t * count;
   std::int16_t low = values[0];
@@ -185,9 +185,9 @@ bool SplitSearch::fill_bins(std::size_t t, Objective objective, int& first, int&
   if (needs_offsets) std::fill(bins_.begin(), bins_.end(), Sums{});
   for (std::size_t s = 0; s < count; ++s) {
     const std::size_t bin = (static_cast<std::uint32_t>(values[s] - low) * scale) >> 16U;
-    const std::size_t place = bin * labels + items_[s].label;
-    ++label_counts_[place];
-    if (needs_offsets) bins_[place] += items_[s].sums;
+    const std::size_t label_bin = bin * labels + sample_sums_[s].label;
+    ++label_counts_[label_bin];
+    if (needs_offsets) bins_[label_bin] += sample_sums_[s].sums;
   }
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     bin_counts_[bin] = 0;
@@ -217,7 +217,7 @@ std::optional<SplitSearch::Split> SplitSearch::search_thresholds(std::size_t t, 
       for (std::size_t l = 0; l < labels; ++l) left_[l] += bins_[bin * labels + l];
     }
     left_count += bin_counts_[bin];
-    if (left_count < min_side || static_cast<int>(items_.size()) - left_count < min_side) continue;
+    if (left_count < min_side || static_cast<int>(sample_sums_.size()) - left_count < min_side) continue;
     const float gain = objective == Objective::kClass ? class_gain() : offset_gain();
     if (best && gain <= best->gain) continue;
     // the smallest value of the next bin: value * scale >> 16 > bin
@@ -229,55 +229,56 @@ std::optional<SplitSearch::Split> SplitSearch::search_thresholds(std::size_t t, 
 
 /// Returns the best threshold of each of the first `test_count` tests, on `samples`; tests that split nothing are left
 /// out.
-std::vector<SplitSearch::Judged> SplitSearch::judge_tests(std::size_t test_count,
-                                                          const std::vector<std::uint32_t>& samples,
-                                                          Objective objective, int min_side) {
-  load_items(samples);
+std::vector<SplitSearch::ScoredTest> SplitSearch::score_tests(std::size_t test_count,
+                                                              const std::vector<std::uint32_t>& samples,
+                                                              Objective objective, int min_side) {
+  load_sample_sums(samples);
   evaluate_tests(test_count, samples);
-  std::vector<Judged> judged;
+  std::vector<ScoredTest> scored;
   for (std::size_t t = 0; t < test_count; ++t) {
     const std::optional<Split> split = search_thresholds(t, objective, min_side);
-    if (split) judged.push_back({split->gain, static_cast<std::uint32_t>(t), split->threshold});
+    if (split) scored.push_back({split->gain, static_cast<std::uint32_t>(t), split->threshold});
   }
   // equal gains in the order of drawing, so that the order is the same everywhere
-  std::sort(judged.begin(), judged.end(),
-            [](const Judged& a, const Judged& b) { return a.gain != b.gain ? a.gain > b.gain : a.test < b.test; });
-  return judged;
+  std::sort(scored.begin(), scored.end(), [](const ScoredTest& a, const ScoredTest& b) {
+    return a.gain != b.gain ? a.gain > b.gain : a.test < b.test;
+  });
+  return scored;
 }
 
 /// Returns every k-th sample, so that about `count` are left.
-static std::vector<std::uint32_t> thinned(const std::vector<std::uint32_t>& samples, std::size_t count) {
+static std::vector<std::uint32_t> thin_out(const std::vector<std::uint32_t>& samples, std::size_t count) {
   std::vector<std::uint32_t> out;
   for (std::size_t i = 0; i < count; ++i) out.push_back(samples[i * samples.size() / count]);
   return out;
 }
 
 /// Moves the best tests to the front.
-void SplitSearch::keep_finalists(const std::vector<Judged>& judged, std::size_t count) {
+void SplitSearch::select_finalists(const std::vector<ScoredTest>& scored, std::size_t count) {
   std::vector<PixelTest> tests;
-  std::vector<PlacePair> pairs;
+  std::vector<PixelPair> pairs;
   for (std::size_t i = 0; i < count; ++i) {
-    tests.push_back(tests_[judged[i].test]);
-    pairs.push_back(drawn_[judged[i].test]);
+    tests.push_back(tests_[scored[i].test]);
+    pairs.push_back(pixel_pairs_[scored[i].test]);
   }
   std::copy(tests.begin(), tests.end(), tests_.begin());
-  std::copy(pairs.begin(), pairs.end(), drawn_.begin());
+  std::copy(pairs.begin(), pairs.end(), pixel_pairs_.begin());
 }
 
 std::optional<PixelTest> SplitSearch::best_test(const std::vector<std::uint32_t>& samples, Objective objective,
                                                 Random& random) {
-  // Few samples are told apart by few tests; trying more would only fit their noise.
+  // A few tests separate a few samples; more would only fit their noise.
   std::size_t test_count = std::min(tests_.size(), std::max<std::size_t>(64, samples.size()));
   draw_tests(test_count, random);
   if (samples.size() >= 2 * kPrescreenSamples && test_count > kFinalists) {
-    const std::vector<Judged> first = judge_tests(test_count, thinned(samples, kPrescreenSamples), objective, 2);
+    const std::vector<ScoredTest> first = score_tests(test_count, thin_out(samples, kPrescreenSamples), objective, 2);
     test_count = std::min(first.size(), kFinalists);
-    keep_finalists(first, test_count);
+    select_finalists(first, test_count);
   }
-  const std::vector<Judged> judged = judge_tests(test_count, samples, objective, kMinSide);
-  if (judged.empty()) return std::nullopt;
-  PixelTest best = tests_[judged.front().test];
-  best.threshold = static_cast<std::int16_t>(judged.front().threshold);
+  const std::vector<ScoredTest> scored = score_tests(test_count, samples, objective, kMinSide);
+  if (scored.empty()) return std::nullopt;
+  PixelTest best = tests_[scored.front().test];
+  best.threshold = static_cast<std::int16_t>(scored.front().threshold);
   return best;
 }
 

@@ -14,8 +14,8 @@ namespace houghstream::training {
 /// Objective of a node's test (Gall et al. 2011, Section 3.2): pure classes or agreeing offsets.
 enum class Objective { kClass, kOffset };
 
-/// Finds the best of many random tests for a node. They look at few pixels of a patch, drawn anew for every node, so
-/// that a patch costs few cache misses. All tests are judged on a few of the samples, the best of
+/// Finds the best of many random tests for a node. They read few pixels of a patch, which are drawn for every node, so
+/// that a patch costs few cache misses. All tests are scored on a few of the samples, the best of
 /// them on all (successive halving, Jamieson & Talwalkar 2016): a tenth of the work at nearly the same gain. Holds
 /// scratch memory; one per thread.
 class SplitSearch {
@@ -28,9 +28,9 @@ class SplitSearch {
 
   static constexpr int kMinSide = 10;
   static constexpr int kBins = 16;
-  static constexpr std::size_t kPrescreenSamples = 128;  ///< samples on which all tests are judged
-  static constexpr int kPlaces = 64;                     ///< pixels of a patch among which a node's tests choose
-  static constexpr std::size_t kFinalists = 64;          ///< tests that are judged on all samples
+  static constexpr std::size_t kPrescreenSamples = 128;  ///< samples on which all tests are scored
+  static constexpr int kPatchPixels = 64;        ///< number of pixels of a patch from which a node's tests are drawn
+  static constexpr std::size_t kFinalists = 64;  ///< tests that are scored on all samples
 
  private:
   /// Weighted sums of some samples of one label: of 1 and of the offset's coordinates.
@@ -41,8 +41,8 @@ class SplitSearch {
     float z = 0.0F;
     Sums& operator+=(const Sums& other);
   };
-  /// A sample as the thresholds see it, laid out in order.
-  struct Item {
+  /// The sums of a single sample with its label, in the order of the samples.
+  struct LabelledSums {
     Sums sums;
     std::uint32_t label = 0;
   };
@@ -51,22 +51,22 @@ class SplitSearch {
     int threshold = 0;
   };
 
-  struct Judged {
+  struct ScoredTest {
     float gain = 0.0F;
     std::uint32_t test = 0;
     int threshold = 0;
   };
-  /// Place that tests of the current node may read.
-  struct Place {
+  /// A pixel that tests of the current node may read, relative to the patch's centre.
+  struct PatchPixel {
     std::int8_t dx = 0;
     std::int8_t dy = 0;
   };
-  struct PlacePair {
-    std::uint8_t first = 0;  // index into places_
+  struct PixelPair {
+    std::uint8_t first = 0;  // index into patch_pixels_
     std::uint8_t second = 0;
   };
-  /// A PixelTest as evaluate_tests wants it.
-  struct Prepared {
+  /// A PixelTest in the form for evaluate_tests().
+  struct PreparedTest {
     std::uint16_t first = 0;  // index into pixels_
     std::uint16_t second = 0;
     std::uint16_t shift = 0;
@@ -79,16 +79,16 @@ class SplitSearch {
   void draw_tests(std::size_t test_count, Random& random);
   /// Returns the fraction of the tests on a plane of this kind that read a single pixel, see TrainingSettings.
   double single_pixel_fraction(PlaneKind kind) const;
-  PixelTest random_test(const Planes& planes, PlacePair& pair, Random& random) const;
+  PixelTest random_test(const Planes& planes, PixelPair& pair, Random& random) const;
   void prepare_tests(std::size_t test_count, int pixel_stride);
   void load_pixels(const CutoutPatch& patch, const CutoutPatch& next);
-  void keep_finalists(const std::vector<Judged>& judged, std::size_t count);
-  void load_items(const std::vector<std::uint32_t>& samples);
+  void select_finalists(const std::vector<ScoredTest>& scored, std::size_t count);
+  void load_sample_sums(const std::vector<std::uint32_t>& samples);
   void evaluate_tests(std::size_t test_count, const std::vector<std::uint32_t>& samples);
   /// Sorts the samples into kBins bins by the value of test t; false where all values are equal.
   bool fill_bins(std::size_t t, Objective objective, int& first, int& range);
-  std::vector<Judged> judge_tests(std::size_t test_count, const std::vector<std::uint32_t>& samples,
-                                  Objective objective, int min_side);
+  std::vector<ScoredTest> score_tests(std::size_t test_count, const std::vector<std::uint32_t>& samples,
+                                      Objective objective, int min_side);
   /// Returns the best threshold of test t that leaves at least `min_side` samples on both sides.
   std::optional<Split> search_thresholds(std::size_t t, Objective objective, int min_side);
   float class_gain() const;
@@ -98,22 +98,22 @@ class SplitSearch {
   const PatchSettings& patch_;
   const TrainingSettings& settings_;
   std::vector<float> label_weights_;
-  Planes histograms_;
-  Planes others_;
+  Planes histogram_planes_;
+  Planes pixel_planes_;
   bool allow_single_pixel_intensity_;  // true where a single pixel's lightness and colour may decide
   std::vector<PixelTest> tests_;
-  std::vector<Prepared> prepared_;
-  std::vector<PlacePair> drawn_;  // per test
-  std::array<Place, kPlaces> places_{};
-  std::vector<std::uint8_t> pixels_;  // pixels of one patch, place by place
-  std::vector<std::int16_t> values_;  // tests x samples
-  std::vector<std::int16_t> block_;   // some samples x tests
-  std::vector<Item> items_;           // per sample
+  std::vector<PreparedTest> prepared_;
+  std::vector<PixelPair> pixel_pairs_;  // per test
+  std::array<PatchPixel, kPatchPixels> patch_pixels_{};
+  std::vector<std::uint8_t> pixels_;       // values of one patch, pixel by pixel
+  std::vector<std::int16_t> values_;       // tests x samples
+  std::vector<std::int16_t> block_;        // some samples x tests
+  std::vector<LabelledSums> sample_sums_;  // per sample
   std::array<int, kBins> bin_counts_{};
   std::vector<int> label_counts_;  // kBins x labels
   std::vector<Sums> bins_;         // kBins x labels
   std::vector<Sums> left_;         // per label
-  std::vector<Sums> all_;          // per label
+  std::vector<Sums> total_;        // per label
 };
 
 }  // namespace houghstream::training
