@@ -57,85 +57,166 @@ struct VisibleSurface {
   Eigen::Vector3f camera_position = Eigen::Vector3f::Zero();  ///< object frame, metres
 };
 
-cv::Mat box_sum(const cv::Mat& values, int side) {
-  cv::Mat sum;
-  cv::boxFilter(values, sum, -1, cv::Size(side, side), cv::Point(-1, -1), false, cv::BORDER_CONSTANT);
-  return sum;
-}
+/// Counts of the points of a handle, the part that breaks a nearly round shape (ObjectModel::unround_points), by how
+/// they are observed at a pose.
+struct HandlePoints {
+  int depth_inliers = 0;
+  int free_space_violations = 0;
+  int total = 0;
+};
 
-cv::Mat count_cells_around(const cv::Mat& mask, int side) {
-  cv::Mat weight;
-  cv::max(box_sum(mask, side), 1.0, weight);
-  const std::array<cv::Mat, 3> channels = {weight, weight, weight};
-  cv::Mat weights;
-  cv::merge(channels.data(), channels.size(), weights);
-  return weights;
-}
-
-/// Makes the bands of a grid of CIE L*a*b* colours, CV_32FC3, 0 where nothing is compared.
-TextureBands make_texture_bands(const cv::Mat& lab, const VisibleSurface& surface) {
-  const cv::Mat fine = box_sum(lab, kFine) / surface.fine_weights;
-  const cv::Mat coarse = box_sum(lab, kCoarse) / surface.coarse_weights;
-  const auto count = static_cast<Eigen::Index>(surface.cells.size());
-  cv::Vec3d mean(0.0, 0.0, 0.0);
-  for (const cv::Point& cell : surface.cells) mean += cv::Vec3d(lab.at<cv::Vec3f>(cell));
-  mean /= static_cast<double>(count);
+/// Holds a pose that is equivalent by shape, and the model's texture at it.
+struct Alternative {
+  Eigen::Isometry3d T_camera_object;
   TextureBands texture;
-  for (Band& band : texture.bands) band.values.resize(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const cv::Point& cell = surface.cells[static_cast<std::size_t>(i)];
-    const cv::Vec3f cell_colour = lab.at<cv::Vec3f>(cell);
-    const cv::Vec3f fine_mean = fine.at<cv::Vec3f>(cell);
-    const cv::Vec3f coarse_mean = coarse.at<cv::Vec3f>(cell);
-    for (int c = 0; c < 3; ++c) {
-      texture.bands[static_cast<std::size_t>(c)].values[i] = cell_colour[c] - fine_mean[c];
-      texture.bands[static_cast<std::size_t>(3 + c)].values[i] = fine_mean[c] - coarse_mean[c];
-      if (c > 0)
-        texture.bands[static_cast<std::size_t>(5 + c)].values[i] = coarse_mean[c] - static_cast<float>(mean[c]);
-    }
+  double log_likelihood = 0.0;  ///< best_log_likelihood_ratio() of the texture
+};
+
+// The steps of compare_with_alternatives(); they stand behind it in the order of their calls.
+std::vector<Eigen::Isometry3d> find_alternative_poses(const ObjectObservation& observation,
+                                                      const Eigen::Isometry3d& T_camera_object,
+                                                      const DepthTolerance& tolerance,
+                                                      const RegistrationSettings& registration);
+bool is_handle_visible(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                       const DepthTolerance& tolerance);
+bool can_handle_be_occluded(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                            const DepthTolerance& tolerance);
+HandlePoints count_handle_points(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                                 const DepthTolerance& tolerance);
+TextureComparison uninformative(std::size_t alternatives);
+VisibleSurface find_visible_surface(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                                    const DepthTolerance& tolerance);
+cv::Rect crop_to_whole_cells(const cv::Rect& part, int cell_px);
+cv::Point middle_px(const cv::Point& cell, const VisibleSurface& surface);
+bool is_overexposed(const cv::Vec3b& bgr);
+cv::Mat count_cells_around(const cv::Mat& mask, int side);
+std::optional<TextureBands> model_texture(const ObjectModel& model, const VisibleSurface& surface,
+                                          const Eigen::Isometry3d& motion);
+std::vector<TextureBands> observed_textures(const ObjectObservation& observation, const VisibleSurface& surface);
+TextureBands observed_texture(const ObjectObservation& observation, const VisibleSurface& surface,
+                              const cv::Point& shift_px);
+TextureBands make_texture_bands(const cv::Mat& lab, const VisibleSurface& surface);
+cv::Mat box_sum(const cv::Mat& values, int side);
+double best_log_likelihood_ratio(const TextureBands& model, const std::vector<TextureBands>& observed);
+double log_likelihood_ratio(const TextureBands& model, const TextureBands& observed);
+void align_about_axes(const ObjectModel& model, const VisibleSurface& surface, const Eigen::Isometry3d& T_object_camera,
+                      const std::vector<TextureBands>& observed, Alternative& pose);
+std::vector<Alternative> rank_alternatives(const ObjectObservation& observation, const VisibleSurface& surface,
+                                           const Eigen::Isometry3d& T_camera_object,
+                                           const std::vector<Eigen::Isometry3d>& poses,
+                                           const std::vector<TextureBands>& observed);
+
+}  // namespace
+
+std::optional<TextureComparison> compare_with_alternatives(const ObjectObservation& observation,
+                                                           const Eigen::Isometry3d& T_camera_object,
+                                                           const DepthTolerance& tolerance,
+                                                           const RegistrationSettings& registration) {
+  const std::vector<Eigen::Isometry3d> alternatives =
+      find_alternative_poses(observation, T_camera_object, tolerance, registration);
+  if (alternatives.empty()) return std::nullopt;
+  if (observation.model.texture.empty() || observation.colours.lab.empty()) return uninformative(alternatives.size());
+  const VisibleSurface surface = find_visible_surface(observation, T_camera_object, tolerance);
+  if (surface.cells.size() < kMinCells) return uninformative(alternatives.size());
+  std::optional<TextureBands> texture = model_texture(observation.model, surface, Eigen::Isometry3d::Identity());
+  if (!texture) return uninformative(alternatives.size());
+  const std::vector<TextureBands> observed = observed_textures(observation, surface);
+  const double log_likelihood = best_log_likelihood_ratio(*texture, observed);
+  Alternative pose{T_camera_object, *std::move(texture), log_likelihood};
+  align_about_axes(observation.model, surface, T_camera_object.inverse(), observed, pose);
+  const bool is_aligned = pose.log_likelihood > log_likelihood + kMinLogLikelihoodGain;
+  const double pose_log_likelihood = pose.log_likelihood;
+  const std::vector<Alternative> ranked =
+      rank_alternatives(observation, surface, T_camera_object, alternatives, observed);
+  if (ranked.empty()) return std::nullopt;
+  // Another pose replaces the present one on positive evidence, a Bayes factor of 3 (Kass and Raftery 1995, "Bayes
+  // Factors").
+  constexpr double kMinLogBayesFactor = 1.1;  // its logarithm
+  TextureComparison comparison;
+  if (is_aligned) comparison.aligned = pose.T_camera_object;
+  double best = pose_log_likelihood + kMinLogBayesFactor;
+  double ratio_sum = 0.0;  // sum of the alternatives' likelihoods over the pose's
+  for (const Alternative& alternative : ranked) {
+    ratio_sum += std::exp(std::min(alternative.log_likelihood - pose_log_likelihood, 50.0));
+    if (!(alternative.log_likelihood > best)) continue;
+    best = alternative.log_likelihood;
+    comparison.better = alternative.T_camera_object;
   }
-  for (Band& band : texture.bands) band.sum_sq = static_cast<double>(band.values.squaredNorm());
-  constexpr double kGrey = 128.0;
-  texture.chroma = {mean[1] - kGrey, mean[2] - kGrey};
-  return texture;
+  comparison.margin = -std::log(ratio_sum);
+  return comparison;
 }
 
-/// Returns the log likelihood ratio of the observation under the model's texture and under a uniform surface.
-double log_likelihood_ratio(const TextureBands& model, const TextureBands& observed) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < kBands; ++i) {
-    const Band& model_band = model.bands[i];
-    const Band& observed_band = observed.bands[i];
-    const auto count = static_cast<double>(observed_band.values.size());
-    const auto product = static_cast<double>(model_band.values.dot(observed_band.values));
-    const double gain = std::clamp(product / std::max(model_band.sum_sq, 1e-6), kMinGain, kMaxGain);
-    const double residual_sq = std::max(0.0, observed_band.sum_sq - gain * (2.0 * product - gain * model_band.sum_sq));
-    sum -= 0.5 * count / kCellsPerObservation[i] *
-           std::log((residual_sq / count + kNoise) / (observed_band.sum_sq / count + kNoise));
+namespace {
+
+/// Returns the poses that only the texture distinguishes from this one: those whose depth agrees as well, nearly
+/// equivalent ones registered.
+std::vector<Eigen::Isometry3d> find_alternative_poses(const ObjectObservation& observation,
+                                                      const Eigen::Isometry3d& T_camera_object,
+                                                      const DepthTolerance& tolerance,
+                                                      const RegistrationSettings& registration) {
+  constexpr int kPoints = 150;
+  constexpr float kMinScoreRatio = 0.8F;
+  const auto depth_score_at = [&](const Eigen::Isometry3d& pose) {
+    return score_pose(observation.frame, observation.model, pose, kPoints, tolerance).value;
+  };
+  const float score = depth_score_at(T_camera_object);
+  std::vector<Eigen::Isometry3d> poses;
+  for (const Eigen::Isometry3d& motion : observation.model.alternatives) poses.push_back(T_camera_object * motion);
+  const CorrespondenceDistances distances = correspondence_distances(observation, registration);
+  for (const Eigen::Isometry3d& motion : observation.model.near_alternatives) {
+    const RegistrationResult result =
+        register_coarsely(observation, T_camera_object * motion, 0.5 * (distances.start + distances.end), registration);
+    if (result.inliers > 0 && depth_score_at(result.T_camera_object) >= kMinScoreRatio * score)
+      poses.push_back(result.T_camera_object);
   }
-  // A cast, and a camera's saturation, move the mean chroma; by much more than this they do not.
-  constexpr double kCast = 14.0;
-  constexpr double kMax = 4.0;  // deviations
-  const double strength =
-      std::clamp(model.chroma.dot(observed.chroma) / std::max(model.chroma.squaredNorm(), 1.0), 0.5, kMaxGain);
-  const double chroma_deviation = std::min((observed.chroma - strength * model.chroma).norm() / kCast, kMax);
-  return kTempering * sum - 0.5 * chroma_deviation * chroma_deviation;
+  if (is_handle_visible(observation, T_camera_object, tolerance)) return poses;
+  for (const Eigen::Isometry3d& motion : observation.model.partial_alternatives) {
+    const Eigen::Isometry3d rotated = T_camera_object * motion;
+    if (can_handle_be_occluded(observation, rotated, tolerance)) poses.push_back(rotated);
+  }
+  return poses;
 }
 
-cv::Rect crop_to_whole_cells(const cv::Rect& part, int cell_px) {
-  return {part.x, part.y, part.width / cell_px * cell_px, part.height / cell_px * cell_px};
+bool is_handle_visible(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                       const DepthTolerance& tolerance) {
+  constexpr double kMinInlierFraction = 0.1;
+  const HandlePoints counts = count_handle_points(observation, T_camera_object, tolerance);
+  return counts.depth_inliers > kMinInlierFraction * counts.total;
 }
 
-/// Returns whether a pixel is clipped in all channels. A pixel that is clipped in one or two channels keeps its colour,
-/// as far as the camera can show it.
-bool is_overexposed(const cv::Vec3b& bgr) {
-  constexpr std::uint8_t kLimit = 245;
-  return std::min({bgr[0], bgr[1], bgr[2]}) >= kLimit;
+bool can_handle_be_occluded(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                            const DepthTolerance& tolerance) {
+  constexpr double kMaxObservedFraction = 0.1;
+  const HandlePoints counts = count_handle_points(observation, T_camera_object, tolerance);
+  return counts.free_space_violations <= kMaxObservedFraction * counts.total &&
+         counts.depth_inliers <= kMaxObservedFraction * counts.total;
 }
 
-/// Returns the pixel in the frame at a cell's middle.
-cv::Point middle_px(const cv::Point& cell, const VisibleSurface& surface) {
-  return surface.part_px.tl() + surface.cell_px * cell + cv::Point(surface.cell_px / 2, surface.cell_px / 2);
+HandlePoints count_handle_points(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                                 const DepthTolerance& tolerance) {
+  HandlePoints counts;
+  const cv::Rect image(cv::Point(), observation.frame.depth.size());
+  for (const Eigen::Vector3f& point : observation.model.unround_points) {
+    const Eigen::Vector3d at = T_camera_object * point.cast<double>();
+    ++counts.total;
+    if (!(at.z() > 0.0)) continue;
+    const Eigen::Vector2d pixel = observation.frame.camera.project(at);
+    const cv::Point2d clamped(std::clamp(pixel.x(), -1.0, 1.0 * image.width),
+                              std::clamp(pixel.y(), -1.0, 1.0 * image.height));
+    const cv::Point nearest_px(cvRound(clamped.x), cvRound(clamped.y));
+    if (!image.contains(nearest_px)) continue;
+    // NaN where not measured.
+    const double depth_difference = static_cast<double>(observation.frame.depth.at<float>(nearest_px)) - at.z();
+    const double limit = tolerance.at(at.z());
+    counts.depth_inliers += std::abs(depth_difference) <= limit ? 1 : 0;
+    counts.free_space_violations += depth_difference > limit ? 1 : 0;
+  }
+  return counts;
+}
+
+/// Returns the margin without information from the texture: all alternatives are equally probable.
+TextureComparison uninformative(std::size_t alternatives) {
+  return {-std::log(static_cast<double>(alternatives)), std::nullopt, std::nullopt};
 }
 
 /// Finds the cells where the model is visible. Those of its outline are left out, since colours are registered to depth
@@ -177,18 +258,29 @@ VisibleSurface find_visible_surface(const ObjectObservation& observation, const 
   return surface;
 }
 
-/// Returns the observed texture of the surface, read at an offset of `shift_px`.
-TextureBands observed_texture(const ObjectObservation& observation, const VisibleSurface& surface,
-                              const cv::Point& shift_px) {
-  const cv::Mat& lab = observation.colours.lab;
-  const cv::Point last(lab.cols - surface.part_px.width, lab.rows - surface.part_px.height);
-  cv::Point first = surface.part_px.tl() + shift_px - observation.colours.origin_px;
-  first = {std::clamp(first.x, 0, last.x), std::clamp(first.y, 0, last.y)};
-  cv::Mat grid;
-  cv::resize(lab(cv::Rect(first, surface.part_px.size())), grid, surface.mask.size(), 0.0, 0.0, cv::INTER_AREA);
-  grid.convertTo(grid, CV_32F);
-  grid.setTo(cv::Scalar::all(0.0), surface.mask == 0.0);
-  return make_texture_bands(grid, surface);
+cv::Rect crop_to_whole_cells(const cv::Rect& part, int cell_px) {
+  return {part.x, part.y, part.width / cell_px * cell_px, part.height / cell_px * cell_px};
+}
+
+/// Returns the pixel in the frame at a cell's middle.
+cv::Point middle_px(const cv::Point& cell, const VisibleSurface& surface) {
+  return surface.part_px.tl() + surface.cell_px * cell + cv::Point(surface.cell_px / 2, surface.cell_px / 2);
+}
+
+/// Returns whether a pixel is clipped in all channels. A pixel that is clipped in one or two channels keeps its colour,
+/// as far as the camera can show it.
+bool is_overexposed(const cv::Vec3b& bgr) {
+  constexpr std::uint8_t kLimit = 245;
+  return std::min({bgr[0], bgr[1], bgr[2]}) >= kLimit;
+}
+
+cv::Mat count_cells_around(const cv::Mat& mask, int side) {
+  cv::Mat weight;
+  cv::max(box_sum(mask, side), 1.0, weight);
+  const std::array<cv::Mat, 3> channels = {weight, weight, weight};
+  cv::Mat weights;
+  cv::merge(channels.data(), channels.size(), weights);
+  return weights;
 }
 
 /// Returns the model's texture on the surface after `motion`; nothing where much of the surface would be missing.
@@ -229,92 +321,81 @@ std::vector<TextureBands> observed_textures(const ObjectObservation& observation
   return textures;
 }
 
+/// Returns the observed texture of the surface, read at an offset of `shift_px`.
+TextureBands observed_texture(const ObjectObservation& observation, const VisibleSurface& surface,
+                              const cv::Point& shift_px) {
+  const cv::Mat& lab = observation.colours.lab;
+  const cv::Point last(lab.cols - surface.part_px.width, lab.rows - surface.part_px.height);
+  cv::Point first = surface.part_px.tl() + shift_px - observation.colours.origin_px;
+  first = {std::clamp(first.x, 0, last.x), std::clamp(first.y, 0, last.y)};
+  cv::Mat grid;
+  cv::resize(lab(cv::Rect(first, surface.part_px.size())), grid, surface.mask.size(), 0.0, 0.0, cv::INTER_AREA);
+  grid.convertTo(grid, CV_32F);
+  grid.setTo(cv::Scalar::all(0.0), surface.mask == 0.0);
+  return make_texture_bands(grid, surface);
+}
+
+/// Makes the bands of a grid of CIE L*a*b* colours, CV_32FC3, 0 where nothing is compared.
+TextureBands make_texture_bands(const cv::Mat& lab, const VisibleSurface& surface) {
+  const cv::Mat fine = box_sum(lab, kFine) / surface.fine_weights;
+  const cv::Mat coarse = box_sum(lab, kCoarse) / surface.coarse_weights;
+  const auto count = static_cast<Eigen::Index>(surface.cells.size());
+  cv::Vec3d mean(0.0, 0.0, 0.0);
+  for (const cv::Point& cell : surface.cells) mean += cv::Vec3d(lab.at<cv::Vec3f>(cell));
+  mean /= static_cast<double>(count);
+  TextureBands texture;
+  for (Band& band : texture.bands) band.values.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const cv::Point& cell = surface.cells[static_cast<std::size_t>(i)];
+    const cv::Vec3f cell_colour = lab.at<cv::Vec3f>(cell);
+    const cv::Vec3f fine_mean = fine.at<cv::Vec3f>(cell);
+    const cv::Vec3f coarse_mean = coarse.at<cv::Vec3f>(cell);
+    for (int c = 0; c < 3; ++c) {
+      texture.bands[static_cast<std::size_t>(c)].values[i] = cell_colour[c] - fine_mean[c];
+      texture.bands[static_cast<std::size_t>(3 + c)].values[i] = fine_mean[c] - coarse_mean[c];
+      if (c > 0)
+        texture.bands[static_cast<std::size_t>(5 + c)].values[i] = coarse_mean[c] - static_cast<float>(mean[c]);
+    }
+  }
+  for (Band& band : texture.bands) band.sum_sq = static_cast<double>(band.values.squaredNorm());
+  constexpr double kGrey = 128.0;
+  texture.chroma = {mean[1] - kGrey, mean[2] - kGrey};
+  return texture;
+}
+
+cv::Mat box_sum(const cv::Mat& values, int side) {
+  cv::Mat sum;
+  cv::boxFilter(values, sum, -1, cv::Size(side, side), cv::Point(-1, -1), false, cv::BORDER_CONSTANT);
+  return sum;
+}
+
 double best_log_likelihood_ratio(const TextureBands& model, const std::vector<TextureBands>& observed) {
   double best = log_likelihood_ratio(model, observed.front());
   for (std::size_t i = 1; i < observed.size(); ++i) best = std::max(best, log_likelihood_ratio(model, observed[i]));
   return best;
 }
 
-/// Counts of the points of a handle, the part that breaks a nearly round shape (ObjectModel::unround_points), by how
-/// they are observed at a pose.
-struct HandlePoints {
-  int depth_inliers = 0;
-  int free_space_violations = 0;
-  int total = 0;
-};
-
-HandlePoints count_handle_points(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                                 const DepthTolerance& tolerance) {
-  HandlePoints counts;
-  const cv::Rect image(cv::Point(), observation.frame.depth.size());
-  for (const Eigen::Vector3f& point : observation.model.unround_points) {
-    const Eigen::Vector3d at = T_camera_object * point.cast<double>();
-    ++counts.total;
-    if (!(at.z() > 0.0)) continue;
-    const Eigen::Vector2d pixel = observation.frame.camera.project(at);
-    const cv::Point2d clamped(std::clamp(pixel.x(), -1.0, 1.0 * image.width),
-                              std::clamp(pixel.y(), -1.0, 1.0 * image.height));
-    const cv::Point nearest_px(cvRound(clamped.x), cvRound(clamped.y));
-    if (!image.contains(nearest_px)) continue;
-    // NaN where not measured.
-    const double depth_difference = static_cast<double>(observation.frame.depth.at<float>(nearest_px)) - at.z();
-    const double limit = tolerance.at(at.z());
-    counts.depth_inliers += std::abs(depth_difference) <= limit ? 1 : 0;
-    counts.free_space_violations += depth_difference > limit ? 1 : 0;
+/// Returns the log likelihood ratio of the observation under the model's texture and under a uniform surface.
+double log_likelihood_ratio(const TextureBands& model, const TextureBands& observed) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kBands; ++i) {
+    const Band& model_band = model.bands[i];
+    const Band& observed_band = observed.bands[i];
+    const auto count = static_cast<double>(observed_band.values.size());
+    const auto product = static_cast<double>(model_band.values.dot(observed_band.values));
+    const double gain = std::clamp(product / std::max(model_band.sum_sq, 1e-6), kMinGain, kMaxGain);
+    const double residual_sq = std::max(0.0, observed_band.sum_sq - gain * (2.0 * product - gain * model_band.sum_sq));
+    sum -= 0.5 * count / kCellsPerObservation[i] *
+           std::log((residual_sq / count + kNoise) / (observed_band.sum_sq / count + kNoise));
   }
-  return counts;
+  // A cast, and a camera's saturation, move the mean chroma; by much more than this they do not.
+  constexpr double kCast = 14.0;
+  constexpr double kMax = 4.0;  // deviations
+  const double strength =
+      std::clamp(model.chroma.dot(observed.chroma) / std::max(model.chroma.squaredNorm(), 1.0), 0.5, kMaxGain);
+  const double chroma_deviation = std::min((observed.chroma - strength * model.chroma).norm() / kCast, kMax);
+  return kTempering * sum - 0.5 * chroma_deviation * chroma_deviation;
 }
-
-bool is_handle_visible(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                       const DepthTolerance& tolerance) {
-  constexpr double kMinInlierFraction = 0.1;
-  const HandlePoints counts = count_handle_points(observation, T_camera_object, tolerance);
-  return counts.depth_inliers > kMinInlierFraction * counts.total;
-}
-
-bool can_handle_be_occluded(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                            const DepthTolerance& tolerance) {
-  constexpr double kMaxObservedFraction = 0.1;
-  const HandlePoints counts = count_handle_points(observation, T_camera_object, tolerance);
-  return counts.free_space_violations <= kMaxObservedFraction * counts.total &&
-         counts.depth_inliers <= kMaxObservedFraction * counts.total;
-}
-
-/// Returns the poses that only the texture distinguishes from this one: those whose depth agrees as well, nearly
-/// equivalent ones registered.
-std::vector<Eigen::Isometry3d> alternative_poses(const ObjectObservation& observation,
-                                                 const Eigen::Isometry3d& T_camera_object,
-                                                 const DepthTolerance& tolerance,
-                                                 const RegistrationSettings& registration) {
-  constexpr int kPoints = 150;
-  constexpr float kMinScoreRatio = 0.8F;
-  const auto depth_score_at = [&](const Eigen::Isometry3d& pose) {
-    return score_pose(observation.frame, observation.model, pose, kPoints, tolerance).value;
-  };
-  const float score = depth_score_at(T_camera_object);
-  std::vector<Eigen::Isometry3d> poses;
-  for (const Eigen::Isometry3d& motion : observation.model.alternatives) poses.push_back(T_camera_object * motion);
-  const CorrespondenceDistances distances = correspondence_distances(observation, registration);
-  for (const Eigen::Isometry3d& motion : observation.model.near_alternatives) {
-    const RegistrationResult result =
-        register_coarsely(observation, T_camera_object * motion, 0.5 * (distances.start + distances.end), registration);
-    if (result.inliers > 0 && depth_score_at(result.T_camera_object) >= kMinScoreRatio * score)
-      poses.push_back(result.T_camera_object);
-  }
-  if (is_handle_visible(observation, T_camera_object, tolerance)) return poses;
-  for (const Eigen::Isometry3d& motion : observation.model.partial_alternatives) {
-    const Eigen::Isometry3d rotated = T_camera_object * motion;
-    if (can_handle_be_occluded(observation, rotated, tolerance)) poses.push_back(rotated);
-  }
-  return poses;
-}
-
-/// Holds a pose that is equivalent by shape, and the model's texture at it.
-struct Alternative {
-  Eigen::Isometry3d T_camera_object;
-  TextureBands texture;
-  double log_likelihood = 0.0;  ///< log
-};
 
 /// Turns a pose about the model's axes of revolution to where its texture agrees best with the observed one, by steps
 /// from half the distance of two samples (ObjectModel::alternatives) down to two degrees.
@@ -360,49 +441,6 @@ std::vector<Alternative> rank_alternatives(const ObjectObservation& observation,
   return ranked;
 }
 
-/// Returns the margin without information from the texture: all alternatives are equally probable.
-TextureComparison uninformative(std::size_t alternatives) {
-  return {-std::log(static_cast<double>(alternatives)), std::nullopt, std::nullopt};
-}
-
 }  // namespace
-
-std::optional<TextureComparison> compare_with_alternatives(const ObjectObservation& observation,
-                                                           const Eigen::Isometry3d& T_camera_object,
-                                                           const DepthTolerance& tolerance,
-                                                           const RegistrationSettings& registration) {
-  const std::vector<Eigen::Isometry3d> alternatives =
-      alternative_poses(observation, T_camera_object, tolerance, registration);
-  if (alternatives.empty()) return std::nullopt;
-  if (observation.model.texture.empty() || observation.colours.lab.empty()) return uninformative(alternatives.size());
-  const VisibleSurface surface = find_visible_surface(observation, T_camera_object, tolerance);
-  if (surface.cells.size() < kMinCells) return uninformative(alternatives.size());
-  std::optional<TextureBands> texture = model_texture(observation.model, surface, Eigen::Isometry3d::Identity());
-  if (!texture) return uninformative(alternatives.size());
-  const std::vector<TextureBands> observed = observed_textures(observation, surface);
-  const double log_likelihood = best_log_likelihood_ratio(*texture, observed);
-  Alternative pose{T_camera_object, *std::move(texture), log_likelihood};
-  align_about_axes(observation.model, surface, T_camera_object.inverse(), observed, pose);
-  const bool is_aligned = pose.log_likelihood > log_likelihood + kMinLogLikelihoodGain;
-  const double pose_log_likelihood = pose.log_likelihood;
-  const std::vector<Alternative> ranked =
-      rank_alternatives(observation, surface, T_camera_object, alternatives, observed);
-  if (ranked.empty()) return std::nullopt;
-  // Another pose replaces the present one on positive evidence, a Bayes factor of 3 (Kass and Raftery 1995, "Bayes
-  // Factors").
-  constexpr double kMinLogBayesFactor = 1.1;  // its logarithm
-  TextureComparison comparison;
-  if (is_aligned) comparison.aligned = pose.T_camera_object;
-  double best = pose_log_likelihood + kMinLogBayesFactor;
-  double ratio_sum = 0.0;  // sum of the alternatives' likelihoods over the pose's
-  for (const Alternative& alternative : ranked) {
-    ratio_sum += std::exp(std::min(alternative.log_likelihood - pose_log_likelihood, 50.0));
-    if (!(alternative.log_likelihood > best)) continue;
-    best = alternative.log_likelihood;
-    comparison.better = alternative.T_camera_object;
-  }
-  comparison.margin = -std::log(ratio_sum);
-  return comparison;
-}
 
 }  // namespace houghstream
