@@ -74,7 +74,7 @@ void FrameMatcher::keep_within_bytes() {
 bool FrameMatcher::ready(const MatchedFrame& frame, std::int64_t now_us) const {
   if (frame.results.followed()) return true;
   const std::vector<FrameResult>& results = frame.results.results();
-  const bool all_heard = frame.detections_heard >= detectors_.of(frame.id.channel);
+  const bool all_heard = frame.detections_heard >= detectors_.estimate(frame.id.channel);
   if (all_heard && frame.results.has_all_poses()) return true;
   if (now_us - frame.arrival_us < settings_.wait_us) return false;
   const bool posed =

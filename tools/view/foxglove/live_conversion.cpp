@@ -34,7 +34,7 @@ FrameResults* LiveConversion::results_of(const FrameId& frame) {
 }
 
 bool LiveConversion::is_complete(const FrameId& frame, const FrameResults& results) const {
-  const bool has_all = static_cast<int>(results.results().size()) >= detectors_.of(frame.channel);
+  const bool has_all = static_cast<int>(results.results().size()) >= detectors_.estimate(frame.channel);
   const bool is_answered = results.has_all_poses() || unanswered_ > kUnansweredLimit;
   return results.followed().has_value() || (has_all && is_answered);
 }
