@@ -105,8 +105,8 @@ double second_of(const Take& take, int frame) {
 }
 
 int tracked_frames(const Take& take) {
-  return static_cast<int>(
-      std::count_if(take.frames.begin(), take.frames.end(), [](const RegisteredFrame& frame) { return frame.tracked; }));
+  return static_cast<int>(std::count_if(take.frames.begin(), take.frames.end(),
+                                        [](const RegisteredFrame& frame) { return frame.tracked; }));
 }
 
 reconstruction::ViewCoverage seen_by_all(const ShowResult& shown) {

@@ -18,8 +18,8 @@ namespace houghstream::teach {
 namespace {
 
 namespace fs = std::filesystem;
-using reconstruction::MaskedKeyframe;
 using reconstruction::FusedSurface;
+using reconstruction::MaskedKeyframe;
 using reconstruction::Take;
 
 constexpr const char* kNominalCamera = "640x480,525,525,319.5,239.5";
