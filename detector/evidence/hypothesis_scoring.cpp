@@ -34,7 +34,7 @@ struct ScoringTask {
   std::optional<PlacedTemplate> sampled_best;  ///< see compare_sampled_views()
 };
 
-/// Some of the tasks, in ascending order.
+/// Indices of tasks, in ascending order.
 using TaskIndices = std::vector<std::size_t>;
 
 /// Scores one hypothesis, in one thread. Its functions stand below in the order of their calls.
@@ -92,10 +92,10 @@ class HypothesisScorer {
 std::vector<ScoringTask> list_tasks(const std::vector<GroupHypotheses>& groups);
 Evidence evidence_of_votes(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera);
 void keep_most_promising(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks);
-TaskIndices all_of(const std::vector<ScoringTask>& tasks);
+TaskIndices all_tasks(const std::vector<ScoringTask>& tasks);
 TaskIndices find_likely(const std::vector<ScoringTask>& tasks);
-TaskIndices choose_sampled(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum);
-TaskIndices choose_refined(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum);
+TaskIndices choose_sampled(const std::vector<ScoringTask>& tasks, const TaskIndices& subset, int maximum);
+TaskIndices choose_refined(const std::vector<ScoringTask>& tasks, const TaskIndices& subset, int maximum);
 TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIndices& likely, float explains_from);
 bool may_touch(const ScoringTask& a, const ScoringTask& b);
 
@@ -107,19 +107,19 @@ GroupCandidates score_by_group(const std::vector<GroupHypotheses>& groups, int t
   keep_most_promising(settings, tasks);
   workspace.workers.resize(threads);
   workspace.compared.resize(std::max(workspace.compared.size(), tasks.size()));
-  const auto for_each = [&](const TaskIndices& some, void (HypothesisScorer::*step)()) {
-    parallel_for_workers(threads, static_cast<int>(some.size()), [&](int worker, int i) {
-      const std::size_t task = some[static_cast<std::size_t>(i)];
+  const auto for_each = [&](const TaskIndices& subset, void (HypothesisScorer::*step)()) {
+    parallel_for_workers(threads, static_cast<int>(subset.size()), [&](int worker, int i) {
+      const std::size_t task = subset[static_cast<std::size_t>(i)];
       HypothesisScorer scorer(tasks[task], workspace.compared[task], workspace.workers[worker]);
       (scorer.*step)();
     });
   };
-  const auto search = [&](const TaskIndices& some, int max_sampled, int max_refined) {
-    for_each(choose_sampled(tasks, some, max_sampled), &HypothesisScorer::compare_sampled_views);
-    for_each(choose_refined(tasks, some, max_refined), &HypothesisScorer::refine);
-    for_each(some, &HypothesisScorer::complete);
+  const auto search = [&](const TaskIndices& subset, int max_sampled, int max_refined) {
+    for_each(choose_sampled(tasks, subset, max_sampled), &HypothesisScorer::compare_sampled_views);
+    for_each(choose_refined(tasks, subset, max_refined), &HypothesisScorer::refine);
+    for_each(subset, &HypothesisScorer::complete);
   };
-  for_each(all_of(tasks), &HypothesisScorer::compare);
+  for_each(all_tasks(tasks), &HypothesisScorer::compare);
   const TaskIndices likely = find_likely(tasks);
   const auto likely_count = static_cast<int>(likely.size());
   search(likely, likely_count, settings.max_refined);
@@ -165,33 +165,34 @@ Evidence evidence_of_votes(const Forest& forest, const Hypothesis& hypothesis, c
   return evidence;
 }
 
-/// Returns those of the tasks whose values are the `count` largest, of equal ones the first.
+/// Returns the tasks with the `count` largest values; of equal values the first.
 template <typename ValueOf>
-TaskIndices largest(TaskIndices some, int count, const ValueOf& value_of) {
-  if (some.size() <= static_cast<std::size_t>(count)) return some;
-  std::stable_sort(some.begin(), some.end(), [&](std::size_t a, std::size_t b) { return value_of(a) > value_of(b); });
-  some.resize(static_cast<std::size_t>(count));
-  std::sort(some.begin(), some.end());
-  return some;
+TaskIndices largest(TaskIndices subset, int count, const ValueOf& value_of) {
+  if (subset.size() <= static_cast<std::size_t>(count)) return subset;
+  std::stable_sort(subset.begin(), subset.end(),
+                   [&](std::size_t a, std::size_t b) { return value_of(a) > value_of(b); });
+  subset.resize(static_cast<std::size_t>(count));
+  std::sort(subset.begin(), subset.end());
+  return subset;
 }
 
 /// Drops the hypotheses that are not compared with the frame.
 void keep_most_promising(const EvidenceSettings& settings, std::vector<ScoringTask>& tasks) {
   if (tasks.size() <= static_cast<std::size_t>(settings.max_compared)) return;
   std::vector<ScoringTask> kept;
-  const auto promise = [&](std::size_t i) { return vote_logit(tasks[i].scored.evidence); };
-  for (const std::size_t i : largest(all_of(tasks), settings.max_compared, promise))
+  const auto vote_logit_of = [&](std::size_t i) { return vote_logit(tasks[i].scored.evidence); };
+  for (const std::size_t i : largest(all_tasks(tasks), settings.max_compared, vote_logit_of))
     kept.push_back(std::move(tasks[i]));
   tasks.swap(kept);
 }
 
-TaskIndices all_of(const std::vector<ScoringTask>& tasks) {
+TaskIndices all_tasks(const std::vector<ScoringTask>& tasks) {
   TaskIndices all(tasks.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   return all;
 }
 
-/// Returns those that are likely by their first comparison.
+/// Returns the tasks whose score after the first comparison is at least kLikely.
 TaskIndices find_likely(const std::vector<ScoringTask>& tasks) {
   constexpr float kLikely = 0.5F;  // score
   TaskIndices likely;
@@ -203,40 +204,40 @@ TaskIndices find_likely(const std::vector<ScoringTask>& tasks) {
   return likely;
 }
 
-/// Chooses those of some that are compared with views of all attitudes: of classes with many views, with many votes,
-/// and of these the `maximum` whose votes promise most.
-TaskIndices choose_sampled(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum) {
+/// Chooses the tasks of the subset that are compared with views of all attitudes: of classes with many views and with
+/// many votes, the `maximum` with the highest vote_logit().
+TaskIndices choose_sampled(const std::vector<ScoringTask>& tasks, const TaskIndices& subset, int maximum) {
   constexpr float kManyVotes = 0.3F;  // of the nominal vote mass: a third of the object, seen as well as in training
-  TaskIndices worthy;
-  worthy.reserve(some.size());
-  for (const std::size_t i : some) {
+  TaskIndices eligible;
+  eligible.reserve(subset.size());
+  for (const std::size_t i : subset) {
     const ScoringTask& task = tasks[i];
     const bool has_templates = task.input->index.forest().scoring == Scoring::kEvidence;
     if (!has_templates || task.attitude_factor == 1.0F || task.scored.evidence.relative_vote_mass < kManyVotes)
       continue;
-    worthy.push_back(i);
+    eligible.push_back(i);
   }
-  return largest(std::move(worthy), maximum, [&](std::size_t i) { return vote_logit(tasks[i].scored.evidence); });
+  return largest(std::move(eligible), maximum, [&](std::size_t i) { return vote_logit(tasks[i].scored.evidence); });
 }
 
-/// Chooses those of some that are refined, the `maximum` with the highest scores. One that is hopeless is not: many
-/// maxima are, and refinement takes longer than everything else about them.
-TaskIndices choose_refined(const std::vector<ScoringTask>& tasks, const TaskIndices& some, int maximum) {
+/// Chooses the tasks of the subset that are refined: the `maximum` with the highest scores. Hopeless ones are left out:
+/// many maxima are hopeless, and refinement is the most expensive step.
+TaskIndices choose_refined(const std::vector<ScoringTask>& tasks, const TaskIndices& subset, int maximum) {
   // Score: votes bring occluded objects templates that hardly match. Half hidden boxes of YCB-V's scene 50 that reach
   // 0.6 had 0.02 before.
   constexpr float kHopeless = 0.005F;
-  TaskIndices worthy;
-  worthy.reserve(some.size());
-  for (const std::size_t i : some) {
+  TaskIndices eligible;
+  eligible.reserve(subset.size());
+  for (const std::size_t i : subset) {
     const ScoredHypothesis& scored = tasks[i].scored;
     if (scored.evidence.view == Evidence::kNoView || scored.detection.score < kHopeless) continue;
-    worthy.push_back(i);
+    eligible.push_back(i);
   }
-  return largest(std::move(worthy), maximum, [&](std::size_t i) { return tasks[i].scored.detection.score; });
+  return largest(std::move(eligible), maximum, [&](std::size_t i) { return tasks[i].scored.detection.score; });
 }
 
-/// Returns those that are not likely, but for what lies on the surface that a likely one shows whose score is
-/// `explains_from` or more.
+/// Returns the tasks that are not likely, without those on the surface of a likely one whose score is `explains_from`
+/// or more.
 TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIndices& likely, float explains_from) {
   constexpr float kExplained = 0.6F;  // fraction of the surface that is seen
   const auto cells_of = [&](std::size_t i) {
@@ -244,14 +245,14 @@ TaskIndices find_unexplained(const std::vector<ScoringTask>& tasks, const TaskIn
     const ScoringInput& input = *tasks[i].input;
     return UnoccludedCells(input.index.forest().views[evidence.view], evidence.view_centre, input.frame.frame);
   };
-  std::vector<std::pair<std::size_t, UnoccludedCells>> sure;
+  std::vector<std::pair<std::size_t, UnoccludedCells>> confident;
   for (const std::size_t i : likely) {
-    if (tasks[i].scored.detection.score >= explains_from) sure.emplace_back(i, cells_of(i));
+    if (tasks[i].scored.detection.score >= explains_from) confident.emplace_back(i, cells_of(i));
   }
   const auto is_explained = [&](std::size_t i) {
     if (tasks[i].scored.evidence.view == Evidence::kNoView) return false;
     std::optional<UnoccludedCells> cells;
-    return std::any_of(sure.begin(), sure.end(), [&](const auto& other) {
+    return std::any_of(confident.begin(), confident.end(), [&](const auto& other) {
       if (!may_touch(tasks[i], tasks[other.first])) return false;
       if (!cells) cells = cells_of(i);
       return cells->fraction_in(other.second) > kExplained;

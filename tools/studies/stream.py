@@ -255,7 +255,7 @@ class Stream:
         if self.track:
             running.start("track", programs / "hs-track", *self.with_models)
         running.start("observe", programs / "hs-observe", "--expect", self.frames, "--out", self.out / "observe.json",
-                      "--csv", self.out / "frame_times.csv")  # fmt: skip
+                      "--csv", self.out / "frame_times.csv", "--replace")  # fmt: skip
         if self.show:
             running.start("view", programs / "hs-view", *self.with_models, "--snapshot", self.out / "overlay.png",
                           "--after", self.frames // 9 + 1, "--video", self.out / "overlay.mp4", "--pictures",

@@ -62,7 +62,8 @@ def teach(options, log):
     with Processes(out / "log") as running:
         for name in ("detect", "pose"):
             running.start(name, programs / f"hs-{name}", "--objects", out / "store")
-        running.start("observe", programs / "hs-observe", "--out", out / "observe.json", "--csv", out / "frame_times.csv")
+        running.start("observe", programs / "hs-observe", "--out", out / "observe.json", "--csv", out / "frame_times.csv",
+                      "--replace")  # fmt: skip
         running.start("logger", "lcm-logger", "-f", f"--lcm-url={Stream._logger_url()}", "-c", "HOUGHSTREAM_.*",
                       out / "results.lcmlog")  # fmt: skip
         running.start("teach", programs / "hs-teach", "show", "--from-stream", "--name", options.name, "--out",
