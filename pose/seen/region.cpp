@@ -1,8 +1,8 @@
 #include "pose/seen/region.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdint>
 #include <opencv2/imgproc.hpp>
 
 namespace houghstream {
@@ -23,15 +23,18 @@ bool in_range(const DepthRegion& region, float z) {
 }
 
 cv::Mat clipped_pixels(const cv::Mat& colour) {
-  constexpr double kWithin = 249.0;  // JPEG and sharpening leave what is clipped a little below 255
-  std::array<cv::Mat, 3> channels;
-  cv::split(colour, channels.data());
-  cv::Mat brightest;
-  cv::max(channels[0], channels[1], brightest);
-  cv::max(brightest, channels[2], brightest);
-  cv::threshold(brightest, brightest, kWithin, 255.0, cv::THRESH_BINARY);
-  cv::dilate(brightest, brightest, cv::Mat());
-  return brightest;
+  constexpr int kWithin = 249;  // JPEG and sharpening leave what is clipped a little below 255
+  cv::Mat clipped(colour.size(), CV_8UC1);
+  for (int y = 0; y < colour.rows; ++y) {
+    const auto* pixels = colour.ptr<cv::Vec3b>(y);
+    auto* out = clipped.ptr<std::uint8_t>(y);
+    for (int x = 0; x < colour.cols; ++x) {
+      const cv::Vec3b& pixel = pixels[x];
+      out[x] = std::max({pixel[0], pixel[1], pixel[2]}) > kWithin ? 255 : 0;
+    }
+  }
+  cv::dilate(clipped, clipped, cv::Mat());
+  return clipped;
 }
 
 }  // namespace
