@@ -51,7 +51,7 @@ TEST(ScoreTraining, GivesAFullySeenObjectMuchAndNothingLittle) {
   wall.alternative_scale_gain = 0.0F;  // it looks the same in any size
   for (const ObjectClass& object : forest.classes) {
     EXPECT_GT(score(object.score_model, whole), 0.8F) << object.name;
-    EXPECT_LT(score(object.score_model, wall), 0.1F) << object.name;
+    EXPECT_LT(score(object.score_model, wall), 0.2F) << object.name;
   }
 }
 
