@@ -75,8 +75,8 @@ std::unique_ptr<FrameSource> open_source(const SourceOptions& options, const ope
   if (kind == "oni" && !value.empty())
     return openni::open_oni_source(value, camera_options(options), listener.stop_requested);
   require_usage(options.camera.empty(), "--camera goes with --source openni2 or oni, not with {}", options.source);
-  require(kind != "klg" && kind != "log",
-          "source '{}': of recordings hs-log import makes a log, and lcm-logplayer plays logs", options.source);
+  require_usage(kind != "klg" && kind != "log",
+                "source '{}': of recordings hs-log import makes a log, and lcm-logplayer plays logs", options.source);
   return open_frame_source(options.source, "openni2, openni2:CAMERA, oni:FILE, ");
 }
 

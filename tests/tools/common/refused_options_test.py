@@ -71,6 +71,12 @@ class RefusedOptions(unittest.TestCase):
     def test_results_to_evaluate(self):
         self.check(EVALUATE, "neither --log nor --forest nor --objects")
 
+    def test_an_address_that_is_none_is_a_mistake_of_the_command_line(self):
+        for address in ("99999", "here", "[::1:8080"):
+            done = subprocess.run([EXECUTABLES / "hs-view", "--http", address], capture_output=True, text=True, check=False, timeout=20)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"--http {address}: ", done.stderr)
+
     def test_a_store_to_add_to_and_to_replace(self):
         for command in (MESH, (*SHOW, "--out", NOWHERE)):
             self.check((*command, "--replace", "--add"), "--add and --replace, expected at most one of them")

@@ -17,6 +17,7 @@
 #include <memory>
 
 #include "pipeline/base/checks.hpp"
+#include "tools/common/usage_error.hpp"
 
 namespace houghstream::view {
 namespace {
@@ -60,14 +61,14 @@ HttpAddress parse_http_address(const std::string& text, const std::string& optio
   const std::size_t colon = text.rfind(':');
   const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
   if (colon != std::string::npos) address.host = text.substr(0, colon);
-  require(is_port(port), "{} {}: '{}' is no port, {}", option, text, port, expected);
+  require_usage(is_port(port), "{} {}: '{}' is no port, {}", option, text, port, expected);
   address.port = std::stoi(port);
-  require(address.port <= 65535, "{} {}: port {}, expected at most 65535", option, text, port);
+  require_usage(address.port <= 65535, "{} {}: port {}, expected at most 65535", option, text, port);
   const bool in_brackets = address.host.size() > 2 && address.host.front() == '[' && address.host.back() == ']';
   if (in_brackets) address.host = address.host.substr(1, address.host.size() - 2);
   const bool bare = !in_brackets && address.host.find(':') != std::string::npos;
-  require(!address.host.empty() && !bare && address.host.find('/') == std::string::npos,
-          "{} {}: '{}' is no address, {}", option, text, address.host, expected);
+  require_usage(!address.host.empty() && !bare && address.host.find('/') == std::string::npos,
+                "{} {}: '{}' is no address, {}", option, text, address.host, expected);
   return address;
 }
 
@@ -79,7 +80,8 @@ bool is_local(const std::string& host) {
 }
 
 std::string parse_host_name(const std::string& text) {
-  require(is_name(text), "--http-host {}: expected a name without scheme and port, for instance robot.example", text);
+  require_usage(is_name(text), "--http-host {}: expected a name without scheme and port, for instance robot.example",
+                text);
   return to_lower(text);
 }
 
