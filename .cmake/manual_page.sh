@@ -32,6 +32,8 @@ trap 'rm -r "$folder"' EXIT
 told=$folder/$(basename "$program")
 printf '#!/bin/sh\ncat "%s/text"\n' "$folder" >"$told"
 chmod +x "$told"
+# What it does, for the page's head and whatis: the first sentence of its help.
+purpose=$(sed -n '/^Usage:/!{/[^ ]/{s/[.:] .*//;s/\.$//;p;q}}' "$folder/text")
 mkdir -p "$(dirname "$page")"
-"${HELP2MAN:-help2man}" --no-info --no-discard-stderr --version-string "$version" --output "$page" "$told"
+"${HELP2MAN:-help2man}" --name "$purpose" --no-info --no-discard-stderr --version-string "$version" --output "$page" "$told"
 gzip -9nf "$page"

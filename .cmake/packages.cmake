@@ -24,17 +24,17 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "python3-houghstream (= ${PROJECT_VERS
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "houghstream-java, libopenni2-0, libjs-three")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "houghstream-samples")
 set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION "finds taught objects in an RGB-D camera's stream, and their poses
- Processes for capture, detection (a depth-normalised Hough forest) and pose
- estimation (ICP) that exchange LCM messages, and tools that teach, view, log,
- measure and mend.")
+Processes for capture, detection (a depth-normalised Hough forest) and pose
+estimation (ICP) that exchange LCM messages, and tools that teach, view, log,
+measure and mend.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libhoughstream-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "liblcm-dev, libopencv-dev, libturbojpeg0-dev, libdeflate-dev, zlib1g-dev, libbz2-dev, liblz4-dev, libeigen3-dev, libhwy-dev, libassimp-dev, libre2-dev, libyaml-cpp-dev, libspdlog-dev, libfmt-dev, nlohmann-json3-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "g++, cmake, make")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "finds taught objects in an RGB-D camera's stream: libraries
- Static libraries, headers, message definitions, CMake and pkg-config files,
- and examples.")
+Static libraries, headers, message definitions, CMake and pkg-config files,
+and examples.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-houghstream)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
@@ -55,8 +55,8 @@ rm -rf /usr/lib/python3/dist-packages/houghstream/__pycache__
 ")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${PROJECT_BINARY_DIR}/python_package/prerm")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "finds taught objects in an RGB-D camera's stream: Python
- ObjectFinder, which finds them in numpy arrays; what a stream publishes;
- message types, logs, and frames as numpy arrays.")
+ObjectFinder, which finds them in numpy arrays; what a stream publishes;
+message types, logs, and frames as numpy arrays.")
 
 set(CPACK_DEBIAN_JAVA_PACKAGE_NAME houghstream-java)
 set(CPACK_DEBIAN_JAVA_PACKAGE_SECTION java)
@@ -64,7 +64,7 @@ set(CPACK_DEBIAN_JAVA_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_JAVA_PACKAGE_DEPENDS "default-jre, liblcm-java, libjchart2d-java")
 set(CPACK_DEBIAN_JAVA_PACKAGE_RECOMMENDS "default-jdk-headless") # java FILE.java, as the example is started, compiles it
 set(CPACK_COMPONENT_JAVA_DESCRIPTION "finds taught objects in an RGB-D camera's stream: Java
- Message types, and viewers for lcm-spy.")
+Message types, and viewers for lcm-spy.")
 
 set(CPACK_DEBIAN_SAMPLES_PACKAGE_NAME houghstream-samples)
 set(CPACK_DEBIAN_SAMPLES_PACKAGE_SECTION science)
@@ -72,8 +72,8 @@ set(CPACK_DEBIAN_SAMPLES_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_SAMPLES_PACKAGE_DEPENDS "houghstream (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz) # the forest becomes a third of its size
 set(CPACK_COMPONENT_SAMPLES_DESCRIPTION "finds taught objects in an RGB-D camera's stream: samples
- Four taught objects and ten seconds of a rendered recording, which
- houghstream-demo shows.")
+Four taught objects and ten seconds of a rendered recording, which
+houghstream-demo shows.")
 
 # Each package has its copyright file and a changelog.
 file(WRITE "${PROJECT_BINARY_DIR}/copyright"
