@@ -137,7 +137,7 @@ class Browser:
         assert "exceptionDetails" not in result, (expression, result["exceptionDetails"])
         return result["result"].get("value")
 
-    def wait_for(self, expression, seconds=30):
+    def wait_for(self, expression, seconds=120):
         """Until the expression is true; returns its value."""
         end, said = time.monotonic() + seconds, ""
         while time.monotonic() < end:
