@@ -304,20 +304,19 @@ void HypothesisScorer::compare_templates(std::size_t count) {
   }
 }
 
-/// Compares templates sampled from all attitudes at the centre, and aligns the best: in real images votes support other
+/// Compares templates sampled from all attitudes at the centre: in real images votes support other
 /// views than in rendered ones, and those of a plain or symmetric object are often not of its attitude.
 void HypothesisScorer::compare_sampled_views() {
-  BestTemplates<kBestSampled> aligned;
-  for (const PlacedTemplate& placed : match_sampled_views(std::array{hypothesis_.centre_camera}))
-    aligned.add(align_template(views_, placed, input_.frame));
-  if (aligned.size() == 0) return;
-  sampled_best_ = aligned.front();
+  const BestTemplates<kBestSampled> best = match_sampled_views(std::array{hypothesis_.centre_camera});
+  if (best.size() == 0) return;
+  sampled_best_ = best.front();
   set_match(*best_compared(), scored_.evidence);
   scored_.detection.score = score(object_.score_model, scored_.evidence);
 }
 
-/// Returns the templates sampled from all attitudes (ForestIndex::sampled_views) that match best at some places: coarse
-/// views first, and then those around the best of these. Comparing all of them found no more in 88 development images.
+/// Returns the sampled templates of all attitudes (ForestIndex::sampled_views) that match best at some places, aligned:
+/// coarse views first, and then those around the best of these. Comparing all of them found no more in 88 development
+/// images.
 template <typename Places>
 BestTemplates<kBestSampled> HypothesisScorer::match_sampled_views(const Places& places) const {
   constexpr std::size_t kBestCoarse = 8;  // coarse views whose surroundings are compared too
@@ -339,10 +338,11 @@ BestTemplates<kBestSampled> HypothesisScorer::match_sampled_views(const Places& 
       if (sampled.views[sampled.nearest[i]] == placed.view) match(sampled.views[i], placed.centre_camera, best);
     }
   }
-  BestTemplates<kBestSampled> compared;
+  BestTemplates<kBestSampled> aligned;
   for (const auto& [view, centre, fit] : best)
-    compared.add({view, centre, match_template(views_[view], centre, input_.frame)});
-  return compared;
+    aligned.add(
+        align_template(views_, {view, centre, match_template(views_[view], centre, input_.frame)}, input_.frame));
+  return aligned;
 }
 
 /// Returns the best of what was compared, nothing where nothing was.
@@ -415,15 +415,12 @@ SeedTemplates HypothesisScorer::find_seeds() {
 BestTemplates<kBestSampled> HypothesisScorer::match_beside_centre() const {
   constexpr float kDisplacement = 0.25F;  // of the object's radius
   constexpr float kSure = 0.9F;           // score from which no other place is tried
-  BestTemplates<kBestSampled> aligned;
-  if (attitude_factor_ == 1.0F || scored_.detection.score >= kSure) return aligned;
+  if (attitude_factor_ == 1.0F || scored_.detection.score >= kSure) return {};
   const Eigen::Vector3f& centre = hypothesis_.centre_camera;
   const Eigen::Vector3f right = kDisplacement * object_.radius * Eigen::Vector3f::UnitX();
   const Eigen::Vector3f down = kDisplacement * object_.radius * Eigen::Vector3f::UnitY();
   const std::array<Eigen::Vector3f, 4> beside = {centre + right, centre - right, centre + down, centre - down};
-  for (const PlacedTemplate& placed : match_sampled_views(beside))
-    aligned.add(align_template(views_, placed, input_.frame));
-  return aligned;
+  return match_sampled_views(beside);
 }
 
 /// Goes from a template to the best of its neighbours in viewing direction, and aligns it, as long as one matches
