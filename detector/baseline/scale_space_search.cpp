@@ -57,21 +57,22 @@ void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, 
   const auto width = static_cast<float>(seen.camera.width);
   const auto height = static_cast<float>(seen.camera.height);
   seen.posteriors.for_each_supporting_patch(
-      class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
+      class_index, [&](std::uint32_t p, const SupportingEntry* entries, std::uint32_t count) {
         for (std::uint32_t e = 0; e < count; ++e) {  // the cache misses below overlap
-          hwy::Prefetch(forest.votes.data() + forest.leaf_classes[entries[e]].first_vote);
+          hwy::Prefetch(forest.votes.data() + entries[e].start.vote);
         }
         const auto patch_x = static_cast<float>(seen.grid.x[p]);
         const auto patch_y = static_cast<float>(seen.grid.y[p]);
         for (std::uint32_t e = 0; e < count; ++e) {
-          const LeafClass& entry = forest.leaf_classes[entries[e]];
-          for (std::uint32_t v = entry.first_vote; v < entry.first_vote + entry.vote_count; ++v) {
-            const LeafVote& vote = forest.votes[v];
+          const SupportingEntry& entry = entries[e];
+          for (std::uint32_t v = entry.start.vote; v < entry.start.vote + entry.leaf_class.vote_count; ++v) {
+            const Eigen::Vector3f offset = forest.votes[v].offset();
             // rounded: positions inside the image are positive
-            const float x = patch_x + vote.offset.x() * seen.px_per_offset + 0.5F;
-            const float y = patch_y + vote.offset.y() * seen.px_per_offset + 0.5F;
+            const float x = patch_x + offset.x() * seen.px_per_offset + 0.5F;
+            const float y = patch_y + offset.y() * seen.px_per_offset + 0.5F;
             if (x < 0.0F || y < 0.0F || x >= width || y >= height) continue;
-            visit(p, static_cast<int>(x), static_cast<int>(y), entry.probability * vote.weight * fraction, entry);
+            const float weight = entry.leaf_class.probability * forest.votes[v].weight.value() * fraction;
+            visit(p, static_cast<int>(x), static_cast<int>(y), weight, entry);
           }
         }
       });
@@ -82,8 +83,9 @@ cv::Mat hough_image(const SearchContext& search, int class_index, const SeenLeve
   const Forest& forest = search.forest();
   const DetectionSettings& settings = search.settings;
   cv::Mat image = cv::Mat::zeros(seen.camera.height, seen.camera.width, CV_32FC1);
-  for_votes_of(forest, class_index, seen,
-               [&](std::uint32_t, int x, int y, float weight, const LeafClass&) { image.at<float>(y, x) += weight; });
+  for_votes_of(forest, class_index, seen, [&](std::uint32_t, int x, int y, float weight, const SupportingEntry&) {
+    image.at<float>(y, x) += weight;
+  });
   const double sigma = static_cast<double>(settings.voting.vote_sigma) * seen.px_per_offset;
   cv::GaussianBlur(image, image, cv::Size(0, 0), sigma, sigma, cv::BORDER_CONSTANT);
   const double patch_side = settings.spacing.stride / static_cast<double>(seen.px_per_offset);
@@ -128,22 +130,24 @@ std::vector<Hypothesis> gather_supporters(const SearchContext& search, int class
   std::vector<Hypothesis> hypotheses(maxima.size());
   if (maxima.empty()) return hypotheses;
   std::vector<std::vector<float>> by_view(maxima.size(), std::vector<float>(forest.views.size(), 0.0F));
-  for_votes_of(forest, class_index, seen, [&](std::uint32_t p, int x, int y, float weight, const LeafClass& entry) {
-    const std::int16_t supported = number.at<std::int16_t>(y, x);
-    if (supported == kNobody) return;
-    const auto m = static_cast<std::size_t>(supported);
-    const auto dx = static_cast<float>(x - maxima[m].x);
-    const auto dy = static_cast<float>(y - maxima[m].y);
-    const float fraction = weight * vote_kernel(dx * dx + dy * dy, sigma);
-    Hypothesis& hypothesis = hypotheses[m];
-    hypothesis.weight += fraction;
-    ++hypothesis.vote_count;
-    if (hypothesis.patches.empty() || hypothesis.patches.back().first != p) hypothesis.patches.emplace_back(p, 0.0F);
-    hypothesis.patches.back().second += fraction;
-    for (std::uint32_t v = entry.first_view; v < entry.first_view + entry.view_count; ++v) {
-      by_view[m][forest.leaf_views[v].view] += fraction * forest.leaf_views[v].weight;
-    }
-  });
+  for_votes_of(forest, class_index, seen,
+               [&](std::uint32_t p, int x, int y, float weight, const SupportingEntry& entry) {
+                 const std::int16_t supported = number.at<std::int16_t>(y, x);
+                 if (supported == kNobody) return;
+                 const auto m = static_cast<std::size_t>(supported);
+                 const auto dx = static_cast<float>(x - maxima[m].x);
+                 const auto dy = static_cast<float>(y - maxima[m].y);
+                 const float fraction = weight * vote_kernel(dx * dx + dy * dy, sigma);
+                 Hypothesis& hypothesis = hypotheses[m];
+                 hypothesis.weight += fraction;
+                 ++hypothesis.vote_count;
+                 if (hypothesis.patches.empty() || hypothesis.patches.back().first != p)
+                   hypothesis.patches.emplace_back(p, 0.0F);
+                 hypothesis.patches.back().second += fraction;
+                 for (std::uint32_t v = entry.start.view; v < entry.start.view + entry.leaf_class.view_count; ++v) {
+                   by_view[m][forest.leaf_views[v].view] += fraction * forest.leaf_views[v].weight.value();
+                 }
+               });
   for (std::size_t m = 0; m < maxima.size(); ++m) {
     for (std::uint32_t v = 0; v < by_view[m].size(); ++v) {
       if (by_view[m][v] > 0.0F) hypotheses[m].views.emplace_back(v, by_view[m][v]);

@@ -43,11 +43,12 @@ HWY_INLINE V compress(D d, V values, M mask) {
   return hn::TableLookupLanes(values, hn::SetTableIndices(d, kLanesOfSet[bits[0]].data()));
 }
 
-/// Returns the cells of a row from a column on, as TemplateCell lies in memory.
-HWY_INLINE Ints cell_numbers(std::size_t row, std::size_t column) {
+/// Returns the cells of a row of the box from a column on, as TemplateCell lies in memory; those of the rim are none.
+HWY_INLINE Ints box_cells(std::size_t row, std::size_t column) {
   const Int d;
   const Ints columns = hn::Iota(d, static_cast<std::int32_t>(column));
-  const Ints index = hn::Add(columns, hn::Set(d, static_cast<std::int32_t>(row * kTemplateSide)));
+  const auto first = static_cast<std::int32_t>(TemplateGrid::colour_index(static_cast<int>(row), TemplateGrid::kRim));
+  const Ints index = hn::And(hn::Add(columns, hn::Set(d, first - TemplateGrid::kRim)), hn::Set(d, 0xFFFF));
   return hn::Or(hn::Or(index, hn::Set(d, static_cast<std::int32_t>(row << 16U))), hn::ShiftLeft<24>(columns));
 }
 
@@ -80,21 +81,26 @@ void compare_in_vectors(const TemplateGrid& grid, const CellLayout& layout, cons
       const auto is_inside = hn::Eq(x, inside_x);
       const Floats expected = hn::Add(row_depth, hn::LoadU(d, layout.column_depth.data() + column));
       const Floats difference_to_zero = hn::Sub(hn::GatherIndex(d, measured, inside_x), expected);
-      const std::size_t cell = row * kTemplateSide + column;
-      const Ints on_object = hn::PromoteTo(di, hn::LoadU(ds, grid.mm.data() + cell));
-      const Ints beside = hn::PromoteTo(di, hn::LoadU(ds, grid.beside.data() + cell));
-      const auto shows_object = hn::And(is_inside, hn::Ne(on_object, no_object));
-      const auto is_beside = hn::And(is_inside, hn::Ne(beside, no_object));
-      hn::StoreU(compress(di, cell_numbers(row, column), shows_object), di,
-                 reinterpret_cast<std::int32_t*>(out.cells.data() + out.object_cells));
-      hn::StoreU(compress(d, difference_to(difference_to_zero, on_object, layout.metres_per_mm),
-                          hn::RebindMask(d, shows_object)),
-                 d, out.depth_difference.data() + out.object_cells);
-      hn::StoreU(
-          compress(d, difference_to(difference_to_zero, beside, layout.metres_per_mm), hn::RebindMask(d, is_beside)), d,
-          out.rim_difference.data() + out.rim_cells);
-      out.object_cells += hn::CountTrue(di, shows_object);
-      out.rim_cells += hn::CountTrue(di, is_beside);
+      if (TemplateGrid::is_in_box(static_cast<int>(row))) {
+        const std::size_t cell = TemplateGrid::depth_index(static_cast<int>(row), static_cast<int>(column));
+        const Ints on_object = hn::PromoteTo(di, hn::LoadU(ds, grid.mm.data() + cell));
+        const auto shows_object = hn::And(is_inside, hn::Ne(on_object, no_object));
+        hn::StoreU(compress(di, box_cells(row, column), shows_object), di,
+                   reinterpret_cast<std::int32_t*>(out.cells.data() + out.object_cells));
+        hn::StoreU(compress(d, difference_to(difference_to_zero, on_object, layout.metres_per_mm),
+                            hn::RebindMask(d, shows_object)),
+                   d, out.depth_difference.data() + out.object_cells);
+        out.object_cells += hn::CountTrue(di, shows_object);
+      }
+      if (row < TemplateGrid::kRimRows) {
+        const std::int16_t* cell = grid.beside.data() + row * kTemplateSide + column;
+        const Ints beside = hn::PromoteTo(di, hn::LoadU(ds, cell));
+        const auto is_beside = hn::And(is_inside, hn::Ne(beside, no_object));
+        hn::StoreU(
+            compress(d, difference_to(difference_to_zero, beside, layout.metres_per_mm), hn::RebindMask(d, is_beside)),
+            d, out.rim_difference.data() + out.rim_cells);
+        out.rim_cells += hn::CountTrue(di, is_beside);
+      }
     }
   }
 }

@@ -11,7 +11,7 @@ namespace houghstream {
 
 /// A cell of a template. It has no values of its own: arrays of some hundred are made for each comparison, and filled.
 struct TemplateCell {
-  std::uint16_t index;  ///< into TemplateGrid::mm
+  std::uint16_t colour_index;  ///< index into TemplateGrid::lab
   std::uint8_t row;
   std::uint8_t column;
 };

@@ -154,14 +154,15 @@ BoundaryContinuation measure_boundary_continuation(const ViewTemplate& view, con
   const float tolerance = depth_tolerance_at(centre_camera.z());
   const TemplateGrid& appearance = view.appearance;
   BoundaryContinuation fit;
-  for (const OutlineCells& cells : appearance.outline) {
+  const TemplateOutline outline = find_outline(appearance);
+  for (std::size_t i = 0; i < outline.count; ++i) {
+    const OutlineCells& cells = outline.crossings[i];
     const OutlineCells::Cell in = cells.inside;
     const OutlineCells::Cell out = cells.beyond;
-    if (in.row == 0) break;
     const std::optional<float> inside = comparison.beyond_centre(frame.frame, in);
     const std::optional<float> beyond = comparison.beyond_centre(frame.frame, out);
     if (!inside || !beyond) continue;
-    const std::int16_t mm = appearance.mm[in.row * kSide + in.column];
+    const std::int16_t mm = appearance.depth_mm(in.row, in.column);
     const bool is_occluded =
         mm > TemplateGrid::kNoDepth && *inside - comparison.layout.metres_per_mm * mm - shift < -tolerance;
     if (is_occluded) continue;
@@ -246,7 +247,7 @@ void collect_colours(const CellTally& tally, const TemplateGrid& appearance, con
   pairs.count = tally.unoccluded;
   for (std::size_t i = 0; i < tally.unoccluded; ++i) {
     const TemplateCell cell = tally.unoccluded_cells[i];
-    const std::array<std::uint8_t, 3>& expected = appearance.lab[cell.index];
+    const std::array<std::uint8_t, 3>& expected = appearance.lab[cell.colour_index];
     const cv::Vec3b& observed = colours.at(cell.row, cell.column);
     for (std::size_t c = 0; c < 3; ++c) {
       pairs.expected[c][i] = expected[c];

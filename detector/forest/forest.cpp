@@ -2,6 +2,25 @@
 
 namespace houghstream {
 
+LeafVote::LeafVote(const Eigen::Vector3f& offset_m, float weight_of_class) : weight(weight_of_class) {
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const float in_reach = std::clamp(offset_m[static_cast<Eigen::Index>(i)], -kReach_m, kReach_m);
+    steps[i] = static_cast<std::int16_t>(std::lround(in_reach / kStep_m));
+  }
+}
+
+std::vector<LeafStart> find_leaf_starts(const Forest& forest) {
+  std::vector<LeafStart> starts;
+  if (forest.leaves.empty()) return starts;
+  starts.reserve(forest.leaves.size() - 1);
+  LeafStart start;
+  for (std::size_t leaf = 0; leaf + 1 < forest.leaves.size(); ++leaf) {
+    starts.push_back(start);
+    for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) start.pass(forest.leaf_classes[e]);
+  }
+  return starts;
+}
+
 Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray) {
   const Eigen::Vector3f d = ray / ray.norm();
   // Rodrigues' formula for the axis z x d, simplified: the rotation angle's cosine is d.z, and rays point forwards.

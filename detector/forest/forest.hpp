@@ -1,7 +1,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -27,23 +30,47 @@ struct TreeNode {
   std::int32_t right = 0;
 };
 
+/// A share of a whole, 0 to 1, in 16 bits: a forest has millions.
+class Share {
+ public:
+  Share() = default;
+  explicit Share(float value)
+      : steps_(static_cast<std::uint16_t>(std::lround(std::clamp(value, 0.0F, 1.0F) / kStep))) {}
+  float value() const { return kStep * static_cast<float>(steps_); }
+
+  static constexpr float kStep = 1.0F / 65535.0F;
+
+ private:
+  std::uint16_t steps_ = 0;
+};
+
 /// Vote of a leaf: the object's centre as one of its patches saw it, in the frame of the patch's viewing ray (see
-/// ray_rotation), metres.
+/// ray_rotation).
 struct LeafVote {
-  Eigen::Vector3f offset;
-  float weight = 0.0F;  ///< share of the leaf's probability for the class; a class's votes sum to 1
+  static constexpr float kStep_m = 1.0F / 16384.0F;      ///< 0.06 mm, far less than a camera measures
+  static constexpr float kReach_m = 32767.0F * kStep_m;  ///< maximum of each coordinate of an offset
+
+  LeafVote() = default;
+  /// An offset beyond the reach is brought to it.
+  LeafVote(const Eigen::Vector3f& offset_m, float weight_of_class);
+  Eigen::Vector3f offset() const {
+    return kStep_m * Eigen::Map<const Eigen::Matrix<std::int16_t, 3, 1>>(steps.data()).cast<float>();
+  }
+
+  std::array<std::int16_t, 3> steps{};  ///< offset in units of kStep_m
+  Share weight;  ///< share of the leaf's probability for the class; a class's votes sum to at most 1
 };
 
 /// A training view that a patch of this leaf came from.
 struct LeafView {
-  std::uint32_t view = 0;  ///< index into Forest::views
-  float weight = 0.0F;
+  static constexpr std::size_t kMaxViews = 65536;  ///< maximum number of views of a forest
+
+  std::uint16_t view = 0;  ///< index into Forest::views
+  Share weight;
 };
 
-/// Statistics of one class in a leaf.
+/// Statistics of one class in a leaf. Its votes and views follow those of the entry before it, see find_leaf_starts().
 struct LeafClass {
-  std::uint32_t first_vote = 0;   ///< index into Forest::votes
-  std::uint32_t first_view = 0;   ///< index into Forest::leaf_views
   float probability = 0.0F;       ///< p(class | leaf)
   std::uint16_t class_index = 0;  ///< index into Forest::classes
   std::uint8_t vote_count = 0;
@@ -84,9 +111,24 @@ struct Forest {
                                       ///< leaf_classes[leaves[i] .. leaves[i + 1])
   std::vector<float> leaf_weights;    ///< per leaf: share of what its tree learnt from; a tree's sum to 1
   std::vector<LeafClass> leaf_classes;
-  std::vector<LeafVote> votes;
-  std::vector<LeafView> leaf_views;
+  std::vector<LeafVote> votes;       ///< in the order of leaf_classes
+  std::vector<LeafView> leaf_views;  ///< in the order of leaf_classes
 };
+
+/// Where the votes and views of a leaf, or of one of its classes, begin.
+struct LeafStart {
+  std::uint32_t vote = 0;  ///< index into Forest::votes
+  std::uint32_t view = 0;  ///< index into Forest::leaf_views
+
+  /// Moves to the class that follows this one.
+  void pass(const LeafClass& entry) {
+    vote += entry.vote_count;
+    view += entry.view_count;
+  }
+};
+
+/// Returns the start of each leaf, in their order.
+std::vector<LeafStart> find_leaf_starts(const Forest& forest);
 
 /// Returns the smallest rotation from the optical axis to a ray: R * (0,0,1) is parallel to the ray.
 Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray);

@@ -1,7 +1,7 @@
 #include "detector/forest/forest_file.hpp"
 
 #include <fmt/format.h>
-#include <zlib.h>
+#include <libdeflate.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +52,7 @@ void archive_members(Archive& archive, ForestType& forest) {
 // Arrays are written as they lie in memory, so no type may have gaps whose bytes nobody set.
 static_assert(sizeof(FeatureSettings) == 68 && sizeof(PatchSettings) == 8 &&
               sizeof(ViewTemplate) == 36 + sizeof(TemplateGrid));
-static_assert(sizeof(TreeNode) == 16 && sizeof(LeafClass) == 16 && sizeof(LeafVote) == 16 && sizeof(LeafView) == 8);
+static_assert(sizeof(TreeNode) == 16 && sizeof(LeafClass) == 8 && sizeof(LeafVote) == 8 && sizeof(LeafView) == 4);
 
 struct Writer : ArchiveWriter {
   using ArchiveWriter::operator();
@@ -62,8 +62,39 @@ struct Writer : ArchiveWriter {
   }
 };
 
-struct Reader : ArchiveReader {
-  using ArchiveReader::operator();
+/// Reads values as ArchiveReader does, but from the file itself: a copy of the payload in memory would double what a
+/// forest takes while it is loaded.
+struct Reader {
+  std::ifstream& in;
+  std::uint64_t bytes_left = 0;
+  std::string source;
+
+  void take(void* to, std::size_t size) {
+    require(size <= bytes_left, "{}: the payload ends {} bytes early", source, size - bytes_left);
+    in.read(static_cast<char*>(to), static_cast<std::streamsize>(size));
+    require(in.good(), "{}: cannot be read to its end", source);
+    bytes_left -= size;
+  }
+  /// Reads the length of a list whose items take at least so many bytes each.
+  std::size_t count(std::size_t item_bytes) {
+    std::uint64_t items = 0;
+    take(&items, sizeof items);
+    require(items <= bytes_left / item_bytes, "{}: a list of {} items, expected at most what is left", source, items);
+    return static_cast<std::size_t>(items);
+  }
+  template <typename T>
+  void operator()(T& value) {
+    take(static_cast<void*>(&value), sizeof value);
+  }
+  void operator()(std::string& text) {
+    text.resize(count(1));
+    if (!text.empty()) take(text.data(), text.size());
+  }
+  template <typename T>
+  void operator()(std::vector<T>& values) {
+    values.resize(count(sizeof(T)));
+    if (!values.empty()) take(static_cast<void*>(values.data()), values.size() * sizeof(T));
+  }
   void operator()(std::vector<ObjectClass>& classes) {
     constexpr std::size_t kMin = 4 + 8 + 2 * 4;  // id, the name's length, radius and mass
     classes.resize(count(kMin));
@@ -71,8 +102,99 @@ struct Reader : ArchiveReader {
   }
 };
 
-std::uint32_t checksum(const std::string& bytes) {
-  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+/// Reads what forest files of version 16 hold in another form: templates with all cells, and votes and views of leaves
+/// as floating-point numbers.
+struct ReaderOfVersion16 : Reader {
+  using Reader::operator();
+  struct Template {
+    std::uint32_t class_index;
+    std::array<float, 4> rotation;
+    std::array<float, 4> box;
+    std::array<std::int16_t, TemplateGrid::kSide * TemplateGrid::kSide> mm;
+    std::array<std::int16_t, TemplateGrid::kSide * TemplateGrid::kSide> beside;
+    std::array<std::array<std::uint8_t, 3>, TemplateGrid::kSide * TemplateGrid::kSide> lab;
+    std::array<OutlineCells, 4 * TemplateGrid::kBoxSide> outline;
+  };
+  struct Entry {
+    std::uint32_t first_vote;
+    std::uint32_t first_view;
+    LeafClass entry;
+  };
+  struct Vote {
+    Eigen::Vector3f offset;
+    float weight;
+  };
+  struct View {
+    std::uint32_t view;
+    float weight;
+  };
+  static_assert(sizeof(Template) == 4548 && sizeof(Entry) == 16 && sizeof(Vote) == 16 && sizeof(View) == 8);
+
+  /// Reads a list of `Old`, and makes of each what convert() returns.
+  template <typename Old, typename New, typename Convert>
+  void read_each(std::vector<New>& values, const Convert& convert) {
+    std::vector<Old> old;
+    (*this)(old);
+    values.clear();
+    values.reserve(old.size());
+    for (const Old& value : old) values.push_back(convert(value));
+  }
+  void operator()(std::vector<ViewTemplate>& views);
+  void operator()(std::vector<LeafClass>& entries) {
+    read_each<Entry>(entries, [](const Entry& old) { return old.entry; });
+  }
+  void operator()(std::vector<LeafVote>& votes) {
+    read_each<Vote>(votes, [&](const Vote& old) {
+      require(old.offset.allFinite() && std::isfinite(old.weight), "{}: a vote of weight {}, expected a number", source,
+              old.weight);
+      return LeafVote(old.offset, old.weight);
+    });
+  }
+  void operator()(std::vector<LeafView>& views) {
+    read_each<View>(views, [&](const View& old) {
+      require(old.view < LeafView::kMaxViews && std::isfinite(old.weight), "{}: a leaf remembers view {}, expected {}",
+              source, old.view, "one of at most 65536");
+      return LeafView{static_cast<std::uint16_t>(old.view), Share(old.weight)};
+    });
+  }
+};
+
+void ReaderOfVersion16::operator()(std::vector<ViewTemplate>& views) {
+  constexpr std::size_t kSide = TemplateGrid::kSide;
+  constexpr std::size_t kRim = TemplateGrid::kRim;
+  read_each<Template>(views, [](const Template& old) {
+    ViewTemplate view;
+    view.class_index = old.class_index;
+    view.R_ray_object.coeffs() = Eigen::Map<const Eigen::Vector4f>(old.rotation.data());
+    view.box = old.box;
+    TemplateGrid& grid = view.appearance;
+    std::copy_n(old.mm.begin() + kRim * kSide, grid.mm.size(), grid.mm.begin());
+    std::copy_n(old.beside.begin(), grid.beside.size(), grid.beside.begin());
+    for (std::size_t row = 0; row < TemplateGrid::kBoxSide; ++row) {
+      std::copy_n(old.lab.begin() + static_cast<std::ptrdiff_t>((row + kRim) * kSide + kRim), TemplateGrid::kBoxSide,
+                  grid.lab.begin() + static_cast<std::ptrdiff_t>(row * TemplateGrid::kBoxSide));
+    }
+    return view;
+  });
+}
+
+/// Returns the checksum of the rest of the file, and leaves it where it was.
+std::uint32_t checksum_of_rest(std::ifstream& in) {
+  const std::istream::pos_type begin = in.tellg();
+  std::vector<char> part(1U << 20U);
+  std::uint32_t sum = 0;
+  while (in.read(part.data(), static_cast<std::streamsize>(part.size())), in.gcount() > 0)
+    sum = libdeflate_crc32(sum, part.data(), static_cast<std::size_t>(in.gcount()));
+  in.clear();
+  in.seekg(begin);
+  return sum;
+}
+
+std::uint64_t size_of_rest(std::ifstream& in) {
+  const std::istream::pos_type begin = in.tellg();
+  const std::istream::pos_type end = in.seekg(0, std::ios::end).tellg();
+  in.seekg(begin);
+  return in.good() && end > begin ? static_cast<std::uint64_t>(end - begin) : 0;
 }
 
 /// Checks that the content makes sense. The checksum only says that the file is what was written.
@@ -105,13 +227,18 @@ void check_indices(const Forest& forest, const std::string& source) {
 }
 
 void check_leaves(const Forest& forest, const std::string& source) {
+  std::uint64_t votes = 0;
+  std::uint64_t views = 0;
   for (const LeafClass& entry : forest.leaf_classes) {
-    const bool good = entry.class_index < forest.classes.size() &&
-                      entry.first_vote + std::uint64_t{entry.vote_count} <= forest.votes.size() &&
-                      entry.first_view + std::uint64_t{entry.view_count} <= forest.leaf_views.size() &&
-                      entry.probability >= 0.0F && entry.probability <= 1.0F;
-    require(good, "{}: a leaf points outside the forest's lists", source);
+    votes += entry.vote_count;
+    views += entry.view_count;
+    require(entry.class_index < forest.classes.size() && entry.probability >= 0.0F && entry.probability <= 1.0F,
+            "{}: a leaf with class {} of {} and a probability of {}, expected 0 to 1", source, entry.class_index,
+            forest.classes.size(), entry.probability);
   }
+  require(votes == forest.votes.size() && views == forest.leaf_views.size(),
+          "{}: leaves of {} votes and {} views, expected {} and {}", source, votes, views, forest.votes.size(),
+          forest.leaf_views.size());
   for (std::size_t l = 1; l < forest.leaves.size(); ++l) {
     require(forest.leaves[l - 1] <= forest.leaves[l], "{}: leaf {} ends before it begins", source, l - 1);
   }
@@ -132,15 +259,21 @@ bool is_fraction(float value) {
   return value >= 0.0F && value <= 1.001F;
 }
 
+/// Returns whether the columns beside the box show nothing of the object.
+bool is_within_box(const TemplateGrid& grid) {
+  for (int row = TemplateGrid::kRim; row < TemplateGrid::kRim + TemplateGrid::kBoxSide; ++row) {
+    for (int i = 0; i < TemplateGrid::kRim; ++i) {
+      if (grid.depth_mm(row, i) != TemplateGrid::kBeside ||
+          grid.depth_mm(row, TemplateGrid::kSide - 1 - i) != TemplateGrid::kBeside)
+        return false;
+    }
+  }
+  return true;
+}
+
 /// Numbers that are none become any integer later.
 void check_numbers(const Forest& forest, const std::string& source) {
   constexpr float kFar = 100.0F;  // metres
-  for (const LeafVote& vote : forest.votes) {
-    require(vote.offset.array().abs().maxCoeff() < kFar && vote.offset.allFinite() && is_fraction(vote.weight),
-            "{}: a vote of weight {}, expected metres and 0 to 1", source, vote.weight);
-  }
-  for (const LeafView& view : forest.leaf_views)
-    require(is_fraction(view.weight), "{}: a view of weight {}, expected 0 to 1", source, view.weight);
   for (const float weight : forest.leaf_weights)
     require(is_fraction(weight), "{}: a leaf of weight {}, expected 0 to 1", source, weight);
   for (const ViewTemplate& view : forest.views) {
@@ -149,11 +282,7 @@ void check_numbers(const Forest& forest, const std::string& source) {
     require(has_box && std::abs(view.R_ray_object.norm() - 1.0F) < 0.01F && view.class_index < forest.classes.size(),
             "{}: a view of class {} with a rotation of length {}, expected one of {} and 1", source, view.class_index,
             view.R_ray_object.norm(), forest.classes.size());
-    for (const OutlineCells& across : view.appearance.outline) {
-      const int last = std::max({across.inside.row, across.inside.column, across.beyond.row, across.beyond.column});
-      require(last < TemplateGrid::kSide, "{}: a view's outline at cell {}, expected less than {}", source, last,
-              TemplateGrid::kSide);
-    }
+    require(is_within_box(view.appearance), "{}: a view shows its object beside its box", source);
   }
 }
 
@@ -181,24 +310,13 @@ void save_forest(const Forest& forest, const std::filesystem::path& file) {
   archive_members(payload, forest);
   Writer header;
   header(static_cast<std::uint64_t>(payload.bytes.size()));
-  header(checksum(payload.bytes));
+  header(libdeflate_crc32(0, payload.bytes.data(), payload.bytes.size()));
   AtomicFile whole(file);
   std::ofstream out(whole.partial(), std::ios::binary);
   out << kName << kForestFileVersion << '\n' << header.bytes << payload.bytes;
   out.close();
   require(out.good(), "{}: cannot be written", file.string());
   whole.commit();
-}
-
-/// Reads the rest at once, since a forest of many objects has hundreds of megabytes.
-static std::string rest_of(std::ifstream& in) {
-  const std::istream::pos_type begin = in.tellg();
-  const std::istream::pos_type end = in.seekg(0, std::ios::end).tellg();
-  if (!in.good() || end < begin) return {};  // cut within what goes before
-  std::string rest(static_cast<std::size_t>(end - begin), '\0');
-  in.seekg(begin).read(rest.data(), end - begin);
-  rest.resize(static_cast<std::size_t>(in.gcount()));
-  return rest;
 }
 
 Forest load_forest(const std::filesystem::path& file) {
@@ -211,23 +329,29 @@ Forest load_forest(const std::filesystem::path& file) {
   require(line.rfind(kName, 0) == 0, "{}: not a forest file, expected it to begin with '{}{}'", source, kName,
           kForestFileVersion);
   const std::string version = line.substr(sizeof kName - 1);
-  require(version == std::to_string(kForestFileVersion), "{}: forest file of version '{}', expected {}: retrain it",
-          source, version, kForestFileVersion);
+  const bool is_of_version_16 = version == "16";
+  require(is_of_version_16 || version == std::to_string(kForestFileVersion),
+          "{}: forest file of version '{}', expected {}: retrain it", source, version, kForestFileVersion);
 
   std::uint64_t size = 0;
   std::uint32_t crc = 0;
   in.read(reinterpret_cast<char*>(&size), sizeof size);
   in.read(reinterpret_cast<char*>(&crc), sizeof crc);
-  const std::string payload = rest_of(in);
-  require(payload.size() == size, "{}: payload of {} bytes, expected {}: the file is truncated or damaged", source,
-          payload.size(), size);
-  require(checksum(payload) == crc, "{}: checksum {:08x}, expected {:08x}: the file is damaged", source,
-          checksum(payload), crc);
+  const std::uint64_t bytes = size_of_rest(in);
+  require(bytes == size, "{}: payload of {} bytes, expected {}: the file is truncated or damaged", source, bytes, size);
+  const std::uint32_t sum = checksum_of_rest(in);
+  require(sum == crc, "{}: checksum {:08x}, expected {:08x}: the file is damaged", source, sum, crc);
 
   Forest forest;
-  Reader reader{{payload, source + ": forest payload"}};
-  archive_members(reader, forest);
-  require(reader.bytes.empty(), "{}: {} bytes left over after the forest", source, reader.bytes.size());
+  Reader reader{in, size, source};
+  if (is_of_version_16) {
+    ReaderOfVersion16 old{reader};
+    archive_members(old, forest);
+    reader.bytes_left = old.bytes_left;
+  } else {
+    archive_members(reader, forest);
+  }
+  require(reader.bytes_left == 0, "{}: {} bytes left over after the forest", source, reader.bytes_left);
   check_head(forest, source);
   check_indices(forest, source);
   check_leaves(forest, source);

@@ -90,7 +90,10 @@ SampledViews sample_views(const ClassViews& class_views) {
 }  // namespace
 
 ForestIndex::ForestIndex(const Forest& forest)
-    : forest_(&forest), leaf_summaries_(build_leaf_summaries(forest)), packed_(pack_trees(forest)) {
+    : forest_(&forest),
+      leaf_summaries_(build_leaf_summaries(forest)),
+      leaf_starts_(find_leaf_starts(forest)),
+      packed_(pack_trees(forest)) {
   const std::vector<ClassViews> by_class = views_by_class(forest);
   view_neighbours_ = find_view_neighbours(by_class, forest.views.size());
   constexpr float kOneAttitude = 150.0F;  // views of a turntable

@@ -40,6 +40,7 @@ class ForestIndex {
 
   const Forest& forest() const { return *forest_; }
   const std::vector<LeafSummary>& leaf_summaries() const { return leaf_summaries_; }  ///< number of leaves + 1
+  const std::vector<LeafStart>& leaf_starts() const { return leaf_starts_; }          ///< per leaf
   const PackedTrees& packed() const { return packed_; }
   const std::vector<ViewNeighbours>& view_neighbours() const { return view_neighbours_; }  ///< per view
   const SampledViews& sampled_views(std::size_t class_index) const { return sampled_views_[class_index]; }
@@ -50,6 +51,7 @@ class ForestIndex {
  private:
   const Forest* forest_;
   std::vector<LeafSummary> leaf_summaries_;
+  std::vector<LeafStart> leaf_starts_;
   PackedTrees packed_;
   std::vector<ViewNeighbours> view_neighbours_;
   std::vector<SampledViews> sampled_views_;  // per class

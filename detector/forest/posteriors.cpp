@@ -49,16 +49,16 @@ void sum_by_class(const ForestIndex& index, const std::vector<std::uint32_t>& ca
   }
 }
 
-/// Appends the indices, into Forest::leaf_classes, of the class's entries in the leaves that the run's patch number `i`
-/// reached, tree by tree.
+/// Appends the class's entries in the leaves that the run's patch number `i` reached, tree by tree.
 void append_entries(const ForestIndex& index, std::size_t class_index, std::size_t i, const RunLeaves& run_leaves,
-                    std::vector<std::uint32_t>& entries) {
+                    std::vector<SupportingEntry>& entries) {
   for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree) {
-    const LeafClassRange leaf_classes = classes_of_leaf(index, run_leaves.leaves[tree * run_leaves.count + i]);
-    const auto is_class = [&](const LeafClass& of) { return of.class_index == class_index; };
-    const LeafClass* found = std::find_if(leaf_classes.begin, leaf_classes.end, is_class);
-    if (found != leaf_classes.end)
-      entries.push_back(static_cast<std::uint32_t>(found - index.forest().leaf_classes.data()));
+    const std::int32_t leaf = run_leaves.leaves[tree * run_leaves.count + i];
+    const LeafClassRange leaf_classes = classes_of_leaf(index, leaf);
+    LeafStart start = index.leaf_starts()[static_cast<std::size_t>(leaf)];
+    const LeafClass* of = leaf_classes.begin;
+    for (; of != leaf_classes.end && of->class_index != class_index; ++of) start.pass(*of);
+    if (of != leaf_classes.end) entries.push_back({start, *of});
   }
 }
 

@@ -10,12 +10,17 @@
 
 namespace houghstream {
 
+/// What a leaf that a patch reached knows of a class.
+struct SupportingEntry {
+  LeafStart start;  ///< start of its votes and views
+  LeafClass leaf_class;
+};
+
 /// Patches of one run that vote for one class, in the grid's order.
 struct SupportingPatches {
-  std::vector<std::uint32_t> patches;  ///< indices into the PatchGrid
-  std::vector<std::uint32_t> ends;     ///< end of each patch's entries; they begin where those before it end
-  /// Indices into Forest::leaf_classes: the class's entries in a patch's leaves, tree by tree.
-  std::vector<std::uint32_t> entries;
+  std::vector<std::uint32_t> patches;    ///< indices into the PatchGrid
+  std::vector<std::uint32_t> ends;       ///< end of each patch's entries; they begin where those before it end
+  std::vector<SupportingEntry> entries;  ///< the class's entries in a patch's leaves, tree by tree
 };
 
 /// Patches that vote for each class: those whose posterior p(class | patch), the mean over the trees of p(class |

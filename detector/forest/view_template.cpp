@@ -13,29 +13,6 @@ namespace {
 
 constexpr int kSide = TemplateGrid::kSide;
 
-/// Marks the cells beside the outline, each with the depth of the nearest cell of the object. Cells below the object's
-/// upper part stay free, since what it stands on may touch it there.
-void mark_rim(TemplateGrid& grid) {
-  constexpr int kUpper = TemplateGrid::kRim + (TemplateGrid::kBoxSide * 3) / 5;
-  grid.beside.fill(TemplateGrid::kBeside);
-  for (int j = 0; j < kUpper; ++j) {
-    for (int i = 0; i < kSide; ++i) {
-      const auto cell = static_cast<std::size_t>(j * kSide + i);
-      if (grid.mm[cell] != TemplateGrid::kBeside) continue;
-      int nearest_sq = 2 * TemplateGrid::kRim * TemplateGrid::kRim + 1;
-      for (int y = std::max(0, j - TemplateGrid::kRim); y <= std::min(kUpper - 1, j + TemplateGrid::kRim); ++y) {
-        for (int x = std::max(0, i - TemplateGrid::kRim); x <= std::min(kSide - 1, i + TemplateGrid::kRim); ++x) {
-          const std::int16_t other = grid.mm[static_cast<std::size_t>(y * kSide + x)];
-          const int distance_sq = (x - i) * (x - i) + (y - j) * (y - j);
-          if (other <= TemplateGrid::kNoDepth || distance_sq >= nearest_sq) continue;
-          nearest_sq = distance_sq;
-          grid.beside[cell] = other;
-        }
-      }
-    }
-  }
-}
-
 /// A row or a column of cells.
 struct Line {
   bool is_row = true;
@@ -49,7 +26,7 @@ struct Line {
   /// Returns TemplateGrid::mm of a cell, or kBeside where there is no such cell.
   std::int16_t mm(const TemplateGrid& grid, int i) const {
     if (i < 0 || i >= kSide) return TemplateGrid::kBeside;
-    return grid.mm[static_cast<std::size_t>(is_row ? number * kSide + i : i * kSide + number)];
+    return is_row ? grid.depth_mm(number, i) : grid.depth_mm(i, number);
   }
 };
 
@@ -68,24 +45,6 @@ std::optional<OutlineCells> find_crossing(const TemplateGrid& grid, const Line& 
   return pair;
 }
 
-void mark_outline(TemplateGrid& grid) {
-  std::size_t count = 0;
-  const auto mark_ends = [&](const Line& line) {
-    int first = 0;
-    int last = kSide - 1;
-    while (first < kSide && line.mm(grid, first) == TemplateGrid::kBeside) ++first;
-    while (last >= 0 && line.mm(grid, last) == TemplateGrid::kBeside) --last;
-    if (first > last) return;
-    for (const auto& [outermost, out] : {std::pair(first, -1), std::pair(last, 1)}) {
-      if (const auto pair = find_crossing(grid, line, outermost, out)) grid.outline[count++] = *pair;
-    }
-  };
-  for (int i = TemplateGrid::kRim; i < TemplateGrid::kRim + TemplateGrid::kBoxSide; ++i) {
-    mark_ends({true, i});
-    mark_ends({false, i});
-  }
-}
-
 }  // namespace
 
 TemplateGrid make_template_grid(const RgbdFrame& view, const cv::Mat& mask, const cv::Rect& box_px,
@@ -94,7 +53,6 @@ TemplateGrid make_template_grid(const RgbdFrame& view, const cv::Mat& mask, cons
   const Eigen::Vector2d centre_px = view.camera.project(centre_camera.cast<double>());
   const double metres_per_px = view.camera.metres_per_px(centre_camera.z());
   TemplateGrid grid;
-  grid.mm.fill(TemplateGrid::kBeside);
   cv::Mat lab;
   cv::resize(view.colour(box_px), lab, cv::Size(TemplateGrid::kBoxSide, TemplateGrid::kBoxSide), 0, 0, cv::INTER_AREA);
   cv::cvtColor(lab, lab, cv::COLOR_BGR2Lab);
@@ -105,16 +63,55 @@ TemplateGrid make_template_grid(const RgbdFrame& view, const cv::Mat& mask, cons
       if (mask.at<std::uint8_t>(y, x) == 0) continue;
       const double gained = metres_per_px * (slope.right * (x - centre_px.x()) + slope.down * (y - centre_px.y()));
       const double offset_mm = 1000.0 * (view.depth.at<float>(y, x) - centre_camera.z() - gained);
-      const auto cell = static_cast<std::size_t>((j + TemplateGrid::kRim) * kSide + i + TemplateGrid::kRim);
+      const int row = j + TemplateGrid::kRim;
+      const int column = i + TemplateGrid::kRim;
       const auto& colour = lab.at<cv::Vec3b>(j, i);
-      grid.lab[cell] = {colour[0], colour[1], colour[2]};
-      grid.mm[cell] =
+      grid.lab[TemplateGrid::colour_index(row, column)] = {colour[0], colour[1], colour[2]};
+      grid.mm[TemplateGrid::depth_index(row, column)] =
           std::abs(offset_mm) < 30000.0 ? static_cast<std::int16_t>(std::lround(offset_mm)) : TemplateGrid::kNoDepth;
     }
   }
   mark_rim(grid);
-  mark_outline(grid);
   return grid;
+}
+
+void mark_rim(TemplateGrid& grid) {
+  grid.beside.fill(TemplateGrid::kBeside);
+  for (int j = 0; j < TemplateGrid::kRimRows; ++j) {
+    for (int i = 0; i < kSide; ++i) {
+      if (grid.depth_mm(j, i) != TemplateGrid::kBeside) continue;
+      int nearest_sq = 2 * TemplateGrid::kRim * TemplateGrid::kRim + 1;
+      const int last_row = std::min(TemplateGrid::kRimRows - 1, j + TemplateGrid::kRim);
+      for (int y = std::max(0, j - TemplateGrid::kRim); y <= last_row; ++y) {
+        for (int x = std::max(0, i - TemplateGrid::kRim); x <= std::min(kSide - 1, i + TemplateGrid::kRim); ++x) {
+          const std::int16_t other = grid.depth_mm(y, x);
+          const int distance_sq = (x - i) * (x - i) + (y - j) * (y - j);
+          if (other <= TemplateGrid::kNoDepth || distance_sq >= nearest_sq) continue;
+          nearest_sq = distance_sq;
+          grid.beside[static_cast<std::size_t>(j * kSide + i)] = other;
+        }
+      }
+    }
+  }
+}
+
+TemplateOutline find_outline(const TemplateGrid& grid) {
+  TemplateOutline outline;
+  const auto mark_ends = [&](const Line& line) {
+    int first = 0;
+    int last = kSide - 1;
+    while (first < kSide && line.mm(grid, first) == TemplateGrid::kBeside) ++first;
+    while (last >= 0 && line.mm(grid, last) == TemplateGrid::kBeside) --last;
+    if (first > last) return;
+    for (const auto& [outermost, out] : {std::pair(first, -1), std::pair(last, 1)}) {
+      if (const auto pair = find_crossing(grid, line, outermost, out)) outline.crossings[outline.count++] = *pair;
+    }
+  };
+  for (int i = TemplateGrid::kRim; i < TemplateGrid::kRim + TemplateGrid::kBoxSide; ++i) {
+    mark_ends({true, i});
+    mark_ends({false, i});
+  }
+  return outline;
 }
 
 }  // namespace houghstream

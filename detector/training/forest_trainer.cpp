@@ -40,8 +40,6 @@ void append_tree(const Forest& tree, Forest& forest) {
   const auto first_node = static_cast<std::int32_t>(forest.nodes.size());
   const auto first_leaf = static_cast<std::int32_t>(forest.leaves.size()) - 1;
   const auto first_class = static_cast<std::uint32_t>(forest.leaf_classes.size());
-  const auto first_vote = static_cast<std::uint32_t>(forest.votes.size());
-  const auto first_view = static_cast<std::uint32_t>(forest.leaf_views.size());
   forest.roots.push_back(moved(tree.roots.at(0), first_node, first_leaf));
   for (TreeNode node : tree.nodes) {
     node.left = moved(node.left, first_node, first_leaf);
@@ -50,11 +48,7 @@ void append_tree(const Forest& tree, Forest& forest) {
   }
   forest.leaf_weights.insert(forest.leaf_weights.end(), tree.leaf_weights.begin(), tree.leaf_weights.end());
   for (std::size_t l = 1; l < tree.leaves.size(); ++l) forest.leaves.push_back(tree.leaves[l] + first_class);
-  for (LeafClass entry : tree.leaf_classes) {
-    entry.first_vote += first_vote;
-    entry.first_view += first_view;
-    forest.leaf_classes.push_back(entry);
-  }
+  forest.leaf_classes.insert(forest.leaf_classes.end(), tree.leaf_classes.begin(), tree.leaf_classes.end());
   forest.votes.insert(forest.votes.end(), tree.votes.begin(), tree.votes.end());
   forest.leaf_views.insert(forest.leaf_views.end(), tree.leaf_views.begin(), tree.leaf_views.end());
 }
@@ -201,6 +195,12 @@ void number_after(const Forest& old, std::vector<TrainingView>& views) {
   }
 }
 
+/// Leaves name views by numbers of 16 bits.
+void require_nameable_views(std::size_t count) {
+  require(count <= LeafView::kMaxViews, "{} views of objects, expected at most {} in one forest", count,
+          LeafView::kMaxViews);
+}
+
 void check_profile(const Profile& profile, const Scales& scales) {
   const std::string source = fmt::format("profile '{}'", profile.name);
   scales.require_teachable(profile.features, source);
@@ -216,6 +216,7 @@ Forest train_forest(std::vector<TrainingView> views, const Profile& profile, con
   check_profile(profile, scales);
   const TrainingSettings& settings = profile.training;
   const TrainingSplit training_split = split_views(views, settings);
+  require_nameable_views(training_split.objects.size());
   TrainingSet set = make_set(training_split, profile, scales, views);
   progress(fmt::format("{}, {} classes, {} planes", set_summary(set), set.classes.size(), set.layout.planes()));
   const std::size_t before = set.samples.size();
@@ -238,6 +239,7 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
           "adding objects: {} trees, expected the forest's {}", profile.training.trees, old.roots.size());
   number_after(old, views);
   const TrainingSplit training_split = split_views(views, profile.training);
+  require_nameable_views(old.views.size() + training_split.objects.size());
   TrainingSet set = make_set(training_split, profile, scales, views);
   set.negative_pool = {};  // the old trees have learnt what is mistaken
   drop_unread_pixels(profile.patch, set);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace houghstream::training {
 namespace {
@@ -9,31 +10,38 @@ namespace {
 /// Offsets nearer than merge_radius become one vote at their mean; the heaviest are kept.
 std::vector<LeafVote> merged_votes(const TrainingSet& set, const std::vector<std::uint32_t>& samples,
                                    const TrainingSettings& settings) {
-  std::vector<LeafVote> votes;  // weight counts samples until the end
+  struct MergedOffset {
+    Eigen::Vector3f mean;
+    float count = 0.0F;
+  };
+  std::vector<MergedOffset> merged;
   const float radius_sq = settings.merge_radius * settings.merge_radius;
   for (const std::uint32_t s : samples) {
     const Eigen::Vector3f& offset = set.samples[s].offset;
-    LeafVote* nearest = nullptr;
+    MergedOffset* nearest = nullptr;
     float nearest_sq = radius_sq;
-    for (LeafVote& vote : votes) {
-      const float distance_sq = (vote.offset - offset).squaredNorm();
+    for (MergedOffset& other : merged) {
+      const float distance_sq = (other.mean - offset).squaredNorm();
       if (distance_sq < nearest_sq) {
-        nearest = &vote;
+        nearest = &other;
         nearest_sq = distance_sq;
       }
     }
     if (nearest == nullptr) {
-      votes.push_back({offset, 1.0F});
+      merged.push_back({offset, 1.0F});
     } else {
-      nearest->weight += 1.0F;
-      nearest->offset += (offset - nearest->offset) / nearest->weight;
+      nearest->count += 1.0F;
+      nearest->mean += (offset - nearest->mean) / nearest->count;
     }
   }
-  std::stable_sort(votes.begin(), votes.end(),
-                   [](const LeafVote& a, const LeafVote& b) { return a.weight > b.weight; });
-  if (votes.size() > static_cast<std::size_t>(settings.max_leaf_votes))
-    votes.resize(static_cast<std::size_t>(settings.max_leaf_votes));
-  for (LeafVote& vote : votes) vote.weight /= static_cast<float>(samples.size());
+  std::stable_sort(merged.begin(), merged.end(),
+                   [](const MergedOffset& a, const MergedOffset& b) { return a.count > b.count; });
+  if (merged.size() > static_cast<std::size_t>(settings.max_leaf_votes))
+    merged.resize(static_cast<std::size_t>(settings.max_leaf_votes));
+  std::vector<LeafVote> votes;
+  votes.reserve(merged.size());
+  for (const MergedOffset& offset : merged)
+    votes.emplace_back(offset.mean, offset.count / static_cast<float>(samples.size()));
   return votes;
 }
 
@@ -41,26 +49,25 @@ std::vector<LeafView> counted_views(const TrainingSet& set, const std::vector<st
                                     const TrainingSettings& settings) {
   std::map<std::uint32_t, int> counts;
   for (const std::uint32_t s : samples) ++counts[set.first_view + set.samples[s].view];
+  std::vector<std::pair<std::uint32_t, int>> most(counts.begin(), counts.end());
+  std::stable_sort(most.begin(), most.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  if (most.size() > static_cast<std::size_t>(settings.max_leaf_views))
+    most.resize(static_cast<std::size_t>(settings.max_leaf_views));
   std::vector<LeafView> views;
-  views.reserve(counts.size());
-  for (const auto& [view, count] : counts) {
-    views.push_back({view, static_cast<float>(count) / static_cast<float>(samples.size())});
+  views.reserve(most.size());
+  for (const auto& [view, count] : most) {
+    const Share weight(static_cast<float>(count) / static_cast<float>(samples.size()));
+    views.push_back({static_cast<std::uint16_t>(view), weight});
   }
-  std::stable_sort(views.begin(), views.end(),
-                   [](const LeafView& a, const LeafView& b) { return a.weight > b.weight; });
-  if (views.size() > static_cast<std::size_t>(settings.max_leaf_views))
-    views.resize(static_cast<std::size_t>(settings.max_leaf_views));
   return views;
 }
 
-/// Appends an entry of the old forest with its votes and views.
-void copy_entry(const Forest& old, const LeafClass& from, float weight, Forest& forest) {
+/// Appends an entry of the old forest with its votes and views, which start there at `start`.
+void copy_entry(const Forest& old, const LeafClass& from, const LeafStart& start, float weight, Forest& forest) {
   LeafClass entry = from;
   entry.probability = weight;
-  entry.first_vote = static_cast<std::uint32_t>(forest.votes.size());
-  entry.first_view = static_cast<std::uint32_t>(forest.leaf_views.size());
-  const auto votes = old.votes.begin() + from.first_vote;
-  const auto views = old.leaf_views.begin() + from.first_view;
+  const auto votes = old.votes.begin() + start.vote;
+  const auto views = old.leaf_views.begin() + start.view;
   forest.votes.insert(forest.votes.end(), votes, votes + from.vote_count);
   forest.leaf_views.insert(forest.leaf_views.end(), views, views + from.view_count);
   forest.leaf_classes.push_back(entry);
@@ -84,8 +91,6 @@ std::int32_t add_leaf(const LeafSource& source, const std::vector<std::uint32_t>
     entry.class_index = static_cast<std::uint16_t>(set.first_class + l - 1);
     entry.vote_count = static_cast<std::uint8_t>(votes.size());
     entry.view_count = static_cast<std::uint8_t>(views.size());
-    entry.first_vote = static_cast<std::uint32_t>(forest.votes.size());
-    entry.first_view = static_cast<std::uint32_t>(forest.leaf_views.size());
     entry.probability = label_weights[l] * static_cast<float>(by_label[l].size()) / total;
     forest.leaf_classes.push_back(entry);
     forest.votes.insert(forest.votes.end(), votes.begin(), votes.end());
@@ -120,9 +125,11 @@ void merge_leaf(const ExistingLeaf& known, float part, Forest& forest) {
     entry.probability *= forest.leaf_weights.back() * known.mixture.added;
     total += entry.probability;
   }
+  LeafStart start = known.start;
   for (std::uint32_t e = old.leaves[leaf]; e < old.leaves[leaf + 1]; ++e) {
     const float before = weight * old.leaf_classes[e].probability;
-    copy_entry(old, old.leaf_classes[e], before * known.mixture.known, forest);
+    copy_entry(old, old.leaf_classes[e], start, before * known.mixture.known, forest);
+    start.pass(old.leaf_classes[e]);
     total += before * (known.mixture.known - known.mixture.background);
   }
   for (std::size_t e = first; e < forest.leaf_classes.size(); ++e) {

@@ -36,6 +36,7 @@ LeafMixture compute_mixture(float known_classes, float added_classes, float max_
 struct ExistingLeaf {
   const Forest* forest = nullptr;
   std::int32_t leaf = 0;
+  LeafStart start;
   LeafMixture mixture;
 };
 

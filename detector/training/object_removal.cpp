@@ -47,15 +47,14 @@ std::vector<std::uint32_t> keep_views(const Forest& from, std::size_t removed, F
   return numbers;
 }
 
-void keep_entry(const Forest& from, const LeafClass& known, const std::vector<std::uint32_t>& view_numbers,
-                Forest& to) {
-  LeafClass entry = known;
-  entry.first_vote = static_cast<std::uint32_t>(to.votes.size());
-  entry.first_view = static_cast<std::uint32_t>(to.leaf_views.size());
-  const auto votes = from.votes.begin() + known.first_vote;
-  to.votes.insert(to.votes.end(), votes, votes + known.vote_count);
-  for (std::uint32_t v = known.first_view; v < known.first_view + known.view_count; ++v)
-    to.leaf_views.push_back({view_numbers[from.leaf_views[v].view], from.leaf_views[v].weight});
+/// Appends an entry with its votes and views, which start in `from` at `start`.
+void keep_entry(const Forest& from, const LeafClass& entry, const LeafStart& start,
+                const std::vector<std::uint32_t>& view_numbers, Forest& to) {
+  const auto votes = from.votes.begin() + start.vote;
+  to.votes.insert(to.votes.end(), votes, votes + entry.vote_count);
+  for (std::uint32_t v = start.view; v < start.view + entry.view_count; ++v)
+    to.leaf_views.push_back(
+        {static_cast<std::uint16_t>(view_numbers[from.leaf_views[v].view]), from.leaf_views[v].weight});
   to.leaf_classes.push_back(entry);
 }
 
@@ -67,17 +66,19 @@ struct Removal {
   std::vector<std::uint32_t> view_numbers;  ///< new numbers by old number
 };
 
-/// Appends a leaf without the object.
-void keep_leaf(const Forest& from, std::size_t leaf, const Removal& removal, Forest& to) {
+/// Appends a leaf without the object. `start` is the leaf's, and moves on to the next one's.
+void keep_leaf(const Forest& from, std::size_t leaf, const Removal& removal, LeafStart& start, Forest& to) {
   const std::size_t first = to.leaf_classes.size();
   float known = 0.0F;
   float kept = 0.0F;
   for (std::uint32_t e = from.leaves[leaf]; e < from.leaves[leaf + 1]; ++e) {
     const LeafClass& entry = from.leaf_classes[e];
     known += entry.probability;
-    if (entry.class_index == removal.object) continue;
-    kept += entry.probability;
-    keep_entry(from, entry, removal.view_numbers, to);
+    if (entry.class_index != removal.object) {
+      kept += entry.probability;
+      keep_entry(from, entry, start, removal.view_numbers, to);
+    }
+    start.pass(entry);
   }
   const float total = kept + removal.of_background * std::max(0.0F, 1.0F - known);
   for (std::size_t e = first; e < to.leaf_classes.size(); ++e) {
@@ -117,7 +118,8 @@ Forest remove_object(const Forest& forest, const std::string& name) {
   if (shares.object > 0.0F) removal.whole = shares.object * (remain + background);
   Forest out = without_leaves(forest, removal.object);
   removal.view_numbers = keep_views(forest, removal.object, out);
-  for (std::size_t leaf = 0; leaf + 1 < forest.leaves.size(); ++leaf) keep_leaf(forest, leaf, removal, out);
+  LeafStart start;
+  for (std::size_t leaf = 0; leaf + 1 < forest.leaves.size(); ++leaf) keep_leaf(forest, leaf, removal, start, out);
   rescale_nominal_vote_mass(forest, out);
   return out;
 }

@@ -27,6 +27,7 @@ class TreeGrower {
 
   /// Grows the old tree with the new samples: they follow its tests and continue to grow where they end.
   Forest grow_onto(const Forest& old, int tree) {
+    old_starts_ = find_leaf_starts(old);
     forest_.leaves.push_back(0);
     forest_.roots.push_back(follow(old, old.roots[static_cast<std::size_t>(tree)], bag_, 0));
     return std::move(forest_);
@@ -140,7 +141,7 @@ class TreeGrower {
   }
 
   std::int32_t follow_leaf(const Forest& old, std::int32_t leaf, const Samples& samples, int depth) {
-    known_ = ExistingLeaf{&old, leaf,
+    known_ = ExistingLeaf{&old, leaf, old_starts_[static_cast<std::size_t>(leaf)],
                           compute_mixture(static_cast<float>(old.classes.size()),
                                           static_cast<float>(set_.classes.size()), settings_.max_background_weight)};
     known_samples_ = std::max<std::size_t>(samples.size(), 1);
@@ -153,6 +154,7 @@ class TreeGrower {
   Random random_;
   Samples bag_;
   std::vector<float> label_weights_;
+  std::vector<LeafStart> old_starts_;  // starts of the old forest's leaves
   std::optional<ExistingLeaf> known_;  // leaf that the samples have reached
   std::size_t known_samples_ = 1;
   std::optional<SplitSearch> search_;

@@ -9,17 +9,16 @@
 namespace houghstream::training {
 namespace {
 
-/// Returns the weight that a leaf's votes give to the true centre.
-float support_at_ground_truth(const Forest& forest, std::int32_t leaf, const TrainingSample& sample,
+/// Returns the weight that the votes of a leaf, which start at `start`, give to the true centre.
+float support_at_ground_truth(const Forest& forest, std::size_t leaf, LeafStart start, const TrainingSample& sample,
                               std::size_t class_index, float vote_sigma) {
   float support = 0.0F;
-  const auto l = static_cast<std::size_t>(leaf);
-  for (std::uint32_t e = forest.leaves[l]; e < forest.leaves[l + 1]; ++e) {
+  for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; start.pass(forest.leaf_classes[e++])) {
     const LeafClass& entry = forest.leaf_classes[e];
     if (entry.class_index != class_index) continue;
-    for (std::uint32_t v = entry.first_vote; v < entry.first_vote + entry.vote_count; ++v) {
-      const float distance_sq = (forest.votes[v].offset - sample.offset).squaredNorm();
-      support += entry.probability * forest.votes[v].weight * vote_kernel(distance_sq, vote_sigma);
+    for (std::uint32_t v = start.vote; v < start.vote + entry.vote_count; ++v) {
+      const float distance_sq = (forest.votes[v].offset() - sample.offset).squaredNorm();
+      support += entry.probability * forest.votes[v].weight.value() * vote_kernel(distance_sq, vote_sigma);
     }
   }
   return support;
@@ -33,12 +32,14 @@ struct Tally {
 /// Returns the support of one tree per class, over the samples it did not learn from.
 std::vector<Tally> out_of_bag_support(const TrainingSet& set, const TrainingSettings& settings, float vote_sigma,
                                       const Forest& forest, int tree) {
+  const std::vector<LeafStart> starts = find_leaf_starts(forest);
   std::vector<Tally> tallies(set.classes.size());
   for (const TrainingSample& sample : set.samples) {
     if (sample.label == 0 || in_bag(settings, tree, sample.image)) continue;
-    const std::int32_t leaf = find_leaf(forest, tree, set.patch(sample));
+    const auto leaf = static_cast<std::size_t>(find_leaf(forest, tree, set.patch(sample)));
     Tally& tally = tallies[sample.label - 1U];
-    tally.support += support_at_ground_truth(forest, leaf, sample, set.first_class + sample.label - 1U, vote_sigma);
+    tally.support +=
+        support_at_ground_truth(forest, leaf, starts[leaf], sample, set.first_class + sample.label - 1U, vote_sigma);
     tally.count += 1.0;
   }
   return tallies;

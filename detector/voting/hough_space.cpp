@@ -77,7 +77,7 @@ void cast_votes(const VotingInput& input, int class_index, CastWorkspace& worksp
   space.height = grid.height;
   space.voters.clear();
   input.posteriors.for_each_supporting_patch(class_index,
-                                             [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
+                                             [&](std::uint32_t p, const SupportingEntry* entries, std::uint32_t count) {
                                                for (std::uint32_t e = 0; e < count; ++e)
                                                  space.voters.push_back({p, entries[e]});
                                              });

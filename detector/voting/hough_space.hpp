@@ -29,8 +29,8 @@ struct Vote {
 
 /// A patch and one of its leaves that knows the class.
 struct Voter {
-  std::uint32_t patch = 0;       ///< index into the PatchGrid
-  std::uint32_t leaf_class = 0;  ///< index into Forest::leaf_classes
+  std::uint32_t patch = 0;  ///< index into the PatchGrid
+  SupportingEntry entry;
 };
 
 constexpr std::size_t kVotePadding = 7;  ///< votes behind the last: vectors of eight are read whole

@@ -40,19 +40,13 @@ int sum_by_voter(const VotingInput& input, const Eigen::Vector3f& centre, Voting
 void sum_by_view(const Forest& forest, const SparseSums::Weights& by_voter, VotingWorkspace::Worker& workspace,
                  SparseSums::Weights& by_view) {
   constexpr std::size_t kAhead = 8;  // voters, so that their cache misses overlap
-  const auto class_of = [&](std::size_t s) {
-    return &forest.leaf_classes[workspace.space.voters[by_voter[s].first].leaf_class];
-  };
+  const auto entry_of = [&](std::size_t s) { return workspace.space.voters[by_voter[s].first].entry; };
   workspace.view_sums.resize(forest.views.size());
   for (std::size_t i = 0; i < by_voter.size(); ++i) {
-    if (i + 2 * kAhead < by_voter.size()) {
-      hwy::Prefetch(class_of(i + 2 * kAhead));
-      hwy::Prefetch(forest.leaf_views.data() + class_of(i + kAhead)->first_view);
-      hwy::Prefetch(forest.leaf_views.data() + class_of(i + kAhead)->first_view + 8);
-    }
-    const LeafClass& entry = *class_of(i);
-    for (std::uint32_t v = entry.first_view; v < entry.first_view + entry.view_count; ++v) {
-      workspace.view_sums.add(forest.leaf_views[v].view, by_voter[i].second * forest.leaf_views[v].weight);
+    if (i + kAhead < by_voter.size()) hwy::Prefetch(forest.leaf_views.data() + entry_of(i + kAhead).start.view);
+    const SupportingEntry entry = entry_of(i);
+    for (std::uint32_t v = entry.start.view; v < entry.start.view + entry.leaf_class.view_count; ++v) {
+      workspace.view_sums.add(forest.leaf_views[v].view, by_voter[i].second * forest.leaf_views[v].weight.value());
     }
   }
   workspace.view_sums.take(by_view);
@@ -97,7 +91,7 @@ std::vector<std::size_t> order_by_work(std::size_t classes, const PatchPosterior
   for (std::size_t c = 0; c < classes; ++c) {
     order[c] = c;
     posteriors.for_each_supporting_patch(
-        static_cast<int>(c), [&](std::uint32_t, const std::uint32_t*, std::uint32_t count) { work[c] += count; });
+        static_cast<int>(c), [&](std::uint32_t, const SupportingEntry*, std::uint32_t count) { work[c] += count; });
   }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return work[a] > work[b]; });
   return order;

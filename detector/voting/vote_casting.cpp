@@ -18,7 +18,10 @@ using Float = hn::CappedTag<float, 4>;  // more votes than many leaves have woul
 using Floats = hn::Vec<Float>;
 using Int = hn::Rebind<std::int32_t, Float>;
 
-static_assert(sizeof(LeafVote) == 4 * sizeof(float) && sizeof(Vote) == 4 * sizeof(float));
+using Short = hn::Rebind<std::int16_t, Float>;
+using UnsignedShort = hn::Rebind<std::uint16_t, Float>;
+
+static_assert(sizeof(LeafVote) == 4 * sizeof(std::int16_t) && sizeof(Vote) == 4 * sizeof(float));
 
 /// Transform from the frame of a patch's ray to that of the camera: a rotation and the patch's point.
 struct VoteTransform {
@@ -67,12 +70,21 @@ struct VoteBatch {
 };
 
 /// Casts one vector of a leaf's votes and writes them from index `at` on.
-HWY_INLINE void cast_vote_vector(const float* leaf_votes, const VoteTransform& m, const VoteBatch& batch,
+HWY_INLINE void cast_vote_vector(const std::int16_t* leaf_votes, const VoteTransform& m, const VoteBatch& batch,
                                  std::size_t at, CastVotes& cast) {
   const Float d;
   const Int di;
-  Floats x, y, z, weight;
-  hn::LoadInterleaved4(d, leaf_votes, x, y, z, weight);
+  const Short ds;
+  hn::Vec<Short> x_steps, y_steps, z_steps, weight_steps;
+  hn::LoadInterleaved4(ds, leaf_votes, x_steps, y_steps, z_steps, weight_steps);
+  const auto metres = [&](hn::Vec<Short> steps) HWY_ATTR {
+    return hn::Mul(hn::Set(d, LeafVote::kStep_m), hn::ConvertTo(d, hn::PromoteTo(di, steps)));
+  };
+  const Floats x = metres(x_steps);
+  const Floats y = metres(y_steps);
+  const Floats z = metres(z_steps);
+  const auto unsigned_steps = hn::BitCast(UnsignedShort(), weight_steps);
+  const Floats weight = hn::Mul(hn::Set(d, Share::kStep), hn::ConvertTo(d, hn::PromoteTo(di, unsigned_steps)));
   const Floats cx = transformed(m.x, x, y, z);
   const Floats cy = transformed(m.y, x, y, z);
   const Floats cz = transformed(m.z, x, y, z);
@@ -83,14 +95,12 @@ HWY_INLINE void cast_vote_vector(const float* leaf_votes, const VoteTransform& m
              reinterpret_cast<std::int32_t*>(cast.voters.data() + at));
 }
 
-/// Lets the cache misses of many voters overlap, since the entries of their leaves lie anywhere in the forest.
+/// Lets the cache misses of many voters overlap, since the votes of their leaves lie anywhere in the forest.
 HWY_INLINE void prefetch_ahead(const Forest& forest, const std::vector<Voter>& voters, std::size_t now) {
-  constexpr std::size_t kVotes = 12;  // voters ahead
-  constexpr std::size_t kClasses = 24;
-  if (now + kClasses >= voters.size()) return;
-  hwy::Prefetch(forest.leaf_classes.data() + voters[now + kClasses].leaf_class);
-  const LeafClass& soon = forest.leaf_classes[voters[now + kVotes].leaf_class];
-  for (std::size_t line = 0; line < 3; ++line) hwy::Prefetch(forest.votes.data() + soon.first_vote + 4 * line);
+  constexpr std::size_t kAhead = 12;  // voters
+  if (now + kAhead >= voters.size()) return;
+  const LeafVote* soon = forest.votes.data() + voters[now + kAhead].entry.start.vote;
+  for (std::size_t line = 0; line < 2; ++line) hwy::Prefetch(soon + 8 * line);
 }
 
 /// Casts the votes of the voters from `first` on until the memory is full; returns the first voter that is left.
@@ -107,18 +117,19 @@ std::size_t cast_until_full(const CastInput& input, std::size_t first, CastVotes
   std::size_t i = first;
   for (; i < voters.size(); ++i) {
     prefetch_ahead(forest, voters, i);
-    const LeafClass& entry = forest.leaf_classes[voters[i].leaf_class];
+    const LeafClass& entry = voters[i].entry.leaf_class;
+    const std::size_t first_vote = voters[i].entry.start.vote;
     if (count + entry.vote_count > room) break;
     if (voters[i].patch != patch) transform = vote_transform(input.patches.point_camera[patch = voters[i].patch]);
     const VoteBatch batch{entry.probability, tree_fraction, static_cast<std::uint32_t>(i), input.grid};
     for (std::size_t v = 0; v < entry.vote_count; v += kLanes) {
-      const LeafVote* votes = forest.votes.data() + entry.first_vote + v;
+      const LeafVote* votes = forest.votes.data() + first_vote + v;
       std::array<LeafVote, kLanes> last;
-      if (entry.first_vote + v + kLanes > forest.votes.size()) {  // no reading beyond the end
+      if (first_vote + v + kLanes > forest.votes.size()) {  // no reading beyond the end
         std::copy(votes, forest.votes.data() + forest.votes.size(), last.begin());
         votes = last.data();
       }
-      cast_vote_vector(votes->offset.data(), transform, batch, count + v, cast);
+      cast_vote_vector(votes->steps.data(), transform, batch, count + v, cast);
     }
     count += entry.vote_count;
   }

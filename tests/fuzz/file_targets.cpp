@@ -1,6 +1,6 @@
 #include <fmt/format.h>
+#include <libdeflate.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <cstring>
 #include <fstream>
@@ -33,12 +33,16 @@ fs::path scratch(const std::string& name) {
 
 /// The line with the version is followed by u64 length, u32 CRC-32 and payload.
 void repair_forest(Bytes& input) {
-  const std::string line = std::string("HOUGHSTREAM FOREST ") + std::to_string(kForestFileVersion) + '\n';
+  constexpr std::string_view kBefore = "HOUGHSTREAM FOREST 16\n";  // is read too
+  const bool is_before =
+      std::string_view(reinterpret_cast<const char*>(input.data()), input.size()).substr(0, kBefore.size()) == kBefore;
+  const std::string line =
+      is_before ? std::string(kBefore) : fmt::format("HOUGHSTREAM FOREST {}\n", kForestFileVersion);
   const std::size_t payload = line.size() + 12;
   if (input.size() < payload) return;
   std::copy(line.begin(), line.end(), input.begin());
   const std::uint64_t length = input.size() - payload;
-  const auto crc = static_cast<std::uint32_t>(crc32_z(0, input.data() + payload, length));
+  const auto crc = libdeflate_crc32(0, input.data() + payload, length);
   std::memcpy(input.data() + line.size(), &length, sizeof length);
   std::memcpy(input.data() + line.size() + 8, &crc, sizeof crc);
 }
@@ -69,7 +73,16 @@ std::vector<Bytes> forests() {
   forest.leaf_classes = {entry, entry};
   const std::string file = as_file({}, "seed_forest");
   save_forest(forest, file);
-  return {content_of(file)};
+  // In version 16 each entry of a leaf begins with two indices. The entries are followed by two empty lists.
+  Bytes before = content_of(file);
+  const auto entries = before.end() - 2 * sizeof(std::uint64_t) - 2 * sizeof(LeafClass);
+  const Bytes indices(2 * sizeof(std::uint32_t));
+  const auto first = before.insert(entries, indices.begin(), indices.end());
+  before.insert(first + static_cast<std::ptrdiff_t>(indices.size() + sizeof(LeafClass)), indices.begin(),
+                indices.end());
+  before[std::string_view("HOUGHSTREAM FOREST 1").size()] = '6';
+  repair_forest(before);
+  return {content_of(file), before};
 }
 
 /// Writes text files of a folder, which bytes 0 divide.

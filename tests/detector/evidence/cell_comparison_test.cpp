@@ -27,12 +27,18 @@ struct Case {
 std::unique_ptr<Case> random_case(std::uint64_t seed) {
   Random random(seed);
   auto made = std::make_unique<Case>();
-  for (std::size_t i = 0; i < kTemplateCells; ++i) {
-    const int kind = random.below(5);
-    made->grid.mm[i] = kind == 0   ? TemplateGrid::kBeside
-                       : kind == 1 ? TemplateGrid::kNoDepth
-                                   : static_cast<std::int16_t>(random.between(-40, 40));
-    made->grid.beside[i] = kind == 0 ? static_cast<std::int16_t>(random.between(-40, 40)) : TemplateGrid::kBeside;
+  for (int row = 0; row < TemplateGrid::kSide; ++row) {
+    for (int column = 0; column < TemplateGrid::kSide; ++column) {
+      const int kind = random.below(5);
+      const bool is_in_box = TemplateGrid::is_in_box(row) && TemplateGrid::is_in_box(column);
+      if (is_in_box && kind > 0) {
+        made->grid.mm[TemplateGrid::depth_index(row, column)] =
+            kind == 1 ? TemplateGrid::kNoDepth : static_cast<std::int16_t>(random.between(-40, 40));
+      } else if (row < TemplateGrid::kRimRows && kind < 3) {
+        made->grid.beside[static_cast<std::size_t>(row * TemplateGrid::kSide + column)] =
+            static_cast<std::int16_t>(random.between(-40, 40));
+      }
+    }
   }
   const int left = random.between(-12, 40);
   const int top = random.between(-12, 30);
@@ -61,18 +67,20 @@ struct Reference {
     const cv::Point at(made.layout.column_px[column], made.layout.row_px[row]);
     if (!cv::Rect(cv::Point(), made.depth.size()).contains(at)) return;
     const float beyond = made.depth.at<float>(at) - (made.layout.row_depth[row] + made.layout.column_depth[column]);
-    const std::size_t cell = row * kTemplateSide + column;
     const auto over = [&](std::int16_t mm) {
       return mm > TemplateGrid::kNoDepth ? beyond - made.layout.metres_per_mm * static_cast<float>(mm) : kNoValue;
     };
-    if (made.grid.mm[cell] != TemplateGrid::kBeside) {
-      cells.push_back(cell);
-      depth_difference.push_back(over(made.grid.mm[cell]));
+    const std::int16_t mm = made.grid.depth_mm(static_cast<int>(row), static_cast<int>(column));
+    if (mm != TemplateGrid::kBeside) {
+      cells.emplace_back(row, column);
+      depth_difference.push_back(over(mm));
     }
-    if (made.grid.beside[cell] != TemplateGrid::kBeside) rim_difference.push_back(over(made.grid.beside[cell]));
+    if (row >= TemplateGrid::kRimRows) return;
+    const std::int16_t beside = made.grid.beside[row * kTemplateSide + column];
+    if (beside != TemplateGrid::kBeside) rim_difference.push_back(over(beside));
   }
 
-  std::vector<std::size_t> cells;
+  std::vector<std::pair<std::size_t, std::size_t>> cells;  // rows and columns
   std::vector<float> depth_difference;
   std::vector<float> rim_difference;
 };
@@ -109,8 +117,8 @@ TEST(CellComparison, IsThatOfOneCellAfterAnother) {
     expect_equal(expected.rim_difference, depths.rim_difference.data(), depths.rim_cells);
     for (std::size_t i = 0; i < depths.object_cells; ++i) {
       const TemplateCell cell = depths.cells[i];
-      ASSERT_EQ(cell.index, expected.cells[i]);
-      ASSERT_EQ(cell.row * kTemplateSide + cell.column, expected.cells[i]);
+      ASSERT_EQ(std::pair(std::size_t{cell.row}, std::size_t{cell.column}), expected.cells[i]);
+      ASSERT_EQ(cell.colour_index, TemplateGrid::colour_index(cell.row, cell.column));
     }
   });
 }
@@ -125,10 +133,10 @@ TEST(CellComparison, OfSomeRowsIsThatOfTheseRows) {
     compare_depths(made->grid, made->layout, made->depth, kStep, some);
     std::vector<std::uint16_t> expected;
     for (std::size_t i = 0; i < all.object_cells; ++i) {
-      if (all.cells[i].row % kStep == kStep / 2) expected.push_back(all.cells[i].index);
+      if (all.cells[i].row % kStep == kStep / 2) expected.push_back(all.cells[i].colour_index);
     }
     ASSERT_EQ(some.object_cells, expected.size());
-    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(some.cells[i].index, expected[i]);
+    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(some.cells[i].colour_index, expected[i]);
     EXPECT_LT(some.rim_cells, all.rim_cells);
   });
 }
@@ -160,7 +168,7 @@ TEST(CellComparison, TalliesEachCellOnce) {
       if (is_visible) expected.depth_residual += std::abs(e) / kTolerance_m;
       if (!is_visible && !std::isnan(e)) continue;
       ASSERT_LT(expected.unoccluded, tally.unoccluded);
-      EXPECT_EQ(tally.unoccluded_cells[expected.unoccluded++].index, cell.index);
+      EXPECT_EQ(tally.unoccluded_cells[expected.unoccluded++].colour_index, cell.colour_index);
       expected.rows |= 1U << cell.row;
       expected.columns |= 1U << cell.column;
     }

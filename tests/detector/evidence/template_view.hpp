@@ -34,15 +34,10 @@ inline LabFrame lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float s
 /// Returns the view of an object so many times as large, seen from as far.
 inline ViewTemplate resized(ViewTemplate view, float size) {
   for (float& side : view.box) side *= size;
-  for (auto* cells : {&view.appearance.mm, &view.appearance.beside}) {
-    for (std::int16_t& mm : *cells) {
-      if (mm > TemplateGrid::kNoDepth) mm = static_cast<std::int16_t>(std::lround(size * static_cast<float>(mm)));
-    }
+  for (std::int16_t& mm : view.appearance.mm) {
+    if (mm > TemplateGrid::kNoDepth) mm = static_cast<std::int16_t>(std::lround(size * static_cast<float>(mm)));
   }
-  for (OutlineCells& across : view.appearance.outline) {
-    if (across.gained_mm > TemplateGrid::kNoDepth)
-      across.gained_mm = static_cast<std::int16_t>(std::lround(size * static_cast<float>(across.gained_mm)));
-  }
+  mark_rim(view.appearance);
   return view;
 }
 

@@ -1,7 +1,9 @@
 #include "detector/forest/forest_file.hpp"
 
 #include <gtest/gtest.h>
+#include <libdeflate.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -9,6 +11,7 @@
 
 #include "detector/features/feature_families.hpp"
 #include "detector/training/forest_trainer.hpp"
+#include "pipeline/base/archive.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tests/detector/toy_data.hpp"
 #include "tests/expect_says.hpp"
@@ -68,6 +71,91 @@ TEST_F(ForestFile, ComesBackWhole) {
   EXPECT_TRUE(again.str() == whole);
 }
 
+/// Returns a forest as files of version 16 hold it.
+std::string as_version_16(const Forest& forest) {
+  ArchiveWriter payload;
+  payload(forest.profile);
+  payload(forest.features);
+  payload(forest.patch);
+  payload(forest.scoring);
+  payload(forest.seed);
+  payload(std::uint64_t{forest.classes.size()});
+  for (const ObjectClass& object : forest.classes) {
+    payload(object.class_id);
+    payload(object.name);
+    payload(object.radius);
+    payload(object.nominal_vote_mass);
+    for (const auto term : kScoreTermList) payload(object.score_model.weights.*term);
+  }
+  payload(std::uint64_t{forest.views.size()});
+  for (const ViewTemplate& view : forest.views) {
+    payload(view.class_index);
+    payload(view.R_ray_object);
+    payload(view.box);
+    const auto for_each_cell = [](const auto& visit) {
+      for (int row = 0; row < TemplateGrid::kSide; ++row) {
+        for (int column = 0; column < TemplateGrid::kSide; ++column) visit(row, column);
+      }
+    };
+    const TemplateGrid& grid = view.appearance;
+    for_each_cell([&](int row, int column) { payload(grid.depth_mm(row, column)); });
+    for_each_cell([&](int row, int column) {
+      const auto cell = static_cast<std::size_t>(row * TemplateGrid::kSide + column);
+      payload(row < TemplateGrid::kRimRows ? grid.beside[cell] : TemplateGrid::kBeside);
+    });
+    for_each_cell([&](int row, int column) {
+      const bool is_in_box = TemplateGrid::is_in_box(row) && TemplateGrid::is_in_box(column);
+      payload(is_in_box ? grid.lab[TemplateGrid::colour_index(row, column)] : std::array<std::uint8_t, 3>{});
+    });
+    payload(find_outline(grid).crossings);
+  }
+  payload(forest.roots);
+  payload(forest.nodes);
+  payload(forest.leaves);
+  payload(forest.leaf_weights);
+  payload(std::uint64_t{forest.leaf_classes.size()});
+  LeafStart start;
+  for (const LeafClass& entry : forest.leaf_classes) {
+    payload(start);
+    payload(entry);
+    start.pass(entry);
+  }
+  payload(std::uint64_t{forest.votes.size()});
+  for (const LeafVote& vote : forest.votes) {
+    const Eigen::Vector3f offset = vote.offset();
+    for (int i = 0; i < 3; ++i) payload(offset[i]);
+    payload(vote.weight.value());
+  }
+  payload(std::uint64_t{forest.leaf_views.size()});
+  for (const LeafView& view : forest.leaf_views) {
+    payload(std::uint32_t{view.view});
+    payload(view.weight.value());
+  }
+  ArchiveWriter header;
+  header(std::uint64_t{payload.bytes.size()});
+  header(std::uint32_t{libdeflate_crc32(0, payload.bytes.data(), payload.bytes.size())});
+  return "HOUGHSTREAM FOREST 16\n" + header.bytes + payload.bytes;
+}
+
+TEST_F(ForestFile, TheVersionBeforeIsReadAsTheSameForest) {
+  rewrite(as_version_16(forest));
+  save_forest(load_forest(file), file);
+  std::ostringstream again;
+  again << std::ifstream(file, std::ios::binary).rdbuf();
+  EXPECT_TRUE(again.str() == whole);
+}
+
+TEST_F(ForestFile, AVoteThatIsNoNumberIsRefusedInTheVersionBefore) {
+  std::string bad = as_version_16(forest);
+  const std::size_t last_vote = bad.size() - 8 - forest.leaf_views.size() * 8 - 4;  // its weight
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::memcpy(&bad[last_vote], &nan, sizeof nan);
+  const std::size_t payload = bad.find('\n') + 1 + 12;
+  const std::uint32_t crc = libdeflate_crc32(0, bad.data() + payload, bad.size() - payload);
+  std::memcpy(&bad[payload - 4], &crc, sizeof crc);
+  expect_says(error_for(bad), {"a vote of weight nan"});
+}
+
 TEST_F(ForestFile, MissingFileIsRefused) {
   EXPECT_THROW(load_forest("/nonexistent/a.forest"), InputError);
 }
@@ -102,15 +190,15 @@ TEST_F(ForestFile, AnIndexThatPointsNowhereIsRefused) {
   save_forest(bad, file);
   EXPECT_THROW(load_forest(file), InputError);
   bad = forest;
-  bad.leaf_classes[0].first_vote = 1U << 31U;
+  bad.leaf_classes[0].vote_count += 1;
   save_forest(bad, file);
   EXPECT_THROW(load_forest(file), InputError);
 }
 
-TEST_F(ForestFile, AnOutlineBesideItsViewIsRefused) {
+TEST_F(ForestFile, AnObjectBesideTheBoxOfItsViewIsRefused) {
   Forest bad = forest;
   ASSERT_FALSE(bad.views.empty());
-  bad.views.back().appearance.outline[7].beyond.column = TemplateGrid::kSide;
+  bad.views.back().appearance.mm[TemplateGrid::depth_index(7, TemplateGrid::kSide - 1)] = 0;
   save_forest(bad, file);
   EXPECT_THROW(load_forest(file), InputError);
 }

@@ -5,6 +5,30 @@
 namespace houghstream {
 namespace {
 
+TEST(LeafVote, KeepsItsOffsetWithinATenthOfAMillimetre) {
+  const Eigen::Vector3f offset(0.1234F, -1.2345F, 0.00004F);
+  const LeafVote vote(offset, 0.3F);
+  EXPECT_LT((vote.offset() - offset).lpNorm<Eigen::Infinity>(), 0.5F * LeafVote::kStep_m);
+  EXPECT_NEAR(vote.weight.value(), 0.3F, 0.5F * Share::kStep);
+  EXPECT_EQ(LeafVote(offset, 1.0F).weight.value(), 1.0F);
+  EXPECT_EQ(LeafVote({9.0F, -9.0F, 0.0F}, 1.0F).offset(),
+            Eigen::Vector3f(LeafVote::kReach_m, -LeafVote::kReach_m, 0.0F));
+}
+
+TEST(Forest, ALeafStartsWhereTheOneBeforeItEnds) {
+  Forest forest;
+  forest.leaves = {0, 2, 2, 3};
+  forest.leaf_classes.resize(3);
+  forest.leaf_classes[0].vote_count = 3;
+  forest.leaf_classes[1].view_count = 2;
+  const std::vector<LeafStart> starts = find_leaf_starts(forest);
+  ASSERT_EQ(starts.size(), 3U);
+  for (const std::size_t leaf : {1U, 2U}) {
+    EXPECT_EQ(starts[leaf].vote, 3U);
+    EXPECT_EQ(starts[leaf].view, 2U);
+  }
+}
+
 TEST(RayRotation, TurnsTheOpticalAxisOntoTheRayAndNothingElse) {
   for (const Eigen::Vector3f& ray :
        {Eigen::Vector3f(0, 0, 2), Eigen::Vector3f(0.3F, -0.2F, 1), Eigen::Vector3f(-1, 1, 1)}) {

@@ -11,8 +11,8 @@ namespace {
 constexpr int kSide = TemplateGrid::kSide;
 constexpr int kRim = TemplateGrid::kRim;
 
-std::size_t cell(int column, int row) {
-  return static_cast<std::size_t>(row * kSide + column);
+std::int16_t beside(const TemplateGrid& grid, int column, int row) {
+  return grid.beside[static_cast<std::size_t>(row * kSide + column)];
 }
 
 const Camera kCamera{80, 80, 100, 100, 39.5, 39.5};
@@ -36,27 +36,28 @@ TemplateGrid square() {
 
 TEST(TemplateGrid, DepthIsRelativeToTheCentreInMillimetres) {
   const TemplateGrid grid = square();
-  EXPECT_EQ(grid.mm[cell(kRim, kRim)], -10);
-  EXPECT_EQ(grid.mm[cell(kSide - 1 - kRim, kRim)], 10);
-  EXPECT_EQ(grid.mm[cell(kSide - 1 - kRim, kSide - 1 - kRim)], TemplateGrid::kNoDepth);
-  EXPECT_EQ(grid.mm[cell(0, 0)], TemplateGrid::kBeside);
+  EXPECT_EQ(grid.depth_mm(kRim, kRim), -10);
+  EXPECT_EQ(grid.depth_mm(kRim, kSide - 1 - kRim), 10);
+  EXPECT_EQ(grid.depth_mm(kSide - 1 - kRim, kSide - 1 - kRim), TemplateGrid::kNoDepth);
+  EXPECT_EQ(grid.depth_mm(0, 0), TemplateGrid::kBeside);
 }
 
 TEST(TemplateGrid, TheRimKnowsTheNearestDepthOfTheObjectButNotBelow) {
   const TemplateGrid grid = square();
-  EXPECT_EQ(grid.beside[cell(0, 6)], -10);
-  EXPECT_EQ(grid.beside[cell(kSide - 1, 6)], 10);
-  EXPECT_EQ(grid.beside[cell(kRim, kRim)], TemplateGrid::kBeside);  // on the object
-  EXPECT_EQ(grid.beside[cell(6, kSide - 1)], TemplateGrid::kBeside);
+  EXPECT_EQ(beside(grid, 0, 6), -10);
+  EXPECT_EQ(beside(grid, kSide - 1, 6), 10);
+  EXPECT_EQ(beside(grid, kRim, kRim), TemplateGrid::kBeside);  // on the object
+  static_assert(TemplateGrid::kRimRows < kSide - kRim, "below there is none");
 }
 
 /// Both ends of each of the square's 20 rows and columns.
 TEST(TemplateGrid, TheOutlineIsCrossedAtBothEndsOfEachLine) {
   const TemplateGrid grid = square();
-  EXPECT_EQ(grid.outline.size(), 80U);
-  for (const OutlineCells& across : grid.outline) {
+  const TemplateOutline outline = find_outline(grid);
+  ASSERT_EQ(outline.count, 80U);
+  for (const OutlineCells& across : outline.crossings) {
     const auto on = [&](const OutlineCells::Cell& at) {
-      return grid.mm[cell(at.column, at.row)] != TemplateGrid::kBeside;
+      return grid.depth_mm(at.row, at.column) != TemplateGrid::kBeside;
     };
     EXPECT_TRUE(on(across.inside));
     EXPECT_FALSE(on(across.beyond));
@@ -77,9 +78,7 @@ TEST(TemplateGrid, WhatIsTooNarrowHasFewerCrossings) {
   mask(cv::Rect(38, 20, 2, 40)).setTo(255);
   const cv::Rect box(20, 20, 40, 40);
   const TemplateGrid grid = make_template_grid(view, mask, box, {0.0F, 0.0F, 1.0F});
-  EXPECT_NE(grid.outline[0].inside.row, 0);
-  EXPECT_NE(grid.outline[1].inside.row, 0);
-  EXPECT_EQ(grid.outline[2].inside.row, 0) << "the strip's two ends only";
+  EXPECT_EQ(find_outline(grid).count, 2U) << "the strip's two ends only";
 }
 
 /// The plane is 5 mm farther per pixel to the right, which is 10 mm per cell.
@@ -93,7 +92,9 @@ TEST(TemplateGrid, TheOutlineKnowsWhatASlopeGains) {
   const cv::Rect box(20, 20, 40, 40);
   mask(box).setTo(255);
   const TemplateGrid grid = make_template_grid(view, mask, box, {0.0F, 0.0F, 1.0F});
-  for (const OutlineCells& across : grid.outline) {
+  const TemplateOutline outline = find_outline(grid);
+  ASSERT_EQ(outline.count, 80U);
+  for (const OutlineCells& across : outline.crossings) {
     const int right = across.beyond.column - across.inside.column;
     EXPECT_NEAR(across.gained_mm, 10 * right, 1);
   }
@@ -116,14 +117,14 @@ TEST(TemplateGrid, OffTheAxisReliefIsAsItLiesAcrossTheRay) {
   mask(box).setTo(255);
   const TemplateGrid grid = make_template_grid(view, mask, box, centre);
   for (int row = kRim; row < kSide - kRim; ++row) {
-    for (int column = kRim; column < kSide - kRim; ++column) EXPECT_NEAR(grid.mm[cell(column, row)], 0, 2);
+    for (int column = kRim; column < kSide - kRim; ++column) EXPECT_NEAR(grid.depth_mm(row, column), 0, 2);
   }
 }
 
 TEST(TemplateGrid, ColoursAreLab) {
   const TemplateGrid grid = square();
-  EXPECT_GT(grid.lab[cell(kRim, kRim)][1], 170);                   // red
-  EXPECT_NEAR(grid.lab[cell(kSide - 1 - kRim, kRim)][1], 128, 3);  // grey
+  EXPECT_GT(grid.lab[TemplateGrid::colour_index(kRim, kRim)][1], 170);                   // red
+  EXPECT_NEAR(grid.lab[TemplateGrid::colour_index(kRim, kSide - 1 - kRim)][1], 128, 3);  // grey
 }
 
 }  // namespace

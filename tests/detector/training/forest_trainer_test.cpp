@@ -13,6 +13,8 @@
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tests/detector/toy_data.hpp"
+#include "tests/expect_says.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::training {
 namespace {
@@ -52,13 +54,21 @@ TEST(ForestTrainer, LeavesHoldProbabilitiesAndSharesOfVotes) {
     for (std::uint32_t e = forest.leaves[l - 1]; e < forest.leaves[l]; ++e) sum += forest.leaf_classes[e].probability;
     EXPECT_LE(sum, 1.0001F);
   }
+  LeafStart start;
   for (const LeafClass& entry : forest.leaf_classes) {
     float fraction = 0.0F;
-    for (int v = 0; v < entry.vote_count; ++v)
-      fraction += forest.votes[entry.first_vote + static_cast<std::uint32_t>(v)].weight;
+    for (std::uint32_t v = 0; v < entry.vote_count; ++v) fraction += forest.votes.at(start.vote + v).weight.value();
+    start.pass(entry);
     EXPECT_GT(fraction, 0.0F);
     EXPECT_LE(fraction, 1.0001F);
   }
+}
+
+TEST(ForestTrainer, MoreViewsThanLeavesCanNameAreRefused) {
+  std::vector<TrainingView> views = toy::training_views();
+  views.resize(LeafView::kMaxViews + views.size(), views.front());  // the first is an object's
+  expect_says(error_of([&] { train_forest(views, toy::quick_profile(), kQuiet); }),
+              {"views of objects, expected at most 65536"});
 }
 
 TEST(ForestTrainer, DataThatCannotTeachIsRefused) {

@@ -33,10 +33,10 @@ Leaf build(const std::vector<TrainingSample>& samples, const std::vector<float>&
 TEST(AddLeaf, NearOffsetsBecomeOneVoteAtTheirMean) {
   const Forest forest = build({sample(1, 0.05F), sample(1, 0.0F), sample(1, 0.004F)}, {1, 1}).forest;
   ASSERT_EQ(forest.votes.size(), 2U);
-  EXPECT_FLOAT_EQ(forest.votes[0].offset.x(), 0.002F);
-  EXPECT_FLOAT_EQ(forest.votes[0].weight, 2.0F / 3.0F);
-  EXPECT_FLOAT_EQ(forest.votes[1].offset.x(), 0.05F);
-  EXPECT_FLOAT_EQ(forest.votes[1].weight, 1.0F / 3.0F);
+  EXPECT_NEAR(forest.votes[0].offset().x(), 0.002F, LeafVote::kStep_m);
+  EXPECT_NEAR(forest.votes[0].weight.value(), 2.0F / 3.0F, Share::kStep);
+  EXPECT_NEAR(forest.votes[1].offset().x(), 0.05F, LeafVote::kStep_m);
+  EXPECT_NEAR(forest.votes[1].weight.value(), 1.0F / 3.0F, Share::kStep);
 }
 
 TEST(AddLeaf, ProbabilitiesFollowTheLabelWeights) {
@@ -51,7 +51,7 @@ TEST(AddLeaf, ProbabilitiesFollowTheLabelWeights) {
   EXPECT_FLOAT_EQ(classes[0].probability, 0.25F);
   EXPECT_EQ(classes[1].class_index, 1);
   EXPECT_FLOAT_EQ(classes[1].probability, 0.5F);
-  EXPECT_EQ(leaf.forest.votes[classes[1].first_vote].weight, 1.0F);
+  EXPECT_EQ(leaf.forest.votes[classes[0].vote_count].weight.value(), 1.0F);
   EXPECT_EQ(leaf.number, 0);
   EXPECT_EQ(leaf.forest.leaves, (std::vector<std::uint32_t>{0, 2}));
 }
@@ -72,12 +72,13 @@ TEST(AddLeaf, TheHeaviestVotesAndViewsAreKept) {
   settings.max_leaf_views = 2;
   const Forest forest = build(samples, {1, 1}, settings).forest;
   ASSERT_EQ(forest.votes.size(), 2U);
-  EXPECT_FLOAT_EQ(forest.votes[0].offset.x(), 0.2F);
-  EXPECT_FLOAT_EQ(forest.votes[0].weight, 0.5F);  // fraction of all samples, without replacement of the dropped ones
-  EXPECT_FLOAT_EQ(forest.votes[1].offset.x(), 0.1F);
+  EXPECT_NEAR(forest.votes[0].offset().x(), 0.2F, LeafVote::kStep_m);
+  EXPECT_NEAR(forest.votes[0].weight.value(), 0.5F,
+              Share::kStep);  // fraction of all samples, without replacement of the dropped ones
+  EXPECT_NEAR(forest.votes[1].offset().x(), 0.1F, LeafVote::kStep_m);
   ASSERT_EQ(forest.leaf_views.size(), 2U);
   EXPECT_EQ(forest.leaf_views[0].view, 7U);
-  EXPECT_FLOAT_EQ(forest.leaf_views[0].weight, 0.5F);
+  EXPECT_NEAR(forest.leaf_views[0].weight.value(), 0.5F, Share::kStep);
   EXPECT_EQ(forest.leaf_views[1].view, 4U);
   EXPECT_EQ(forest.leaf_classes[0].vote_count, 2);
   EXPECT_EQ(forest.leaf_classes[0].view_count, 2);
@@ -92,9 +93,9 @@ TEST(AddLeaf, TheSecondLeafFollowsTheFirst) {
   const LeafSource source{set, {}, weights, 1.0F};
   EXPECT_EQ(add_leaf(source, {0}, forest), 0);
   EXPECT_EQ(add_leaf(source, {1}, forest), 1);
-  const LeafClass& second = forest.leaf_classes[forest.leaves[1]];
-  EXPECT_FLOAT_EQ(forest.votes[second.first_vote].offset.x(), 0.3F);
-  EXPECT_EQ(forest.leaf_views[second.first_view].view, 5U);
+  const LeafStart second = find_leaf_starts(forest).at(1);
+  EXPECT_NEAR(forest.votes[second.vote].offset().x(), 0.3F, LeafVote::kStep_m);
+  EXPECT_EQ(forest.leaf_views[second.view].view, 5U);
 }
 
 /// Returns a leaf that holds a fifth of its tree: 0.3 class 0, 0.1 class 1, else background.
@@ -107,11 +108,10 @@ Forest old_forest() {
   forest.leaf_classes[0].vote_count = 1;
   forest.leaf_classes[1].probability = 0.1F;
   forest.leaf_classes[1].class_index = 1;
-  forest.leaf_classes[1].first_vote = 1;
   forest.leaf_classes[1].vote_count = 1;
   forest.leaf_classes[1].view_count = 1;
-  forest.votes = {{Eigen::Vector3f(1, 0, 0), 1.0F}, {Eigen::Vector3f(2, 0, 0), 1.0F}};
-  forest.leaf_views = {{7, 1.0F}};
+  forest.votes = {{Eigen::Vector3f(0.5F, 0, 0), 1.0F}, {Eigen::Vector3f(1, 0, 0), 1.0F}};
+  forest.leaf_views = {{7, Share(1.0F)}};
   return forest;
 }
 
@@ -129,7 +129,7 @@ Forest new_forest() {
 TEST(MixIn, EveryObjectWeighsTheSameAndTheBackgroundStays) {
   const Forest old = old_forest();
   Forest forest = new_forest();
-  merge_leaf({&old, 0, compute_mixture(2, 1, 4)}, 0.5F, forest);
+  merge_leaf({&old, 0, {}, compute_mixture(2, 1, 4)}, 0.5F, forest);
   // The old leaf counts half: 0.06 background; objects 0.03 and 0.01, two thirds of it; the new one counts a third of
   // 0.08.
   const float total = 0.06F + 0.02F + 0.0066667F + 0.0266667F;
@@ -155,20 +155,19 @@ TEST(MixIn, AmongManyANewObjectWeighsAsMuchAsAKnownOne) {
 TEST(MixIn, VotesAndViewsComeAlong) {
   const Forest old = old_forest();
   Forest forest = new_forest();
-  merge_leaf({&old, 0, compute_mixture(2, 1, 4)}, 1.0F, forest);
-  const LeafClass& entry = forest.leaf_classes[2];
-  EXPECT_EQ(entry.class_index, 1);
-  ASSERT_LT(entry.first_vote, forest.votes.size());
-  EXPECT_EQ(forest.votes[entry.first_vote].offset.x(), 2.0F);
-  ASSERT_LT(entry.first_view, forest.leaf_views.size());
-  EXPECT_EQ(forest.leaf_views[entry.first_view].view, 7U);
+  merge_leaf({&old, 0, {}, compute_mixture(2, 1, 4)}, 1.0F, forest);
+  EXPECT_EQ(forest.leaf_classes[2].class_index, 1);
+  ASSERT_EQ(forest.votes.size(), 2U);
+  EXPECT_EQ(forest.votes[1].offset().x(), 1.0F);
+  ASSERT_EQ(forest.leaf_views.size(), 1U);
+  EXPECT_EQ(forest.leaf_views[0].view, 7U);
 }
 
 TEST(MixIn, ALeafThatNothingNewReachesKeepsWhatItKnows) {
   const Forest old = old_forest();
   Forest forest;
   forest.leaves = {0};
-  EXPECT_EQ(copy_leaf({&old, 0, compute_mixture(1, 1, 4)}, forest), 0);
+  EXPECT_EQ(copy_leaf({&old, 0, {}, compute_mixture(1, 1, 4)}, forest), 0);
   ASSERT_EQ(forest.leaf_classes.size(), 2U);
   const float total = 0.12F + 0.03F + 0.01F;
   EXPECT_NEAR(forest.leaf_weights.back(), total, 1e-5F);

@@ -22,7 +22,7 @@ bool same_tree(const Forest& a, const Forest& b) {
     if (std::memcmp(&a.nodes[i], &b.nodes[i], sizeof(TreeNode)) != 0) return false;
   }
   for (std::size_t i = 0; i < a.votes.size(); ++i) {
-    if (a.votes[i].offset != b.votes[i].offset || a.votes[i].weight != b.votes[i].weight) return false;
+    if (std::memcmp(&a.votes[i], &b.votes[i], sizeof(LeafVote)) != 0) return false;
   }
   return true;
 }
@@ -60,7 +60,8 @@ TEST(TreeTrainer, ATreeTellsHeldOutImagesApart) {
     const LeafClass& entry = tree.leaf_classes[tree.leaves[leaf]];
     EXPECT_FLOAT_EQ(entry.probability, 1.0F);
     ASSERT_EQ(entry.vote_count, 1);
-    EXPECT_NEAR((tree.votes[entry.first_vote].offset - sample.offset).norm(), 0.0F, 1e-5F);
+    const LeafVote& vote = tree.votes[find_leaf_starts(tree)[leaf].vote];
+    EXPECT_NEAR((vote.offset() - sample.offset).norm(), 0.0F, LeafVote::kStep_m);
   }
   EXPECT_GT(held_out, 0);
 }

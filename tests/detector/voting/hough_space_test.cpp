@@ -20,7 +20,7 @@ Forest one_leaf(const Eigen::Vector3f& offset, float probability) {
   entry.probability = probability;
   entry.vote_count = 1;
   forest.leaf_classes.push_back(entry);
-  forest.votes.push_back({offset, 1.0F});
+  forest.votes.emplace_back(offset, 1.0F);
   return forest;
 }
 
@@ -47,13 +47,13 @@ std::size_t cell_of(const HoughSpace& space, std::uint32_t vote) {
 }
 
 TEST(HoughSpace, AVoteLandsWhereItsCentreIsSeen) {
-  const HoughSpace space = vote(one_leaf({0.1F, 0.05F, 0.0F}, 0.8F), {{0.0F, 0.0F, 1.0F}});
+  const HoughSpace space = vote(one_leaf({0.105F, 0.055F, 0.0F}, 0.8F), {{0.0F, 0.0F, 1.0F}});
   ASSERT_EQ(space.voter_of_vote.size(), 1U);
-  EXPECT_LT((space.votes[0].centre_camera - Eigen::Vector3f(0.1F, 0.05F, 1.0F)).norm(), 1e-6F);
+  EXPECT_LT((space.votes[0].centre_camera - Eigen::Vector3f(0.105F, 0.055F, 1.0F)).norm(), LeafVote::kStep_m);
   EXPECT_FLOAT_EQ(space.votes[0].weight, 0.8F);
   EXPECT_EQ(space.width, 50);
   EXPECT_EQ(space.height, 40);
-  EXPECT_EQ(cell_of(space, 0), 22U * 50U + 30U);  // pixel (59.5, 44.5): cells of 2 pixels
+  EXPECT_EQ(cell_of(space, 0), 22U * 50U + 30U);  // pixel (60, 45): cells of 2 pixels
   EXPECT_EQ(std::max_element(space.image.begin(), space.image.end()) - space.image.begin(), 22 * 50 + 30);
 }
 
@@ -61,7 +61,7 @@ TEST(HoughSpace, OffsetsTurnWithTheViewingRay) {
   const Eigen::Vector3f point(0.3F, -0.2F, 1.0F);
   const HoughSpace space = vote(one_leaf({0.0F, 0.0F, 0.05F}, 1.0F), {point});
   ASSERT_EQ(space.voter_of_vote.size(), 1U);  // behind the point on its own ray
-  EXPECT_LT((space.votes[0].centre_camera - point * (1.0F + 0.05F / point.norm())).norm(), 1e-5F);
+  EXPECT_LT((space.votes[0].centre_camera - point * (1.0F + 0.05F / point.norm())).norm(), LeafVote::kStep_m);
 }
 
 TEST(HoughSpace, APatchOfALowPosteriorCastsNone) {

@@ -21,8 +21,8 @@ Forest centre_forest() {
   entry.vote_count = 1;
   entry.view_count = 2;
   forest.leaf_classes.push_back(entry);
-  forest.votes.push_back({Eigen::Vector3f::Zero(), 1.0F});
-  forest.leaf_views = {{0, 0.25F}, {1, 0.75F}};
+  forest.votes.emplace_back(Eigen::Vector3f::Zero(), 1.0F);
+  forest.leaf_views = {{0, Share(0.25F)}, {1, Share(0.75F)}};
   return forest;
 }
 

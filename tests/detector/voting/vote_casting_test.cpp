@@ -15,14 +15,13 @@ Forest random_forest(Random& random) {
   forest.roots = {-1, -1, -1};
   for (int leaf = 0; leaf < 200; ++leaf) {
     LeafClass entry;
-    entry.first_vote = static_cast<std::uint32_t>(forest.votes.size());
     entry.vote_count = static_cast<std::uint8_t>(random.below(13));
     entry.probability = static_cast<float>(random.uniform(0.1, 1.0));
     forest.leaf_classes.push_back(entry);
     const auto offset = [&] { return static_cast<float>(random.uniform(-0.3, 0.3)); };
     for (int v = 0; v < entry.vote_count; ++v) {
-      forest.votes.push_back(
-          {Eigen::Vector3f(offset(), offset(), offset()), static_cast<float>(random.uniform(0.01, 1.0))});
+      forest.votes.emplace_back(Eigen::Vector3f(offset(), offset(), offset()),
+                                static_cast<float>(random.uniform(0.01, 1.0)));
     }
   }
   return forest;
@@ -32,10 +31,17 @@ Forest random_forest(Random& random) {
 Vote vote_of(const Forest& forest, const LeafClass& entry, const LeafVote& leaf_vote, const Eigen::Vector3f& point) {
   const float fraction = 1.0F / static_cast<float>(forest.roots.size());
   const Eigen::Matrix3f R = ray_rotation(point);
-  const Eigen::Vector3f& o = leaf_vote.offset;
+  const Eigen::Vector3f o = leaf_vote.offset();
   Eigen::Vector3f centre;
   for (int i = 0; i < 3; ++i) centre[i] = point[i] + (R(i, 0) * o.x() + (R(i, 1) * o.y() + R(i, 2) * o.z()));
-  return {centre, entry.probability * leaf_vote.weight * fraction};
+  return {centre, entry.probability * leaf_vote.weight.value() * fraction};
+}
+
+/// Returns an entry of the forest's leaves with its place.
+SupportingEntry entry_of(const Forest& forest, std::size_t number) {
+  LeafStart start;
+  for (std::size_t e = 0; e < number; ++e) start.pass(forest.leaf_classes[e]);
+  return {start, forest.leaf_classes[number]};
 }
 
 std::uint32_t cell_of(const Eigen::Vector3f& centre, const CellGrid& grid) {
@@ -54,8 +60,9 @@ void expect_as_one_by_one(const Forest& forest, const PatchGrid& patches, const 
   std::size_t v = 0;
   std::size_t outside = 0;
   for (std::uint32_t i = 0; i < voters.size(); ++i) {
-    const LeafClass& entry = forest.leaf_classes[voters[i].leaf_class];
-    for (std::uint32_t l = entry.first_vote; l < entry.first_vote + entry.vote_count; ++l, ++v) {
+    const LeafClass& entry = voters[i].entry.leaf_class;
+    const std::uint32_t first = voters[i].entry.start.vote;
+    for (std::uint32_t l = first; l < first + entry.vote_count; ++l, ++v) {
       ASSERT_LT(v, cast.count);
       const Vote expected = vote_of(forest, entry, forest.votes[l], patches.point_camera[voters[i].patch]);
       ASSERT_EQ(cast.votes[v].centre_camera, expected.centre_camera) << v;
@@ -76,9 +83,9 @@ TEST(VoteCasting, ManyAtOnceAreAsOneByOneOnEveryMachine) {
   std::vector<Voter> voters;
   for (std::uint32_t p = 0; p < 300; ++p) {
     patches.point_camera.emplace_back(random.uniform(-0.5, 0.5), random.uniform(-0.4, 0.4), random.uniform(0.3, 1.5));
-    for (int t = 0; t < 3; ++t) voters.push_back({p, static_cast<std::uint32_t>(random.below(200))});
+    for (int t = 0; t < 3; ++t) voters.push_back({p, entry_of(forest, static_cast<std::size_t>(random.below(200)))});
   }
-  voters.push_back({299, 199});  // its votes are the forest's last
+  voters.push_back({299, entry_of(forest, 199)});  // its votes are the forest's last
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     SCOPED_TRACE(hwy::TargetName(target));
     hwy::SetSupportedTargetsForTest(target);
