@@ -26,8 +26,8 @@ enum class PoseStatus : std::int8_t {
   kRejectedByOutline = 8,  ///< the measured surface continues where the model ends
   kRejectedByColour = 9,   ///< the model's colours do not explain those that are seen
   kOccluded = 10,          ///< followed, and mostly hidden by what was measured in front of it
-  /// The best pose makes it less probable that the object is there than that it is not, or a more
-  /// probable pose explains its surface.
+  /// With its best pose it is not probable enough (0.65) that the object is there, or a more probable pose explains its
+  /// surface.
   kRefuted = 11,
   kValidUpToSymmetry =
       12,  ///< a pose, of which the texture does not tell that it is not one that looks alike by its shape

@@ -3,7 +3,10 @@
 namespace houghstream {
 namespace {
 
-constexpr float kRefutedBelow = 0.5F;  // presence probability below which a detection is taken back
+/// Presence probability below which a detection is taken back: the score from which it was reported, by default. In 80
+/// images of furnished rooms, with 21 objects, 34 detections without a pose stay reported from 0.5 on, 25 of them
+/// false, and 27 from 0.65 on, with the same true ones.
+constexpr float kRefutedBelow = 0.65F;
 
 }  // namespace
 

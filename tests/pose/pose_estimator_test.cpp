@@ -256,22 +256,22 @@ TEST(PoseEstimator, AClassThatHasAQualityOfItsOwnIsJudgedByThat) {
   EXPECT_EQ(found("box", doubtful).quality, by_default.quality) << "another class's";
 }
 
-TEST(PoseEstimator, AReportedDetectionIsRefutedWhereItsObjectIsLessProbablyThereThanNot) {
+TEST(PoseEstimator, AReportedDetectionIsRefutedWhereItsObjectIsLessProbablyThereThanReported) {
   const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
   Detection detection = detection_of("mug", scene.object, scene.truth, 5);
   PoseSettings settings;
   QualitySettings& learnt = settings.class_quality["mug"] = QualitySettings{};
-  learnt.presence = {-0.1, 0.0, 0.0};
+  learnt.presence = {0.6, 0.0, 0.0};  // a probability of 0.646
   const auto found = [&] {
     return estimator_for("mug", mug(), settings).estimate(scene.frame, only(detection)).poses.at(0).status;
   };
   EXPECT_EQ(found(), PoseStatus::kValid) << "what is published refutes nothing";
   set_min_quality(1.0F, settings);
   EXPECT_EQ(found(), PoseStatus::kRefuted);
-  learnt.presence.bias = 0.1;
+  learnt.presence.bias = 0.64;  // 0.655
   const PoseStatus withheld = found();
   EXPECT_TRUE(withheld != PoseStatus::kValid && withheld != PoseStatus::kRefuted) << to_string(withheld);
-  learnt.presence.bias = -0.1;
+  learnt.presence.bias = 0.6;
   detection.reported = false;
   EXPECT_NE(found(), PoseStatus::kRefuted) << "a candidate is not reported by its score";
 }
