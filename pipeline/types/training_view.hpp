@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 
 #include "pipeline/types/frame.hpp"
@@ -16,6 +17,9 @@ struct TrainingView {
   std::string class_name;  ///< empty in a background frame
   /// Metres, unused for background; votes are for its origin.
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
+  /// Plane on which the object stands, camera frame, metres, its normal towards the object; nothing where it stands on
+  /// none or none is known.
+  std::optional<Eigen::Hyperplane<double, 3>> support;
   std::string source;        ///< file it came from, for messages
   std::string object_frame;  ///< views of one class whose T_camera_object mean the same frame have equal names here
 };

@@ -16,6 +16,9 @@ struct AugmentationSettings {
   float min_distance = 0.3F;       ///< nearest distance taught, metres
   float max_distance = 2.6F;       ///< farthest distance taught, metres
   double occluded_fraction = 0.5;  ///< fraction of the composites in which something stands in front of the object
+  /// Fraction of the composites of standing objects in which they stand on their plane (TrainingView::support) instead of
+  /// before the background alone.
+  double supported_fraction = 0.7;
   /// Fraction of the composites in which haze is removed from the object, see remove_haze.
   double dehazed_fraction = 0.5;
   /// Fraction of the composites that trees learn from, in which the object is sharpened, see apply_unsharp_mask.
@@ -46,6 +49,7 @@ void fields(const AugmentationSettings& /*settings*/, const Visit& visit) {
   visit(number("min_distance", &S::min_distance, 0.05, 20, "m"));
   visit(number("max_distance", &S::max_distance, 0.05, 20, "m"));
   visit(number("occluded_fraction", &S::occluded_fraction, 0, 1));
+  visit(number("supported_fraction", &S::supported_fraction, 0, 1));
   visit(number("dehazed_fraction", &S::dehazed_fraction, 0, 1));
   visit(number("sharpened_fraction", &S::sharpened_fraction, 0, 1));
   visit(number("lighting_variation", &S::lighting_variation, 0, 10));

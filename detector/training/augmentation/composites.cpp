@@ -141,6 +141,32 @@ void paste(const Patchwork& part, cv::Point at, Composite& out, Random& random) 
   }
 }
 
+/// Puts the plane on which the object stands under it, as far as a table might reach: in the colours of a part of the
+/// room, behind what is nearer.
+void put_on_support(const TrainingView& view, const RgbdFrame& room, Composite& out, Random& random) {
+  const double reach_m = random.uniform(0.15, 0.6);
+  const Eigen::Vector3d centre = view.T_camera_object.translation();
+  const cv::Size size = out.mask.size();
+  const cv::Point from(random.between(0, room.colour.cols - size.width),
+                       random.between(0, room.colour.rows - size.height));
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      if (out.mask.at<std::uint8_t>(y, x) != 0) continue;
+      const cv::Point2d view_px = (cv::Point2d(x, y) - out.origin_px) / out.scale;
+      const Eigen::Vector3d ray = view.frame.camera.backproject(view_px.x, view_px.y, 1.0);
+      const double towards = -view.support->normal().dot(ray);
+      if (towards <= 0.0) continue;  // beyond the horizon
+      const double z = view.support->offset() / towards;
+      if (!(z > 0.0 && (z * ray - centre).norm() < reach_m)) continue;
+      const float depth = static_cast<float>(z) + out.depth_change.at({static_cast<double>(x), static_cast<double>(y)});
+      float& behind = out.frame.depth.at<float>(y, x);
+      if (behind < depth) continue;
+      behind = depth + static_cast<float>(axial_noise(static_cast<double>(depth)) * random.normal());
+      out.frame.colour.at<cv::Vec3b>(y, x) = room.colour.at<cv::Vec3b>(from.y + y, from.x + x);
+    }
+  }
+}
+
 /// Draws a part of the background that could lie behind something at this distance: little of it is nearer.
 cv::Rect place_behind(const RgbdFrame& background, cv::Size size, double distance, Random& random) {
   constexpr int kTries = 12;
@@ -224,6 +250,7 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
   jitter_lighting(lit.colour, settings.lighting_variation, -0.4, 0.4, random);
   out.depth_change = depth_change(view, distance, out);
   paste(lit, cv::Point(kMargin, kMargin), out, random);
+  if (view.support && random.uniform() < settings.supported_fraction) put_on_support(view, background, out, random);
   out.whole_px = cv::countNonZero(out.mask);
   if (random.uniform() < settings.occluded_fraction) add_occluder(background, distance, out, random);
   jitter_exposure(out.frame.colour, settings.lighting_variation, random);

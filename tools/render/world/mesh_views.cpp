@@ -208,8 +208,8 @@ TrainingView MeshViews::render(int index) const {
   object.T_world_object.rotate(pose.R_level_object);
   object.T_world_object.translate(-centre_);
   world.items = {object};
+  double lowest = 0.0;
   if (pose.on_table) {
-    double lowest = 0.0;
     for (const Eigen::Vector3f& vertex : thing_->mesh.vertices)
       lowest = std::min(lowest, (object.T_world_object * vertex.cast<double>()).z());
     world.items.push_back(table_top(lowest, random));
@@ -230,6 +230,8 @@ TrainingView MeshViews::render(int index) const {
                                    camera, DepthSensorSettings{}, aspect_seed(view_seed, 5));
   view.mask = shaded.geometry.id == 1;
   view.T_camera_object = T_camera_world * object.T_world_object;
+  if (pose.on_table)
+    view.support = {T_camera_world.linear() * Eigen::Vector3d::UnitZ(), T_camera_world * Eigen::Vector3d(0, 0, lowest)};
   return view;
 }
 

@@ -116,6 +116,49 @@ TEST(Composites, AroundTheObjectTheRoomIsUntouched) {
   EXPECT_TRUE(same_values(colour, composite->frame.colour));
 }
 
+/// The toy object, 0.7 m away, stands on a plane 8 cm below its middle, which rises by 30 degrees towards the horizon.
+TrainingView standing_tile() {
+  TrainingView view = tile_view();
+  const Eigen::Vector3d up = -Eigen::Vector3d(0.0, std::cos(0.5), std::sin(0.5));
+  view.support = {up, view.T_camera_object.translation() - 0.08 * up};
+  return view;
+}
+
+TEST(Composites, AnObjectStandsOnItsPlaneAtAnyDistance) {
+  const TrainingView view = standing_tile();
+  AugmentationSettings settings = plain();
+  settings.supported_fraction = 1.0;
+  for (const double distance : {0.5, 0.7, 1.2}) {
+    const auto composite = compose(view, distance, 3, settings);
+    ASSERT_TRUE(composite);
+    const Camera& camera = composite->frame.camera;
+    // The view's plane, moved along the ray to the object's middle.
+    const cv::Point2d& centre_px = composite->depth_change.centre_px;
+    const Eigen::Vector3d centre = camera.backproject(centre_px.x, centre_px.y, distance);
+    const cv::Rect box = cv::boundingRect(composite->mask);
+    int on_plane = 0;
+    for (int x = box.x; x < box.br().x; ++x) {
+      const cv::Point at(x, box.br().y + 4);
+      const Eigen::Vector3d point = camera.backproject(at.x, at.y, composite->frame.depth.at<float>(at));
+      on_plane += std::abs(view.support->normal().dot(point - centre) + 0.08) < 0.02 ? 1 : 0;
+    }
+    EXPECT_GT(on_plane, box.width * 9 / 10) << distance;
+  }
+}
+
+TEST(Composites, WithoutASupportNothingIsDrawnForIt) {
+  AugmentationSettings settings = plain();
+  settings.supported_fraction = 1.0;
+  const auto before = compose(tile_view(), 1.0, 3, plain());
+  const auto after = compose(tile_view(), 1.0, 3, settings);
+  ASSERT_TRUE(before && after);
+  EXPECT_TRUE(same_values(before->frame.depth, after->frame.depth));
+  settings.supported_fraction = 0.0;
+  const auto without = compose(standing_tile(), 1.0, 3, settings);
+  ASSERT_TRUE(without);
+  EXPECT_TRUE(same_values(before->frame.depth, without->frame.depth));
+}
+
 TEST(Composites, TheRoomBehindTheObjectIsNotInFrontOfIt) {
   const TrainingView view = tile_view();
   RgbdFrame room = toy::background(5);

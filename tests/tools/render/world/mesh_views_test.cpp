@@ -169,6 +169,29 @@ TEST(MeshViews, TheMaskAndTheDepthAreThoseOfTheMeshAtItsPose) {
   }
 }
 
+TEST(MeshViews, KnowThePlaneThatTheMeshStandsOn) {
+  const MeshViews views(brick(kRed), few_views(), 1);
+  int standing = 0;
+  for (int index = 0; index < views.count(); ++index) {
+    const TrainingView view = views.render(index);
+    if (!view.support) continue;
+    ++standing;
+    std::vector<double> distances;
+    for (int y = 0; y < view.mask.rows; ++y) {
+      for (int x = 0; x < view.mask.cols; ++x) {
+        const float z = view.frame.depth.at<float>(y, x);
+        if (view.mask.at<std::uint8_t>(y, x) != 0 || !(z < 1.0F)) continue;  // the wall is farther
+        distances.push_back(std::abs(view.support->signedDistance(view.frame.camera.backproject(x, y, z))));
+      }
+    }
+    ASSERT_GT(distances.size(), 200U) << index;
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    EXPECT_LT(*middle, 0.005) << index;
+  }
+  EXPECT_GT(standing, views.count() / 2);
+}
+
 TEST(MeshViews, ShowAMeshUpsideDownToo) {
   const MeshViews views(brick(kRed), few_views(), 1);
   std::set<std::pair<int, bool>> towards_camera;  // axis, sign
