@@ -12,6 +12,7 @@
 #include "pipeline/base/files.hpp"
 #include "tools/common/new_output.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/train/support_plane.hpp"
 #include "tools/train/training_sources.hpp"
 
 namespace houghstream {
@@ -122,7 +123,8 @@ void train(const TrainingSources& sources, const Profile& profile, const std::op
     fmt::print(stderr, "{}: {:6.1f} s  {}\n", program.name, seconds(), line);
   };
   std::vector<TrainingView> views = read_training_sources(sources, profile.training.threads);
-  progress(fmt::format("{} views and backgrounds read", views.size()));
+  const int standing = find_supports(views, profile.training.threads);
+  progress(fmt::format("{} views and backgrounds read; in {} an object stands on a plane", views.size(), standing));
   const Forest forest = old ? training::add_objects(*old, std::move(views), profile, progress, scales)
                             : training::train_forest(std::move(views), profile, progress, scales);
   save_forest(forest, out);
