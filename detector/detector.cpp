@@ -1,7 +1,11 @@
 #include "detector/detector.hpp"
 
+#include <fmt/ranges.h>
+
 #include <memory>
+#include <numeric>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -37,6 +41,19 @@ void require_searchable_together(const std::vector<Forest>& groups) {
   }
 }
 
+/// Returns the indices of the groups that are searched: of all where none is selected.
+std::vector<std::size_t> searched_groups(std::vector<std::size_t> selected, std::size_t count) {
+  for (std::size_t i = 0; i < selected.size(); ++i) {
+    if (selected[i] >= count || (i > 0 && selected[i] <= selected[i - 1]))
+      throw std::logic_error(fmt::format("detector: groups {} selected, expected ascending indices below {}",
+                                         fmt::join(selected, ", "), count));
+  }
+  if (!selected.empty()) return selected;
+  selected.resize(count);
+  std::iota(selected.begin(), selected.end(), 0);
+  return selected;
+}
+
 using ForestIndices = std::vector<std::unique_ptr<const ForestIndex>>;
 
 ForestIndices make_indices(const std::vector<Forest>& groups, int threads) {
@@ -54,18 +71,19 @@ struct Detector::State {
   State(std::vector<Forest> given, const DetectionSettings& how)
       : groups(std::move(given)), indices(make_indices(groups, how.threads)), settings(how) {}
 
-  /// Returns the search of each group.
-  std::vector<SearchContext> searches(const std::vector<ChromaPair>& camera_colours) const {
-    std::vector<SearchContext> all;
-    all.reserve(indices.size());
+  /// Returns the search of each selected group. An object's share of the frame's candidates stays that of all groups,
+  /// so that what is found of it does not depend on which of the others are searched.
+  std::vector<SearchContext> searches(const std::vector<ChromaPair>& camera_colours,
+                                      const std::vector<std::size_t>& selected) const {
+    std::vector<SearchContext> contexts;
     std::size_t classes = 0;
     for (const Forest& forest : groups) classes += forest.classes.size();
-    for (const std::unique_ptr<const ForestIndex>& index : indices) {
-      SearchContext& search = all.emplace_back(SearchContext{*index, settings});
+    for (const std::size_t i : searched_groups(selected, groups.size())) {
+      SearchContext& search = contexts.emplace_back(SearchContext{*indices[i], settings});
       search.remembered_colours = camera_colours;
       search.searched_classes = classes;
     }
-    return all;
+    return contexts;
   }
 
   std::vector<Forest> groups;
@@ -99,8 +117,9 @@ const DetectionSettings& Detector::settings() const {
 
 // The method on one page; sections are those of Haensch, Kaiser and Hellwich (2017).
 Detections Detector::detect(const RgbdFrame& frame, DetectorWorkspace& workspace,
-                            const std::vector<ChromaPair>& camera_colours) const {
-  const std::vector<SearchContext> groups = state_->searches(camera_colours);
+                            const std::vector<ChromaPair>& camera_colours,
+                            const std::vector<std::size_t>& selected) const {
+  const std::vector<SearchContext> groups = state_->searches(camera_colours, selected);
   check_frame(frame, "detector");
   StageClock clock;
   make_working_images(groups.front(), frame, workspace);  // Section 5.1.1

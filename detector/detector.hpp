@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -35,8 +36,12 @@ class Detector {
   /// whatever the workspace was used for before. Throws InputError unless the frame's images and camera agree.
   /// `camera_colours`: objects that the frame's camera has seen before, of which it is learnt how it renders colours
   /// (CameraChroma), beside those of the frame.
+  /// `selected`: indices of the groups that are searched, ascending (GroupSchedule); empty: all. An object is found as
+  /// with all groups, but for what the others' objects suppress, explain, teach of the camera's colours, or displace
+  /// from the EvidenceSettings::max_compared hypotheses. Throws std::logic_error for other indices.
   Detections detect(const RgbdFrame& frame, DetectorWorkspace& workspace,
-                    const std::vector<ChromaPair>& camera_colours = {}) const;
+                    const std::vector<ChromaPair>& camera_colours = {},
+                    const std::vector<std::size_t>& selected = {}) const;
 
   /// Searches a single frame, with a workspace that it makes for this call.
   Detections detect(const RgbdFrame& frame) const;

@@ -28,7 +28,7 @@ struct SearchContext {
   std::vector<std::uint32_t> excluded_views = {};
   /// Objects that were seen by the frame's camera before: what its colours are learnt from, beside those of the frame.
   std::vector<ChromaPair> remembered_colours = {};
-  std::size_t searched_classes = 0;  ///< of all forests that the frame is searched with; 0: of this one alone
+  std::size_t searched_classes = 0;  ///< classes of all forests that share a frame's candidates; 0: of this one alone
 
   const Forest& forest() const { return index.forest(); }
 };

@@ -91,6 +91,55 @@ TEST(Groups, AnyNumberOfThreadsAndAUsedWorkspaceGiveTheSame) {
   }
 }
 
+TEST(Groups, SelectedOnesFindWhatTheyFindAmongAll) {
+  const RgbdFrame frame = both_tiles();
+  const Detector detector(std::vector<Forest>{stripes(), rings()}, settings_without_colours());
+  const Detections all = detector.detect(frame);
+  DetectorWorkspace workspace;
+  for (const std::size_t group : {0U, 1U}) {
+    const std::string& name = detector.groups()[group].classes.front().name;
+    Detections found = detector.detect(frame, workspace, {}, {group});
+    Detections expected = of_class(all, name);
+    ASSERT_FALSE(expected.detections.empty()) << name;
+    EXPECT_EQ(of_class(found, name).detections.size(), found.detections.size()) << "none of the other group";
+    EXPECT_EQ(found.stages.size(), all.stages.size());
+    // The strongest: a weaker one may be suppressed by the other group's.
+    found.detections.resize(1);
+    expected.detections.resize(1);
+    expect_same(found, expected);
+  }
+  expect_same(detector.detect(frame, workspace, {}, {0, 1}), all);
+}
+
+TEST(Groups, ASelectedOnesShareOfTheCandidatesStaysThatAmongAll) {
+  std::vector<Forest> groups{stripes()};
+  for (int i = 0; i < 7; ++i) {  // which have no hypothesis
+    Forest& absent = groups.emplace_back(rings());
+    absent.classes.front().class_id = 10 + i;
+    absent.classes.front().name = fmt::format("absent_{}", i);
+    absent.classes.front().nominal_vote_mass *= 1e6F;
+  }
+  DetectionSettings settings = settings_without_colours();
+  settings.evidence.threshold = 0.0F;
+  settings.voting.candidates_per_class = 12;
+  settings.suppression.max_overlap = 1.0F;
+  const RgbdFrame frame = both_tiles();
+  const Detections alone = Detector(stripes(), settings).detect(frame);
+  const Detector detector(std::move(groups), settings);
+  const Detections all = detector.detect(frame);
+  ASSERT_GT(alone.detections.size(), all.detections.size()) << "of eight classes each has a smaller share";
+  DetectorWorkspace workspace;
+  expect_same(detector.detect(frame, workspace, {}, {0}), all);
+}
+
+TEST(Groups, IndicesThatAreNoneOrOutOfOrderAreRefused) {
+  const RgbdFrame frame = both_tiles();
+  const Detector detector(std::vector<Forest>{stripes(), rings()}, {});
+  DetectorWorkspace workspace;
+  for (const std::vector<std::size_t>& selected : {std::vector<std::size_t>{2}, {0, 5}, {1, 0}, {1, 1}})
+    EXPECT_THROW(detector.detect(frame, workspace, {}, selected), std::logic_error);
+}
+
 TEST(Groups, AGroupsDetectionSuppressesWhatAnotherFindsThere) {
   Forest weaker = stripes();  // the same object under another name, which it never believes in more
   weaker.classes.front().class_id = 9;
