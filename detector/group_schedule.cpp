@@ -1,0 +1,74 @@
+#include "detector/group_schedule.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "detector/forest/forest.hpp"
+#include "pipeline/base/check_settings.hpp"
+#include "pipeline/types/frame_time.hpp"
+
+namespace houghstream {
+
+GroupSchedule::GroupSchedule(const std::vector<Forest>& groups, const GroupScheduleSettings& settings)
+    : settings_(settings), group_count_(groups.size()) {
+  check_settings(settings, "schedule of groups");
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    for (const ObjectClass& object : groups[i].classes) group_of_class_[object.name] = i;
+  }
+}
+
+std::vector<std::size_t> GroupSchedule::select(const FrameId& frame) {
+  std::vector<std::size_t> selected;
+  if (cameras_.size() >= kCameras && cameras_.count(frame.channel) == 0) {
+    selected.resize(group_count_);
+    std::iota(selected.begin(), selected.end(), 0);
+    return selected;
+  }
+  Camera& camera = cameras_[frame.channel];
+  double passed_s = seconds_between(camera.utime, frame.utime);
+  if (camera.turns.empty() || passed_s < -kMaxOvertakenS) {
+    camera = {frame.utime, 0, std::vector<Turn>(group_count_)};
+    passed_s = 0.0;
+  }
+  camera.utime = std::max(camera.utime, frame.utime);
+  ++camera.frames;
+  std::vector<std::size_t> inactive;
+  for (std::size_t i = 0; i < group_count_; ++i)
+    (is_active(camera.turns[i], camera.utime) ? selected : inactive).push_back(i);
+  std::stable_sort(inactive.begin(), inactive.end(), [&](std::size_t a, std::size_t b) {
+    return camera.turns[a].searched_frame < camera.turns[b].searched_frame;
+  });
+  const double summed_s = static_cast<double>(inactive.size()) * passed_s;  // by all inactive groups
+  for (std::size_t i = 0; i < inactive.size(); ++i) {
+    if (i == 0 || static_cast<double>(i) * settings_.interval_s < summed_s ||
+        is_overdue(camera.turns[inactive[i]], camera.utime))
+      selected.push_back(inactive[i]);
+  }
+  std::sort(selected.begin(), selected.end());
+  for (const std::size_t i : selected) {
+    camera.turns[i].searched_frame = camera.frames;
+    camera.turns[i].searched_utime = camera.utime;
+  }
+  return selected;
+}
+
+void GroupSchedule::note(const Detections& detections) {
+  const auto camera = cameras_.find(detections.frame.channel);
+  if (camera == cameras_.end()) return;
+  for (const Detection& detection : detections.detections) {
+    const auto group = group_of_class_.find(detection.class_name);
+    if (group != group_of_class_.end() && detection.score >= settings_.active_from)
+      camera->second.turns[group->second].detected_utime = camera->second.utime;
+  }
+}
+
+bool GroupSchedule::is_active(const Turn& turn, std::int64_t utime) const {
+  return turn.detected_utime && seconds_between(*turn.detected_utime, utime) <= settings_.active_s;
+}
+
+bool GroupSchedule::is_overdue(const Turn& turn, std::int64_t utime) const {
+  constexpr double kSlack = 0.002;  // seconds, for the jitter of times
+  return turn.searched_frame == 0 || seconds_between(turn.searched_utime, utime) + kSlack >= settings_.interval_s;
+}
+
+}  // namespace houghstream
