@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "detector/forest/forest_file.hpp"
+#include "detector/group_schedule.hpp"
 #include "detector/stages.hpp"
 #include "drivers/files/camera_info.hpp"
 #include "drivers/store/store_watcher.hpp"
@@ -30,16 +31,27 @@ Detector make_detector(std::vector<Forest> groups, const SearchOptions& search) 
   return detector_of(std::move(groups), search);
 }
 
-/// A detector with the workspace of its frames, which are searched one after another. It has searched a made-up frame
-/// before, so that its first real frame takes no longer than the others: its data are in the caches, its memory is
-/// allocated.
+/// A detector with the workspace of its frames, which are searched one after another, and the turns of its groups. It
+/// has searched a made-up frame before, so that its first real frame takes no longer than the others: its data are in
+/// the caches, its memory is allocated.
 struct ReadyDetector {
-  ReadyDetector(Detector of_forest, const RgbdFrame& warm_up_frame) : detector(std::move(of_forest)) {
+  ReadyDetector(Detector of_forest, const GroupScheduleSettings& scheduling, const RgbdFrame& warm_up_frame)
+      : detector(std::move(of_forest)), schedule(detector.groups(), scheduling) {
     detector.detect(warm_up_frame, workspace);
+  }
+
+  /// Finds the objects of all groups, or, in turn, of those that are due in this frame.
+  Detections detect(const RgbdFrame& frame, const std::vector<ChromaPair>& camera_colours, bool in_turn) const {
+    std::vector<std::size_t> selected;
+    if (in_turn) selected = schedule.select(frame.id);
+    Detections found = detector.detect(frame, workspace, camera_colours, selected);
+    if (in_turn) schedule.note(found);
+    return found;
   }
 
   Detector detector;
   mutable DetectorWorkspace workspace;
+  mutable GroupSchedule schedule;
 };
 
 /// Options of the command line.
@@ -52,14 +64,17 @@ struct DetectOptions {
   bool ignore_camera_colours = false;  // as hs-pose has learnt them
   SearchOptions search;
   std::optional<double> precision;  // chooses the thresholds of a store's objects
+  std::optional<double> group_interval_s;
   DetectProcessOptions process;
 };
 
 std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& store, const DetectOptions& options,
                                                    const RgbdFrame& warm_up_frame) {
   const SearchOptions search = with_precision(options.search, store, options.precision);
+  GroupScheduleSettings scheduling;
+  scheduling.interval_s = options.group_interval_s.value_or(scheduling.interval_s);
   return std::make_shared<const ReadyDetector>(make_detector(load_store_forests(store, search.threads), search),
-                                               warm_up_frame);
+                                               scheduling, warm_up_frame);
 }
 
 /// Lowers the priority of this thread and of all threads that it starts from here on: where the rate of detections is
@@ -94,15 +109,16 @@ class KnownColours {
 void run_with_forest(const DetectOptions& options, const KnownColours& colours) {
   const std::shared_future<RgbdFrame> warm_up_frame = start_warm_up();
   const ReadyDetector ready(
-      make_detector(load_named_forests({{}, options.forest_file, {}}, options.search.threads), options.search),
+      make_detector(load_named_forests({{}, options.forest_file, {}}, options.search.threads), options.search), {},
       warm_up_frame.get());
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
-    return ready.detector.detect(frame, ready.workspace, colours.chroma_pairs_of(frame.id.channel));
+    return ready.detect(frame, colours.chroma_pairs_of(frame.id.channel), false);
   });
 }
 
-/// A store may change while frames go by: each frame is searched by what is there when its turn comes.
+/// A store may change while frames go by: each frame is searched by what is there when its turn comes. Groups are
+/// searched in turn on a network; of a log, which can wait, only where an interval is given.
 void run_with_store(DetectOptions options, const KnownColours& colours) {
   const std::shared_future<RgbdFrame> warm_up_frame = start_warm_up();
   store::StoreWatcher<ReadyDetector> watch(options.objects, [&](const store::ObjectStore& store) {
@@ -111,11 +127,24 @@ void run_with_store(DetectOptions options, const KnownColours& colours) {
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   bus.is_log() ? watch.require_store() : watch.follow();
+  const bool in_turn = !bus.is_log() || options.group_interval_s;
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
     const std::shared_ptr<const ReadyDetector> ready = watch.current();
     if (!ready) return Detections{frame.id, {}, frame.stages};
-    return ready->detector.detect(frame, ready->workspace, colours.chroma_pairs_of(frame.id.channel));
+    return ready->detect(frame, colours.chroma_pairs_of(frame.id.channel), in_turn);
   });
+}
+
+/// Throws for options that do not go together.
+void check_options(const DetectOptions& options) {
+  require_usage(options.forest_file.empty() != options.objects.empty(),
+                "expected either --objects STORE or --forest FILE");
+  require_usage(!options.precision || !options.objects.empty(),
+                "--precision goes with --objects, whose practice it reads");
+  require_usage(!options.group_interval_s || !options.objects.empty(),
+                "--group-interval goes with --objects, whose groups are searched in turn");
+  require_output_log(options.url, options.output_log);
+  for (const std::string& input : {options.forest_file, options.objects}) require_other_file(options.output_log, input);
 }
 
 }  // namespace
@@ -144,6 +173,11 @@ int main(int argc, char** argv) {
   app.add_option("--looks-per-second", options.process.max_rate_hz,
                  "look at so many of each camera's frames a second, for hs-pose --follow; default: at each one")
       .range(0.1, 1000.0);
+  app.add_option("--group-interval", options.group_interval_s,
+                 "with --objects: seconds within which each group of objects is searched again while none of it is "
+                 "found; 0: in each frame, as of a log by default")
+      .range(range_of(&GroupScheduleSettings::interval_s))
+      .default_str(fmt::format("{}", GroupScheduleSettings{}.interval_s));
   app.add_flag("--no-camera-colours", options.ignore_camera_colours,
                "learn how a camera renders colours from each frame by itself, as of a log, and not from what hs-pose "
                "tells of earlier ones: the same frame gives the same detections whenever it comes");
@@ -160,13 +194,7 @@ int main(int argc, char** argv) {
     share_one_heap();
     if (!camera.empty()) options.process.camera = camera_of_option(camera);
     if (options.process.max_rate_hz > 0.0) lower_priority();
-    require_usage(options.forest_file.empty() != options.objects.empty(),
-                  "expected either --objects STORE or --forest FILE");
-    require_usage(!options.precision || !options.objects.empty(),
-                  "--precision goes with --objects, whose practice it reads");
-    require_output_log(options.url, options.output_log);
-    for (const std::string& input : {options.forest_file, options.objects})
-      require_other_file(options.output_log, input);
+    check_options(options);
     KnownColours colours;
     if (!options.ignore_camera_colours)
       options.process.on_camera_colours = [&](const CameraChroma& learnt) { colours.update(learnt); };

@@ -24,6 +24,8 @@ REFUSED = (
     (("hs-capture",), "--frames", ("0", "nan")),
     (("hs-capture",), "--rate", ("nan", "inf", "1e-300", "-5")),
     (("hs-detect",), "--candidates", ("nan", "2")),
+    (("hs-detect",), "--group-interval", ("nan", "-1")),
+    (("hs-detect", "--forest", NOWHERE), "--group-interval", ("0.5",)),
     (("hs-detect",), "--looks-per-second", ("nan", "0")),
     (("hs-detect",), "--threshold", ("nan", "5", "-1")),
     (EVALUATE, "--min-iou", ("nan", "-1", "2")),
