@@ -161,8 +161,9 @@ cv::Mat decode_depth(const ImageMessage& image, const std::string& source) {
   require(kind_of_image(image) == ImageKind::kDepth,
           "{}: encoding '{}', expected 16UC1, mono16, 32FC1 or compressedDepth", source, printable(image.encoding));
   if (image.is_encoded) return decode_encoded_depth(image, source);
-  cv::Mat pixels = pixels_of(image, find_format(image.encoding)->type, source);
-  if (image.is_big_endian) pixels = swap_bytes(pixels);
+  const cv::Mat raw = pixels_of(image, find_format(image.encoding)->type, source);
+  // In a message they begin at any byte; numbers are read where they are aligned.
+  const cv::Mat pixels = image.is_big_endian ? swap_bytes(raw) : raw.clone();
   return pixels.type() == CV_16UC1 ? depth_from_millimetres(pixels) : without_invalid(pixels);
 }
 
