@@ -27,14 +27,14 @@ std::vector<std::size_t> GroupSchedule::select(const FrameId& frame) {
   Camera& camera = cameras_[frame.channel];
   double passed_s = seconds_between(camera.utime, frame.utime);
   if (camera.turns.empty() || passed_s < -kMaxOvertakenS) {
-    camera = {frame.utime, 0, std::vector<Turn>(group_count_)};
+    camera = {frame.utime, 0, std::nullopt, std::vector<Turn>(group_count_)};
     passed_s = 0.0;
   }
   camera.utime = std::max(camera.utime, frame.utime);
   ++camera.frames;
   std::vector<std::size_t> inactive;
   for (std::size_t i = 0; i < group_count_; ++i)
-    (is_active(camera.turns[i], camera.utime) ? selected : inactive).push_back(i);
+    (is_recent(camera.turns[i].found_utime, camera.utime) ? selected : inactive).push_back(i);
   std::stable_sort(inactive.begin(), inactive.end(), [&](std::size_t a, std::size_t b) {
     return camera.turns[a].searched_frame < camera.turns[b].searched_frame;
   });
@@ -54,16 +54,29 @@ std::vector<std::size_t> GroupSchedule::select(const FrameId& frame) {
 
 void GroupSchedule::note(const Detections& detections) {
   const auto camera = cameras_.find(detections.frame.channel);
-  if (camera == cameras_.end()) return;
+  if (camera == cameras_.end() || is_recent(camera->second.posed_utime, camera->second.utime)) return;
   for (const Detection& detection : detections.detections) {
-    const auto group = group_of_class_.find(detection.class_name);
-    if (group != group_of_class_.end() && detection.score >= settings_.active_from)
-      camera->second.turns[group->second].detected_utime = camera->second.utime;
+    if (detection.reported) activate(detection.class_name, camera->second);
   }
 }
 
-bool GroupSchedule::is_active(const Turn& turn, std::int64_t utime) const {
-  return turn.detected_utime && seconds_between(*turn.detected_utime, utime) <= settings_.active_s;
+void GroupSchedule::note(const ObjectPoses& poses) {
+  const auto camera = cameras_.find(poses.frame.channel);
+  if (camera == cameras_.end()) return;
+  for (const ObjectPose& pose : poses.poses) {
+    if (pose.status == PoseStatus::kNoModel) continue;
+    camera->second.posed_utime = camera->second.utime;
+    if (has_pose(pose.status)) activate(pose.class_name, camera->second);
+  }
+}
+
+bool GroupSchedule::is_recent(const std::optional<std::int64_t>& then, std::int64_t utime) const {
+  return then && seconds_between(*then, utime) <= settings_.active_s;
+}
+
+void GroupSchedule::activate(const std::string& class_name, Camera& camera) const {
+  if (const auto group = group_of_class_.find(class_name); group != group_of_class_.end())
+    camera.turns[group->second].found_utime = camera.utime;
 }
 
 bool GroupSchedule::is_overdue(const Turn& turn, std::int64_t utime) const {

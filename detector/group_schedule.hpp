@@ -10,6 +10,7 @@
 #include "pipeline/base/settings_fields.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame_id.hpp"
+#include "pipeline/types/object_pose.hpp"
 
 namespace houghstream {
 
@@ -17,10 +18,9 @@ struct Forest;
 
 /// Settings of GroupSchedule.
 struct GroupScheduleSettings {
-  double active_s = 1.0;  ///< time for which a group is active after one of its objects was detected
+  double active_s = 1.0;  ///< time for which a group is active after one of its objects was found
   /// Time within which each inactive group is searched again, or in the first frame after that; 0: in every frame.
   double interval_s = 0.2;
-  float active_from = 0.25F;  ///< minimum score of a detection that makes its group active
 };
 
 template <typename Visit>
@@ -28,13 +28,13 @@ void fields(const GroupScheduleSettings& /*settings*/, const Visit& visit) {
   using S = GroupScheduleSettings;
   visit(number("active_s", &S::active_s, 0, 3600, "s"));
   visit(number("interval_s", &S::interval_s, 0, 3600, "s"));
-  visit(number("active_from", &S::active_from, 0, 1));
 }
 
 /// Chooses the groups of a Detector that are searched in each frame of a stream: active groups, whose objects were
-/// detected lately, in every frame, and the others in turn, so that time does not grow with objects that are not in
-/// view. It goes by the times of the frames alone: the same frames give the same choice. Each camera has a turn of its
-/// own. Not thread-safe.
+/// found lately, in every frame, and the others in turn, so that time does not grow with objects that are not in view.
+/// An object is found where its pose is published; without poses, where its detection is reported. In most frames each
+/// group has some weak detection, which therefore counts for nothing. Times are those of the frames: the same frames
+/// and results give the same choice. Each camera has a turn of its own. Not thread-safe.
 class GroupSchedule {
  public:
   /// Maximum number of cameras with a turn of their own; of a further one all groups are searched in every frame. An
@@ -52,23 +52,28 @@ class GroupSchedule {
   /// time has passed. Times that go back by more restart the camera.
   std::vector<std::size_t> select(const FrameId& frame);
 
-  /// Makes the groups active that have a detection of `active_from` or more in the camera's last frame. Classes that no
-  /// group has, and cameras that select() does not know, are ignored.
+  /// Makes the groups active of which a detection is reported, unless poses were noted within `active_s`. Classes that
+  /// no group has, and cameras that select() does not know, are ignored.
   void note(const Detections& detections);
+
+  /// Makes the groups active of which there is a pose. Poses without a model say nothing.
+  void note(const ObjectPoses& poses);
 
  private:
   struct Turn {
     std::int64_t searched_frame = 0;  // number of the frame of the last search; 0 before the first
     std::int64_t searched_utime = 0;
-    std::optional<std::int64_t> detected_utime;
+    std::optional<std::int64_t> found_utime;
   };
   struct Camera {
-    std::int64_t utime = 0;   // time of its newest frame
-    std::int64_t frames = 0;  // number of its frames so far
-    std::vector<Turn> turns;  // by group
+    std::int64_t utime = 0;                   // time of its newest frame
+    std::int64_t frames = 0;                  // number of its frames so far
+    std::optional<std::int64_t> posed_utime;  // its time when poses were last noted
+    std::vector<Turn> turns;                  // by group
   };
 
-  bool is_active(const Turn& turn, std::int64_t utime) const;
+  bool is_recent(const std::optional<std::int64_t>& then, std::int64_t utime) const;
+  void activate(const std::string& class_name, Camera& camera) const;
   bool is_overdue(const Turn& turn, std::int64_t utime) const;
 
   GroupScheduleSettings settings_;

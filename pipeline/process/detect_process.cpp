@@ -26,9 +26,9 @@ class DetectProcess {
     status_.set_known_objects(options_.objects);
     catch_stop_signals();
     reception_.subscribe_to_frames(Account::kReceived, [this](const ReceivedFrame& frame) { add_frame(frame); });
-    if (options_.max_rate_hz > 0.0 && !bus_.is_log()) {
+    if ((options_.max_rate_hz > 0.0 || options_.on_poses) && !bus_.is_log()) {
       reception_.subscribe_to_results<object_poses_t>(channel::kPoses, Account::kOthers,
-                                                      [this](const ReceivedResult& poses) { note_losses(poses); });
+                                                      [this](const ReceivedResult& poses) { note_poses(poses); });
     }
     if (options_.on_camera_colours && !bus_.is_log()) {
       reception_.subscribe_to_messages<camera_colours_t>(
@@ -54,9 +54,14 @@ class DetectProcess {
                                             : newest_.push(frame.id.channel, std::move(encoded), frame.bytes.size);
   }
 
-  /// Expedites the next detection of a camera on which a followed object is lost, or has become doubtful.
-  void note_losses(const ReceivedResult& result) {
+  void note_poses(const ReceivedResult& result) {
     const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(result.bytes));
+    if (options_.max_rate_hz > 0.0) note_losses(poses);
+    if (options_.on_poses) options_.on_poses(poses);
+  }
+
+  /// Expedites the next detection of a camera on which a followed object is lost, or has become doubtful.
+  void note_losses(const ObjectPoses& poses) {
     constexpr float kDoubtful = 0.5F;
     int followed = 0;
     int doubtful = 0;

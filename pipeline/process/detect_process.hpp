@@ -10,6 +10,7 @@
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/known_objects.hpp"
+#include "pipeline/types/object_pose.hpp"
 
 namespace houghstream {
 
@@ -20,6 +21,8 @@ struct DetectProcessOptions {
   double max_rate_hz = 0.0;                      ///< detections per second of each camera; 0 = as many as possible
   bool keep_frames = false;                      ///< for a log: copies the frames' events to the output log too
   std::function<KnownObjects()> objects;         ///< objects of its store, for the status; empty = no store
+  /// Called on a network, in the receiving thread, with the poses of any camera's frame; empty = not called.
+  std::function<void(const ObjectPoses&)> on_poses;
   /// Called on a network, in the receiving thread, with the colours that hs-pose has learnt of a camera; empty = not
   /// called.
   std::function<void(const CameraChroma&)> on_camera_colours;

@@ -45,13 +45,12 @@ bool contains(const Indices& indices, std::size_t index) {
 }
 
 /// Returns what is detected where the objects of these groups are in view.
-Detections detections_of(const FrameId& frame, const Indices& groups, float score = 0.9F) {
+Detections detections_of(const FrameId& frame, const Indices& groups) {
   Detections found;
   found.frame = frame;
   for (const std::size_t group : groups) {
     Detection& detection = found.detections.emplace_back();
     detection.class_name = object_of(group);
-    detection.score = score;
   }
   return found;
 }
@@ -132,13 +131,46 @@ TEST(GroupSchedule, AnActiveOneIsSearchedInEveryFrameForASecond) {
   EXPECT_GT(missing, 15) << "it has its turn as the others again";
 }
 
-TEST(GroupSchedule, ADetectionMakesItsGroupActiveFromItsScoreOn) {
-  for (const float score : {0.24F, 0.25F}) {
-    GroupSchedule schedule(make_groups(9));
-    schedule.select({"LEFT", kStart});
-    schedule.note(detections_of({"LEFT", kStart}, {7}, score));
-    EXPECT_EQ(contains(schedule.select({"LEFT", kStart + kInterval}), 7), score >= 0.25F) << score;
+TEST(GroupSchedule, ACandidateMakesItsGroupNotActive) {
+  GroupSchedule schedule(make_groups(9));
+  schedule.select({"LEFT", kStart});
+  Detections found = detections_of({"LEFT", kStart}, {7});
+  found.detections.at(0).reported = false;
+  schedule.note(found);
+  EXPECT_FALSE(contains(schedule.select({"LEFT", kStart + kInterval}), 7));
+}
+
+/// Returns the poses of these groups' objects.
+ObjectPoses poses_of(const FrameId& frame, const Indices& groups, PoseStatus status) {
+  ObjectPoses poses;
+  poses.frame = frame;
+  for (const std::size_t group : groups) {
+    ObjectPose& pose = poses.poses.emplace_back();
+    pose.class_name = object_of(group);
+    pose.status = status;
   }
+  return poses;
+}
+
+TEST(GroupSchedule, WhereThereArePosesTheseDecide) {
+  GroupSchedule schedule(make_groups(9));
+  schedule.select({"LEFT", kStart});
+  schedule.note(poses_of({"LEFT", kStart}, {8}, PoseStatus::kValid));
+  schedule.note(poses_of({"LEFT", kStart}, {6}, PoseStatus::kRejectedByOutline));
+  schedule.note(detections_of({"LEFT", kStart}, {7}));
+  EXPECT_EQ(schedule.select({"LEFT", kStart + kInterval}), (Indices{0, 1, 8}));
+  const std::int64_t later = kStart + 1100000;  // no poses have come for a second
+  schedule.select({"LEFT", later});
+  schedule.note(detections_of({"LEFT", later}, {7}));
+  EXPECT_TRUE(contains(schedule.select({"LEFT", later + kInterval}), 7));
+}
+
+TEST(GroupSchedule, PosesWithoutAModelSayNothing) {
+  GroupSchedule schedule(make_groups(9));
+  schedule.select({"LEFT", kStart});
+  schedule.note(poses_of({"LEFT", kStart}, {8}, PoseStatus::kNoModel));
+  schedule.note(detections_of({"LEFT", kStart}, {7}));
+  EXPECT_EQ(schedule.select({"LEFT", kStart + kInterval}), (Indices{0, 1, 7}));
 }
 
 TEST(GroupSchedule, OthersStayInTimeWhileGroupsBecomeActive) {

@@ -23,7 +23,7 @@ from studies.stream import Process, enter_private_network
 from end_to_end_test import CLASSES, THRESHOLD
 
 RATE = 5  # frames a second
-STILL = 23  # image in which each object is found once: before a camera that jumps, they might become others
+STILL = 22  # image in which each object is found once: before a camera that jumps, they might become others
 
 
 def make_store(made, store):

@@ -43,14 +43,25 @@ struct ReadyDetector {
   /// Finds the objects of all groups, or, in turn, of those that are due in this frame.
   Detections detect(const RgbdFrame& frame, const std::vector<ChromaPair>& camera_colours, bool in_turn) const {
     std::vector<std::size_t> selected;
-    if (in_turn) selected = schedule.select(frame.id);
+    if (in_turn) {
+      const std::lock_guard<std::mutex> lock(schedule_mutex);
+      selected = schedule.select(frame.id);
+    }
     Detections found = detector.detect(frame, workspace, camera_colours, selected);
-    if (in_turn) schedule.note(found);
+    if (in_turn) note(found);
     return found;
+  }
+
+  /// Tells the schedule what was found; may be called from any thread.
+  template <typename Results>
+  void note(const Results& results) const {
+    const std::lock_guard<std::mutex> lock(schedule_mutex);
+    schedule.note(results);
   }
 
   Detector detector;
   mutable DetectorWorkspace workspace;
+  mutable std::mutex schedule_mutex;
   mutable GroupSchedule schedule;
 };
 
@@ -128,6 +139,9 @@ void run_with_store(DetectOptions options, const KnownColours& colours) {
   LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   bus.is_log() ? watch.require_store() : watch.follow();
   const bool in_turn = !bus.is_log() || options.group_interval_s;
+  options.process.on_poses = [&](const ObjectPoses& poses) {
+    if (const std::shared_ptr<const ReadyDetector> ready = watch.current()) ready->note(poses);
+  };
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
     const std::shared_ptr<const ReadyDetector> ready = watch.current();
     if (!ready) return Detections{frame.id, {}, frame.stages};
