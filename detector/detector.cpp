@@ -68,8 +68,8 @@ ForestIndices make_indices(const std::vector<Forest>& groups, int threads) {
 }  // namespace
 
 struct Detector::State {
-  State(std::vector<Forest> given, const DetectionSettings& how)
-      : groups(std::move(given)), indices(make_indices(groups, how.threads)), settings(how) {}
+  State(std::vector<Forest> given, DetectionSettings how)
+      : groups(std::move(given)), indices(make_indices(groups, how.threads)), settings(std::move(how)) {}
 
   /// Returns the search of each selected group. An object's share of the frame's candidates stays that of all groups,
   /// so that what is found of it does not depend on which of the others are searched.
@@ -98,7 +98,7 @@ Detector::Detector(std::vector<Forest> groups, DetectionSettings settings) {
   for (const Forest& forest : groups) require_searchable(forest.features, "forest");
   require_searchable_together(groups);
   check_settings(settings, "detection settings");
-  state_ = std::make_unique<State>(std::move(groups), settings);
+  state_ = std::make_unique<State>(std::move(groups), std::move(settings));
 }
 Detector::~Detector() = default;
 Detector::Detector(Detector&&) noexcept = default;

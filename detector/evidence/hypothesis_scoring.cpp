@@ -78,7 +78,7 @@ class HypothesisScorer {
 
   const ScoringInput& input_;
   const Hypothesis& hypothesis_;
-  const float attitude_factor_;
+  float attitude_factor_;
   const Forest& forest_;
   const ObjectClass& object_;
   const std::vector<ViewTemplate>& views_;

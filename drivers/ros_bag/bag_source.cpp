@@ -95,7 +95,7 @@ class BagSource : public FrameSource {
         depth_period_us_(period_us(topics_.depth)),
         period_us_(std::max(depth_period_us_, period_us(topics_.colour))),
         messages_(file_, image_connections()),
-        pairing_(depth_period_us_ / 2) {
+        pairing_(tolerance_us()) {
     log_info("{}: depth of {}, colour of {}, camera of {}, {:.3g} Hz", file_.name(), printable(topics_.depth.name),
              printable(topics_.colour.name), options.camera ? "the command line" : printable(topics_.info.name),
              rate_hz());
@@ -187,7 +187,8 @@ class BagSource : public FrameSource {
     return frame;
   }
 
-  double tolerance_ms() const { return static_cast<double>(depth_period_us_ / 2) / 1e3; }
+  std::int64_t tolerance_us() const { return depth_period_us_ / 2; }
+  double tolerance_ms() const { return static_cast<double>(tolerance_us()) / 1e3; }
 
   void require_frames() const {
     const UnpairedCounts& unpaired = pairing_.unpaired();

@@ -84,6 +84,7 @@ std::vector<ChosenTopic> topics_of(const BagFile& file, const std::vector<std::s
     topic.connections.insert(connection.id);
   }
   std::vector<ChosenTopic> sorted;
+  sorted.reserve(topics.size());
   for (auto& [key, topic] : topics) sorted.push_back(std::move(topic));
   return sorted;
 }
@@ -187,7 +188,7 @@ ChosenTopic choose_info(const BagFile& file, const std::string& wanted, const Ch
     return found == infos.end() ? ChosenTopic{} : *found;
   };
   if (!wanted.empty()) {
-    const ChosenTopic info = find(wanted);
+    ChosenTopic info = find(wanted);
     require(!info.name.empty(), "{}: no topic {} of type {}, expected one", file.name(), printable(wanted),
             kCameraInfoType);
     return info;
@@ -196,7 +197,7 @@ ChosenTopic choose_info(const BagFile& file, const std::string& wanted, const Ch
     const std::string folder = namespace_of(uncompressed(image));
     // RealSense's SDK has SENSOR/image/data and SENSOR/info/camera_info.
     for (const std::string& name : {folder + "/camera_info", namespace_of(folder) + "/info/camera_info"})
-      if (const ChosenTopic info = find(name); !info.name.empty()) return info;
+      if (ChosenTopic info = find(name); !info.name.empty()) return info;
   }
   return {};
 }
