@@ -8,6 +8,11 @@
 #include "pipeline/types/frame_time.hpp"
 
 namespace houghstream {
+namespace {
+
+constexpr double kSlack_s = 0.002;  // for the jitter of times
+
+}  // namespace
 
 GroupSchedule::GroupSchedule(const std::vector<Forest>& groups, const GroupScheduleSettings& settings)
     : settings_(settings), group_count_(groups.size()) {
@@ -27,7 +32,9 @@ std::vector<std::size_t> GroupSchedule::select(const FrameId& frame) {
   Camera& camera = cameras_[frame.channel];
   double passed_s = seconds_between(camera.utime, frame.utime);
   if (camera.turns.empty() || passed_s < -kMaxOvertakenS) {
-    camera = {frame.utime, 0, std::nullopt, std::vector<Turn>(group_count_)};
+    camera = Camera{};
+    camera.utime = frame.utime;
+    camera.turns.resize(group_count_);
     passed_s = 0.0;
   }
   camera.utime = std::max(camera.utime, frame.utime);
@@ -38,11 +45,14 @@ std::vector<std::size_t> GroupSchedule::select(const FrameId& frame) {
   std::stable_sort(inactive.begin(), inactive.end(), [&](std::size_t a, std::size_t b) {
     return camera.turns[a].searched_frame < camera.turns[b].searched_frame;
   });
-  const double summed_s = static_cast<double>(inactive.size()) * passed_s;  // by all inactive groups
-  for (std::size_t i = 0; i < inactive.size(); ++i) {
-    if (i == 0 || static_cast<double>(i) * settings_.interval_s < summed_s ||
-        is_overdue(camera.turns[inactive[i]], camera.utime))
-      selected.push_back(inactive[i]);
+  const auto waiting = static_cast<double>(inactive.size());
+  camera.waited_s += waiting * std::max(passed_s, 0.0);
+  camera.waited_s = std::min(camera.waited_s, waiting * settings_.interval_s);  // a pause counts for one search of each
+  for (const std::size_t i : inactive) {
+    const bool is_due = camera.waited_s + kSlack_s >= settings_.interval_s || is_overdue(camera.turns[i], camera.utime);
+    if (!is_due && !selected.empty()) continue;
+    selected.push_back(i);
+    camera.waited_s = std::max(0.0, camera.waited_s - settings_.interval_s);
   }
   std::sort(selected.begin(), selected.end());
   for (const std::size_t i : selected) {
@@ -80,8 +90,7 @@ void GroupSchedule::activate(const std::string& class_name, Camera& camera) cons
 }
 
 bool GroupSchedule::is_overdue(const Turn& turn, std::int64_t utime) const {
-  constexpr double kSlack = 0.002;  // seconds, for the jitter of times
-  return turn.searched_frame == 0 || seconds_between(turn.searched_utime, utime) + kSlack >= settings_.interval_s;
+  return turn.searched_frame == 0 || seconds_between(turn.searched_utime, utime) + kSlack_s >= settings_.interval_s;
 }
 
 }  // namespace houghstream

@@ -47,9 +47,10 @@ class GroupSchedule {
 
   /// Returns the indices of the groups to be searched in this frame, ascending, and counts them as searched: all of
   /// them in a camera's first frame; then the active ones, the inactive ones whose last search lies `interval_s` back
-  /// or more, and of the other inactive ones those that were searched longest ago, so many that a frame's share of all
-  /// of them is searched. A frame that is older than the one before it by up to a second was overtaken in transit: no
-  /// time has passed. Times that go back by more restart the camera.
+  /// or more, and of the other inactive ones those that were searched longest ago: one each time that all of them
+  /// together have waited `interval_s`, so that frames take about equally long. There is always one. A frame that is
+  /// older than the one before it by up to a second was overtaken in transit: no time has passed. Times that go back by
+  /// more restart the camera.
   std::vector<std::size_t> select(const FrameId& frame);
 
   /// Makes the groups active of which a detection is reported, unless poses were noted within `active_s`. Classes that
@@ -68,6 +69,7 @@ class GroupSchedule {
   struct Camera {
     std::int64_t utime = 0;                   // time of its newest frame
     std::int64_t frames = 0;                  // number of its frames so far
+    double waited_s = 0.0;                    // by all inactive groups together since the last of their searches
     std::optional<std::int64_t> posed_utime;  // its time when poses were last noted
     std::vector<Turn> turns;                  // by group
   };

@@ -94,11 +94,14 @@ TEST(GroupSchedule, EachInactiveOneIsSearchedWithinTheIntervalOrInTheNextFrame) 
 TEST(GroupSchedule, TheyAreSpreadEvenlyOverTheFrames) {
   GroupSchedule schedule(make_groups(9));
   schedule.select({"LEFT", kStart});
-  for (int i = 1; i < 300; ++i) {
+  std::size_t count = 0;
+  for (int i = 1; i <= 300; ++i) {
     const Indices selected = schedule.select({"LEFT", kStart + i * kInterval});
-    EXPECT_EQ(selected.size(), 2U) << "of nine 1.5 a frame";
+    EXPECT_TRUE(selected.size() == 1 || selected.size() == 2) << selected.size();
     EXPECT_TRUE(std::is_sorted(selected.begin(), selected.end()));
+    count += selected.size();
   }
+  EXPECT_NEAR(static_cast<double>(count), 450.0, 10.0) << "of nine 1.5 a frame";
   GroupSchedule again(make_groups(9));
   for (const std::vector<double>& times : searches(again, 9, kInterval)) EXPECT_LT(max_gap(times), 0.2);
 }
@@ -107,10 +110,36 @@ TEST(GroupSchedule, ThoseThatWereSearchedLongestAgoComeFirst) {
   GroupSchedule schedule(make_groups(5));
   const auto select = [&](int frame) { return schedule.select({"LEFT", kStart + frame * 50000}); };
   EXPECT_EQ(select(0), all_of(5));
-  EXPECT_EQ(select(1), (Indices{0, 1}));
-  EXPECT_EQ(select(2), (Indices{2, 3}));
-  EXPECT_EQ(select(3), (Indices{0, 4}));
-  EXPECT_EQ(select(4), (Indices{1, 2}));
+  EXPECT_EQ(select(1), (Indices{0}));
+  EXPECT_EQ(select(2), (Indices{1}));
+  EXPECT_EQ(select(3), (Indices{2}));
+  EXPECT_EQ(select(4), (Indices{3, 4}));
+  EXPECT_EQ(select(5), (Indices{0}));
+}
+
+TEST(GroupSchedule, ASingleInactiveOneHasItsTurnOnceAnInterval) {
+  GroupSchedule schedule(make_groups(2));
+  int count = 0;
+  for (int i = 0; i < 60; ++i) {
+    const FrameId frame{"LEFT", kStart + i * kInterval};
+    const Indices selected = schedule.select(frame);
+    count += contains(selected, 0) ? 1 : 0;
+    schedule.note(detections_of(frame, {1}));
+  }
+  EXPECT_EQ(count, 10) << "in two seconds";
+}
+
+TEST(GroupSchedule, OneIsSearchedInEveryFrame) {
+  GroupSchedule schedule(make_groups(2));
+  EXPECT_EQ(schedule.select({"LEFT", kStart}), all_of(2));
+  for (int i = 1; i < 30; ++i) EXPECT_EQ(schedule.select({"LEFT", kStart + i * kInterval}).size(), 1U) << i;
+}
+
+TEST(GroupSchedule, APauseIsNotMadeUpFor) {
+  GroupSchedule schedule(make_groups(9));
+  schedule.select({"LEFT", kStart});
+  EXPECT_EQ(schedule.select({"LEFT", kStart + 60000000}), all_of(9));
+  EXPECT_LE(schedule.select({"LEFT", kStart + 60000000 + kInterval}).size(), 2U);
 }
 
 TEST(GroupSchedule, AnActiveOneIsSearchedInEveryFrameForASecond) {
@@ -123,7 +152,7 @@ TEST(GroupSchedule, AnActiveOneIsSearchedInEveryFrameForASecond) {
     const Indices selected = schedule.select({"LEFT", kStart + passed_us});
     if (passed_us <= 1000000) {
       EXPECT_TRUE(contains(selected, 7)) << i;
-      EXPECT_EQ(selected.size(), 3U) << "with two of eight inactive ones";
+      EXPECT_LE(selected.size(), 3U) << "with one or two of eight inactive ones";
     } else {
       missing += contains(selected, 7) ? 0 : 1;
     }
@@ -158,7 +187,7 @@ TEST(GroupSchedule, WhereThereArePosesTheseDecide) {
   schedule.note(poses_of({"LEFT", kStart}, {8}, PoseStatus::kValid));
   schedule.note(poses_of({"LEFT", kStart}, {6}, PoseStatus::kRejectedByOutline));
   schedule.note(detections_of({"LEFT", kStart}, {7}));
-  EXPECT_EQ(schedule.select({"LEFT", kStart + kInterval}), (Indices{0, 1, 8}));
+  EXPECT_EQ(schedule.select({"LEFT", kStart + kInterval}), (Indices{0, 8}));
   const std::int64_t later = kStart + 1100000;  // no poses have come for a second
   schedule.select({"LEFT", later});
   schedule.note(detections_of({"LEFT", later}, {7}));
@@ -170,7 +199,7 @@ TEST(GroupSchedule, PosesWithoutAModelSayNothing) {
   schedule.select({"LEFT", kStart});
   schedule.note(poses_of({"LEFT", kStart}, {8}, PoseStatus::kNoModel));
   schedule.note(detections_of({"LEFT", kStart}, {7}));
-  EXPECT_EQ(schedule.select({"LEFT", kStart + kInterval}), (Indices{0, 1, 7}));
+  EXPECT_EQ(schedule.select({"LEFT", kStart + kInterval}), (Indices{0, 7}));
 }
 
 TEST(GroupSchedule, OthersStayInTimeWhileGroupsBecomeActive) {
@@ -200,9 +229,9 @@ TEST(GroupSchedule, NoTimePassesByAFrameThatWasOvertaken) {
   GroupSchedule schedule(make_groups(9));
   schedule.select({"LEFT", kStart});
   schedule.note(detections_of({"LEFT", kStart}, {7}));
-  EXPECT_EQ(schedule.select({"LEFT", kStart - 900000}), (Indices{0, 7})) << "the active one and one more";
-  EXPECT_EQ(schedule.select({"LEFT", kStart}), (Indices{1, 7}));
-  EXPECT_EQ(schedule.select({"LEFT", kStart + kInterval}), (Indices{2, 3, 7})) << "one interval has passed, not thirty";
+  EXPECT_EQ(schedule.select({"LEFT", kStart - 900000}), (Indices{7})) << "the active one";
+  EXPECT_EQ(schedule.select({"LEFT", kStart}), (Indices{7}));
+  EXPECT_EQ(schedule.select({"LEFT", kStart + kInterval}), (Indices{0, 7})) << "one interval has passed, not thirty";
 }
 
 TEST(GroupSchedule, TimesThatGoBackRestartTheCamera) {
@@ -210,7 +239,7 @@ TEST(GroupSchedule, TimesThatGoBackRestartTheCamera) {
   schedule.select({"LEFT", kStart});
   schedule.note(detections_of({"LEFT", kStart}, {7}));
   EXPECT_EQ(schedule.select({"LEFT", kStart - 1100000}), all_of(9));
-  EXPECT_EQ(schedule.select({"LEFT", kStart - 1100000 + kInterval}), (Indices{0, 1})) << "none is active any more";
+  EXPECT_EQ(schedule.select({"LEFT", kStart - 1100000 + kInterval}), (Indices{0})) << "none is active any more";
 }
 
 TEST(GroupSchedule, OfACameraTooManyAllAreSearched) {
@@ -221,7 +250,7 @@ TEST(GroupSchedule, OfACameraTooManyAllAreSearched) {
     EXPECT_EQ(schedule.select(frame), all_of(9));
     schedule.note(detections_of(frame, {7}));
   }
-  EXPECT_EQ(schedule.select({"FORGED_63", kStart + kInterval}), (Indices{0, 1})) << "the others have theirs";
+  EXPECT_EQ(schedule.select({"FORGED_63", kStart + kInterval}), (Indices{0})) << "the others have theirs";
 }
 
 TEST(GroupSchedule, WhatNoGroupHasAndAnUnknownCameraChangeNothing) {
@@ -229,7 +258,7 @@ TEST(GroupSchedule, WhatNoGroupHasAndAnUnknownCameraChangeNothing) {
   schedule.note(detections_of({"LEFT", kStart}, {7}));
   EXPECT_EQ(schedule.select({"LEFT", kStart}), all_of(9));
   schedule.note(detections_of({"LEFT", kStart}, {9}));
-  EXPECT_EQ(schedule.select({"LEFT", kStart + kInterval}), (Indices{0, 1}));
+  EXPECT_EQ(schedule.select({"LEFT", kStart + kInterval}), (Indices{0}));
 }
 
 TEST(GroupSchedule, TimesMayBeAny) {
@@ -237,7 +266,7 @@ TEST(GroupSchedule, TimesMayBeAny) {
   constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
   GroupSchedule schedule(make_groups(9));
   for (const std::int64_t utime : {kFirst, kLast, kFirst}) EXPECT_EQ(schedule.select({"LEFT", utime}), all_of(9));
-  EXPECT_EQ(schedule.select({"LEFT", kFirst + kInterval}), (Indices{0, 1}));
+  EXPECT_EQ(schedule.select({"LEFT", kFirst + kInterval}), (Indices{0}));
 }
 
 TEST(GroupSchedule, SettingsOutOfTheirRangeAreRefused) {
