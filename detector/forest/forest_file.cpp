@@ -141,7 +141,14 @@ struct ReaderOfVersion16 : Reader {
   }
   void operator()(std::vector<ViewTemplate>& views);
   void operator()(std::vector<LeafClass>& entries) {
-    read_each<Entry>(entries, [](const Entry& old) { return old.entry; });
+    LeafStart start;
+    read_each<Entry>(entries, [&](const Entry& old) {
+      require(old.first_vote == start.vote && old.first_view == start.view,
+              "{}: an entry of a leaf begins at vote {}, expected {}, behind the entry before it", source,
+              old.first_vote, start.vote);
+      start.pass(old.entry);
+      return old.entry;
+    });
   }
   void operator()(std::vector<LeafVote>& votes) {
     read_each<Vote>(votes, [&](const Vote& old) {

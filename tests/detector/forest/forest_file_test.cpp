@@ -145,15 +145,28 @@ TEST_F(ForestFile, TheVersionBeforeIsReadAsTheSameForest) {
   EXPECT_TRUE(again.str() == whole);
 }
 
+/// Returns the bytes with a number at a place, and the checksum that goes with it.
+template <typename Number>
+std::string changed(std::string bytes, std::size_t at, Number number) {
+  std::memcpy(&bytes[at], &number, sizeof number);
+  const std::size_t payload = bytes.find('\n') + 1 + 12;
+  const std::uint32_t crc = libdeflate_crc32(0, bytes.data() + payload, bytes.size() - payload);
+  std::memcpy(&bytes[payload - 4], &crc, sizeof crc);
+  return bytes;
+}
+
+TEST_F(ForestFile, AnEntryOutOfItsPlaceIsRefusedInTheVersionBefore) {
+  const std::string whole_before = as_version_16(forest);
+  const std::size_t behind = 8 + forest.votes.size() * 16 + 8 + forest.leaf_views.size() * 8;
+  const std::size_t last_entry = whole_before.size() - behind - 16;
+  expect_says(error_for(changed(whole_before, last_entry, std::uint32_t{0})), {"an entry of a leaf begins at vote 0"});
+}
+
 TEST_F(ForestFile, AVoteThatIsNoNumberIsRefusedInTheVersionBefore) {
-  std::string bad = as_version_16(forest);
-  const std::size_t last_vote = bad.size() - 8 - forest.leaf_views.size() * 8 - 4;  // its weight
+  const std::string whole_before = as_version_16(forest);
+  const std::size_t last_weight = whole_before.size() - 8 - forest.leaf_views.size() * 8 - 4;
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  std::memcpy(&bad[last_vote], &nan, sizeof nan);
-  const std::size_t payload = bad.find('\n') + 1 + 12;
-  const std::uint32_t crc = libdeflate_crc32(0, bad.data() + payload, bad.size() - payload);
-  std::memcpy(&bad[payload - 4], &crc, sizeof crc);
-  expect_says(error_for(bad), {"a vote of weight nan"});
+  expect_says(error_for(changed(whole_before, last_weight, nan)), {"a vote of weight nan"});
 }
 
 TEST_F(ForestFile, MissingFileIsRefused) {
