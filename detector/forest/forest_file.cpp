@@ -62,39 +62,8 @@ struct Writer : ArchiveWriter {
   }
 };
 
-/// Reads values as ArchiveReader does, but from the file itself: a copy of the payload in memory would double what a
-/// forest takes while it is loaded.
-struct Reader {
-  std::ifstream& in;
-  std::uint64_t bytes_left = 0;
-  std::string source;
-
-  void take(void* to, std::size_t size) {
-    require(size <= bytes_left, "{}: the payload ends {} bytes early", source, size - bytes_left);
-    in.read(static_cast<char*>(to), static_cast<std::streamsize>(size));
-    require(in.good(), "{}: cannot be read to its end", source);
-    bytes_left -= size;
-  }
-  /// Reads the length of a list whose items take at least so many bytes each.
-  std::size_t count(std::size_t item_bytes) {
-    std::uint64_t items = 0;
-    take(&items, sizeof items);
-    require(items <= bytes_left / item_bytes, "{}: a list of {} items, expected at most what is left", source, items);
-    return static_cast<std::size_t>(items);
-  }
-  template <typename T>
-  void operator()(T& value) {
-    take(static_cast<void*>(&value), sizeof value);
-  }
-  void operator()(std::string& text) {
-    text.resize(count(1));
-    if (!text.empty()) take(text.data(), text.size());
-  }
-  template <typename T>
-  void operator()(std::vector<T>& values) {
-    values.resize(count(sizeof(T)));
-    if (!values.empty()) take(static_cast<void*>(values.data()), values.size() * sizeof(T));
-  }
+struct Reader : ArchiveReader<StreamBytes> {
+  using ArchiveReader<StreamBytes>::operator();
   void operator()(std::vector<ObjectClass>& classes) {
     constexpr std::size_t kMin = 4 + 8 + 2 * 4;  // id, the name's length, radius and mass
     classes.resize(count(kMin));
@@ -183,6 +152,12 @@ void ReaderOfVersion16::operator()(std::vector<ViewTemplate>& views) {
     }
     return view;
   });
+}
+
+template <typename PayloadReader>
+void read_members(PayloadReader reader, Forest& forest) {
+  archive_members(reader, forest);
+  require(reader.bytes.empty(), "{}: {} bytes left over after the forest", reader.source, reader.bytes.size());
 }
 
 /// Returns the checksum of the rest of the file, and leaves it where it was.
@@ -350,15 +325,12 @@ Forest load_forest(const std::filesystem::path& file) {
   require(sum == crc, "{}: checksum {:08x}, expected {:08x}: the file is damaged", source, sum, crc);
 
   Forest forest;
-  Reader reader{in, size, source};
+  const ArchiveReader<StreamBytes> payload{{in, bytes}, source + ": forest payload"};
   if (is_of_version_16) {
-    ReaderOfVersion16 old{reader};
-    archive_members(old, forest);
-    reader.bytes_left = old.bytes_left;
+    read_members(ReaderOfVersion16{{payload}}, forest);
   } else {
-    archive_members(reader, forest);
+    read_members(Reader{payload}, forest);
   }
-  require(reader.bytes_left == 0, "{}: {} bytes left over after the forest", source, reader.bytes_left);
   check_head(forest, source);
   check_indices(forest, source);
   check_leaves(forest, source);

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
+#include <istream>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -36,16 +36,32 @@ struct ArchiveWriter {
   }
 };
 
+/// The rest of a stream, with the functions of a std::string_view that ArchiveReader calls: for an archive whose copy
+/// in memory would double what it takes to read it.
+struct StreamBytes {
+  std::istream& in;
+  std::size_t left = 0;
+
+  std::size_t size() const { return left; }
+  bool empty() const { return left == 0; }
+  std::size_t copy(char* to, std::size_t count) {
+    in.read(to, static_cast<std::streamsize>(count));
+    return static_cast<std::size_t>(in.gcount());
+  }
+  void remove_prefix(std::size_t count) { left -= count; }
+};
+
 /// Reads values. Throws InputError, naming `source`, where the bytes end early, before it allocates memory for more
 /// than they can hold.
+template <typename Bytes = std::string_view>
 struct ArchiveReader {
-  std::string_view bytes;  ///< bytes still to read
+  Bytes bytes;  ///< bytes still to read
   std::string source;
 
   void take(void* to, std::size_t size) {
     require(size <= bytes.size(), "{} ends {} bytes early", source, size - bytes.size());
     if (size == 0) return;  // into an empty list, which has no place
-    std::memcpy(to, bytes.data(), size);
+    require(bytes.copy(static_cast<char*>(to), size) == size, "{} cannot be read to its end", source);
     bytes.remove_prefix(size);
   }
   /// Reads the length of a list whose items take at least so many bytes each.

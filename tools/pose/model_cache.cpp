@@ -79,8 +79,8 @@ struct ModelWriter : ArchiveWriter {
   }
 };
 
-struct ModelReader : ArchiveReader {
-  using ArchiveReader::operator();
+struct ModelReader : ArchiveReader<> {
+  using ArchiveReader<>::operator();
   void operator()(std::vector<ModelView>& views) {
     views.resize(count(sizeof(float)));
     for (ModelView& view : views) archive_view(*this, view);
