@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <linux/sock_diag.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -45,6 +46,11 @@ std::int64_t count_dropped_datagrams(int socket) {
   require(is_known && size > SK_MEMINFO_DROPS * sizeof counts[0], "the kernel does not say what it drops: {}",
           std::strerror(errno));
   return counts[SK_MEMINFO_DROPS];
+}
+
+bool has_waiting_datagram(int socket) {
+  pollfd asked{socket, POLLIN, 0};
+  return poll(&asked, 1, 0) > 0 && (asked.revents & POLLIN) != 0;
 }
 
 std::int64_t needed_receive_buffer(std::int64_t frame_bytes) {

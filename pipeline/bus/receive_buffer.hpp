@@ -30,6 +30,9 @@ bool force_receive_buffer(int socket, std::int64_t bytes);
 /// full or a filter refused them. Throws InputError where the kernel does not say (before Linux 4.12).
 std::int64_t count_dropped_datagrams(int socket);
 
+/// Returns whether a datagram waits in the socket's receive buffer, so that whoever reads it has not taken it yet.
+bool has_waiting_datagram(int socket);
+
 /// The command that makes the kernel grant what is asked for, until the next start of the machine.
 std::string receive_buffer_remedy();
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -182,13 +183,18 @@ std::optional<std::int64_t> sum_dropped(const std::vector<int>& sockets) {
   return sum;
 }
 
-/// Takes what has arrived before the stop signal.
-void drain(LcmBus& bus, const Recorder& recorder) {
+/// Takes what has arrived before the stop signal: until the kernel holds nothing and nothing has come for a moment. LCM's
+/// thread of its own empties the kernel's buffer, and on a busy machine it can be late by more than that moment.
+void drain(LcmBus& bus, const std::vector<int>& sockets, const Recorder& recorder) {
   constexpr std::chrono::milliseconds kQuiet(30);
-  const Clock::time_point end = Clock::now() + std::chrono::milliseconds(300);
-  for (std::int64_t before = -1; before != recorder.events() && Clock::now() < end;) {
-    before = recorder.events();
+  constexpr std::chrono::seconds kLongest(2);  // others may go on sending
+  const Clock::time_point end = Clock::now() + kLongest;
+  bool is_quiet = false;
+  while (!is_quiet && Clock::now() < end) {
+    const std::int64_t before = recorder.events();
+    const bool was_read = std::none_of(sockets.begin(), sockets.end(), has_waiting_datagram);
     bus.handle(kQuiet);
+    is_quiet = was_read && recorder.events() == before;
   }
 }
 
@@ -234,7 +240,7 @@ RecordResult record_log(const RecordSettings& settings) {
   const std::chrono::duration<double> limit(settings.seconds);
   while (!stop_requested() && !recorder.has_failed() && (settings.seconds <= 0.0 || Clock::now() - start < limit))
     bus.handle(std::chrono::milliseconds(50));
-  drain(bus, recorder);
+  drain(bus, sockets, recorder);
   const std::optional<std::int64_t> dropped = sum_dropped(sockets);
   const StillFinishing finishing;
   require(recorder.events() > 0, "no message on {} at {}, expected at least one", channels, bus.url());

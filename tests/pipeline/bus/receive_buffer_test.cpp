@@ -55,8 +55,11 @@ TEST(ReceiveBuffer, WhatTheKernelDropsIsCounted) {
   for (int i = 0; i < kSent; ++i) {
     ASSERT_EQ(sendto(sender, data.data(), data.size(), 0, reinterpret_cast<const sockaddr*>(&address), size), 1000);
   }
+  EXPECT_TRUE(has_waiting_datagram(receiver));
+  EXPECT_FALSE(has_waiting_datagram(sender)) << "nothing was sent to it";
   int received = 0;
   while (recv(receiver, data.data(), data.size(), MSG_DONTWAIT) > 0) ++received;
+  EXPECT_FALSE(has_waiting_datagram(receiver));
   EXPECT_LT(received, kSent);
   EXPECT_EQ(received + count_dropped_datagrams(receiver), kSent);
   close(sender);
@@ -67,6 +70,7 @@ TEST(ReceiveBuffer, AFileThatIsNoSocketHasNoAccount) {
   EXPECT_NE(error_of([] { count_dropped_datagrams(-1); }).find("the kernel does not say what it drops"),
             std::string::npos);
   EXPECT_FALSE(force_receive_buffer(-1, kAskedReceiveBuffer));
+  EXPECT_FALSE(has_waiting_datagram(-1));
 }
 
 }  // namespace
