@@ -229,22 +229,48 @@ std::vector<Eigen::Isometry3d> near_symmetries(const MeasuredMesh& measured, con
 }
 
 /// Returns points of the surface that most rotations about the axis take off it: a mug's handle.
-std::vector<Eigen::Vector3f> unround_points(const MeasuredMesh& measured, const ContinuousSymmetry& axis) {
+SurfacePoints find_unround_points(const MeasuredMesh& measured, const ContinuousSymmetry& axis) {
   constexpr int kPoints = 1500;
   constexpr int kRotations = 7;
   constexpr float kOff = 0.04F;  // diameters
   const float off_m = kOff * static_cast<float>(measured.diameter_m);
-  std::vector<Eigen::Vector3f> unround;
-  for (const Eigen::Vector3f& point : sample_surface(measured.mesh, kPoints, 2).points) {
+  const SurfacePoints surface = sample_surface(measured.mesh, kPoints, 2);
+  SurfacePoints unround;
+  for (std::size_t i = 0; i < surface.points.size(); ++i) {
+    const Eigen::Vector3f& point = surface.points[i];
     int off = 0;
-    for (int i = 1; i <= kRotations; ++i) {
-      const Eigen::AngleAxisd rotation(2.0 * M_PI * i / (kRotations + 1), axis.axis);
+    for (int k = 1; k <= kRotations; ++k) {
+      const Eigen::AngleAxisd rotation(2.0 * M_PI * k / (kRotations + 1), axis.axis);
       const Eigen::Vector3d at = axis.offset + rotation * (point.cast<double>() - axis.offset);
       off += measured.tree.nearest(at.cast<float>()).distance > off_m ? 1 : 0;
     }
-    if (2 * off > kRotations) unround.push_back(point);
+    if (2 * off <= kRotations) continue;
+    unround.points.push_back(point);
+    unround.normals.push_back(surface.normals[i]);
   }
   return unround;
+}
+
+/// Returns whether a part of the surface has the colours of the views, in the mean.
+bool has_colours_of_views(const ObjectModel& model, const SurfacePoints& part) {
+  constexpr float kMaxDifference = 25.0F;  // 8-bit CIE L*a*b*: one paint in another shade
+  Eigen::Vector3f part_sum = Eigen::Vector3f::Zero();
+  float part_count = 0.0F;
+  for (std::size_t i = 0; i < part.points.size(); ++i) {
+    const std::optional<Eigen::Vector3f> colour = model.texture.find(part.points[i], part.normals[i]);
+    if (!colour) continue;
+    part_sum += *colour;
+    ++part_count;
+  }
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  float count = 0.0F;
+  for (const ModelView& view : model.views) {
+    for (const LabColour& colour : view.colours) {
+      sum += Eigen::Vector3f(colour[0], colour[1], colour[2]);
+      ++count;
+    }
+  }
+  return part_count > 0.0F && count > 0.0F && (part_sum / part_count - sum / count).norm() < kMaxDifference;
 }
 
 void set_alternatives(const MeasuredMesh& measured, const Symmetries& same_appearance, double right_within,
@@ -268,7 +294,9 @@ void set_alternatives(const MeasuredMesh& measured, const Symmetries& same_appea
   add_others(near_symmetries(measured, model), model.near_alternatives);
   if (!model.nearly_round) return;
   add_others(expand_symmetries({{}, {*model.nearly_round}}, kShapeStep), model.partial_alternatives);
-  model.unround_points = unround_points(measured, *model.nearly_round);
+  SurfacePoints unround = find_unround_points(measured, *model.nearly_round);
+  model.is_unround_alike = has_colours_of_views(model, unround);
+  model.unround_points = std::move(unround.points);
 }
 
 /// Accumulates the surface's second moments: those of a triangle are A / 12 (aa' + bb' + cc' + (a+b+c)(a+b+c)').

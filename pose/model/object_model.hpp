@@ -76,6 +76,7 @@ struct ObjectModel {
   /// before and after; and points of that part, object frame, metres.
   std::vector<Eigen::Isometry3d> partial_alternatives;
   std::vector<Eigen::Vector3f> unround_points;
+  bool is_unround_alike = false;  ///< whether that part has the colours of the rest
 };
 
 /// Makes the model; the result is the same for any number of threads. Throws InputError naming `name` when the mesh has

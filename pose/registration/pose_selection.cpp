@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "pipeline/base/logit.hpp"
 #include "pose/model/angles.hpp"
 #include "pose/registration/rotation_search.hpp"
+#include "pose/seen/handle_observation.hpp"
 
 namespace houghstream {
 namespace {
@@ -47,6 +49,22 @@ class PoseSelector {
       keep_better(registered, best, best_score);
     }
     return best;
+  }
+
+  /// Returns `result`, or it turned about the axis of a nearly round shape to where its handle is observed.
+  RegistrationResult turn_to_handle(const RegistrationResult& result) const {
+    if (observation_.model.unround_points.empty()) return result;
+    const HandleObserver handle(observation_, result.T_camera_object, tolerance_);
+    const std::optional<Eigen::Isometry3d> turned = handle.find_turn();
+    if (!turned) return result;
+    RegistrationResult registered =
+        register_coarsely(observation_, *turned, 0.5 * (distances_.start + distances_.end), settings_.registration);
+    registered = register_finely(observation_, registered, settings_.registration);
+    registered.iterations += result.iterations;
+    const bool is_better =
+        is_near_detection(observation_, registered, settings_.registration) &&
+        handle.observe_at(registered.T_camera_object).support() > handle.observe_at(result.T_camera_object).support();
+    return is_better ? registered : result;
   }
 
   /// Returns `result`, and it turned by half a turn about each principal axis, registered again: a box looks the same
@@ -137,7 +155,8 @@ std::vector<RegistrationResult> select_poses(const ObjectObservation& observatio
     if (flips[i].score < search.min_alternative_ratio * flips.front().score) break;
     fine.push_back(register_finely(observation, flips[i].result, registration));
   }
-  for (RegistrationResult& result : fine) result = refine_fully(selector, observation, result, settings);
+  for (RegistrationResult& result : fine)
+    result = refine_fully(selector, observation, selector.turn_to_handle(result), settings);
   return fine;
 }
 

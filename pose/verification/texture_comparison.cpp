@@ -9,6 +9,7 @@
 #include "pose/model/symmetry.hpp"
 #include "pose/registration/registration.hpp"
 #include "pose/seen/depth_score.hpp"
+#include "pose/seen/handle_observation.hpp"
 
 namespace houghstream {
 namespace {
@@ -57,14 +58,6 @@ struct VisibleSurface {
   Eigen::Vector3f camera_position = Eigen::Vector3f::Zero();  ///< object frame, metres
 };
 
-/// Counts of the points of a handle, the part that breaks a nearly round shape (ObjectModel::unround_points), by how
-/// they are observed at a pose.
-struct HandlePoints {
-  int depth_inliers = 0;
-  int free_space_violations = 0;
-  int total = 0;
-};
-
 /// Holds a pose that is equivalent by shape, and the model's texture at it.
 struct Alternative {
   Eigen::Isometry3d T_camera_object;
@@ -77,12 +70,6 @@ std::vector<Eigen::Isometry3d> find_alternative_poses(const ObjectObservation& o
                                                       const Eigen::Isometry3d& T_camera_object,
                                                       const DepthTolerance& tolerance,
                                                       const RegistrationSettings& registration);
-bool is_handle_visible(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                       const DepthTolerance& tolerance);
-bool can_handle_be_occluded(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                            const DepthTolerance& tolerance);
-HandlePoints count_handle_points(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                                 const DepthTolerance& tolerance);
 TextureComparison uninformative(std::size_t alternatives);
 VisibleSurface find_visible_surface(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                     const DepthTolerance& tolerance);
@@ -169,49 +156,14 @@ std::vector<Eigen::Isometry3d> find_alternative_poses(const ObjectObservation& o
     if (result.inliers > 0 && depth_score_at(result.T_camera_object) >= kMinScoreRatio * score)
       poses.push_back(result.T_camera_object);
   }
-  if (is_handle_visible(observation, T_camera_object, tolerance)) return poses;
+  if (observation.model.partial_alternatives.empty()) return poses;
+  const HandleObserver handle(observation, T_camera_object, tolerance);
+  if (handle.observe_at(T_camera_object).is_visible()) return poses;
   for (const Eigen::Isometry3d& motion : observation.model.partial_alternatives) {
     const Eigen::Isometry3d rotated = T_camera_object * motion;
-    if (can_handle_be_occluded(observation, rotated, tolerance)) poses.push_back(rotated);
+    if (handle.observe_at(rotated).can_be_occluded()) poses.push_back(rotated);
   }
   return poses;
-}
-
-bool is_handle_visible(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                       const DepthTolerance& tolerance) {
-  constexpr double kMinInlierFraction = 0.1;
-  const HandlePoints counts = count_handle_points(observation, T_camera_object, tolerance);
-  return counts.depth_inliers > kMinInlierFraction * counts.total;
-}
-
-bool can_handle_be_occluded(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                            const DepthTolerance& tolerance) {
-  constexpr double kMaxObservedFraction = 0.1;
-  const HandlePoints counts = count_handle_points(observation, T_camera_object, tolerance);
-  return counts.free_space_violations <= kMaxObservedFraction * counts.total &&
-         counts.depth_inliers <= kMaxObservedFraction * counts.total;
-}
-
-HandlePoints count_handle_points(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                                 const DepthTolerance& tolerance) {
-  HandlePoints counts;
-  const cv::Rect image(cv::Point(), observation.frame.depth.size());
-  for (const Eigen::Vector3f& point : observation.model.unround_points) {
-    const Eigen::Vector3d at = T_camera_object * point.cast<double>();
-    ++counts.total;
-    if (!(at.z() > 0.0)) continue;
-    const Eigen::Vector2d pixel = observation.frame.camera.project(at);
-    const cv::Point2d clamped(std::clamp(pixel.x(), -1.0, 1.0 * image.width),
-                              std::clamp(pixel.y(), -1.0, 1.0 * image.height));
-    const cv::Point nearest_px(cvRound(clamped.x), cvRound(clamped.y));
-    if (!image.contains(nearest_px)) continue;
-    // NaN where not measured.
-    const double depth_difference = static_cast<double>(observation.frame.depth.at<float>(nearest_px)) - at.z();
-    const double limit = tolerance.at(at.z());
-    counts.depth_inliers += std::abs(depth_difference) <= limit ? 1 : 0;
-    counts.free_space_violations += depth_difference > limit ? 1 : 0;
-  }
-  return counts;
 }
 
 /// Returns the margin without information from the texture: all alternatives are equally probable.

@@ -52,6 +52,7 @@ void archive_model(Archive& archive, ModelType& model) {
   archive(model.near_alternatives);
   archive(model.partial_alternatives);
   archive(model.unround_points);
+  archive(model.is_unround_alike);
 }
 
 template <typename Archive, typename ViewType>
@@ -131,6 +132,7 @@ void check_model(const ObjectModel& model) {
   }
   const std::size_t sides = model.texture.cubes.size();
   require(model.texture.normals.size() == sides && model.texture.colours.size() == sides, "lists of a print");
+  require(model.nearly_round || model.unround_points.empty(), "a handle of a shape that is not nearly round");
 }
 
 int add_library(dl_phdr_info* info, std::size_t /*size*/, void* names) {

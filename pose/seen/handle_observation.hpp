@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "pipeline/geometry/renderer.hpp"
+#include "pose/seen/colour_discriminant.hpp"
+#include "pose/seen/region.hpp"
+
+namespace houghstream {
+
+/// What the frame shows of a handle, the part that breaks a nearly round shape (ObjectModel::unround_points), at a
+/// pose: sums over its points, of which none counts more than one. Points that are occluded or outside the image count
+/// 0.
+struct HandleObservation {
+  double agreeing = 0.0;       ///< evidence of points that the frame shows there
+  double contradicting = 0.0;  ///< evidence of points where it shows something else
+  int points = 0;              ///< all points; 0 where the model has no handle
+
+  /// Returns the agreeing less the contradicting fraction, -1 to 1; 0 without a handle.
+  double support() const;
+  bool is_visible() const;       ///< more than a tenth agrees, and more than contradicts
+  bool can_be_occluded() const;  ///< at most a tenth agrees, and at most a tenth contradicts
+};
+
+/// Observes the handle of an object at poses about one that was registered. The observation must outlive it.
+class HandleObserver {
+ public:
+  HandleObserver(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                 const DepthTolerance& tolerance);
+
+  HandleObservation observe_at(const Eigen::Isometry3d& T_camera_object) const;
+
+  /// Turns the registered pose about the axis of the nearly round shape, all the way round, to where the frame supports
+  /// the handle most. Returns nothing where the model has no handle, or no turn has clearly more support.
+  std::optional<Eigen::Isometry3d> find_turn() const;
+
+ private:
+  std::optional<ColourDiscriminant> compare_colours() const;
+  bool can_be_handle(const cv::Point& at_px) const;
+  float rendered_depth(const cv::Point& at_px) const;
+  double colour_evidence(const cv::Point& at_px) const;
+  double evidence_at(const cv::Point& at_px, double model_depth) const;
+
+  const ObjectObservation& observation_;
+  Eigen::Isometry3d T_camera_object_;
+  DepthTolerance tolerance_;
+  /// Where the handle is at some turn, or the body that it is on: along the axis and away from it, metres.
+  Eigen::AlignedBox2d swept_;
+  RenderedRegion rendered_;                    ///< the model at the registered pose
+  std::optional<ColourDiscriminant> colours_;  ///< nothing where colours tell nothing of the handle
+};
+
+}  // namespace houghstream
