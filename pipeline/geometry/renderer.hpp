@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "pipeline/base/no_value.hpp"
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/types/camera.hpp"
 
@@ -43,6 +44,11 @@ cv::Mat render_depth(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object,
 struct RenderedRegion {
   cv::Rect region_px;  ///< empty where no pixel can show the mesh; the whole image where it reaches the near plane
   cv::Mat depth;       ///< depth as returned by render_depth()
+
+  /// Returns the depth at a pixel of the image, metres; NaN beside the mesh.
+  float depth_at(const cv::Point& at_px) const {
+    return region_px.contains(at_px) ? depth.at<float>(at_px - region_px.tl()) : kNoValue;
+  }
 };
 
 /// Finds the part itself, from the vertices that are placed to be drawn: of a dense mesh most of the work is with these

@@ -3,9 +3,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 
-#include "pipeline/geometry/renderer.hpp"
-#include "pose/seen/colour_discriminant.hpp"
-#include "pose/seen/region.hpp"
+#include "pose/seen/foreground_evidence.hpp"
 
 namespace houghstream {
 
@@ -36,19 +34,9 @@ class HandleObserver {
   std::optional<Eigen::Isometry3d> find_turn() const;
 
  private:
-  std::optional<ColourDiscriminant> compare_colours() const;
-  bool can_be_handle(const cv::Point& at_px) const;
-  float rendered_depth(const cv::Point& at_px) const;
-  double colour_evidence(const cv::Point& at_px) const;
-  double evidence_at(const cv::Point& at_px, double model_depth) const;
-
   const ObjectObservation& observation_;
   Eigen::Isometry3d T_camera_object_;
-  DepthTolerance tolerance_;
-  /// Where the handle is at some turn, or the body that it is on: along the axis and away from it, metres.
-  Eigen::AlignedBox2d swept_;
-  RenderedRegion rendered_;                    ///< the model at the registered pose
-  std::optional<ColourDiscriminant> colours_;  ///< nothing where colours tell nothing of the handle
+  std::optional<ForegroundEvidence> foreground_;  ///< nothing without a handle
 };
 
 }  // namespace houghstream

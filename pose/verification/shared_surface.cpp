@@ -36,12 +36,6 @@ bool can_overlap(const PlacedModel& a, const PlacedModel& b) {
   return fraction_inside(a, b) >= kMinFraction || fraction_inside(b, a) >= kMinFraction;
 }
 
-/// Returns the rendered depth at a pixel of the frame, metres; NaN beside the model.
-float depth_at(const RenderedRegion& part, const cv::Point& pixel) {
-  return part.region_px.contains(pixel) ? part.depth.at<float>(pixel - part.region_px.tl())
-                                        : std::numeric_limits<float>::quiet_NaN();
-}
-
 }  // namespace
 
 float shared_surface(const RgbdFrame& frame, const PlacedModel& a, const PlacedModel& b,
@@ -56,8 +50,8 @@ float shared_surface(const RgbdFrame& frame, const PlacedModel& a, const PlacedM
   for (int y = both.y; y < both.br().y; ++y) {
     for (int x = both.x; x < both.br().x; ++x) {
       const float measured = frame.depth.at<float>(y, x);
-      const float first_depth = depth_at(first, {x, y});
-      const float second_depth = depth_at(second, {x, y});
+      const float first_depth = first.depth_at({x, y});
+      const float second_depth = second.depth_at({x, y});
       const auto limit = static_cast<float>(tolerance.at(measured));
       const bool is_first = std::abs(measured - first_depth) <= limit;  // false for NaN
       const bool is_second = std::abs(measured - second_depth) <= limit;

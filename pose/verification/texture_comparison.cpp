@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "pipeline/geometry/renderer.hpp"
 #include "pose/model/symmetry.hpp"
 #include "pose/registration/registration.hpp"
 #include "pose/seen/depth_score.hpp"
+#include "pose/seen/foreground_evidence.hpp"
 #include "pose/seen/handle_observation.hpp"
 
 namespace houghstream {
@@ -58,19 +60,37 @@ struct VisibleSurface {
   Eigen::Vector3f camera_position = Eigen::Vector3f::Zero();  ///< object frame, metres
 };
 
-/// Holds a pose that is equivalent by shape, and the model's texture at it.
+/// Holds a pose that is equivalent by shape, or nearly so, and how much likelier the image is under it than under the
+/// pose with which it is compared: the logarithm of the ratio.
+struct EquivalentPose {
+  Eigen::Isometry3d T_camera_object;
+  double log_ratio = 0.0;
+};
+
+/// Holds such a pose, and the model's texture at it.
 struct Alternative {
   Eigen::Isometry3d T_camera_object;
   TextureBands texture;
-  double log_likelihood = 0.0;  ///< best_log_likelihood_ratio() of the texture
+  double log_likelihood = 0.0;        ///< best_log_likelihood_ratio() of the texture
+  double silhouette_log_ratio = 0.0;  ///< EquivalentPose::log_ratio by the silhouettes alone
 };
 
 // The steps of compare_with_alternatives(); they stand behind it in the order of their calls.
-std::vector<Eigen::Isometry3d> find_alternative_poses(const ObjectObservation& observation,
-                                                      const Eigen::Isometry3d& T_camera_object,
-                                                      const DepthTolerance& tolerance,
-                                                      const RegistrationSettings& registration);
-TextureComparison uninformative(std::size_t alternatives);
+std::vector<EquivalentPose> find_alternative_poses(const ObjectObservation& observation,
+                                                   const Eigen::Isometry3d& T_camera_object,
+                                                   const DepthTolerance& tolerance,
+                                                   const RegistrationSettings& registration);
+std::vector<EquivalentPose> find_near_alternatives(const ObjectObservation& observation,
+                                                   const Eigen::Isometry3d& T_camera_object,
+                                                   const DepthTolerance& tolerance,
+                                                   const RegistrationSettings& registration);
+void compare_silhouettes(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                         const DepthTolerance& tolerance, std::vector<EquivalentPose>& alternatives);
+bool stands_out(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                const RenderedRegion& other);
+double silhouette_log_ratio(const ForegroundEvidence& foreground, const RenderedRegion& alternative,
+                            const cv::Rect& image_px);
+TextureComparison compare_likelihoods(const std::vector<EquivalentPose>& alternatives);
 VisibleSurface find_visible_surface(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                     const DepthTolerance& tolerance);
 cv::Rect crop_to_whole_cells(const cv::Rect& part, int cell_px);
@@ -90,7 +110,7 @@ void align_about_axes(const ObjectModel& model, const VisibleSurface& surface, c
                       const std::vector<TextureBands>& observed, Alternative& pose);
 std::vector<Alternative> rank_alternatives(const ObjectObservation& observation, const VisibleSurface& surface,
                                            const Eigen::Isometry3d& T_camera_object,
-                                           const std::vector<Eigen::Isometry3d>& poses,
+                                           const std::vector<EquivalentPose>& poses,
                                            const std::vector<TextureBands>& observed);
 
 }  // namespace
@@ -99,76 +119,148 @@ std::optional<TextureComparison> compare_with_alternatives(const ObjectObservati
                                                            const Eigen::Isometry3d& T_camera_object,
                                                            const DepthTolerance& tolerance,
                                                            const RegistrationSettings& registration) {
-  const std::vector<Eigen::Isometry3d> alternatives =
+  const std::vector<EquivalentPose> alternatives =
       find_alternative_poses(observation, T_camera_object, tolerance, registration);
   if (alternatives.empty()) return std::nullopt;
-  if (observation.model.texture.empty() || observation.colours.lab.empty()) return uninformative(alternatives.size());
+  if (observation.model.texture.empty() || observation.colours.lab.empty()) return compare_likelihoods(alternatives);
   const VisibleSurface surface = find_visible_surface(observation, T_camera_object, tolerance);
-  if (surface.cells.size() < kMinCells) return uninformative(alternatives.size());
+  if (surface.cells.size() < kMinCells) return compare_likelihoods(alternatives);
   std::optional<TextureBands> texture = model_texture(observation.model, surface, Eigen::Isometry3d::Identity());
-  if (!texture) return uninformative(alternatives.size());
+  if (!texture) return compare_likelihoods(alternatives);
   const std::vector<TextureBands> observed = observed_textures(observation, surface);
   const double log_likelihood = best_log_likelihood_ratio(*texture, observed);
   Alternative pose{T_camera_object, *std::move(texture), log_likelihood};
   align_about_axes(observation.model, surface, T_camera_object.inverse(), observed, pose);
-  const bool is_aligned = pose.log_likelihood > log_likelihood + kMinLogLikelihoodGain;
-  const double pose_log_likelihood = pose.log_likelihood;
-  const std::vector<Alternative> ranked =
-      rank_alternatives(observation, surface, T_camera_object, alternatives, observed);
-  if (ranked.empty()) return std::nullopt;
+  std::vector<EquivalentPose> compared;
+  for (const Alternative& alternative :
+       rank_alternatives(observation, surface, T_camera_object, alternatives, observed)) {
+    compared.push_back({alternative.T_camera_object,
+                        alternative.log_likelihood + alternative.silhouette_log_ratio - pose.log_likelihood});
+  }
+  if (compared.empty()) return std::nullopt;
+  TextureComparison comparison = compare_likelihoods(compared);
+  if (pose.log_likelihood > log_likelihood + kMinLogLikelihoodGain) comparison.aligned = pose.T_camera_object;
+  return comparison;
+}
+
+namespace {
+
+/// Returns the margin over the alternatives, and the likeliest of them where it replaces the pose. Where nothing is
+/// known of them, all are equally probable.
+TextureComparison compare_likelihoods(const std::vector<EquivalentPose>& alternatives) {
   // Another pose replaces the present one on positive evidence, a Bayes factor of 3 (Kass and Raftery 1995, "Bayes
   // Factors").
   constexpr double kMinLogBayesFactor = 1.1;  // its logarithm
   TextureComparison comparison;
-  if (is_aligned) comparison.aligned = pose.T_camera_object;
-  double best = pose_log_likelihood + kMinLogBayesFactor;
+  double best = kMinLogBayesFactor;
   double ratio_sum = 0.0;  // sum of the alternatives' likelihoods over the pose's
-  for (const Alternative& alternative : ranked) {
-    ratio_sum += std::exp(std::min(alternative.log_likelihood - pose_log_likelihood, 50.0));
-    if (!(alternative.log_likelihood > best)) continue;
-    best = alternative.log_likelihood;
+  for (const EquivalentPose& alternative : alternatives) {
+    ratio_sum += std::exp(std::min(alternative.log_ratio, 50.0));
+    if (!(alternative.log_ratio > best)) continue;
+    best = alternative.log_ratio;
     comparison.better = alternative.T_camera_object;
   }
   comparison.margin = -std::log(ratio_sum);
   return comparison;
 }
 
-namespace {
+/// Returns the poses that only texture and silhouette distinguish from this one: those whose depth agrees as well.
+std::vector<EquivalentPose> find_alternative_poses(const ObjectObservation& observation,
+                                                   const Eigen::Isometry3d& T_camera_object,
+                                                   const DepthTolerance& tolerance,
+                                                   const RegistrationSettings& registration) {
+  std::vector<EquivalentPose> poses = find_near_alternatives(observation, T_camera_object, tolerance, registration);
+  for (const Eigen::Isometry3d& motion : observation.model.alternatives) poses.push_back({T_camera_object * motion});
+  if (observation.model.partial_alternatives.empty()) return poses;
+  const HandleObserver handle(observation, T_camera_object, tolerance);
+  if (handle.observe_at(T_camera_object).is_visible()) return poses;
+  for (const Eigen::Isometry3d& motion : observation.model.partial_alternatives) {
+    const Eigen::Isometry3d rotated = T_camera_object * motion;
+    if (handle.observe_at(rotated).can_be_occluded()) poses.push_back({rotated});
+  }
+  return poses;
+}
 
-/// Returns the poses that only the texture distinguishes from this one: those whose depth agrees as well, nearly
-/// equivalent ones registered.
-std::vector<Eigen::Isometry3d> find_alternative_poses(const ObjectObservation& observation,
-                                                      const Eigen::Isometry3d& T_camera_object,
-                                                      const DepthTolerance& tolerance,
-                                                      const RegistrationSettings& registration) {
+/// Returns nearly equivalent poses, registered, with what their silhouettes say.
+std::vector<EquivalentPose> find_near_alternatives(const ObjectObservation& observation,
+                                                   const Eigen::Isometry3d& T_camera_object,
+                                                   const DepthTolerance& tolerance,
+                                                   const RegistrationSettings& registration) {
   constexpr int kPoints = 150;
   constexpr float kMinScoreRatio = 0.8F;
   const auto depth_score_at = [&](const Eigen::Isometry3d& pose) {
     return score_pose(observation.frame, observation.model, pose, kPoints, tolerance).value;
   };
   const float score = depth_score_at(T_camera_object);
-  std::vector<Eigen::Isometry3d> poses;
-  for (const Eigen::Isometry3d& motion : observation.model.alternatives) poses.push_back(T_camera_object * motion);
   const CorrespondenceDistances distances = correspondence_distances(observation, registration);
+  std::vector<EquivalentPose> poses;
   for (const Eigen::Isometry3d& motion : observation.model.near_alternatives) {
-    const RegistrationResult result =
+    const RegistrationResult moved =
         register_coarsely(observation, T_camera_object * motion, 0.5 * (distances.start + distances.end), registration);
-    if (result.inliers > 0 && depth_score_at(result.T_camera_object) >= kMinScoreRatio * score)
-      poses.push_back(result.T_camera_object);
+    if (moved.inliers > 0 && depth_score_at(moved.T_camera_object) >= kMinScoreRatio * score)
+      poses.push_back({moved.T_camera_object});
   }
-  if (observation.model.partial_alternatives.empty()) return poses;
-  const HandleObserver handle(observation, T_camera_object, tolerance);
-  if (handle.observe_at(T_camera_object).is_visible()) return poses;
-  for (const Eigen::Isometry3d& motion : observation.model.partial_alternatives) {
-    const Eigen::Isometry3d rotated = T_camera_object * motion;
-    if (handle.observe_at(rotated).can_be_occluded()) poses.push_back(rotated);
-  }
+  if (!poses.empty()) compare_silhouettes(observation, T_camera_object, tolerance, poses);
   return poses;
 }
 
-/// Returns the margin without information from the texture: all alternatives are equally probable.
-TextureComparison uninformative(std::size_t alternatives) {
-  return {-std::log(static_cast<double>(alternatives)), std::nullopt, std::nullopt};
+/// Sets the log ratio of each alternative to what the pixels say that the model covers at one of both poses only.
+void compare_silhouettes(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                         const DepthTolerance& tolerance, std::vector<EquivalentPose>& alternatives) {
+  const auto render = [&](const Eigen::Isometry3d& pose) {
+    return render_depth_region(observation.model.mesh, pose, observation.frame.camera);
+  };
+  RenderedRegion pose = render(T_camera_object);
+  std::vector<std::pair<EquivalentPose*, RenderedRegion>> others;
+  for (EquivalentPose& alternative : alternatives) {
+    if (stands_out(observation, alternative.T_camera_object, pose))
+      others.emplace_back(&alternative, render(alternative.T_camera_object));
+  }
+  if (others.empty()) return;
+  const ForegroundEvidence foreground(observation, std::move(pose), tolerance, [&](const cv::Point& at_px) {
+    return std::any_of(others.begin(), others.end(),
+                       [&](const auto& other) { return !std::isnan(other.second.depth_at(at_px)); });
+  });
+  const cv::Rect image_px(cv::Point(), observation.frame.depth.size());
+  for (const auto& [alternative, rendered] : others)
+    alternative->log_ratio = silhouette_log_ratio(foreground, rendered, image_px);
+}
+
+/// Returns whether points of the model at a pose lie beside its silhouette at another one, rendered.
+bool stands_out(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                const RenderedRegion& other) {
+  constexpr int kPoints = 300;
+  constexpr double kMinFraction = 0.03;
+  const ProjectedView projected = project_view(observation.frame, observation.model, T_camera_object, kPoints);
+  int beside = 0;
+  for (const ProjectedPoint& point : projected.points) {
+    const cv::Point at(point.x, point.y);
+    const bool is_beside = std::isnan(other.depth_at(at)) && std::isnan(other.depth_at(at + cv::Point(1, 1))) &&
+                           std::isnan(other.depth_at(at - cv::Point(1, 1)));
+    beside += is_beside ? 1 : 0;
+  }
+  return beside > kMinFraction * static_cast<double>(projected.points.size());
+}
+
+/// Returns the log likelihood ratio of an alternative to the pose at which the evidence was learnt.
+double silhouette_log_ratio(const ForegroundEvidence& foreground, const RenderedRegion& alternative,
+                            const cv::Rect& image_px) {
+  constexpr double kLogRatio = 2.0;  // of one observation that is sure
+  const RenderedRegion& pose = foreground.rendered();
+  const cv::Rect both = (pose.region_px | alternative.region_px) & image_px;
+  if (both.area() == 0) return 0.0;
+  double sum = 0.0;
+  for (int y = both.y; y < both.br().y; ++y) {
+    for (int x = both.x; x < both.br().x; ++x) {
+      const cv::Point at(x, y);
+      const float pose_depth = pose.depth_at(at);
+      const float alternative_depth = alternative.depth_at(at);
+      if (std::isnan(pose_depth) == std::isnan(alternative_depth)) continue;
+      sum += std::isnan(pose_depth) ? foreground.at(at, alternative_depth, true) : -foreground.at(at, pose_depth, true);
+    }
+  }
+  const double cell_px = static_cast<double>(std::max(both.width, both.height)) / kCells;
+  return kTempering * kLogRatio / kFineCells * sum / (cell_px * cell_px);
 }
 
 /// Finds the cells where the model is visible. Those of its outline are left out, since colours are registered to depth
@@ -364,7 +456,8 @@ void align_about_axes(const ObjectModel& model, const VisibleSurface& surface, c
         std::optional<TextureBands> texture = model_texture(model, surface, T_object_camera * rotated);
         if (!texture) continue;
         const double log_likelihood = best_log_likelihood_ratio(*texture, observed);
-        if (log_likelihood > pose.log_likelihood) pose = {rotated, *std::move(texture), log_likelihood};
+        if (log_likelihood > pose.log_likelihood)
+          pose = {rotated, *std::move(texture), log_likelihood, pose.silhouette_log_ratio};
       }
     }
   }
@@ -373,19 +466,20 @@ void align_about_axes(const ObjectModel& model, const VisibleSurface& surface, c
 /// Returns the alternatives with their texture, the likeliest first. Only the first of many are aligned.
 std::vector<Alternative> rank_alternatives(const ObjectObservation& observation, const VisibleSurface& surface,
                                            const Eigen::Isometry3d& T_camera_object,
-                                           const std::vector<Eigen::Isometry3d>& poses,
+                                           const std::vector<EquivalentPose>& poses,
                                            const std::vector<TextureBands>& observed) {
   constexpr std::size_t kMaxAligned = 8;
   const auto is_likelier = [](const Alternative& a, const Alternative& b) {
-    return a.log_likelihood > b.log_likelihood;
+    return a.log_likelihood + a.silhouette_log_ratio > b.log_likelihood + b.silhouette_log_ratio;
   };
   const Eigen::Isometry3d T_object_camera = T_camera_object.inverse();
   std::vector<Alternative> ranked;
-  for (const Eigen::Isometry3d& pose : poses) {
-    std::optional<TextureBands> texture = model_texture(observation.model, surface, T_object_camera * pose);
+  for (const EquivalentPose& pose : poses) {
+    std::optional<TextureBands> texture =
+        model_texture(observation.model, surface, T_object_camera * pose.T_camera_object);
     if (!texture) continue;
     const double log_likelihood = best_log_likelihood_ratio(*texture, observed);
-    ranked.push_back({pose, *std::move(texture), log_likelihood});
+    ranked.push_back({pose.T_camera_object, *std::move(texture), log_likelihood, pose.log_ratio});
   }
   std::stable_sort(ranked.begin(), ranked.end(), is_likelier);
   for (std::size_t i = 0; i < std::min(kMaxAligned, ranked.size()); ++i)

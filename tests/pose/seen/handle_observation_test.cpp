@@ -9,9 +9,9 @@ namespace {
 
 using namespace test_scene;
 
-constexpr double kBeside_deg = 0.0;   // azimuth at which the handle is to the right of the mug
-constexpr double kBehind_deg = 90.0;  // azimuth at which the mug hides it
-constexpr double kSearchStep_deg = 8.0;   // a step of the search
+constexpr double kBeside_deg = 0.0;      // azimuth at which the handle is to the right of the mug
+constexpr double kBehind_deg = 90.0;     // azimuth at which the mug hides it
+constexpr double kSearchStep_deg = 8.0;  // a step of the search
 const DepthTolerance kHandleTolerance{0.008, {}};
 
 Mesh painted_mug() {

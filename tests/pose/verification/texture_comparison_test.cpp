@@ -133,6 +133,28 @@ TEST(TextureComparison, OfAModelWithoutColoursItIsOneOfAsMany) {
   EXPECT_FALSE(compared->better.has_value());
 }
 
+/// Returns a bar of one paint with a stem at one end, by which depth hardly tells it from itself turned end for end.
+Mesh bar_with_stem() {
+  Mesh mesh;
+  add_box(mesh, {-0.09F, -0.02F, -0.02F}, {0.09F, 0.02F, 0.02F});
+  add_box(mesh, {0.09F, -0.014F, -0.014F}, {0.11F, 0.014F, 0.014F});
+  mesh.colours.assign(mesh.vertices.size(), cv::Vec3b(110, 140, 160));  // of the first item of noisy_frame()
+  return mesh;
+}
+
+TEST(TextureComparison, TheSilhouetteTellsWhichEndHasAStem) {
+  const Mesh bar = bar_with_stem();
+  const Mesh ground = table();
+  const RgbdFrame frame = noisy_frame({{&bar, kTruth, 1}, {&ground, kTruth * Eigen::Translation3d(0, 0, -0.02), 2}}, 1);
+  const std::optional<TextureComparison> right = compared_at(kTruth, bar, frame);
+  ASSERT_TRUE(right.has_value());
+  EXPECT_FALSE(right->better.has_value());
+  const std::optional<TextureComparison> turned = compared_at(rotated(kTruth, 180.0), bar, frame);
+  ASSERT_TRUE(turned.has_value());
+  ASSERT_TRUE(turned->better.has_value());
+  EXPECT_GT(turned->better->linear().col(0).dot(kTruth.linear().col(0)), 0.99) << "the stem is at the other end";
+}
+
 TEST(TextureComparison, WithoutAlternativesThereIsNone) {
   ModelSettings settings;
   const ObjectModel model = make_object_model("mug", mug(), settings);
