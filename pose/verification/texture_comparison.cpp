@@ -230,7 +230,7 @@ void compare_silhouettes(const ObjectObservation& observation, const Eigen::Isom
 bool stands_out(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                 const RenderedRegion& other) {
   constexpr int kPoints = 300;
-  constexpr double kMinFraction = 0.03;
+  constexpr double kMinFraction = 0.015;  // what rounding to pixels leaves
   const ProjectedView projected = project_view(observation.frame, observation.model, T_camera_object, kPoints);
   int beside = 0;
   for (const ProjectedPoint& point : projected.points) {

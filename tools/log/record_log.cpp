@@ -183,8 +183,8 @@ std::optional<std::int64_t> sum_dropped(const std::vector<int>& sockets) {
   return sum;
 }
 
-/// Takes what has arrived before the stop signal: until the kernel holds nothing and nothing has come for a moment. LCM's
-/// thread of its own empties the kernel's buffer, and on a busy machine it can be late by more than that moment.
+/// Takes what has arrived before the stop signal: until the kernel holds nothing and nothing has come for a moment.
+/// LCM's thread of its own empties the kernel's buffer, and on a busy machine it can be late by more than that moment.
 void drain(LcmBus& bus, const std::vector<int>& sockets, const Recorder& recorder) {
   constexpr std::chrono::milliseconds kQuiet(30);
   constexpr std::chrono::seconds kLongest(2);  // others may go on sending
