@@ -195,8 +195,10 @@ std::vector<EquivalentPose> find_near_alternatives(const ObjectObservation& obse
   const CorrespondenceDistances distances = correspondence_distances(observation, registration);
   std::vector<EquivalentPose> poses;
   for (const Eigen::Isometry3d& motion : observation.model.near_alternatives) {
-    const RegistrationResult moved =
-        register_coarsely(observation, T_camera_object * motion, 0.5 * (distances.start + distances.end), registration);
+    const RegistrationResult moved = register_finely(
+        observation,
+        register_coarsely(observation, T_camera_object * motion, 0.5 * (distances.start + distances.end), registration),
+        registration);
     if (moved.inliers > 0 && depth_score_at(moved.T_camera_object) >= kMinScoreRatio * score)
       poses.push_back({moved.T_camera_object});
   }
@@ -230,7 +232,7 @@ void compare_silhouettes(const ObjectObservation& observation, const Eigen::Isom
 bool stands_out(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                 const RenderedRegion& other) {
   constexpr int kPoints = 300;
-  constexpr double kMinFraction = 0.015;  // what rounding to pixels leaves
+  constexpr double kMinFraction = 0.005;  // what rounding to pixels leaves
   const ProjectedView projected = project_view(observation.frame, observation.model, T_camera_object, kPoints);
   int beside = 0;
   for (const ProjectedPoint& point : projected.points) {

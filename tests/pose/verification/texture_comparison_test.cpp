@@ -136,8 +136,8 @@ TEST(TextureComparison, OfAModelWithoutColoursItIsOneOfAsMany) {
 /// Returns a bar of one paint with a stem at one end, by which depth hardly tells it from itself turned end for end.
 Mesh bar_with_stem() {
   Mesh mesh;
-  add_box(mesh, {-0.09F, -0.02F, -0.02F}, {0.09F, 0.02F, 0.02F});
-  add_box(mesh, {0.09F, -0.014F, -0.014F}, {0.11F, 0.014F, 0.014F});
+  add_box(mesh, {-0.06F, -0.04F, -0.02F}, {0.06F, 0.04F, 0.02F});
+  add_box(mesh, {0.06F, -0.015F, -0.014F}, {0.076F, 0.015F, 0.014F});
   mesh.colours.assign(mesh.vertices.size(), cv::Vec3b(110, 140, 160));  // of the first item of noisy_frame()
   return mesh;
 }
