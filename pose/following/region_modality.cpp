@@ -242,7 +242,7 @@ RegionLines find_region_lines(const RegionView& view, const Silhouette& silhouet
         segment_probabilities(view.frame, pixels, scale.segment_px, colours);
     if (!segments) continue;
     RegionLine line;
-    line.at = &at;
+    line.point = at.point;
     line.centre_px = point->pixel;
     line.normal = point->normal;
     line.segments_per_px = segments_per_px;
@@ -264,7 +264,7 @@ MotionEquations region_equations(const RegionView& view, const std::vector<Regio
   CommonError common(settings.common_error_px);
   const Eigen::Vector3d centre = T_camera_object * view.model.centre.cast<double>();
   for (const RegionLine& line : lines) {
-    const Eigen::Vector3d point = T_camera_object * line.at->point.cast<double>();
+    const Eigen::Vector3d point = T_camera_object * line.point.cast<double>();
     if (!(point.z() > 0.0)) continue;
     const double per_px = line.segments_per_px;
     const double moved_px =

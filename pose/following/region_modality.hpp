@@ -48,7 +48,7 @@ constexpr int kEdgePositions = 12;
 
 /// A line across the silhouette, and where the frame has its edge.
 struct RegionLine {
-  const SilhouettePoint* at = nullptr;
+  Eigen::Vector3f point = Eigen::Vector3f::Zero();      ///< point of the silhouette, object frame, metres
   Eigen::Vector2f centre_px = Eigen::Vector2f::Zero();  ///< place of the point when the line was drawn
   Eigen::Vector2f normal = Eigen::Vector2f::Zero();     ///< unit vector out of the model
   float segments_per_px = 1.0F;                         ///< segments per pixel along the normal
