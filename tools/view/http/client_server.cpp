@@ -183,13 +183,15 @@ void ClientTable::close() {
 ClientServer::ClientServer(std::size_t threads) : clients_(4 * threads) {
   // Called by the thread that accepts: those of the pool have its priority.
   new_task_queue = [this, threads] {
-    // The library lets five connections wait to be accepted; a crowd's sixth would try again after a second.
-    constexpr int kBacklog = 128;
-    ::listen(svr_sock_, kBacklog);
     pool_ = std::make_unique<httplib::ThreadPool>(threads);
     return new NoQueue(*pool_);
   };
   set_keep_alive_timeout(kRequestTimeout.count());
+}
+
+void ClientServer::enlarge_backlog() {
+  constexpr int kBacklog = 128;
+  ::listen(svr_sock_, kBacklog);
 }
 
 // Called by the thread that accepts.

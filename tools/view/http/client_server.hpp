@@ -59,6 +59,11 @@ class ClientServer final : public httplib::Server {
 
   explicit ClientServer(std::size_t threads);
 
+  /// Enlarges the queue of connections that wait to be accepted, which the library limits to five: a crowd's sixth
+  /// would try again after a second. Called between bind_to_port() and the start of the thread that accepts, since
+  /// stop() may close the socket as soon as that thread runs.
+  void enlarge_backlog();
+
   /// Ends all connections, so that stop() waits for none.
   void end_clients() { clients_.close(); }
 

@@ -236,6 +236,7 @@ PageServer::PageServer(const HttpAddress& address, PageBoard& board) : state_(st
   const bool bound =
       address.port == 0 ? state_->address.port > 0 : state_->server.bind_to_port(address.host, address.port);
   require(bound, "--http {}:{}: cannot be listened at", address.host, address.port);
+  state_->server.enlarge_backlog();
   const BlockStopSignals block;
   state_->thread = std::thread([state = state_.get()] {
     yield_to_results("serving pages");
