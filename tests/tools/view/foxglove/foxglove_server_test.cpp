@@ -109,6 +109,7 @@ TEST(FoxgloveServer, ALateClientGetsTheModelThatWasSentOnce) {
 
 TEST(FoxgloveServer, ASlowClientLosesImagesIsToldAndKeepsNobodyWaiting) {
   constexpr std::size_t kLimit = 2'000'000;
+  constexpr std::chrono::seconds kTimeout(20);  // the server's thread has a low priority, and other tests may run
   FoxgloveServer server(any_port(), kLimit);
   server.publish(message_on("/image", "foxglove.RawImage", ""));
   SocketClient slow(server.port(), 4096);
@@ -130,7 +131,7 @@ TEST(FoxgloveServer, ASlowClientLosesImagesIsToldAndKeepsNobodyWaiting) {
   std::int64_t received = 0;
   for (int i = 0; i < 20; ++i) {
     server.publish(message_on("/image", "foxglove.RawImage", image));
-    for (auto frame = fast.next(); frame; frame = fast.next()) {
+    for (auto frame = fast.next(kTimeout); frame; frame = fast.next(kTimeout)) {
       if (frame->content.size() < image.size()) continue;
       ++received;
       break;

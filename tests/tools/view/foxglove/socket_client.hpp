@@ -62,11 +62,11 @@ class SocketClient {
     std::string content;
   };
 
-  /// Returns the next frame, or nothing where the connection ends or none comes within a second.
-  std::optional<Frame> next() {
+  /// Returns the next frame, or nothing where the connection ends or no byte comes within the timeout.
+  std::optional<Frame> next(std::chrono::milliseconds timeout = std::chrono::seconds(1)) {
     while (true) {
       if (std::optional<Frame> frame = parse()) return frame;
-      if (!read()) return std::nullopt;
+      if (!read(timeout)) return std::nullopt;
     }
   }
 
@@ -75,9 +75,9 @@ class SocketClient {
     if (is_open_) (void)!::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
   }
 
-  bool read() {
+  bool read(std::chrono::milliseconds timeout = std::chrono::seconds(1)) {
     pollfd waits{socket_, POLLIN, 0};
-    if (!is_open_ || poll(&waits, 1, 1000) <= 0) return false;
+    if (!is_open_ || poll(&waits, 1, static_cast<int>(timeout.count())) <= 0) return false;
     std::string chunk(65536, '\0');
     const ssize_t size = recv(socket_, chunk.data(), chunk.size(), 0);
     if (size <= 0) return false;
