@@ -9,6 +9,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
+#include "pose/registration/flat_candidates.hpp"
 #include "pose/seen/camera_colours.hpp"
 #include "pose/verification/pose_decision.hpp"
 #include "pose/verification/shared_surface.hpp"
@@ -80,6 +81,11 @@ void observe_region(const FrameContext& frame, const PoseSettings& settings, Est
 void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, Estimation& estimation) {
   estimation.rotations = rotation_clusters(estimation.detection.rotations, settings.initial);
   estimation.candidates = place_candidates(*estimation.observation, estimation.rotations, settings.search);
+  if (static_cast<double>(estimation.model.thickness) < settings.search.max_flat_thickness_m) {
+    estimation.observation->foreground = find_surface_foreground(*estimation.observation);
+    const std::vector<PoseCandidate> flat = flat_candidates(*estimation.observation, settings.search.flat_keep);
+    estimation.candidates.insert(estimation.candidates.end(), flat.begin(), flat.end());
+  }
   const std::vector<PoseCandidate> warm =
       earlier_candidates(*estimation.observation, estimation.detection.class_name, earlier, settings.warm_start);
   estimation.candidates.insert(estimation.candidates.end(), warm.begin(), warm.end());

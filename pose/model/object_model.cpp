@@ -321,6 +321,22 @@ Eigen::Matrix3f principal_axes(const Mesh& mesh) {
       .cast<float>();
 }
 
+void set_thickness(ObjectModel& model) {
+  model.thickness = std::numeric_limits<float>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    float low = std::numeric_limits<float>::infinity();
+    float high = -low;
+    for (const Eigen::Vector3f& vertex : model.mesh.vertices) {
+      const float along = model.axes.col(i).dot(vertex);
+      low = std::min(low, along);
+      high = std::max(high, along);
+    }
+    if (!(high - low < model.thickness)) continue;
+    model.thickness = high - low;
+    model.thin_axis = i;
+  }
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3f> sphere_directions(int parts) {
@@ -353,6 +369,7 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
     model.vote_centre = known->second;
   model.surface_median = surface_median(model.mesh);
   model.axes = principal_axes(model.mesh);
+  set_thickness(model);
   const MeasuredMesh measured(model.mesh);
   const auto shape = settings.shape_symmetries.find(name);
   const ShapeSymmetry symmetry =

@@ -60,6 +60,8 @@ struct ObjectModel {
   /// Median of the surface along each axis, object frame; a handle hardly changes it.
   Eigen::Vector3f surface_median = Eigen::Vector3f::Zero();
   Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();  ///< columns: principal axes of the surface, object frame
+  int thin_axis = 0;                                   ///< column of `axes` along which the mesh extends least
+  float thickness = 0.0F;                              ///< its extent along that axis, metres
   float radius = 0.0F;          ///< radius of the sphere about the centre that holds the mesh, metres
   Symmetries shape_symmetries;  ///< rotations after which a depth camera measures the same, object frame
   /// Axis about which all but a part such as a handle measures the same, where no symmetry is continuous.

@@ -30,12 +30,14 @@ void fields(const InitialSettings& /*settings*/, const Visit& visit) {
 
 /// Coarse choice by depth score: each rotation at several places, the best go to registration.
 struct SearchSettings {
-  double reach_m = 0.06;      ///< reach along the line of sight, to each side of the detected centre
-  double step_m = 0.012;      ///< step between places across the line of sight
-  int steps = 1;              ///< number of steps to each side
-  int points = 80;            ///< points of a view
-  int keep = 3;               ///< candidates that are registered
-  double tolerance_m = 0.02;  ///< measured and model depth agree; 3 sigma is added
+  double reach_m = 0.06;               ///< reach along the line of sight, to each side of the detected centre
+  double step_m = 0.012;               ///< step between places across the line of sight
+  int steps = 1;                       ///< number of steps to each side
+  int points = 80;                     ///< points of a view
+  int keep = 3;                        ///< candidates that are registered
+  double tolerance_m = 0.02;           ///< measured and model depth agree; 3 sigma is added
+  double max_flat_thickness_m = 0.04;  ///< thinner objects are also laid on the plane under them (flat_candidates)
+  int flat_keep = 4;                   ///< candidates so found that are registered
 };
 
 template <typename Visit>
@@ -47,6 +49,8 @@ void fields(const SearchSettings& /*settings*/, const Visit& visit) {
   visit(number("points", &S::points, 1, 100000));
   visit(number("keep", &S::keep, 1, 1000));
   visit(number("tolerance_m", &S::tolerance_m, 0, 1, "m"));
+  visit(number("max_flat_thickness_m", &S::max_flat_thickness_m, 0, 1, "m"));
+  visit(number("flat_keep", &S::flat_keep, 0, 1000));
 }
 
 /// Poses of an earlier frame as further candidates.

@@ -33,7 +33,9 @@ ScoredPose score_pose_jointly(const ObjectObservation& observation, const Eigen:
                               int points, const DepthTolerance& tolerance) {
   const ProjectedView projected = project_view(observation.frame, observation.model, T_camera_object, points);
   const float depth = score_projected_view(projected, tolerance).value;
-  return {T_camera_object, joint_score(depth, compare_colours(observation.colours, projected, tolerance))};
+  const float score = joint_score(depth, compare_colours(observation.colours, projected, tolerance));
+  const float share = observation.foreground ? 0.5F + 0.5F * observation.foreground->mean_at(projected) : 1.0F;
+  return {T_camera_object, share * score};
 }
 
 ScoredPose hill_climb_pose(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,

@@ -8,7 +8,8 @@
 
 namespace houghstream {
 
-/// A pose and how depth and colour speak for it (joint_score).
+/// A pose and how depth and colour speak for it: joint_score, of a thin object on a plane times the share of its points
+/// on the foreground.
 struct ScoredPose {
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
   float score = 0.0F;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "pipeline/base/settings_fields.hpp"
@@ -9,6 +10,7 @@
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pose/model/object_model.hpp"
+#include "pose/seen/surface_foreground.hpp"
 
 namespace houghstream {
 
@@ -92,6 +94,8 @@ struct ObjectObservation {
   DepthNoise noise = {};  ///< noise of the frame's depth
   DepthRegion region = {};
   LabRegion colours = {};  ///< colours of the region's box; empty where the region has too few points
+  /// Set where the object is thin and may lie on a plane; poses are then compared by it too.
+  std::optional<SurfaceForeground> foreground = std::nullopt;
 };
 ObjectObservation observe_object(const FrameContext& context, const Detection& detection, const ObjectModel& model,
                                  const RegionSettings& settings);

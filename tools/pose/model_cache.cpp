@@ -39,6 +39,8 @@ void archive_model(Archive& archive, ModelType& model) {
   archive(model.vote_centre);
   archive(model.surface_median);
   archive(model.axes);
+  archive(model.thin_axis);
+  archive(model.thickness);
   archive(model.radius);
   archive(model.shape_symmetries.discrete);
   archive(model.shape_symmetries.continuous);
