@@ -11,6 +11,7 @@
 #include "pipeline/base/parallel.hpp"
 #include "pose/registration/flat_candidates.hpp"
 #include "pose/seen/camera_colours.hpp"
+#include "pose/seen/foreground_search.hpp"
 #include "pose/verification/pose_decision.hpp"
 #include "pose/verification/shared_surface.hpp"
 #include "pose/verification/texture_comparison.hpp"

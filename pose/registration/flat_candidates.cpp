@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pose/seen/depth_score.hpp"
-#include "pose/seen/surface_foreground.hpp"
+#include "pose/seen/foreground_search.hpp"
 
 namespace houghstream {
 namespace {
@@ -68,7 +67,7 @@ class FlatSearch {
 
   PoseCandidate scored(const Eigen::Isometry3d& pose) const {
     constexpr int kPoints = 120;
-    return {pose, foreground_.mean_at(project_view(observation_.frame, observation_.model, pose, kPoints))};
+    return {pose, mean_evidence(foreground_, project_view(observation_.frame, observation_.model, pose, kPoints))};
   }
 
   /// Returns the pose at which the model touches the plane, its centre above the foreground's.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "pose/seen/colour_score.hpp"
-#include "pose/seen/depth_score.hpp"
+#include "pose/seen/foreground_search.hpp"
 
 namespace houghstream {
 namespace {
@@ -34,7 +34,7 @@ ScoredPose score_pose_jointly(const ObjectObservation& observation, const Eigen:
   const ProjectedView projected = project_view(observation.frame, observation.model, T_camera_object, points);
   const float depth = score_projected_view(projected, tolerance).value;
   const float score = joint_score(depth, compare_colours(observation.colours, projected, tolerance));
-  const float share = observation.foreground ? 0.5F + 0.5F * observation.foreground->mean_at(projected) : 1.0F;
+  const float share = observation.foreground ? 0.5F + 0.5F * mean_evidence(*observation.foreground, projected) : 1.0F;
   return {T_camera_object, share * score};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pose/seen/surface_foreground.hpp"
+#include "pose/seen/foreground_search.hpp"
 #include "tests/pose/test_scene.hpp"
 
 namespace houghstream::test_scene {

@@ -1,4 +1,4 @@
-#include "pose/seen/surface_foreground.hpp"
+#include "pose/seen/foreground_search.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -9,8 +9,6 @@
 
 #include "pipeline/base/random.hpp"
 #include "pose/seen/colour_discriminant.hpp"
-#include "pose/seen/depth_score.hpp"
-#include "pose/seen/region.hpp"
 
 namespace houghstream {
 namespace {
@@ -141,12 +139,13 @@ std::optional<Eigen::Vector2d> find_middle(const cv::Mat& evidence, const Object
 
 }  // namespace
 
-float SurfaceForeground::mean_at(const ProjectedView& projected) const {
-  const cv::Rect part(origin_px, evidence.size());
+float mean_evidence(const SurfaceForeground& foreground, const ProjectedView& projected) {
+  const cv::Mat& evidence = foreground.evidence;
+  const cv::Rect part(foreground.origin_px, evidence.size());
   float sum = 0.0F;
   for (const ProjectedPoint& point : projected.points) {
     const cv::Point at(point.x, point.y);
-    sum += part.contains(at) ? evidence.at<float>(at - origin_px) : -1.0F;
+    sum += part.contains(at) ? evidence.at<float>(at - foreground.origin_px) : -1.0F;
   }
   return projected.points.empty() ? -1.0F : sum / static_cast<float>(projected.points.size());
 }

@@ -1,8 +1,7 @@
-#include "pose/seen/surface_foreground.hpp"
+#include "pose/seen/foreground_search.hpp"
 
 #include <gtest/gtest.h>
 
-#include "pose/seen/depth_score.hpp"
 #include "tests/pose/flat_scene.hpp"
 
 namespace houghstream {
@@ -12,7 +11,7 @@ using namespace test_scene;
 
 /// Returns the mean evidence of the model's points at a pose.
 float mean_at(const FlatScene& scene, const SurfaceForeground& foreground, const Eigen::Isometry3d& pose) {
-  return foreground.mean_at(project_view(scene.frame, scene.model, pose, 200));
+  return mean_evidence(foreground, project_view(scene.frame, scene.model, pose, 200));
 }
 
 TEST(SurfaceForeground, IsWhatLiesOnTheTableInAnotherColour) {
