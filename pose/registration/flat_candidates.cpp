@@ -24,10 +24,11 @@ class FlatSearch {
     constexpr std::size_t kAngles = 24;
     const Eigen::Vector3d thin = observation_.model.axes.col(observation_.model.thin_axis).cast<double>();
     const Eigen::Quaterniond up = Eigen::Quaterniond::FromTwoVectors(side * thin, normal_);
+    const Eigen::Vector3d place = foreground_.centre + height_above_lowest(up) * normal_;
     std::vector<PoseCandidate> ring;
     for (std::size_t i = 0; i < kAngles; ++i) {
       const Eigen::AngleAxisd angle(2.0 * M_PI * static_cast<double>(i) / kAngles, normal_);
-      ring.push_back(scored(lay((angle * up).toRotationMatrix())));
+      ring.push_back(scored(Eigen::Translation3d(place) * (angle * up) * Eigen::Translation3d(-centre_)));
     }
     std::vector<PoseCandidate> best;
     for (std::size_t i = 0; i < kAngles; ++i) {
@@ -70,18 +71,13 @@ class FlatSearch {
     return {pose, mean_evidence(foreground_, project_view(observation_.frame, observation_.model, pose, kPoints))};
   }
 
-  /// Returns the pose at which the model touches the plane, its centre above the foreground's.
-  Eigen::Isometry3d lay(const Eigen::Matrix3d& rotation) const {
-    constexpr std::size_t kStride = 20;  // points of the views that are enough to find the lowest
+  /// Returns how high the model's centre is above its lowest point; turns about the normal do not change it.
+  double height_above_lowest(const Eigen::Quaterniond& rotation) const {
+    const Eigen::Vector3d up = rotation.inverse() * normal_;  // object frame
     double lowest = 0.0;
-    for (const ModelView& view : observation_.model.views) {
-      for (std::size_t i = 0; i < view.points.size(); i += kStride)
-        lowest = std::min(lowest, normal_.dot(rotation * (view.points[i].cast<double>() - centre_)));
-    }
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.linear() = rotation;
-    pose.translation() = foreground_.centre - lowest * normal_ - rotation * centre_;
-    return pose;
+    for (const Eigen::Vector3f& vertex : observation_.model.mesh.vertices)
+      lowest = std::min(lowest, up.dot(vertex.cast<double>() - centre_));
+    return -lowest;
   }
 
   const ObjectObservation& observation_;
