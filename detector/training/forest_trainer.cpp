@@ -135,7 +135,7 @@ class Counted {
       progress_(fmt::format("score: {} of {} composed pictures", asked_, count_));
   }
 
-  const int count_;
+  int count_;
   const Progress& progress_;
   std::mutex mutex_;
   int asked_ = 0;

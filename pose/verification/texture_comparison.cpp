@@ -28,8 +28,8 @@ constexpr double kMiddleCells = 25.0;
 constexpr double kCoarseCells = 85.0;
 constexpr double kTempering = 0.3;
 constexpr double kNoise = 8.0;  // variance of a channel without texture and shading, 8-bit CIE L*a*b*
-constexpr double kMinGain = 0.3;
-constexpr double kMaxGain = 2.5;
+constexpr double kMinTextureGain = 0.3;
+constexpr double kMaxTextureGain = 2.5;
 constexpr double kMinLogLikelihoodGain = 1.0;  // gain from which on a rotation follows more than noise
 
 /// Holds a band of one colour channel: one number for each compared cell, and the sum of their squares.
@@ -393,9 +393,9 @@ TextureBands make_texture_bands(const cv::Mat& lab, const VisibleSurface& surfac
   for (Band& band : texture.bands) band.values.resize(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const cv::Point& cell = surface.cells[static_cast<std::size_t>(i)];
-    const cv::Vec3f cell_colour = lab.at<cv::Vec3f>(cell);
-    const cv::Vec3f fine_mean = fine.at<cv::Vec3f>(cell);
-    const cv::Vec3f coarse_mean = coarse.at<cv::Vec3f>(cell);
+    const cv::Vec3f& cell_colour = lab.at<cv::Vec3f>(cell);
+    const cv::Vec3f& fine_mean = fine.at<cv::Vec3f>(cell);
+    const cv::Vec3f& coarse_mean = coarse.at<cv::Vec3f>(cell);
     for (int c = 0; c < 3; ++c) {
       texture.bands[static_cast<std::size_t>(c)].values[i] = cell_colour[c] - fine_mean[c];
       texture.bands[static_cast<std::size_t>(3 + c)].values[i] = fine_mean[c] - coarse_mean[c];
@@ -429,7 +429,7 @@ double log_likelihood_ratio(const TextureBands& model, const TextureBands& obser
     const Band& observed_band = observed.bands[i];
     const auto count = static_cast<double>(observed_band.values.size());
     const auto product = static_cast<double>(model_band.values.dot(observed_band.values));
-    const double gain = std::clamp(product / std::max(model_band.sum_sq, 1e-6), kMinGain, kMaxGain);
+    const double gain = std::clamp(product / std::max(model_band.sum_sq, 1e-6), kMinTextureGain, kMaxTextureGain);
     const double residual_sq = std::max(0.0, observed_band.sum_sq - gain * (2.0 * product - gain * model_band.sum_sq));
     sum -= 0.5 * count / kCellsPerObservation[i] *
            std::log((residual_sq / count + kNoise) / (observed_band.sum_sq / count + kNoise));
@@ -438,7 +438,7 @@ double log_likelihood_ratio(const TextureBands& model, const TextureBands& obser
   constexpr double kCast = 14.0;
   constexpr double kMax = 4.0;  // deviations
   const double strength =
-      std::clamp(model.chroma.dot(observed.chroma) / std::max(model.chroma.squaredNorm(), 1.0), 0.5, kMaxGain);
+      std::clamp(model.chroma.dot(observed.chroma) / std::max(model.chroma.squaredNorm(), 1.0), 0.5, kMaxTextureGain);
   const double chroma_deviation = std::min((observed.chroma - strength * model.chroma).norm() / kCast, kMax);
   return kTempering * sum - 0.5 * chroma_deviation * chroma_deviation;
 }

@@ -71,7 +71,7 @@ class ResultQueue {
     StreamResult result;
   };
 
-  const bool keeps_all_;
+  bool keeps_all_;
   mutable std::mutex mutex_;
   std::condition_variable filled_;
   std::deque<Waiting> waiting_;
