@@ -44,6 +44,12 @@ bool HandleObservation::can_be_occluded() const {
 
 HandleObserver::HandleObserver(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                const DepthTolerance& tolerance)
+    : HandleObserver(observation, T_camera_object,
+                     render_depth_region(observation.model.mesh, T_camera_object, observation.frame.camera),
+                     tolerance) {}
+
+HandleObserver::HandleObserver(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                               const RenderedRegion& rendered, const DepthTolerance& tolerance)
     : observation_(observation), T_camera_object_(T_camera_object) {
   if (observation.model.unround_points.empty()) return;
   const ContinuousSymmetry& axis = *observation.model.nearly_round;
@@ -57,7 +63,7 @@ HandleObserver::HandleObserver(const ObjectObservation& observation, const Eigen
   };
   // The colours of the rest tell nothing of a handle in another paint.
   foreground_.emplace(
-      observation, render_depth_region(observation.model.mesh, T_camera_object, observation.frame.camera), tolerance,
+      observation, rendered, tolerance,
       observation.model.is_unround_alike ? std::function<bool(const cv::Point&)>(can_be_handle) : nullptr);
 }
 

@@ -24,6 +24,9 @@ struct HandleObservation {
 /// Observes the handle of an object at poses about one that was registered. The observation must outlive it.
 class HandleObserver {
  public:
+  /// `rendered` is the model at the registered pose.
+  HandleObserver(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                 const RenderedRegion& rendered, const DepthTolerance& tolerance);
   HandleObserver(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                  const DepthTolerance& tolerance);
 

@@ -78,13 +78,13 @@ struct Alternative {
 // The steps of compare_with_alternatives(); they stand behind it in the order of their calls.
 std::vector<EquivalentPose> find_alternative_poses(const ObjectObservation& observation,
                                                    const Eigen::Isometry3d& T_camera_object,
-                                                   const DepthTolerance& tolerance,
+                                                   const RenderedRegion& rendered, const DepthTolerance& tolerance,
                                                    const RegistrationSettings& registration);
 std::vector<EquivalentPose> find_near_alternatives(const ObjectObservation& observation,
                                                    const Eigen::Isometry3d& T_camera_object,
-                                                   const DepthTolerance& tolerance,
+                                                   const RenderedRegion& rendered, const DepthTolerance& tolerance,
                                                    const RegistrationSettings& registration);
-void compare_silhouettes(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+void compare_silhouettes(const ObjectObservation& observation, const RenderedRegion& rendered,
                          const DepthTolerance& tolerance, std::vector<EquivalentPose>& alternatives);
 bool stands_out(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                 const RenderedRegion& other);
@@ -92,7 +92,7 @@ double silhouette_log_ratio(const ForegroundEvidence& foreground, const Rendered
                             const cv::Rect& image_px);
 TextureComparison compare_likelihoods(const std::vector<EquivalentPose>& alternatives);
 VisibleSurface find_visible_surface(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                                    const DepthTolerance& tolerance);
+                                    const RenderedRegion& rendered, const DepthTolerance& tolerance);
 cv::Rect crop_to_whole_cells(const cv::Rect& part, int cell_px);
 cv::Point middle_px(const cv::Point& cell, const VisibleSurface& surface);
 bool is_overexposed(const cv::Vec3b& bgr);
@@ -119,11 +119,15 @@ std::optional<TextureComparison> compare_with_alternatives(const ObjectObservati
                                                            const Eigen::Isometry3d& T_camera_object,
                                                            const DepthTolerance& tolerance,
                                                            const RegistrationSettings& registration) {
+  const ObjectModel& model = observation.model;
+  if (model.alternatives.empty() && model.near_alternatives.empty() && model.partial_alternatives.empty())
+    return std::nullopt;
+  const RenderedRegion rendered = render_depth_region(model.mesh, T_camera_object, observation.frame.camera);
   const std::vector<EquivalentPose> alternatives =
-      find_alternative_poses(observation, T_camera_object, tolerance, registration);
+      find_alternative_poses(observation, T_camera_object, rendered, tolerance, registration);
   if (alternatives.empty()) return std::nullopt;
   if (observation.model.texture.empty() || observation.colours.lab.empty()) return compare_likelihoods(alternatives);
-  const VisibleSurface surface = find_visible_surface(observation, T_camera_object, tolerance);
+  const VisibleSurface surface = find_visible_surface(observation, T_camera_object, rendered, tolerance);
   if (surface.cells.size() < kMinCells) return compare_likelihoods(alternatives);
   std::optional<TextureBands> texture = model_texture(observation.model, surface, Eigen::Isometry3d::Identity());
   if (!texture) return compare_likelihoods(alternatives);
@@ -167,12 +171,13 @@ TextureComparison compare_likelihoods(const std::vector<EquivalentPose>& alterna
 /// Returns the poses that only texture and silhouette distinguish from this one: those whose depth agrees as well.
 std::vector<EquivalentPose> find_alternative_poses(const ObjectObservation& observation,
                                                    const Eigen::Isometry3d& T_camera_object,
-                                                   const DepthTolerance& tolerance,
+                                                   const RenderedRegion& rendered, const DepthTolerance& tolerance,
                                                    const RegistrationSettings& registration) {
-  std::vector<EquivalentPose> poses = find_near_alternatives(observation, T_camera_object, tolerance, registration);
+  std::vector<EquivalentPose> poses =
+      find_near_alternatives(observation, T_camera_object, rendered, tolerance, registration);
   for (const Eigen::Isometry3d& motion : observation.model.alternatives) poses.push_back({T_camera_object * motion});
   if (observation.model.partial_alternatives.empty()) return poses;
-  const HandleObserver handle(observation, T_camera_object, tolerance);
+  const HandleObserver handle(observation, T_camera_object, rendered, tolerance);
   if (handle.observe_at(T_camera_object).is_visible()) return poses;
   for (const Eigen::Isometry3d& motion : observation.model.partial_alternatives) {
     const Eigen::Isometry3d rotated = T_camera_object * motion;
@@ -184,7 +189,7 @@ std::vector<EquivalentPose> find_alternative_poses(const ObjectObservation& obse
 /// Returns nearly equivalent poses, registered, with what their silhouettes say.
 std::vector<EquivalentPose> find_near_alternatives(const ObjectObservation& observation,
                                                    const Eigen::Isometry3d& T_camera_object,
-                                                   const DepthTolerance& tolerance,
+                                                   const RenderedRegion& rendered, const DepthTolerance& tolerance,
                                                    const RegistrationSettings& registration) {
   constexpr int kPoints = 150;
   constexpr float kMinScoreRatio = 0.8F;
@@ -202,30 +207,27 @@ std::vector<EquivalentPose> find_near_alternatives(const ObjectObservation& obse
     if (moved.inliers > 0 && depth_score_at(moved.T_camera_object) >= kMinScoreRatio * score)
       poses.push_back({moved.T_camera_object});
   }
-  if (!poses.empty()) compare_silhouettes(observation, T_camera_object, tolerance, poses);
+  if (!poses.empty()) compare_silhouettes(observation, rendered, tolerance, poses);
   return poses;
 }
 
 /// Sets the log ratio of each alternative to what the pixels say that the model covers at one of both poses only.
-void compare_silhouettes(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+void compare_silhouettes(const ObjectObservation& observation, const RenderedRegion& rendered,
                          const DepthTolerance& tolerance, std::vector<EquivalentPose>& alternatives) {
-  const auto render = [&](const Eigen::Isometry3d& pose) {
-    return render_depth_region(observation.model.mesh, pose, observation.frame.camera);
-  };
-  RenderedRegion pose = render(T_camera_object);
   std::vector<std::pair<EquivalentPose*, RenderedRegion>> others;
   for (EquivalentPose& alternative : alternatives) {
-    if (stands_out(observation, alternative.T_camera_object, pose))
-      others.emplace_back(&alternative, render(alternative.T_camera_object));
+    const Eigen::Isometry3d& pose = alternative.T_camera_object;
+    if (stands_out(observation, pose, rendered))
+      others.emplace_back(&alternative, render_depth_region(observation.model.mesh, pose, observation.frame.camera));
   }
   if (others.empty()) return;
-  const ForegroundEvidence foreground(observation, std::move(pose), tolerance, [&](const cv::Point& at_px) {
+  const ForegroundEvidence foreground(observation, rendered, tolerance, [&](const cv::Point& at_px) {
     return std::any_of(others.begin(), others.end(),
                        [&](const auto& other) { return !std::isnan(other.second.depth_at(at_px)); });
   });
   const cv::Rect image_px(cv::Point(), observation.frame.depth.size());
-  for (const auto& [alternative, rendered] : others)
-    alternative->log_ratio = silhouette_log_ratio(foreground, rendered, image_px);
+  for (const auto& [alternative, other] : others)
+    alternative->log_ratio = silhouette_log_ratio(foreground, other, image_px);
 }
 
 /// Returns whether points of the model at a pose lie beside its silhouette at another one, rendered.
@@ -268,10 +270,8 @@ double silhouette_log_ratio(const ForegroundEvidence& foreground, const Rendered
 /// Finds the cells where the model is visible. Those of its outline are left out, since colours are registered to depth
 /// within a few pixels only.
 VisibleSurface find_visible_surface(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                                    const DepthTolerance& tolerance) {
+                                    const RenderedRegion& rendered, const DepthTolerance& tolerance) {
   VisibleSurface surface;
-  const RenderedRegion rendered =
-      render_depth_region(observation.model.mesh, T_camera_object, observation.frame.camera);
   const cv::Rect colours(observation.colours.origin_px, observation.colours.lab.size());
   const cv::Rect part = rendered.region_px & colours;
   surface.cell_px = std::max(1, (std::max(part.width, part.height) + kCells - 1) / kCells);
@@ -281,7 +281,7 @@ VisibleSurface find_visible_surface(const ObjectObservation& observation, const 
   for (int y = 0; y < inlier_cells.rows; ++y) {
     for (int x = 0; x < inlier_cells.cols; ++x) {
       const cv::Point at = middle_px({x, y}, surface);
-      const float model = rendered.depth.at<float>(at - rendered.region_px.tl());
+      const float model = rendered.depth_at(at);
       const float depth_difference =
           observation.frame.depth.at<float>(at) - model;  // NaN where nothing is rendered or measured
       const bool is_inlier = std::abs(depth_difference) <= tolerance.at(model);
@@ -297,7 +297,7 @@ VisibleSurface find_visible_surface(const ObjectObservation& observation, const 
   const Eigen::Isometry3d T_object_camera = T_camera_object.inverse();
   for (const cv::Point& cell : surface.cells) {
     const cv::Point at = middle_px(cell, surface);
-    const double z = rendered.depth.at<float>(at - rendered.region_px.tl());
+    const double z = rendered.depth_at(at);
     surface.points.push_back((T_object_camera * observation.frame.camera.backproject(at.x, at.y, z)).cast<float>());
   }
   surface.camera_position = T_object_camera.translation().cast<float>();
