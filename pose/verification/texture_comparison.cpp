@@ -27,8 +27,10 @@ constexpr double kFineCells = 4.0;
 constexpr double kMiddleCells = 25.0;
 constexpr double kCoarseCells = 85.0;
 constexpr double kTempering = 0.3;
-constexpr double kNoise = 8.0;  // variance of a channel without texture and shading, 8-bit CIE L*a*b*
-constexpr double kMinTextureGain = 0.3;
+constexpr double kLogRatio = 2.0;        // log likelihood ratio of one observation of silhouette or handle that is sure
+constexpr double kNoise = 8.0;           // variance of a channel without texture and shading, 8-bit CIE L*a*b*
+constexpr double kBlur_px = 1.0;         // standard deviation of a camera's blur, by its lens and its mosaic of colours
+constexpr double kMinTextureGain = 0.3;  // at the model's exposure
 constexpr double kMaxTextureGain = 2.5;
 constexpr double kMinLogLikelihoodGain = 1.0;  // gain from which on a rotation follows more than noise
 
@@ -42,9 +44,10 @@ constexpr std::size_t kBands = 8;  // fine L a b, middle L a b, coarse a b
 constexpr std::array<double, kBands> kCellsPerObservation = {kFineCells,   kFineCells,   kFineCells,   kMiddleCells,
                                                              kMiddleCells, kMiddleCells, kCoarseCells, kCoarseCells};
 
-/// The bands of an image, and its mean chroma.
+/// The bands of an image, and its mean colour.
 struct TextureBands {
   std::array<Band, kBands> bands;
+  double lightness = 0.0;                            ///< mean L*, 8-bit scale
   Eigen::Vector2d chroma = Eigen::Vector2d::Zero();  ///< mean a* and b*, about grey
 };
 
@@ -55,6 +58,7 @@ struct VisibleSurface {
   cv::Mat mask;          ///< CV_32FC1, 1 for the compared cells
   cv::Mat fine_weights;  ///< CV_32FC3, in each channel the compared cells about each cell
   cv::Mat coarse_weights;
+  cv::Mat blur_weights;  ///< CV_32FC3, what the camera's blur keeps of each compared cell; empty where cells are larger
   std::vector<cv::Point> cells;                               ///< compared cells, row by row
   std::vector<Eigen::Vector3f> points;                        ///< surface point of each cell, object frame, metres
   Eigen::Vector3f camera_position = Eigen::Vector3f::Zero();  ///< object frame, metres
@@ -97,6 +101,8 @@ cv::Rect crop_to_whole_cells(const cv::Rect& part, int cell_px);
 cv::Point middle_px(const cv::Point& cell, const VisibleSurface& surface);
 bool is_overexposed(const cv::Vec3b& bgr);
 cv::Mat count_cells_around(const cv::Mat& mask, int side);
+cv::Mat blurred(const cv::Mat& values, int cell_px);
+cv::Mat three_channels(const cv::Mat& weight);
 std::optional<TextureBands> model_texture(const ObjectModel& model, const VisibleSurface& surface,
                                           const Eigen::Isometry3d& motion);
 std::vector<TextureBands> observed_textures(const ObjectObservation& observation, const VisibleSurface& surface);
@@ -177,11 +183,16 @@ std::vector<EquivalentPose> find_alternative_poses(const ObjectObservation& obse
       find_near_alternatives(observation, T_camera_object, rendered, tolerance, registration);
   for (const Eigen::Isometry3d& motion : observation.model.alternatives) poses.push_back({T_camera_object * motion});
   if (observation.model.partial_alternatives.empty()) return poses;
+  constexpr double kMinLogRatio = -5.0;  // where the handle would be in plain sight, and is not
   const HandleObserver handle(observation, T_camera_object, rendered, tolerance);
-  if (handle.observe_at(T_camera_object).is_visible()) return poses;
+  const HandleObservation observed = handle.observe_at(T_camera_object);
+  if (observed.is_visible()) return poses;
   for (const Eigen::Isometry3d& motion : observation.model.partial_alternatives) {
     const Eigen::Isometry3d rotated = T_camera_object * motion;
-    if (handle.observe_at(rotated).can_be_occluded()) poses.push_back({rotated});
+    const HandleObservation there = handle.observe_at(rotated);
+    const double log_ratio =
+        kTempering * kLogRatio / kFineCells * there.points * (there.support() - observed.support());
+    if (there.can_be_occluded() || log_ratio > kMinLogRatio) poses.push_back({rotated, log_ratio});
   }
   return poses;
 }
@@ -249,7 +260,6 @@ bool stands_out(const ObjectObservation& observation, const Eigen::Isometry3d& T
 /// Returns the log likelihood ratio of an alternative to the pose at which the evidence was learnt.
 double silhouette_log_ratio(const ForegroundEvidence& foreground, const RenderedRegion& alternative,
                             const cv::Rect& image_px) {
-  constexpr double kLogRatio = 2.0;  // of one observation that is sure
   const RenderedRegion& pose = foreground.rendered();
   const cv::Rect both = (pose.region_px | alternative.region_px) & image_px;
   if (both.area() == 0) return 0.0;
@@ -293,6 +303,11 @@ VisibleSurface find_visible_surface(const ObjectObservation& observation, const 
   inlier_cells.convertTo(surface.mask, CV_32F);
   surface.fine_weights = count_cells_around(surface.mask, kFine);
   surface.coarse_weights = count_cells_around(surface.mask, kCoarse);
+  constexpr int kMaxBlurredCell_px = 3;  // larger cells average away more than the camera blurs
+  if (surface.cell_px <= kMaxBlurredCell_px) {
+    surface.blur_weights = three_channels(blurred(surface.mask, surface.cell_px));
+    surface.blur_weights.setTo(cv::Scalar::all(1.0), surface.mask == 0.0);
+  }
   cv::findNonZero(inlier_cells, surface.cells);
   const Eigen::Isometry3d T_object_camera = T_camera_object.inverse();
   for (const cv::Point& cell : surface.cells) {
@@ -323,13 +338,26 @@ bool is_overexposed(const cv::Vec3b& bgr) {
 cv::Mat count_cells_around(const cv::Mat& mask, int side) {
   cv::Mat weight;
   cv::max(box_sum(mask, side), 1.0, weight);
+  return three_channels(weight);
+}
+
+/// Returns values, 0 where nothing is compared, after a camera's blur.
+cv::Mat blurred(const cv::Mat& values, int cell_px) {
+  const double deviation = kBlur_px / cell_px;  // cells
+  cv::Mat result;
+  cv::GaussianBlur(values, result, cv::Size(), deviation, deviation, cv::BORDER_CONSTANT);
+  return result;
+}
+
+cv::Mat three_channels(const cv::Mat& weight) {
   const std::array<cv::Mat, 3> channels = {weight, weight, weight};
   cv::Mat weights;
   cv::merge(channels.data(), channels.size(), weights);
   return weights;
 }
 
-/// Returns the model's texture on the surface after `motion`; nothing where much of the surface would be missing.
+/// Returns the model's texture on the surface after `motion`, as blurred as the camera shows it; nothing where much of
+/// the surface would be missing.
 std::optional<TextureBands> model_texture(const ObjectModel& model, const VisibleSurface& surface,
                                           const Eigen::Isometry3d& motion) {
   constexpr double kMaxMissing = 0.2;
@@ -353,6 +381,10 @@ std::optional<TextureBands> model_texture(const ObjectModel& model, const Visibl
     return std::nullopt;
   const cv::Vec3f mean = sum / static_cast<float>(surface.cells.size() - missing.size());
   for (const cv::Point& cell : missing) grid.at<cv::Vec3f>(cell) = mean;
+  if (!surface.blur_weights.empty()) {
+    grid = blurred(grid, surface.cell_px) / surface.blur_weights;
+    grid.setTo(cv::Scalar::all(0.0), surface.mask == 0.0);
+  }
   return make_texture_bands(grid, surface);
 }
 
@@ -405,6 +437,7 @@ TextureBands make_texture_bands(const cv::Mat& lab, const VisibleSurface& surfac
   }
   for (Band& band : texture.bands) band.sum_sq = static_cast<double>(band.values.squaredNorm());
   constexpr double kGrey = 128.0;
+  texture.lightness = mean[0];
   texture.chroma = {mean[1] - kGrey, mean[2] - kGrey};
   return texture;
 }
@@ -423,13 +456,18 @@ double best_log_likelihood_ratio(const TextureBands& model, const std::vector<Te
 
 /// Returns the log likelihood ratio of the observation under the model's texture and under a uniform surface.
 double log_likelihood_ratio(const TextureBands& model, const TextureBands& observed) {
+  // Less light scales all colours of CIE L*a*b*, with L* + 16 in place of L*.
+  constexpr double kOffset = 16.0 * 255.0 / 100.0;
+  const double exposure =
+      std::clamp((observed.lightness + kOffset) / (model.lightness + kOffset), kMinTextureGain, 1.0);
   double sum = 0.0;
   for (std::size_t i = 0; i < kBands; ++i) {
     const Band& model_band = model.bands[i];
     const Band& observed_band = observed.bands[i];
     const auto count = static_cast<double>(observed_band.values.size());
     const auto product = static_cast<double>(model_band.values.dot(observed_band.values));
-    const double gain = std::clamp(product / std::max(model_band.sum_sq, 1e-6), kMinTextureGain, kMaxTextureGain);
+    const double gain =
+        std::clamp(product / std::max(model_band.sum_sq, 1e-6), exposure * kMinTextureGain, kMaxTextureGain);
     const double residual_sq = std::max(0.0, observed_band.sum_sq - gain * (2.0 * product - gain * model_band.sum_sq));
     sum -= 0.5 * count / kCellsPerObservation[i] *
            std::log((residual_sq / count + kNoise) / (observed_band.sum_sq / count + kNoise));

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <opencv2/imgproc.hpp>
 
 #include "tests/pose/printed_box.hpp"
 
@@ -21,7 +22,7 @@ std::optional<TextureComparison> compared_at(const Eigen::Isometry3d& T_camera_o
   const ObjectModel model = make_object_model("box", taught, {});
   Detection detection;
   detection.box_px = cv::Rect2f(0.0F, 0.0F, 640.0F, 480.0F);
-  detection.centre_camera = kTruth.translation().cast<float>();
+  detection.centre_camera = T_camera_object.translation().cast<float>();
   const FrameContext seen_frame = make_frame_context(frame, {}, {});
   const ObjectObservation observation = observe_object(seen_frame, detection, model, {});
   return compare_with_alternatives(observation, T_camera_object, {kTolerance_m, {}}, {});
@@ -114,6 +115,21 @@ TEST(TextureComparison, TheLabelsPlaceIsFoundBetweenTheAlternatives) {
     ASSERT_TRUE(compared->better.has_value()) << off_deg;
     EXPECT_LT(degrees_between(*compared->better, kTruth), kWithin_deg) << off_deg;
   }
+}
+
+// A blurred image shows little of narrow stripes: the model's must be blurred likewise, or they would count as missing.
+TEST(TextureComparison, TheLabelIsFoundInADarkAndBlurredImage) {
+  const Eigen::Isometry3d far = standing(30.0, 30.0, 1.5);
+  RgbdFrame frame = coloured_frame(printed_can(), far, 1);
+  cv::GaussianBlur(frame.colour, frame.colour, cv::Size(), 1.2);
+  frame = through_camera(frame, [](double value, int) { return 0.15 * value; });
+  const std::optional<TextureComparison> right = compared_at(far, printed_can(), frame);
+  ASSERT_TRUE(right.has_value());
+  EXPECT_GT(right->margin, 0.5);
+  const std::optional<TextureComparison> turned = compared_at(rotated(far, 52.0), printed_can(), frame);
+  ASSERT_TRUE(turned.has_value());
+  ASSERT_TRUE(turned->better.has_value());
+  EXPECT_LT(degrees_between(*turned->better, far), kWithin_deg);
 }
 
 TEST(TextureComparison, OfAPlainObjectItIsOneOfAsMany) {
