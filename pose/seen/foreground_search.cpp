@@ -1,68 +1,37 @@
 #include "pose/seen/foreground_search.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
 #include "pipeline/base/random.hpp"
+#include "pipeline/geometry/plane_fit.hpp"
 #include "pose/seen/colour_discriminant.hpp"
 
 namespace houghstream {
 namespace {
 
-using Plane = Eigen::Hyperplane<double, 3>;
-
 constexpr double kOnPlane_m = 0.006;  // distance within which a point belongs to a plane
 constexpr int kMinPixels = 60;        // of the plane's colours, and of the foreground
 
-/// Returns the plane through the mean of the points across which they vary least.
-Plane fit_plane(const std::vector<Eigen::Vector3d>& points) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points) mean += point;
-  mean /= static_cast<double>(points.size());
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& point : points) scatter += (point - mean) * (point - mean).transpose();
-  const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
-  return {normal.dot(mean) > 0.0 ? Eigen::Vector3d(-normal) : normal, mean};
-}
-
-std::vector<Eigen::Vector3d> points_on(const Plane& plane, const std::vector<Eigen::Vector3d>& points) {
-  std::vector<Eigen::Vector3d> on;
-  for (const Eigen::Vector3d& point : points) {
-    if (plane.absDistance(point) < kOnPlane_m) on.push_back(point);
-  }
-  return on;
-}
-
-/// Returns the plane of most points (Fischler and Bolles 1981, "Random Sample Consensus"), nothing where these are
-/// fewer than half.
+/// Returns the plane of most points, nothing where these are fewer than half.
 std::optional<Plane> find_plane(const ObjectObservation& observation) {
   constexpr int kPoints = 600;
   constexpr std::size_t kMinPoints = 50;
-  constexpr int kTrials = 40;
   std::vector<Eigen::Vector3d> points;
   for (const Eigen::Vector3f& point : region_points(observation.frame, observation.region, kPoints))
     points.push_back(point.cast<double>());
   if (points.size() < kMinPoints) return std::nullopt;
+  const auto limit_m = [](const Eigen::Vector3d& /*point*/) { return kOnPlane_m; };
+  const auto weight = [](const Eigen::Vector3d& /*point*/) { return 1.0; };
   Random random(1);
-  const auto any_point = [&] {
-    return points[static_cast<std::size_t>(random.below(static_cast<int>(points.size())))];
-  };
-  std::vector<Eigen::Vector3d> best;
-  for (int i = 0; i < kTrials; ++i) {
-    const Eigen::Vector3d a = any_point();
-    const Eigen::Vector3d b = any_point();
-    const Eigen::Vector3d c = any_point();
-    const Eigen::Vector3d normal = (b - a).cross(c - a);
-    if (!(normal.norm() > 0.0)) continue;
-    std::vector<Eigen::Vector3d> on = points_on(Plane(normal.normalized(), a), points);
-    if (on.size() > best.size()) best = std::move(on);
-  }
-  if (2 * best.size() < points.size()) return std::nullopt;
-  return fit_plane(points_on(fit_plane(best), points));
+  const std::optional<Plane> largest = find_largest_plane(points, limit_m, PlaneSearch{}, random);
+  if (!largest) return std::nullopt;
+  const std::vector<Eigen::Vector3d> on = points_on(*largest, points, limit_m);
+  if (2 * on.size() < points.size()) return std::nullopt;
+  return fit_plane(points_on(fit_plane(on, weight), points, limit_m), weight);
 }
 
 /// Returns the height above the plane, CV_32FC1, metres; NaN where nothing is measured.

@@ -30,13 +30,13 @@ RgbdFrame surroundings_of(const TrainingView& view) {
 }
 
 /// Returns how high the object's measured points lie above a plane, metres, in ascending order.
-std::vector<double> heights_above(const reconstruction::Plane& plane, const TrainingView& view) {
+std::vector<double> heights_above(const Plane& plane, const TrainingView& view) {
   std::vector<double> heights;
   for (int y = 0; y < view.mask.rows; ++y) {
     for (int x = 0; x < view.mask.cols; ++x) {
       const float z = view.frame.depth.at<float>(y, x);
       if (view.mask.at<std::uint8_t>(y, x) != 0 && std::isfinite(z))
-        heights.push_back(plane.height(view.frame.camera.backproject(x, y, z)));
+        heights.push_back(plane.signedDistance(view.frame.camera.backproject(x, y, z)));
     }
   }
   std::sort(heights.begin(), heights.end());
@@ -45,17 +45,17 @@ std::vector<double> heights_above(const reconstruction::Plane& plane, const Trai
 
 }  // namespace
 
-std::optional<Eigen::Hyperplane<double, 3>> find_support(const TrainingView& view) {
+std::optional<Plane> find_support(const TrainingView& view) {
   constexpr double kTouches_m = 0.015;  // chosen: thrice the noise of depth at a metre, and a rounded edge
   constexpr double kBehind_m = 0.3;     // a wall farther behind the object carries nothing
   constexpr std::uint64_t kSeed = 1;
   const RgbdFrame around = surroundings_of(view);
   const double farthest = view.T_camera_object.translation().z() + kBehind_m;
-  for (const reconstruction::Plane& plane : reconstruction::find_planes(around, farthest, kSeed)) {
+  for (const Plane& plane : reconstruction::find_planes(around, farthest, kSeed)) {
     const std::vector<double> heights = heights_above(plane, view);
     if (heights.empty()) continue;
     const double lowest = heights[heights.size() / 20];
-    if (std::abs(lowest) < kTouches_m) return Eigen::Hyperplane<double, 3>(plane.normal, plane.offset);
+    if (std::abs(lowest) < kTouches_m) return plane;
   }
   return std::nullopt;
 }

@@ -70,10 +70,10 @@ SelectedObject describe_cluster(const RgbdFrame& frame, const Plane& plane, cons
   object.plane = refine_plane(frame, object.mask, plane, middle, 0.5);
   object.radius_m = 0.5 * PlaneAxes::kCell_m * std::hypot(cluster.cells.width, cluster.cells.height);
   object.height_m = cluster.highest;
-  const Eigen::Vector3d& z = object.plane.normal;
+  const Eigen::Vector3d& z = object.plane.normal();
   const Eigen::Vector3d x = (axes.x - axes.x.dot(z) * z).normalized();
   object.T_camera_stand.linear() << x, z.cross(x), z;
-  object.T_camera_stand.translation() = middle - object.plane.height(middle) * z;
+  object.T_camera_stand.translation() = middle - object.plane.signedDistance(middle) * z;
   return object;
 }
 
@@ -86,7 +86,7 @@ bool is_level(const RgbdFrame& frame, const Plane& plane, int x, int y) {
   const auto point = [&](int u, int v) { return frame.camera.backproject(u, v, frame.depth.at<float>(v, u)); };
   const Eigen::Vector3d normal =
       (point(x + kApart_px, y) - point(x - kApart_px, y)).cross(point(x, y + kApart_px) - point(x, y - kApart_px));
-  return normal.allFinite() && std::abs(normal.normalized().dot(plane.normal)) > kCosine;
+  return normal.allFinite() && std::abs(normal.normalized().dot(plane.normal())) > kCosine;
 }
 
 /// Returns the plane that carries a smaller object, since a cluster may be an object on a disc, a book or a box lid: a
@@ -102,7 +102,7 @@ std::optional<Plane> find_carrier_plane(const RgbdFrame& frame, const SelectedOb
     for (int x = 0; x < object.mask.cols; ++x) {
       if (object.mask.at<std::uint8_t>(y, x) == 0) continue;
       ++all;
-      const double height = object.plane.height(frame.camera.backproject(x, y, frame.depth.at<float>(y, x)));
+      const double height = object.plane.signedDistance(frame.camera.backproject(x, y, frame.depth.at<float>(y, x)));
       if (height < kMax_m && is_level(frame, object.plane, x, y))
         ++height_counts[static_cast<std::size_t>(height / kBin_m)];
     }
@@ -129,7 +129,7 @@ std::optional<Plane> find_carrier_plane(const RgbdFrame& frame, const SelectedOb
   }
   if (above_box.isEmpty() || above_box.diagonal().norm() > 0.85 * level_box.diagonal().norm()) return std::nullopt;
   Plane plane = object.plane;
-  plane.offset -= level;
+  plane.offset() -= level;
   const cv::Mat elsewhere = on_level == 0;
   return refine_plane(frame, elsewhere, plane, object.T_camera_stand.translation(), 0.5);
 }

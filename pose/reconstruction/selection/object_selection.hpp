@@ -13,7 +13,7 @@ namespace houghstream::reconstruction {
 
 /// Describes the selected object.
 struct SelectedObject {
-  Plane plane;                                                       ///< plane on which it stands
+  Plane plane{Eigen::Vector3d::UnitZ(), 0.0};                        ///< plane on which it stands
   Eigen::Isometry3d T_camera_stand = Eigen::Isometry3d::Identity();  ///< origin on the plane below its middle, z up
   double radius_m = 0.0;                                             ///< radius of its visible part about that axis
   double height_m = 0.0;                                             ///< above the plane

@@ -26,7 +26,7 @@ cv::Mat cells_of_pixels(const RgbdFrame& frame, const Plane& plane, const PlaneA
       const float z = frame.depth.at<float>(y, x);
       if (!(z > 0.1F && z < searched.max_distance_m)) continue;
       const Eigen::Vector3d p = frame.camera.backproject(x, y, z);
-      const double height = plane.height(p);
+      const double height = plane.signedDistance(p);
       if (height < std::max(kMin_m, 3.0 * depth_sigma(z)) || height > kMax_m) continue;
       const auto cell = axes.cell_of(p);
       if (!cell) continue;
@@ -40,12 +40,12 @@ cv::Mat cells_of_pixels(const RgbdFrame& frame, const Plane& plane, const PlaneA
 }  // namespace
 
 PlaneAxes::PlaneAxes(const Plane& plane, const Eigen::Vector3d& middle_ray) {
-  const double along = plane.normal.dot(middle_ray);
-  const double z = along < -1e-3 ? std::min(-plane.offset / along, 3.0) : 3.0;
+  const double along = plane.normal().dot(middle_ray);
+  const double z = along < -1e-3 ? std::min(-plane.offset() / along, 3.0) : 3.0;
   const Eigen::Vector3d ahead = z * middle_ray;
-  origin = ahead - plane.height(ahead) * plane.normal;
-  x = (Eigen::Vector3d::UnitX() - plane.normal.x() * plane.normal).normalized();
-  y = plane.normal.cross(x);
+  origin = ahead - plane.signedDistance(ahead) * plane.normal();
+  x = (Eigen::Vector3d::UnitX() - plane.normal().x() * plane.normal()).normalized();
+  y = plane.normal().cross(x);
 }
 
 std::optional<cv::Point> PlaneAxes::cell_of(const Eigen::Vector3d& point) const {
@@ -79,7 +79,7 @@ Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAx
       const int label = labels.at<int>(cell[1], cell[0]);
       clusters.of_pixel.at<int>(y, x) = label;
       Cluster& cluster = clusters.list[static_cast<std::size_t>(label)];
-      const double height = plane.height(frame.camera.backproject(x, y, frame.depth.at<float>(y, x)));
+      const double height = plane.signedDistance(frame.camera.backproject(x, y, frame.depth.at<float>(y, x)));
       ++cluster.pixels;
       cluster.lowest = std::min(cluster.lowest, height);
       cluster.highest = std::max(cluster.highest, height);

@@ -5,21 +5,14 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "pipeline/geometry/plane_fit.hpp"
 #include "pipeline/types/frame.hpp"
 
 namespace houghstream::reconstruction {
 
-/// Gives the plane normal.X + offset = 0 for its points X; camera frame, metres.
-struct Plane {
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit length, towards the camera
-  double offset = 0.0;                                ///< the camera's height above it
-
-  double height(const Eigen::Vector3d& point) const { return normal.dot(point) + offset; }
-};
-
-/// Returns planes on which objects may stand, the largest first: RANSAC (Fischler & Bolles 1981) on the depth up to
-/// `max_distance_m`, refined by least squares; only those that face upwards or the camera. The same input and seed give
-/// the same result.
+/// Returns planes on which objects may stand, the largest first, camera frame, metres: found at random (plane_fit) in
+/// the depth up to `max_distance_m`, refined by least squares; only those that face upwards or the camera. The same
+/// input and seed give the same result.
 std::vector<Plane> find_planes(const RgbdFrame& frame, double max_distance_m, std::uint64_t seed);
 
 /// Returns the plane nearest to the measured points that are close to it, of those pixels where `mask` (CV_8UC1, may be

@@ -121,8 +121,8 @@ void TakeMapper::follow_object_only() {
   const RgbdFrame& first = motion_classifier_.first().frame;
   MapSettings& map = map_.settings();
   map.plane = PlanePrior();
-  map.plane->normal = selected_.plane.normal;
-  map.plane->offset = selected_.plane.offset;
+  map.plane->normal = selected_.plane.normal();
+  map.plane->offset = selected_.plane.offset();
   map.min_inlier_fraction = 0.6;
   map.coarsest = 1;
   map.use_landmarks = false;
