@@ -49,4 +49,9 @@ inline Eigen::Isometry3d rotated(const Eigen::Isometry3d& T_camera_object, doubl
   return out;
 }
 
+inline double degrees_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  constexpr double kDegrees = 57.29577951308232;
+  return kDegrees * Eigen::Quaterniond(a.linear()).angularDistance(Eigen::Quaterniond(b.linear()));
+}
+
 }  // namespace houghstream::test_scene

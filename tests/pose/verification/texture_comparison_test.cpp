@@ -6,6 +6,7 @@
 #include <functional>
 #include <opencv2/imgproc.hpp>
 
+#include "tests/pose/mug_scene.hpp"
 #include "tests/pose/printed_box.hpp"
 
 namespace houghstream {
@@ -88,11 +89,6 @@ Mesh printed_can() {
   return mesh;
 }
 
-double degrees_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-  constexpr double kDegrees = 57.29577951308232;
-  return kDegrees * Eigen::Quaterniond(a.linear()).angularDistance(Eigen::Quaterniond(b.linear()));
-}
-
 /// Colours may be registered two pixels beside the depth, which are 3.5 degrees of the can.
 constexpr double kWithin_deg = 5.0;
 
@@ -169,6 +165,18 @@ TEST(TextureComparison, TheSilhouetteTellsWhichEndHasAStem) {
   ASSERT_TRUE(turned.has_value());
   ASSERT_TRUE(turned->better.has_value());
   EXPECT_GT(turned->better->linear().col(0).dot(kTruth.linear().col(0)), 0.99) << "the stem is at the other end";
+}
+
+// The handle is in plain sight beside the mug, at a turn that a mug whose handle is hidden must be compared with.
+TEST(TextureComparison, AVisibleHandleSpeaksAgainstAHiddenOne) {
+  const MugScene scene(kBeside_deg);
+  const ObjectObservation observation = scene.observe();
+  const std::optional<TextureComparison> hidden =
+      compare_with_alternatives(observation, mug_at(kBehind_deg), kHandleTolerance, {});
+  ASSERT_TRUE(hidden.has_value());
+  EXPECT_LT(hidden->margin, -3.0);
+  ASSERT_TRUE(hidden->better.has_value());
+  EXPECT_LT(degrees_between(*hidden->better, scene.truth), 15.0) << "a step between turns";
 }
 
 TEST(TextureComparison, WithoutAlternativesThereIsNone) {
