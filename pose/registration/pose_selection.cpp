@@ -26,8 +26,7 @@ class PoseSelector {
       : observation_(observation),
         votes_(votes),
         settings_(settings),
-        tolerance_{settings.tolerance_m, observation.noise},
-        distances_(correspondence_distances(observation, settings.registration)) {}
+        tolerance_{settings.tolerance_m, observation.noise} {}
 
   RegistrationResult best_of(const std::vector<RegistrationResult>& registered) const {
     RegistrationResult best;
@@ -43,8 +42,8 @@ class PoseSelector {
     float best_score = score_of(result);
     const RotationRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, maximum, settings_.rotation_search.points};
     for (const ScoredPose& rotated : best_rotations_about_z(observation_, result.T_camera_object, range, tolerance_)) {
-      RegistrationResult registered = climb_hill(register_coarsely(
-          observation_, rotated.T_camera_object, 0.5 * (distances_.start + distances_.end), settings_.registration));
+      RegistrationResult registered =
+          climb_hill(register_rotated(observation_, rotated.T_camera_object, settings_.registration));
       registered.iterations += result.iterations;
       keep_better(registered, best, best_score);
     }
@@ -57,8 +56,7 @@ class PoseSelector {
     const HandleObserver handle(observation_, result.T_camera_object, tolerance_);
     const std::optional<Eigen::Isometry3d> turned = handle.find_turn();
     if (!turned) return result;
-    RegistrationResult registered =
-        register_coarsely(observation_, *turned, 0.5 * (distances_.start + distances_.end), settings_.registration);
+    RegistrationResult registered = register_rotated(observation_, *turned, settings_.registration);
     registered = register_finely(observation_, registered, settings_.registration);
     registered.iterations += result.iterations;
     const bool is_better =
@@ -76,8 +74,7 @@ class PoseSelector {
       const Eigen::AngleAxisd half_turn(M_PI, observation_.model.axes.col(axis).cast<double>());
       const Eigen::Isometry3d flipped =
           result.T_camera_object * Eigen::Translation3d(middle) * half_turn * Eigen::Translation3d(-middle);
-      RegistrationResult registered = climb_hill(
-          register_coarsely(observation_, flipped, 0.5 * (distances_.start + distances_.end), settings_.registration));
+      RegistrationResult registered = climb_hill(register_rotated(observation_, flipped, settings_.registration));
       registered.iterations += result.iterations;
       if (is_near_detection(observation_, registered, settings_.registration))
         flips.push_back({registered, score_of(registered)});
@@ -117,7 +114,6 @@ class PoseSelector {
   const std::vector<RotationCandidate>& votes_;
   const PoseSelectionSettings& settings_;
   DepthTolerance tolerance_;
-  CorrespondenceDistances distances_;
 };
 
 RegistrationResult refine_fully(const PoseSelector& selector, const ObjectObservation& observation,

@@ -21,6 +21,12 @@ RegistrationResult register_coarsely(const ObjectObservation& observation, const
   return settings.engine(observation, T_camera_object, stage, settings);
 }
 
+RegistrationResult register_rotated(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                                    const RegistrationSettings& settings) {
+  const CorrespondenceDistances distances = correspondence_distances(observation, settings);
+  return register_coarsely(observation, T_camera_object, 0.5 * (distances.start + distances.end), settings);
+}
+
 RegistrationResult register_finely(const ObjectObservation& observation, const RegistrationResult& result,
                                    const RegistrationSettings& settings) {
   const double end_m = correspondence_distances(observation, settings).end;

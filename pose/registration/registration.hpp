@@ -84,6 +84,11 @@ CorrespondenceDistances correspondence_distances(const ObjectObservation& observ
 RegistrationResult register_coarsely(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
                                      double start_m, const RegistrationSettings& settings);
 
+/// Registers with few points a rotation of a pose that was registered already: from pairs halfway between both
+/// distances on.
+RegistrationResult register_rotated(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
+                                    const RegistrationSettings& settings);
+
 /// Registers with many points from where another registration ended; returns that one's result where this one leads too
 /// far away. Counts the iterations of both.
 RegistrationResult register_finely(const ObjectObservation& observation, const RegistrationResult& result,

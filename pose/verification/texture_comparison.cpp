@@ -208,13 +208,10 @@ std::vector<EquivalentPose> find_near_alternatives(const ObjectObservation& obse
     return score_pose(observation.frame, observation.model, pose, kPoints, tolerance).value;
   };
   const float score = depth_score_at(T_camera_object);
-  const CorrespondenceDistances distances = correspondence_distances(observation, registration);
   std::vector<EquivalentPose> poses;
   for (const Eigen::Isometry3d& motion : observation.model.near_alternatives) {
     const RegistrationResult moved = register_finely(
-        observation,
-        register_coarsely(observation, T_camera_object * motion, 0.5 * (distances.start + distances.end), registration),
-        registration);
+        observation, register_rotated(observation, T_camera_object * motion, registration), registration);
     if (moved.inliers > 0 && depth_score_at(moved.T_camera_object) >= kMinScoreRatio * score)
       poses.push_back({moved.T_camera_object});
   }
