@@ -10,8 +10,9 @@
 namespace houghstream {
 namespace {
 
-constexpr int kUpdates = 2;    // steps with the same lines
-constexpr int kMinPairs = 12;  // pairs of depth; fewer agree by chance
+constexpr int kUpdates = 2;              // steps with the same lines
+constexpr int kMinPairs = 12;            // pairs of depth; fewer agree by chance
+constexpr float kMinForeground = 0.02F;  // chosen: where the light changes, depth is what is left to follow by
 
 /// One level of the coarse-to-fine registration.
 struct JointLevel {
@@ -119,8 +120,8 @@ class JointRegistration {
   /// Adds the equations of depth. Returns false where there is too little depth.
   bool add_depth(const JointLevel& level, double distance_m, MotionEquations& all) {
     const auto points = static_cast<std::size_t>(std::lround(level.points * settings_.points));
-    const CorrespondenceSums pairs =
-        sum_correspondences(observation_, depth_pose(), points, {static_cast<float>(distance_m), level.search_steps});
+    const CorrespondenceSums pairs = sum_correspondences(
+        observation_, depth_pose(), points, {static_cast<float>(distance_m), level.search_steps}, foreground_weight());
     if (pairs.count < kMinPairs) return false;
     // A level with fewer pairs weighs as much as the finest one.
     const double weight = 1.0 / (level.points * sigma_m_ * sigma_m_);
@@ -135,6 +136,18 @@ class JointRegistration {
     if (is_finest_) result_.information += build(0.0).hessian;
     add(build(registration_.point_weight), 1.0, all);
     return true;
+  }
+
+  /// Returns the probability that the pixel of a measured point shows the object, by its colour: a hand that grips an
+  /// object lies within the distance of pairs, and would pull the pose towards itself.
+  PairWeight foreground_weight() const {
+    const ColourStatistics* colours = start_.appearance.colours.get();
+    if (colours == nullptr || colours->empty()) return nullptr;
+    return [&frame = observation_.frame, colours](const Eigen::Vector3f& measured) {
+      const Eigen::Vector2d pixel = frame.camera.project(measured.cast<double>());
+      const cv::Point at_px(cvRound(pixel.x()), cvRound(pixel.y()));
+      return std::max(kMinForeground, colours->foreground(frame.colour.at<cv::Vec3b>(at_px)));
+    };
   }
 
   RegionLines find_lines(const JointLevel& level) {

@@ -25,9 +25,9 @@ ResidualRow point_to_plane_row(const Eigen::Vector3f& a, const Eigen::Vector3f& 
            n.z(), normal_distance, 0.0F}};
 }
 
-/// Adds the block's correspondences under Tukey's weights, and empties the block.
+/// Adds the block's correspondences under Tukey's weights and the given ones, and empties the block.
 void accumulate_correspondences(const ObjectModel& model, const Eigen::Vector3f& centre, float limit_sq,
-                                VisiblePoints& visible, CorrespondenceSums& totals) {
+                                const PairWeight& weight, VisiblePoints& visible, CorrespondenceSums& totals) {
   const CorrespondenceBlock& block = visible.block;
   ResidualRows plane_rows;
   ResidualRows point_rows;
@@ -35,13 +35,15 @@ void accumulate_correspondences(const ObjectModel& model, const Eigen::Vector3f&
   std::size_t pairs = 0;
   for (std::size_t i = 0; i < block.count; ++i) {
     if (!(block.distance_sq[i] < limit_sq)) continue;
-    const Eigen::Vector3f arm = (Eigen::Vector3f(block.x[i], block.y[i], block.z[i]) - centre) / model.radius;
+    const Eigen::Vector3f point(block.x[i], block.y[i], block.z[i]);
+    const Eigen::Vector3f arm = (point - centre) / model.radius;
     const Eigen::Vector3f residual(block.residual_x[i], block.residual_y[i], block.residual_z[i]);
     const float normal_distance = residual.dot(visible.normals[i]);
     const float tukey = 1.0F - block.distance_sq[i] / limit_sq;
     plane_rows[pairs] = point_to_plane_row(arm, visible.normals[i], normal_distance);
     point_rows[pairs] = {{arm.x(), arm.y(), arm.z(), 1.0F, residual.x(), residual.y(), residual.z(), 0.0F}};
-    weights[pairs++] = tukey * tukey;  // Tukey's biweight
+    const float given = weight ? weight(point + residual) : 1.0F;
+    weights[pairs++] = given * tukey * tukey;  // Tukey's biweight
     totals.squares += static_cast<double>(normal_distance * normal_distance);
   }
   accumulate_outer_products(plane_rows, weights, pairs, totals.across);
@@ -59,7 +61,8 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
 }  // namespace
 
 CorrespondenceSums sum_correspondences(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                                       std::size_t count, const CorrespondenceSearch& search) {
+                                       std::size_t count, const CorrespondenceSearch& search,
+                                       const PairWeight& weight) {
   const ObjectModel& model = observation.model;
   const ModelView& view = nearest_view(model, T_camera_object);
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
@@ -74,7 +77,7 @@ CorrespondenceSums sum_correspondences(const ObjectObservation& observation, con
     if (is_visible) visible.add(point, normal);
     if (visible.block.count < CorrespondenceBlock::kSize && i + 1 < used) continue;
     find_correspondences(observation.frame, search, visible.block);
-    accumulate_correspondences(model, centre, search.distance_m * search.distance_m, visible, totals);
+    accumulate_correspondences(model, centre, search.distance_m * search.distance_m, weight, visible, totals);
   }
   return totals;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <functional>
 
 #include "pose/registration/correspondence_block.hpp"
 #include "pose/seen/region.hpp"
@@ -27,10 +28,14 @@ struct CorrespondenceSums {
   double squares = 0.0;  ///< sum of the squared distances along the normals, m^2
 };
 
+/// Returns the weight of a pair, 0 to 1, by its measured point, camera frame, metres.
+using PairWeight = std::function<float(const Eigen::Vector3f&)>;
+
 /// Finds the correspondences of the first `count` points of the view nearest to the pose, and sums them up under
-/// Tukey's weights.
+/// Tukey's weights, times those of `weight` where it is given.
 CorrespondenceSums sum_correspondences(const ObjectObservation& observation, const Eigen::Isometry3d& T_camera_object,
-                                       std::size_t count, const CorrespondenceSearch& search);
+                                       std::size_t count, const CorrespondenceSearch& search,
+                                       const PairWeight& weight = nullptr);
 
 /// Builds the normal equations of E = sum w ((n.r)^2 + point_weight r^2), where r leads from a model point to its
 /// measured point (point-to-plane ICP, Chen & Medioni 1992).

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
+#include "pipeline/geometry/renderer.hpp"
 #include "pose/motion/twist.hpp"
 #include "tests/pose/following/modality_scene.hpp"
 
@@ -78,6 +80,34 @@ TEST(JointRegistration, DepthThatIsOlderSaysNothingAlongTheMotion) {
   EXPECT_GT(error_m(), 0.6 * kShift) << "depth is surer";
   joint.depth_lag.shift_m = {2.0 * kShift, 0.0, 0.0};
   EXPECT_LT(error_m(), 0.3 * kShift);
+}
+
+// A hand lies within the distance of pairs, as a part of the object would that stands out; its colours are not the
+// object's.
+TEST(JointRegistration, WhatGripsTheObjectDoesNotPullItsPose) {
+  constexpr float kThickness_m = 0.012F;
+  ModalityScene scene = box_scene().copy();
+  const ColourStatistics colours = scene.learnt();
+  const cv::Vec3b beside = scene.frame.colour.at<cv::Vec3b>(5, 5);
+  ASSERT_LT(colours.foreground(beside), 0.1F);
+  const RenderedRegion rendered = render_depth_region(scene.object, scene.truth, scene.frame.camera);
+  const cv::Rect part = rendered.region_px;
+  const cv::Rect gripped(part.x, part.y + part.height / 2, part.width, part.height / 2);
+  for (int y = gripped.y; y < gripped.br().y; ++y) {
+    for (int x = gripped.x; x < gripped.br().x; ++x) {
+      if (std::isnan(rendered.depth_at({x, y}))) continue;
+      scene.frame.depth.at<float>(y, x) -= kThickness_m;
+      scene.frame.colour.at<cv::Vec3b>(y, x) = beside;
+    }
+  }
+  JointStart joint;
+  joint.T_camera_object = scene.truth;
+  joint.appearance.colours = std::make_shared<const ColourStatistics>(colours);
+  const ObjectObservation observation =
+      observe_object({scene.frame, {}, {}}, detection_of("it", scene.object, scene.truth, 1), scene.model, {});
+  const JointResult result = register_jointly(observation, joint, {}, {});
+  EXPECT_LT(scene.shift_of(result.registration.T_camera_object).norm(), 0.002);
+  EXPECT_LT(angle_to_truth(scene, result.registration.T_camera_object), 0.02);
 }
 
 TEST(JointRegistration, AFrameWithoutColoursLeavesDepth) {
